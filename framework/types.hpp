@@ -1,0 +1,22 @@
+// Fixed-size linear algebra, named once.
+//
+// Vectors are columns. n is the dimension of the group, m = n - k the number of admissible directions.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace hamel {
+
+/// Matrix and column vector over any scalar T (double, an automatic-differentiation number, ...).
+template <class T, int Rows, int Cols>
+using MatT = Eigen::Matrix<T, Rows, Cols>;
+template <class T, int Rows>
+using VecT = Eigen::Matrix<T, Rows, 1>;
+
+/// The same over double.
+template <int Rows, int Cols>
+using Mat = MatT<double, Rows, Cols>;
+template <int Rows>
+using Vec = VecT<double, Rows>;
+
+}  // namespace hamel
