@@ -1,0 +1,20 @@
+# `cmake --install`: libraries, headers, the program, and the package that find_package(hamel) finds.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS hamel_framework hamel_groups hamel_solvers hamel_systems hamel_umbrella
+        EXPORT hamelTargets FILE_SET HEADERS)
+if(TARGET hamel_program)
+  install(TARGETS hamel_program)
+endif()
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hamel)
+install(EXPORT hamelTargets NAMESPACE hamel:: DESTINATION ${package_dir})
+configure_package_config_file(
+  ${PROJECT_SOURCE_DIR}/tools/cmake/hamelConfig.cmake.in ${PROJECT_BINARY_DIR}/hamelConfig.cmake
+  INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(
+  ${PROJECT_BINARY_DIR}/hamelConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/hamelConfig.cmake ${PROJECT_BINARY_DIR}/hamelConfigVersion.cmake
+        DESTINATION ${package_dir})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
