@@ -1,0 +1,218 @@
+// The Cayley map (I - xi^/2)^-1 (I + xi^/2) in the defining matrices of SO(2), SO(3), SE(2), SE(3);
+// R^n likewise.
+//
+// Everything is rational: no trigonometry, and (dR^-1) eta = (I - xi^/2) eta^ (I + xi^/2) is a
+// polynomial:
+//   SO(2)  1 + omega^2/4                       SO(3)  I - omega^/2 + omega omega^T/4
+//   SE(2)  I - ad/2 + omega xi e_omega^T/4     SE(3)  I - ad/2 + [[omega omega^T, 0], [omega^ v^,
+//   0]]/4
+// The rotation is by 2 atan(|omega|/2), never by pi, where the inverse is singular.
+// Source: Kobilarov, Marsden, Discrete geometric optimal control on Lie groups (2011); Hairer,
+// Lubich, Wanner, IV.8.3.
+#pragma once
+
+#include <hamel/framework/retraction_defaults.hpp>
+#include <hamel/groups/exp.hpp>
+#include <hamel/groups/retractions.hpp>
+#include <string>
+
+namespace hamel {
+
+/// What all Cayley maps share.
+template <class G>
+struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {
+  static constexpr bool symmetric = true;
+  static std::string name() { return "cayley"; }
+  static std::string formula() { return "tau(xi) = (I - xi^/2)^-1 (I + xi^/2)"; }
+};
+
+template <int N>
+struct Cayley<Rn<N>> : IdentityRetraction<Cayley<Rn<N>>, Rn<N>> {
+  static std::string name() { return "cayley"; }
+};
+
+template <>
+struct Cayley<SO2> : CayleyDefaults<SO2> {
+  /// ((1 - a^2) + 2 a i)/(1 + a^2), a = omega/2.
+  template <class T>
+  static SO2Element<T> tau(const VecT<T, 1>& xi) {
+    const T half = 0.5 * xi[0], s = xi[0] / (1.0 + half * half);
+    return {1.0 - half * s, s, 0};
+  }
+  template <class T>
+  static VecT<T, 1> tau_inverse(const SO2Element<T>& g) {
+    return VecT<T, 1>(2.0 * half_angle_tangent(g.c, g.s, "so2 cayley^-1"));
+  }
+  template <class T>
+  static MatT<T, 1, 1> dtau_right(const VecT<T, 1>& xi) {
+    return MatT<T, 1, 1>(1.0 / (1.0 + 0.25 * xi[0] * xi[0]));
+  }
+  template <class T>
+  static MatT<T, 1, 1> dtau_right_inverse(const VecT<T, 1>& xi) {
+    return MatT<T, 1, 1>(1.0 + 0.25 * xi[0] * xi[0]);
+  }
+  template <class T>
+  static MatT<T, 1, 1> dtau_right_inverse_transpose_derivative(const VecT<T, 1>& xi,
+                                                               const VecT<T, 1>& p) {
+    return MatT<T, 1, 1>(0.5 * xi[0] * p[0]);
+  }
+};
+
+template <>
+struct Cayley<SO3> : CayleyDefaults<SO3> {
+  /// I + (omega^ + omega^2/2)/(1 + |omega|^2/4).
+  template <class T>
+  static MatT<T, 3, 3> tau(const VecT<T, 3>& xi) {
+    const T a = 1.0 / (1.0 + 0.25 * xi.dot(xi));
+    return rotation_polynomial(xi, a, T(0.5 * a));
+  }
+  template <class T>
+  static VecT<T, 3> tau_inverse(const MatT<T, 3, 3>& g) {
+    return 2.0 * gibbs_vector(g, "so3 cayley^-1");
+  }
+  /// (I + omega^/2)/(1 + |omega|^2/4).
+  template <class T>
+  static MatT<T, 3, 3> dtau_right(const VecT<T, 3>& xi) {
+    const T a = 1.0 / (1.0 + 0.25 * xi.dot(xi));
+    const VecT<T, 3> w = (0.5 * a) * xi;
+    MatT<T, 3, 3> m;
+    m << a, -w[2], w[1], w[2], a, -w[0], -w[1], w[0], a;
+    return m;
+  }
+  template <class T>
+  static MatT<T, 3, 3> dtau_right_inverse(const VecT<T, 3>& xi) {
+    const VecT<T, 3> h = 0.5 * xi;
+    const T xy = h[0] * h[1], xz = h[0] * h[2], yz = h[1] * h[2];
+    MatT<T, 3, 3> m;
+    m << 1.0 + h[0] * h[0], xy + h[2], xz - h[1],  //
+        xy - h[2], 1.0 + h[1] * h[1], yz + h[0],   //
+        xz + h[1], yz - h[0], 1.0 + h[2] * h[2];
+    return m;
+  }
+  /// (omega.p I + omega p^T)/4 - p^/2.
+  template <class T>
+  static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,
+                                                               const VecT<T, 3>& p) {
+    const VecT<T, 3> q = 0.25 * p;
+    const T d = xi.dot(q);
+    MatT<T, 3, 3> m;
+    m << xi[0] * q[0] + d, xi[0] * q[1] + 2.0 * q[2], xi[0] * q[2] - 2.0 * q[1],  //
+        xi[1] * q[0] - 2.0 * q[2], xi[1] * q[1] + d, xi[1] * q[2] + 2.0 * q[0],   //
+        xi[2] * q[0] + 2.0 * q[1], xi[2] * q[1] - 2.0 * q[0], xi[2] * q[2] + d;
+    return m;
+  }
+};
+
+template <>
+struct Cayley<SE2> : CayleyDefaults<SE2> {
+  /// (cay omega, (I - omega J/2)^-1 v).
+  template <class T>
+  static SE2Element<T> tau(const VecT<T, 3>& xi) {
+    const T half = 0.5 * xi[0], a = 1.0 / (1.0 + half * half), b = half * a, s = xi[0] * a;
+    SE2Element<T> g;
+    g.rotation = {1.0 - half * s, s, 0};
+    g.translation = VecT<T, 2>(a * xi[1] - b * xi[2], b * xi[1] + a * xi[2]);
+    return g;
+  }
+  template <class T>
+  static VecT<T, 3> tau_inverse(const SE2Element<T>& g) {
+    const T t = half_angle_tangent(g.rotation.c, g.rotation.s, "se2 cayley^-1");
+    const VecT<T, 2>& p = g.translation;
+    return {2.0 * t, p[0] + t * p[1], p[1] - t * p[0]};
+  }
+  template <class T>
+  static MatT<T, 3, 3> dtau_right(const VecT<T, 3>& xi) {
+    const T zero(0.0), half = 0.5 * xi[0], a = 1.0 / (1.0 + half * half), b = half * a;
+    // The column of omega: -(lower block)^-1 (J v/2 + omega v/4) a = a J^T v/2.
+    MatT<T, 3, 3> m;
+    m << a, zero, zero, 0.5 * a * xi[2], a, -b, -0.5 * a * xi[1], b, a;
+    return m;
+  }
+  template <class T>
+  static MatT<T, 3, 3> dtau_right_inverse(const VecT<T, 3>& xi) {
+    const T zero(0.0), w = 0.5 * xi[0], v1 = 0.5 * xi[1], v2 = 0.5 * xi[2];
+    MatT<T, 3, 3> m;
+    m << 1.0 + w * w, zero, zero, w * v1 - v2, T(1.0), w, v1 + w * v2, -w, T(1.0);
+    return m;
+  }
+  template <class T>
+  static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,
+                                                               const VecT<T, 3>& p) {
+    const T zero(0.0), q1 = 0.5 * p[1], q2 = 0.5 * p[2], w = 0.5 * xi[0];
+    MatT<T, 3, 3> m;
+    m << 0.5 * (xi[0] * p[0] + q1 * xi[1] + q2 * xi[2]), q2 + w * q1, w * q2 - q1,  //
+        -q2, zero, zero, q1, zero, zero;
+    return m;
+  }
+};
+
+template <>
+struct Cayley<SE3> : CayleyDefaults<SE3> {
+  /// (cay omega, (I - omega^/2)^-1 v).
+  template <class T>
+  static SE3Element<T> tau(const VecT<T, 6>& xi) {
+    const VecT<T, 3> omega = xi.template head<3>(), v = xi.template tail<3>();
+    const T a = 1.0 / (1.0 + 0.25 * omega.dot(omega)), half = 0.5 * a;
+    const VecT<T, 3> wv = omega.cross(v);
+    return {rotation_polynomial(omega, a, half), v + half * (wv + 0.5 * omega.cross(wv))};
+  }
+  template <class T>
+  static VecT<T, 6> tau_inverse(const SE3Element<T>& g) {
+    const VecT<T, 3> t = gibbs_vector(g.rotation, "se3 cayley^-1");
+    VecT<T, 6> xi;
+    xi.template head<3>() = 2.0 * t;
+    xi.template tail<3>() = g.translation - t.cross(g.translation);
+    return xi;
+  }
+  /// [[A, 0], [v^ A/2, C]] with A = cay's dR on SO(3), C = (I - omega^/2)^-1 = I + a (omega^/2 +
+  /// omega^2/4).
+  template <class T>
+  static MatT<T, 6, 6> dtau_right(const VecT<T, 6>& xi) {
+    const VecT<T, 3> omega = xi.template head<3>(), v = xi.template tail<3>();
+    const T a = 1.0 / (1.0 + 0.25 * omega.dot(omega));
+    const MatT<T, 3, 3> rotational = Cayley<SO3>::dtau_right(omega);
+    MatT<T, 6, 6> m;
+    m.template topLeftCorner<3, 3>() = rotational;
+    m.template topRightCorner<3, 3>().setZero();
+    m.template bottomLeftCorner<3, 3>() = cross_matrix(VecT<T, 3>(0.5 * v)).lazyProduct(rotational);
+    m.template bottomRightCorner<3, 3>() = rotation_polynomial(omega, T(0.5 * a), T(0.25 * a));
+    return m;
+  }
+  /// [[I - W/2 + omega omega^T/4, 0], [-V/2 + W V/4, I - W/2]].
+  template <class T>
+  static MatT<T, 6, 6> dtau_right_inverse(const VecT<T, 6>& xi) {
+    const VecT<T, 3> omega = xi.template head<3>(), w = 0.5 * omega,
+                     v = 0.5 * xi.template tail<3>();
+    MatT<T, 6, 6> m;
+    m.template topLeftCorner<3, 3>() = Cayley<SO3>::dtau_right_inverse(omega);
+    m.template topRightCorner<3, 3>().setZero();
+    MatT<T, 3, 3> lower = v * w.transpose();  // W V/4 = v w^T - (w.v) I
+    lower.diagonal().array() -= w.dot(v);
+    lower -= cross_matrix(v);
+    m.template bottomLeftCorner<3, 3>() = lower;
+    MatT<T, 3, 3> last;
+    const T one(1.0);
+    last << one, w[2], -w[1], -w[2], one, w[0], w[1], -w[0], one;
+    m.template bottomRightCorner<3, 3>() = last;
+    return m;
+  }
+  /// Rows of omega: N_cay(omega, m) + (v.f I - f v^T)/4 and -(f + omega x f/2)^/2; rows of v: -f^/2
+  /// and 0.
+  template <class T>
+  static MatT<T, 6, 6> dtau_right_inverse_transpose_derivative(const VecT<T, 6>& xi,
+                                                               const VecT<T, 6>& p) {
+    const VecT<T, 3> omega = xi.template head<3>(), v = xi.template tail<3>();
+    const VecT<T, 3> moment = p.template head<3>(), f = -0.5 * p.template tail<3>();
+    MatT<T, 3, 3> top = Cayley<SO3>::dtau_right_inverse_transpose_derivative(omega, moment);
+    top += (0.5 * f) * v.transpose();
+    top.diagonal().array() -= 0.5 * v.dot(f);
+    MatT<T, 6, 6> m;
+    m.template topLeftCorner<3, 3>() = top;
+    m.template topRightCorner<3, 3>() = cross_matrix(VecT<T, 3>(f + 0.5 * omega.cross(f)));
+    m.template bottomLeftCorner<3, 3>() = cross_matrix(f);
+    m.template bottomRightCorner<3, 3>().setZero();
+    return m;
+  }
+};
+
+}  // namespace hamel

@@ -1,0 +1,315 @@
+// Products of groups: G1 x G2 x ..., and retractions factor by factor.
+//
+// Element: the tuple of the factors' elements (part<I>()). Algebra: the factors' coordinates one
+// after another; Ad, ad, dR, dL are block diagonal. Columns carry the number of the factor:
+// 1_theta, 1_x, 1_y, 2_theta. A product offers every retraction that all its factors offer;
+// ProductRetraction<Exp<SE2>, Cayley<SO2>> mixes them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <hamel/framework/retraction_defaults.hpp>
+#include <hamel/framework/types.hpp>
+#include <hamel/groups/coordinates.hpp>
+#include <hamel/groups/retractions.hpp>
+#include <span>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace hamel {
+
+template <class T, class... Gs>
+struct ProductElement {
+  std::tuple<typename Gs::template Element<T>...> parts;
+
+  /// The element of factor I = 0, 1, ...
+  template <std::size_t I>
+  auto& part() {
+    return std::get<I>(parts);
+  }
+  template <std::size_t I>
+  const auto& part() const {
+    return std::get<I>(parts);
+  }
+};
+
+template <class... Gs>
+struct Product {
+  static_assert(sizeof...(Gs) >= 1);
+  static constexpr int dim = (Gs::dim + ...);
+  template <class T>
+  using Element = ProductElement<T, Gs...>;
+  template <std::size_t I>
+  using Factor = std::tuple_element_t<I, std::tuple<Gs...>>;
+  /// Those that every factor has.
+  using Retractions = typename Concatenate<
+      std::conditional_t<(has_retraction<Gs, Exp<Gs>> && ...), TypeList<Exp<Product>>, TypeList<>>,
+      std::conditional_t<(has_retraction<Gs, Cayley<Gs>> && ...), TypeList<Cayley<Product>>,
+                         TypeList<>>,
+      std::conditional_t<(has_retraction<Gs, Polar<Gs>> && ...), TypeList<Polar<Product>>,
+                         TypeList<>>,
+      std::conditional_t<(has_retraction<Gs, SecondKind<Gs>> && ...), TypeList<SecondKind<Product>>,
+                         TypeList<>>,
+      std::conditional_t<(has_retraction<Gs, SecondKindSymmetric<Gs>> && ...),
+                         TypeList<SecondKindSymmetric<Product>>, TypeList<>>>::type;
+
+  /// Where factor I's coordinates start in the algebra.
+  static constexpr std::array<int, sizeof...(Gs)> offsets = [] {
+    std::array<int, sizeof...(Gs)> result{};
+    const int dims[] = {Gs::dim...};
+    for (std::size_t i = 1; i < sizeof...(Gs); ++i) result[i] = result[i - 1] + dims[i - 1];
+    return result;
+  }();
+
+  /// f(index) for each factor, index a std::integral_constant.
+  template <class Function>
+  static void for_each_factor(Function&& f) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (f(std::integral_constant<std::size_t, I>{}), ...);
+    }
+    (std::index_sequence_for<Gs...>{});
+  }
+  /// The coordinates of factor I in a vector of the algebra or its dual.
+  template <std::size_t I, class T>
+  static VecT<T, Factor<I>::dim> segment(const VecT<T, dim>& v) {
+    return v.template segment<Factor<I>::dim>(offsets[I]);
+  }
+  /// The block-diagonal matrix of block(index).
+  template <class T, class Function>
+  static MatT<T, dim, dim> block_diagonal(Function&& block) {
+    MatT<T, dim, dim> m = MatT<T, dim, dim>::Zero();
+    for_each_factor([&](auto i) {
+      m.template block<Factor<i>::dim, Factor<i>::dim>(offsets[i], offsets[i]) = block(i);
+    });
+    return m;
+  }
+
+  static std::string name() {
+    std::string text;
+    ((text += (text.empty() ? "" : "*") + std::string(Gs::name())), ...);
+    return text;
+  }
+
+  template <class T = double>
+  static Element<T> identity() {
+    return {{Gs::template identity<T>()...}};
+  }
+  template <class T>
+  static Element<T> compose(const ProductElement<T, Gs...>& g, const ProductElement<T, Gs...>& h) {
+    return each<T>(
+        [&](auto i) { return Factor<i>::compose(g.template part<i>(), h.template part<i>()); });
+  }
+  template <class T>
+  static Element<T> inverse(const ProductElement<T, Gs...>& g) {
+    return each<T>([&](auto i) { return Factor<i>::inverse(g.template part<i>()); });
+  }
+  template <class T>
+  static MatT<T, dim, dim> Ad(const ProductElement<T, Gs...>& g) {
+    return block_diagonal<T>([&](auto i) { return Factor<i>::Ad(g.template part<i>()); });
+  }
+  template <class T>
+  static MatT<T, dim, dim> ad(const VecT<T, dim>& xi) {
+    return block_diagonal<T>([&](auto i) { return Factor<i>::ad(segment<i>(xi)); });
+  }
+  template <class T>
+  static VecT<T, dim> Ad_transpose(const ProductElement<T, Gs...>& g, const VecT<T, dim>& mu) {
+    VecT<T, dim> r;
+    for_each_factor([&](auto i) {
+      r.template segment<Factor<i>::dim>(offsets[i]) =
+          Factor<i>::Ad_transpose(g.template part<i>(), segment<i>(mu));
+    });
+    return r;
+  }
+  template <class T>
+  static MatT<T, dim, dim> coad(const VecT<T, dim>& mu) {
+    return block_diagonal<T>([&](auto i) { return Factor<i>::coad(segment<i>(mu)); });
+  }
+  template <class T>
+  static Element<T> normalise(const ProductElement<T, Gs...>& g) {
+    return each<T>([&](auto i) { return Factor<i>::normalise(g.template part<i>()); });
+  }
+  /// The largest of the factors' defects.
+  template <class T>
+  static T defect(const ProductElement<T, Gs...>& g) {
+    T largest(0.0);
+    for_each_factor([&](auto i) {
+      const T d = Factor<i>::defect(g.template part<i>());
+      if (!(d <= largest)) largest = d;
+    });
+    return largest;
+  }
+
+  /// The factors' matrices, and the block-diagonal matrix of them.
+  template <class T>
+  static auto matrices(const ProductElement<T, Gs...>& g) {
+    std::vector<MatT<T, Eigen::Dynamic, Eigen::Dynamic>> result;
+    for_each_factor([&](auto i) { result.emplace_back(Factor<i>::matrix(g.template part<i>())); });
+    return result;
+  }
+  template <class T>
+  static MatT<T, Eigen::Dynamic, Eigen::Dynamic> matrix(const ProductElement<T, Gs...>& g) {
+    return assemble<T>(matrices(g));
+  }
+  /// The block-diagonal matrix of the factors' hats.
+  template <class T>
+  static MatT<T, Eigen::Dynamic, Eigen::Dynamic> hat(const VecT<T, dim>& xi) {
+    std::vector<MatT<T, Eigen::Dynamic, Eigen::Dynamic>> blocks;
+    for_each_factor([&](auto i) { blocks.emplace_back(Factor<i>::hat(segment<i>(xi))); });
+    return assemble<T>(blocks);
+  }
+
+  static std::vector<std::string> columns() {
+    std::vector<std::string> names;
+    for_each_factor([&](auto i) {
+      for (const std::string& column : Factor<i>::columns()) {
+        names.push_back(std::to_string(i + 1) + "_" + column);
+      }
+    });
+    return names;
+  }
+  template <class T>
+  static std::vector<T> coordinates(const ProductElement<T, Gs...>& g) {
+    std::vector<T> values;
+    for_each_factor([&](auto i) {
+      const auto own = Factor<i>::coordinates(g.template part<i>());
+      values.insert(values.end(), own.begin(), own.end());
+    });
+    return values;
+  }
+  /// The factors' values one after another. Throws std::invalid_argument.
+  static Element<double> from_coordinates(std::span<const double> values) {
+    check_coordinates(name(), values, columns());
+    std::size_t begin = 0;
+    return each<double>([&](auto i) {
+      const std::size_t count = Factor<i>::columns().size();
+      begin += count;
+      return Factor<i>::from_coordinates(values.subspan(begin - count, count));
+    });
+  }
+
+  /// The element whose part I is part(index).
+  template <class T, class Function>
+  static Element<T> each(Function&& part) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      return Element<T>{std::tuple<typename Gs::template Element<T>...>{
+          part(std::integral_constant<std::size_t, I>{})...}};  // braces: left to right
+    }
+    (std::index_sequence_for<Gs...>{});
+  }
+
+ private:
+  template <class T>
+  static auto assemble(const std::vector<MatT<T, Eigen::Dynamic, Eigen::Dynamic>>& blocks) {
+    Eigen::Index size = 0, at = 0;
+    for (const auto& block : blocks) size += block.rows();
+    MatT<T, Eigen::Dynamic, Eigen::Dynamic> m =
+        MatT<T, Eigen::Dynamic, Eigen::Dynamic>::Zero(size, size);
+    for (const auto& block : blocks) {
+      m.block(at, at, block.rows(), block.cols()) = block;
+      at += block.rows();
+    }
+    return m;
+  }
+};
+
+/// tau = (tau_1, tau_2, ...): one retraction for each factor.
+template <class... Rs>
+struct ProductRetraction {
+  using Group = Product<typename Rs::Group...>;
+  static constexpr int dim = Group::dim;
+  static constexpr bool symmetric = (Rs::symmetric && ...);
+  static constexpr bool one_parameter = (Rs::one_parameter && ...);
+  template <std::size_t I>
+  using Part = std::tuple_element_t<I, std::tuple<Rs...>>;
+
+  /// "exp", or "exp*cayley" when the factors' names differ.
+  static std::string name() {
+    const std::vector<std::string> names = {Rs::name()...};
+    std::string joined = names.front();
+    bool same = true;
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      same = same && names[i] == names[0];
+      joined += "*" + names[i];
+    }
+    return same ? names.front() : joined;
+  }
+  static std::string domain() { return join({Rs::domain()...}); }
+  static std::string formula() { return join({Rs::formula()...}); }
+
+  template <class T>
+  static ProductElement<T, typename Rs::Group...> tau(const VecT<T, dim>& xi) {
+    return Group::template each<T>(
+        [&](auto i) { return Part<i>::tau(Group::template segment<i>(xi)); });
+  }
+  template <class T>
+  static VecT<T, dim> tau_inverse(const ProductElement<T, typename Rs::Group...>& g) {
+    VecT<T, dim> xi;
+    Group::for_each_factor([&](auto i) {
+      xi.template segment<Part<i>::Group::dim>(Group::offsets[i]) =
+          Part<i>::tau_inverse(g.template part<i>());
+    });
+    return xi;
+  }
+  template <class T>
+  static MatT<T, dim, dim> dtau_right(const VecT<T, dim>& xi) {
+    return Group::template block_diagonal<T>(
+        [&](auto i) { return Part<i>::dtau_right(Group::template segment<i>(xi)); });
+  }
+  template <class T>
+  static MatT<T, dim, dim> dtau_right_inverse(const VecT<T, dim>& xi) {
+    return Group::template block_diagonal<T>(
+        [&](auto i) { return Part<i>::dtau_right_inverse(Group::template segment<i>(xi)); });
+  }
+  template <class T>
+  static MatT<T, dim, dim> dtau_left(const VecT<T, dim>& xi) {
+    return Group::template block_diagonal<T>(
+        [&](auto i) { return Part<i>::dtau_left(Group::template segment<i>(xi)); });
+  }
+  template <class T>
+  static MatT<T, dim, dim> dtau_left_inverse(const VecT<T, dim>& xi) {
+    return Group::template block_diagonal<T>(
+        [&](auto i) { return Part<i>::dtau_left_inverse(Group::template segment<i>(xi)); });
+  }
+  template <class T>
+  static MatT<T, dim, dim> dtau_right_inverse_transpose_derivative(const VecT<T, dim>& xi,
+                                                                   const VecT<T, dim>& p) {
+    return Group::template block_diagonal<T>([&](auto i) {
+      return Part<i>::dtau_right_inverse_transpose_derivative(Group::template segment<i>(xi),
+                                                              Group::template segment<i>(p));
+    });
+  }
+  template <class T>
+  static bool in_domain(const VecT<T, dim>& xi) {
+    bool inside = true;
+    Group::for_each_factor(
+        [&](auto i) { inside = inside && Part<i>::in_domain(Group::template segment<i>(xi)); });
+    return inside;
+  }
+
+ private:
+  /// "1: |omega| < pi; 2: all finite xi".
+  static std::string join(const std::vector<std::string>& texts) {
+    std::string joined;
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      joined += (i == 0 ? "" : "; ") + std::to_string(i + 1) + ": " + texts[i];
+    }
+    return joined;
+  }
+};
+
+template <class... Gs>
+struct Exp<Product<Gs...>> : ProductRetraction<Exp<Gs>...> {};
+template <class... Gs>
+struct Cayley<Product<Gs...>> : ProductRetraction<Cayley<Gs>...> {};
+template <class... Gs>
+struct Polar<Product<Gs...>> : ProductRetraction<Polar<Gs>...> {};
+template <class... Gs>
+struct SecondKind<Product<Gs...>> : ProductRetraction<SecondKind<Gs>...> {};
+template <class... Gs>
+struct SecondKindSymmetric<Product<Gs...>> : ProductRetraction<SecondKindSymmetric<Gs>...> {};
+
+}  // namespace hamel
