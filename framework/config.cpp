@@ -1,7 +1,164 @@
+#include <hamel/framework/config.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
 #include <toml++/toml.h>
-#include <fmt/core.h>
-#include <nlohmann/json.hpp>
-#include <hamel/framework/types.hpp>
-#include <string>
-namespace hamel { std::string config(); 
-std::string config() { auto t = toml::parse("a = 1"); nlohmann::json j; j["a"]=1; return fmt::format("{} {}", t["a"].value_or(0), j.dump()); } }
+
+namespace hamel {
+namespace {
+
+const std::vector<std::string>& keys() {
+  static const std::vector<std::string> all = {
+      "system", "set",   "configuration", "velocity", "momentum", "scheme", "s",
+      "retraction", "solver", "tolerance", "compose",  "step",     "until",  "every"};
+  return all;
+}
+
+// Reads nodes of one TOML table into fields, noting what does not fit.
+class Reader {
+ public:
+  Reader(const std::string& origin) : origin_(origin) {}
+
+  void text(const toml::node& node, const std::string& key, std::string& out) {
+    if (auto value = node.value<std::string>()) out = *value;
+    else wrong(node, key, "a string");
+  }
+  void number(const toml::node& node, const std::string& key, double& out) {
+    if (auto value = node.value<double>()) out = *value;
+    else wrong(node, key, "a number");
+  }
+  void whole(const toml::node& node, const std::string& key, long& out) {
+    if (auto value = node.value<int64_t>(); value && node.is_integer()) out = *value;
+    else wrong(node, key, "a whole number");
+  }
+  void list(const toml::node& node, const std::string& key, std::vector<double>& out) {
+    out.clear();
+    if (const toml::array* array = node.as_array()) {
+      for (const toml::node& entry : *array) {
+        if (auto value = entry.value<double>()) out.push_back(*value);
+        else wrong(entry, key, "a list of numbers");
+      }
+    } else if (auto value = node.value<double>()) {
+      out.push_back(*value);
+    } else {
+      wrong(node, key, "a number or a list of numbers");
+    }
+  }
+  void wrong(const toml::node& node, const std::string& key, const std::string& expected) {
+    const auto at = node.source().begin;
+    mistakes.push_back(
+        fmt::format("{}:{}:{}: {}: expected {}", origin_, at.line, at.column, key, expected));
+  }
+
+  std::vector<std::string> mistakes;
+
+ private:
+  const std::string& origin_;
+};
+
+}  // namespace
+
+Config Config::from_toml(const std::string& text, const std::string& origin) {
+  toml::table table;
+  try {
+    table = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const auto at = error.source().begin;
+    throw ConfigError({fmt::format("{}:{}:{}: {}", origin, at.line, at.column, error.description())});
+  }
+  Config config;
+  Reader read(origin);
+  for (const auto& [name, node] : table) {
+    const std::string key(name.str());
+    if (key == "system") read.text(node, key, config.system);
+    else if (key == "scheme") read.text(node, key, config.scheme);
+    else if (key == "retraction") read.text(node, key, config.retraction);
+    else if (key == "solver") read.text(node, key, config.solver);
+    else if (key == "compose") read.text(node, key, config.compose);
+    else if (key == "s") read.number(node, key, config.s);
+    else if (key == "tolerance") read.number(node, key, config.tolerance);
+    else if (key == "step") read.number(node, key, config.step);
+    else if (key == "until") read.number(node, key, config.until);
+    else if (key == "every") read.whole(node, key, config.every);
+    else if (key == "configuration") read.list(node, key, config.start.configuration);
+    else if (key == "velocity") read.list(node, key, config.start.velocity);
+    else if (key == "momentum") read.list(node, key, config.start.momentum);
+    else if (key == "set") {
+      if (const toml::table* set = node.as_table()) {
+        for (const auto& [parameter, value] : *set) {
+          const std::string field(parameter.str());
+          read.list(value, "set." + field, config.parameters[field]);
+        }
+      } else {
+        read.wrong(node, key, "a table of parameters");
+      }
+    } else {
+      const auto at = node.source().begin;
+      read.mistakes.push_back(fmt::format("{}:{}:{}: {}", origin, at.line, at.column,
+                                          unknown_name("key", key, keys())));
+    }
+  }
+  if (!read.mistakes.empty()) throw ConfigError(read.mistakes);
+  return config;
+}
+
+std::string Config::to_toml() const {
+  std::string out;
+  const auto text = [&](const char* key, const std::string& v) {
+    out += fmt::format("{} = \"{}\"\n", key, v);
+  };
+  const auto number = [](double v) {  // TOML floats need a point or an exponent
+    std::string digits = fmt::format("{}", v);
+    return digits.find_first_of(".en") == std::string::npos ? digits + ".0" : digits;
+  };
+  const auto list = [&](const std::string& key, const std::vector<double>& values) {
+    std::vector<std::string> words;
+    for (double v : values) words.push_back(number(v));
+    out += fmt::format("{} = [{}]\n", key, join(words));
+  };
+  text("system", system);
+  if (!start.configuration.empty()) list("configuration", start.configuration);
+  if (!start.velocity.empty()) list("velocity", start.velocity);
+  if (!start.momentum.empty()) list("momentum", start.momentum);
+  text("scheme", scheme);
+  out += fmt::format("s = {}\n", number(s));
+  text("retraction", retraction);
+  text("solver", solver);
+  out += fmt::format("tolerance = {}\n", number(tolerance));
+  text("compose", compose);
+  out += fmt::format("step = {}\nuntil = {}\nevery = {}\n", number(step), number(until), every);
+  if (!parameters.empty()) out += "[set]\n";
+  for (const auto& [name, values] : parameters) list(name, values);
+  return out;
+}
+
+long Config::steps() const { return static_cast<long>(std::floor(until / step * (1 + 1e-12) + 1e-9)); }
+
+std::vector<std::string> Config::mistakes() const {
+  std::vector<std::string> out;
+  const auto refuse = [&](const char* key, double value, const char* expected) {
+    out.push_back(fmt::format("{}: got {}, expected {}", key, value, expected));
+  };
+  if (!(s >= 0 && s <= 1)) refuse("s", s, "a number in [0, 1]");
+  if (!(tolerance > 0 && tolerance < 1)) refuse("tolerance", tolerance, "a number in (0, 1)");
+  if (!std::isfinite(step) || step == 0) refuse("step", step, "a finite number other than 0");
+  if (!std::isfinite(until)) refuse("until", until, "a finite number");
+  else if (std::isfinite(step) && step != 0) {
+    if (until / step < 0) refuse("until", until, "the sign of step");
+    else if (until / step > 9e15) refuse("until", until, "fewer than 9e15 steps");
+  }
+  if (every < 1) refuse("every", static_cast<double>(every), "at least 1");
+  return out;
+}
+
+Config read_config(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf())) throw ConfigError({fmt::format("config: cannot read '{}'", path)});
+  return Config::from_toml(text.str(), path);
+}
+
+}  // namespace hamel

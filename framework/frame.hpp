@@ -1,0 +1,21 @@
+// The Hamel frame: an I-orthonormal basis of d = ker A.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace hamel {
+
+/// E: n x m with A E = 0 and E^T I E = Id, m = n - k. From the QR factors of A^T (the last m columns of
+/// Q span ker A) and a Cholesky factor of I restricted to them. inertia: n x n positive definite;
+/// constraints: k x n of rank k.
+Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints);
+
+/// What is wrong with an inertia and constraint rows for a group of dimension n: shape, NaN, symmetry,
+/// definiteness, rank. Empty when nothing is.
+std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
+                                               const Eigen::MatrixXd& constraints, int n);
+
+}  // namespace hamel

@@ -1,0 +1,54 @@
+// What became of a solve, and of a run.
+#pragma once
+
+#include <string>
+
+namespace hamel {
+
+/// Why an implicit equation was, or was not, solved.
+enum class Reason {
+  converged,       // residual <= tolerance * scale
+  round_off,       // no further decrease, and the residual is at the round-off floor: accepted
+  stagnated,       // no further decrease above the floor
+  max_iterations,  // the budget ran out
+  singular,        // the Jacobian could not be solved with
+  not_finite,      // NaN or infinity in the equation
+  outside_domain,  // the solution lies where the retraction is no diffeomorphism
+  stopped,         // the user's observer asked to stop
+};
+
+/// The reason in words.
+constexpr const char* to_string(Reason reason) {
+  switch (reason) {
+    case Reason::converged: return "converged";
+    case Reason::round_off: return "converged to the round-off floor";
+    case Reason::stagnated: return "the residual stopped decreasing above the tolerance";
+    case Reason::max_iterations: return "the iteration limit was reached";
+    case Reason::singular: return "the Jacobian is singular";
+    case Reason::not_finite: return "the equation gave a value that is not finite";
+    case Reason::outside_domain: return "the step left the domain of the retraction";
+    case Reason::stopped: return "stopped by the observer";
+  }
+  return "";
+}
+
+/// The certificate of one solve. residual is |F| / scale, recomputed at the point returned.
+struct SolveReport {
+  Reason reason = Reason::converged;
+  double residual = 0;
+  int iterations = 0;
+  int evaluations = 0;
+  bool ok() const { return reason == Reason::converged || reason == Reason::round_off; }
+};
+
+/// The outcome of a run. On failure the step that failed, where it started, and why.
+struct Status {
+  bool ok = true;
+  long step = 0;
+  double time = 0;
+  double residual = 0;
+  std::string reason;
+  explicit operator bool() const { return ok; }
+};
+
+}  // namespace hamel

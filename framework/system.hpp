@@ -1,0 +1,195 @@
+// A system: what physics says, and its erasure to the data that a run needs.
+//
+// A system is any struct with
+//   using Group = ...;                 the configuration group, of dimension n
+//   auto inertia() const;              n x n symmetric positive definite, l(xi) = 1/2 xi^T I xi
+//   auto constraints() const;          k x n rows A of full rank, A xi = 0 (k = 0: leave it out)
+// and, where it has them,
+//   void fields(auto& f);              f("mass", mass, "kg", "what it is"): parameters, units, words
+//   Start start() const;               the default start
+//   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
+//   void invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
+//   static name(), summary(), formula(), known(), source()   words for `hamel describe`
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/errors.hpp>
+#include <hamel/framework/group_info.hpp>
+
+namespace hamel {
+
+/// Where a run starts. Left empty: the system's own. At most one of velocity and momentum.
+struct Start {
+  std::vector<double> configuration = {};  // the element's CSV columns
+  std::vector<double> velocity = {};       // body velocity xi, n entries
+  std::vector<double> momentum = {};       // body momentum mu, n entries
+};
+
+using Parameters = std::map<std::string, std::vector<double>>;
+
+/// One parameter of a system, as its fields() states it.
+struct Field {
+  std::string name;
+  std::vector<double> value;
+  std::string unit;
+  std::string meaning;
+  bool any_length = false;  // a list whose length the system itself checks
+};
+
+/// The exact motion from a start: t -> (coordinates of g, xi). Call with |t| increasing.
+using ExactFlow = std::function<std::pair<std::vector<double>, std::vector<double>>(double)>;
+
+/// A number that the exact motion keeps.
+struct Invariant {
+  std::string name;
+  std::function<double(std::span<const double> coordinates, std::span<const double> velocity)> value;
+};
+
+/// A system with its parameters set and its type erased.
+struct SystemModel {
+  std::string name;
+  GroupInfo group;
+  Eigen::MatrixXd inertia;
+  Eigen::MatrixXd constraints;
+  std::vector<Field> fields;
+  Start start;
+  /// Empty when nothing is known exactly.
+  std::function<ExactFlow(const Start&)> exact;
+  std::vector<Invariant> invariants;
+};
+
+/// A registered system: its words, its parameters, and how to make it.
+struct SystemInfo {
+  std::string name, summary, formula, known, source;
+  GroupInfo group;
+  std::vector<Field> fields;
+  /// Throws ConfigError naming every parameter that does not fit.
+  std::function<SystemModel(const Parameters&)> make;
+};
+
+namespace detail {
+
+// The visitors that a system's fields() meets: f(name, member, unit, meaning).
+struct FieldReader {
+  std::vector<Field> fields;
+  void operator()(const char* name, double& value, const char* unit, const char* meaning = "") {
+    fields.push_back({name, {value}, unit, meaning});
+  }
+  void operator()(const char* name, std::vector<double>& value, const char* unit,
+                  const char* meaning = "") {
+    fields.push_back({name, value, unit, meaning, true});
+  }
+  template <int N>
+  void operator()(const char* name, Vec<N>& value, const char* unit, const char* meaning = "") {
+    fields.push_back({name, std::vector<double>(value.begin(), value.end()), unit, meaning});
+  }
+};
+
+struct FieldWriter {
+  const Parameters& given;
+  void operator()(const char* name, double& value, const char*, const char* = "") {
+    if (auto it = given.find(name); it != given.end()) value = it->second.front();
+  }
+  void operator()(const char* name, std::vector<double>& value, const char*, const char* = "") {
+    if (auto it = given.find(name); it != given.end()) value = it->second;
+  }
+  template <int N>
+  void operator()(const char* name, Vec<N>& value, const char*, const char* = "") {
+    if (auto it = given.find(name); it != given.end()) value = Eigen::Map<const Vec<N>>(it->second.data());
+  }
+};
+
+template <class S>
+std::vector<Field> fields_of(S system) {
+  FieldReader reader;
+  if constexpr (requires { system.fields(reader); }) system.fields(reader);
+  return reader.fields;
+}
+
+/// Names, lengths and finiteness of given parameters against the fields; throws ConfigError.
+void check_parameters(const std::string& system, const std::vector<Field>& fields,
+                      const Parameters& given);
+
+}  // namespace detail
+
+/// k of a system, from the shape of its constraints().
+template <class S>
+constexpr int constraint_count() {
+  if constexpr (requires(const S& s) { s.constraints(); }) {
+    return std::decay_t<decltype(std::declval<const S&>().constraints())>::RowsAtCompileTime;
+  } else {
+    return 0;
+  }
+}
+
+template <class S>
+concept System = requires(const S& s) {
+  requires Group<typename S::Group>;
+  { s.inertia() } -> std::convertible_to<Mat<S::Group::dim, S::Group::dim>>;
+};
+
+/// Erases a system, parameters as they are. Throws what the system's own members throw.
+template <System S>
+SystemModel erase(const S& system) {
+  using G = typename S::Group;
+  constexpr int n = G::dim;
+  using Element = typename G::template Element<double>;
+  SystemModel model;
+  if constexpr (requires { S::name(); }) model.name = S::name();
+  else model.name = "user system";
+  model.group = group_info<G>();
+  model.inertia = system.inertia();
+  model.constraints.resize(0, n);
+  if constexpr (requires { system.constraints(); }) model.constraints = system.constraints();
+  model.fields = detail::fields_of(system);
+  if constexpr (requires { system.start(); }) model.start = system.start();
+  if constexpr (requires(Element g, Vec<n> xi) { system.exact(g, xi); }) {
+    model.exact = [system](const Start& start) -> ExactFlow {
+      auto flow = std::make_shared<decltype(system.exact(std::declval<Element>(), Vec<n>()))>(
+          system.exact(G::from_coordinates(start.configuration),
+                       Eigen::Map<const Vec<n>>(start.velocity.data())));
+      return [flow](double t) {
+        const auto [g, xi] = (*flow)(t);
+        return std::pair{G::coordinates(g), std::vector<double>(xi.begin(), xi.end())};
+      };
+    };
+  }
+  auto add = [&model](std::string name, auto value) {
+    model.invariants.push_back(
+        {std::move(name), [value](std::span<const double> g, std::span<const double> xi) -> double {
+           return value(G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
+         }});
+  };
+  if constexpr (requires { system.invariants(add); }) system.invariants(add);
+  return model;
+}
+
+/// What the registry keeps of the system type S; S{} holds the defaults.
+template <System S>
+SystemInfo system_info() {
+  SystemInfo info;
+  info.name = S::name();
+  if constexpr (requires { S::summary(); }) info.summary = S::summary();
+  if constexpr (requires { S::formula(); }) info.formula = S::formula();
+  if constexpr (requires { S::known(); }) info.known = S::known();
+  if constexpr (requires { S::source(); }) info.source = S::source();
+  info.group = group_info<typename S::Group>();
+  info.fields = detail::fields_of(S{});
+  info.make = [fields = info.fields](const Parameters& given) {
+    detail::check_parameters(S::name(), fields, given);
+    S system;
+    detail::FieldWriter writer{given};
+    if constexpr (requires { system.fields(writer); }) system.fields(writer);
+    return erase(system);
+  };
+  return info;
+}
+
+}  // namespace hamel
