@@ -1,0 +1,101 @@
+// balance: the paper's printed inverse map with barred momenta, balanced on d at the base point.
+//
+// The end momenta are embedded, mu0 = I E mu_bar_k and mu1 = I E mu_bar_{k+1}; unknowns (y, w) with
+// xi = h E y and w = mu_bar_{k+1}. With z0 = -s xi, z1 = (1-s) xi, f_i = tau(z_i), m_i = Ad*_{f_i^-1} mu_i:
+//   F1 = E^T ( s dL_{z0}^T mu0 + (1-s) dL_{z1}^T mu1 ) - y,        (1) of method.md, section 2, on d
+//   F2 = E^T ( m1 - m0 ),                                         (2) with nu = 0, on d
+//   g_{k+1} = g_k f0^-1 f1.
+// Derivatives: (c) and (d) of framework/trivialised.hpp.
+#pragma once
+
+#include <hamel/framework/problem.hpp>
+#include <hamel/framework/schemes/traits.hpp>
+#include <hamel/framework/trivialised.hpp>
+
+namespace hamel {
+
+struct Balance {
+  static std::string name() { return "balance"; }
+  static std::string formula() {
+    return "E'(s dL_{-s xi}' mu_k + (1-s) dL_{(1-s)xi}' mu_{k+1} - I xi/h) = 0,  "
+           "E'(Ad*_{f1^-1} mu_{k+1} - Ad*_{f0^-1} mu_k) = 0";
+  }
+  static std::string source() {
+    return "Vivek, Martin de Diego, Banavar: the printed inverse map, both equations on d";
+  }
+  static constexpr bool adapted = true;
+  static constexpr bool uses_s = true;
+  static ClaimedOrder claimed_order(double s, bool /*symmetric_tau*/) {
+    return {s == 0.5 ? 2 : 1, s == 0.5};
+  }
+
+  template <class Problem, class Tau>
+  class Step {
+   public:
+    static constexpr int n = Problem::n;
+    static constexpr int M = Problem::m_at_compile_time;
+    static constexpr int N = M == kRunTime ? kRunTime : 2 * M;
+    using G = typename Problem::Group;
+    using Element = typename G::template Element<double>;
+    using Unknown = Eigen::Matrix<double, N, 1, 0, 2 * Problem::max_m, 1>;
+    using Jacobian = Eigen::Matrix<double, N, N, 0, 2 * Problem::max_m, 2 * Problem::max_m>;
+    using Momentum = typename Problem::Reduced;
+
+    Step(const Problem& problem, double s) : problem_(problem), s_(s) {}
+
+    void begin(const Momentum& mu, double h) {
+      mu_ = mu;
+      h_ = h;
+    }
+    Unknown guess() const {
+      Unknown x(2 * problem_.m());
+      x.template head<M>(problem_.m()) = mu_;
+      x.template tail<M>(problem_.m()) = mu_;
+      return x;
+    }
+    double scale() const { return 2 * mu_.norm(); }
+    Vec<n> xi(const Unknown& x) const {
+      return h_ * problem_.velocity(x.template head<M>(problem_.m()));
+    }
+
+    void evaluate(const Unknown& x, Unknown& f, Jacobian* j) const {
+      const int m = problem_.m();
+      const Vec<n> step = xi(x);
+      const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
+      const Vec<n> m0 = z0.push(problem_.momentum(mu_));
+      const Vec<n> m1 = z1.push(problem_.momentum(x.template tail<M>(m)));
+      const Vec<n> average =
+          s_ * (z0.right.transpose() * m0) + (1 - s_) * (z1.right.transpose() * m1);
+      f.template head<M>(m) = problem_.reduce(average) - x.template head<M>(m);
+      f.template tail<M>(m) = problem_.reduce(m1 - m0);
+      if (j != nullptr) {
+        const Mat<n, n> push1 = G::Ad(G::inverse(z1.f)).transpose();
+        j->resize(2 * m, 2 * m);
+        j->template topLeftCorner<M, M>(m, m) =
+            h_ * problem_.reduce_both((1 - s_) * (1 - s_) * z1.left_transpose_derivative(m1) -
+                                      s_ * s_ * z0.left_transpose_derivative(m0));
+        j->template topLeftCorner<M, M>(m, m).diagonal().array() -= 1;
+        j->template topRightCorner<M, M>(m, m) =
+            (1 - s_) * problem_.reduce_momentum(z1.right.transpose() * push1);
+        j->template bottomLeftCorner<M, M>(m, m) =
+            h_ * problem_.reduce_both((1 - s_) * z1.push_derivative(m1) +
+                                      s_ * z0.push_derivative(m0));
+        j->template bottomRightCorner<M, M>(m, m) = problem_.reduce_momentum(push1);
+      }
+    }
+
+    void finish(const Unknown& x, Element& increment, Momentum& mu) const {
+      const Vec<n> step = xi(x);
+      increment = G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))),
+                             Tau::tau(Vec<n>((1 - s_) * step)));
+      mu = x.template tail<M>(problem_.m());
+    }
+
+   private:
+    Problem problem_;
+    double s_, h_ = 0;
+    Momentum mu_;
+  };
+};
+
+}  // namespace hamel
