@@ -1,0 +1,121 @@
+// SE(2): motions of the plane.
+//
+// Element: rotation (with an unwrapped angle, groups/so2.hpp) and translation p in space
+// coordinates. Algebra: (omega, v1, v2), angular first, in body coordinates. With J = [[0, -1], [1,
+// 0]]:
+//   (R, p)(R', p') = (R R', p + R p'),  Ad_(R,p) (omega, v) = (omega, R v - omega J p),
+//   [(omega, v), (omega', v')] = (0, omega J v' - omega' J v).
+// Matrix: homogeneous, 3 x 3.
+// Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
+#pragma once
+
+#include <hamel/framework/types.hpp>
+#include <hamel/groups/coordinates.hpp>
+#include <hamel/groups/retractions.hpp>
+#include <hamel/groups/so2.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hamel {
+
+template <class T>
+struct SE2Element {
+  SO2Element<T> rotation;
+  VecT<T, 2> translation = VecT<T, 2>::Zero();
+
+  /// The unwrapped angle [rad].
+  T angle() const { return rotation.angle(); }
+};
+
+struct SE2 {
+  static constexpr int dim = 3;
+  template <class T>
+  using Element = SE2Element<T>;
+  using Retractions = TypeList<Exp<SE2>, Cayley<SE2>, SecondKind<SE2>, SecondKindSymmetric<SE2>>;
+
+  static std::string name() { return "se2"; }
+
+  template <class T = double>
+  static Element<T> identity() {
+    return {};
+  }
+  template <class T>
+  static Element<T> compose(const SE2Element<T>& g, const SE2Element<T>& h) {
+    return {SO2::compose(g.rotation, h.rotation), g.translation + g.rotation.rotate(h.translation)};
+  }
+  /// (R^T, -R^T p).
+  template <class T>
+  static Element<T> inverse(const SE2Element<T>& g) {
+    return {SO2::inverse(g.rotation), -g.rotation.rotate_back(g.translation)};
+  }
+  template <class T>
+  static MatT<T, 3, 3> Ad(const SE2Element<T>& g) {
+    const T zero(0.0), &c = g.rotation.c, &s = g.rotation.s;
+    MatT<T, 3, 3> m;
+    m << T(1.0), zero, zero, g.translation[1], c, -s, -g.translation[0], s, c;
+    return m;
+  }
+  template <class T>
+  static MatT<T, 3, 3> ad(const VecT<T, 3>& xi) {
+    const T zero(0.0);
+    MatT<T, 3, 3> m;
+    m << zero, zero, zero, xi[2], zero, -xi[0], -xi[1], xi[0], zero;
+    return m;
+  }
+  template <class T>
+  static VecT<T, 3> Ad_transpose(const SE2Element<T>& g, const VecT<T, 3>& mu) {
+    const T &c = g.rotation.c, &s = g.rotation.s;
+    return {mu[0] + g.translation[1] * mu[1] - g.translation[0] * mu[2], c * mu[1] + s * mu[2],
+            c * mu[2] - s * mu[1]};
+  }
+  template <class T>
+  static MatT<T, 3, 3> coad(const VecT<T, 3>& mu) {
+    const T zero(0.0);
+    MatT<T, 3, 3> m;
+    m << zero, -mu[2], mu[1], mu[2], zero, zero, -mu[1], zero, zero;
+    return m;
+  }
+  template <class T>
+  static Element<T> normalise(const SE2Element<T>& g) {
+    return {SO2::normalise(g.rotation), g.translation};
+  }
+  template <class T>
+  static T defect(const SE2Element<T>& g) {
+    return SO2::defect(g.rotation);
+  }
+
+  /// [[R, p], [0, 1]].
+  template <class T>
+  static MatT<T, 3, 3> matrix(const SE2Element<T>& g) {
+    MatT<T, 3, 3> m = MatT<T, 3, 3>::Identity();
+    m.template topLeftCorner<2, 2>() = g.rotation.matrix();
+    m.template topRightCorner<2, 1>() = g.translation;
+    return m;
+  }
+  /// (omega, v) -> [[omega J, v], [0, 0]].
+  template <class T>
+  static MatT<T, 3, 3> hat(const VecT<T, 3>& xi) {
+    const T zero(0.0);
+    MatT<T, 3, 3> m;
+    m << zero, -xi[0], xi[1], xi[0], zero, xi[2], zero, zero, zero;
+    return m;
+  }
+  template <class T>
+  static VecT<T, 3> vee(const MatT<T, 3, 3>& m) {
+    return {0.5 * (m(1, 0) - m(0, 1)), m(0, 2), m(1, 2)};
+  }
+
+  static std::vector<std::string> columns() { return {"theta", "x", "y"}; }
+  template <class T>
+  static std::vector<T> coordinates(const SE2Element<T>& g) {
+    return {g.angle(), g.translation[0], g.translation[1]};
+  }
+  /// theta [rad], x, y. Throws std::invalid_argument.
+  static Element<double> from_coordinates(std::span<const double> values) {
+    check_coordinates("se2", values, columns());
+    return {SO2::from_coordinates(values.first(1)), {values[1], values[2]}};
+  }
+};
+
+}  // namespace hamel

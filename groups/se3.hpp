@@ -1,0 +1,139 @@
+// SE(3): motions of space.
+//
+// Element: rotation R (3 x 3, body to space) and translation p in space coordinates. Algebra:
+// (omega, v), angular first, in body coordinates, 6 numbers. Formulas:
+//   (R, p)(R', p') = (R R', p + R p'),  Ad = [[R, 0], [p^ R, R]],  ad = [[omega^, 0], [v^,
+//   omega^]], (Ad_g)^T (m, f) = (R^T (m - p x f), R^T f),  K(m, f) = [[m^, f^], [f^, 0]].
+// Matrix: homogeneous, 4 x 4.
+// Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
+#pragma once
+
+#include <hamel/framework/types.hpp>
+#include <hamel/groups/coordinates.hpp>
+#include <hamel/groups/retractions.hpp>
+#include <hamel/groups/so3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hamel {
+
+template <class T>
+struct SE3Element {
+  MatT<T, 3, 3> rotation = MatT<T, 3, 3>::Identity();
+  VecT<T, 3> translation = VecT<T, 3>::Zero();
+};
+
+struct SE3 {
+  static constexpr int dim = 6;
+  template <class T>
+  using Element = SE3Element<T>;
+  using Retractions = TypeList<Exp<SE3>, Cayley<SE3>, SecondKind<SE3>, SecondKindSymmetric<SE3>>;
+
+  static std::string name() { return "se3"; }
+
+  template <class T = double>
+  static Element<T> identity() {
+    return {};
+  }
+  template <class T>
+  static Element<T> compose(const SE3Element<T>& g, const SE3Element<T>& h) {
+    return {g.rotation.lazyProduct(h.rotation),
+            g.translation + g.rotation.lazyProduct(h.translation)};
+  }
+  /// (R^T, -R^T p).
+  template <class T>
+  static Element<T> inverse(const SE3Element<T>& g) {
+    return {g.rotation.transpose(), -(g.rotation.transpose().lazyProduct(g.translation))};
+  }
+  template <class T>
+  static MatT<T, 6, 6> Ad(const SE3Element<T>& g) {
+    return block(g.rotation, MatT<T, 3, 3>(cross_matrix(g.translation).lazyProduct(g.rotation)));
+  }
+  template <class T>
+  static MatT<T, 6, 6> ad(const VecT<T, 6>& xi) {
+    return block(cross_matrix(VecT<T, 3>(xi.template head<3>())),
+                 cross_matrix(VecT<T, 3>(xi.template tail<3>())));
+  }
+  template <class T>
+  static VecT<T, 6> Ad_transpose(const SE3Element<T>& g, const VecT<T, 6>& mu) {
+    const VecT<T, 3> force = mu.template tail<3>();
+    const VecT<T, 3> moment = mu.template head<3>() - g.translation.cross(force);
+    VecT<T, 6> r;
+    r.template head<3>() = g.rotation.transpose().lazyProduct(moment);
+    r.template tail<3>() = g.rotation.transpose().lazyProduct(force);
+    return r;
+  }
+  template <class T>
+  static MatT<T, 6, 6> coad(const VecT<T, 6>& mu) {
+    const MatT<T, 3, 3> force = cross_matrix(VecT<T, 3>(mu.template tail<3>()));
+    MatT<T, 6, 6> m;
+    m.template topLeftCorner<3, 3>() = cross_matrix(VecT<T, 3>(mu.template head<3>()));
+    m.template topRightCorner<3, 3>() = force;
+    m.template bottomLeftCorner<3, 3>() = force;
+    m.template bottomRightCorner<3, 3>().setZero();
+    return m;
+  }
+  template <class T>
+  static Element<T> normalise(const SE3Element<T>& g) {
+    return {SO3::normalise(g.rotation), g.translation};
+  }
+  template <class T>
+  static T defect(const SE3Element<T>& g) {
+    return SO3::defect(g.rotation);
+  }
+
+  /// [[R, p], [0, 1]].
+  template <class T>
+  static MatT<T, 4, 4> matrix(const SE3Element<T>& g) {
+    MatT<T, 4, 4> m = MatT<T, 4, 4>::Identity();
+    m.template topLeftCorner<3, 3>() = g.rotation;
+    m.template topRightCorner<3, 1>() = g.translation;
+    return m;
+  }
+  /// (omega, v) -> [[omega^, v], [0, 0]].
+  template <class T>
+  static MatT<T, 4, 4> hat(const VecT<T, 6>& xi) {
+    MatT<T, 4, 4> m = MatT<T, 4, 4>::Zero();
+    m.template topLeftCorner<3, 3>() = cross_matrix(VecT<T, 3>(xi.template head<3>()));
+    m.template topRightCorner<3, 1>() = xi.template tail<3>();
+    return m;
+  }
+  template <class T>
+  static VecT<T, 6> vee(const MatT<T, 4, 4>& m) {
+    VecT<T, 6> xi;
+    xi.template head<3>() = SO3::vee(MatT<T, 3, 3>(m.template topLeftCorner<3, 3>()));
+    xi.template tail<3>() = m.template topRightCorner<3, 1>();
+    return xi;
+  }
+
+  static std::vector<std::string> columns() {
+    std::vector<std::string> names = SO3::columns();
+    names.insert(names.end(), {"x", "y", "z"});
+    return names;
+  }
+  template <class T>
+  static std::vector<T> coordinates(const SE3Element<T>& g) {
+    std::vector<T> values = SO3::coordinates(g.rotation);
+    values.insert(values.end(), {g.translation[0], g.translation[1], g.translation[2]});
+    return values;
+  }
+  /// R row by row, then x, y, z. Throws std::invalid_argument.
+  static Element<double> from_coordinates(std::span<const double> values) {
+    check_coordinates("se3", values, columns());
+    return {SO3::rotation_from("se3", values), {values[9], values[10], values[11]}};
+  }
+
+  /// [[a, 0], [b, a]]: the shape of Ad, of ad and of every function of ad.
+  template <class T>
+  static MatT<T, 6, 6> block(const MatT<T, 3, 3>& a, const MatT<T, 3, 3>& b) {
+    MatT<T, 6, 6> m;
+    m.template topLeftCorner<3, 3>() = a;
+    m.template topRightCorner<3, 3>().setZero();
+    m.template bottomLeftCorner<3, 3>() = b;
+    m.template bottomRightCorner<3, 3>() = a;
+    return m;
+  }
+};
+
+}  // namespace hamel

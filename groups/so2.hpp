@@ -1,0 +1,164 @@
+// SO(2): rotations of the plane, with an angle that is not wrapped.
+//
+// Element: the unit complex number c + i s = exp(i theta) and a count of full turns, so that
+//   angle = atan2(s, c) + 2 pi turns
+// stays continuous through composition and inverse; the turns are found from signs, without
+// trigonometry. They are bookkeeping: inverse retractions see the rotation, not the turns.
+// Algebra: the angular velocity, 1 number.
+// Formulas: (c, s)(c', s') = (c c' - s s', s c' + c s'); Ad = 1, ad = 0.
+// Source: Solà, Deray, Atchuthan, A micro Lie theory (arXiv:1812.01537), appendix A.
+#pragma once
+
+#include <cmath>
+#include <hamel/framework/types.hpp>
+#include <hamel/groups/coordinates.hpp>
+#include <hamel/groups/retractions.hpp>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hamel {
+
+/// exp(i theta) = c + i s and the full turns already made.
+template <class T>
+struct SO2Element {
+  T c{1.0}, s{0.0};
+  int turns = 0;
+
+  /// The unwrapped angle [rad]. (s + 0 makes -0 into +0, so that a half turn is always +pi.)
+  T angle() const {
+    using std::atan2;
+    return atan2(T(s + 0.0), c) + 2 * std::numbers::pi * turns;
+  }
+  /// [[c, -s], [s, c]].
+  MatT<T, 2, 2> matrix() const {
+    MatT<T, 2, 2> r;
+    r << c, -s, s, c;
+    return r;
+  }
+  /// R v.
+  VecT<T, 2> rotate(const VecT<T, 2>& v) const {
+    return {c * v[0] - s * v[1], s * v[0] + c * v[1]};
+  }
+  /// R^T v.
+  VecT<T, 2> rotate_back(const VecT<T, 2>& v) const {
+    return {c * v[0] + s * v[1], c * v[1] - s * v[0]};
+  }
+};
+
+struct SO2 {
+  static constexpr int dim = 1;
+  template <class T>
+  using Element = SO2Element<T>;
+  using Retractions = TypeList<Exp<SO2>, Cayley<SO2>, SecondKind<SO2>, SecondKindSymmetric<SO2>>;
+
+  static std::string name() { return "so2"; }
+
+  template <class T = double>
+  static Element<T> identity() {
+    return {};
+  }
+
+  template <class T>
+  static Element<T> compose(const SO2Element<T>& g, const SO2Element<T>& h) {
+    Element<T> r{g.c * h.c - g.s * h.s, g.s * h.c + g.c * h.s, g.turns + h.turns};
+    const bool negative = g.s < 0.0;
+    if (negative == (h.s < 0.0)) {  // both angles point one way: their sum may leave (-pi, pi]
+      if (negative) {
+        if (r.s > 0.0 || (r.s == 0.0 && (r.c < 0.0 || g.c < 0.0))) --r.turns;
+      } else {
+        if (r.s < 0.0 || (r.s == 0.0 && g.c < 0.0 && h.c < 0.0)) ++r.turns;
+      }
+    }
+    return r;
+  }
+  template <class T>
+  static Element<T> inverse(const SO2Element<T>& g) {
+    const bool half_turn = g.s == 0.0 && g.c < 0.0;  // -pi = pi - one turn
+    return {g.c, -g.s, -g.turns - (half_turn ? 1 : 0)};
+  }
+
+  template <class T>
+  static MatT<T, 1, 1> Ad(const SO2Element<T>&) {
+    return MatT<T, 1, 1>::Ones();
+  }
+  template <class T>
+  static MatT<T, 1, 1> ad(const VecT<T, 1>&) {
+    return MatT<T, 1, 1>::Zero();
+  }
+  template <class T>
+  static VecT<T, 1> Ad_transpose(const SO2Element<T>&, const VecT<T, 1>& mu) {
+    return mu;
+  }
+  template <class T>
+  static MatT<T, 1, 1> coad(const VecT<T, 1>&) {
+    return MatT<T, 1, 1>::Zero();
+  }
+
+  /// (c, s)(3 - c^2 - s^2)/2: one Newton step towards the unit circle.
+  template <class T>
+  static Element<T> normalise(const SO2Element<T>& g) {
+    const T scale = 1.5 - 0.5 * (g.c * g.c + g.s * g.s);
+    return {g.c * scale, g.s * scale, g.turns};
+  }
+  /// |c^2 + s^2 - 1|.
+  template <class T>
+  static T defect(const SO2Element<T>& g) {
+    using std::abs;
+    return abs(g.c * g.c + g.s * g.s - 1.0);
+  }
+
+  template <class T>
+  static MatT<T, 2, 2> matrix(const SO2Element<T>& g) {
+    return g.matrix();
+  }
+  /// omega -> [[0, -omega], [omega, 0]].
+  template <class T>
+  static MatT<T, 2, 2> hat(const VecT<T, 1>& xi) {
+    MatT<T, 2, 2> m;
+    m << T(0.0), -xi[0], xi[0], T(0.0);
+    return m;
+  }
+  template <class T>
+  static VecT<T, 1> vee(const MatT<T, 2, 2>& m) {
+    return VecT<T, 1>(0.5 * (m(1, 0) - m(0, 1)));
+  }
+
+  /// The rotation by theta [rad], turns included.
+  template <class T>
+  static Element<T> from_angle(const T& theta) {
+    using std::cos;
+    using std::sin;
+    Element<T> g{cos(theta), sin(theta), 0};
+    g.turns = nearest_integer((theta - g.angle()) * (0.5 / std::numbers::pi));
+    return g;
+  }
+
+  static std::vector<std::string> columns() { return {"theta"}; }
+  template <class T>
+  static std::vector<T> coordinates(const SO2Element<T>& g) {
+    return {g.angle()};
+  }
+  /// theta [rad], |theta| < 1e9. Throws std::invalid_argument.
+  static Element<double> from_coordinates(std::span<const double> values) {
+    check_coordinates("so2", values, columns());
+    if (!(std::abs(values[0]) < 1e9)) {
+      throw std::invalid_argument("so2: theta = " + to_text(values[0]) +
+                                  ", expected an angle in radians below 1e9");
+    }
+    return from_angle(values[0]);
+  }
+
+ private:
+  template <class T>
+  static int nearest_integer(const T& x) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      return std::abs(x) < 1e9 ? static_cast<int>(std::lround(x)) : 0;
+    } else {
+      return nearest_integer(x.a);  // an automatic-differentiation number: its value
+    }
+  }
+};
+
+}  // namespace hamel
