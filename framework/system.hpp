@@ -135,20 +135,27 @@ concept System = requires(const S& s) {
   { s.inertia() } -> std::convertible_to<Mat<S::Group::dim, S::Group::dim>>;
 };
 
+/// The name, group and fields of a system; nothing that its parameters could break.
+template <System S>
+SystemModel erase_words(const S& system) {
+  SystemModel model;
+  if constexpr (requires { S::name(); }) model.name = S::name();
+  else model.name = "user system";
+  model.group = group_info<typename S::Group>();
+  model.fields = detail::fields_of(system);
+  return model;
+}
+
 /// Erases a system, parameters as they are. Throws what the system's own members throw.
 template <System S>
 SystemModel erase(const S& system) {
   using G = typename S::Group;
   constexpr int n = G::dim;
   using Element = typename G::template Element<double>;
-  SystemModel model;
-  if constexpr (requires { S::name(); }) model.name = S::name();
-  else model.name = "user system";
-  model.group = group_info<G>();
+  SystemModel model = erase_words(system);
   model.inertia = system.inertia();
   model.constraints.resize(0, n);
   if constexpr (requires { system.constraints(); }) model.constraints = system.constraints();
-  model.fields = detail::fields_of(system);
   if constexpr (requires { system.start(); }) model.start = system.start();
   if constexpr (requires(Element g, Vec<n> xi) { system.exact(g, xi); }) {
     model.exact = [system](const Start& start) -> ExactFlow {
@@ -171,6 +178,19 @@ SystemModel erase(const S& system) {
   return model;
 }
 
+/// From parameters to the erased system; everything not given stays as it is in `system`.
+template <System S>
+std::function<SystemModel(const Parameters&)> maker(const S& system) {
+  return [system](const Parameters& given) {
+    S copy = system;
+    const SystemModel as_is = erase_words(copy);
+    detail::check_parameters(as_is.name, as_is.fields, given);
+    detail::FieldWriter writer{given};
+    if constexpr (requires { copy.fields(writer); }) copy.fields(writer);
+    return erase(copy);
+  };
+}
+
 /// What the registry keeps of the system type S; S{} holds the defaults.
 template <System S>
 SystemInfo system_info() {
@@ -182,13 +202,7 @@ SystemInfo system_info() {
   if constexpr (requires { S::source(); }) info.source = S::source();
   info.group = group_info<typename S::Group>();
   info.fields = detail::fields_of(S{});
-  info.make = [fields = info.fields](const Parameters& given) {
-    detail::check_parameters(S::name(), fields, given);
-    S system;
-    detail::FieldWriter writer{given};
-    if constexpr (requires { system.fields(writer); }) system.fields(writer);
-    return erase(system);
-  };
+  info.make = maker(S{});
   return info;
 }
 

@@ -1,0 +1,70 @@
+#include <hamel/framework/registry.hpp>
+
+#include <set>
+
+#include <fmt/format.h>
+
+namespace hamel {
+namespace {
+
+template <class Map>
+auto find(const Map& map, const typename Map::key_type& key) -> const typename Map::mapped_type* {
+  const auto it = map.find(key);
+  return it == map.end() ? nullptr : &it->second;
+}
+
+template <class Map>
+std::vector<std::string> names(const Map& map) {
+  std::vector<std::string> out;
+  for (const auto& entry : map) out.push_back(entry.first);
+  return out;
+}
+
+std::string kernel_key(const std::string& group, int m, const std::string& retraction,
+                       const std::string& scheme) {
+  return fmt::format("{}/{}/{}/{}", group, m, retraction, scheme);
+}
+
+}  // namespace
+
+void Registry::add(GroupInfo info) { groups_[info.name] = std::move(info); }
+void Registry::add(RetractionInfo info) { retractions_[{info.group, info.name}] = std::move(info); }
+void Registry::add(SchemeInfo info) { schemes_[info.name] = std::move(info); }
+void Registry::add(SolverInfo info) { solvers_[info.name] = std::move(info); }
+void Registry::add(SystemInfo info) { systems_[info.name] = std::move(info); }
+void Registry::add_kernel(const std::string& group, int m, const std::string& retraction,
+                          const std::string& scheme, KernelFactory factory) {
+  kernels_[kernel_key(group, m, retraction, scheme)] = std::move(factory);
+}
+
+const GroupInfo* Registry::group(const std::string& name) const { return find(groups_, name); }
+const RetractionInfo* Registry::retraction(const std::string& group, const std::string& name) const {
+  return find(retractions_, {group, name});
+}
+const SchemeInfo* Registry::scheme(const std::string& name) const { return find(schemes_, name); }
+const SolverInfo* Registry::solver(const std::string& name) const { return find(solvers_, name); }
+const SystemInfo* Registry::system(const std::string& name) const { return find(systems_, name); }
+const KernelFactory* Registry::kernel(const std::string& group, int m, const std::string& retraction,
+                                      const std::string& scheme) const {
+  const KernelFactory* exact = find(kernels_, kernel_key(group, m, retraction, scheme));
+  return exact != nullptr ? exact : find(kernels_, kernel_key(group, kRunTime, retraction, scheme));
+}
+
+std::vector<std::string> Registry::groups() const { return names(groups_); }
+std::vector<std::string> Registry::retractions() const {
+  std::set<std::string> all;
+  for (const auto& [key, info] : retractions_) all.insert(info.name);
+  return {all.begin(), all.end()};
+}
+std::vector<std::string> Registry::retractions(const std::string& group) const {
+  std::vector<std::string> out;
+  for (const auto& [key, info] : retractions_) {
+    if (key.first == group) out.push_back(key.second);
+  }
+  return out;
+}
+std::vector<std::string> Registry::schemes() const { return names(schemes_); }
+std::vector<std::string> Registry::solvers() const { return names(solvers_); }
+std::vector<std::string> Registry::systems() const { return names(systems_); }
+
+}  // namespace hamel

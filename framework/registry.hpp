@@ -1,0 +1,80 @@
+// What exists by name: groups, retractions, schemes, solvers, systems, and the compiled kernels.
+//
+// A registry is a plain value filled explicitly (systems/systems.cpp fills the library's own); a user's
+// program adds to it with the add_... functions of systems/kernels.hpp, without touching the library.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/kernel.hpp>
+#include <hamel/framework/schemes/traits.hpp>
+#include <hamel/framework/system.hpp>
+
+namespace hamel {
+
+/// A retraction of one group.
+struct RetractionInfo {
+  std::string name, group, formula, domain;
+  bool symmetric = false;
+  bool one_parameter = false;
+};
+
+struct SchemeInfo {
+  std::string name, formula, source;
+  bool adapted = true;  // keeps the constraint; otherwise the frame is the whole algebra
+  bool uses_s = true;
+  std::function<ClaimedOrder(double s, bool symmetric_tau)> claimed_order;
+};
+
+struct SolverInfo {
+  std::string name, summary, source;
+  /// Null for the solver that is compiled into the kernels.
+  std::function<std::shared_ptr<Solver>()> make;
+};
+
+using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
+
+class Registry {
+ public:
+  // Adding a name again replaces what it stood for.
+  void add(GroupInfo info);
+  void add(RetractionInfo info);
+  void add(SchemeInfo info);
+  void add(SolverInfo info);
+  void add(SystemInfo info);
+  /// m = kRunTime: a kernel for any number of admissible directions.
+  void add_kernel(const std::string& group, int m, const std::string& retraction,
+                  const std::string& scheme, KernelFactory factory);
+
+  // Null when there is no such name.
+  const GroupInfo* group(const std::string& name) const;
+  const RetractionInfo* retraction(const std::string& group, const std::string& name) const;
+  const SchemeInfo* scheme(const std::string& name) const;
+  const SolverInfo* solver(const std::string& name) const;
+  const SystemInfo* system(const std::string& name) const;
+  /// The kernel compiled for m if there is one, else the one for any m.
+  const KernelFactory* kernel(const std::string& group, int m, const std::string& retraction,
+                              const std::string& scheme) const;
+
+  // Sorted names.
+  std::vector<std::string> groups() const;
+  std::vector<std::string> retractions() const;
+  std::vector<std::string> retractions(const std::string& group) const;
+  std::vector<std::string> schemes() const;
+  std::vector<std::string> solvers() const;
+  std::vector<std::string> systems() const;
+
+ private:
+  std::map<std::string, GroupInfo> groups_;
+  std::map<std::pair<std::string, std::string>, RetractionInfo> retractions_;  // (group, name)
+  std::map<std::string, SchemeInfo> schemes_;
+  std::map<std::string, SolverInfo> solvers_;
+  std::map<std::string, SystemInfo> systems_;
+  std::map<std::string, KernelFactory> kernels_;
+};
+
+}  // namespace hamel
