@@ -1,0 +1,62 @@
+// Numbers as people read them: 1.23·10⁻⁷, a true minus sign, a dash for what is missing.
+
+const SUPERSCRIPTS = { '-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹' };
+export const MISSING = '–';
+
+const minus = (text) => text.replace('-', '−');
+
+/** 10ⁿ for an integer n. */
+export function power(n) {
+  return '10' + [...String(n)].map((digit) => SUPERSCRIPTS[digit]).join('');
+}
+
+/** The same without zeros at the end of the decimals: for parameters, which were typed by a person. */
+export function formatShort(value, digits = 6) {
+  return formatNumber(value, digits).replace(/(\.\d*?)0+(?=·|$)/, '$1').replace(/\.(?=·|$)/, '');
+}
+
+/** Plain decimals between 0.001 and 99999, m·10ⁿ elsewhere; `digits` significant digits. */
+export function formatNumber(value, digits = 4) {
+  if (typeof value !== 'number' || Number.isNaN(value)) return MISSING;
+  if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞';
+  if (value === 0) return '0';
+  if (Number.isInteger(value) && Math.abs(value) < 1e6) return minus(String(value));
+  const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
+  if (+exponent >= -3 && +exponent < 5) {
+    return minus(value.toFixed(Math.max(0, digits - 1 - +exponent)));
+  }
+  return minus(Number(mantissa).toFixed(Math.min(digits > 4 ? digits - 1 : 2, digits - 1))) + '·' + power(+exponent);
+}
+
+/** Tick labels that share one style and number of decimals; `step` is their spacing. */
+export function formatTicks(values, step) {
+  const largest = Math.max(...values.map(Math.abs));
+  const stepExponent = Math.floor(Math.log10(step) + 1e-9);
+  if (largest === 0 || (largest >= 9.99e-4 && largest < 1e5)) {
+    return values.map((value) => minus((value || 0).toFixed(Math.max(0, -stepExponent))));
+  }
+  const exponent = Math.floor(Math.log10(largest) + 1e-9);
+  const decimals = Math.max(0, exponent - stepExponent);
+  return values.map((value) => {
+    if (value === 0) return '0';
+    const mantissa = minus((value / 10 ** exponent).toFixed(decimals));
+    return mantissa === '1' ? power(exponent) : mantissa + '·' + power(exponent);
+  });
+}
+
+/** Any JSON value in a table cell or a record; `number` formats the numbers in it. */
+export function formatValue(value, number = formatNumber) {
+  if (value === null || value === undefined) return MISSING;
+  if (typeof value === 'number') return number(value);
+  if (typeof value === 'boolean') return value ? 'yes' : 'no';
+  if (Array.isArray(value)) return formatList(value, number);
+  if (typeof value === 'object') return JSON.stringify(value);
+  return String(value);
+}
+
+function formatList(list, number) {
+  const size = list.flat(Infinity).length;
+  if (size > 40) return `(${size} values)`;
+  if (list.some((item) => Array.isArray(item))) return list.map((item) => formatValue(item, number)).join('\n');
+  return '(' + list.map((item) => formatValue(item, number)).join(', ') + ')';
+}

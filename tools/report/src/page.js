@@ -1,0 +1,144 @@
+// The whole page from the data in #hamel-data: header, contents, sections, blocks.
+
+import 'uplot/dist/uPlot.min.css';
+import './style.css';
+import './figures.css';
+import './print.css';
+import { h, inline, problem } from './dom.js';
+import { assignStyles } from './palette.js';
+import { path, plot } from './plot.js';
+import { preparePrinting } from './print.js';
+import { record } from './record.js';
+import { sphere } from './sphere.js';
+import { table } from './table.js';
+import { text, verdict } from './text.js';
+
+const KINDS = { text, verdict, table, record, plot, path, sphere };
+const FIGURES = new Set(['plot', 'path', 'sphere']);
+const HELP = 'Charts: drag to zoom, Ctrl and wheel (after a click the wheel alone) to zoom at the pointer, ' +
+  'double-click to see all again. A click on a name hides or shows its curve. Spheres turn by dragging or with ' +
+  'the arrow keys; the side away from you is drawn faint, a ring marks where a curve starts.';
+
+function readData() {
+  const source = document.getElementById('hamel-data')?.textContent.trim() ?? '';
+  if (/^__[A-Z_]+__$/.test(source)) throw new Error('the page was never filled: its placeholder is still there.');
+  const data = JSON.parse(source);
+  if (data === null || typeof data !== 'object' || !Array.isArray(data.sections)) {
+    throw new Error('there is no list "sections" in it.');
+  }
+  return data;
+}
+
+/** A block -> its element; what cannot be shown becomes a box that says why. */
+function showBlock(block, number, later) {
+  const kind = String(block?.kind);
+  let element;
+  if (!Object.hasOwn(KINDS, kind)) {
+    element = problem(`Unknown kind of block: “${kind}”`, 'This page knows ' + Object.keys(KINDS).join(', ') + '.');
+  } else {
+    try {
+      const shown = KINDS[kind](block);
+      element = shown.element;
+      if (shown.draw) later.push({ element, kind, draw: shown.draw });
+    } catch (error) {
+      element = broken(kind, error);
+    }
+  }
+  element.dataset.block = kind;
+  element.id = `block-${number}`;
+  return element;
+}
+
+const broken = (kind, error) => problem(`This ${kind} could not be shown`, error.message);
+
+function drawAll(later) {
+  for (const { element, kind, draw } of later) {
+    try {
+      draw();
+    } catch (error) {
+      const box = broken(kind, error);
+      box.dataset.block = kind;
+      element.replaceWith(box);
+    }
+  }
+}
+
+/** Neighbouring figures share a grid: two side by side where there is room. */
+function showSection(section, place, counter, later) {
+  const element = h('section', { id: `section-${place}`, 'aria-labelledby': `heading-${place}` },
+    h('h2', { id: `heading-${place}` }, inline(section?.title)));
+  let grid = null;
+  for (const block of section?.blocks ?? []) {
+    const shown = showBlock(block, ++counter.blocks, later);
+    if (!FIGURES.has(block?.kind) || shown.classList.contains('problem')) {
+      grid = null;
+      element.append(shown);
+    } else {
+      if (!grid) element.append(grid = h('div', { class: 'figures' }));
+      grid.append(shown);
+    }
+  }
+  return element;
+}
+
+/** The page's state in one line: from its verdicts or, where there are none, its records. */
+function statusLine(data) {
+  const blocks = data.sections.flatMap((section) => section?.blocks ?? []);
+  const numbered = blocks.map((block, i) => ({ block, number: i + 1 }));
+  let judged = numbered.filter(({ block }) => block?.kind === 'verdict' && ['ok', 'failed'].includes(block.status))
+    .map(({ block, number }) => ({ number, ok: block.status === 'ok' }));
+  if (judged.length === 0) {
+    judged = numbered.filter(({ block }) => block?.kind === 'record' && block.record?.status)
+      .map(({ block, number }) => ({ number, ok: block.record.status === 'ok' }));
+  }
+  if (judged.length === 0) return null;
+  const failed = judged.filter(({ ok }) => !ok);
+  if (failed.length === 0) {
+    const all = judged.length === 1 ? '' : `all ${judged.length} verdicts `;
+    return h('p', { class: 'state ok' }, `✓ ${all}OK`);
+  }
+  const links = failed.flatMap(({ number }, i) => [i ? ', ' : ' ', h('a', { href: `#block-${number}` }, `${i + 1}`)]);
+  return h('p', { class: 'state failed' }, `✕ ${failed.length} of ${judged.length} failed`,
+    judged.length > 1 ? [':', ...links] : null);
+}
+
+function header(data) {
+  const when = String(data.generated ?? '').replace('T', ' ').replace(/\.\d+/, '').replace(/Z$/, ' UTC');
+  const facts = [['generated', when], ['hamel', data.version], ['git', data.git], ['host', data.host]]
+    .filter(([, value]) => value).map(([name, value]) => h('span', {}, `${name} `, h('b', {}, String(value))));
+  return h('header', {}, h('h1', {}, inline(data.title || 'Report')),
+    data.subtitle ? h('p', { class: 'subtitle' }, inline(data.subtitle)) : null,
+    h('div', { class: 'strip' }, statusLine(data), h('p', { class: 'facts' }, facts)));
+}
+
+function contents(sections) {
+  if (sections.length < 2) return null;
+  return h('nav', { class: 'contents', 'aria-label': 'Contents' }, h('h2', {}, 'Contents'),
+    h('ol', {}, sections.map((section, i) =>
+      h('li', {}, h('a', { href: `#section-${i + 1}` }, inline(section?.title))))));
+}
+
+function showPage() {
+  let data;
+  try {
+    data = readData();
+  } catch (error) {
+    const box = problem('This report cannot be shown', `Its data could not be read: ${error.message}`);
+    box.id = 'unreadable';
+    document.body.append(h('main', {}, box));
+    return;
+  }
+  document.title = String(data.title || 'Report').replace(/[`*]/g, '');
+  assignStyles(data.sections);
+  const [later, counter] = [[], { blocks: 0 }];
+  const nav = contents(data.sections);
+  if (nav) document.body.classList.add('with-contents');
+  const main = h('main', {}, data.sections.map((section, i) => showSection(section, i + 1, counter, later)));
+  document.body.append(h('div', { class: 'page' }, header(data), nav, main,
+    later.length ? h('footer', {}, HELP) : null));
+  drawAll(later);
+  preparePrinting();
+}
+
+showPage();
+requestAnimationFrame(() => { document.documentElement.dataset.ready = 'true'; });

@@ -1,0 +1,32 @@
+// One look per series name on the whole page: ten colours that stay apart for colour-blind eyes (after Okabe and
+// Ito, and Tol). Beyond ten names a colour serves again where the two never meet in a figure; then come dashes.
+
+const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#b0508c', '#e69f00', '#2e2585', '#56b4e9', '#7a1f3d',
+  '#6b6b6b', '#8a8a1c'];
+const DASHES = [[], [8, 3], [2, 3], [9, 3, 2, 3]];
+const DASHED = [7, 4];
+
+let styles = new Map();
+
+/** Gives every name of the page its style. */
+export function assignStyles(sections) {
+  styles = new Map();
+  const figures = sections.flatMap((section) => section?.blocks ?? [])
+    .map((block) => (Array.isArray(block?.series) ? block.series.map((s) => String(s?.name)) : []));
+  const all = DASHES.flatMap((dash) => COLOURS.map((colour) => ({ colour, dash, names: 0 })));
+  for (const name of figures.flat()) {
+    if (styles.has(name)) continue;
+    const met = new Set(figures.filter((names) => names.includes(name)).flat().map((other) => styles.get(other)));
+    const free = all.filter((style) => !met.has(style));
+    const solid = free.filter((style) => style.dash.length === 0).sort((a, b) => a.names - b.names);
+    const style = solid[0] ?? free[0] ?? all[styles.size % all.length];
+    ++style.names;
+    styles.set(name, style);
+  }
+}
+
+/** -> {colour, dash} of a series; the data's `dashed` wins over the palette's own dash. */
+export function styleOf(series) {
+  const style = styles.get(String(series.name)) ?? { colour: COLOURS[0], dash: [] };
+  return series.dashed ? { colour: style.colour, dash: DASHED } : style;
+}

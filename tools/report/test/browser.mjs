@@ -1,0 +1,24 @@
+// Headless Chromium, kept quiet on a closed network; exit 77 (skipped) where it is missing.
+
+import { existsSync } from 'node:fs';
+
+const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+  '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const SOFTWARE_WEBGL = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+
+function skip(reason) {
+  console.log(`skipped: ${reason}`);
+  process.exit(77);
+}
+
+export async function launch() {
+  const executablePath = process.env.CHROMIUM || '/usr/bin/chromium';
+  if (!existsSync(executablePath)) skip(`no Chromium at ${executablePath}`);
+  let playwright;
+  try {
+    playwright = await import('playwright-core');
+  } catch {
+    skip('playwright-core is not installed (npm ci)');
+  }
+  return playwright.chromium.launch({ executablePath, args: [...FLAGS, ...SOFTWARE_WEBGL] });
+}

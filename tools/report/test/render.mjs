@@ -1,0 +1,198 @@
+// node test/render.mjs PAGE.html [--screenshot OUT.png] [--narrow OUT.png] [--pdf OUT.pdf] [--fallback OUT.png]
+// Opens a report in headless Chromium and fails on anything that is not as it should be. Exit status: 0 passed,
+// 1 failed, 2 wrong use, 77 no browser here.
+
+import { existsSync } from 'node:fs';
+import { resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { launch } from './browser.mjs';
+
+const [file, ...rest] = process.argv.slice(2);
+const options = {};
+for (let i = 0; i < rest.length; i += 2) options[rest[i].replace(/^--/, '')] = rest[i + 1];
+if (!file || !existsSync(file)) {
+  console.error('usage: node test/render.mjs PAGE.html [--screenshot|--narrow|--pdf|--fallback OUT]');
+  process.exit(2);
+}
+
+let [passed, failed] = [0, 0];
+function check(name, good, detail = '') {
+  if (good) {
+    ++passed;
+  } else {
+    ++failed;
+    console.log(`FAILED ${name}${detail ? `: ${detail}` : ''}`);
+  }
+}
+
+/** Runs in the page before anything else: a browser without WebGL. */
+function takeWebglAway() {
+  for (const kind of [HTMLCanvasElement, OffscreenCanvas]) {
+    const original = kind.prototype.getContext;
+    kind.prototype.getContext = function getContext(name, ...rest) {
+      return /webgl|webgpu/.test(name) ? null : original.call(this, name, ...rest);
+    };
+  }
+}
+
+/** Opens the page and collects what it should not do. */
+async function open(browser, { webgl = true } = {}) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  if (!webgl) await page.addInitScript(takeWebglAway);
+  const complaints = [];
+  page.on('console', (message) => {
+    if (['error', 'warning', 'assert'].includes(message.type())) complaints.push(`console ${message.type()}: ${message.text()}`);
+  });
+  page.on('pageerror', (error) => complaints.push(`page error: ${error.message}`));
+  page.on('request', (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) complaints.push(`request: ${request.url()}`);
+  });
+  await page.goto(pathToFileURL(resolve(file)).href);
+  await page.waitForSelector('html[data-ready=true]', { state: 'attached', timeout: 30000 })
+    .catch(() => complaints.push('the page never got ready'));
+  await page.waitForTimeout(150);
+  return { page, complaints };
+}
+
+/** Runs in the page: what was asked for and what is there. */
+function survey() {
+  let blocks = null;
+  try {
+    const data = JSON.parse(document.getElementById('hamel-data').textContent);
+    blocks = data.sections.flatMap((section) => section.blocks ?? []).map((block) => block.kind);
+  } catch { /* reported below */ }
+  const coloured = (canvas) => {  // pixels of a curve: neither white nor grey
+    if (!canvas || canvas.width === 0) return 0;
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let [inked, colours] = [0, 0];
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i + 3] === 0) continue;
+      const [least, most] = [Math.min(data[i], data[i + 1], data[i + 2]), Math.max(data[i], data[i + 1], data[i + 2])];
+      if (least < 250) ++inked;
+      if (most - least > 40) ++colours;
+    }
+    return { inked, colours };
+  };
+  const rendered = [...document.querySelectorAll('[data-block]')].map((element) => ({
+    kind: element.dataset.block, problem: element.classList.contains('problem') ? element.textContent : null,
+    figure: element.matches('figure'), canvas: element.matches('figure') ? coloured(element.querySelector('canvas')) : null,
+    labelled: Boolean(element.querySelector('[role=img]')?.getAttribute('aria-label')),
+    captioned: [...element.querySelectorAll('table')].every((t) => t.caption?.textContent.trim()),
+    title: element.querySelector('figcaption, caption')?.textContent ?? '',
+    empty: element.getBoundingClientRect().height < 8,
+  }));
+  return { blocks, rendered, unreadable: document.getElementById('unreadable')?.textContent ?? null,
+    heading: document.querySelector('h1')?.getBoundingClientRect().bottom ?? null };
+}
+
+/** Whether a figure's data hold anything that can be drawn. */
+function drawable() {
+  const data = JSON.parse(document.getElementById('hamel-data').textContent);
+  const good = (v, log) => typeof v === 'number' && (!log || v > 0);
+  return data.sections.flatMap((section) => section.blocks ?? []).map((block) => {
+    if (block.kind === 'sphere') return block.series.some((s) => s.points.filter((p) => p?.every(Number.isFinite)).length > 1);
+    if (!['plot', 'path'].includes(block.kind)) return false;
+    return block.series.some((s) => s.x.some((x, i) => good(x, block.log_x) && good(s.y[i], block.log_y)));
+  });
+}
+
+async function checkBlocks(page) {
+  const found = await page.evaluate(survey);
+  check('readable data', found.blocks !== null && !found.unreadable, found.unreadable ?? 'not JSON with sections');
+  if (found.blocks === null) return false;
+  check('title above the fold', found.heading !== null && found.heading < 400);
+  check('number of blocks', found.rendered.length === found.blocks.length,
+    `${found.rendered.length} of ${found.blocks.length} rendered`);
+  const expected = await page.evaluate(drawable);
+  found.rendered.forEach((block, i) => {
+    const name = `block ${i + 1} (${block.kind}${block.title ? `, ${block.title}` : ''})`;
+    check(`${name} is shown`, !block.problem && !block.empty && block.kind === found.blocks[i], block.problem ?? 'empty or out of order');
+    check(`${name} has captions`, block.captioned);
+    if (!block.figure) return;
+    check(`${name} has an aria-label`, block.labelled);
+    check(`${name} is not blank`, block.canvas.inked > 200, `${block.canvas.inked} inked pixels`);
+    if (expected[i]) check(`${name} shows curves`, block.canvas.colours > 20, `${block.canvas.colours} coloured pixels`);
+  });
+  return found.blocks.includes('sphere');
+}
+
+async function checkWidth(page, width) {
+  await page.setViewportSize({ width, height: 800 });
+  await page.waitForTimeout(250);
+  const wide = await page.evaluate(() => {
+    const limit = document.documentElement.clientWidth;
+    if (document.documentElement.scrollWidth <= limit) return null;
+    const guilty = [...document.querySelectorAll('main *')].filter((e) => e.getBoundingClientRect().right > limit + 1 && !e.closest('.scroll'));
+    return `${document.documentElement.scrollWidth} > ${limit}: ${guilty.slice(0, 3).map((e) => `${e.tagName}.${e.className}`)}`;
+  });
+  check(`no horizontal overflow at ${width} px`, wide === null, wide ?? '');
+}
+
+/** Zooms, resets, toggles, sorts and turns wherever the page has something to do so: the watch is on complaints. */
+async function useIt(page) {
+  const chart = page.locator('.figure.plot .u-over').first();
+  if (await chart.count()) {
+    await chart.scrollIntoViewIfNeeded();
+    const { x, y, width, height } = await chart.boundingBox();
+    await page.mouse.move(x + width * 0.3, y + height * 0.3);
+    await page.mouse.down();
+    await page.mouse.move(x + width * 0.6, y + height * 0.7, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForTimeout(60);
+    const reset = page.locator('.figure.plot .reset').first();
+    check('a drag zooms', await reset.isVisible());
+    await page.mouse.dblclick(x + width * 0.5, y + height * 0.5);
+    await page.waitForTimeout(60);
+    check('a double click resets', !(await reset.isVisible()));
+    const read = (await page.locator('.figure.plot .cursor').first().textContent()).trim();
+    check('the legend reads the cursor', read.includes('='), read);
+  }
+  for (const selector of ['.legend .entry', 'thead button']) {
+    const button = page.locator(selector).first();
+    if (!(await button.count())) continue;
+    await button.click();
+    await button.click();
+  }
+  const globe = page.locator('canvas.globe').first();
+  if (await globe.count()) {
+    const picture = () => globe.evaluate((canvas) => canvas.toDataURL());
+    const before = await picture();
+    await globe.focus();
+    await page.keyboard.press('ArrowLeft');
+    await page.waitForTimeout(100);
+    check('an arrow key turns the sphere', before !== await picture());
+  }
+}
+
+async function checkPrint(page) {
+  const pdf = await page.pdf({ preferCSSPageSize: true, path: options.pdf });
+  check('prints to PDF', pdf.length > 5000);
+  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
+  const blank = await page.evaluate(() => [...document.querySelectorAll('.chart')]
+    .filter((chart) => !(chart.querySelector('canvas.paper')?.width > 0)).length);
+  await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));
+  check('every chart has its copy for paper', blank === 0, `${blank} without`);
+}
+
+const browser = await launch();
+const { page, complaints } = await open(browser);
+const spheres = await checkBlocks(page);
+await checkWidth(page, 390);
+if (options.narrow) await page.screenshot({ path: options.narrow, fullPage: true });
+await checkWidth(page, 1280);
+if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
+await checkPrint(page);
+await useIt(page);
+check('no console message, error or request', complaints.length === 0, complaints.join('; '));
+if (spheres) {  // once more without WebGL
+  const flat = await open(browser, { webgl: false });
+  await checkBlocks(flat.page);
+  const says = await flat.page.evaluate(() => /no WebGL/.test(document.querySelector('.figure.sphere').textContent));
+  check('without WebGL the sphere is drawn flat and says so', says);
+  if (options.fallback) await flat.page.locator('.figure.sphere').first().screenshot({ path: options.fallback });
+  check('no console message, error or request without WebGL', flat.complaints.length === 0, flat.complaints.join('; '));
+}
+await browser.close();
+
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed === 0 ? 0 : 1);
