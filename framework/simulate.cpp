@@ -352,8 +352,10 @@ Result Simulation::run() const {
   std::vector<double> row;
   double energy_start = 0;
   const auto record = [&] {
+    const long recorded = state.step;
     kernel->measure(state);
     if (state.step == 0) energy_start = state.energy;
+    else if (state.step == recorded) return true;  // nothing new: a chunk failed in its first step
     fill_row(state, energy_start, row);
     result.trajectory.append(row);
     return !observer_ || observer_(state);

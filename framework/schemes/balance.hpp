@@ -49,38 +49,38 @@ struct Balance {
     }
     Unknown guess() const {
       Unknown x(2 * problem_.m());
-      x.template head<M>(problem_.m()) = mu_;
-      x.template tail<M>(problem_.m()) = mu_;
+      x.head(directions()) = mu_;
+      x.tail(directions()) = mu_;
       return x;
     }
     double scale() const { return 2 * mu_.norm(); }
     Vec<n> xi(const Unknown& x) const {
-      return h_ * problem_.velocity(x.template head<M>(problem_.m()));
+      return h_ * problem_.velocity(x.head(directions()));
     }
 
     void evaluate(const Unknown& x, Unknown& f, Jacobian* j) const {
-      const int m = problem_.m();
+      const auto m = directions();
       const Vec<n> step = xi(x);
       const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
       const Vec<n> m0 = z0.push(problem_.momentum(mu_));
-      const Vec<n> m1 = z1.push(problem_.momentum(x.template tail<M>(m)));
+      const Vec<n> m1 = z1.push(problem_.momentum(x.tail(m)));
       const Vec<n> average =
           s_ * (z0.right.transpose() * m0) + (1 - s_) * (z1.right.transpose() * m1);
-      f.template head<M>(m) = problem_.reduce(average) - x.template head<M>(m);
-      f.template tail<M>(m) = problem_.reduce(m1 - m0);
+      f.head(m) = problem_.reduce(average) - x.head(m);
+      f.tail(m) = problem_.reduce(m1 - m0);
       if (j != nullptr) {
         const Mat<n, n> push1 = G::Ad(G::inverse(z1.f)).transpose();
-        j->resize(2 * m, 2 * m);
-        j->template topLeftCorner<M, M>(m, m) =
+        j->resize(2 * problem_.m(), 2 * problem_.m());
+        j->topLeftCorner(m, m) =
             h_ * problem_.reduce_both((1 - s_) * (1 - s_) * z1.left_transpose_derivative(m1) -
                                       s_ * s_ * z0.left_transpose_derivative(m0));
-        j->template topLeftCorner<M, M>(m, m).diagonal().array() -= 1;
-        j->template topRightCorner<M, M>(m, m) =
+        j->topLeftCorner(m, m).diagonal().array() -= 1;
+        j->topRightCorner(m, m) =
             (1 - s_) * problem_.reduce_momentum(z1.right.transpose() * push1);
-        j->template bottomLeftCorner<M, M>(m, m) =
+        j->bottomLeftCorner(m, m) =
             h_ * problem_.reduce_both((1 - s_) * z1.push_derivative(m1) +
                                       s_ * z0.push_derivative(m0));
-        j->template bottomRightCorner<M, M>(m, m) = problem_.reduce_momentum(push1);
+        j->bottomRightCorner(m, m) = problem_.reduce_momentum(push1);
       }
     }
 
@@ -88,10 +88,13 @@ struct Balance {
       const Vec<n> step = xi(x);
       increment = G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))),
                              Tau::tau(Vec<n>((1 - s_) * step)));
-      mu = x.template tail<M>(problem_.m());
+      mu = x.tail(directions());
     }
 
    private:
+    // m, known at compile time where it is.
+    auto directions() const { return Eigen::fix<M>(problem_.m()); }
+
     Problem problem_;
     double s_, h_ = 0;
     Momentum mu_;

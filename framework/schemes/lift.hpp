@@ -57,11 +57,11 @@ struct Lift {
     void evaluate(const Unknown& y, Unknown& f, Jacobian* j) const {
       const Vec<n> p = problem_.momentum(y), step = xi(y);
       if (one_sided_) {
-        const Mat<n, n> inverse_transpose = Tau::dtau_right_inverse(step).transpose();
-        f = problem_.reduce(inverse_transpose * p) - mu_;
+        const Mat<n, n> inverse = Tau::dtau_right_inverse(step);
+        f = problem_.reduce(inverse.transpose() * p) - mu_;
         if (j != nullptr) {
           *j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
-               problem_.reduce_momentum(inverse_transpose);
+               problem_.reduce_momentum(inverse.transpose());
         }
         return;
       }

@@ -1,0 +1,8 @@
+#include <hamel/groups/all.hpp>
+#include <hamel/systems/kernels/groups.hpp>
+
+namespace hamel {
+
+void add_so3(Registry& registry) { add_group<SO3, kRunTime, 2>(registry); }
+
+}  // namespace hamel

@@ -1,0 +1,35 @@
+// hamel::simulate: by name, by object, or with everything compiled for the user's own types.
+#pragma once
+
+#include <string>
+
+#include <hamel/framework/simulate.hpp>
+#include <hamel/systems/kernels.hpp>
+
+namespace hamel {
+
+/// The library's registry, filled on first use; a program may add to it (add_group, add_system, ...).
+/// Not thread-safe while something is being added.
+Registry& registry();
+
+/// A registered system.
+inline Simulation simulate(std::string system) { return {registry(), std::move(system)}; }
+
+/// A system object, on a registered group.
+template <System S>
+Simulation simulate(const S& system) {
+  return {registry(), erase_words(system).name, maker(system)};
+}
+
+/// A system object with the scheme and the retraction named by type; nothing needs to be registered.
+///   hamel::simulate<hamel::Lift, hamel::Cayley>(Sleigh{.a = 0.3})
+template <class Scheme, template <class> class Tau, System S>
+Simulation simulate(const S& system) {
+  using R = Tau<typename S::Group>;
+  constexpr int m = S::Group::dim - constraint_count<S>();
+  Simulation simulation(registry(), erase_words(system).name, maker(system));
+  simulation.kernel(compile<Scheme, R, m>(), scheme_info<Scheme>(), retraction_info<R>());
+  return simulation;
+}
+
+}  // namespace hamel
