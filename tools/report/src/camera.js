@@ -9,6 +9,8 @@ export class Camera {
 
   goHome() { Object.assign(this, HOME); }
 
+  copy() { return Object.assign(new Camera(), this); }
+
   turn(right, up) {
     this.yaw += right;
     this.pitch = Math.max(-STEEPEST, Math.min(STEEPEST, this.pitch + up));

@@ -79,7 +79,7 @@ export function makeChart(holder, data, view, manner, { width, height, k = 1, on
   };
   const options = {
     mode: 2, width, height, pxAlign: 0, legend: { show: false }, focus: { alpha: 0.18 },
-    padding: [10 * k, 16 * k, 0, 2 * k],
+    padding: [18 * k, 16 * k, 0, 2 * k],
     scales: {
       x: { time: false, auto: false, range: (u) => view.fitted(...area(u))[0] },
       y: { auto: false, range: (u) => view.fitted(...area(u))[1] },

@@ -12,7 +12,7 @@ export function h(tag, attributes = {}, ...children) {
     if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
     else element.setAttribute(name, value === true ? '' : value);
   }
-  element.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  element.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined));
   return element;
 }
 
@@ -21,7 +21,8 @@ export function inline(text) {
   const parts = String(text ?? '').split(/(`[^`]+`|\*\*[^*]+\*\*)/);
   return parts.filter((part) => part !== '').map((part) => {
     if (part.length > 2 && part.startsWith('`') && part.endsWith('`')) {
-      return h('code', {}, part.slice(1, -1));
+      const code = part.slice(1, -1);  // a short one is kept on its line
+      return h('code', {}, code.length < 30 ? code.replaceAll(' ', '\u00a0') : code);
     }
     if (part.length > 4 && part.startsWith('**') && part.endsWith('**')) {
       return h('strong', {}, part.slice(2, -2));

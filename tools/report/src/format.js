@@ -21,11 +21,10 @@ export function formatNumber(value, digits = 4) {
   if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞';
   if (value === 0) return '0';
   if (Number.isInteger(value) && Math.abs(value) < 1e6) return minus(String(value));
-  const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
-  if (+exponent >= -3 && +exponent < 5) {
-    return minus(value.toFixed(Math.max(0, digits - 1 - +exponent)));
-  }
-  return minus(Number(mantissa).toFixed(Math.min(digits > 4 ? digits - 1 : 2, digits - 1))) + '·' + power(+exponent);
+  const place = +value.toExponential(digits - 1).split('e')[1];
+  if (place >= -3 && place < 5) return minus(value.toFixed(Math.max(0, digits - 1 - place)));
+  const [mantissa, exponent] = value.toExponential(digits > 4 ? digits - 1 : 2).split('e');
+  return minus(mantissa) + '·' + power(+exponent);
 }
 
 /** Tick labels that share one style and number of decimals; `step` is their spacing. */
@@ -39,8 +38,7 @@ export function formatTicks(values, step) {
   const decimals = Math.max(0, exponent - stepExponent);
   return values.map((value) => {
     if (value === 0) return '0';
-    const mantissa = minus((value / 10 ** exponent).toFixed(decimals));
-    return mantissa === '1' ? power(exponent) : mantissa + '·' + power(exponent);
+    return minus((value / 10 ** exponent).toFixed(decimals)) + '·' + power(exponent);
   });
 }
 

@@ -11,7 +11,7 @@ function swatch({ colour, dash }, marker) {
 }
 
 /**
- * entries: [{name, style, markers}] -> {element, show(values, cursor)}.
+ * entries: [{name, style, markers}] -> {element, cursor, show(values, place)}.
  * onToggle(i, visible) and onFocus(i or null) tell the figure.
  */
 export function makeLegend(entries, { onToggle, onFocus = () => {}, live = true }) {
@@ -31,9 +31,10 @@ export function makeLegend(entries, { onToggle, onFocus = () => {}, live = true 
     }, swatch(entry.style ?? styleOf(entry), entry.markers), h('span', { class: 'name' }, entry.name), value);
   });
   const cursor = live ? h('div', { class: 'cursor', 'aria-hidden': 'true' }) : null;
-  const element = h('div', { class: live ? 'legend live' : 'legend' }, items, cursor);
+  const element = h('div', { class: live ? 'legend live' : 'legend' }, items);
   return {
     element,
+    cursor,  // where the cursor stands, to be put over the chart
     show(texts, place) {
       values.forEach((value, i) => { value.textContent = texts ? texts[i] : ''; });
       cursor.textContent = place ?? '';

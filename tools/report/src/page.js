@@ -51,10 +51,10 @@ function showBlock(block, number, later) {
 
 const broken = (kind, error) => problem(`This ${kind} could not be shown`, error.message);
 
-function drawAll(later) {
+async function drawAll(later) {
   for (const { element, kind, draw } of later) {
     try {
-      draw();
+      await draw();
     } catch (error) {
       const box = broken(kind, error);
       box.dataset.block = kind;
@@ -118,7 +118,7 @@ function contents(sections) {
       h('li', {}, h('a', { href: `#section-${i + 1}` }, inline(section?.title))))));
 }
 
-function showPage() {
+async function showPage() {
   let data;
   try {
     data = readData();
@@ -136,9 +136,8 @@ function showPage() {
   const main = h('main', {}, data.sections.map((section, i) => showSection(section, i + 1, counter, later)));
   document.body.append(h('div', { class: 'page' }, header(data), nav, main,
     later.length ? h('footer', {}, HELP) : null));
-  drawAll(later);
   preparePrinting();
+  await drawAll(later);
 }
 
-showPage();
-requestAnimationFrame(() => { document.documentElement.dataset.ready = 'true'; });
+showPage().then(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = 'true'; }));

@@ -53,12 +53,13 @@ function chartFigure(block, data, manner, kind) {
     onFocus: (i) => { if (data.curves.length > 1) u.setSeries(i === null ? null : i + 1, { focus: true }); },
   });
 
+  holder.append(legend.cursor);
   const notes = [];
   if (data.hidden > 0) {
     const points = data.hidden === 1 ? '1 point' : `${data.hidden} points`;
-    notes.push(h('p', { class: 'note' }, `${points} at or below zero not drawn.`));
+    notes.push(h('p', { class: 'remark' }, `${points} at or below zero not drawn.`));
   }
-  if (block.note) notes.push(h('p', { class: 'note' }, inline(block.note)));
+  if (block.note) notes.push(h('p', { class: 'remark' }, inline(block.note)));
   const element = figure(block, [holder, legend.element, ...notes], reset);
 
   const draw = () => {

@@ -22,25 +22,33 @@ export function sphere(block) {
     `Curves on the unit sphere: ${block.title ?? 'untitled'}; series: ${curves.map((c) => c.name).join(', ')}. ` +
     'Arrow keys turn the sphere.' });
   let scene = null;
-  let waiting = false;
+  let [painting, again] = [false, false];
 
-  const paint = () => {
-    waiting = false;
+  const paint = async () => {
     const scale = Math.max(SHARPEST, devicePixelRatio);
     const [width, height] = [Math.round(canvas.clientWidth * scale), Math.round(HEIGHT * scale)];
     if (width === 0) return;
+    const seen = camera.copy();
+    const picture = scene ? await scene.draw(seen, width, height, scale) : null;
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
     const context = canvas.getContext('2d');
     context.fillStyle = '#fff';
     context.fillRect(0, 0, width, height);
-    if (scene) scene.drawInto(context, camera, width, height, scale);
-    else drawFlat(context, curves, camera, width, height, scale);
-    drawOverlay(context, curves, camera, width, height, scale);
+    if (picture) context.putImageData(picture, 0, 0);
+    else drawFlat(context, curves, seen, width, height, scale);
+    drawOverlay(context, curves, seen, width, height, scale);
   };
+  /** Paints in the next frame, one picture at a time. */
   const repaint = () => {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(paint);
+    again = true;
+    if (painting) return;
+    painting = true;
+    requestAnimationFrame(async () => {
+      again = false;
+      await paint();
+      painting = false;
+      if (again) repaint();
+    });
   };
 
   const legend = makeLegend(curves, { live: false, onToggle: (i, visible) => {
@@ -51,13 +59,13 @@ export function sphere(block) {
   if (!solid) notes.push('Drawn flat: this browser offers no WebGL.');
   const far = Math.max(0, ...curves.map((curve) => curve.defect));
   if (far > 1e-3) notes.push(`Some points lie off the unit sphere, by up to ${far.toPrecision(2)}.`);
-  const element = figure(block, [canvas, legend.element, notes.map((text) => h('p', { class: 'note' }, text)),
-    block.note ? h('p', { class: 'note' }, inline(block.note)) : null]);
+  const element = figure(block, [canvas, legend.element, notes.map((text) => h('p', { class: 'remark' }, text)),
+    block.note ? h('p', { class: 'remark' }, inline(block.note)) : null]);
   const draw = () => {
     if (solid) scene = makeScene(curves);
-    paint();
     handle(canvas, camera, repaint);
-    followWidth(canvas, paint);
+    followWidth(canvas, repaint);
+    return paint();
   };
   return { element, draw };
 }
@@ -111,7 +119,10 @@ function drawOverlay(context, curves, camera, width, height, scale) {
     context.moveTo(...at(from).slice(0, 2));
     context.lineTo(tip[0], tip[1]);
     context.stroke();
-    if (!hidden || reach * 1.25 > unit) context.fillText(name, ...at(1.25).slice(0, 2));
+    if (hidden && reach * 1.25 < unit) return;
+    Object.assign(context, { strokeStyle: '#fffc', lineWidth: 3 * scale, lineJoin: 'round' });
+    context.strokeText(name, ...at(1.25).slice(0, 2));
+    context.fillText(name, ...at(1.25).slice(0, 2));
   });
   for (const { show, points, style } of curves) {
     const first = show ? points.find((point) => point) : null;

@@ -1,5 +1,6 @@
-// The sphere by three.js. One renderer serves all spheres of a page (browsers allow few WebGL contexts); each
-// picture is copied to its own 2-D canvas, which prints well.
+// The sphere by three.js. One renderer serves all spheres of a page (browsers allow few WebGL contexts). A picture
+// is read back and put on a 2-D canvas, which prints well; read back without waiting for it, since a canvas drawn
+// on another one makes software WebGL warn of stalls on the console.
 
 import { AmbientLight, DirectionalLight, GreaterDepth, Matrix4, Mesh, MeshLambertMaterial, OrthographicCamera,
   Scene, SphereGeometry, WebGLRenderer } from 'three';
@@ -15,7 +16,7 @@ export function webglWorks() {
   renderer = null;
   const options = { antialias: true, alpha: false, depth: true };
   try {
-    const canvas = new OffscreenCanvas(16, 16);
+    const canvas = document.createElement('canvas');
     const context = canvas.getContext('webgl2', options);
     if (context) renderer = new WebGLRenderer({ canvas, context, ...options });
   } catch {
@@ -61,7 +62,8 @@ export function makeScene(curves) {
   });
   scene.add(...drawn.flat());
 
-  const drawInto = (context, camera, width, height, scale) => {
+  /** -> the picture, as a promise of ImageData. */
+  const draw = (camera, width, height, scale) => {
     const { right, up, out } = camera.frame();
     const unit = 2 * RADIUS * Math.min(width, height);
     Object.assign(eye, { left: -width / unit, right: width / unit, top: height / unit, bottom: -height / unit });
@@ -76,10 +78,33 @@ export function makeScene(curves) {
     }
     renderer.setSize(width, height, false);
     renderer.render(scene, eye);
-    // A bitmap, not the canvas itself: copying that makes software WebGL warn of stalls on the console.
-    const picture = renderer.domElement.transferToImageBitmap();
-    context.drawImage(picture, 0, 0);
-    picture.close();
+    return readBack(width, height);
   };
-  return { drawInto };
+  return { draw };
+}
+
+async function readBack(width, height) {
+  const gl = renderer.getContext();
+  const buffer = gl.createBuffer();
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+  gl.bufferData(gl.PIXEL_PACK_BUFFER, width * height * 4, gl.STREAM_READ);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, 0);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  while (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
+    await new Promise((resolve) => { setTimeout(resolve, 2); });
+  }
+  gl.deleteSync(fence);
+  const upsideDown = new Uint8Array(width * height * 4);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+  gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, upsideDown);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+  gl.deleteBuffer(buffer);
+  const image = new ImageData(width, height);
+  const row = width * 4;
+  for (let y = 0; y < height; ++y) {
+    image.data.set(upsideDown.subarray((height - 1 - y) * row, (height - y) * row), y * row);
+  }
+  return image;
 }

@@ -32,7 +32,7 @@ export function table(block) {
   const element = h('div', { class: 'table-block' },
     h('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': `Table: ${block.title ?? 'untitled'}` },
       h('table', {}, h('caption', {}, block.title || 'Table'), h('thead', {}, h('tr', {}, heads)), body)),
-    block.note ? h('p', { class: 'note' }, inline(block.note)) : null);
+    block.note ? h('p', { class: 'remark' }, inline(block.note)) : null);
   return { element };
 }
 
