@@ -4,13 +4,15 @@
 #         -DNODE=... -DNPM=... -P this
 #
 # Everything happens in WORK, a copy: the source tree stays clean. Where the page cannot be made, mode
-# AUTO writes an empty string, says why, and dates the file back so that the next build tries again.
+# AUTO writes an empty string and says why; WORK/page.html is then missing, so the next build tries
+# again.
+cmake_minimum_required(VERSION 3.25)
 
-function(write_source page)
+function(write_source page)  # leaves the file alone where nothing changed
   if(page MATCHES [[\)hamel_page"]])
     message(FATAL_ERROR "the page contains the delimiter that it is embedded with")
   endif()
-  file(WRITE ${OUTPUT}
+  file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT
 "// Written by tools/cmake/build_report_page.cmake: ${WORK}/page.html.
 #include <string_view>
 
@@ -19,7 +21,7 @@ namespace hamel::tools {
 std::string_view report_page();
 
 std::string_view report_page() {
-  static constexpr char page[] = R\"hamel_page(${page})hamel_page\";
+  static constexpr char page[] = R\"hamel_page(@page@)hamel_page\";
   return {page, sizeof(page) - 1};
 }
 
@@ -32,35 +34,20 @@ function(without_page reason)
     message(FATAL_ERROR "hamel: no report page: ${reason}")
   endif()
   message("hamel: the program is built WITHOUT its report page: ${reason}")
+  file(REMOVE ${WORK}/page.html)
   write_source("")
-  if(NOT MODE STREQUAL "OFF")
-    execute_process(COMMAND touch -t 200001010000 ${OUTPUT})
-  endif()
-endfunction()
-
-function(last_lines text result)
-  string(STRIP "${text}" text)
-  string(LENGTH "${text}" length)
-  if(length GREATER 1500)
-    math(EXPR start "${length} - 1500")
-    string(SUBSTRING "${text}" ${start} -1 text)
-  endif()
-  set(${result} "${text}" PARENT_SCOPE)
 endfunction()
 
 if(MODE STREQUAL "OFF")
-  without_page("HAMEL_REPORT_PAGE is OFF")
+  file(WRITE ${WORK}/page.html "")
+  write_source("")
   return()
 elseif(NOT NODE OR NOT NPM)
   without_page("node or npm is not installed (tools/setup installs them)")
   return()
-elseif(NOT EXISTS ${SOURCE}/build.mjs)
-  without_page("${SOURCE}/build.mjs is missing")
-  return()
 endif()
 
-file(COPY ${SOURCE}/ DESTINATION ${WORK}
-     PATTERN node_modules EXCLUDE PATTERN dist EXCLUDE PATTERN CMakeFiles EXCLUDE)
+file(COPY ${SOURCE}/ DESTINATION ${WORK} PATTERN node_modules EXCLUDE PATTERN dist EXCLUDE)
 
 # The packages, again only when the lock file says something else.
 file(SHA256 ${SOURCE}/package-lock.json lock)
@@ -74,7 +61,6 @@ if(NOT installed STREQUAL lock)
     COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=1
     WORKING_DIRECTORY ${WORK} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
-    last_lines("${output}" output)
     without_page("npm ci failed:\n${output}")
     return()
   endif()
