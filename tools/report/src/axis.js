@@ -71,7 +71,8 @@ function multiples(min, max, step) {
 }
 
 function linearTicks(min, max, count) {
-  const step = niceStep(max - min, count);
+  let step = niceStep(max - min, count);
+  if (multiples(min, max, step).length < 3) step = niceStep(max - min, 2 * count);
   const at = multiples(min, max, step);
   return { at, labels: formatTicks(at, step) };
 }

@@ -45,8 +45,8 @@ function axisOptions(axis, side, k) {
     font: `${12 * k}px ${FONT}`, labelFont: `${12.5 * k}px ${FONT}`, gap: 5 * k,
     incrs: (u, i, min, max) => [Math.max(5, 2 * (max - min))],  // any that uPlot takes: the ticks are ours
     splits: (u, i, min, max) => {
-      const length = horizontal ? u.width : u.height;
-      ticks = axis.ticks(min, max, Math.max(2, Math.floor(length / k / (horizontal ? 95 : 42))));
+      const room = horizontal ? u.width / k / 95 : (u.height / k - 60) / 34;
+      ticks = axis.ticks(min, max, Math.max(2, Math.floor(room)));
       return ticks.at;
     },
     filter: (u, splits) => splits,
@@ -79,7 +79,7 @@ export function makeChart(holder, data, view, manner, { width, height, k = 1, on
   };
   const options = {
     mode: 2, width, height, pxAlign: 0, legend: { show: false }, focus: { alpha: 0.18 },
-    padding: [18 * k, 16 * k, 0, 2 * k],
+    padding: [(on ? 18 : 8) * k, 16 * k, 0, 2 * k],
     scales: {
       x: { time: false, auto: false, range: (u) => view.fitted(...area(u))[0] },
       y: { auto: false, range: (u) => view.fitted(...area(u))[1] },
@@ -97,6 +97,7 @@ export function makeChart(holder, data, view, manner, { width, height, k = 1, on
         u.ctx.fillStyle = '#fff';
         u.ctx.fillRect(0, 0, u.ctx.canvas.width, u.ctx.canvas.height);
       }],
+      draw: [(u) => { if (bounds(curves).x[0] === Infinity) say(u, 'nothing to draw', k); }],
       drawSeries: manner.start ? [(u, i) => drawStart(u, curves[i - 1], k)] : [],
       setCursor: on ? [(u) => on.cursor(u)] : [],
       setSelect: on ? [(u) => zoomToSelection(u, data, view, on)] : [],
@@ -148,6 +149,12 @@ function zoomByWheel(event, u, view, manner, on) {
   const nextY = manner.equal ? around([y.min, y.max], u.posToVal(u.cursor.top, 'y')) : [y.min, y.max];
   view.zoom(nextX, nextY);
   on.zoom();
+}
+
+function say(u, text, k) {
+  const { left, top, width, height } = u.bbox;
+  Object.assign(u.ctx, { font: `${13 * k * devicePixelRatio}px ${FONT}`, fillStyle: INK, textAlign: 'center' });
+  u.ctx.fillText(text, left + width / 2, top + height / 2);
 }
 
 function drawStart(u, curve, k) {

@@ -31,7 +31,8 @@ export function formatNumber(value, digits = 4) {
 export function formatTicks(values, step) {
   const largest = Math.max(...values.map(Math.abs));
   const stepExponent = Math.floor(Math.log10(step) + 1e-9);
-  if (largest === 0 || (largest >= 9.99e-4 && largest < 1e5)) {
+  if (largest === 0) return values.map(() => '0');
+  if (largest >= 9.99e-4 && largest < 1e5) {
     return values.map((value) => minus((value || 0).toFixed(Math.max(0, -stepExponent))));
   }
   const exponent = Math.floor(Math.log10(largest) + 1e-9);

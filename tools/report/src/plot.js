@@ -9,7 +9,7 @@ import { onPrint } from './print.js';
 import { figure } from './figure.js';
 
 const HEIGHT = 320;
-const PRINT_HEIGHT = 250;
+const PRINT_HEIGHT = { plot: 205, path: 290 };
 
 const OVER_X = {
   sorted: true, equal: false, start: false,
@@ -72,7 +72,7 @@ function chartFigure(block, data, manner, kind) {
       u.setSize({ width, height: HEIGHT });
       if (manner.equal) refresh(u);
     });
-    onPrint(holder, PRINT_HEIGHT, (place, width, height, k) =>
+    onPrint(holder, PRINT_HEIGHT[block.kind], (place, width, height, k) =>
       makeChart(place, data, view, manner, { width: width * k, height: height * k, k }).ctx.canvas);
   };
   return { element, draw };

@@ -11,7 +11,8 @@ export function record(block) {
     const dot = key.lastIndexOf('.') + 1;
     const status = key === 'status' ? `status ${value === 'ok' ? 'ok' : 'failed'}` : null;
     const text = formatValue(value, formatShort) || '–';
-    return h('tr', {}, h('th', { scope: 'row' }, h('span', { class: 'parent' }, key.slice(0, dot)), key.slice(dot)),
+    return h('tr', {}, h('th', { scope: 'row' }, 
+      h('span', { class: 'parent' }, breakable(key.slice(0, dot))), breakable(key.slice(dot))),
       h('td', { title: typeof value === 'number' ? String(value) : null },
         status ? h('span', { class: status }, text) : text));
   });
@@ -22,6 +23,9 @@ export function record(block) {
       h('tbody', {}, rows)));
   return { element };
 }
+
+/** A long name may break after its dots and underscores. */
+const breakable = (name) => name.split(/(?<=[._])/).flatMap((part, i) => (i ? [h('wbr'), part] : [part]));
 
 function flatten(object, prefix = '') {
   return Object.entries(object).flatMap(([key, value]) => {

@@ -42,7 +42,8 @@ function line(row, numeric) {
     const exact = typeof value === 'number' && !Number.isInteger(value) ? String(value) : null;
     const status = ['ok', 'failed'].includes(value) ? `status ${value}` : null;
     const text = typeof value === 'string' ? inline(value) : [formatValue(value)];
-    return h('td', { class: isNumber ? 'number' : null, title: exact },
+    const short = typeof value === 'string' && value.length < 28 ? 'short' : null;
+    return h('td', { class: isNumber ? 'number' : short, title: exact },
       status ? h('span', { class: status }, text) : text);
   }));
 }
