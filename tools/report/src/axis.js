@@ -98,7 +98,7 @@ function fractionTicks(min, max) {
 
 function decadeTicks(min, max, count) {
   const decades = max - min;
-  const step = [1, 2, 3, 5, 10, 20, 50, 100].find((s) => decades / s <= count) ?? 200;
+  const step = [1, 2, 3, 5, 10, 20, 50, 100].find((s) => decades / s <= count + 0.5) ?? 200;
   const [at, labels] = [[], []];
   for (const n of multiples(min, max, step)) {
     at.push(n);

@@ -38,11 +38,11 @@ export class View {
 }
 
 function axisOptions(axis, side, k) {
-  const horizontal = side === 2;
+  const horizontal = side === 2;  // (font sizes in whole pixels: uPlot scales no others)
   let ticks = { at: [], labels: [] };
   return {
     scale: horizontal ? 'x' : 'y', side, stroke: INK, label: axis.label, labelGap: 0, labelSize: 20 * k,
-    font: `${12 * k}px ${FONT}`, labelFont: `${12.5 * k}px ${FONT}`, gap: 5 * k,
+    font: `${12 * k}px ${FONT}`, labelFont: `${13 * k}px ${FONT}`, gap: 5 * k,
     incrs: (u, i, min, max) => [Math.max(5, 2 * (max - min))],  // any that uPlot takes: the ticks are ours
     splits: (u, i, min, max) => {
       const room = horizontal ? u.width / k / 95 : (u.height / k - 60) / 34;
