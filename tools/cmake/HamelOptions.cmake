@@ -34,6 +34,10 @@ target_compile_options(hamel_build_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wextra-semi
   -Wdouble-promotion -Wcast-qual -Wmissing-declarations
   $<$<BOOL:${HAMEL_WERROR}>:-Werror>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(hamel_build_options INTERFACE
+    -Wno-restrict)  # false alarms on "literal" + std::string, GCC bug 105651
+endif()
 if(HAMEL_SANITIZE)
   # The four checks left out cost minutes of compilation on Eigen code (62 s a unit against 11 s).
   set(sanitizers -fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size
