@@ -1,8 +1,6 @@
 // exp, log, dR exp, its inverse and the Newton derivative against 80 digits, |omega| from 1e-12 to pi - 1e-6.
 //
-// Bounds are in units of round-off u = 2^-52. exp, dR and dR^-1 chain about ten rounded operations; the
-// Newton derivative has the product of two cancelling coefficients near theta = 3 (measured figures beside
-// the bounds). log is compared for the rotation rounded to double, so its condition (1 on SO(3)) is included.
+// Bounds are in units of round-off u = 2^-52, twice what is measured (0.4 to 1.9, printed by the test). log is compared for the rotation rounded to double, so its condition (1 on SO(3)) is included.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -122,8 +120,8 @@ TYPED_TEST(ExpAccuracy, AgainstEightyDigits) {
   EXPECT_LT(tangent, 4 * u);
   EXPECT_LT(forward, 4 * u);
   EXPECT_LT(inverse, 4 * u);
-  EXPECT_LT(newton, 16 * u);
-  EXPECT_LT(log, 8 * u);
+  EXPECT_LT(newton, 4 * u);
+  EXPECT_LT(log, 4 * u);
 }
 
 /// The coefficient functions alone, over the joints of their pieces.
@@ -147,7 +145,8 @@ TEST(Coefficients, AgainstEightyDigits) {
                               cotc_derivative(x),
                               cotc_second_derivative(x)};
     for (int i = 0; i < 7; ++i) {
-      worst[i] = std::max(worst[i], (abs(values[i] - exact[i]) / abs(exact[i])).toDouble());
+      const mpreal size = i == 0 ? mpreal(1) : abs(exact[i]);  // sinc vanishes at pi
+      worst[i] = std::max(worst[i], (abs(values[i] - exact[i]) / size).toDouble());
     }
   }
   const double bounds[7] = {2, 3,  4, 6,
