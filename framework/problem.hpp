@@ -44,6 +44,11 @@ struct LeftInvariant {
     const Frame be = b.lazyProduct(momentum_frame);
     return frame.transpose().lazyProduct(be);
   }
+  /// E^T B^T (I E).
+  ReducedMatrix reduce_momentum_transposed(const Mat<n, n>& b) const {
+    const Frame be = b.lazyProduct(frame);
+    return be.transpose().lazyProduct(momentum_frame);
+  }
 };
 
 }  // namespace hamel

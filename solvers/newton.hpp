@@ -19,6 +19,19 @@
 
 namespace hamel {
 
+/// LU with partial pivoting up to 12 x 12, compiled once (in newton.cpp) and free of heap.
+class SmallLu {
+ public:
+  static constexpr int max_size = 12;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_size, max_size>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_size, 1>;
+  void compute(const Matrix& matrix);
+  Vector solve(const Vector& f) const;
+
+ private:
+  Eigen::PartialPivLU<Matrix> lu_;
+};
+
 struct Newton {
   static constexpr int max_iterations = 50;
   static std::string name() { return "newton"; }
@@ -78,26 +91,21 @@ struct Newton {
   // Closed-form inverse up to 4 x 4, LU beyond.
   template <class Jacobian>
   struct Inverse {
-    static constexpr bool small =
-        Jacobian::RowsAtCompileTime != Eigen::Dynamic && Jacobian::RowsAtCompileTime <= 4;
+    static constexpr int size = Jacobian::RowsAtCompileTime;
+    static constexpr int max_size = Jacobian::MaxRowsAtCompileTime;
+    static constexpr bool closed_form = size != Eigen::Dynamic && size <= 4;
+    using Lu = std::conditional_t<max_size <= SmallLu::max_size, SmallLu, Eigen::PartialPivLU<Jacobian>>;
+
     explicit Inverse(const Jacobian& j) {
-      if constexpr (small) {
-        inverse = j.inverse();
-      } else {
-        lu.compute(j);
-      }
+      if constexpr (closed_form) factors = j.inverse();
+      else factors.compute(j);
     }
     template <class Vector>
     Vector apply(const Vector& f) const {
-      if constexpr (small) {
-        return inverse * f;
-      } else {
-        return lu.solve(f);
-      }
+      if constexpr (closed_form) return factors * f;
+      else return factors.solve(f);
     }
-    struct Unused {};
-    std::conditional_t<small, Jacobian, Unused> inverse;
-    std::conditional_t<small, Unused, Eigen::PartialPivLU<Jacobian>> lu;
+    std::conditional_t<closed_form, Jacobian, Lu> factors;
   };
 };
 

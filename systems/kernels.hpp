@@ -79,6 +79,15 @@ void add_group(Registry& registry) {
       [&]<class Tau>(std::type_identity<Tau>) { add_retraction<Tau, Ms...>(registry); });
 }
 
+/// Kernels with m fixed at compile time, for the schemes and retractions in most use.
+template <class G, int M>
+void add_fast_kernels(Registry& registry) {
+  add_kernels<Lift, Exp<G>, M>(registry);
+  add_kernels<Lift, Cayley<G>, M>(registry);
+  add_kernels<Balance, Exp<G>, M>(registry);
+  add_kernels<Balance, Cayley<G>, M>(registry);
+}
+
 /// A scheme, with kernels for every retraction of the groups named.
 template <class Scheme, class... Gs>
 void add_scheme(Registry& registry) {

@@ -61,7 +61,7 @@ struct Lift {
         f = problem_.reduce(inverse.transpose() * p) - mu_;
         if (j != nullptr) {
           *j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
-               problem_.reduce_momentum(inverse.transpose());
+               problem_.reduce_momentum_transposed(inverse);
         }
         return;
       }

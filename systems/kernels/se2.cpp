@@ -3,6 +3,9 @@
 
 namespace hamel {
 
-void add_se2(Registry& registry) { add_group<SE2, kRunTime, 2>(registry); }
+void add_se2(Registry& registry) {
+  add_group<SE2>(registry);
+  add_fast_kernels<SE2, 2>(registry);
+}
 
 }  // namespace hamel

@@ -3,6 +3,9 @@
 
 namespace hamel {
 
-void add_se2_so2(Registry& registry) { add_group<Product<SE2, SO2>, kRunTime, 2>(registry); }
+void add_se2_so2(Registry& registry) {
+  add_group<Product<SE2, SO2>>(registry);
+  add_fast_kernels<Product<SE2, SO2>, 2>(registry);
+}
 
 }  // namespace hamel

@@ -3,6 +3,9 @@
 
 namespace hamel {
 
-void add_so3(Registry& registry) { add_group<SO3, kRunTime, 2>(registry); }
+void add_so3(Registry& registry) {
+  add_group<SO3>(registry);
+  add_fast_kernels<SO3, 2>(registry);
+}
 
 }  // namespace hamel
