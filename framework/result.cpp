@@ -38,12 +38,6 @@ Json matrix(const Eigen::MatrixXd& m) {
   return rows;
 }
 
-std::string host() {
-  utsname name{};
-  if (uname(&name) != 0) return "unknown";
-  return fmt::format("{} {} {}", name.nodename, name.sysname, name.machine);
-}
-
 Json element(const Result& result) {
   const auto matrices = result.system.group.matrices(result.last.coordinates);
   if (matrices.size() == 1) return matrix(matrices.front());
@@ -110,7 +104,7 @@ Json record_of(const Result& r) {
        {{"seconds", r.seconds}, {"nanoseconds_per_step", r.seconds * 1e9 / steps}}},
       {"version", version()},
       {"git", git_hash()},
-      {"host", host()},
+      {"host", host_name()},
   };
 }
 
@@ -209,6 +203,12 @@ void Result::write(const std::string& path) const {
   } else {
     throw ConfigError({unknown_name("output format", extension, output_formats())});
   }
+}
+
+std::string host_name() {
+  utsname name{};
+  if (uname(&name) != 0) return "unknown";
+  return fmt::format("{} {} {}", name.nodename, name.sysname, name.machine);
 }
 
 const std::vector<std::string>& output_formats() {

@@ -69,6 +69,9 @@ struct Result {
   void write_csv(std::ostream& out) const;
 };
 
+/// The machine this runs on: node name, system, architecture.
+std::string host_name();
+
 /// The extensions that Result::write knows.
 const std::vector<std::string>& output_formats();
 

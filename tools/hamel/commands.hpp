@@ -1,0 +1,50 @@
+// The commands of the program; main.cpp reads the command line into these and calls them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <hamel/framework/config.hpp>
+
+namespace hamel::tools {
+
+struct ListOptions {
+  std::string kind;  // groups, retractions, schemes, solvers, systems; empty for all
+  bool json = false;
+};
+int list(const ListOptions& options);
+
+struct DescribeOptions {
+  std::string name;
+  bool json = false;
+};
+int describe(const DescribeOptions& options);
+
+struct RunOptions {
+  Config config;
+  std::vector<std::string> outputs;  // -o, format by extension
+  std::string report;                // --report
+  bool json = false;
+  bool quiet = false;
+};
+int run(const RunOptions& options);
+
+struct ReproduceOptions {
+  std::string directory = "reproduce-output";
+  bool quiet = false;
+};
+int reproduce(const ReproduceOptions& options);
+
+/// A progress bar on standard error; silent when that is no terminal.
+class Progress {
+ public:
+  Progress(std::string what, bool quiet);
+  ~Progress();
+  void operator()(double fraction);
+
+ private:
+  std::string what_;
+  bool active_;
+};
+
+}  // namespace hamel::tools

@@ -1,0 +1,133 @@
+// hamel describe: formula, parameters with units and defaults, what is exactly known, source.
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hamel/framework/composition.hpp>
+#include <hamel/framework/errors.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "commands.hpp"
+
+namespace hamel::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json describe_system(const SystemInfo& info) {
+  Json parameters = Json::array();
+  for (const Field& field : info.fields) {
+    parameters.push_back({{"name", field.name},
+                          {"default", field.value.size() == 1 ? Json(field.value[0]) : Json(field.value)},
+                          {"unit", field.unit},
+                          {"meaning", field.meaning}});
+  }
+  const Start start = info.make({}).start;
+  return {{"kind", "system"},           {"name", info.name},
+          {"summary", info.summary},    {"group", info.group.name},
+          {"formula", info.formula},    {"parameters", parameters},
+          {"start", start.velocity.empty() ? Json{{"momentum", start.momentum}}
+                                           : Json{{"velocity", start.velocity}}},
+          {"known", info.known},        {"source", info.source}};
+}
+
+Json describe_group(const GroupInfo& info) {
+  return {{"kind", "group"},
+          {"name", info.name},
+          {"summary", info.summary},
+          {"dim", info.dim},
+          {"columns", info.columns},
+          {"identity", info.identity},
+          {"retractions", registry().retractions(info.name)}};
+}
+
+Json describe_retraction(const std::string& name) {
+  Json where = Json::array();
+  for (const std::string& group : registry().groups()) {
+    if (const RetractionInfo* info = registry().retraction(group, name)) {
+      where.push_back({{"group", group},
+                       {"formula", info->formula},
+                       {"domain", info->domain},
+                       {"symmetric", info->symmetric}});
+    }
+  }
+  return {{"kind", "retraction"}, {"name", name}, {"groups", where}};
+}
+
+Json describe_scheme(const SchemeInfo& info) {
+  const auto order = [&](double s, bool symmetric) {
+    const ClaimedOrder claimed = info.claimed_order(s, symmetric);
+    return Json{{"order", claimed.order}, {"reversible", claimed.reversible}};
+  };
+  return {{"kind", "scheme"},
+          {"name", info.name},
+          {"formula", info.formula},
+          {"uses_s", info.uses_s},
+          {"keeps_the_constraint", info.adapted},
+          {"claims",
+           {{"s = 1/2", order(0.5, true)},
+            {"other s, symmetric retraction", order(0, true)},
+            {"other s, other retraction", order(0, false)}}},
+          {"source", info.source}};
+}
+
+Json description_of(const std::string& name) {
+  const Registry& all = registry();
+  if (const SystemInfo* info = all.system(name)) return describe_system(*info);
+  if (const GroupInfo* info = all.group(name)) return describe_group(*info);
+  if (const SchemeInfo* info = all.scheme(name)) return describe_scheme(*info);
+  if (const SolverInfo* info = all.solver(name)) {
+    return {{"kind", "solver"}, {"name", name}, {"summary", info->summary}, {"source", info->source}};
+  }
+  std::vector<std::string> known;
+  for (const std::string& retraction : all.retractions()) {
+    if (retraction == name) return describe_retraction(name);
+  }
+  for (const Composition& c : compositions()) {
+    if (c.name == name) {
+      return {{"kind", "composition"}, {"name", name},           {"order", c.order},
+              {"coefficients", c.coefficients}, {"source", c.source}};
+    }
+  }
+  for (const auto& names : {all.systems(), all.groups(), all.retractions(), all.schemes(),
+                            all.solvers()}) {
+    known.insert(known.end(), names.begin(), names.end());
+  }
+  throw ConfigError({unknown_name("name", name, known)});
+}
+
+// One line per member; lists of objects as indented lines.
+void print(const Json& json) {
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_string()) {
+      if (!value.get<std::string>().empty()) fmt::print("  {:<12} {}\n", key, value.get<std::string>());
+    } else if (value.is_array() && !value.empty() && value.front().is_object()) {
+      fmt::print("  {}\n", key);
+      for (const Json& entry : value) {
+        std::string line;
+        for (const auto& [name, member] : entry.items()) {
+          const std::string text = member.is_string() ? member.get<std::string>() : member.dump();
+          line += name == "name" || name == "group"     ? fmt::format("{:<14}", text)
+                  : name == "default"                   ? fmt::format(" = {:<12}", text)
+                  : name == "unit"                      ? fmt::format(" [{}]", text)
+                  : name == "domain"                    ? fmt::format("; domain {}", text)
+                  : name == "symmetric"                 ? (text == "true" ? "; symmetric" : "; not symmetric")
+                                                        : fmt::format("  {}", text);
+        }
+        fmt::print("    {}\n", line);
+      }
+    } else {
+      fmt::print("  {:<12} {}\n", key, value.dump());
+    }
+  }
+}
+
+}  // namespace
+
+int describe(const DescribeOptions& options) {
+  const Json json = description_of(options.name);
+  if (options.json) fmt::print("{}\n", json.dump(2));
+  else print(json);
+  return 0;
+}
+
+}  // namespace hamel::tools

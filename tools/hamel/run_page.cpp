@@ -1,0 +1,116 @@
+#include "run_page.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace hamel::tools {
+namespace {
+
+// The first column that is called name or ends in _name (a factor of a product); -1 when none is.
+int find_column(const Result& result, const std::string& name) {
+  const auto& columns = result.system.group.columns;
+  for (size_t j = 0; j < columns.size(); ++j) {
+    if (columns[j] == name || columns[j].ends_with("_" + name)) return static_cast<int>(j) + 1;
+  }
+  return -1;
+}
+
+std::vector<size_t> thin_rows(const Result& result, size_t points) {
+  const size_t rows = result.trajectory.rows(), step = std::max<size_t>(rows / points, 1);
+  std::vector<size_t> out;
+  for (size_t i = 0; i < rows; i += step) out.push_back(i);
+  if (!out.empty() && out.back() != rows - 1) out.push_back(rows - 1);
+  return out;
+}
+
+std::string headline(const Result& r) {
+  if (!r.status.ok) {
+    return fmt::format("Failed in step {} at t = {:.6g}: {} (residual {:.2e}). {} good steps are kept.",
+                       r.status.step, r.status.time, r.status.reason, r.status.residual, r.steps);
+  }
+  return fmt::format("{} steps of h = {} to t = {:.6g}; constraint residual at most {:.1e}, group "
+                     "defect at most {:.1e}, energy error at most {:.1e}.",
+                     r.steps, r.config.step, r.last.time, r.constraint_max, r.group_defect_max,
+                     r.energy_error_max);
+}
+
+}  // namespace
+
+Series curve(const Result& result, const std::string& name, const std::string& column,
+             bool magnitude) {
+  std::vector<double> y = result.trajectory.column(column);
+  return thinned(name, result.trajectory.column("t"), magnitude ? magnitudes(y) : y);
+}
+
+Series plane_path(const Result& result, const std::string& name) {
+  Series out{name, {}, {}};
+  const int x = find_column(result, "x"), y = find_column(result, "y");
+  if (x < 0 || y < 0) return out;
+  for (size_t i : thin_rows(result, 3000)) {
+    out.x.push_back(result.trajectory.at(i, static_cast<size_t>(x)));
+    out.y.push_back(result.trajectory.at(i, static_cast<size_t>(y)));
+  }
+  return out;
+}
+
+std::vector<SphereCurve> axes_on_sphere(const Result& result) {
+  const int first = find_column(result, "R11");
+  if (first < 0) return {};
+  std::vector<SphereCurve> out;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    SphereCurve curve{fmt::format("body axis e{}", axis + 1), {}};
+    for (size_t i : thin_rows(result, 2000)) {
+      const size_t at = static_cast<size_t>(first) + axis;  // row-major: column `axis` of R
+      curve.points.push_back({result.trajectory.at(i, at), result.trajectory.at(i, at + 3),
+                              result.trajectory.at(i, at + 6)});
+    }
+    out.push_back(std::move(curve));
+  }
+  return out;
+}
+
+Page run_page(const Result& r) {
+  Page page(fmt::format("{}: {} with {}", r.system.name, r.config.scheme, r.config.retraction),
+            fmt::format("{}, s = {}, h = {}, solver {}{}", r.system.group.name, r.config.s,
+                        r.config.step, r.config.solver,
+                        r.config.compose == "none" ? "" : ", composed by " + r.config.compose));
+  page.section("Result");
+  page.verdict(r.status.ok ? "ok" : "failed", headline(r));
+  if (!r.notes.empty()) page.text(r.notes);
+  const std::string name = r.config.scheme;
+  const Axes log = {.x = "time t [s]", .y = "", .log_x = false, .log_y = true};
+  const auto with = [](Axes axes, const char* y) {
+    axes.y = y;
+    return axes;
+  };
+  const bool exact = r.trajectory.columns().back() == "exact_velocity_error";
+  if (const Series path = plane_path(r, name); !path.x.empty()) {
+    page.path("Path in the plane", {.x = "x [m]", .y = "y [m]"}, {path});
+  }
+  if (const auto axes = axes_on_sphere(r); !axes.empty()) {
+    page.sphere("Motion of the body axes", axes, "Columns of R; drag to turn.");
+  }
+  page.plot("Energy error", with(log, "|E - E0| / E0"), {curve(r, name, "energy_error")});
+  if (exact) {
+    page.plot("Error against the exact motion", with(log, "|difference|"),
+              {curve(r, "configuration", "exact_error"), curve(r, "velocity", "exact_velocity_error")},
+              "Euclidean distance of the element's columns, and of the body velocities.");
+  }
+  page.plot("Constraint residual", with(log, "|A xi/h|"), {curve(r, name, "constraint")},
+            "The step's velocity is recovered from consecutive configurations; its floor is about "
+            "2e-16/h times the size of the coordinates.");
+  page.plot("Group defect", with(log, "defect"), {curve(r, name, "group_defect")});
+  std::vector<Series> momentum, velocity;
+  for (int i = 1; i <= r.system.group.dim; ++i) {
+    momentum.push_back(curve(r, fmt::format("mu{}", i), fmt::format("mu{}", i), false));
+    velocity.push_back(curve(r, fmt::format("xi{}", i), fmt::format("xi{}", i), false));
+  }
+  page.plot("Body momentum", {.x = "time t [s]", .y = "mu"}, momentum);
+  page.plot("Body velocity", {.x = "time t [s]", .y = "xi"}, velocity);
+  page.section("Record");
+  page.record(r.record());
+  return page;
+}
+
+}  // namespace hamel::tools
