@@ -30,9 +30,9 @@ struct SphereCurve {
 
 /// A table cell: a word, or a number that the page formats.
 struct Cell {
-  Cell(std::string text) : text(std::move(text)) {}
-  Cell(const char* text) : text(text) {}
-  Cell(double number) : number(number), is_number(true) {}
+  Cell(std::string word) : text(std::move(word)) {}
+  Cell(const char* word) : text(word) {}
+  Cell(double value) : number(value), is_number(true) {}
   std::string text;
   double number = 0;
   bool is_number = false;
