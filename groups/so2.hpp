@@ -66,7 +66,7 @@ struct SO2 {
     const bool negative = g.s < 0.0;
     if (negative == (h.s < 0.0)) {  // both angles point one way: their sum may leave (-pi, pi]
       if (negative) {
-        if (r.s > 0.0 || (r.s == 0.0 && (r.c < 0.0 || g.c < 0.0))) --r.turns;
+        if (r.s > 0.0 || (r.s == 0.0 && r.c < 0.0)) --r.turns;
       } else {
         if (r.s < 0.0 || (r.s == 0.0 && g.c < 0.0 && h.c < 0.0)) ++r.turns;
       }

@@ -1,10 +1,10 @@
 // The group axioms, measured: `hamel::check_group<SO3>(seed)` for any group, a user's own included.
 //
-//   for (const auto& law : hamel::check_group<MyGroup, MyRetraction>(1)) EXPECT_TRUE(law.passed()) << law;
+//   for (const auto& law : hamel::check_group<MyGroup, MyRetraction>(1)) std::cout << law << "\n";
 // The retraction draws random elements (products of two tau(xi)) and curves through e; any will do.
-// Bounds: algebraic laws 1e-12 (elements have entries of order 1 to 10 and a law chains some tens of
-// operations: a few 1e-15 are seen, a wrong sign gives order 1); laws with a derivative 1e-9, by central
-// differences of order 6 with step 4e-3 (round-off about 1e-13, truncation below 1e-10).
+// Bounds: algebraic laws 1e-12 (elements have entries of order 1 to 10 and a law chains some tens
+// of operations: a few 1e-15 are seen, a wrong sign gives order 1); laws with a derivative 1e-9, by
+// central differences of order 6 with step 4e-3 (round-off about 1e-13, truncation below 1e-10).
 #pragma once
 
 #include <algorithm>
@@ -132,7 +132,8 @@ bool refuses(const std::vector<double>& values) {
 
 }  // namespace check
 
-/// Every axiom on 20 random triples. R: any retraction of G, by default the first of G::Retractions.
+/// Every axiom on 20 random triples. R: any retraction of G, by default the first of
+/// G::Retractions.
 template <Group G, class R = typename check::FirstRetraction<G>::type>
 LawReport check_group(unsigned long long seed = 1) {
   using check::Largest;

@@ -1,9 +1,11 @@
-// The laws of a retraction map, measured: `hamel::check_retraction<Cayley<SO3>>(seed)`, also for a user's own.
+// The laws of a retraction map, measured: `hamel::check_retraction<Cayley<SO3>>(seed)`, also for a
+// user's own.
 //
-// Points: |xi| from 1e-12 to 0.999 of the way to the edge of the domain (or 3 when there is no edge).
+// Points: |xi| from 1e-12 to 0.999 of the way to the edge of the domain (or 3 if there is none).
 // Bounds: algebraic laws 1e-12, relative to the size of the maps involved (a few 1e-16 are seen);
-// comparisons with central differences of order 6, step 4e-3, 1e-9 relative and 1e-10 to 1e-12 seen, taken
-// no nearer to the edge than 0.7 of the way, where the seventh derivatives are still moderate.
+// comparisons with central differences of order 6, step 4e-3, 1e-9 relative and 1e-10 to 1e-12
+// seen, taken no nearer to the edge than 0.7 of the way, where the seventh derivatives are still
+// moderate.
 #pragma once
 
 #include <cmath>
@@ -35,7 +37,7 @@ double edge(const Vec<R::Group::dim>& direction, double limit = 3) {
   return inside;
 }
 
-/// d/dd of tau(xi + d) taken back to e on the right or left, in the algebra: the matrix of dR or dL.
+/// d/dd of tau(xi + d) taken back to e on the right or left, in the algebra: dR or dL.
 template <class R>
 class NumericalDerivative {
   using G = typename R::Group;
@@ -157,8 +159,8 @@ LawReport check_retraction(unsigned long long seed = 1) {
     }
   }
 
-  // A property that is claimed must hold; one that is denied must be seen to fail (on an abelian group it
-  // may hold by accident).
+  // A property that is claimed must hold; one that is denied must be seen to fail (on an abelian
+  // group it may hold by accident).
   const auto flag = [](bool claimed, double violation) -> double {
     if (claimed) return violation;
     return violation <= 1e-9 && check::nonabelian<G>() ? 1 : 0;

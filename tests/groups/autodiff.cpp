@@ -1,5 +1,5 @@
-// AutoRetraction: a map given by tau alone equals the same map with closed forms; and a user's own group
-// (Heisenberg) with a retraction, complete in 30 lines, obeys every law.
+// AutoRetraction: a map given by tau alone equals the same map with closed forms; and a user's own
+// group (Heisenberg) with a retraction, complete in 30 lines, obeys every law.
 #include <gtest/gtest.h>
 
 #include <hamel/framework/autodiff.hpp>

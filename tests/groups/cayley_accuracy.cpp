@@ -1,7 +1,9 @@
-// Cayley and polar maps against 80 digits: from |omega| = 1e-12 to rotations within 1e-6 of the edge of their range.
+// Cayley and polar maps against 80 digits: from |omega| = 1e-12 to rotations within 1e-6 of the
+// edge of their range.
 //
-// Bounds in units of round-off u = 2^-52, about twice what is measured. The inverses are compared relative to their
-// condition, |dL^-1|, which grows as |omega|^2 towards a rotation by pi (Cayley) or pi/2 (polar).
+// Bounds in units of round-off u = 2^-52, about twice what is measured. The inverses are compared
+// relative to their condition, |dL^-1|, which grows as |omega|^2 towards a rotation by pi (Cayley)
+// or pi/2 (polar).
 #include <gtest/gtest.h>
 
 #include <cstdio>

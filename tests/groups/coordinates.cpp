@@ -1,4 +1,5 @@
-// from_coordinates refuses what is not in the group, and says what it was given and what it expected.
+// from_coordinates refuses what is not in the group, and says what it was given and what it
+// expected.
 #include <gtest/gtest.h>
 
 #include <cmath>

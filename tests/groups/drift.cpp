@@ -14,8 +14,8 @@ namespace {
 using namespace hamel;
 constexpr double pi = std::numbers::pi;
 
-/// Without normalise the defect grows as sqrt(steps) u, about 3e-13 after 1e6 steps. With it each step starts from
-/// a defect of a few u, and 1e-14 is 45 u.
+/// Without normalise the defect grows as sqrt(steps) u, about 3e-13 after 1e6 steps. With it each
+/// step starts from a defect of a few u, and 1e-14 is 45 u.
 template <class G>
 void expect_no_drift(const Vec<G::dim>& xi) {
   const auto step = Exp<G>::tau(xi);
@@ -47,7 +47,8 @@ TEST(Drift, NormaliseIsQuadratic) {
   EXPECT_LT(SO3::defect(SO3::normalise(g)), 2e-15);
 }
 
-/// theta after k steps of w is k w: many turns, both ways, for steps up to nearly a half turn. Round-off per step: u.
+/// theta after k steps of w is k w: many turns, both ways, for steps up to nearly a half turn.
+/// Round-off per step: u.
 TEST(Unwrapped, AngleCountsTurns) {
   for (const double w : {0.01, 0.3, 1.0, 2.0, 3.0, 3.14, -0.01, -0.7, -1.6, -3.0, -3.14159}) {
     const auto step = Exp<SO2>::tau(Vec<1>(w));

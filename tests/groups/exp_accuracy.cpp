@@ -1,6 +1,9 @@
-// exp, log, dR exp, its inverse and the Newton derivative against 80 digits, |omega| from 1e-12 to pi - 1e-6.
+// exp, log, dR exp, its inverse and the Newton derivative against 80 digits, |omega| from 1e-12 to
+// pi - 1e-6.
 //
-// Bounds are in units of round-off u = 2^-52, twice what is measured (0.4 to 1.9, printed by the test). log is compared for the rotation rounded to double, so its condition (1 on SO(3)) is included.
+// Bounds are in units of round-off u = 2^-52, twice what is measured (0.4 to 1.9, printed by the
+// test). log is compared for the rotation rounded to double, so its condition (1 on SO(3)) is
+// included.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Automatic differentiation goes through every group and retraction: the Jet of tau is dR tau, the Jet of a
-// composition is Ad. Bound 1e-14: the same formulas in double, differentiated exactly.
+// Automatic differentiation goes through every group and retraction: the Jet of tau is dR tau, the
+// Jet of a composition is Ad. Bound 1e-14: the same formulas in double, differentiated exactly.
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@ namespace {
 
 using namespace hamel;
 
-/// f = Order atan(theta/Order): 1 is polar, 2 is Cayley, 4 the modified Rodrigues map.
-/// phi(x) = atan(u)/u, u^2 = y = x/Order^2, by its series near 0 and by y-derivatives of atan elsewhere.
+/// f = Order atan(theta/Order): 1 is polar, 2 is Cayley, 4 the modified Rodrigues map. phi(x) =
+/// atan(u)/u, u^2 = y = x/Order^2, by its series near 0 and by y-derivatives of atan elsewhere.
 template <int Order>
 struct Arctangent : RadialSO3<Arctangent<Order>> {
   static std::string name() { return "arctangent" + std::to_string(Order); }
@@ -55,8 +55,9 @@ TYPED_TEST(RadialLaws, Hold) {
   }
 }
 
-/// The base class, given the angle function, reproduces closed forms that are derived independently.
-/// Measured 1e-15; the bound leaves room for the condition of dR^-1, which grows as |xi|^2.
+/// The base class, given the angle function, reproduces closed forms that are derived
+/// independently. Measured 1e-15; the bound leaves room for the condition of dR^-1, which grows as
+/// |xi|^2.
 template <class General, class Closed>
 void expect_same() {
   std::mt19937_64 random(5);
