@@ -112,26 +112,30 @@ function(hamel_consumer kind)
     COMMAND ${CMAKE_COMMAND} -DKIND=${kind} -DSOURCE=${CMAKE_CURRENT_SOURCE_DIR}/consumers/${kind}
             -DHAMEL_SOURCE=${PROJECT_SOURCE_DIR} -DHAMEL_BUILD=${PROJECT_BINARY_DIR}
             -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
-            -DCONFIG=$<CONFIG> "-DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}"
+            -DCONFIG=$<CONFIG> -DCCACHE=$<$<BOOL:${CCACHE_PROGRAM}>:${CCACHE_PROGRAM}>
             -P ${PROJECT_SOURCE_DIR}/tools/cmake/run_consumer.cmake)
   set_tests_properties(consumers/${kind} PROPERTIES LABELS consumer TIMEOUT 900)
 endfunction()
 
-# A page in headless Chromium: ctest page/<name>, after page/<name>/write, which makes it:
-#   hamel_page(run <file> <command ...>)
-# Without node there is no page to test. Without a browser (status 77) the test is skipped, but fails
-# where HAMEL_REPORT_PAGE is ON, as it is in CI.
-function(hamel_page name page)
-  if(NOT TARGET hamel_program OR NOT HAMEL_NODE OR NOT HAMEL_NPM OR HAMEL_REPORT_PAGE STREQUAL "OFF")
-    message(STATUS "hamel: test page/${name} is left out: it needs the program, node and npm")
-    return()
-  endif()
-  add_test(NAME page/${name}/write COMMAND ${ARGN})
-  add_test(NAME page/${name} COMMAND ${HAMEL_NODE} test/render.mjs ${page}
+# node <arguments>, in the build's copy of tools/report: ctest page/<name>. Status 77, no browser, is a
+# skipped test, but a failure where HAMEL_REPORT_PAGE is ON, as it is in CI.
+function(hamel_page_script name)
+  add_test(NAME page/${name} COMMAND ${HAMEL_NODE} ${ARGN}
            WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/tools/report)
-  set_tests_properties(page/${name}/write PROPERTIES LABELS page TIMEOUT 300 FIXTURES_SETUP ${name})
-  set_tests_properties(page/${name} PROPERTIES LABELS page TIMEOUT 180 FIXTURES_REQUIRED ${name})
+  set_tests_properties(page/${name} PROPERTIES LABELS page TIMEOUT 180)
   if(NOT HAMEL_REPORT_PAGE STREQUAL "ON")
     set_tests_properties(page/${name} PROPERTIES SKIP_RETURN_CODE 77)
   endif()
+endfunction()
+
+# hamel_page(<name> <file> <arguments of hamel>): ctest page/<name>/write runs the program, which writes
+# the file into build/tests/page; page/<name> looks at it in headless Chromium.
+function(hamel_page name file)
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/page)
+  file(MAKE_DIRECTORY ${folder})
+  add_test(NAME page/${name}/write COMMAND hamel_program ${ARGN} WORKING_DIRECTORY ${folder})
+  set_tests_properties(page/${name}/write PROPERTIES
+    LABELS page TIMEOUT 300 FIXTURES_SETUP page_${name})
+  hamel_page_script(${name} test/render.mjs ${folder}/${file})
+  set_tests_properties(page/${name} PROPERTIES FIXTURES_REQUIRED page_${name})
 endfunction()

@@ -11,7 +11,7 @@ if(KIND STREQUAL "installed")
   set(CMAKE_BUILD_TYPE ${CONFIG})
 else()
   file(REMOVE ${build}/CMakeCache.txt)
-  set(how -DHAMEL_SOURCE=${HAMEL_SOURCE} "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+  set(how -DHAMEL_SOURCE=${HAMEL_SOURCE} -DCMAKE_CXX_COMPILER_LAUNCHER=${CCACHE})
   set(CMAKE_BUILD_TYPE Debug)  # compiles fastest, and is a build type that nothing else here tries
 endif()
 execute_process(
