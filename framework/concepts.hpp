@@ -71,6 +71,9 @@ concept Retraction = requires(const Vec<R::Group::dim>& xi, const Vec<R::Group::
   { R::dtau_right_inverse(xi) } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
   { R::dtau_left(xi) } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
   { R::dtau_left_inverse(xi) } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
+  // (dR^-1)^T p and (dL^-1)^T p: what a step evaluates.
+  { R::dtau_right_inverse_transpose(xi, p) } -> std::convertible_to<Vec<R::Group::dim>>;
+  { R::dtau_left_inverse_transpose(xi, p) } -> std::convertible_to<Vec<R::Group::dim>>;
   // What Newton needs: the n x n matrix of d/dxi [ (dR tau_xi)^-T p ] with the covector p held fixed.
   { R::dtau_right_inverse_transpose_derivative(xi, p) }
       -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;

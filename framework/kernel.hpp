@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -85,7 +86,7 @@ class CompiledKernel final : public Kernel {
         element_(G::from_coordinates(setup.configuration)),
         previous_(element_),
         momentum_(setup.momentum),
-        history_(setup.composition.size()) {}
+        stages_(setup.composition.size()) {}
 
   Status advance(long count) override {
     for (long k = 0; k < count; ++k) {
@@ -116,23 +117,26 @@ class CompiledKernel final : public Kernel {
   const Element& element() const { return element_; }
 
  private:
-  // The last four solutions of one substep; the guess is their cubic (lower at the start) extrapolation.
-  struct History {
-    std::array<Unknown, 4> x;
+  // What one substep of the composition remembers of its last solves: the guess is the polynomial
+  // extrapolation of up to six solutions.
+  struct Stage {
+    std::array<Unknown, 6> x;
     int count = 0;
+    typename Newton::template Memory<Step> memory;
+
     void push(const Unknown& latest) {
-      x[3] = x[2];
-      x[2] = x[1];
-      x[1] = x[0];
+      for (size_t i = x.size() - 1; i > 0; --i) x[i] = x[i - 1];
       x[0] = latest;
-      if (count < 4) ++count;
+      if (count < 6) ++count;
     }
     Unknown extrapolate() const {
       switch (count) {
         case 1: return x[0];
         case 2: return 2 * x[0] - x[1];
         case 3: return 3 * (x[0] - x[1]) + x[2];
-        default: return 4 * (x[0] + x[2]) - 6 * x[1] - x[3];
+        case 4: return 4 * (x[0] + x[2]) - 6 * x[1] - x[3];
+        case 5: return 5 * (x[0] - x[3]) + 10 * (x[2] - x[1]) + x[4];
+        default: return 6 * (x[0] + x[4]) - 15 * (x[1] + x[3]) + 20 * x[2] - x[5];
       }
     }
   };
@@ -142,31 +146,31 @@ class CompiledKernel final : public Kernel {
   }
 
   SolveReport step() {
-    Element element = element_, previous = element_, increment = element_;
-    typename Step::Momentum momentum = momentum_;
-    double h = h_;
+    const bool composed = stages_.size() > 1;
+    if (composed) start_of_step_ = {element_, previous_, momentum_, last_h_};
     SolveReport total;
-    for (size_t stage = 0; stage < composition_.size(); ++stage) {
-      h = composition_[stage] * h_;
-      scheme_.begin(momentum, h);
-      History& history = history_[stage];
-      Unknown x = history.count == 0 ? scheme_.guess() : history.extrapolate();
-      const SolveReport report = solve(x);
+    for (size_t i = 0; i < stages_.size(); ++i) {
+      Stage& stage = stages_[i];
+      const double h = composition_[i] * h_;
+      scheme_.begin(momentum_, h);
+      Unknown x = stage.count == 0 ? scheme_.guess() : stage.extrapolate();
+      const SolveReport report = solve(stage, x);
       total.iterations += report.iterations;
       total.evaluations += report.evaluations;
       total.residual = std::max(total.residual, report.residual);
       total.reason = report.reason;
       if (report.ok() && !Tau::in_domain(scheme_.xi(x))) total.reason = Reason::outside_domain;
-      if (!total.ok()) return total;
-      history.push(x);
-      scheme_.finish(x, increment, momentum);
-      previous = element;
-      element = G::normalise(G::compose(element, increment));
+      if (!total.ok()) {
+        if (composed) restore(start_of_step_);
+        return total;
+      }
+      stage.push(x);
+      Element increment;
+      scheme_.finish(x, increment, momentum_);
+      previous_ = element_;
+      element_ = G::normalise(G::compose(element_, increment));
+      last_h_ = h;
     }
-    element_ = element;
-    previous_ = previous;
-    momentum_ = momentum;
-    last_h_ = h;
     last_ = total;
     ++steps_;
     stats_.iterations += total.iterations;
@@ -176,17 +180,32 @@ class CompiledKernel final : public Kernel {
     return total;
   }
 
-  SolveReport solve(Unknown& x) {
-    if (solver_ == nullptr) return Newton::solve(scheme_, x, tolerance_);
+  SolveReport solve(Stage& stage, Unknown& x) {
+    if (solver_ == nullptr) return Newton::solve(scheme_, x, tolerance_, stage.memory);
     return solver_->solve(ErasedEquation(scheme_, static_cast<int>(x.size())),
                           {x.data(), static_cast<size_t>(x.size())}, tolerance_);
+  }
+
+  // A state between steps; a composed step that fails half-way goes back to it.
+  struct State {
+    Element element, previous;
+    typename Step::Momentum momentum;
+    double last_h = 1;
+  };
+  void restore(const State& state) {
+    element_ = state.element;
+    previous_ = state.previous;
+    momentum_ = state.momentum;
+    last_h_ = state.last_h;
   }
 
   class ErasedEquation final : public Equation {
    public:
     ErasedEquation(const Step& step, int size) : step_(step), size_(size) {}
     int size() const override { return size_; }
-    double scale() const override { return step_.scale() > 0 ? step_.scale() : 1.0; }
+    double scale() const override {
+      return step_.scale_squared() > 0 ? std::sqrt(step_.scale_squared()) : 1.0;
+    }
     void evaluate(std::span<const double> x, std::span<double> f,
                   std::span<double> jacobian) const override {
       const Unknown point = Eigen::Map<const Unknown>(x.data(), size_);
@@ -213,7 +232,8 @@ class CompiledKernel final : public Kernel {
   std::shared_ptr<Solver> solver_;
   Element element_, previous_;
   typename Step::Momentum momentum_;
-  std::vector<History> history_;
+  State start_of_step_;
+  std::vector<Stage> stages_;
   SolverStats stats_;
   SolveReport last_;
   long steps_ = 0;

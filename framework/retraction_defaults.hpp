@@ -85,6 +85,21 @@ struct RetractionDefaults {
       return Derived::dtau_right_inverse(xi) * G::Ad(Derived::tau(xi));
     }
   }
+  /// (dR_xi^-1)^T p; a map with a cheaper form than its matrix hides this.
+  template <class T>
+  static VecT<T, dim> dtau_right_inverse_transpose(const VecT<T, dim>& xi,
+                                                   const VecT<T, dim>& p) {
+    return Derived::dtau_right_inverse(xi).transpose() * p;
+  }
+  /// (dL_xi^-1)^T p = (dR_{-xi}^-1)^T p (symmetric) or Ad_{tau(xi)}^T (dR_xi^-1)^T p.
+  template <class T>
+  static VecT<T, dim> dtau_left_inverse_transpose(const VecT<T, dim>& xi, const VecT<T, dim>& p) {
+    if constexpr (Derived::symmetric) {
+      return Derived::dtau_right_inverse_transpose(VecT<T, dim>(-xi), p);
+    } else {
+      return G::Ad_transpose(Derived::tau(xi), Derived::dtau_right_inverse_transpose(xi, p));
+    }
+  }
   template <class T>
   static bool in_domain(const VecT<T, dim>& xi) {
     return all_finite(xi);

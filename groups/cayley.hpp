@@ -89,6 +89,14 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
         xz + h[1], yz - h[0], 1.0 + h[2] * h[2];
     return m;
   }
+  /// p + omega x p/2 + omega (omega.p)/4.
+  template <class T>
+  static VecT<T, 3> dtau_right_inverse_transpose(const VecT<T, 3>& xi, const VecT<T, 3>& p) {
+    const VecT<T, 3> h = 0.5 * xi;
+    const T d = h.dot(p);
+    return {p[0] + h[1] * p[2] - h[2] * p[1] + d * h[0], p[1] + h[2] * p[0] - h[0] * p[2] + d * h[1],
+            p[2] + h[0] * p[1] - h[1] * p[0] + d * h[2]};
+  }
   /// (omega.p I + omega p^T)/4 - p^/2.
   template <class T>
   static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,
@@ -134,6 +142,12 @@ struct Cayley<SE2> : CayleyDefaults<SE2> {
     MatT<T, 3, 3> m;
     m << 1.0 + w * w, zero, zero, w * v1 - v2, T(1.0), w, v1 + w * v2, -w, T(1.0);
     return m;
+  }
+  template <class T>
+  static VecT<T, 3> dtau_right_inverse_transpose(const VecT<T, 3>& xi, const VecT<T, 3>& p) {
+    const T w = 0.5 * xi[0], v1 = 0.5 * xi[1], v2 = 0.5 * xi[2];
+    const T q1 = p[1] - w * p[2], q2 = p[2] + w * p[1];
+    return {p[0] + w * w * p[0] + v1 * q2 - v2 * q1, q1, q2};
   }
   template <class T>
   static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,

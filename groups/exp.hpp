@@ -141,6 +141,15 @@ struct Exp<SO3> : ExpDefaults<SO3> {
   static MatT<T, 3, 3> dtau_right_inverse(const VecT<T, 3>& xi) {
     return rotation_polynomial(xi, T(-0.5), cotc(T(xi.dot(xi))));
   }
+  /// p + omega x p/2 + cotc omega x (omega x p).
+  template <class T>
+  static VecT<T, 3> dtau_right_inverse_transpose(const VecT<T, 3>& xi, const VecT<T, 3>& p) {
+    const T x = xi.dot(xi), c = cotc(x), a = c * xi.dot(p), b = 1.0 - c * x;
+    const VecT<T, 3> h = 0.5 * xi;
+    return {b * p[0] + h[1] * p[2] - h[2] * p[1] + a * xi[0],
+            b * p[1] + h[2] * p[0] - h[0] * p[2] + a * xi[1],
+            b * p[2] + h[0] * p[1] - h[1] * p[0] + a * xi[2]};
+  }
   /// N(xi, p) of the file's heading.
   template <class T>
   static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,
@@ -209,6 +218,12 @@ struct Exp<SE2> : ExpDefaults<SE2> {
     m << T(1.0), zero, zero, b * xi[1] - 0.5 * xi[2], gamma, half, 0.5 * xi[1] + b * xi[2], -half,
         gamma;
     return m;
+  }
+  template <class T>
+  static VecT<T, 3> dtau_right_inverse_transpose(const VecT<T, 3>& xi, const VecT<T, 3>& p) {
+    const T c = cotc(T(xi[0] * xi[0])), b = xi[0] * c, gamma = 1.0 - xi[0] * b, half = 0.5 * xi[0];
+    return {p[0] + xi[1] * (b * p[1] + 0.5 * p[2]) + xi[2] * (b * p[2] - 0.5 * p[1]),
+            gamma * p[1] - half * p[2], half * p[1] + gamma * p[2]};
   }
   template <class T>
   static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,

@@ -1,9 +1,12 @@
-// newton: Newton's method with the Jacobian kept while it contracts well.
+// newton: Newton's method with the Jacobian kept while it contracts well, also from step to step.
 //
 //   x <- x - J^-1 F(x),   accepted when |F(x)| <= tolerance * scale, F evaluated at the x returned.
-// A Jacobian serves again while each step cuts the residual by ten (a chord step after a Newton step
-// has error O(e^3)), else it is evaluated anew; a fresh step that does not reduce |F| is halved, up to
-// ten times. When |F| stops falling it is accepted at the round-off floor (64 eps), else stagnated.
+// Along a trajectory J changes by O(h) a step and the extrapolated guess is good, so that one correction
+// with the last J usually does. J is evaluated anew when a correction does not cut |F| by ten, and for the
+// next step when more than one correction was needed; a fresh correction that does not reduce |F| is
+// halved, up to ten times. At least one correction is made: a guess that already meets the tolerance
+// would leave its extrapolation error, always of one sign, in every step. When |F| stops falling it is
+// accepted at the round-off floor (64 eps), else it is stagnated.
 // Compiled into the kernels: fixed sizes, no heap, no virtual call.
 // Source: Kelley, Solving Nonlinear Equations with Newton's Method, SIAM 2003, ch. 1-2.
 #pragma once
@@ -32,81 +35,102 @@ class SmallLu {
   Eigen::PartialPivLU<Matrix> lu_;
 };
 
+/// J^-1: in closed form up to 4 x 4, by LU beyond.
+template <class Jacobian>
+class Inverse {
+ public:
+  static constexpr int size = Jacobian::RowsAtCompileTime;
+  static constexpr bool closed_form = size != Eigen::Dynamic && size <= 4;
+  static constexpr bool small = Jacobian::MaxRowsAtCompileTime <= SmallLu::max_size;
+
+  void compute(const Jacobian& jacobian) {
+    if constexpr (closed_form) factors_ = jacobian.inverse();
+    else factors_.compute(jacobian);
+  }
+  template <class Vector>
+  Vector solve(const Vector& f) const {
+    if constexpr (closed_form) return factors_ * f;
+    else return factors_.solve(f);
+  }
+
+ private:
+  using Lu = std::conditional_t<small, SmallLu, Eigen::PartialPivLU<Jacobian>>;
+  std::conditional_t<closed_form, Jacobian, Lu> factors_;
+};
+
 struct Newton {
   static constexpr int max_iterations = 50;
   static std::string name() { return "newton"; }
 
-  /// step: scale(), evaluate(x, f, jacobian or nullptr). x: guess in, best point out.
+  /// The factors of the last Jacobian, kept from one step of a run to the next.
   template <class Step>
-  static SolveReport solve(const Step& step, typename Step::Unknown& x, double tolerance) {
+  struct Memory {
+    Inverse<typename Step::Jacobian> factors;
+    bool valid = false;
+  };
+
+  /// step: scale_squared(), evaluate(x, f, jacobian or nullptr). x: guess in, best point out.
+  template <class Step>
+  static SolveReport solve(const Step& step, typename Step::Unknown& x, double tolerance,
+                           Memory<Step>& memory) {
     using Unknown = typename Step::Unknown;
-    using Jacobian = typename Step::Jacobian;
     constexpr double floor = 64 * std::numeric_limits<double>::epsilon();
-    const double scale = step.scale() > 0 ? step.scale() : 1.0;
+    const double given = step.scale_squared(), scale = given > 0 ? given : 1.0;
+    const double accepted = tolerance * tolerance * scale, round_off = floor * floor * scale;
 
     Unknown f = x, trial = x, trial_f = x;
-    Jacobian jacobian;
     SolveReport report;
-    while (true) {
+    double size = 0;  // |F|^2
+    bool fresh = false;
+    const auto finish = [&](Reason reason) {
+      memory.valid = memory.valid && report.iterations <= 1;
+      report.reason = reason;
+      report.residual = std::sqrt(size / scale);
+      return report;
+    };
+    const auto factor = [&] {
+      typename Step::Jacobian jacobian;
       step.evaluate(x, f, &jacobian);
       ++report.evaluations;
-      report.residual = f.norm() / scale;
-      if (!std::isfinite(report.residual)) return with(report, Reason::not_finite);
-      if (report.residual <= tolerance) return report;
-      const Inverse<Jacobian> solver(jacobian);
-      double contraction = 0;
-      for (bool fresh = true; fresh || contraction <= 0.1; fresh = false) {
-        if (report.iterations == max_iterations) return with(report, Reason::max_iterations);
-        ++report.iterations;
-        const Unknown full_step = solver.apply(f);
-        if (!full_step.allFinite()) return with(report, Reason::singular);
-        double residual = 0, length = 1;
-        do {
-          trial = x - length * full_step;
-          step.evaluate(trial, trial_f, nullptr);
-          ++report.evaluations;
-          residual = trial_f.norm() / scale;
-          length /= 2;
-        } while (fresh && !(residual < report.residual) && length > 1.0 / 1024 &&
-                 report.residual > floor);
-        if (!(residual < report.residual)) {
-          if (!fresh) break;
-          return with(report, report.residual <= floor ? Reason::round_off : Reason::stagnated);
-        }
-        contraction = residual / report.residual;
-        x = trial;
-        f = trial_f;
-        report.residual = residual;
-        if (report.residual <= tolerance) return report;
+      memory.factors.compute(jacobian);
+      memory.valid = fresh = true;
+    };
+
+    if (memory.valid) {
+      step.evaluate(x, f, nullptr);
+      ++report.evaluations;
+    } else {
+      factor();
+    }
+    size = f.squaredNorm();
+    while (report.iterations < max_iterations) {
+      if (!std::isfinite(size)) return finish(Reason::not_finite);
+      if (!memory.valid) factor();
+      ++report.iterations;
+      const Unknown correction = memory.factors.solve(f);
+      double length = 1, trial_size = 0;
+      do {
+        trial = x - length * correction;
+        step.evaluate(trial, trial_f, nullptr);
+        ++report.evaluations;
+        trial_size = trial_f.squaredNorm();
+        length /= 2;
+      } while (fresh && !(trial_size < size) && size > round_off && length > 1e-3);
+      if (!(trial_size < size)) {
+        if (size <= round_off) return finish(size <= accepted ? Reason::converged : Reason::round_off);
+        if (fresh) return finish(correction.allFinite() ? Reason::stagnated : Reason::singular);
+        memory.valid = false;
+        continue;
       }
+      memory.valid = trial_size <= 0.01 * size;  // contracted by ten
+      fresh = false;
+      x = trial;
+      f = trial_f;
+      size = trial_size;
+      if (size <= accepted) return finish(Reason::converged);
     }
+    return finish(Reason::max_iterations);
   }
-
- private:
-  static SolveReport with(SolveReport report, Reason reason) {
-    report.reason = reason;
-    return report;
-  }
-
-  // Closed-form inverse up to 4 x 4, LU beyond.
-  template <class Jacobian>
-  struct Inverse {
-    static constexpr int size = Jacobian::RowsAtCompileTime;
-    static constexpr int max_size = Jacobian::MaxRowsAtCompileTime;
-    static constexpr bool closed_form = size != Eigen::Dynamic && size <= 4;
-    using Lu = std::conditional_t<max_size <= SmallLu::max_size, SmallLu, Eigen::PartialPivLU<Jacobian>>;
-
-    explicit Inverse(const Jacobian& j) {
-      if constexpr (closed_form) factors = j.inverse();
-      else factors.compute(j);
-    }
-    template <class Vector>
-    Vector apply(const Vector& f) const {
-      if constexpr (closed_form) return factors * f;
-      else return factors.solve(f);
-    }
-    std::conditional_t<closed_form, Jacobian, Lu> factors;
-  };
 };
 
 }  // namespace hamel

@@ -53,7 +53,7 @@ struct Balance {
       x.tail(directions()) = mu_;
       return x;
     }
-    double scale() const { return 2 * mu_.norm(); }
+    double scale_squared() const { return 4 * mu_.squaredNorm(); }
     Vec<n> xi(const Unknown& x) const {
       return h_ * problem_.velocity(x.head(directions()));
     }

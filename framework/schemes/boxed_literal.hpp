@@ -48,7 +48,7 @@ struct BoxedLiteral {
       full_mu_ = embedding_.lazyProduct(mu);
     }
     Unknown guess() const { return mu_; }
-    double scale() const { return 2 * mu_.norm(); }
+    double scale_squared() const { return 4 * mu_.squaredNorm(); }
     Vec<n> xi(const Unknown& y) const { return problem_.velocity(y); }
 
     void evaluate(const Unknown& y, Unknown& f, Jacobian* j) const {

@@ -50,18 +50,18 @@ struct Lift {
       h_ = h;
     }
     Unknown guess() const { return mu_; }
-    double scale() const { return 2 * mu_.norm(); }  // |mu_bar| + |I xi/h| in the Hamel frame
+    /// (|mu_bar| + |I xi/h|)^2, both of one length in the Hamel frame.
+    double scale_squared() const { return 4 * mu_.squaredNorm(); }
     Vec<n> xi(const Unknown& y) const { return h_ * problem_.velocity(y); }
 
     /// F(y) = E^T mu0 - mu_bar; dF/dy when j is given.
     void evaluate(const Unknown& y, Unknown& f, Jacobian* j) const {
       const Vec<n> p = problem_.momentum(y), step = xi(y);
       if (one_sided_) {
-        const Mat<n, n> inverse = Tau::dtau_right_inverse(step);
-        f = problem_.reduce(inverse.transpose() * p) - mu_;
+        f = problem_.reduce(Tau::dtau_right_inverse_transpose(step, p)) - mu_;
         if (j != nullptr) {
           *j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
-               problem_.reduce_momentum_transposed(inverse);
+               problem_.reduce_momentum_transposed(Tau::dtau_right_inverse(step));
         }
         return;
       }
@@ -84,8 +84,7 @@ struct Lift {
       const Vec<n> p = problem_.momentum(y), step = xi(y);
       if (one_sided_) {
         increment = Tau::tau(step);
-        const Vec<n> m = Tau::dtau_right_inverse(step).transpose() * p;
-        mu = problem_.reduce(G::Ad_transpose(increment, m));
+        mu = problem_.reduce(Tau::dtau_left_inverse_transpose(step, p));
         return;
       }
       const At<Tau> z0(-s_ * step), z1((1 - s_) * step);

@@ -10,7 +10,7 @@
 namespace hamel::benchmarks {
 
 struct Pair {
-  double a, b;
+  double a = 0, b = 0;
 };
 
 /// Two equations with their Jacobian [[j11, j12], [j21, j22]].
@@ -48,7 +48,7 @@ template <class F>
 bool newton(const F& equations, double scale, double tolerance, Pair& x) {
   for (int fresh = 0; fresh < 20; ++fresh) {
     const Equations e = equations(x, true);
-    double residual = std::hypot(e.f1, e.f2) / scale;
+    double residual = std::sqrt(e.f1 * e.f1 + e.f2 * e.f2) / scale;
     if (fresh > 0 && residual <= tolerance) return true;
     if (residual <= 2.3e-16) return true;
     const double det = 1 / (e.j11 * e.j22 - e.j12 * e.j21);
@@ -112,7 +112,7 @@ struct HandSuslov {
       return e;
     };
     Pair w = guess.next();
-    if (!newton(equations, 2 * std::hypot(mu1, mu2), 1e-13, w)) return false;
+    if (!newton(equations, 2 * std::sqrt(mu1 * mu1 + mu2 * mu2), 1e-13, w)) return false;
     guess.push(w);
     const double p1 = i11 * w.a + i12 * w.b, p2 = i12 * w.a + i22 * w.b, p3 = i13 * w.a + i23 * w.b;
     const double x = h * w.a, y = h * w.b, d = x * p1 + y * p2;
@@ -144,7 +144,7 @@ struct HandSuslov {
       return e;
     };
     Pair w = guess.next();
-    if (!newton(equations, 2 * std::hypot(mu1, mu2), 1e-13, w)) return false;
+    if (!newton(equations, 2 * std::sqrt(mu1 * mu1 + mu2 * mu2), 1e-13, w)) return false;
     guess.push(w);
     const double p1 = i11 * w.a + i12 * w.b, p2 = i12 * w.a + i22 * w.b, p3 = i13 * w.a + i23 * w.b;
     const double x = h * w.a, y = h * w.b, t = x * x + y * y, d = x * p1 + y * p2;
@@ -205,7 +205,7 @@ struct HandSleigh {
       return e;
     };
     Pair u = guess.next();
-    if (!newton(equations, 2 * std::hypot(mu1, mu2), 1e-13, u)) return false;
+    if (!newton(equations, 2 * std::sqrt(mu1 * mu1 + mu2 * mu2), 1e-13, u)) return false;
     guess.push(u);
     const Pair after = rows(u, -1);
     mu1 = after.a;
@@ -241,7 +241,7 @@ struct HandSleigh {
       return e;
     };
     Pair u = guess.next();
-    if (!newton(equations, 2 * std::hypot(mu1, mu2), 1e-13, u)) return false;
+    if (!newton(equations, 2 * std::sqrt(mu1 * mu1 + mu2 * mu2), 1e-13, u)) return false;
     guess.push(u);
     const Pair after = rows(u, -1);
     mu1 = after.a;
