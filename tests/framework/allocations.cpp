@@ -1,0 +1,107 @@
+// A step takes no memory from the heap: malloc and its family are counted while the loop runs, for
+// every scheme, retraction and composition, m fixed and m chosen at run time.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include <hamel/framework/composition.hpp>
+#include <hamel/groups/product.hpp>
+#include <hamel/groups/se2.hpp>
+#include <hamel/groups/se3.hpp>
+#include <hamel/groups/so2.hpp>
+#include <hamel/groups/so3.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "bodies.hpp"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#define HAMEL_COUNTS_MALLOC 1
+namespace {
+long allocations = 0;
+}
+extern "C" {
+void* __libc_malloc(size_t);
+void* __libc_calloc(size_t, size_t);
+void* __libc_realloc(void*, size_t);
+void* __libc_memalign(size_t, size_t);
+// operator new and Eigen's allocator come through these too.
+void* malloc(size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+void* calloc(size_t count, size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* p, size_t size) {
+  ++allocations;
+  return __libc_realloc(p, size);
+}
+void* aligned_alloc(size_t alignment, size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+}
+#else
+namespace {
+long allocations = 0;
+}
+#endif
+
+namespace {
+
+using namespace hamel;
+
+class Allocations : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifndef HAMEL_COUNTS_MALLOC
+    GTEST_SKIP() << "malloc belongs to the sanitizer here";
+#endif
+  }
+};
+
+TEST_F(Allocations, AreCounted) {
+  const long before = allocations;
+  auto* numbers = new std::vector<double>(100);
+  Eigen::VectorXd vector(100);
+  vector.setZero();
+  EXPECT_GE(allocations - before, 3) << numbers->size() + static_cast<size_t>(vector.size());
+  delete numbers;
+}
+
+long counted(Integration& run, long steps, Status& status) {
+  const long before = allocations;
+  status = run.step(steps);
+  return allocations - before;
+}
+
+template <class S>
+void expect_none(const S& system, const std::string& compose = "none") {
+  for (const std::string& scheme : registry().schemes()) {
+    for (const std::string& retraction : registry().retractions(S::Group::name())) {
+      for (const double s : {0.0, 0.3}) {
+        // boxed_literal takes O(1) steps whatever h is: a small start keeps it inside every domain.
+        Start start = system.start();
+        for (double& v : start.velocity) v *= 0.2;
+        Integration run = simulate(system).scheme(scheme).s(s).retraction(retraction).start(start)
+                              .compose(compose).step(0.02).build();
+        Status status;
+        EXPECT_EQ(counted(run, 20, status), 0)
+            << S::Group::name() << " " << scheme << " " << retraction << " s = " << s;
+        EXPECT_TRUE(status.ok) << scheme << " " << retraction << ": " << status.reason;
+      }
+    }
+  }
+}
+
+TEST_F(Allocations, NoneOnSO3) { expect_none(test::Body<SO3, 1>{}); }        // m = 2: fixed and run time
+TEST_F(Allocations, NoneOnSO3Free) { expect_none(test::FreeBody<SO3>{}); }   // m = 3: run time
+TEST_F(Allocations, NoneOnSE2) { expect_none(test::Body<SE2, 1>{}); }
+TEST_F(Allocations, NoneOnSE3) { expect_none(test::Body<SE3, 2>{}); }
+TEST_F(Allocations, NoneOnAProduct) { expect_none(test::Body<Product<SE2, SO2>, 2>{}); }
+TEST_F(Allocations, NoneWhenComposed) {
+  for (const Composition& c : compositions()) expect_none(test::Body<SE2, 1>{}, c.name);
+}
+
+}  // namespace

@@ -1,0 +1,93 @@
+// Every registered system, and the library's by type, obey the laws of framework/check/system_laws.hpp.
+#include <gtest/gtest.h>
+
+#include <hamel/framework/check/system_laws.hpp>
+#include <hamel/groups/exp.hpp>
+#include <hamel/groups/product.hpp>
+#include <hamel/systems/chaplygin_sleigh.hpp>
+#include <hamel/systems/rolling_disk.hpp>
+#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/suslov.hpp>
+
+namespace {
+
+using namespace hamel;
+
+void expect(const LawReport& report, const std::string& what) {
+  EXPECT_GE(report.size(), 4u) << what;
+  for (const LawResult& law : report) EXPECT_TRUE(law.passed()) << what << ": " << law;
+}
+int failures(const LawReport& report) {
+  int out = 0;
+  for (const LawResult& law : report) out += law.passed() ? 0 : 1;
+  return out;
+}
+
+TEST(SystemLaws, HoldForEveryRegisteredSystem) {
+  for (const std::string& name : registry().systems()) expect(check_system(registry(), name), name);
+}
+
+Suslov full_suslov() {
+  Suslov body;
+  body.moments = {2, .3, .5, 3, .4, 4};
+  return body;
+}
+
+TEST(SystemLaws, HoldByType) {
+  expect(check_system<Suslov, Exp<SO3>>(Suslov{}), "suslov");
+  expect(check_system<Suslov, Exp<SO3>>(full_suslov()), "suslov, full inertia");
+  Suslov tilted = full_suslov();
+  tilted.normal = {0.3, -0.5, 0.8};
+  expect(check_system<Suslov, Exp<SO3>>(tilted), "suslov, tilted axis");
+  expect(check_system<ChaplyginSleigh, Exp<SE2>>(ChaplyginSleigh{}), "sleigh");
+  expect(check_system<RollingDisk, Exp<RollingDisk::Group>>(RollingDisk{}), "disk");
+}
+
+/// Each plant is a system with one mistake in it.
+struct WrongRate : Suslov {  // Omega of the exact motion runs 0.1 % too fast
+  auto exact(const SO3::Element<double>& r0, const Vec<3>& omega0) const {
+    return [flow = Suslov::exact(r0, omega0)](double t) mutable { return flow(1.001 * t); };
+  }
+};
+struct WrongPath : Suslov {  // spatial for body: R' = Omega^ R
+  auto exact(const SO3::Element<double>& r0, const Vec<3>& omega0) const {
+    return [flow = Suslov::exact(r0, omega0)](double t) mutable {
+      const auto [r, omega] = flow(t);
+      return std::pair{SO3::inverse(r), omega};
+    };
+  }
+};
+struct WrongInertia : Suslov {  // the exact motion belongs to another body
+  Mat<3, 3> inertia() const { return 1.5 * Suslov::inertia() + 0.5 * Mat<3, 3>::Identity(); }
+};
+struct WrongInvariant : Suslov {
+  void invariants(auto& add) const {
+    add("omega 1", [](const auto&, const Vec<3>& w) { return w[0]; });
+  }
+};
+struct Inadmissible : Suslov {
+  Start start() const { return {.configuration = {}, .velocity = {1, 0.5, 0.1}, .momentum = {}}; }
+};
+struct Asymmetric : Suslov {
+  Mat<3, 3> inertia() const {
+    Mat<3, 3> out = Suslov::inertia();
+    out(0, 1) += 1e-6;
+    return out;
+  }
+};
+template <class S>
+S full() {
+  S body;
+  body.moments = {2, .3, .5, 3, .4, 4};
+  return body;
+}
+TEST(SystemLaws, SeePlantedMistakes) {
+  EXPECT_GE(failures(check_system<WrongRate, Exp<SO3>>(full<WrongRate>())), 4);
+  EXPECT_GE(failures(check_system<WrongPath, Exp<SO3>>(full<WrongPath>())), 2);
+  EXPECT_GE(failures(check_system<WrongInertia, Exp<SO3>>(full<WrongInertia>())), 2);
+  EXPECT_GE(failures(check_system<WrongInvariant, Exp<SO3>>(full<WrongInvariant>())), 2);
+  EXPECT_GE(failures(check_system<Inadmissible, Exp<SO3>>(full<Inadmissible>())), 1);
+  EXPECT_GE(failures(check_system<Asymmetric, Exp<SO3>>(full<Asymmetric>())), 1);
+}
+
+}  // namespace
