@@ -1,6 +1,6 @@
 # Configures, builds and runs tests/consumers/KIND in build/tests/consumers/KIND.
 #   installed      against a fresh `cmake --install` of HAMEL_BUILD into build/consumer-prefix
-#   subdirectory   with add_subdirectory of HAMEL_SOURCE, which compiles the layers once more
+#   subdirectory   with add_subdirectory of HAMEL_SOURCE
 set(build ${HAMEL_BUILD}/tests/consumers/${KIND})
 if(KIND STREQUAL "installed")
   set(prefix ${HAMEL_BUILD}/consumer-prefix)
