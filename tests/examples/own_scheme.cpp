@@ -37,7 +37,7 @@ struct EnergyPreserving {
       h_ = h;
     }
     Unknown guess() const { return mu_; }
-    double scale() const { return 2 * mu_.norm(); }
+    double scale_squared() const { return 4 * mu_.squaredNorm(); }
     Velocity xi(const Unknown& y) const { return h_ * problem_.velocity(y); }
 
     void evaluate(const Unknown& y, Unknown& f, Jacobian* j) const {
