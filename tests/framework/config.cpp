@@ -1,0 +1,126 @@
+// Config reads back what it prints, exactly; a file that does not fit is refused with line and column.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include <hamel/systems/simulate.hpp>
+
+namespace {
+
+using namespace hamel;
+using testing::HasSubstr;
+
+void expect_equal(const Config& a, const Config& b) {
+  EXPECT_EQ(a.system, b.system);
+  EXPECT_EQ(a.parameters, b.parameters);
+  EXPECT_EQ(a.start.configuration, b.start.configuration);
+  EXPECT_EQ(a.start.velocity, b.start.velocity);
+  EXPECT_EQ(a.start.momentum, b.start.momentum);
+  EXPECT_EQ(a.scheme, b.scheme);
+  EXPECT_EQ(a.s, b.s);
+  EXPECT_EQ(a.retraction, b.retraction);
+  EXPECT_EQ(a.solver, b.solver);
+  EXPECT_EQ(a.tolerance, b.tolerance);
+  EXPECT_EQ(a.compose, b.compose);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.until, b.until);
+  EXPECT_EQ(a.every, b.every);
+}
+
+Config unusual() {
+  Config c;
+  c.system = "suslov";
+  c.parameters = {{"inertia", {0.1, 1.0 / 3, 1e22}}, {"normal", {-0.0, 5e-324, 1.7976931348623157e308}}};
+  c.start.configuration = {1, 0, 0, 0, std::cos(0.3), -std::sin(0.3), 0, std::sin(0.3), std::cos(0.3)};
+  c.start.momentum = {1e-17, -2, 3};
+  c.scheme = "balance";
+  c.s = 0.1 + 0.2;
+  c.retraction = "polar";
+  c.tolerance = 3e-15;
+  c.compose = "suzuki4";
+  c.step = -1.0 / 7;
+  c.until = -1e5;
+  c.every = 123456789012;
+  return c;
+}
+
+TEST(Config, RoundTripIsExact) {
+  expect_equal(Config::from_toml(Config{}.to_toml()), Config{});
+  expect_equal(Config::from_toml(unusual().to_toml()), unusual());
+  // Once more through text: the same text.
+  EXPECT_EQ(Config::from_toml(unusual().to_toml()).to_toml(), unusual().to_toml());
+}
+
+/// Quotes and backslashes in a name must not break the file.
+TEST(Config, RoundTripOfOddNames) {
+  Config c;
+  c.system = R"(a "quoted" \ name)";
+  c.parameters["odd key"] = {1};
+  expect_equal(Config::from_toml(c.to_toml()), c);
+}
+
+TEST(Config, OfAResultRunsAgain) {
+  const Result first = simulate("chaplygin_sleigh").set("offset", 0.3).step(0.05).until(3).run();
+  Simulation again = simulate("");
+  const Result second = again.config(Config::from_toml(first.config.to_toml())).run();
+  // The start is projected once more: a few eps, which 60 steps do not amplify.
+  ASSERT_EQ(first.last.coordinates.size(), second.last.coordinates.size());
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(first.last.coordinates[i], second.last.coordinates[i], 1e-13);
+    EXPECT_NEAR(first.last.velocity[i], second.last.velocity[i], 1e-13);
+  }
+}
+
+std::string message(const std::string& toml) {
+  try {
+    (void)Config::from_toml(toml, "run.toml");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Config, MistakesNameLineAndColumn) {
+  EXPECT_THAT(message("system = \"suslov\"\nstep = = 3\n"), HasSubstr("run.toml:2:8"));
+  EXPECT_THAT(message("system = \"suslov\"\nstep = \"fast\"\n"), HasSubstr("run.toml:2:8: step: expected a number"));
+  EXPECT_THAT(message("every = 1.5\n"), HasSubstr("run.toml:1:9: every: expected a whole number"));
+  EXPECT_THAT(message("velocity = [1, \"x\", 3]\n"), HasSubstr("run.toml:1:16: velocity"));
+  EXPECT_THAT(message("scheme = 3\n"), HasSubstr("run.toml:1:10: scheme: expected a string"));
+  EXPECT_THAT(message("set = 3\n"), HasSubstr("run.toml:1:7: set: expected a table"));
+  EXPECT_THAT(message("[set]\ninertia = [1, [2], 3]\n"), HasSubstr("run.toml:2:15: set.inertia"));
+  EXPECT_THAT(message("\n\nretracton = \"exp\"\n"),
+              testing::AllOf(HasSubstr("run.toml:3:"), HasSubstr("did you mean 'retraction'?")));
+}
+
+TEST(Config, AllMistakesOfAFileAtOnce) {
+  const std::string all = message("stpe = 0.1\nscheme = 3\nuntil = \"late\"\n[set]\nmass = \"heavy\"\n");
+  EXPECT_THAT(all, HasSubstr("did you mean 'step'?"));
+  EXPECT_THAT(all, HasSubstr("scheme: expected a string"));
+  EXPECT_THAT(all, HasSubstr("until: expected a number"));
+  EXPECT_THAT(all, HasSubstr("set.mass"));
+}
+
+TEST(Config, AFileThatIsNotThere) {
+  EXPECT_THROW((void)read_config("/no/such/file.toml"), ConfigError);
+  EXPECT_THROW((void)read_config("/"), ConfigError);
+}
+
+TEST(Config, WholeSteps) {
+  const auto steps = [](double h, double t) {
+    Config c;
+    c.step = h;
+    c.until = t;
+    return c.steps();
+  };
+  EXPECT_EQ(steps(0.01, 1800), 180000);
+  EXPECT_EQ(steps(0.1, 0.3), 3);
+  EXPECT_EQ(steps(0.1, 0.35), 3);
+  EXPECT_EQ(steps(-0.1, -0.3), 3);
+  EXPECT_EQ(steps(0.1, 0), 0);
+  EXPECT_EQ(steps(1.0 / 3, 1), 3);
+}
+
+}  // namespace
