@@ -1,0 +1,161 @@
+// hamel list, hamel describe, --help and --version.
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace hamel::test;
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+class List : public CommandLine {};
+class Describe : public CommandLine {};
+class Help : public CommandLine {};
+
+const std::vector<std::string> kinds = {"groups", "retractions", "schemes", "solvers", "systems"};
+
+TEST_F(List, EveryKind) {
+  for (const std::string& kind : kinds) {
+    const Outcome text = run({"list", kind});
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_EQ(text.err, "");
+    EXPECT_THAT(text.out, HasSubstr(kind));
+    const Outcome json = run({"list", kind, "--json"});
+    EXPECT_EQ(json.status, 0);
+    const Json table = Json::parse(json.out);
+    ASSERT_TRUE(table.is_array()) << kind;
+    EXPECT_GE(table.size(), 1u);
+    for (const Json& row : table) EXPECT_THAT(text.out, HasSubstr(row.at("name").get<std::string>()));
+  }
+}
+
+TEST_F(List, AllAtOnce) {
+  const Json all = Json::parse(run({"list", "--json"}).out);
+  for (const std::string& kind : kinds) {
+    EXPECT_EQ(all.at(kind), Json::parse(run({"list", kind, "--json"}).out)) << kind;
+  }
+  const Outcome text = run({"list"});
+  for (const std::string& kind : kinds) EXPECT_THAT(text.out, HasSubstr(kind));
+}
+
+/// The names that contract.md promises.
+TEST_F(List, HasThePromisedNames) {
+  const Json all = Json::parse(run({"list", "--json"}).out);
+  const auto expect = [&](const char* kind, const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      EXPECT_TRUE(std::any_of(all[kind].begin(), all[kind].end(),
+                              [&](const Json& row) { return row["name"] == name; }))
+          << kind << " " << name;
+    }
+  };
+  expect("groups", {"so2", "so3", "se2", "se3", "r2", "se2*so2"});
+  expect("retractions", {"exp", "cayley"});
+  expect("schemes", {"lift", "balance", "boxed", "boxed_literal", "unadapted"});
+  expect("solvers", {"newton"});
+  expect("systems", {"suslov", "chaplygin_sleigh", "rolling_disk"});
+}
+
+TEST_F(List, AnUnknownKind) {
+  const Outcome o = run({"list", "system"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_EQ(o.out, "");
+  EXPECT_THAT(o.err, HasSubstr("did you mean 'systems'?"));
+}
+
+TEST_F(Describe, EveryRegisteredName) {
+  const Json all = Json::parse(run({"list", "--json"}).out);
+  int count = 0;
+  for (const std::string& kind : kinds) {
+    for (const Json& row : all.at(kind)) {
+      const std::string name = row.at("name");
+      const Outcome text = run({"describe", name}), json = run({"describe", name, "--json"});
+      EXPECT_EQ(text.status, 0) << name << text.err;
+      EXPECT_EQ(json.status, 0) << name;
+      EXPECT_THAT(text.out, HasSubstr(name));
+      const Json description = Json::parse(json.out);
+      EXPECT_EQ(description.at("name"), name);
+      EXPECT_EQ(description.at("kind").get<std::string>() + "s", kind);
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 20);
+}
+
+TEST_F(Describe, ASystemSaysEverything) {
+  const Json suslov = Json::parse(run({"describe", "suslov", "--json"}).out);
+  for (const char* key : {"summary", "group", "formula", "parameters", "known", "source"}) {
+    EXPECT_TRUE(suslov.contains(key)) << key;
+  }
+  EXPECT_EQ(suslov["group"], "so3");
+  EXPECT_EQ(suslov["parameters"][0]["name"], "inertia");
+  EXPECT_EQ(suslov["parameters"][0]["default"], Json({1.0, 10.0, 100.0}));
+  EXPECT_EQ(suslov["parameters"][0]["unit"], "kg m^2");
+  EXPECT_EQ(suslov["parameters"][1]["name"], "normal");
+  const Json disk = Json::parse(run({"describe", "rolling_disk", "--json"}).out);
+  std::vector<std::string> names;
+  for (const Json& p : disk["parameters"]) names.push_back(p["name"]);
+  EXPECT_THAT(names, testing::ElementsAre("mass", "radius", "spin_inertia", "yaw_inertia"));
+  const Json sleigh = Json::parse(run({"describe", "chaplygin_sleigh", "--json"}).out);
+  names.clear();
+  for (const Json& p : sleigh["parameters"]) names.push_back(p["name"]);
+  EXPECT_THAT(names, testing::ElementsAre("mass", "inertia", "offset"));
+}
+
+TEST_F(Describe, AnUnknownName) {
+  const Outcome o = run({"describe", "suslof"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("did you mean 'suslov'?"));
+  EXPECT_EQ(run({"describe"}).status, 2);
+}
+
+TEST_F(Help, OfEveryCommandHasExamples) {
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{}, {"list"}, {"describe"}, {"run"}, {"reproduce"}}) {
+    for (const char* flag : {"--help", "-h"}) {
+      std::vector<std::string> arguments = command;
+      arguments.push_back(flag);
+      const Outcome o = run(arguments);
+      EXPECT_EQ(o.status, 0);
+      EXPECT_EQ(o.err, "");
+      EXPECT_THAT(o.out, HasSubstr("Examples:"));
+      EXPECT_THAT(o.out, HasSubstr("hamel "));
+    }
+  }
+  // Every option that the contract names is in the help of run.
+  const std::string help = run({"run", "--help"}).out;
+  for (const char* option : {"--set", "--configuration", "--velocity", "--momentum", "--scheme", "--s", "--retraction",
+                             "--solver", "--tolerance", "--compose", "--step", "--until", "--every", "-o", "--report",
+                             "--config", "--json", "--quiet"}) {
+    EXPECT_THAT(help, HasSubstr(option));
+  }
+  EXPECT_THAT(help, HasSubstr("Exit status"));
+}
+
+/// The examples that --help prints are commands that work.
+TEST_F(Help, ExamplesOfListAndDescribeWork) {
+  for (const char* command : {"list", "describe"}) {
+    for (const std::string& line : lines(run({command, "--help"}).out)) {
+      const size_t at = line.find("hamel " + std::string(command));
+      if (at == std::string::npos || line.find("Usage") != std::string::npos) continue;
+      std::vector<std::string> words = split(line.substr(at + 6), ' ');
+      for (std::string& word : words) std::erase(word, '\'');
+      if (words.back().find('[') != std::string::npos) continue;
+      EXPECT_EQ(run(words).status, 0) << line;
+    }
+  }
+}
+
+TEST_F(Help, Version) {
+  const Outcome o = run({"--version"});
+  EXPECT_EQ(o.status, 0);
+  EXPECT_THAT(o.out, testing::ContainsRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
+TEST_F(Help, NothingOrAnUnknownCommandIsBadInput) {
+  EXPECT_EQ(run({}).status, 2);
+  EXPECT_EQ(run({"rnu", "suslov"}).status, 2);
+  EXPECT_EQ(run({"list", "--jsno"}).status, 2);
+}
+
+}  // namespace

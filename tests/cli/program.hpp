@@ -1,0 +1,88 @@
+// Runs the program whose path is in $HAMEL_PROGRAM, as a shell would: arguments, output, exit status.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hamel::test {
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+inline std::string contents(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+inline std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+inline std::vector<std::string> split(const std::string& text, char separator = ',') {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string word; std::getline(in, word, separator);) out.push_back(word);
+  return out;
+}
+
+/// A folder of its own for each test, gone afterwards.
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* path = std::getenv("HAMEL_PROGRAM");
+    ASSERT_NE(path, nullptr) << "set HAMEL_PROGRAM to the program (ctest does)";
+    program_ = path;
+    std::string pattern = (std::filesystem::temp_directory_path() / "hamel_cli_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::vector<std::string> files() const {
+    std::vector<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) out.push_back(entry.path().filename());
+    return out;
+  }
+
+  /// Runs the program in its folder, where out and err go to files beside it.
+  Outcome run(const std::vector<std::string>& arguments) const {
+    const std::string out = folder_.string() + ".out", err = folder_.string() + ".err";
+    std::string command = "cd " + quoted(folder_.string()) + " && " + quoted(program_);
+    for (const std::string& argument : arguments) command += " " + quoted(argument);
+    command += " >" + quoted(out) + " 2>" + quoted(err) + " </dev/null";
+    const int status = std::system(command.c_str());
+    Outcome result{WIFEXITED(status) ? WEXITSTATUS(status) : 128, contents(out), contents(err)};
+    std::filesystem::remove(out);
+    std::filesystem::remove(err);
+    return result;
+  }
+
+ private:
+  static std::string quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+  }
+  std::string program_;
+  std::filesystem::path folder_;
+};
+
+}  // namespace hamel::test

@@ -1,0 +1,157 @@
+// What hamel run writes and reads: CSV, JSON files, --every, --config.
+#include <cmath>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace hamel::test;
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+class Files : public CommandLine {};
+
+struct Table {
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> cells;
+  std::string record;
+};
+Table read_csv(const std::string& text) {
+  Table out;
+  for (const std::string& line : lines(text)) {
+    if (line.rfind("#", 0) == 0) out.record += line.substr(1) + "\n";
+    else if (out.columns.empty()) out.columns = split(line);
+    else out.cells.push_back(split(line));
+  }
+  return out;
+}
+
+const std::vector<std::string> measured = {"energy", "energy_error", "constraint", "group_defect", "iterations", "residual"};
+
+/// t, the element, xi, the measurements, in the contract's order; what was added comes after.
+void expect_columns(const Table& table, const std::vector<std::string>& element, int n) {
+  std::vector<std::string> expected = {"t"};
+  expected.insert(expected.end(), element.begin(), element.end());
+  for (int i = 1; i <= n; ++i) expected.push_back("xi" + std::to_string(i));
+  expected.insert(expected.end(), measured.begin(), measured.end());
+  ASSERT_GE(table.columns.size(), expected.size());
+  EXPECT_EQ(std::vector<std::string>(table.columns.begin(), table.columns.begin() + static_cast<long>(expected.size())), expected);
+}
+
+TEST_F(Files, CsvColumnsOfEverySystem) {
+  const auto table = [&](const char* system) {
+    EXPECT_EQ(run({"run", system, "--until", "0.1", "-o", "a.csv", "--quiet"}).status, 0);
+    return read_csv(contents(file("a.csv")));
+  };
+  expect_columns(table("suslov"), {"R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"}, 3);
+  expect_columns(table("chaplygin_sleigh"), {"theta", "x", "y"}, 3);
+  expect_columns(table("rolling_disk"), {"1_theta", "1_x", "1_y", "2_theta"}, 4);
+}
+
+TEST_F(Files, CsvNumbersReadBackExactly) {
+  ASSERT_EQ(run({"run", "suslov", "--until", "1", "-o", "a.csv", "-o", "a.json", "--quiet"}).status, 0);
+  const Table table = read_csv(contents(file("a.csv")));
+  ASSERT_EQ(table.cells.size(), 101u);
+  for (const auto& row : table.cells) {
+    ASSERT_EQ(row.size(), table.columns.size());
+    for (const std::string& cell : row) {
+      char* end = nullptr;
+      const double value = std::strtod(cell.c_str(), &end);
+      ASSERT_EQ(*end, '\0') << cell;
+      char again[40];
+      std::snprintf(again, sizeof again, "%.17g", value);
+      EXPECT_EQ(std::strtod(again, nullptr), value);
+    }
+  }
+  // 17 digits: an irrational entry has them all.
+  size_t digits = 0;
+  for (const char c : table.cells[50][1]) digits += c >= '0' && c <= '9' ? 1u : 0u;
+  EXPECT_GE(digits, 16u) << table.cells[50][1];
+  // The last row is the final state of the record, to the last bit.
+  const Json record = Json::parse(contents(file("a.json")));
+  EXPECT_EQ(std::stod(table.cells.back()[10]), record["final"]["velocity"][0].get<double>());
+  EXPECT_EQ(std::stod(table.cells.back()[13]), record["final"]["energy"].get<double>());
+  // The # lines are the record.
+  const Json in_csv = Json::parse(table.record);
+  EXPECT_EQ(in_csv, record);
+}
+
+TEST_F(Files, UnwrappedAngles) {
+  ASSERT_EQ(run({"run", "rolling_disk", "--until", "20", "--every", "100", "-o", "a.csv", "--quiet"}).status, 0);
+  const Table table = read_csv(contents(file("a.csv")));
+  EXPECT_NEAR(std::stod(table.cells.back()[1]), 0.7 * 20, 0.01);
+  EXPECT_NEAR(std::stod(table.cells.back()[4]), 2 * 20, 0.01);
+}
+
+TEST_F(Files, Every) {
+  for (const auto& [every, rows] : {std::pair{"1", 11u}, {"3", 5u}, {"5", 3u}, {"10", 2u}, {"1000", 2u}}) {
+    ASSERT_EQ(run({"run", "suslov", "--until", "0.1", "--every", every, "-o", "a.csv", "--quiet"}).status, 0);
+    const Table table = read_csv(contents(file("a.csv")));
+    EXPECT_EQ(table.cells.size(), rows) << every;
+    EXPECT_EQ(std::stod(table.cells.front()[0]), 0);
+    EXPECT_NEAR(std::stod(table.cells.back()[0]), 0.1, 1e-15);
+  }
+}
+
+TEST_F(Files, SeveralOutputsAndOverwriting) {
+  std::ofstream(file("a.csv")) << "old";
+  ASSERT_EQ(run({"run", "suslov", "--until", "0.1", "-o", "a.csv", "--output", "b.csv", "-o", "c.json", "--quiet"}).status, 0);
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.csv", "b.csv", "c.json"));
+  EXPECT_EQ(contents(file("a.csv")), contents(file("b.csv")));
+}
+
+TEST_F(Files, TheCommandLineWinsOverTheConfig) {
+  std::ofstream(file("run.toml")) << R"(system = "chaplygin_sleigh"
+velocity = [0.5, 1, 0]
+scheme = "balance"
+s = 0.25
+retraction = "exp"
+step = 0.02
+until = 1
+every = 5
+[set]
+mass = 2
+offset = 0.4
+)";
+  const auto record = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"run"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), {"--config", "run.toml", "--json"});
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.status, 0) << o.err;
+    return Json::parse(o.out);
+  };
+  const Json plain = record({});
+  EXPECT_EQ(plain["system"], "chaplygin_sleigh");
+  EXPECT_EQ(plain["scheme"], "balance");
+  EXPECT_EQ(plain["s"], 0.25);
+  EXPECT_EQ(plain["retraction"], "exp");
+  EXPECT_EQ(plain["steps"], 50);
+  EXPECT_EQ(plain["parameters"]["mass"], 2.0);
+  EXPECT_EQ(plain["parameters"]["offset"], 0.4);
+  EXPECT_EQ(plain["parameters"]["inertia"], 0.1);
+  const Json over = record({"--scheme", "lift", "--set", "mass=3", "--step", "0.1", "--momentum", "1,2,0"});
+  EXPECT_EQ(over["scheme"], "lift");
+  EXPECT_EQ(over["s"], 0.25);
+  EXPECT_EQ(over["steps"], 10);
+  EXPECT_EQ(over["parameters"]["mass"], 3.0);
+  EXPECT_EQ(over["parameters"]["offset"], 0.4);
+  // A system on the command line replaces the file's, whose parameters then do not fit.
+  const Outcome other = run({"run", "suslov", "--config", "run.toml"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("mass"));
+}
+
+TEST_F(Files, AConfigThatDoesNotFit) {
+  std::ofstream(file("bad.toml")) << "system = \"suslov\"\nstpe = 0.1\n";
+  const Outcome o = run({"run", "--config", "bad.toml", "-o", "a.csv"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, testing::AllOf(HasSubstr("bad.toml:2:"), HasSubstr("did you mean 'step'?")));
+  EXPECT_THAT(files(), testing::ElementsAre("bad.toml"));
+  EXPECT_EQ(run({"run", "--config", "missing.toml"}).status, 2);
+}
+
+}  // namespace
