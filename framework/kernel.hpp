@@ -210,12 +210,14 @@ class CompiledKernel final : public Kernel {
                   std::span<double> jacobian) const override {
       const Unknown point = Eigen::Map<const Unknown>(x.data(), size_);
       Unknown value = point;
-      typename Step::Jacobian derivative;
-      step_.evaluate(point, value, jacobian.empty() ? nullptr : &derivative);
-      Eigen::Map<Unknown>(f.data(), size_) = value;
-      if (!jacobian.empty()) {
+      if (jacobian.empty()) {
+        step_.residual(point, value);
+      } else {
+        typename Step::Jacobian derivative;
+        step_.linearise(point, value, derivative);
         Eigen::Map<typename Step::Jacobian>(jacobian.data(), size_, size_) = derivative;
       }
+      Eigen::Map<Unknown>(f.data(), size_) = value;
     }
 
    private:

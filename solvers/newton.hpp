@@ -69,13 +69,33 @@ struct Newton {
     bool valid = false;
   };
 
-  /// step: scale_squared(), evaluate(x, f, jacobian or nullptr). x: guess in, best point out.
+  /// step: scale_squared(), residual(x, f), linearise(x, f, jacobian). x: guess in, best point out.
   template <class Step>
-  static SolveReport solve(const Step& step, typename Step::Unknown& x, double tolerance,
-                           Memory<Step>& memory) {
+  [[gnu::always_inline]] static inline SolveReport solve(const Step& step,
+                                                         typename Step::Unknown& x,
+                                                         double tolerance, Memory<Step>& memory) {
+    const double given = step.scale_squared(), scale = given > 0 ? given : 1.0;
+    if (memory.valid) [[likely]] {  // one correction with the last Jacobian: nearly every step
+      typename Step::Unknown f = x;
+      step.residual(x, f);
+      const typename Step::Unknown trial = x - memory.factors.solve(f);
+      step.residual(trial, f);
+      const double size = f.squaredNorm();
+      if (size <= tolerance * tolerance * scale) [[likely]] {
+        x = trial;
+        return {Reason::converged, std::sqrt(size / scale), 1, 2};
+      }
+    }
+    return iterate(step, x, tolerance, scale, memory);
+  }
+
+ private:
+  template <class Step>
+  [[gnu::noinline]] static SolveReport iterate(const Step& step, typename Step::Unknown& x,
+                                               double tolerance, double scale,
+                                               Memory<Step>& memory) {
     using Unknown = typename Step::Unknown;
     constexpr double floor = 64 * std::numeric_limits<double>::epsilon();
-    const double given = step.scale_squared(), scale = given > 0 ? given : 1.0;
     const double accepted = tolerance * tolerance * scale, round_off = floor * floor * scale;
 
     Unknown f = x, trial = x, trial_f = x;
@@ -88,36 +108,29 @@ struct Newton {
       report.residual = std::sqrt(size / scale);
       return report;
     };
-    const auto factor = [&] {
-      typename Step::Jacobian jacobian;
-      step.evaluate(x, f, &jacobian);
-      ++report.evaluations;
-      memory.factors.compute(jacobian);
-      memory.valid = fresh = true;
-    };
-
-    if (memory.valid) {
-      step.evaluate(x, f, nullptr);
-      ++report.evaluations;
-    } else {
-      factor();
-    }
-    size = f.squaredNorm();
+    memory.valid = false;
     while (report.iterations < max_iterations) {
+      if (!memory.valid) {
+        factor_at(step, x, f, memory);
+        ++report.evaluations;
+        fresh = true;
+        size = f.squaredNorm();
+      }
       if (!std::isfinite(size)) return finish(Reason::not_finite);
-      if (!memory.valid) factor();
       ++report.iterations;
       const Unknown correction = memory.factors.solve(f);
       double length = 1, trial_size = 0;
       do {
         trial = x - length * correction;
-        step.evaluate(trial, trial_f, nullptr);
+        step.residual(trial, trial_f);
         ++report.evaluations;
         trial_size = trial_f.squaredNorm();
         length /= 2;
       } while (fresh && !(trial_size < size) && size > round_off && length > 1e-3);
       if (!(trial_size < size)) {
-        if (size <= round_off) return finish(size <= accepted ? Reason::converged : Reason::round_off);
+        if (size <= round_off) {
+          return finish(size <= accepted ? Reason::converged : Reason::round_off);
+        }
         if (fresh) return finish(correction.allFinite() ? Reason::stagnated : Reason::singular);
         memory.valid = false;
         continue;
@@ -130,6 +143,15 @@ struct Newton {
       if (size <= accepted) return finish(Reason::converged);
     }
     return finish(Reason::max_iterations);
+  }
+
+  template <class Step>
+  [[gnu::noinline]] static void factor_at(const Step& step, const typename Step::Unknown& x,
+                                          typename Step::Unknown& f, Memory<Step>& memory) {
+    typename Step::Jacobian jacobian;
+    step.linearise(x, f, jacobian);
+    memory.factors.compute(jacobian);
+    memory.valid = true;
   }
 };
 

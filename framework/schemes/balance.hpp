@@ -58,30 +58,26 @@ struct Balance {
       return h_ * problem_.velocity(x.head(directions()));
     }
 
-    void evaluate(const Unknown& x, Unknown& f, Jacobian* j) const {
+    void residual(const Unknown& x, Unknown& f) const {
+      const Ends e(*this, x);
+      fill(x, e, f);
+    }
+
+    /// F and its derivative in (y, w).
+    void linearise(const Unknown& x, Unknown& f, Jacobian& j) const {
+      const Ends e(*this, x);
+      fill(x, e, f);
       const auto m = directions();
-      const Vec<n> step = xi(x);
-      const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
-      const Vec<n> m0 = z0.push(problem_.momentum(mu_));
-      const Vec<n> m1 = z1.push(problem_.momentum(x.tail(m)));
-      const Vec<n> average =
-          s_ * (z0.right.transpose() * m0) + (1 - s_) * (z1.right.transpose() * m1);
-      f.head(m) = problem_.reduce(average) - x.head(m);
-      f.tail(m) = problem_.reduce(m1 - m0);
-      if (j != nullptr) {
-        const Mat<n, n> push1 = G::Ad(G::inverse(z1.f)).transpose();
-        j->resize(2 * problem_.m(), 2 * problem_.m());
-        j->topLeftCorner(m, m) =
-            h_ * problem_.reduce_both((1 - s_) * (1 - s_) * z1.left_transpose_derivative(m1) -
-                                      s_ * s_ * z0.left_transpose_derivative(m0));
-        j->topLeftCorner(m, m).diagonal().array() -= 1;
-        j->topRightCorner(m, m) =
-            (1 - s_) * problem_.reduce_momentum(z1.right.transpose() * push1);
-        j->bottomLeftCorner(m, m) =
-            h_ * problem_.reduce_both((1 - s_) * z1.push_derivative(m1) +
-                                      s_ * z0.push_derivative(m0));
-        j->bottomRightCorner(m, m) = problem_.reduce_momentum(push1);
-      }
+      const Mat<n, n> push1 = G::Ad(G::inverse(e.z1.f)).transpose();
+      j.resize(2 * problem_.m(), 2 * problem_.m());
+      j.topLeftCorner(m, m) =
+          h_ * problem_.reduce_both((1 - s_) * (1 - s_) * e.z1.left_transpose_derivative(e.m1) -
+                                    s_ * s_ * e.z0.left_transpose_derivative(e.m0));
+      j.topLeftCorner(m, m).diagonal().array() -= 1;
+      j.topRightCorner(m, m) = (1 - s_) * problem_.reduce_momentum(e.z1.right.transpose() * push1);
+      j.bottomLeftCorner(m, m) = h_ * problem_.reduce_both((1 - s_) * e.z1.push_derivative(e.m1) +
+                                                           s_ * e.z0.push_derivative(e.m0));
+      j.bottomRightCorner(m, m) = problem_.reduce_momentum(push1);
     }
 
     void finish(const Unknown& x, Element& increment, Momentum& mu) const {
@@ -92,6 +88,22 @@ struct Balance {
     }
 
    private:
+    // The retraction at both ends, and the end momenta carried to the base point.
+    struct Ends {
+      At<Tau> z0, z1;
+      Vec<n> m0, m1;
+      Ends(const Step& step, const Unknown& x)
+          : z0(-step.s_ * step.xi(x)),
+            z1((1 - step.s_) * step.xi(x)),
+            m0(z0.push(step.problem_.momentum(step.mu_))),
+            m1(z1.push(step.problem_.momentum(x.tail(step.directions())))) {}
+    };
+    void fill(const Unknown& x, const Ends& e, Unknown& f) const {
+      const Vec<n> average =
+          s_ * (e.z0.right.transpose() * e.m0) + (1 - s_) * (e.z1.right.transpose() * e.m1);
+      f.head(directions()) = problem_.reduce(average) - x.head(directions());
+      f.tail(directions()) = problem_.reduce(e.m1 - e.m0);
+    }
     // m, known at compile time where it is.
     auto directions() const { return Eigen::fix<M>(problem_.m()); }
 

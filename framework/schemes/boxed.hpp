@@ -45,13 +45,15 @@ struct Boxed {
     double scale_squared() const { return 4 * mu_.squaredNorm(); }
     Vec<n> xi(const Unknown& y) const { return h_ * problem_.velocity(y); }
 
-    void evaluate(const Unknown& y, Unknown& f, Jacobian* j) const {
-      const At<Tau> z(xi(y));
-      f = problem_.reduce(z.right.transpose() * full_mu_) - y;
-      if (j != nullptr) {
-        *j = h_ * problem_.reduce_both(z.right_transpose_derivative(full_mu_));
-        j->diagonal().array() -= 1;
-      }
+    void residual(const Unknown& y, Unknown& f) const {
+      f = problem_.reduce(Tau::dtau_right(xi(y)).transpose() * full_mu_) - y;
+    }
+
+    /// F and dF/dy.
+    void linearise(const Unknown& y, Unknown& f, Jacobian& j) const {
+      residual(y, f);
+      j = h_ * problem_.reduce_both(At<Tau>(xi(y)).right_transpose_derivative(full_mu_));
+      j.diagonal().array() -= 1;
     }
 
     void finish(const Unknown& y, Element& increment, Momentum& mu) const {

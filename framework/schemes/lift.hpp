@@ -54,45 +54,60 @@ struct Lift {
     double scale_squared() const { return 4 * mu_.squaredNorm(); }
     Vec<n> xi(const Unknown& y) const { return h_ * problem_.velocity(y); }
 
-    /// F(y) = E^T mu0 - mu_bar; dF/dy when j is given.
-    void evaluate(const Unknown& y, Unknown& f, Jacobian* j) const {
-      const Vec<n> p = problem_.momentum(y), step = xi(y);
-      if (one_sided_) {
-        f = problem_.reduce(Tau::dtau_right_inverse_transpose(step, p)) - mu_;
-        if (j != nullptr) {
-          *j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
-               problem_.reduce_momentum_transposed(Tau::dtau_right_inverse(step));
-        }
-        return;
-      }
-      const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
-      const Mat<n, n> c_inverse = inverse_of_c(z0, z1);
-      const Vec<n> m = c_inverse * p, mu0 = z0.pull(m);
-      f = problem_.reduce(mu0) - mu_;
-      if (j != nullptr) {
-        // dm = C^-1 (I E dy - dC m),  dmu0 = Ad_{f0}^T dm + K(mu0) dL_{z0} dz0.
-        const Mat<n, n> dc_m = (1 - s_) * (1 - s_) * z1.right_transpose_derivative(m) -
-                               s_ * s_ * z0.right_transpose_derivative(m);
-        const Mat<n, n> pull = G::Ad(z0.f).transpose() * c_inverse;
-        *j = problem_.reduce_momentum(pull) -
-             h_ * problem_.reduce_both(pull * dc_m + s_ * z0.pull_derivative(mu0));
+    /// F(y) = E^T mu0 - mu_bar.
+    [[gnu::always_inline]] void residual(const Unknown& y, Unknown& f) const {
+      if (one_sided_) [[likely]] {
+        f = problem_.reduce(Tau::dtau_right_inverse_transpose(xi(y), problem_.momentum(y))) - mu_;
+      } else {
+        two_sided_residual(y, f);
       }
     }
 
-    /// g_{k+1} = g_k increment, and mu_bar_{k+1}.
-    void finish(const Unknown& y, Element& increment, Momentum& mu) const {
+    /// F and dF/dy.
+    void linearise(const Unknown& y, Unknown& f, Jacobian& j) const {
+      residual(y, f);
       const Vec<n> p = problem_.momentum(y), step = xi(y);
       if (one_sided_) {
-        increment = Tau::tau(step);
-        mu = problem_.reduce(Tau::dtau_left_inverse_transpose(step, p));
+        j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
+            problem_.reduce_momentum_transposed(Tau::dtau_right_inverse(step));
         return;
       }
+      // dm = C^-1 (I E dy - dC m),  dmu0 = Ad_{f0}^T dm + K(mu0) dL_{z0} dz0.
+      const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
+      const Mat<n, n> c_inverse = inverse_of_c(z0, z1);
+      const Vec<n> m = c_inverse * p;
+      const Mat<n, n> dc_m = (1 - s_) * (1 - s_) * z1.right_transpose_derivative(m) -
+                             s_ * s_ * z0.right_transpose_derivative(m);
+      const Mat<n, n> pull = G::Ad(z0.f).transpose() * c_inverse;
+      j = problem_.reduce_momentum(pull) -
+          h_ * problem_.reduce_both(pull * dc_m + s_ * z0.pull_derivative(z0.pull(m)));
+    }
+
+    /// g_{k+1} = g_k increment, and mu_bar_{k+1}.
+    [[gnu::always_inline]] void finish(const Unknown& y, Element& increment, Momentum& mu) const {
+      if (one_sided_) [[likely]] {
+        const Vec<n> step = xi(y);
+        increment = Tau::tau(step);
+        mu = problem_.reduce(Tau::dtau_left_inverse_transpose(step, problem_.momentum(y)));
+      } else {
+        two_sided_finish(y, increment, mu);
+      }
+    }
+
+   private:
+    // Out of line, so that the one-sided loop stays small.
+    [[gnu::noinline]] void two_sided_residual(const Unknown& y, Unknown& f) const {
+      const Vec<n> p = problem_.momentum(y), step = xi(y);
+      const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
+      f = problem_.reduce(z0.pull(inverse_of_c(z0, z1) * p)) - mu_;
+    }
+    [[gnu::noinline]] void two_sided_finish(const Unknown& y, Element& increment,
+                                            Momentum& mu) const {
+      const Vec<n> p = problem_.momentum(y), step = xi(y);
       const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
       increment = G::compose(G::inverse(z0.f), z1.f);
       mu = problem_.reduce(z1.pull(inverse_of_c(z0, z1) * p));
     }
-
-   private:
     Mat<n, n> inverse_of_c(const At<Tau>& z0, const At<Tau>& z1) const {
       const Mat<n, n> c = (s_ * z0.right + (1 - s_) * z1.right).transpose();
       return c.inverse();
