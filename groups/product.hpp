@@ -275,6 +275,26 @@ struct ProductRetraction {
         [&](auto i) { return Part<i>::dtau_left_inverse(Group::template segment<i>(xi)); });
   }
   template <class T>
+  static VecT<T, dim> dtau_right_inverse_transpose(const VecT<T, dim>& xi, const VecT<T, dim>& p) {
+    VecT<T, dim> q;
+    Group::for_each_factor([&](auto i) {
+      q.template segment<Part<i>::Group::dim>(Group::offsets[i]) =
+          Part<i>::dtau_right_inverse_transpose(Group::template segment<i>(xi),
+                                                Group::template segment<i>(p));
+    });
+    return q;
+  }
+  template <class T>
+  static VecT<T, dim> dtau_left_inverse_transpose(const VecT<T, dim>& xi, const VecT<T, dim>& p) {
+    VecT<T, dim> q;
+    Group::for_each_factor([&](auto i) {
+      q.template segment<Part<i>::Group::dim>(Group::offsets[i]) =
+          Part<i>::dtau_left_inverse_transpose(Group::template segment<i>(xi),
+                                               Group::template segment<i>(p));
+    });
+    return q;
+  }
+  template <class T>
   static MatT<T, dim, dim> dtau_right_inverse_transpose_derivative(const VecT<T, dim>& xi,
                                                                    const VecT<T, dim>& p) {
     return Group::template block_diagonal<T>([&](auto i) {
