@@ -125,6 +125,10 @@ LawReport check_retraction(unsigned long long seed = 1) {
       adjoint((dR - G::Ad(g) * dL).norm() / condition);
       inverses((dR * dR_inverse - one).norm() / condition);
       inverses((dL * dL_inverse - one).norm() / condition);
+      inverses((dR_inverse.transpose() * p - R::dtau_right_inverse_transpose(xi, p)).norm() /
+               (condition * p.norm()));
+      inverses((dL_inverse.transpose() * p - R::dtau_left_inverse_transpose(xi, p)).norm() /
+               (condition * p.norm()));
       round_trip((R::tau_inverse(g) - xi).norm() / (length * condition));
       if (length > 0.7 * edge) continue;
       right((numerical.right(xi) - dR).norm() / condition);
