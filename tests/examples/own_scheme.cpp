@@ -40,14 +40,16 @@ struct EnergyPreserving {
     double scale_squared() const { return 4 * mu_.squaredNorm(); }
     Velocity xi(const Unknown& y) const { return h_ * problem_.velocity(y); }
 
-    void evaluate(const Unknown& y, Unknown& f, Jacobian* j) const {
+    void residual(const Unknown& y, Unknown& f) const {
       const Velocity w = problem_.velocity(y), p = problem_.momentum(y);
       f = 2 * (y - mu_) - h_ * problem_.reduce(G::ad(w).transpose() * p);
-      if (j != nullptr) {  // d (ad_w)^T p = coad(p) dw + (ad_w)^T dp
-        *j = -h_ *
-             (problem_.reduce_both(G::coad(p)) + problem_.reduce_momentum(G::ad(w).transpose()));
-        j->diagonal().array() += 2;
-      }
+    }
+    void linearise(const Unknown& y, Unknown& f, Jacobian& j) const {
+      residual(y, f);
+      const Velocity w = problem_.velocity(y), p = problem_.momentum(y);
+      // d (ad_w)^T p = coad(p) dw + (ad_w)^T dp
+      j = -h_ * (problem_.reduce_both(G::coad(p)) + problem_.reduce_momentum(G::ad(w).transpose()));
+      j.diagonal().array() += 2;
     }
     void finish(const Unknown& y, typename G::template Element<double>& increment,
                 Momentum& mu) const {
