@@ -50,7 +50,7 @@ TEST(Newton, FindsARoot) {
   const SolveReport report = solve(step, x, 1e-13);
   EXPECT_TRUE(report.ok());
   EXPECT_NEAR(x[0], std::sqrt(2.0), 1e-13);
-  EXPECT_LE(report.iterations, 6);
+  EXPECT_LE(report.iterations, 13);  // a kept Jacobian cuts the residual at least by ten a correction
   // The residual reported is that of the point returned.
   EXPECT_DOUBLE_EQ(report.residual, std::abs(x[0] * x[0] - 2));
 }
@@ -80,7 +80,7 @@ TEST(Newton, AnUnreachableToleranceEndsAtRoundOff) {
   EXPECT_EQ(report.reason, Reason::round_off);
   EXPECT_TRUE(report.ok());
   EXPECT_LE(report.residual, 4.5e-16);
-  EXPECT_LE(report.iterations, 8);
+  EXPECT_LE(report.iterations, 18);
 }
 
 TEST(Newton, NoRootStagnates) {
