@@ -147,7 +147,8 @@ std::string Result::report() const {
     out += fmt::format("  {:<22} {}\n", name, value);
   };
   if (status.ok) {
-    line("status", fmt::format("ok, {} steps to t = {:.6g}", steps, last.time));
+    line("status", fmt::format("ok{}, {} steps to t = {:.6g}",
+                               status.reason.empty() ? "" : " (" + status.reason + ")", steps, last.time));
   } else {
     line("status", fmt::format("FAILED in step {} (t = {:.6g}): {}, residual {:.2e}", status.step,
                                status.time, status.reason, status.residual));

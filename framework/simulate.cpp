@@ -352,10 +352,10 @@ Result Simulation::run() const {
   std::vector<double> row;
   double energy_start = 0;
   const auto record = [&] {
-    const long recorded = state.step;
+    const long recorded = row.empty() ? -1 : state.step;
     kernel->measure(state);
+    if (state.step == recorded) return true;  // nothing new: a chunk failed in its first step
     if (state.step == 0) energy_start = state.energy;
-    else if (state.step == recorded) return true;  // nothing new: a chunk failed in its first step
     fill_row(state, energy_start, row);
     result.trajectory.append(row);
     return !observer_ || observer_(state);
@@ -369,7 +369,7 @@ Result Simulation::run() const {
     const bool wanted = record();
     if (!result.status.ok) break;
     if (!wanted) {
-      result.status = {false, state.step, state.time, state.residual, to_string(Reason::stopped)};
+      result.status.reason = to_string(Reason::stopped);
       break;
     }
     if (progress_ && Clock::now() >= next_progress) {

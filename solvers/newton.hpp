@@ -6,11 +6,13 @@
 // next step when more than one correction was needed; a fresh correction that does not reduce |F| is
 // halved, up to ten times. At least one correction is made: a guess that already meets the tolerance
 // would leave its extrapolation error, always of one sign, in every step. When |F| stops falling it is
-// accepted at the round-off floor (64 eps), else it is stagnated.
+// accepted at the round-off floor (64 eps), else it is stagnated. The iteration aims two digits below the
+// tolerance, so that what a kept Jacobian leaves does not add up over the steps.
 // Compiled into the kernels: fixed sizes, no heap, no virtual call.
 // Source: Kelley, Solving Nonlinear Equations with Newton's Method, SIAM 2003, ch. 1-2.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -80,8 +82,8 @@ struct Newton {
       step.residual(x, f);
       const typename Step::Unknown trial = x - memory.factors.solve(f);
       step.residual(trial, f);
-      const double size = f.squaredNorm();
-      if (size <= tolerance * tolerance * scale) [[likely]] {
+      const double size = f.squaredNorm(), target = aim(tolerance);
+      if (size <= target * target * scale) [[likely]] {
         x = trial;
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
       }
@@ -90,6 +92,12 @@ struct Newton {
   }
 
  private:
+  // What is aimed at: two digits below the tolerance, at most to the round-off of a residual. A kept
+  // Jacobian leaves an error of one sign, which must not add up over the steps.
+  static constexpr double aim(double tolerance) {
+    return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
+  }
+
   template <class Step>
   [[gnu::noinline]] static SolveReport iterate(const Step& step, typename Step::Unknown& x,
                                                double tolerance, double scale,
@@ -97,6 +105,7 @@ struct Newton {
     using Unknown = typename Step::Unknown;
     constexpr double floor = 64 * std::numeric_limits<double>::epsilon();
     const double accepted = tolerance * tolerance * scale, round_off = floor * floor * scale;
+    const double target = std::min(aim(tolerance), tolerance), aimed = target * target * scale;
 
     Unknown f = x, trial = x, trial_f = x;
     SolveReport report;
@@ -128,9 +137,8 @@ struct Newton {
         length /= 2;
       } while (fresh && !(trial_size < size) && size > round_off && length > 1e-3);
       if (!(trial_size < size)) {
-        if (size <= round_off) {
-          return finish(size <= accepted ? Reason::converged : Reason::round_off);
-        }
+        if (size <= accepted) return finish(Reason::converged);
+        if (size <= round_off) return finish(Reason::round_off);
         if (fresh) return finish(correction.allFinite() ? Reason::stagnated : Reason::singular);
         memory.valid = false;
         continue;
@@ -140,9 +148,9 @@ struct Newton {
       x = trial;
       f = trial_f;
       size = trial_size;
-      if (size <= accepted) return finish(Reason::converged);
+      if (size <= aimed) return finish(Reason::converged);
     }
-    return finish(Reason::max_iterations);
+    return finish(size <= accepted ? Reason::converged : Reason::max_iterations);
   }
 
   template <class Step>

@@ -40,6 +40,8 @@ KernelFactory compile() {
   static_assert(Group<G>, "the retraction's Group does not satisfy hamel::Group");
   static_assert(Retraction<Tau>, "this type does not satisfy hamel::Retraction");
   constexpr int directions = Scheme::adapted ? (G::dim == 1 ? 1 : M) : G::dim;
+  using Step = typename Scheme::template Step<LeftInvariant<G, directions>, Tau>;
+  static_assert(SchemeStep<Step>, "the scheme's Step does not satisfy hamel::SchemeStep");
   return [](const KernelSetup& setup) -> std::unique_ptr<Kernel> {
     return std::make_unique<CompiledKernel<G, directions, Tau, Scheme, Newton>>(setup);
   };
@@ -66,6 +68,18 @@ void add_retraction(Registry& registry) {
   Schemes::for_each([&]<class Scheme>(std::type_identity<Scheme>) {
     if constexpr (sizeof...(Ms) == 0) add_kernels<Scheme, Tau, kRunTime>(registry);
     else add_kernels<Scheme, Tau, Ms...>(registry);
+  });
+}
+
+/// A retraction that is the same map as Exp on this group: its name on the kernels of Exp.
+template <class Tau, int M>
+void add_as_exp(Registry& registry) {
+  const std::string group = Tau::Group::name();
+  registry.add(retraction_info<Tau>());
+  Schemes::for_each([&]<class Scheme>(std::type_identity<Scheme>) {
+    const int m = Scheme::adapted ? M : Tau::Group::dim;
+    registry.add_kernel(group, m, Tau::name(), Scheme::name(),
+                        *registry.kernel(group, m, "exp", Scheme::name()));
   });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ using Json = nlohmann::ordered_json;
 Json numbers(const std::vector<double>& values) {
   Json out = Json::array();
   for (double v : values) {
-    if (std::isfinite(v)) out.push_back(std::stod(fmt::format("{:.6g}", v)));
+    if (std::isfinite(v)) out.push_back(std::strtod(fmt::format("{:.6g}", v).c_str(), nullptr));
     else out.push_back(nullptr);
   }
   return out;

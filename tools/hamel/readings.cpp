@@ -104,7 +104,9 @@ void add_figures(Page& page, const std::vector<Outcome>& outcomes, const std::ve
   for (size_t j = 0; j < figures().size(); ++j) {
     const Figure& figure = figures()[j];
     std::vector<Series> series;
-    for (const Outcome& outcome : outcomes) series.push_back(outcome.curves[j]);
+    for (const Outcome& outcome : outcomes) {  // unadapted first, under the others: it fills a band
+      series.insert(outcome.name == "unadapted" ? series.begin() : series.end(), outcome.curves[j]);
+    }
     if (figure.column == "mu1" && !exact.empty()) series.push_back(exact[0]);
     if (figure.column == "mu2" && !exact.empty()) series.push_back(exact[1]);
     page.plot(figure.title,
