@@ -26,10 +26,6 @@ struct Made {
     out = f(x);
     jacobian = j(x);
   }
-  void evaluate(const Unknown& x, Unknown& out, Jacobian* jacobian) const {
-    out = f(x);
-    if (jacobian != nullptr) *jacobian = j(x);
-  }
 };
 
 /// A first solve, nothing remembered.
