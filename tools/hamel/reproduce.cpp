@@ -124,11 +124,11 @@ class Report {
         fmt::format("`boxed_literal`, the boxes as typeset, jumps by O(1) in its first step and then stays "
                     "on a plateau: energy error {:.2f} whatever the step, because the step size cancels.",
                     literal.energy_error),
-        fmt::format("With Cayley the orientation error of `lift` grows to {:.1e} (s = 0) and {:.1e} "
-                    "(s = ½): each step turns by 2 atan(|hΩ|/2) instead of |hΩ|, second order as promised. "
-                    "With exp it is {:.1e}.",
-                    find(cayley, "lift s=0").configuration_error,
-                    find(cayley, "lift s=1/2").configuration_error, lift.configuration_error),
+        fmt::format("The orientation error of `lift` grows slowly, to {:.1e} with exp, {:.1e} with Cayley at "
+                    "s = 0 and {:.1e} at s = ½: second order, since the velocity of a step differs from the "
+                    "one at its nodes by O(h²) and a Cayley step turns by 2 atan(|hΩ|/2) instead of |hΩ|.",
+                    lift.configuration_error, find(cayley, "lift s=0").configuration_error,
+                    find(cayley, "lift s=1/2").configuration_error),
     });
     const std::vector<Series> exact = exact_momentum(kFigure1);
     for (size_t i = 0; i < 2; ++i) {
