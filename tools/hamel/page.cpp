@@ -129,7 +129,7 @@ void Page::write(const std::string& path) const {
 }
 
 Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
-               size_t points) {
+               bool peaks, size_t points) {
   Series out{std::move(name), {}, {}};
   const size_t count = y.size(), buckets = std::max<size_t>(points / 2, 1);
   if (count <= points) return {out.name, x, y};
@@ -143,6 +143,7 @@ Series thinned(std::string name, const std::vector<double>& x, const std::vector
       if (less(i, low)) low = i;
       if (less(high, i)) high = i;
     }
+    if (peaks && !std::isnan(y[low])) low = high;
     for (size_t i : {std::min(low, high), std::max(low, high)}) {
       out.x.push_back(x[i]);
       out.y.push_back(y[i]);

@@ -65,8 +65,9 @@ class Page {
   std::unique_ptr<Data> data_;
 };
 
-/// At most about `points` points: of each bucket those with the smallest and the largest y.
-Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
+/// At most about `points` points: of each bucket those with the smallest and the largest y, or only
+/// the largest (peaks, for errors on a logarithmic axis). NaN is never dropped.
+Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y, bool peaks,
                size_t points = 1200);
 
 /// |y|, for a logarithmic axis.

@@ -40,7 +40,7 @@ std::string headline(const Result& r) {
 Series curve(const Result& result, const std::string& name, const std::string& column,
              bool magnitude) {
   std::vector<double> y = result.trajectory.column(column);
-  return thinned(name, result.trajectory.column("t"), magnitude ? magnitudes(y) : y);
+  return thinned(name, result.trajectory.column("t"), magnitude ? magnitudes(y) : y, magnitude);
 }
 
 Series plane_path(const Result& result, const std::string& name) {
