@@ -44,7 +44,7 @@ concept Group = requires(const typename G::template Element<double>& g, const Ve
   { G::normalise(g) } -> std::convertible_to<typename G::template Element<double>>;
   { G::defect(g) } -> std::convertible_to<double>;
   // Defining (or homogeneous) matrix.
-  { G::matrix(g) };
+  {G::matrix(g)};
   // CSV columns of an element: names, values, and back (std::invalid_argument when not in the group).
   { G::columns() } -> std::convertible_to<std::vector<std::string>>;
   { G::coordinates(g) } -> std::convertible_to<std::vector<double>>;
@@ -75,8 +75,9 @@ concept Retraction = requires(const Vec<R::Group::dim>& xi, const Vec<R::Group::
   { R::dtau_right_inverse_transpose(xi, p) } -> std::convertible_to<Vec<R::Group::dim>>;
   { R::dtau_left_inverse_transpose(xi, p) } -> std::convertible_to<Vec<R::Group::dim>>;
   // What Newton needs: the n x n matrix of d/dxi [ (dR tau_xi)^-T p ] with the covector p held fixed.
-  { R::dtau_right_inverse_transpose_derivative(xi, p) }
-      -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
+  {
+    R::dtau_right_inverse_transpose_derivative(xi, p)
+    } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
   // Is xi inside the ball (or box) on which tau is a diffeomorphism with inverse tau_inverse?
   { R::in_domain(xi) } -> std::convertible_to<bool>;
   // That domain in words, for `hamel describe` and errors: "|omega| < pi".

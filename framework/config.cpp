@@ -12,8 +12,8 @@ namespace {
 
 const std::vector<std::string>& keys() {
   static const std::vector<std::string> all = {
-      "system", "set",   "configuration", "velocity", "momentum", "scheme", "s",
-      "retraction", "solver", "tolerance", "compose",  "step",     "until",  "every"};
+      "system",     "set",    "configuration", "velocity", "momentum", "scheme", "s",
+      "retraction", "solver", "tolerance",     "compose",  "step",     "until",  "every"};
   return all;
 }
 
@@ -67,7 +67,8 @@ Config Config::from_toml(const std::string& text, const std::string& origin) {
     table = toml::parse(text);
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
-    throw ConfigError({fmt::format("{}:{}:{}: {}", origin, at.line, at.column, error.description())});
+    throw ConfigError(
+        {fmt::format("{}:{}:{}: {}", origin, at.line, at.column, error.description())});
   }
   Config config;
   Reader read(origin);
@@ -135,7 +136,9 @@ std::string Config::to_toml() const {
   return out;
 }
 
-long Config::steps() const { return static_cast<long>(std::floor(until / step * (1 + 1e-12) + 1e-9)); }
+long Config::steps() const {
+  return static_cast<long>(std::floor(until / step * (1 + 1e-12) + 1e-9));
+}
 
 std::vector<std::string> Config::mistakes() const {
   std::vector<std::string> out;
@@ -157,7 +160,8 @@ std::vector<std::string> Config::mistakes() const {
 Config read_config(const std::string& path) {
   std::ifstream in(path);
   std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) throw ConfigError({fmt::format("config: cannot read '{}'", path)});
+  if (!in || !(text << in.rdbuf()))
+    throw ConfigError({fmt::format("config: cannot read '{}'", path)});
   return Config::from_toml(text.str(), path);
 }
 

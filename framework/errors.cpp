@@ -44,7 +44,9 @@ std::string unknown_name(const std::string& kind, const std::string& value,
   return text;
 }
 
-std::string join(std::span<const double> values) { return fmt::format("{}", fmt::join(values, ",")); }
+std::string join(std::span<const double> values) {
+  return fmt::format("{}", fmt::join(values, ","));
+}
 std::string join(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }

@@ -32,7 +32,8 @@ std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
   } else {
     const double asymmetry = (inertia - inertia.transpose()).norm();
     const Eigen::VectorXd values =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(inertia, Eigen::EigenvaluesOnly)
+            .eigenvalues();
     if (asymmetry > 1e-12 * inertia.norm()) {
       mistakes.push_back(fmt::format("inertia: not symmetric, |I - I'| = {:.3g}", asymmetry));
     } else if (!(values.minCoeff() > 1e-14 * values.maxCoeff())) {
@@ -41,8 +42,8 @@ std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
     }
   }
   if (constraints.cols() != n) {
-    mistakes.push_back(fmt::format("constraints: rows of {} entries, expected {}",
-                                   constraints.cols(), n));
+    mistakes.push_back(
+        fmt::format("constraints: rows of {} entries, expected {}", constraints.cols(), n));
   } else if (!constraints.allFinite()) {
     mistakes.push_back("constraints: an entry is not finite");
   } else if (constraints.rows() > 0) {
@@ -51,8 +52,8 @@ std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
       mistakes.push_back(fmt::format("constraints: {} rows of rank {}; rows must be independent",
                                      constraints.rows(), rank));
     } else if (rank == n) {
-      mistakes.push_back(fmt::format("constraints: {} independent rows leave no motion in dimension {}",
-                                     rank, n));
+      mistakes.push_back(
+          fmt::format("constraints: {} independent rows leave no motion in dimension {}", rank, n));
     }
   }
   return mistakes;

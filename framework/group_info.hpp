@@ -13,9 +13,9 @@
 namespace hamel {
 
 struct GroupInfo {
-  std::string name;     // "se2*so2"
-  std::string summary;  // one line
-  int dim = 0;          // n
+  std::string name;                  // "se2*so2"
+  std::string summary;               // one line
+  int dim = 0;                       // n
   std::vector<std::string> columns;  // of an element, as in the CSV
   std::vector<double> identity;      // the identity in those columns
   /// The nearest group element in coordinates; std::invalid_argument when values are not one.

@@ -38,13 +38,15 @@ void Registry::add_kernel(const std::string& group, int m, const std::string& re
 }
 
 const GroupInfo* Registry::group(const std::string& name) const { return find(groups_, name); }
-const RetractionInfo* Registry::retraction(const std::string& group, const std::string& name) const {
+const RetractionInfo* Registry::retraction(const std::string& group,
+                                           const std::string& name) const {
   return find(retractions_, {group, name});
 }
 const SchemeInfo* Registry::scheme(const std::string& name) const { return find(schemes_, name); }
 const SolverInfo* Registry::solver(const std::string& name) const { return find(solvers_, name); }
 const SystemInfo* Registry::system(const std::string& name) const { return find(systems_, name); }
-const KernelFactory* Registry::kernel(const std::string& group, int m, const std::string& retraction,
+const KernelFactory* Registry::kernel(const std::string& group, int m,
+                                      const std::string& retraction,
                                       const std::string& scheme) const {
   const KernelFactory* exact = find(kernels_, kernel_key(group, m, retraction, scheme));
   return exact != nullptr ? exact : find(kernels_, kernel_key(group, kRunTime, retraction, scheme));

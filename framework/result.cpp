@@ -49,7 +49,8 @@ Json element(const Result& result) {
 Json record_of(const Result& r) {
   Json parameters = Json::object();
   for (const Field& field : r.system.fields) {
-    parameters[field.name] = field.value.size() == 1 ? number(field.value[0]) : numbers(field.value);
+    parameters[field.name] =
+        field.value.size() == 1 ? number(field.value[0]) : numbers(field.value);
   }
   Json invariants = Json::object();
   for (const InvariantDrift& i : r.invariants) {
@@ -100,8 +101,7 @@ Json record_of(const Result& r) {
         {"iterations_max", r.stats.iterations_max},
         {"evaluations_mean", static_cast<double>(r.stats.evaluations) / steps},
         {"residual_max", number(r.stats.residual_max)}}},
-      {"timing",
-       {{"seconds", r.seconds}, {"nanoseconds_per_step", r.seconds * 1e9 / steps}}},
+      {"timing", {{"seconds", r.seconds}, {"nanoseconds_per_step", r.seconds * 1e9 / steps}}},
       {"version", version()},
       {"git", git_hash()},
       {"host", host_name()},
@@ -138,17 +138,18 @@ void Trajectory::add_column(const std::string& name, const std::vector<double>& 
 std::string Result::record(int indent) const { return record_of(*this).dump(indent); }
 
 std::string Result::report() const {
-  std::string out = fmt::format(
-      "{} on {}: {} (s = {}), {}, {}{}, h = {}\n", system.name, system.group.name, config.scheme,
-      config.s, config.retraction, config.solver,
-      config.compose == "none" ? "" : ", composed by " + config.compose, config.step);
+  std::string out =
+      fmt::format("{} on {}: {} (s = {}), {}, {}{}, h = {}\n", system.name, system.group.name,
+                  config.scheme, config.s, config.retraction, config.solver,
+                  config.compose == "none" ? "" : ", composed by " + config.compose, config.step);
   const double count = static_cast<double>(std::max(steps, 1L));
   const auto line = [&](const std::string& name, const std::string& value) {
     out += fmt::format("  {:<22} {}\n", name, value);
   };
   if (status.ok) {
-    line("status", fmt::format("ok{}, {} steps to t = {:.6g}",
-                               status.reason.empty() ? "" : " (" + status.reason + ")", steps, last.time));
+    line("status",
+         fmt::format("ok{}, {} steps to t = {:.6g}",
+                     status.reason.empty() ? "" : " (" + status.reason + ")", steps, last.time));
   } else {
     line("status", fmt::format("FAILED in step {} (t = {:.6g}): {}, residual {:.2e}", status.step,
                                status.time, status.reason, status.residual));
@@ -166,8 +167,9 @@ std::string Result::report() const {
     line(i.name, fmt::format("{:.6g}, drift {:.2e}", i.start, i.drift_max));
   }
   if (std::isfinite(exact_error_max)) {
-    line("against the exact", fmt::format("configuration {:.2e} at the end, velocity {:.2e} at most",
-                                          exact_error_final, exact_velocity_error_max));
+    line("against the exact",
+         fmt::format("configuration {:.2e} at the end, velocity {:.2e} at most", exact_error_final,
+                     exact_velocity_error_max));
   }
   line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
   return out;

@@ -23,7 +23,9 @@ class Trajectory {
   /// The index of a column; ConfigError naming the nearest when there is none.
   size_t index(const std::string& column) const;
   std::vector<double> column(const std::string& name) const;
-  void append(std::span<const double> row) { values_.insert(values_.end(), row.begin(), row.end()); }
+  void append(std::span<const double> row) {
+    values_.insert(values_.end(), row.begin(), row.end());
+  }
   void reserve(size_t rows) { values_.reserve(rows * columns_.size()); }
   /// Adds a column on the right; values has rows() entries.
   void add_column(const std::string& name, const std::vector<double>& values);
@@ -52,11 +54,11 @@ struct Result {
   std::vector<InvariantDrift> invariants;
   double constraint_max = 0;
   double group_defect_max = 0;
-  double energy_error_max = 0;     // relative to the start's energy
-  double exact_error_final = 0;    // |coordinates - exact coordinates|, NaN where nothing is known
+  double energy_error_max = 0;   // relative to the start's energy
+  double exact_error_final = 0;  // |coordinates - exact coordinates|, NaN where nothing is known
   double exact_error_max = 0;
   double exact_velocity_error_max = 0;  // |xi - exact xi|
-  double seconds = 0;              // of the time loop, recording included
+  double seconds = 0;                   // of the time loop, recording included
 
   explicit operator bool() const { return status.ok; }
   /// The record of contract.md as JSON; indent < 0 for one line.

@@ -87,8 +87,7 @@ struct RetractionDefaults {
   }
   /// (dR_xi^-1)^T p; a map with a cheaper form than its matrix hides this.
   template <class T>
-  static VecT<T, dim> dtau_right_inverse_transpose(const VecT<T, dim>& xi,
-                                                   const VecT<T, dim>& p) {
+  static VecT<T, dim> dtau_right_inverse_transpose(const VecT<T, dim>& xi, const VecT<T, dim>& p) {
     return Derived::dtau_right_inverse(xi).transpose() * p;
   }
   /// (dL_xi^-1)^T p = (dR_{-xi}^-1)^T p (symmetric) or Ad_{tau(xi)}^T (dR_xi^-1)^T p.

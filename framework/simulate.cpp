@@ -26,8 +26,8 @@ std::vector<std::string> columns_of(const SystemModel& system) {
   std::vector<std::string> out = {"t"};
   out.insert(out.end(), system.group.columns.begin(), system.group.columns.end());
   for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("xi{}", i));
-  for (const char* name : {"energy", "energy_error", "constraint", "group_defect", "iterations",
-                           "residual"}) {
+  for (const char* name :
+       {"energy", "energy_error", "constraint", "group_defect", "iterations", "residual"}) {
     out.emplace_back(name);
   }
   for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("mu{}", i));
@@ -40,8 +40,9 @@ void fill_row(const Snapshot& state, double energy_start, std::vector<double>& r
   row.insert(row.end(), state.coordinates.begin(), state.coordinates.end());
   row.insert(row.end(), state.velocity.begin(), state.velocity.end());
   const double scale = energy_start != 0 ? std::abs(energy_start) : 1.0;
-  row.insert(row.end(), {state.energy, (state.energy - energy_start) / scale, state.constraint,
-                         state.group_defect, static_cast<double>(state.iterations), state.residual});
+  row.insert(row.end(),
+             {state.energy, (state.energy - energy_start) / scale, state.constraint,
+              state.group_defect, static_cast<double>(state.iterations), state.residual});
   row.insert(row.end(), state.momentum.begin(), state.momentum.end());
 }
 
@@ -68,8 +69,8 @@ void compare_with_exact(Result& result) {
   for (const Invariant& invariant : result.system.invariants) {
     InvariantDrift drift{invariant.name, invariant.value(element(0), velocity(0)), 0};
     for (size_t i = 1; i < rows.rows(); ++i) {
-      drift.drift_max = std::max(
-          drift.drift_max, std::abs(invariant.value(element(i), velocity(i)) - drift.start));
+      drift.drift_max = std::max(drift.drift_max,
+                                 std::abs(invariant.value(element(i), velocity(i)) - drift.start));
     }
     result.invariants.push_back(drift);
   }
@@ -186,7 +187,8 @@ Simulation& Simulation::progress(std::function<void(double)> report) {
   progress_ = std::move(report);
   return *this;
 }
-Simulation& Simulation::kernel(KernelFactory factory, SchemeInfo scheme, RetractionInfo retraction) {
+Simulation& Simulation::kernel(KernelFactory factory, SchemeInfo scheme,
+                               RetractionInfo retraction) {
   config_.scheme = scheme.name;
   config_.retraction = retraction.name;
   kernel_ = std::move(factory);
@@ -249,7 +251,8 @@ Simulation::Plan Simulation::plan() const {
     start.velocity = system.start.velocity;
     start.momentum = system.start.momentum;
     if (start.velocity.empty() && start.momentum.empty()) {
-      plan.add({fmt::format("start: {} has no default start; give velocity or momentum", system.name)});
+      plan.add(
+          {fmt::format("start: {} has no default start; give velocity or momentum", system.name)});
     }
   }
   if (start.configuration.empty()) start.configuration = system.start.configuration;
@@ -259,8 +262,8 @@ Simulation::Plan Simulation::plan() const {
   } catch (const std::invalid_argument& error) {
     plan.add({fmt::format("configuration: {}", error.what())});
   }
-  for (const auto& [name, values] : {std::pair{"velocity", &start.velocity},
-                                     std::pair{"momentum", &start.momentum}}) {
+  for (const auto& [name, values] :
+       {std::pair{"velocity", &start.velocity}, std::pair{"momentum", &start.momentum}}) {
     if (values->empty()) continue;
     if (values->size() != static_cast<size_t>(n)) {
       plan.add({fmt::format("{}: got {} values, expected {} for {}", name, values->size(), n,
@@ -275,25 +278,30 @@ Simulation::Plan Simulation::plan() const {
   if (compiled) {
     plan.kernel = kernel_;
   } else if (registry_->group(system.group.name) == nullptr) {
-    plan.add({fmt::format("group '{}' has no compiled kernels: call hamel::add_group<...>() once, or "
-                          "use simulate<Scheme, Retraction>(system)", system.group.name)});
+    plan.add(
+        {fmt::format("group '{}' has no compiled kernels: call hamel::add_group<...>() once, or "
+                     "use simulate<Scheme, Retraction>(system)",
+                     system.group.name)});
   } else if (registry_->retraction(system.group.name, config_.retraction) == nullptr) {
     plan.add({unknown_name("retraction of " + system.group.name, config_.retraction,
                            registry_->retractions(system.group.name))});
   } else if (scheme != nullptr && matrix_mistakes.empty()) {
-    const KernelFactory* factory = registry_->kernel(
-        system.group.name, scheme->adapted ? m : n, config_.retraction, config_.scheme);
+    const KernelFactory* factory = registry_->kernel(system.group.name, scheme->adapted ? m : n,
+                                                     config_.retraction, config_.scheme);
     if (factory != nullptr) plan.kernel = *factory;
-    else plan.add({fmt::format("no kernel for {} with {} and {}", system.group.name,
-                               config_.retraction, config_.scheme)});
+    else
+      plan.add({fmt::format("no kernel for {} with {} and {}", system.group.name,
+                            config_.retraction, config_.scheme)});
   }
 
   const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
   if (rows * static_cast<double>(columns_of(system).size()) > kMaxNumbers) {
-    plan.add({fmt::format("every: {:.3g} rows would be recorded, more than memory holds; record "
-                          "every {:.0f} steps or more", rows,
-                          std::ceil(rows * static_cast<double>(config_.every) *
-                                    static_cast<double>(columns_of(system).size()) / kMaxNumbers))});
+    plan.add(
+        {fmt::format("every: {:.3g} rows would be recorded, more than memory holds; record "
+                     "every {:.0f} steps or more",
+                     rows,
+                     std::ceil(rows * static_cast<double>(config_.every) *
+                               static_cast<double>(columns_of(system).size()) / kMaxNumbers))});
   }
   if (!plan.mistakes.empty()) return plan;
 
@@ -308,8 +316,8 @@ Simulation::Plan Simulation::plan() const {
       datum - (by_velocity ? velocity : Eigen::VectorXd(system.inertia * velocity));
   if (dropped.norm() > 1e-12 * datum.norm()) {
     plan.notes.push_back(fmt::format("the start's {} was projected onto {}: dropped ({})",
-                                     by_velocity ? "velocity" : "momentum", by_velocity ? "d" : "d*",
-                                     join(to_vector(dropped))));
+                                     by_velocity ? "velocity" : "momentum",
+                                     by_velocity ? "d" : "d*", join(to_vector(dropped))));
   }
   start.velocity = to_vector(velocity);
   start.momentum.clear();

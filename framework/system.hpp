@@ -49,7 +49,8 @@ using ExactFlow = std::function<std::pair<std::vector<double>, std::vector<doubl
 /// A number that the exact motion keeps.
 struct Invariant {
   std::string name;
-  std::function<double(std::span<const double> coordinates, std::span<const double> velocity)> value;
+  std::function<double(std::span<const double> coordinates, std::span<const double> velocity)>
+      value;
 };
 
 /// A system with its parameters set and its type erased.
@@ -102,7 +103,8 @@ struct FieldWriter {
   }
   template <int N>
   void operator()(const char* name, Vec<N>& value, const char*, const char* = "") {
-    if (auto it = given.find(name); it != given.end()) value = Eigen::Map<const Vec<N>>(it->second.data());
+    if (auto it = given.find(name); it != given.end())
+      value = Eigen::Map<const Vec<N>>(it->second.data());
   }
 };
 

@@ -23,8 +23,7 @@ struct At {
   typename G::template Element<double> f;
   Mat<n, n> right;  // dR tau_z
 
-  explicit At(const Vec<n>& point)
-      : z(point), f(Tau::tau(point)), right(Tau::dtau_right(point)) {}
+  explicit At(const Vec<n>& point) : z(point), f(Tau::tau(point)), right(Tau::dtau_right(point)) {}
 
   /// Ad_f^T m.
   Vec<n> pull(const Vec<n>& m) const { return G::Ad_transpose(f, m); }
@@ -43,8 +42,7 @@ struct At {
   /// (d): derivative of dL^T mu, given m = Ad_{f^-1}^T mu.
   Mat<n, n> left_transpose_derivative(const Vec<n>& m) const {
     const Vec<n> p = right.transpose() * m;
-    const Mat<n, n> inner =
-        Tau::dtau_right_inverse_transpose_derivative(z, p) + G::coad(m) * right;
+    const Mat<n, n> inner = Tau::dtau_right_inverse_transpose_derivative(z, p) + G::coad(m) * right;
     return -right.transpose() * inner;
   }
 };

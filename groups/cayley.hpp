@@ -94,7 +94,8 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
   static VecT<T, 3> dtau_right_inverse_transpose(const VecT<T, 3>& xi, const VecT<T, 3>& p) {
     const VecT<T, 3> h = 0.5 * xi;
     const T d = h.dot(p);
-    return {p[0] + h[1] * p[2] - h[2] * p[1] + d * h[0], p[1] + h[2] * p[0] - h[0] * p[2] + d * h[1],
+    return {p[0] + h[1] * p[2] - h[2] * p[1] + d * h[0],
+            p[1] + h[2] * p[0] - h[0] * p[2] + d * h[1],
             p[2] + h[0] * p[1] - h[1] * p[0] + d * h[2]};
   }
   /// (omega.p I + omega p^T)/4 - p^/2.

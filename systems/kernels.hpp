@@ -23,8 +23,8 @@ using Schemes = TypeList<Lift, Balance, Boxed, BoxedLiteral, Unadapted>;
 
 template <class Tau>
 RetractionInfo retraction_info() {
-  return {Tau::name(), Tau::Group::name(), Tau::formula(), Tau::domain(), Tau::symmetric,
-          Tau::one_parameter};
+  return {Tau::name(),   Tau::Group::name(), Tau::formula(),
+          Tau::domain(), Tau::symmetric,     Tau::one_parameter};
 }
 
 template <class Scheme>
@@ -107,9 +107,8 @@ template <class Scheme, class... Gs>
 void add_scheme(Registry& registry) {
   registry.add(scheme_info<Scheme>());
   const auto of_group = [&]<class G>(std::type_identity<G>) {
-    RetractionsOf<G>::type::for_each([&]<class Tau>(std::type_identity<Tau>) {
-      add_kernels<Scheme, Tau, kRunTime>(registry);
-    });
+    RetractionsOf<G>::type::for_each(
+        [&]<class Tau>(std::type_identity<Tau>) { add_kernels<Scheme, Tau, kRunTime>(registry); });
   };
   (of_group(std::type_identity<Gs>{}), ...);
 }

@@ -42,8 +42,7 @@ class Reconstruction {
                  a3 = 10.0 / 3 * h * (x3 - 2 * x2 + x1);
     const Vec<n> c1 = G::ad(a1) * a2;
     const Vec<n> c2 = -(G::ad(a1) * Vec<n>(2 * a3 + c1)) / 60;
-    const Vec<n> w =
-        a1 + a3 / 12 + G::ad(Vec<n>(-20 * a1 - a3 + c1)) * Vec<n>(a2 + c2) / 240;
+    const Vec<n> w = a1 + a3 / 12 + G::ad(Vec<n>(-20 * a1 - a3 + c1)) * Vec<n>(a2 + c2) / 240;
     g_ = G::normalise(G::compose(g_, Exp<G>::tau(Vec<n>(-w))));
   }
 

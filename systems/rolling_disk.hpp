@@ -19,10 +19,10 @@ namespace hamel {
 
 struct RollingDisk {
   using Group = Product<SE2, SO2>;
-  double mass = 1.0;           // kg
-  double radius = 0.5;         // m
-  double spin_inertia = 0.125;   // kg m^2, about the axle
-  double yaw_inertia = 0.0625;   // kg m^2, about the vertical
+  double mass = 1.0;            // kg
+  double radius = 0.5;          // m
+  double spin_inertia = 0.125;  // kg m^2, about the axle
+  double yaw_inertia = 0.0625;  // kg m^2, about the vertical
 
   static std::string name() { return "rolling_disk"; }
   static std::string summary() { return "upright disk that rolls on a plane"; }
@@ -41,9 +41,7 @@ struct RollingDisk {
     f("spin_inertia", spin_inertia, "kg m^2", "moment about the axle");
     f("yaw_inertia", yaw_inertia, "kg m^2", "moment about the vertical");
   }
-  Mat<4, 4> inertia() const {
-    return Vec<4>(yaw_inertia, mass, mass, spin_inertia).asDiagonal();
-  }
+  Mat<4, 4> inertia() const { return Vec<4>(yaw_inertia, mass, mass, spin_inertia).asDiagonal(); }
   Mat<2, 4> constraints() const { return Mat<2, 4>{{0, 1, 0, -radius}, {0, 0, 1, 0}}; }
   Start start() const {
     return {.configuration = {}, .velocity = {0.7, 2 * radius, 0, 2}, .momentum = {}};

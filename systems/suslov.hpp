@@ -35,7 +35,8 @@ struct Suslov {
   static std::string summary() { return "rigid body with one forbidden body axis"; }
   static std::string formula() { return "SO(3), l = 1/2 Omega' I Omega, n.Omega = 0"; }
   static std::string known() {
-    return "Omega in closed form (heteroclinic, sech and tanh; constant when n is a principal axis), "
+    return "Omega in closed form (heteroclinic, sech and tanh; constant when n is a principal "
+           "axis), "
            "R by quadrature at round-off; invariants: energy";
   }
   static std::string source() { return "Suslov 1902; Fedorov and Kozlov 1995"; }

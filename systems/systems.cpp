@@ -17,12 +17,11 @@ Registry make_registry() {
   add_rn(registry);
   add_se2_so2(registry);
 
-  Schemes::for_each([&]<class Scheme>(std::type_identity<Scheme>) {
-    registry.add(scheme_info<Scheme>());
-  });
-  registry.add(SolverInfo{Newton::name(),
-                          "Newton with the Jacobian kept while it contracts, compiled into the kernels",
-                          "Kelley 2003", nullptr});
+  Schemes::for_each(
+      [&]<class Scheme>(std::type_identity<Scheme>) { registry.add(scheme_info<Scheme>()); });
+  registry.add(SolverInfo{
+      Newton::name(), "Newton with the Jacobian kept while it contracts, compiled into the kernels",
+      "Kelley 2003", nullptr});
 
   add_system<Suslov>(registry);
   add_system<ChaplyginSleigh>(registry);

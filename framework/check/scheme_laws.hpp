@@ -56,7 +56,8 @@ inline OrderMeasurement measure_order(Simulation simulation, double step, double
     out.step.push_back(step);
     out.configuration.push_back(result.exact_error_final + missed);
     const auto velocity_error = result.trajectory.index("exact_velocity_error");
-    out.velocity.push_back(result.trajectory.at(result.trajectory.rows() - 1, velocity_error) + missed);
+    out.velocity.push_back(result.trajectory.at(result.trajectory.rows() - 1, velocity_error) +
+                           missed);
   }
   return out;
 }
@@ -95,7 +96,8 @@ inline double constraint_floor(const Result& result) {
   for (const Composition& c : compositions()) {
     if (c.name == result.config.compose) smallest = std::abs(c.coefficients.back());
   }
-  return 8 * std::numeric_limits<double>::epsilon() * size / std::abs(smallest * result.config.step);
+  return 8 * std::numeric_limits<double>::epsilon() * size /
+         std::abs(smallest * result.config.step);
 }
 
 /// What to run, and where it is in its asymptotic regime.
@@ -118,8 +120,12 @@ struct SchemeCase {
 inline Simulation simulation_of(const Registry& registry, const SchemeCase& c) {
   Simulation simulation(registry, c.system);
   for (const auto& [name, value] : c.parameters) simulation.set(name, value);
-  return simulation.start(c.start).scheme(c.scheme).s(c.s).retraction(c.retraction).step(c.step).until(
-      c.until);
+  return simulation.start(c.start)
+      .scheme(c.scheme)
+      .s(c.s)
+      .retraction(c.retraction)
+      .step(c.step)
+      .until(c.until);
 }
 
 /// The laws of a run whose scheme and retraction say `claim` and `adapted`.
@@ -134,8 +140,8 @@ inline LawReport check_scheme(const Simulation& simulation, ClaimedOrder claim, 
   report.push_back({"group defect", result.group_defect_max, 1e-14});
   const bool constrained = result.system.constraints.rows() > 0;
   if (adapted) {
-    report.push_back({"constraint residual, recovered from the configurations", result.constraint_max,
-                      constraint_floor(result)});
+    report.push_back({"constraint residual, recovered from the configurations",
+                      result.constraint_max, constraint_floor(result)});
   } else if (constrained && generic) {
     report.push_back({"leaves the constraint, as it says", 1e-6 / result.constraint_max, 1});
   }

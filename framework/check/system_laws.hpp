@@ -33,7 +33,8 @@ inline Start admissible_start(const SystemModel& model) {
   const auto& given = start.velocity.empty() ? start.momentum : start.velocity;
   if (static_cast<int>(given.size()) != model.group.dim) return start;
   const Eigen::VectorXd datum = Eigen::Map<const Eigen::VectorXd>(given.data(), model.group.dim);
-  const Eigen::VectorXd mu = start.velocity.empty() ? datum : Eigen::VectorXd(model.inertia * datum);
+  const Eigen::VectorXd mu =
+      start.velocity.empty() ? datum : Eigen::VectorXd(model.inertia * datum);
   const Eigen::MatrixXd e = hamel_frame(model.inertia, model.constraints);
   const Eigen::VectorXd xi = e * (e.transpose() * mu);
   start.velocity.assign(xi.begin(), xi.end());
@@ -57,9 +58,10 @@ inline LawReport check_system(const SystemModel& model, double until = 5) {
   const Eigen::MatrixXd& rows = model.constraints;
   report.push_back({"inertia symmetric", (inertia - inertia.transpose()).norm() / inertia.norm(),
                     check::algebraic});
-  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(inertia).eigenvalues();
-  report.push_back({"inertia positive definite",
-                    values.minCoeff() > 1e-14 * values.maxCoeff() ? 0.0 : 1.0, 0});
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(inertia).eigenvalues();
+  report.push_back(
+      {"inertia positive definite", values.minCoeff() > 1e-14 * values.maxCoeff() ? 0.0 : 1.0, 0});
   if (rows.rows() > 0) {
     const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
     report.push_back({"constraint rows independent",
@@ -69,21 +71,23 @@ inline LawReport check_system(const SystemModel& model, double until = 5) {
   if (start.velocity.empty()) return report;
   const auto& given = model.start.velocity;
   if (!given.empty()) {
-    report.push_back({"the default start is admissible",
-                      check::difference(given, start.velocity), check::algebraic});
+    report.push_back({"the default start is admissible", check::difference(given, start.velocity),
+                      check::algebraic});
   }
-  report.push_back({"the default configuration is an element",
-                    check::difference(model.group.element(start.configuration), start.configuration),
-                    check::algebraic});
+  report.push_back(
+      {"the default configuration is an element",
+       check::difference(model.group.element(start.configuration), start.configuration),
+       check::algebraic});
   if (!model.exact) return report;
 
   for (const double sign : {1.0, -1.0}) {
     const std::string direction = sign > 0 ? "forwards" : "backwards";
     const ExactFlow flow = model.exact(start);
     const auto [g0, xi0] = flow(0);
-    report.push_back({"exact motion starts at the start, " + direction,
-                      check::difference(g0, start.configuration) +
-                          check::difference(xi0, start.velocity), check::algebraic});
+    report.push_back(
+        {"exact motion starts at the start, " + direction,
+         check::difference(g0, start.configuration) + check::difference(xi0, start.velocity),
+         check::algebraic});
     check::Largest residual, element;
     std::vector<check::Largest> drift(model.invariants.size());
     for (int i = 1; i <= 50; ++i) {
@@ -97,8 +101,10 @@ inline LawReport check_system(const SystemModel& model, double until = 5) {
         drift[j](std::abs(model.invariants[j].value(g, xi) - at_start) / (1 + std::abs(at_start)));
       }
     }
-    report.push_back({"A xi = 0 along the exact motion, " + direction, residual.value, check::algebraic});
-    report.push_back({"the exact motion stays in the group, " + direction, element.value, check::algebraic});
+    report.push_back(
+        {"A xi = 0 along the exact motion, " + direction, residual.value, check::algebraic});
+    report.push_back(
+        {"the exact motion stays in the group, " + direction, element.value, check::algebraic});
     for (size_t j = 0; j < drift.size(); ++j) {
       report.push_back({"exact motion keeps '" + model.invariants[j].name + "', " + direction,
                         drift[j].value, check::algebraic});
@@ -122,7 +128,8 @@ inline LawReport check_system(const Registry& registry, const std::string& name,
     for (double& x : changed[field.name]) x *= 1.25;
   }
   const SystemModel again = info->make(as_shown), other = info->make(changed);
-  double lost = (again.inertia - model.inertia).norm() + (again.constraints - model.constraints).norm();
+  double lost =
+      (again.inertia - model.inertia).norm() + (again.constraints - model.constraints).norm();
   for (const Field& field : other.fields) {
     lost += check::difference(field.value, changed[field.name]);
   }
@@ -141,8 +148,14 @@ inline LawReport check_system(const Registry& registry, const std::string& name,
       if (retraction.empty() && registry.retraction(info->group.name, r)->symmetric) retraction = r;
     }
     Simulation run(registry, name);
-    const Result result = run.scheme("lift").s(0.5).retraction(retraction).compose("suzuki_umeno8")
-                              .step(0.01).until(until).every(1000000).run();
+    const Result result = run.scheme("lift")
+                              .s(0.5)
+                              .retraction(retraction)
+                              .compose("suzuki_umeno8")
+                              .step(0.01)
+                              .until(until)
+                              .every(1000000)
+                              .run();
     report.push_back({"exact motion against lift composed to order 8",
                       result.status.ok ? result.exact_error_final + result.exact_velocity_error_max
                                        : std::numeric_limits<double>::quiet_NaN(),
@@ -175,12 +188,18 @@ LawReport check_system(const S& system, double until = 5) {
       for (int k = -3; k <= 3; ++k) samples.push_back(flow(sign * (centre + k * d)));
       const auto g = G::from_coordinates(samples[3].first);
       const Vec<n> xi = Eigen::Map<const Vec<n>>(samples[3].second.data());
-      const auto at = [&](double t) -> size_t { return static_cast<size_t>(std::lround(sign * t / d) + 3); };
+      const auto at = [&](double t) -> size_t {
+        return static_cast<size_t>(std::lround(sign * t / d) + 3);
+      };
       const Vec<n> acceleration = check::derivative(
-          [&](double t) -> Vec<n> { return Eigen::Map<const Vec<n>>(samples[at(t)].second.data()); }, d);
+          [&](double t) -> Vec<n> {
+            return Eigen::Map<const Vec<n>>(samples[at(t)].second.data());
+          },
+          d);
       const Vec<n> velocity = check::derivative(
           [&](double t) -> Vec<n> {
-            return R::tau_inverse(G::compose(G::inverse(g), G::from_coordinates(samples[at(t)].first)));
+            return R::tau_inverse(
+                G::compose(G::inverse(g), G::from_coordinates(samples[at(t)].first)));
           },
           d);
       const Vec<n> mu = inertia * xi;
@@ -188,8 +207,8 @@ LawReport check_system(const S& system, double until = 5) {
       dynamics((e.transpose() * balance).norm() / (1 + mu.norm() * xi.norm()));
       kinematics((velocity - xi).norm() / (1 + xi.norm()));
     }
-    report.push_back({"E'(I xi' - ad*_xi I xi) = 0 along the exact motion, " + direction, dynamics.value,
-                      check::differentiated});
+    report.push_back({"E'(I xi' - ad*_xi I xi) = 0 along the exact motion, " + direction,
+                      dynamics.value, check::differentiated});
     report.push_back({"g' = g xi along the exact motion, " + direction, kinematics.value,
                       check::differentiated});
   }

@@ -54,9 +54,7 @@ struct Balance {
       return x;
     }
     double scale_squared() const { return 4 * mu_.squaredNorm(); }
-    Vec<n> xi(const Unknown& x) const {
-      return h_ * problem_.velocity(x.head(directions()));
-    }
+    Vec<n> xi(const Unknown& x) const { return h_ * problem_.velocity(x.head(directions())); }
 
     void residual(const Unknown& x, Unknown& f) const {
       const Ends e(*this, x);
@@ -82,8 +80,8 @@ struct Balance {
 
     void finish(const Unknown& x, Element& increment, Momentum& mu) const {
       const Vec<n> step = xi(x);
-      increment = G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))),
-                             Tau::tau(Vec<n>((1 - s_) * step)));
+      increment =
+          G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), Tau::tau(Vec<n>((1 - s_) * step)));
       mu = x.tail(directions());
     }
 

@@ -14,8 +14,8 @@ struct ClaimedOrder {
 
 /// The step of a scheme, for one problem and one retraction: an equation F(x) = 0 and an update.
 template <class Step>
-concept SchemeStep = requires(Step& step, const Step& done, const typename Step::Momentum& mu, double h,
-                              const typename Step::Unknown& x, typename Step::Unknown& f,
+concept SchemeStep = requires(Step& step, const Step& done, const typename Step::Momentum& mu,
+                              double h, const typename Step::Unknown& x, typename Step::Unknown& f,
                               typename Step::Jacobian& j, typename Step::Momentum& next,
                               typename Step::Element& increment) {
   // Starts a step of size h (of either sign) from the momentum mu.

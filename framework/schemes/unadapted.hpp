@@ -12,7 +12,9 @@ namespace hamel {
 
 struct Unadapted : Lift {
   static std::string name() { return "unadapted"; }
-  static std::string formula() { return "lift with d = the whole algebra; the constraint is ignored"; }
+  static std::string formula() {
+    return "lift with d = the whole algebra; the constraint is ignored";
+  }
   static std::string source() { return "Vivek, Martin de Diego, Banavar: the T*G integrator"; }
   static constexpr bool adapted = false;
 };

@@ -54,7 +54,8 @@ bool newton(const F& equations, double scale, double tolerance, Pair& x) {
     const double det = 1 / (e.j11 * e.j22 - e.j12 * e.j21);
     double f1 = e.f1, f2 = e.f2;
     for (int chord = 0; chord < 20; ++chord) {
-      const Pair trial = {x.a - det * (e.j22 * f1 - e.j12 * f2), x.b - det * (e.j11 * f2 - e.j21 * f1)};
+      const Pair trial = {x.a - det * (e.j22 * f1 - e.j12 * f2),
+                          x.b - det * (e.j11 * f2 - e.j21 * f1)};
       const Equations at = equations(trial, false);
       const double next = std::sqrt(at.f1 * at.f1 + at.f2 * at.f2) / scale;
       if (!(next < residual)) return residual <= 1e-14;
@@ -99,7 +100,8 @@ struct HandSuslov {
   bool step_cayley() {
     // p = I Omega, x = h (a, b, 0): (p + x cross p/2 + x (x.p)/4) on rows 1, 2.
     const auto equations = [this](Pair w, bool jacobian) {
-      const double p1 = i11 * w.a + i12 * w.b, p2 = i12 * w.a + i22 * w.b, p3 = i13 * w.a + i23 * w.b;
+      const double p1 = i11 * w.a + i12 * w.b, p2 = i12 * w.a + i22 * w.b,
+                   p3 = i13 * w.a + i23 * w.b;
       const double x = h * w.a, y = h * w.b, d = x * p1 + y * p2;
       Equations e{p1 + y * p3 / 2 + x * d / 4 - mu1, p2 - x * p3 / 2 + y * d / 4 - mu2, 0, 0, 0, 0};
       if (jacobian) {
@@ -128,9 +130,11 @@ struct HandSuslov {
   bool step_exp() {
     // (dR^-1)^T p = p + x cross p/2 + c x cross (x cross p), c = (1 - g)/t^2, g = (t/2) cot(t/2), t = |x|.
     const auto equations = [this](Pair w, bool jacobian) {
-      const double p1 = i11 * w.a + i12 * w.b, p2 = i12 * w.a + i22 * w.b, p3 = i13 * w.a + i23 * w.b;
+      const double p1 = i11 * w.a + i12 * w.b, p2 = i12 * w.a + i22 * w.b,
+                   p3 = i13 * w.a + i23 * w.b;
       const double x = h * w.a, y = h * w.b, t = x * x + y * y, d = x * p1 + y * p2;
-      const double c = 1. / 12 + t * (1. / 720 + t * (1. / 30240 + t * (1. / 1209600 + t / 47900160)));
+      const double c =
+          1. / 12 + t * (1. / 720 + t * (1. / 30240 + t * (1. / 1209600 + t / 47900160)));
       const double u1 = x * d - t * p1, u2 = y * d - t * p2;  // x cross (x cross p) = x (x.p) - t p
       Equations e{p1 + y * p3 / 2 + c * u1 - mu1, p2 - x * p3 / 2 + c * u2 - mu2, 0, 0, 0, 0};
       if (jacobian) {
@@ -148,7 +152,8 @@ struct HandSuslov {
     guess.push(w);
     const double p1 = i11 * w.a + i12 * w.b, p2 = i12 * w.a + i22 * w.b, p3 = i13 * w.a + i23 * w.b;
     const double x = h * w.a, y = h * w.b, t = x * x + y * y, d = x * p1 + y * p2;
-    const double c = 1. / 12 + t * (1. / 720 + t * (1. / 30240 + t * (1. / 1209600 + t / 47900160)));
+    const double c =
+        1. / 12 + t * (1. / 720 + t * (1. / 30240 + t * (1. / 1209600 + t / 47900160)));
     mu1 = p1 - y * p3 / 2 + c * (x * d - t * p1);
     mu2 = p2 + x * p3 / 2 + c * (y * d - t * p2);
     const double s = 1 - t / 6 * (1 - t / 20 * (1 - t / 42 * (1 - t / 72)));
@@ -231,7 +236,8 @@ struct HandSleigh {
       Equations e{f.a - mu1, f.b - mu2, 0, 0, 0, 0};
       if (jacobian) {
         const double w = h * u.a, v = h * u.b, ma = mass * offset, t = w * w, c = series(t);
-        const double dc = 2 * h * w * (1. / 720 + t * (2. / 30240 + t * (3. / 1209600 + t * 4 / 47900160)));
+        const double dc =
+            2 * h * w * (1. / 720 + t * (2. / 30240 + t * (3. / 1209600 + t * 4 / 47900160)));
         const double p2 = mass * u.b;
         e.j11 = about_blade - v * ma / 2 + (c * h + dc * w) * v * p2;
         e.j12 = -h * ma * u.a / 2 + c * w * 2 * h * p2;

@@ -17,9 +17,9 @@ constexpr long kSteps = 2000;
 const std::vector<double> kFullInertia = {2, 0.3, 0.5, 3, 0.4, 4};
 
 void per_step(benchmark::State& state) {
-  state.counters["per_step"] =
-      benchmark::Counter(static_cast<double>(kSteps), benchmark::Counter::kIsIterationInvariantRate |
-                                                          benchmark::Counter::kInvert);
+  state.counters["per_step"] = benchmark::Counter(
+      static_cast<double>(kSteps),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 template <class Body>
@@ -58,7 +58,8 @@ void add_hand(const std::string& name, Step step) {
 }
 
 void add(const std::string& name, const Simulation& simulation) {
-  benchmark::RegisterBenchmark(name.c_str(), [simulation](benchmark::State& s) { library(s, simulation); });
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [simulation](benchmark::State& s) { library(s, simulation); });
 }
 
 }  // namespace
@@ -69,8 +70,10 @@ int main(int argc, char** argv) {
   add_hand("suslov/cayley/hand_written",
            [](benchmark::State& s) { hand(s, &HandSuslov::step_cayley, 1, 0.5); });
   add("suslov/cayley/typed", simulate<Lift, Cayley>(body()).start(kSuslovStart).s(0));
-  add("suslov/cayley/named", simulate("suslov").set("inertia", kFullInertia).start(kSuslovStart).s(0));
-  add("suslov/cayley/named, s=0.5", simulate("suslov").set("inertia", kFullInertia).start(kSuslovStart));
+  add("suslov/cayley/named",
+      simulate("suslov").set("inertia", kFullInertia).start(kSuslovStart).s(0));
+  add("suslov/cayley/named, s=0.5",
+      simulate("suslov").set("inertia", kFullInertia).start(kSuslovStart));
   add_hand("suslov/exp/hand_written",
            [](benchmark::State& s) { hand(s, &HandSuslov::step_exp, 1, 0.5); });
   add("suslov/exp/typed", simulate<Lift, Exp>(body()).start(kSuslovStart).s(0));

@@ -80,8 +80,10 @@ TEST_F(BadInput, EmptyLists) {
 
 TEST_F(BadInput, AllMistakesAtOnce) {
   refused({"suslov", "--scheme", "lfit", "--s", "2", "--velocity", "1"}, "did you mean 'lift'?");
-  const Outcome o = run({"run", "suslov", "--scheme", "lfit", "--s", "2", "--velocity", "1", "-o", "a.txt"});
-  for (const char* piece : {"lift", "s: got 2", "velocity: got 1", ".txt"}) EXPECT_THAT(o.err, HasSubstr(piece));
+  const Outcome o =
+      run({"run", "suslov", "--scheme", "lfit", "--s", "2", "--velocity", "1", "-o", "a.txt"});
+  for (const char* piece : {"lift", "s: got 2", "velocity: got 1", ".txt"})
+    EXPECT_THAT(o.err, HasSubstr(piece));
 }
 
 TEST_F(BadInput, Outputs) {

@@ -26,7 +26,8 @@ TEST_F(List, EveryKind) {
     const Json table = Json::parse(json.out);
     ASSERT_TRUE(table.is_array()) << kind;
     EXPECT_GE(table.size(), 1u);
-    for (const Json& row : table) EXPECT_THAT(text.out, HasSubstr(row.at("name").get<std::string>()));
+    for (const Json& row : table)
+      EXPECT_THAT(text.out, HasSubstr(row.at("name").get<std::string>()));
   }
 }
 
@@ -124,9 +125,10 @@ TEST_F(Help, OfEveryCommandHasExamples) {
   }
   // Every option that the contract names is in the help of run.
   const std::string help = run({"run", "--help"}).out;
-  for (const char* option : {"--set", "--configuration", "--velocity", "--momentum", "--scheme", "--s", "--retraction",
-                             "--solver", "--tolerance", "--compose", "--step", "--until", "--every", "-o", "--report",
-                             "--config", "--json", "--quiet"}) {
+  for (const char* option :
+       {"--set", "--configuration", "--velocity", "--momentum", "--scheme", "--s", "--retraction",
+        "--solver", "--tolerance", "--compose", "--step", "--until", "--every", "-o", "--report",
+        "--config", "--json", "--quiet"}) {
     EXPECT_THAT(help, HasSubstr(option));
   }
   EXPECT_THAT(help, HasSubstr("Exit status"));

@@ -14,7 +14,8 @@ using testing::HasSubstr;
 class LongRuns : public CommandLine {
  protected:
   Json record(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {"run", "suslov", "--momentum", "1,1,0", "--json", "--every", "1"});
+    arguments.insert(arguments.begin(),
+                     {"run", "suslov", "--momentum", "1,1,0", "--json", "--every", "1"});
     const Outcome o = run(arguments);
     EXPECT_EQ(o.status, 0) << o.err;
     return Json::parse(o.out);
@@ -27,16 +28,19 @@ TEST_F(LongRuns, KeepGroupAndConstraint) {
   for (const char* scheme : {"lift", "balance"}) {
     for (const char* retraction : {"exp", "cayley"}) {
       for (const char* s : {"0", "0.5"}) {
-        const Json r = record({"--until", "1800", "--scheme", scheme, "--retraction", retraction, "--s", s});
+        const Json r =
+            record({"--until", "1800", "--scheme", scheme, "--retraction", retraction, "--s", s});
         EXPECT_EQ(r["steps"], 180000);
         const Json& d = r["diagnostics"];
         EXPECT_LE(d["group_defect_max"], 1e-14) << scheme << " " << retraction << " " << s;
         EXPECT_LE(d["constraint_max"], 2e-13) << scheme << " " << retraction << " " << s;
         if (scheme == std::string("lift") || s == std::string("0.5")) {
-          EXPECT_LE(d["exact_velocity_error_max"], 1e-12) << scheme << " " << retraction << " " << s;
+          EXPECT_LE(d["exact_velocity_error_max"], 1e-12)
+              << scheme << " " << retraction << " " << s;
           EXPECT_LE(d["energy_error_max"], 1e-12) << scheme << " " << retraction << " " << s;
         } else {
-          EXPECT_GE(d["exact_velocity_error_max"], 0.1) << "balance at s = 0 drifts to a principal axis";
+          EXPECT_GE(d["exact_velocity_error_max"], 0.1)
+              << "balance at s = 0 drifts to a principal axis";
         }
       }
     }
@@ -45,7 +49,8 @@ TEST_F(LongRuns, KeepGroupAndConstraint) {
 
 TEST_F(LongRuns, UnadaptedLeavesTheConstraintWithin18s) {
   const Json r = record({"--until", "18", "--scheme", "unadapted"});
-  EXPECT_GE(r["diagnostics"]["constraint_max"], 5e-3);  // of |Omega| = 1.005, and ten decades above the floor
+  EXPECT_GE(r["diagnostics"]["constraint_max"],
+            5e-3);  // of |Omega| = 1.005, and ten decades above the floor
   EXPECT_LE(r["diagnostics"]["energy_error_max"], 1e-3) << "as a free body it is fine";
 }
 
@@ -58,9 +63,11 @@ TEST_F(LongRuns, BoxedDriftsWithGoodEnergy) {
 TEST_F(LongRuns, ReproduceWritesItsFiles) {
   const Outcome o = run({"reproduce", "-o", "figures"});
   ASSERT_EQ(o.status, 0) << o.err;
-  const std::string summary = contents(file("figures/summary.txt")), csv = contents(file("figures/readings.csv"));
-  for (const char* piece : {"Figure 1", "Figure 2", "Suslov with a full inertia", "Chaplygin sleigh", "Rolling disk",
-                            "What the paper's boxes needed", "1.016 rad instead of 0.01005 rad", "[ok]"}) {
+  const std::string summary = contents(file("figures/summary.txt")),
+                    csv = contents(file("figures/readings.csv"));
+  for (const char* piece :
+       {"Figure 1", "Figure 2", "Suslov with a full inertia", "Chaplygin sleigh", "Rolling disk",
+        "What the paper's boxes needed", "1.016 rad instead of 0.01005 rad", "[ok]"}) {
     EXPECT_THAT(summary, HasSubstr(piece));
   }
   EXPECT_THAT(summary, testing::Not(HasSubstr("[failed]")));

@@ -58,7 +58,8 @@ class CommandLine : public testing::Test {
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   std::vector<std::string> files() const {
     std::vector<std::string> out;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) out.push_back(entry.path().filename());
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      out.push_back(entry.path().filename());
     return out;
   }
 

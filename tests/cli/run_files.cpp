@@ -29,7 +29,8 @@ Table read_csv(const std::string& text) {
   return out;
 }
 
-const std::vector<std::string> measured = {"energy", "energy_error", "constraint", "group_defect", "iterations", "residual"};
+const std::vector<std::string> measured = {"energy",       "energy_error", "constraint",
+                                           "group_defect", "iterations",   "residual"};
 
 /// t, the element, xi, the measurements, in the contract's order; what was added comes after.
 void expect_columns(const Table& table, const std::vector<std::string>& element, int n) {
@@ -38,7 +39,9 @@ void expect_columns(const Table& table, const std::vector<std::string>& element,
   for (int i = 1; i <= n; ++i) expected.push_back("xi" + std::to_string(i));
   expected.insert(expected.end(), measured.begin(), measured.end());
   ASSERT_GE(table.columns.size(), expected.size());
-  EXPECT_EQ(std::vector<std::string>(table.columns.begin(), table.columns.begin() + static_cast<long>(expected.size())), expected);
+  EXPECT_EQ(std::vector<std::string>(table.columns.begin(),
+                                     table.columns.begin() + static_cast<long>(expected.size())),
+            expected);
 }
 
 TEST_F(Files, CsvColumnsOfEverySystem) {
@@ -46,13 +49,15 @@ TEST_F(Files, CsvColumnsOfEverySystem) {
     EXPECT_EQ(run({"run", system, "--until", "0.1", "-o", "a.csv", "--quiet"}).status, 0);
     return read_csv(contents(file("a.csv")));
   };
-  expect_columns(table("suslov"), {"R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"}, 3);
+  expect_columns(table("suslov"), {"R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"},
+                 3);
   expect_columns(table("chaplygin_sleigh"), {"theta", "x", "y"}, 3);
   expect_columns(table("rolling_disk"), {"1_theta", "1_x", "1_y", "2_theta"}, 4);
 }
 
 TEST_F(Files, CsvNumbersReadBackExactly) {
-  ASSERT_EQ(run({"run", "suslov", "--until", "1", "-o", "a.csv", "-o", "a.json", "--quiet"}).status, 0);
+  ASSERT_EQ(run({"run", "suslov", "--until", "1", "-o", "a.csv", "-o", "a.json", "--quiet"}).status,
+            0);
   const Table table = read_csv(contents(file("a.csv")));
   ASSERT_EQ(table.cells.size(), 101u);
   for (const auto& row : table.cells) {
@@ -80,15 +85,21 @@ TEST_F(Files, CsvNumbersReadBackExactly) {
 }
 
 TEST_F(Files, UnwrappedAngles) {
-  ASSERT_EQ(run({"run", "rolling_disk", "--until", "20", "--every", "100", "-o", "a.csv", "--quiet"}).status, 0);
+  ASSERT_EQ(
+      run({"run", "rolling_disk", "--until", "20", "--every", "100", "-o", "a.csv", "--quiet"})
+          .status,
+      0);
   const Table table = read_csv(contents(file("a.csv")));
   EXPECT_NEAR(std::stod(table.cells.back()[1]), 0.7 * 20, 0.01);
   EXPECT_NEAR(std::stod(table.cells.back()[4]), 2 * 20, 0.01);
 }
 
 TEST_F(Files, Every) {
-  for (const auto& [every, rows] : {std::pair{"1", 11u}, {"3", 5u}, {"5", 3u}, {"10", 2u}, {"1000", 2u}}) {
-    ASSERT_EQ(run({"run", "suslov", "--until", "0.1", "--every", every, "-o", "a.csv", "--quiet"}).status, 0);
+  for (const auto& [every, rows] :
+       {std::pair{"1", 11u}, {"3", 5u}, {"5", 3u}, {"10", 2u}, {"1000", 2u}}) {
+    ASSERT_EQ(
+        run({"run", "suslov", "--until", "0.1", "--every", every, "-o", "a.csv", "--quiet"}).status,
+        0);
     const Table table = read_csv(contents(file("a.csv")));
     EXPECT_EQ(table.cells.size(), rows) << every;
     EXPECT_EQ(std::stod(table.cells.front()[0]), 0);
@@ -98,7 +109,10 @@ TEST_F(Files, Every) {
 
 TEST_F(Files, SeveralOutputsAndOverwriting) {
   std::ofstream(file("a.csv")) << "old";
-  ASSERT_EQ(run({"run", "suslov", "--until", "0.1", "-o", "a.csv", "--output", "b.csv", "-o", "c.json", "--quiet"}).status, 0);
+  ASSERT_EQ(run({"run", "suslov", "--until", "0.1", "-o", "a.csv", "--output", "b.csv", "-o",
+                 "c.json", "--quiet"})
+                .status,
+            0);
   EXPECT_THAT(files(), testing::UnorderedElementsAre("a.csv", "b.csv", "c.json"));
   EXPECT_EQ(contents(file("a.csv")), contents(file("b.csv")));
 }
@@ -133,7 +147,8 @@ offset = 0.4
   EXPECT_EQ(plain["parameters"]["mass"], 2.0);
   EXPECT_EQ(plain["parameters"]["offset"], 0.4);
   EXPECT_EQ(plain["parameters"]["inertia"], 0.1);
-  const Json over = record({"--scheme", "lift", "--set", "mass=3", "--step", "0.1", "--momentum", "1,2,0"});
+  const Json over =
+      record({"--scheme", "lift", "--set", "mass=3", "--step", "0.1", "--momentum", "1,2,0"});
   EXPECT_EQ(over["scheme"], "lift");
   EXPECT_EQ(over["s"], 0.25);
   EXPECT_EQ(over["steps"], 10);

@@ -23,7 +23,8 @@ class Record : public CommandLine {
 };
 
 /// Keys of contract.md and their types: s string, n number, i integer, o object, a array, ? null too.
-void expect_keys(const Json& object, const std::vector<std::pair<std::string, char>>& keys, const std::string& where) {
+void expect_keys(const Json& object, const std::vector<std::pair<std::string, char>>& keys,
+                 const std::string& where) {
   for (const auto& [key, type] : keys) {
     ASSERT_TRUE(object.contains(key)) << where << key;
     const Json& value = object[key];
@@ -38,15 +39,28 @@ void expect_keys(const Json& object, const std::vector<std::pair<std::string, ch
 }
 
 void expect_contract(const Json& r) {
-  expect_keys(r, {{"system", 's'}, {"group", 's'}, {"scheme", 's'}, {"s", 'n'}, {"retraction", 's'}, {"solver", 's'},
-                  {"compose", 's'}, {"step", 'n'}, {"parameters", 'o'}, {"status", 's'}, {"reason", 's'}, {"steps", 'i'},
-                  {"time", 'n'}, {"final", 'o'}, {"diagnostics", 'o'}, {"solver_stats", 'o'}, {"timing", 'o'},
-                  {"version", 's'}, {"git", 's'}, {"host", 's'}}, "");
-  expect_keys(r["final"], {{"element", 'a'}, {"velocity", 'a'}, {"momentum", 'a'}, {"energy", 'n'}}, "final.");
-  expect_keys(r["diagnostics"], {{"constraint_max", 'n'}, {"holonomic_max", '?'}, {"group_defect_max", 'n'},
-                                 {"energy_error_max", 'n'}, {"exact_error_final", '?'}}, "diagnostics.");
-  expect_keys(r["solver_stats"], {{"iterations_mean", 'n'}, {"iterations_max", 'i'}, {"evaluations_mean", 'n'},
-                                  {"residual_max", 'n'}}, "solver_stats.");
+  expect_keys(r,
+              {{"system", 's'},     {"group", 's'},   {"scheme", 's'},      {"s", 'n'},
+               {"retraction", 's'}, {"solver", 's'},  {"compose", 's'},     {"step", 'n'},
+               {"parameters", 'o'}, {"status", 's'},  {"reason", 's'},      {"steps", 'i'},
+               {"time", 'n'},       {"final", 'o'},   {"diagnostics", 'o'}, {"solver_stats", 'o'},
+               {"timing", 'o'},     {"version", 's'}, {"git", 's'},         {"host", 's'}},
+              "");
+  expect_keys(r["final"], {{"element", 'a'}, {"velocity", 'a'}, {"momentum", 'a'}, {"energy", 'n'}},
+              "final.");
+  expect_keys(r["diagnostics"],
+              {{"constraint_max", 'n'},
+               {"holonomic_max", '?'},
+               {"group_defect_max", 'n'},
+               {"energy_error_max", 'n'},
+               {"exact_error_final", '?'}},
+              "diagnostics.");
+  expect_keys(r["solver_stats"],
+              {{"iterations_mean", 'n'},
+               {"iterations_max", 'i'},
+               {"evaluations_mean", 'n'},
+               {"residual_max", 'n'}},
+              "solver_stats.");
   expect_keys(r["timing"], {{"seconds", 'n'}, {"nanoseconds_per_step", 'n'}}, "timing.");
 }
 
@@ -57,8 +71,9 @@ TEST_F(Record, HasExactlyTheseKeys) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : r.items()) keys.push_back(key);
   EXPECT_THAT(keys, testing::UnorderedElementsAre(
-                        "system", "group", "scheme", "s", "retraction", "solver", "compose", "step", "parameters", "status",
-                        "reason", "steps", "time", "final", "diagnostics", "solver_stats", "timing", "version", "git", "host",
+                        "system", "group", "scheme", "s", "retraction", "solver", "compose", "step",
+                        "parameters", "status", "reason", "steps", "time", "final", "diagnostics",
+                        "solver_stats", "timing", "version", "git", "host",
                         // added to the contract's:
                         "tolerance", "until", "every", "start", "notes", "failure"));
 }
@@ -78,7 +93,8 @@ TEST_F(Record, OfEverySystem) {
   }
   // The element: the matrix, or one for each factor.
   EXPECT_EQ(record({"suslov", "--until", "1"})["final"]["element"].size(), 3u);
-  EXPECT_EQ(record({"chaplygin_sleigh", "--until", "1"})["final"]["element"][2], Json({0.0, 0.0, 1.0}));
+  EXPECT_EQ(record({"chaplygin_sleigh", "--until", "1"})["final"]["element"][2],
+            Json({0.0, 0.0, 1.0}));
   const Json disk = record({"rolling_disk", "--until", "1"})["final"]["element"];
   ASSERT_EQ(disk.size(), 2u);
   EXPECT_EQ(disk[0].size(), 3u);
@@ -86,10 +102,33 @@ TEST_F(Record, OfEverySystem) {
 }
 
 TEST_F(Record, EveryOptionReachesTheRun) {
-  const Json r = record({"suslov", "--set", "inertia=2,0.3,0.5,3,0.4,4", "--set", "normal=0,0,2", "--configuration",
-                         "0,-1,0,1,0,0,0,0,1", "--velocity", "1,0.5,0", "--scheme", "balance", "--s", "0.25", "--retraction",
-                         "exp", "--solver", "newton", "--tolerance", "1e-12", "--compose", "suzuki4", "--step", "0.05",
-                         "--until", "2", "--every", "4"});
+  const Json r = record({"suslov",
+                         "--set",
+                         "inertia=2,0.3,0.5,3,0.4,4",
+                         "--set",
+                         "normal=0,0,2",
+                         "--configuration",
+                         "0,-1,0,1,0,0,0,0,1",
+                         "--velocity",
+                         "1,0.5,0",
+                         "--scheme",
+                         "balance",
+                         "--s",
+                         "0.25",
+                         "--retraction",
+                         "exp",
+                         "--solver",
+                         "newton",
+                         "--tolerance",
+                         "1e-12",
+                         "--compose",
+                         "suzuki4",
+                         "--step",
+                         "0.05",
+                         "--until",
+                         "2",
+                         "--every",
+                         "4"});
   EXPECT_EQ(r["parameters"]["inertia"], Json({2.0, 0.3, 0.5, 3.0, 0.4, 4.0}));
   EXPECT_EQ(r["parameters"]["normal"], Json({0.0, 0.0, 2.0}));
   EXPECT_EQ(r["start"]["configuration"], Json({0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}));
@@ -131,7 +170,8 @@ TEST_F(Record, MomentumIsProjectedWithANote) {
 }
 
 TEST_F(Record, QuietAndText) {
-  const Outcome text = run({"run", "suslov", "--until", "0.1"}), quiet = run({"run", "suslov", "--until", "0.1", "--quiet"});
+  const Outcome text = run({"run", "suslov", "--until", "0.1"}),
+                quiet = run({"run", "suslov", "--until", "0.1", "--quiet"});
   EXPECT_EQ(text.status, 0);
   EXPECT_THAT(text.out, HasSubstr("suslov on so3"));
   EXPECT_EQ(quiet.status, 0);
@@ -144,8 +184,9 @@ TEST_F(Record, QuietAndText) {
 /// Exit status 1: the step leaves the domain of exp. What was computed is written, and the record says
 /// where and why.
 TEST_F(Record, ANumericalFailureKeepsWhatWasComputed) {
-  const Outcome o = run({"run", "chaplygin_sleigh", "--velocity", "0.02,-3,0", "--retraction", "exp", "--step", "0.5",
-                         "--until", "50", "--json", "-o", "part.csv", "-o", "part.json"});
+  const Outcome o =
+      run({"run", "chaplygin_sleigh", "--velocity", "0.02,-3,0", "--retraction", "exp", "--step",
+           "0.5", "--until", "50", "--json", "-o", "part.csv", "-o", "part.json"});
   EXPECT_EQ(o.status, 1);
   EXPECT_THAT(o.err, HasSubstr("failed in step"));
   const Json r = Json::parse(o.out);
@@ -157,18 +198,21 @@ TEST_F(Record, ANumericalFailureKeepsWhatWasComputed) {
   EXPECT_EQ(r["failure"]["step"].get<long>(), r["steps"].get<long>() + 1);
   EXPECT_EQ(Json::parse(contents(file("part.json")))["status"], "failed");
   size_t rows = 0;
-  for (const std::string& line : lines(contents(file("part.csv")))) rows += !line.empty() && line[0] != '#' ? 1u : 0u;
+  for (const std::string& line : lines(contents(file("part.csv"))))
+    rows += !line.empty() && line[0] != '#' ? 1u : 0u;
   EXPECT_EQ(rows, r["steps"].get<size_t>() + 2);  // header, start, good steps
 }
 
 /// A failure in the very first step records the start once.
 TEST_F(Record, FailureInTheFirstStep) {
-  const Outcome o = run({"run", "suslov", "--retraction", "exp", "--step", "50", "--until", "500", "--json", "-o", "a.csv"});
+  const Outcome o = run({"run", "suslov", "--retraction", "exp", "--step", "50", "--until", "500",
+                         "--json", "-o", "a.csv"});
   EXPECT_EQ(o.status, 1);
   const Json r = Json::parse(o.out);
   EXPECT_EQ(r["steps"], 0);
   size_t rows = 0;
-  for (const std::string& line : lines(contents(file("a.csv")))) rows += !line.empty() && line[0] != '#' ? 1u : 0u;
+  for (const std::string& line : lines(contents(file("a.csv"))))
+    rows += !line.empty() && line[0] != '#' ? 1u : 0u;
   EXPECT_EQ(rows, 2u);  // header and start
 }
 

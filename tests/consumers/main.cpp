@@ -20,8 +20,11 @@ struct ChaplyginSleigh {  // v2 = 0 at the blade
 int main() {
   const auto named = hamel::simulate("suslov").step(0.01).until(1).run();
   std::cout << named.report();
-  const auto own =
-      hamel::simulate(ChaplyginSleigh{.a = 0.3}).start({.velocity = {0.9, 1, 0}}).step(0.01).until(1).run();
+  const auto own = hamel::simulate(ChaplyginSleigh{.a = 0.3})
+                       .start({.velocity = {0.9, 1, 0}})
+                       .step(0.01)
+                       .until(1)
+                       .run();
   std::cout << own.report();
   return named && own ? 0 : 1;
 }

@@ -84,8 +84,14 @@ void expect_none(const S& system, const std::string& compose = "none") {
         // boxed_literal takes O(1) steps whatever h is: a small start keeps it inside every domain.
         Start start = system.start();
         for (double& v : start.velocity) v *= 0.2;
-        Integration run = simulate(system).scheme(scheme).s(s).retraction(retraction).start(start)
-                              .compose(compose).step(0.02).build();
+        Integration run = simulate(system)
+                              .scheme(scheme)
+                              .s(s)
+                              .retraction(retraction)
+                              .start(start)
+                              .compose(compose)
+                              .step(0.02)
+                              .build();
         Status status;
         EXPECT_EQ(counted(run, 20, status), 0)
             << S::Group::name() << " " << scheme << " " << retraction << " s = " << s;
@@ -95,8 +101,8 @@ void expect_none(const S& system, const std::string& compose = "none") {
   }
 }
 
-TEST_F(Allocations, NoneOnSO3) { expect_none(test::Body<SO3, 1>{}); }        // m = 2: fixed and run time
-TEST_F(Allocations, NoneOnSO3Free) { expect_none(test::FreeBody<SO3>{}); }   // m = 3: run time
+TEST_F(Allocations, NoneOnSO3) { expect_none(test::Body<SO3, 1>{}); }  // m = 2: fixed and run time
+TEST_F(Allocations, NoneOnSO3Free) { expect_none(test::FreeBody<SO3>{}); }  // m = 3: run time
 TEST_F(Allocations, NoneOnSE2) { expect_none(test::Body<SE2, 1>{}); }
 TEST_F(Allocations, NoneOnSE3) { expect_none(test::Body<SE3, 2>{}); }
 TEST_F(Allocations, NoneOnAProduct) { expect_none(test::Body<Product<SE2, SO2>, 2>{}); }

@@ -41,7 +41,8 @@ TEST(BadInput, Numbers) {
     change(simulation);
     return refused(simulation);
   };
-  EXPECT_THAT(with([](auto& x) { x.s(1.5); }), HasSubstr("s: got 1.5, expected a number in [0, 1]"));
+  EXPECT_THAT(with([](auto& x) { x.s(1.5); }),
+              HasSubstr("s: got 1.5, expected a number in [0, 1]"));
   EXPECT_THAT(with([](auto& x) { x.s(-0.1); }), HasSubstr("s: got -0.1"));
   EXPECT_THAT(with([](auto& x) { x.s(nan_); }), HasSubstr("s: got nan"));
   EXPECT_THAT(with([](auto& x) { x.step(0); }), HasSubstr("step: got 0"));
@@ -53,8 +54,10 @@ TEST(BadInput, Numbers) {
   EXPECT_THAT(with([](auto& x) { x.until(inf); }), HasSubstr("until: got inf"));
   EXPECT_THAT(with([](auto& x) { x.every(0); }), HasSubstr("every: got 0"));
   EXPECT_THAT(with([](auto& x) { x.every(-4); }), HasSubstr("every: got -4"));
-  EXPECT_THAT(with([](auto& x) { x.solver("newton", {.tolerance = 0}); }), HasSubstr("tolerance: got 0"));
-  EXPECT_THAT(with([](auto& x) { x.solver("newton", {.tolerance = nan_}); }), HasSubstr("tolerance: got nan"));
+  EXPECT_THAT(with([](auto& x) { x.solver("newton", {.tolerance = 0}); }),
+              HasSubstr("tolerance: got 0"));
+  EXPECT_THAT(with([](auto& x) { x.solver("newton", {.tolerance = nan_}); }),
+              HasSubstr("tolerance: got nan"));
 }
 
 TEST(BadInput, AMemoryBombIsRefused) {
@@ -66,14 +69,17 @@ TEST(BadInput, AMemoryBombIsRefused) {
 }
 
 TEST(BadInput, Names) {
-  EXPECT_THAT(refused(simulate("suslow")), AllOf(HasSubstr("unknown system 'suslow'"), HasSubstr("did you mean 'suslov'?")));
+  EXPECT_THAT(refused(simulate("suslow")),
+              AllOf(HasSubstr("unknown system 'suslow'"), HasSubstr("did you mean 'suslov'?")));
   EXPECT_THAT(refused(simulate("suslov").scheme("lfit")), HasSubstr("did you mean 'lift'?"));
   EXPECT_THAT(refused(simulate("suslov").retraction("cayly")), HasSubstr("did you mean 'cayley'?"));
   EXPECT_THAT(refused(simulate("suslov").solver("newtn")), HasSubstr("did you mean 'newton'?"));
   EXPECT_THAT(refused(simulate("suslov").compose("suzuki")), HasSubstr("did you mean 'suzuki4'?"));
-  EXPECT_THAT(refused(simulate("suslov").set("inerta", {1, 2, 3})), HasSubstr("did you mean 'inertia'?"));
+  EXPECT_THAT(refused(simulate("suslov").set("inerta", {1, 2, 3})),
+              HasSubstr("did you mean 'inertia'?"));
   // polar exists, but not on se2.
-  EXPECT_THAT(refused(simulate("chaplygin_sleigh").retraction("polar")), HasSubstr("unknown retraction of se2 'polar'"));
+  EXPECT_THAT(refused(simulate("chaplygin_sleigh").retraction("polar")),
+              HasSubstr("unknown retraction of se2 'polar'"));
   EXPECT_THAT(refused(simulate("")), HasSubstr("unknown system ''"));
 }
 
@@ -89,28 +95,43 @@ TEST(BadInput, Parameters) {
   EXPECT_THAT(suslov({1, 5, 0, 1, 0, 3}), HasSubstr("not positive definite"));
   EXPECT_THAT(suslov({1, .1, 0, 0, 2, 0, 0, 0, 3}), HasSubstr("not symmetric"));
   EXPECT_THAT(refused(simulate("suslov").set("normal", {0, 0, 0})), HasSubstr("normal"));
-  EXPECT_THAT(refused(simulate("suslov").set("normal", {0, 1})), HasSubstr("got 2 values, expected 3"));
-  EXPECT_THAT(refused(simulate("chaplygin_sleigh").set("mass", -1)), HasSubstr("not positive definite"));
+  EXPECT_THAT(refused(simulate("suslov").set("normal", {0, 1})),
+              HasSubstr("got 2 values, expected 3"));
+  EXPECT_THAT(refused(simulate("chaplygin_sleigh").set("mass", -1)),
+              HasSubstr("not positive definite"));
   EXPECT_THAT(refused(simulate("chaplygin_sleigh").set("mass", nan_)), HasSubstr("not finite"));
-  EXPECT_THAT(refused(simulate("rolling_disk").set("mass", {1, 2})), HasSubstr("got 2 values, expected 1"));
+  EXPECT_THAT(refused(simulate("rolling_disk").set("mass", {1, 2})),
+              HasSubstr("got 2 values, expected 1"));
 }
 
 TEST(BadInput, Start) {
   const auto start = [](Start s) { return refused(simulate("suslov").start(std::move(s))); };
-  EXPECT_THAT(start({.configuration = {}, .velocity = {1, 0, 0}, .momentum = {1, 0, 0}}), HasSubstr("not both"));
-  EXPECT_THAT(start({.configuration = {}, .velocity = {1, 0}, .momentum = {}}), HasSubstr("velocity: got 2 values, expected 3"));
-  EXPECT_THAT(start({.configuration = {}, .velocity = {}, .momentum = {1, 0, 0, 0}}), HasSubstr("momentum: got 4 values, expected 3"));
-  EXPECT_THAT(start({.configuration = {}, .velocity = {1, nan_, 0}, .momentum = {}}), HasSubstr("not finite"));
-  EXPECT_THAT(start({.configuration = {1, 0, 0}, .velocity = {}, .momentum = {}}), HasSubstr("configuration"));
-  EXPECT_THAT(start({.configuration = {2, 0, 0, 0, 1, 0, 0, 0, 1}, .velocity = {}, .momentum = {}}), HasSubstr("configuration"));
-  EXPECT_THAT(start({.configuration = {1, 0, 0, 0, 1, 0, 0, 0, -1}, .velocity = {}, .momentum = {}}), HasSubstr("configuration"));
-  EXPECT_THAT(start({.configuration = {1, 0, 0, 0, nan_, 0, 0, 0, 1}, .velocity = {}, .momentum = {}}), HasSubstr("configuration"));
+  EXPECT_THAT(start({.configuration = {}, .velocity = {1, 0, 0}, .momentum = {1, 0, 0}}),
+              HasSubstr("not both"));
+  EXPECT_THAT(start({.configuration = {}, .velocity = {1, 0}, .momentum = {}}),
+              HasSubstr("velocity: got 2 values, expected 3"));
+  EXPECT_THAT(start({.configuration = {}, .velocity = {}, .momentum = {1, 0, 0, 0}}),
+              HasSubstr("momentum: got 4 values, expected 3"));
+  EXPECT_THAT(start({.configuration = {}, .velocity = {1, nan_, 0}, .momentum = {}}),
+              HasSubstr("not finite"));
+  EXPECT_THAT(start({.configuration = {1, 0, 0}, .velocity = {}, .momentum = {}}),
+              HasSubstr("configuration"));
+  EXPECT_THAT(start({.configuration = {2, 0, 0, 0, 1, 0, 0, 0, 1}, .velocity = {}, .momentum = {}}),
+              HasSubstr("configuration"));
+  EXPECT_THAT(
+      start({.configuration = {1, 0, 0, 0, 1, 0, 0, 0, -1}, .velocity = {}, .momentum = {}}),
+      HasSubstr("configuration"));
+  EXPECT_THAT(
+      start({.configuration = {1, 0, 0, 0, nan_, 0, 0, 0, 1}, .velocity = {}, .momentum = {}}),
+      HasSubstr("configuration"));
 }
 
 /// A start off d is no mistake: it is projected, and a note says what was lost.
 TEST(BadInput, AnInadmissibleStartIsProjectedWithANote) {
-  const Result r = simulate("suslov").start({.configuration = {}, .velocity = {1, 0, 0.25}, .momentum = {}})
-                       .until(0.1).run();
+  const Result r = simulate("suslov")
+                       .start({.configuration = {}, .velocity = {1, 0, 0.25}, .momentum = {}})
+                       .until(0.1)
+                       .run();
   ASSERT_EQ(r.notes.size(), 1u);
   EXPECT_THAT(r.notes[0], AllOf(HasSubstr("velocity was projected"), HasSubstr("0.25")));
   EXPECT_NEAR(r.config.start.velocity[2], 0, 1e-16);
@@ -170,18 +191,26 @@ struct NoStart {
 };
 TEST(BadInput, NoDefaultStart) {
   EXPECT_THAT(refused(simulate(NoStart{})), HasSubstr("no default start"));
-  EXPECT_EQ(refused(simulate(NoStart{}).start({.configuration = {}, .velocity = {1, 0, 0}, .momentum = {}})
+  EXPECT_EQ(refused(simulate(NoStart{})
+                        .start({.configuration = {}, .velocity = {1, 0, 0}, .momentum = {}})
                         .until(0.1)),
             "accepted");
 }
 
 TEST(BadInput, AllAtOnce) {
-  const std::string all = refused(simulate("suslov").scheme("lfit").retraction("cayly").compose("suzuki")
-                                      .solver("newtn").s(1.5).step(0).set("inertia", {1, -2, 3})
-                                      .start({.configuration = {1}, .velocity = {1}, .momentum = {1}}));
-  for (const char* piece : {"'lift'", "'cayley'", "'suzuki4'", "'newton'", "s: got 1.5", "step: got 0",
-                            "not positive definite", "not both", "configuration", "velocity: got 1",
-                            "momentum: got 1"}) {
+  const std::string all =
+      refused(simulate("suslov")
+                  .scheme("lfit")
+                  .retraction("cayly")
+                  .compose("suzuki")
+                  .solver("newtn")
+                  .s(1.5)
+                  .step(0)
+                  .set("inertia", {1, -2, 3})
+                  .start({.configuration = {1}, .velocity = {1}, .momentum = {1}}));
+  for (const char* piece : {"'lift'", "'cayley'", "'suzuki4'", "'newton'", "s: got 1.5",
+                            "step: got 0", "not positive definite", "not both", "configuration",
+                            "velocity: got 1", "momentum: got 1"}) {
     EXPECT_THAT(all, HasSubstr(piece));
   }
 }
@@ -190,7 +219,8 @@ TEST(BadInput, AllAtOnce) {
 
 TEST(BadInput, FilesThatCannotBeWritten) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("hamel_bad_input_" + std::to_string(::getpid()));
+  const fs::path folder =
+      fs::temp_directory_path() / ("hamel_bad_input_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   const Result r = simulate("suslov").until(0.1).run();
   EXPECT_THROW(r.write((folder / "no_such_folder" / "a.csv").string()), ConfigError);

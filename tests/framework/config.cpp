@@ -33,8 +33,10 @@ void expect_equal(const Config& a, const Config& b) {
 Config unusual() {
   Config c;
   c.system = "suslov";
-  c.parameters = {{"inertia", {0.1, 1.0 / 3, 1e22}}, {"normal", {-0.0, 5e-324, 1.7976931348623157e308}}};
-  c.start.configuration = {1, 0, 0, 0, std::cos(0.3), -std::sin(0.3), 0, std::sin(0.3), std::cos(0.3)};
+  c.parameters = {{"inertia", {0.1, 1.0 / 3, 1e22}},
+                  {"normal", {-0.0, 5e-324, 1.7976931348623157e308}}};
+  c.start.configuration = {
+      1, 0, 0, 0, std::cos(0.3), -std::sin(0.3), 0, std::sin(0.3), std::cos(0.3)};
   c.start.momentum = {1e-17, -2, 3};
   c.scheme = "balance";
   c.s = 0.1 + 0.2;
@@ -85,7 +87,8 @@ std::string message(const std::string& toml) {
 
 TEST(Config, MistakesNameLineAndColumn) {
   EXPECT_THAT(message("system = \"suslov\"\nstep = = 3\n"), HasSubstr("run.toml:2:8"));
-  EXPECT_THAT(message("system = \"suslov\"\nstep = \"fast\"\n"), HasSubstr("run.toml:2:8: step: expected a number"));
+  EXPECT_THAT(message("system = \"suslov\"\nstep = \"fast\"\n"),
+              HasSubstr("run.toml:2:8: step: expected a number"));
   EXPECT_THAT(message("every = 1.5\n"), HasSubstr("run.toml:1:9: every: expected a whole number"));
   EXPECT_THAT(message("velocity = [1, \"x\", 3]\n"), HasSubstr("run.toml:1:16: velocity"));
   EXPECT_THAT(message("scheme = 3\n"), HasSubstr("run.toml:1:10: scheme: expected a string"));
@@ -96,7 +99,8 @@ TEST(Config, MistakesNameLineAndColumn) {
 }
 
 TEST(Config, AllMistakesOfAFileAtOnce) {
-  const std::string all = message("stpe = 0.1\nscheme = 3\nuntil = \"late\"\n[set]\nmass = \"heavy\"\n");
+  const std::string all =
+      message("stpe = 0.1\nscheme = 3\nuntil = \"late\"\n[set]\nmass = \"heavy\"\n");
   EXPECT_THAT(all, HasSubstr("did you mean 'step'?"));
   EXPECT_THAT(all, HasSubstr("scheme: expected a string"));
   EXPECT_THAT(all, HasSubstr("until: expected a number"));

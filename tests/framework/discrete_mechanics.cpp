@@ -37,10 +37,14 @@ class DiscreteMechanics {
   void step(Element& g, Vector& mu) const {
     Vector y = mu;
     for (int k = 0; k < 8; ++k) {
-      const auto f = [&](const Vector& at) -> Vector { return momentum_before(g, next(g, at)) - mu; };
+      const auto f = [&](const Vector& at) -> Vector {
+        return momentum_before(g, next(g, at)) - mu;
+      };
       Eigen::MatrixXd slope(y.size(), y.size());
       for (int j = 0; j < y.size(); ++j) {
-        slope.col(j) = (f(y + 1e-4 * Vector::Unit(y.size(), j)) - f(y - 1e-4 * Vector::Unit(y.size(), j))) / 2e-4;
+        slope.col(j) =
+            (f(y + 1e-4 * Vector::Unit(y.size(), j)) - f(y - 1e-4 * Vector::Unit(y.size(), j))) /
+            2e-4;
       }
       y -= slope.lu().solve(f(y));
     }
@@ -73,8 +77,8 @@ class DiscreteMechanics {
     Vector out(frame_.cols());
     for (int j = 0; j < frame_.cols(); ++j) {
       const Vec<n> direction = frame_.col(j);
-      out[j] = check::derivative([&](double t) -> Vec<1> { return Vec<1>(along(Vec<n>(t * direction))); },
-                                 step_)[0];
+      out[j] = check::derivative(
+          [&](double t) -> Vec<1> { return Vec<1>(along(Vec<n>(t * direction))); }, step_)[0];
     }
     return out;
   }

@@ -38,13 +38,15 @@ struct OneStep {
   OneStep(const std::string& scheme, double parameter) : s(parameter) {
     Start start = body.start();
     for (double& v : start.velocity) v *= 0.7;
-    Integration run = simulate(body).start(start).scheme(scheme).s(s).retraction(Tau::name()).step(h).build();
+    Integration run =
+        simulate(body).start(start).scheme(scheme).s(s).retraction(Tau::name()).step(h).build();
     const Snapshot before = run.state();
     EXPECT_TRUE(run.step().ok);
     const Snapshot& after = run.state();
     mu0 = Eigen::Map<const V>(before.momentum.data());
     mu1 = Eigen::Map<const V>(after.momentum.data());
-    const auto g0 = G::from_coordinates(before.coordinates), g1 = G::from_coordinates(after.coordinates);
+    const auto g0 = G::from_coordinates(before.coordinates),
+               g1 = G::from_coordinates(after.coordinates);
     xi = recover_step<Tau>(G::compose(G::inverse(g0), g1), s);
     EXPECT_GT(xi.norm(), 0.05);
   }
@@ -62,15 +64,18 @@ void expect_equations() {
     const OneStep<Tau> o("balance", s);
     const V z0 = -s * o.xi, z1 = (1 - s) * o.xi;
     const V average = s * o.left(z0).transpose() * o.mu0 + (1 - s) * o.left(z1).transpose() * o.mu1;
-    EXPECT_LE(o.reduced(average - o.body.inertia() * o.xi / o.h), bound) << where << " balance (1), s = " << s;
+    EXPECT_LE(o.reduced(average - o.body.inertia() * o.xi / o.h), bound)
+        << where << " balance (1), s = " << s;
     const V carried = G::Ad(G::inverse(Tau::tau(z1))).transpose() * o.mu1 -
                       G::Ad(G::inverse(Tau::tau(z0))).transpose() * o.mu0;
     EXPECT_LE(o.reduced(carried), bound) << where << " balance (2), s = " << s;
   }
   {
     const OneStep<Tau> o("boxed", 0);
-    EXPECT_LE(o.reduced(o.right(o.xi).transpose() * o.mu0 - o.body.inertia() * o.xi / o.h), bound) << where;
-    EXPECT_LE(o.reduced(G::Ad(Tau::tau(o.xi)).transpose() * o.mu0 - o.mu1), bound) << where << " boxed, update";
+    EXPECT_LE(o.reduced(o.right(o.xi).transpose() * o.mu0 - o.body.inertia() * o.xi / o.h), bound)
+        << where;
+    EXPECT_LE(o.reduced(G::Ad(Tau::tau(o.xi)).transpose() * o.mu0 - o.mu1), bound)
+        << where << " boxed, update";
   }
   {
     const OneStep<Tau> o("boxed_literal", 0);
@@ -78,8 +83,11 @@ void expect_equations() {
     const auto embedded = [&](const V& mu) -> V {
       return o.e * (o.e.transpose() * o.e).inverse() * (o.e.transpose() * mu);
     };
-    EXPECT_LE(o.reduced(o.right(o.xi).transpose() * embedded(o.mu0) - o.body.inertia() * o.xi), bound) << where;
-    EXPECT_LE(o.reduced(G::Ad(G::inverse(Tau::tau(o.xi))).transpose() * embedded(o.mu0) - o.mu1), bound)
+    EXPECT_LE(o.reduced(o.right(o.xi).transpose() * embedded(o.mu0) - o.body.inertia() * o.xi),
+              bound)
+        << where;
+    EXPECT_LE(o.reduced(G::Ad(G::inverse(Tau::tau(o.xi))).transpose() * embedded(o.mu0) - o.mu1),
+              bound)
         << where << " boxed_literal, update";
   }
 }

@@ -23,7 +23,8 @@ double apart(Simulation a, Simulation b) {
   const Result x = a.run(), y = b.run();
   EXPECT_TRUE(x.status.ok && y.status.ok) << x.status.reason << y.status.reason;
   double worst = 0;
-  const size_t columns = 1 + x.system.group.columns.size() + static_cast<size_t>(x.system.group.dim);
+  const size_t columns =
+      1 + x.system.group.columns.size() + static_cast<size_t>(x.system.group.dim);
   for (size_t i = 0; i < x.trajectory.rows(); ++i) {
     for (size_t j = 0; j < columns; ++j) {
       worst = std::max(worst, std::abs(x.trajectory.at(i, j) - y.trajectory.at(i, j)));
@@ -59,7 +60,8 @@ void expect_independent_of_s(const S& system) {
   const Simulation reference = simulate<Lift, Exp>(system).s(0);
   for (const double s : {0.1, 0.25, 0.5, 0.8, 1.0}) {
     EXPECT_LE(apart(reference, simulate<Lift, Exp>(system).s(s)), bound) << "short cut, s = " << s;
-    EXPECT_LE(apart(reference, simulate<Lift, GeneralExp>(system).s(s)), bound) << "general, s = " << s;
+    EXPECT_LE(apart(reference, simulate<Lift, GeneralExp>(system).s(s)), bound)
+        << "general, s = " << s;
   }
 }
 TEST(Identities, ExpIsIndependentOfSOnSO3) { expect_independent_of_s(full()); }
@@ -68,7 +70,8 @@ TEST(Identities, ExpIsIndependentOfSOnSE2) { expect_independent_of_s(ChaplyginSl
 TEST(Identities, TypedAndNamedPathsAgree) {
   EXPECT_LE(apart(simulate<Lift, Cayley>(full()), simulate(full())), 1e-14);
   EXPECT_LE(apart(simulate<Balance, Exp>(ChaplyginSleigh{}),
-                  simulate("chaplygin_sleigh").scheme("balance").retraction("exp")), 1e-14);
+                  simulate("chaplygin_sleigh").scheme("balance").retraction("exp")),
+            1e-14);
 }
 
 /// The same kernel with m chosen at run time.
@@ -76,9 +79,11 @@ TEST(Identities, FixedAndRunTimeDirectionsAgree) {
   for (const char* scheme : {"lift", "balance"}) {
     Simulation run_time = simulate(full()).retraction("cayley").scheme(scheme);
     const bool lift = std::string(scheme) == "lift";
-    run_time.kernel(lift ? compile<Lift, Cayley<SO3>, kRunTime>() : compile<Balance, Cayley<SO3>, kRunTime>(),
-                    *registry().scheme(scheme), *registry().retraction("so3", "cayley"));
-    EXPECT_LE(apart(run_time, simulate(full()).retraction("cayley").scheme(scheme)), bound) << scheme;
+    run_time.kernel(
+        lift ? compile<Lift, Cayley<SO3>, kRunTime>() : compile<Balance, Cayley<SO3>, kRunTime>(),
+        *registry().scheme(scheme), *registry().retraction("so3", "cayley"));
+    EXPECT_LE(apart(run_time, simulate(full()).retraction("cayley").scheme(scheme)), bound)
+        << scheme;
   }
 }
 
@@ -87,7 +92,8 @@ TEST(Identities, UnadaptedIsLiftOnTheFreeBody) {
   for (const char* retraction : {"exp", "cayley", "second_kind"}) {
     EXPECT_LE(apart(simulate(test::FreeBody<SO3>{}).scheme("unadapted").retraction(retraction),
                     simulate(test::FreeBody<SO3>{}).scheme("lift").retraction(retraction)),
-              bound) << retraction;
+              bound)
+        << retraction;
   }
 }
 
@@ -96,7 +102,8 @@ TEST(Identities, LeftInvariance) {
   const Mat<3, 3> r = Exp<SO3>::tau(Vec<3>(0.3, -1.1, 0.7));
   Start turned;
   turned.configuration = SO3::coordinates(r);
-  const Result moved = simulate(full()).start(turned).until(5).run(), plain = simulate(full()).until(5).run();
+  const Result moved = simulate(full()).start(turned).until(5).run(),
+               plain = simulate(full()).until(5).run();
   const Mat<3, 3> end = SO3::from_coordinates(moved.last.coordinates),
                   reference = SO3::from_coordinates(plain.last.coordinates);
   EXPECT_LE((end - r * reference).norm(), 1e-12);

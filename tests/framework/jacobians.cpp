@@ -25,8 +25,8 @@ using Matrix = Eigen::MatrixXd;
 
 Vector value(const Equation& equation, const Vector& x) {
   Vector f(x.size());
-  equation.evaluate({x.data(), static_cast<size_t>(x.size())}, {f.data(), static_cast<size_t>(f.size())},
-                    {});
+  equation.evaluate({x.data(), static_cast<size_t>(x.size())},
+                    {f.data(), static_cast<size_t>(f.size())}, {});
   return f;
 }
 
@@ -45,7 +45,8 @@ class Inspector final : public Solver {
       at *= 0.8;
       Vector f(n);
       Matrix j(n, n);
-      equation.evaluate({at.data(), x.size()}, {f.data(), x.size()}, {j.data(), x.size() * x.size()});
+      equation.evaluate({at.data(), x.size()}, {f.data(), x.size()},
+                        {j.data(), x.size() * x.size()});
       EXPECT_LE((f - value(equation, at)).norm(), 1e-13 * (1 + f.norm()))
           << "F differs with and without the Jacobian";
       Matrix differences(n, n);
@@ -84,8 +85,12 @@ void expect_jacobians(const S& system) {
           mine.add(SolverInfo{"inspector", "", "",
                               [&] { return std::make_shared<Inspector>(worst, points); }});
           Simulation simulation(mine, "body", maker(system));
-          Integration run =
-              simulation.scheme(scheme).s(s).retraction(retraction).solver("inspector").step(h).build();
+          Integration run = simulation.scheme(scheme)
+                                .s(s)
+                                .retraction(retraction)
+                                .solver("inspector")
+                                .step(h)
+                                .build();
           (void)run.step();  // the guess stands in for the solution, perhaps outside the domain
           EXPECT_EQ(points, 4);
           EXPECT_LE(worst, bound) << G::name() << " " << scheme << " " << retraction << " s = " << s

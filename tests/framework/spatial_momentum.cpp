@@ -20,7 +20,8 @@ double momentum_drift(const Simulation& simulation) {
   const auto spatial = [&]() -> Vec<G::dim> {
     const Snapshot& state = run.state();
     const auto g = G::from_coordinates(state.coordinates);
-    return G::Ad_transpose(G::inverse(g), Vec<G::dim>(Eigen::Map<const Vec<G::dim>>(state.momentum.data())));
+    return G::Ad_transpose(G::inverse(g),
+                           Vec<G::dim>(Eigen::Map<const Vec<G::dim>>(state.momentum.data())));
   };
   const Vec<G::dim> start = spatial();
   double worst = 0;
@@ -45,7 +46,11 @@ void expect_conserved(const S& system, const std::vector<std::string>& schemes) 
   for (const std::string& scheme : schemes) {
     for (const std::string& retraction : registry().retractions(G::name())) {
       for (const double s : {0.0, 0.3, 0.5, 1.0}) {
-        EXPECT_LE(momentum_drift<G>(simulate(system).scheme(scheme).s(s).retraction(retraction).step(0.05)
+        EXPECT_LE(momentum_drift<G>(simulate(system)
+                                        .scheme(scheme)
+                                        .s(s)
+                                        .retraction(retraction)
+                                        .step(0.05)
                                         .solver("newton", to_the_floor)),
                   bound)
             << G::name() << " " << scheme << " " << retraction << " s = " << s;
@@ -54,9 +59,15 @@ void expect_conserved(const S& system, const std::vector<std::string>& schemes) 
   }
 }
 
-TEST(SpatialMomentum, FreeBodyOnSO3) { expect_conserved(test::FreeBody<SO3>{}, {"lift", "unadapted"}); }
-TEST(SpatialMomentum, FreeBodyOnSE2) { expect_conserved(test::FreeBody<SE2>{}, {"lift", "unadapted"}); }
-TEST(SpatialMomentum, FreeBodyOnSE3) { expect_conserved(test::FreeBody<SE3>{}, {"lift", "unadapted"}); }
+TEST(SpatialMomentum, FreeBodyOnSO3) {
+  expect_conserved(test::FreeBody<SO3>{}, {"lift", "unadapted"});
+}
+TEST(SpatialMomentum, FreeBodyOnSE2) {
+  expect_conserved(test::FreeBody<SE2>{}, {"lift", "unadapted"});
+}
+TEST(SpatialMomentum, FreeBodyOnSE3) {
+  expect_conserved(test::FreeBody<SE3>{}, {"lift", "unadapted"});
+}
 TEST(SpatialMomentum, FreeBodyOnAProduct) {
   expect_conserved(test::FreeBody<Product<SE2, SO2>>{}, {"lift", "unadapted"});
 }
@@ -87,7 +98,8 @@ struct WrongSign : Lift {
     void finish(const typename Base::Unknown& y, typename Base::Element& increment,
                 typename Base::Momentum& mu) const {
       Base::finish(y, increment, mu);
-      mu = problem_.reduce(Problem::Group::Ad_transpose(Problem::Group::inverse(increment), problem_.momentum(mu_)));
+      mu = problem_.reduce(
+          Problem::Group::Ad_transpose(Problem::Group::inverse(increment), problem_.momentum(mu_)));
     }
 
    private:
@@ -97,7 +109,8 @@ struct WrongSign : Lift {
 };
 
 TEST(SpatialMomentum, AWrongSignIsSeen) {
-  EXPECT_GT((momentum_drift<SO3>(simulate<WrongSign, Exp>(test::FreeBody<SO3>{}).step(0.01))), 1e-3);
+  EXPECT_GT((momentum_drift<SO3>(simulate<WrongSign, Exp>(test::FreeBody<SO3>{}).step(0.01))),
+            1e-3);
 }
 
 }  // namespace

@@ -46,7 +46,8 @@ TEST(Newton, FindsARoot) {
   const SolveReport report = solve(step, x, 1e-13);
   EXPECT_TRUE(report.ok());
   EXPECT_NEAR(x[0], std::sqrt(2.0), 1e-13);
-  EXPECT_LE(report.iterations, 13);  // a kept Jacobian cuts the residual at least by ten a correction
+  EXPECT_LE(report.iterations,
+            13);  // a kept Jacobian cuts the residual at least by ten a correction
   // The residual reported is that of the point returned.
   EXPECT_DOUBLE_EQ(report.residual, std::abs(x[0] * x[0] - 2));
 }
@@ -170,7 +171,8 @@ TEST(NewtonInARun, TakesFewIterations) {
     for (const char* retraction : {"exp", "cayley"}) {
       const Result r = full_suslov().scheme(scheme).retraction(retraction).until(10).run();
       ASSERT_TRUE(r.status.ok);
-      EXPECT_LE(static_cast<double>(r.stats.iterations) / static_cast<double>(r.steps), 2) << scheme;
+      EXPECT_LE(static_cast<double>(r.stats.iterations) / static_cast<double>(r.steps), 2)
+          << scheme;
       EXPECT_LE(r.stats.iterations_max, 6) << scheme;
       EXPECT_LE(r.stats.residual_max, 1e-13) << scheme;
     }
@@ -205,8 +207,12 @@ TEST(NewtonInARun, AStepOutsideTheDomainKeepsTheGoodSteps) {
 
 /// The sleigh turns faster and faster until it is reversed: with h = 1.2 some good steps come first.
 TEST(NewtonInARun, FailsInTheMiddle) {
-  Simulation simulation = simulate("chaplygin_sleigh").start({.velocity = {0.02, -3, 0}}).scheme("lift")
-                              .retraction("exp").step(0.5).until(50);
+  Simulation simulation = simulate("chaplygin_sleigh")
+                              .start({.velocity = {0.02, -3, 0}})
+                              .scheme("lift")
+                              .retraction("exp")
+                              .step(0.5)
+                              .until(50);
   const Result r = simulation.run();
   ASSERT_FALSE(r.status.ok);
   EXPECT_GE(r.steps, 1);

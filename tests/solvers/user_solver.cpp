@@ -42,7 +42,8 @@ class Hybrid final : public Solver {
     report.residual = f.norm() / equation.scale();
     report.iterations = static_cast<int>(hybrid.iter);
     report.evaluations = static_cast<int>(hybrid.nfev);
-    report.reason = report.residual <= std::max(tolerance, 1e-14) ? Reason::converged : Reason::stagnated;
+    report.reason =
+        report.residual <= std::max(tolerance, 1e-14) ? Reason::converged : Reason::stagnated;
     return report;
   }
 };
@@ -89,8 +90,14 @@ TEST(UserSolver, GivesTheSameTrajectory) {
       if (scheme == "boxed_literal") continue;  // O(1) steps: its equation has several roots
       for (const char* retraction : {"exp", "cayley", "second_kind"}) {
         const auto run = [&](const char* solver) {
-          return Simulation(mine, system).scheme(scheme).s(0.3).retraction(retraction).solver(solver)
-              .step(0.02).until(2).run();
+          return Simulation(mine, system)
+              .scheme(scheme)
+              .s(0.3)
+              .retraction(retraction)
+              .solver(solver)
+              .step(0.02)
+              .until(2)
+              .run();
         };
         const Result reference = run("newton");
         for (const char* solver : {"hybrid", "plain"}) {

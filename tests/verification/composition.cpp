@@ -63,7 +63,8 @@ TEST(Composition, ReachesItsOrder) {
         for (const double e : m.configuration) errors += " " + std::to_string(std::log10(e));
         EXPECT_NEAR(m.configuration_order(), c.order, w.tolerance)
             << c.name << " " << scheme << " " << retraction << ", log10 of the errors:" << errors;
-        EXPECT_GE(m.velocity_order(), c.order - w.tolerance) << c.name << " " << scheme << " " << retraction;
+        EXPECT_GE(m.velocity_order(), c.order - w.tolerance)
+            << c.name << " " << scheme << " " << retraction;
       }
     }
   }

@@ -17,9 +17,12 @@ struct SymmetricTop {
   double transverse = 2, axial = 3.1;
   static std::string name() { return "symmetric_top"; }
   Mat<3, 3> inertia() const { return Vec<3>(transverse, transverse, axial).asDiagonal(); }
-  Start start() const { return {.configuration = {}, .velocity = {0.9, -0.4, 0.7}, .momentum = {}}; }
+  Start start() const {
+    return {.configuration = {}, .velocity = {0.9, -0.4, 0.7}, .momentum = {}};
+  }
   auto exact(const SO3::Element<double>& r0, const Vec<3>& omega0) const {
-    const Vec<3> first = inertia() * omega0 / transverse, second(0, 0, (1 - axial / transverse) * omega0[2]);
+    const Vec<3> first = inertia() * omega0 / transverse,
+                 second(0, 0, (1 - axial / transverse) * omega0[2]);
     return [=](double t) {
       const Mat<3, 3> spin = Exp<SO3>::tau(Vec<3>(t * second));
       const Mat<3, 3> r = r0 * Exp<SO3>::tau(Vec<3>(t * first)) * spin;
@@ -30,7 +33,8 @@ struct SymmetricTop {
 };
 
 TEST(FreeBody, ExactMotionIsRight) {
-  for (const LawResult& law : check_system<SymmetricTop, Exp<SO3>>(SymmetricTop{})) EXPECT_TRUE(law.passed()) << law;
+  for (const LawResult& law : check_system<SymmetricTop, Exp<SO3>>(SymmetricTop{}))
+    EXPECT_TRUE(law.passed()) << law;
 }
 
 TEST(FreeBody, EveryAdaptedOrUnadaptedSchemeHasItsOrder) {
@@ -44,7 +48,8 @@ TEST(FreeBody, EveryAdaptedOrUnadaptedSchemeHasItsOrder) {
         const Simulation run = simulate(SymmetricTop{}).scheme(scheme).s(s).retraction(retraction);
         const double step = claim.order == 1 ? 0.01 : 0.05;
         for (const LawResult& law : check_scheme(run, claim, info.adapted, step, 2, false)) {
-          EXPECT_TRUE(law.passed()) << scheme << ", " << retraction << ", s = " << s << "\n  " << law;
+          EXPECT_TRUE(law.passed())
+              << scheme << ", " << retraction << ", s = " << s << "\n  " << law;
         }
       }
     }

@@ -31,7 +31,8 @@ Vector extrapolated_step(const Motion& f, const Vector& y, double h) {
     row = {Vector(0.5 * (a + b + d * f(b)))};
     for (int k = 1; k < j; ++k) {
       const double ratio = static_cast<double>(j) / (j - k);
-      const Vector next = row.back() + (row.back() - above[static_cast<size_t>(k - 1)]) / (ratio * ratio - 1);
+      const Vector next =
+          row.back() + (row.back() - above[static_cast<size_t>(k - 1)]) / (ratio * ratio - 1);
       row.push_back(next);
     }
     above = row;
@@ -44,7 +45,7 @@ TEST(Reference, IntegratorIsAccurate) {
   const Motion circle = [](const Vector& y) -> Vector { return Vector{{y[1], -y[0]}}; };
   Vector y{{1.0, 0.0}};
   for (int i = 0; i < 100; ++i) y = extrapolated_step(circle, y, 0.05);
-  EXPECT_NEAR(y[0], std::cos(5.0), 1e-12);  // round-off of the extrapolation: 2e-15 a step
+  EXPECT_NEAR(y[0], std::cos(5.0), 1e-12);   // round-off of the extrapolation: 2e-15 a step
   EXPECT_NEAR(y[1], -std::sin(5.0), 1e-12);  // round-off of the extrapolation: 2e-15 a step
 }
 
@@ -99,7 +100,8 @@ void suslov(const std::vector<double>& moments, Vec<3> normal, Vec<3> omega) {
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(y0.data()) = r0;
   y0.tail<3>() = omega;
   const Start start{.configuration = SO3::coordinates(r0),
-                    .velocity = {omega.begin(), omega.end()}, .momentum = {}};
+                    .velocity = {omega.begin(), omega.end()},
+                    .momentum = {}};
   expect_agreement(
       body, start, f, y0,
       [](const Vector& y, const std::vector<double>& g, const std::vector<double>& xi) {
@@ -109,12 +111,16 @@ void suslov(const std::vector<double>& moments, Vec<3> normal, Vec<3> omega) {
 }
 TEST(Reference, SuslovFullInertia) { suslov({2, .3, .5, 3, .4, 4}, {0, 0, 1}, {1, 0.5, 0}); }
 TEST(Reference, SuslovTheOtherSide) { suslov({2, .3, .5, 3, .4, 4}, {0, 0, 1}, {-1, 0.5, 0}); }
-TEST(Reference, SuslovTiltedAxis) { suslov({2, .3, .5, 3, .4, 4}, {0.3, -0.5, 0.8}, {1, 0.9, -0.3}); }
+TEST(Reference, SuslovTiltedAxis) {
+  suslov({2, .3, .5, 3, .4, 4}, {0.3, -0.5, 0.8}, {1, 0.9, -0.3});
+}
 TEST(Reference, SuslovDiagonal) { suslov({1, 10, 100}, {0, 0, 1}, {1, 0.1, 0}); }
 TEST(Reference, SuslovDiagonalTilted) { suslov({1, 2, 3}, {1, 1, 1}, {1, -0.3, 0}); }
 /// On the line p = k.Omega = 0, k = (0.5, 0.4), Omega is constant: an equilibrium of either stability.
 TEST(Reference, SuslovOnTheLine) { suslov({2, .3, .5, 3, .4, 4}, {0, 0, 1}, {0.8, -1, 0}); }
-TEST(Reference, SuslovNearTheLine) { suslov({2, .3, .5, 3, .4, 4}, {0, 0, 1}, {0.8, -1 + 1e-7, 0}); }
+TEST(Reference, SuslovNearTheLine) {
+  suslov({2, .3, .5, 3, .4, 4}, {0, 0, 1}, {0.8, -1 + 1e-7, 0});
+}
 
 /// y = (theta, X, Y of the mass centre, and their rates); blade force lambda across the blade.
 void sleigh(double mass, double moment, double offset, Vec<3> xi0) {
@@ -123,7 +129,8 @@ void sleigh(double mass, double moment, double offset, Vec<3> xi0) {
     const Vec<2> e1(std::cos(y[0]), std::sin(y[0])), e2(-e1[1], e1[0]), v(y[4], y[5]);
     const double lambda = y[3] * v.dot(e1) / (1 / mass + offset * offset / moment);
     Vector out(6);
-    out << y[3], y[4], y[5], -offset * lambda / moment, lambda / mass * e2[0], lambda / mass * e2[1];
+    out << y[3], y[4], y[5], -offset * lambda / moment, lambda / mass * e2[0],
+        lambda / mass * e2[1];
     return out;
   };
   const double theta = 0.4, x = -0.3, y = 0.8;
@@ -131,7 +138,8 @@ void sleigh(double mass, double moment, double offset, Vec<3> xi0) {
   const Vec<2> centre = Vec<2>(x, y) + offset * e1, v = xi0[1] * e1 + offset * xi0[0] * e2;
   Vector y0(6);
   y0 << theta, centre, xi0[0], v;
-  const Start start{.configuration = {theta, x, y}, .velocity = {xi0.begin(), xi0.end()}, .momentum = {}};
+  const Start start{
+      .configuration = {theta, x, y}, .velocity = {xi0.begin(), xi0.end()}, .momentum = {}};
   expect_agreement(
       body, start, f, y0,
       [=](const Vector& s, const std::vector<double>& g, const std::vector<double>& xi) {
@@ -153,7 +161,8 @@ TEST(Reference, RollingDisk) {
   RollingDisk body{.mass = 1.3, .radius = 0.4, .spin_inertia = 0.2, .yaw_inertia = 0.07};
   const Motion f = [=](const Vector& y) -> Vector {
     const Vec<2> e1(std::cos(y[0]), std::sin(y[0])), e2(-e1[1], e1[0]), v(y[5], y[6]);
-    const double l1 = -y[4] * v.dot(e2) / (1 / body.mass + body.radius * body.radius / body.spin_inertia);
+    const double l1 =
+        -y[4] * v.dot(e2) / (1 / body.mass + body.radius * body.radius / body.spin_inertia);
     const double l2 = body.mass * y[4] * v.dot(e1);
     const Vec<2> a = (l1 * e1 + l2 * e2) / body.mass;
     Vector out(8);
@@ -165,12 +174,14 @@ TEST(Reference, RollingDisk) {
   Vector y0(8);
   y0 << 0.3, 1.1, -0.2, 0.5, omega, v0, spin;
   const Start start{.configuration = {0.3, 1.1, -0.2, 0.5},
-                    .velocity = {omega, body.radius * spin, 0, spin}, .momentum = {}};
+                    .velocity = {omega, body.radius * spin, 0, spin},
+                    .momentum = {}};
   expect_agreement(
       body, start, f, y0,
       [](const Vector& s, const std::vector<double>& g, const std::vector<double>& xi) {
         const Vec<2> e1(std::cos(s[0]), std::sin(s[0])), e2(-e1[1], e1[0]), v(s[5], s[6]);
-        return difference(s.head(4), g) + difference(Vector{{s[4], v.dot(e1), v.dot(e2), s[7]}}, xi);
+        return difference(s.head(4), g) +
+               difference(Vector{{s[4], v.dot(e1), v.dot(e2), s[7]}}, xi);
       },
       "disk");
 }

@@ -38,8 +38,9 @@ TEST_P(SchemeLaws, Hold) {
   EXPECT_GT(measured, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Motions, SchemeLaws, testing::ValuesIn(motions()),
-                         [](const auto& motion) { return "Motion" + std::to_string(motion.index); });
+INSTANTIATE_TEST_SUITE_P(Motions, SchemeLaws, testing::ValuesIn(motions()), [](const auto& motion) {
+  return "Motion" + std::to_string(motion.index);
+});
 
 /// Every registered system appears above.
 TEST(Motions, CoverTheRegistry) {

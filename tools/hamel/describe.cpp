@@ -16,18 +16,23 @@ using Json = nlohmann::ordered_json;
 Json describe_system(const SystemInfo& info) {
   Json parameters = Json::array();
   for (const Field& field : info.fields) {
-    parameters.push_back({{"name", field.name},
-                          {"default", field.value.size() == 1 ? Json(field.value[0]) : Json(field.value)},
-                          {"unit", field.unit},
-                          {"meaning", field.meaning}});
+    parameters.push_back(
+        {{"name", field.name},
+         {"default", field.value.size() == 1 ? Json(field.value[0]) : Json(field.value)},
+         {"unit", field.unit},
+         {"meaning", field.meaning}});
   }
   const Start start = info.make({}).start;
-  return {{"kind", "system"},           {"name", info.name},
-          {"summary", info.summary},    {"group", info.group.name},
-          {"formula", info.formula},    {"parameters", parameters},
+  return {{"kind", "system"},
+          {"name", info.name},
+          {"summary", info.summary},
+          {"group", info.group.name},
+          {"formula", info.formula},
+          {"parameters", parameters},
           {"start", start.velocity.empty() ? Json{{"momentum", start.momentum}}
                                            : Json{{"velocity", start.velocity}}},
-          {"known", info.known},        {"source", info.source}};
+          {"known", info.known},
+          {"source", info.source}};
 }
 
 Json describe_group(const GroupInfo& info) {
@@ -76,7 +81,8 @@ Json description_of(const std::string& name) {
   if (const GroupInfo* info = all.group(name)) return describe_group(*info);
   if (const SchemeInfo* info = all.scheme(name)) return describe_scheme(*info);
   if (const SolverInfo* info = all.solver(name)) {
-    return {{"kind", "solver"}, {"name", name}, {"summary", info->summary}, {"source", info->source}};
+    return {
+        {"kind", "solver"}, {"name", name}, {"summary", info->summary}, {"source", info->source}};
   }
   std::vector<std::string> known;
   for (const std::string& retraction : all.retractions()) {
@@ -84,12 +90,15 @@ Json description_of(const std::string& name) {
   }
   for (const Composition& c : compositions()) {
     if (c.name == name) {
-      return {{"kind", "composition"}, {"name", name},           {"order", c.order},
-              {"coefficients", c.coefficients}, {"source", c.source}};
+      return {{"kind", "composition"},
+              {"name", name},
+              {"order", c.order},
+              {"coefficients", c.coefficients},
+              {"source", c.source}};
     }
   }
-  for (const auto& names : {all.systems(), all.groups(), all.retractions(), all.schemes(),
-                            all.solvers()}) {
+  for (const auto& names :
+       {all.systems(), all.groups(), all.retractions(), all.schemes(), all.solvers()}) {
     known.insert(known.end(), names.begin(), names.end());
   }
   throw ConfigError({unknown_name("name", name, known)});
@@ -99,19 +108,20 @@ Json description_of(const std::string& name) {
 void print(const Json& json) {
   for (const auto& [key, value] : json.items()) {
     if (value.is_string()) {
-      if (!value.get<std::string>().empty()) fmt::print("  {:<12} {}\n", key, value.get<std::string>());
+      if (!value.get<std::string>().empty())
+        fmt::print("  {:<12} {}\n", key, value.get<std::string>());
     } else if (value.is_array() && !value.empty() && value.front().is_object()) {
       fmt::print("  {}\n", key);
       for (const Json& entry : value) {
         std::string line;
         for (const auto& [name, member] : entry.items()) {
           const std::string text = member.is_string() ? member.get<std::string>() : member.dump();
-          line += name == "name" || name == "group"     ? fmt::format("{:<14}", text)
-                  : name == "default"                   ? fmt::format(" = {:<12}", text)
-                  : name == "unit"                      ? fmt::format(" [{}]", text)
-                  : name == "domain"                    ? fmt::format("; domain {}", text)
-                  : name == "symmetric"                 ? (text == "true" ? "; symmetric" : "; not symmetric")
-                                                        : fmt::format("  {}", text);
+          line += name == "name" || name == "group" ? fmt::format("{:<14}", text)
+                  : name == "default"               ? fmt::format(" = {:<12}", text)
+                  : name == "unit"                  ? fmt::format(" [{}]", text)
+                  : name == "domain"                ? fmt::format("; domain {}", text)
+                  : name == "symmetric" ? (text == "true" ? "; symmetric" : "; not symmetric")
+                                        : fmt::format("  {}", text);
         }
         fmt::print("    {}\n", line);
       }

@@ -6,8 +6,8 @@
 #include <optional>
 #include <sstream>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <hamel/framework/errors.hpp>
 #include <hamel/framework/version.hpp>
@@ -36,7 +36,8 @@ std::vector<double> read_numbers(const std::string& option, const std::string& t
     }
     out.push_back(value);
   }
-  if (out.empty()) throw ConfigError({fmt::format("{}: expected numbers separated by commas", option)});
+  if (out.empty())
+    throw ConfigError({fmt::format("{}: expected numbers separated by commas", option)});
   return out;
 }
 
@@ -51,7 +52,8 @@ struct RunLine {
 
   void define(CLI::App& app) {
     app.add_option("SYSTEM", system, "a registered system (hamel list systems)");
-    app.add_option("--config", config_file, "a TOML file with the same names; the command line wins");
+    app.add_option("--config", config_file,
+                   "a TOML file with the same names; the command line wins");
     app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
         ->allow_extra_args(false);
     app.add_option("--configuration", configuration, "start: the element's CSV columns, a,b,...");
@@ -143,7 +145,8 @@ int program(int argc, char** argv) {
 
   ListOptions listing;
   CLI::App* list_command = app.add_subcommand("list", "Tables of what exists by name");
-  list_command->add_option("KIND", listing.kind, "groups, retractions, schemes, solvers or systems");
+  list_command->add_option("KIND", listing.kind,
+                           "groups, retractions, schemes, solvers or systems");
   list_command->add_flag("--json", listing.json, "as JSON");
   list_command->footer("Examples:\n  hamel list\n  hamel list retractions --json");
   list_command->callback([&] { command = [&] { return list(listing); }; });
@@ -154,7 +157,8 @@ int program(int argc, char** argv) {
   describe_command->add_option("NAME", description.name, "a name (hamel list)")->required();
   describe_command->add_flag("--json", description.json, "as JSON");
   describe_command->footer(
-      "Examples:\n  hamel describe suslov\n  hamel describe 'se2*so2'\n  hamel describe cayley --json");
+      "Examples:\n  hamel describe suslov\n  hamel describe 'se2*so2'\n  hamel describe cayley "
+      "--json");
   describe_command->callback([&] { command = [&] { return describe(description); }; });
 
   RunLine line;

@@ -31,7 +31,8 @@ Json numbers(const std::vector<double>& values) {
 Json curves(const std::vector<Series>& series) {
   Json out = Json::array();
   for (const Series& s : series) {
-    out.push_back({{"name", s.name}, {"x", numbers(s.x)}, {"y", numbers(s.y)}, {"dashed", s.dashed}});
+    out.push_back(
+        {{"name", s.name}, {"x", numbers(s.x)}, {"y", numbers(s.y)}, {"dashed", s.dashed}});
   }
   return out;
 }
@@ -112,18 +113,21 @@ void Page::sphere(const std::string& title, const std::vector<SphereCurve>& seri
     for (const auto& point : s.points) points.push_back(numbers(point));
     out.push_back({{"name", s.name}, {"points", points}});
   }
-  data_->blocks().push_back({{"kind", "sphere"}, {"title", title}, {"series", out}, {"note", note}});
+  data_->blocks().push_back(
+      {{"kind", "sphere"}, {"title", title}, {"series", out}, {"note", note}});
 }
 
 void Page::write(const std::string& path) const {
   const std::string_view page = report_page();
   const size_t at = page.find(kPlaceholder);
   if (at == std::string_view::npos) {
-    throw ConfigError({"report: this program was built without the page (node and npm were missing "
-                       "at build time); run tools/setup and build again"});
+    throw ConfigError(
+        {"report: this program was built without the page (node and npm were missing "
+         "at build time); run tools/setup and build again"});
   }
   std::string data = data_->page.dump();
-  for (size_t i = 0; (i = data.find("</", i)) != std::string::npos; i += 3) data.replace(i, 2, "<\\/");
+  for (size_t i = 0; (i = data.find("</", i)) != std::string::npos; i += 3)
+    data.replace(i, 2, "<\\/");
   write_file(path, std::string(page.substr(0, at)) + data +
                        std::string(page.substr(at + kPlaceholder.size())));
 }

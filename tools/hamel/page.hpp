@@ -67,8 +67,8 @@ class Page {
 
 /// At most about `points` points: of each bucket those with the smallest and the largest y, or only
 /// the largest (peaks, for errors on a logarithmic axis). NaN is never dropped.
-Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y, bool peaks,
-               size_t points = 1200);
+Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
+               bool peaks, size_t points = 1200);
 
 /// |y|, for a logarithmic axis.
 std::vector<double> magnitudes(std::vector<double> y);

@@ -13,9 +13,8 @@ namespace hamel::tools {
 
 const std::vector<Reading>& readings() {
   static const std::vector<Reading> all = {
-      {"boxed_literal", "boxed_literal", 0}, {"boxed", "boxed", 0},
-      {"balance s=0", "balance", 0},         {"balance s=1/2", "balance", 0.5},
-      {"lift s=0", "lift", 0},               {"lift s=1/2", "lift", 0.5},
+      {"boxed_literal", "boxed_literal", 0}, {"boxed", "boxed", 0},   {"balance s=0", "balance", 0},
+      {"balance s=1/2", "balance", 0.5},     {"lift s=0", "lift", 0}, {"lift s=1/2", "lift", 0.5},
       {"unadapted", "unadapted", 0.5},
   };
   return all;
@@ -38,11 +37,16 @@ const std::vector<Figure>& figures() {
 
 namespace {
 
-Simulation simulation_of(const Case& problem, const Reading& reading, const std::string& retraction) {
+Simulation simulation_of(const Case& problem, const Reading& reading,
+                         const std::string& retraction) {
   Simulation out = simulate(problem.system);
   for (const auto& [name, value] : problem.parameters) out.set(name, value);
-  return out.start(problem.start).scheme(reading.scheme).s(reading.s).retraction(retraction)
-      .step(problem.step).until(problem.until);
+  return out.start(problem.start)
+      .scheme(reading.scheme)
+      .s(reading.s)
+      .retraction(retraction)
+      .step(problem.step)
+      .until(problem.until);
 }
 
 }  // namespace
@@ -100,7 +104,8 @@ std::vector<Series> exact_momentum(const Case& problem) {
   return out;
 }
 
-void add_figures(Page& page, const std::vector<Outcome>& outcomes, const std::vector<Series>& exact) {
+void add_figures(Page& page, const std::vector<Outcome>& outcomes,
+                 const std::vector<Series>& exact) {
   for (size_t j = 0; j < figures().size(); ++j) {
     const Figure& figure = figures()[j];
     std::vector<Series> series;
@@ -110,8 +115,8 @@ void add_figures(Page& page, const std::vector<Outcome>& outcomes, const std::ve
     if (figure.column == "mu1" && !exact.empty()) series.push_back(exact[0]);
     if (figure.column == "mu2" && !exact.empty()) series.push_back(exact[1]);
     page.plot(figure.title,
-              {.x = "time t [s]", .y = figure.label, .log_x = false, .log_y = figure.magnitude}, series,
-              figure.note);
+              {.x = "time t [s]", .y = figure.label, .log_x = false, .log_y = figure.magnitude},
+              series, figure.note);
   }
 }
 
@@ -124,7 +129,8 @@ void add_table(Page& page, const std::string& title, const std::vector<Outcome>&
   page.table(title,
              {"reading", "status", "energy error", "configuration error", "velocity error",
               "constraint residual", "group defect", "ns per step"},
-             rows, "Largest values over the run, every step measured; time includes the measuring.");
+             rows,
+             "Largest values over the run, every step measured; time includes the measuring.");
 }
 
 }  // namespace hamel::tools

@@ -57,7 +57,8 @@ std::vector<Outcome> run_all(const Case& problem, const std::vector<Reading>& wh
 std::vector<Series> exact_momentum(const Case& problem);
 
 /// The figures of these runs, then their table.
-void add_figures(Page& page, const std::vector<Outcome>& outcomes, const std::vector<Series>& exact);
+void add_figures(Page& page, const std::vector<Outcome>& outcomes,
+                 const std::vector<Series>& exact);
 void add_table(Page& page, const std::string& title, const std::vector<Outcome>& outcomes);
 
 }  // namespace hamel::tools

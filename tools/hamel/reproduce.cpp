@@ -19,8 +19,12 @@ namespace {
 const Case kFigure1 = {"Figure 1", "suslov", {}, {.momentum = {1, 1, 0}}, 0.01, 1800};
 const Case kFigure2 = {"Figure 2", "suslov", {}, {.momentum = {1, 1, 0}}, 0.01, 18};
 const std::vector<Case> kSeparating = {
-    {"Suslov with a full inertia", "suslov", {{"inertia", {2, 0.3, 0.5, 3, 0.4, 4}}},
-     {.velocity = {1, 0.5, 0}}, 0.05, 20},
+    {"Suslov with a full inertia",
+     "suslov",
+     {{"inertia", {2, 0.3, 0.5, 3, 0.4, 4}}},
+     {.velocity = {1, 0.5, 0}},
+     0.05,
+     20},
     {"Chaplygin sleigh", "chaplygin_sleigh", {}, {.velocity = {0.9, -1, 0}}, 0.05, 20},
     {"Rolling disk", "rolling_disk", {}, {.velocity = {0.7, 1, 0, 2}}, 0.05, 20},
 };
@@ -34,8 +38,13 @@ const Outcome& find(const std::vector<Outcome>& outcomes, const std::string& nam
 
 // The angle by which the first step of a reading turns the body of figure 1.
 double first_step_angle(const std::string& scheme) {
-  Integration one = simulate("suslov").start(kFigure1.start).scheme(scheme).s(0).retraction("exp")
-                        .step(kFigure1.step).build();
+  Integration one = simulate("suslov")
+                        .start(kFigure1.start)
+                        .scheme(scheme)
+                        .s(0)
+                        .retraction("exp")
+                        .step(kFigure1.step)
+                        .build();
   one.step();
   return Exp<SO3>::tau_inverse(SO3::from_coordinates(one.state().coordinates)).norm();
 }
@@ -104,31 +113,39 @@ class Report {
         if (o.name != "unadapted") constraint = std::max(constraint, o.constraint);
       }
     }
-    story_.verdict(ok ? "ok" : "failed",
-                   fmt::format("180,000 steps of h = 0.01 for seven readings and two retractions: group "
-                               "defect at most {:.1e}; constraint residual at most {:.1e} for the six "
-                               "adapted readings.", defect, constraint));
+    story_.verdict(
+        ok ? "ok" : "failed",
+        fmt::format("180,000 steps of h = 0.01 for seven readings and two retractions: group "
+                    "defect at most {:.1e}; constraint residual at most {:.1e} for the six "
+                    "adapted readings.",
+                    defect, constraint));
     story_.say({
-        fmt::format("I = diag(1, 10, 100), momentum (1, 1, 0), R = Id. The exact angular velocity is "
-                    "constant. `lift` keeps it to {:.1e} (s = 0) and {:.1e} (s = ½) over 1800 s with exp, "
-                    "{:.1e} and {:.1e} with Cayley; `balance` at s = ½ to {:.1e}.",
-                    find(exp, "lift s=0").velocity_error, lift.velocity_error,
-                    find(cayley, "lift s=0").velocity_error, find(cayley, "lift s=1/2").velocity_error,
-                    find(exp, "balance s=1/2").velocity_error),
-        fmt::format("`boxed`, the printed boxes with their slips repaired, ends {:.2f} rad/s away from the "
-                    "true angular velocity of 1.005 rad/s although its energy error is only {:.1e}: it "
-                    "drifts to a principal axis of the inertia. `balance` at s = 0 drifts the other way "
-                    "({:.2f} rad/s, energy error {:.1e}). **Energy alone proves nothing.**",
-                    boxed.velocity_error, boxed.energy_error, find(exp, "balance s=0").velocity_error,
-                    find(exp, "balance s=0").energy_error),
-        fmt::format("`boxed_literal`, the boxes as typeset, jumps by O(1) in its first step and then stays "
-                    "on a plateau: energy error {:.2f} whatever the step, because the step size cancels.",
-                    literal.energy_error),
-        fmt::format("The orientation error of `lift` grows slowly, to {:.1e} with exp, {:.1e} with Cayley at "
-                    "s = 0 and {:.1e} at s = ½: second order, since the velocity of a step differs from the "
-                    "one at its nodes by O(h²) and a Cayley step turns by 2 atan(|hΩ|/2) instead of |hΩ|.",
-                    lift.configuration_error, find(cayley, "lift s=0").configuration_error,
-                    find(cayley, "lift s=1/2").configuration_error),
+        fmt::format(
+            "I = diag(1, 10, 100), momentum (1, 1, 0), R = Id. The exact angular velocity is "
+            "constant. `lift` keeps it to {:.1e} (s = 0) and {:.1e} (s = ½) over 1800 s with exp, "
+            "{:.1e} and {:.1e} with Cayley; `balance` at s = ½ to {:.1e}.",
+            find(exp, "lift s=0").velocity_error, lift.velocity_error,
+            find(cayley, "lift s=0").velocity_error, find(cayley, "lift s=1/2").velocity_error,
+            find(exp, "balance s=1/2").velocity_error),
+        fmt::format(
+            "`boxed`, the printed boxes with their slips repaired, ends {:.2f} rad/s away from the "
+            "true angular velocity of 1.005 rad/s although its energy error is only {:.1e}: it "
+            "drifts to a principal axis of the inertia. `balance` at s = 0 drifts the other way "
+            "({:.2f} rad/s, energy error {:.1e}). **Energy alone proves nothing.**",
+            boxed.velocity_error, boxed.energy_error, find(exp, "balance s=0").velocity_error,
+            find(exp, "balance s=0").energy_error),
+        fmt::format(
+            "`boxed_literal`, the boxes as typeset, jumps by O(1) in its first step and then stays "
+            "on a plateau: energy error {:.2f} whatever the step, because the step size cancels.",
+            literal.energy_error),
+        fmt::format(
+            "The orientation error of `lift` grows slowly, to {:.1e} with exp, {:.1e} with Cayley "
+            "at "
+            "s = 0 and {:.1e} at s = ½: second order, since the velocity of a step differs from "
+            "the "
+            "one at its nodes by O(h²) and a Cayley step turns by 2 atan(|hΩ|/2) instead of |hΩ|.",
+            lift.configuration_error, find(cayley, "lift s=0").configuration_error,
+            find(cayley, "lift s=1/2").configuration_error),
     });
     const std::vector<Series> exact = exact_momentum(kFigure1);
     for (size_t i = 0; i < 2; ++i) {
@@ -144,11 +161,12 @@ class Report {
       const auto outcomes = run_all(kFigure2, {readings()[5], readings()[6]}, retraction);
       keep(kFigure2, retraction, outcomes);
       const Outcome& unadapted = find(outcomes, "unadapted");
-      story_.verdict(unadapted.constraint > 1e-3 && unadapted.status.ok ? "ok" : "failed",
-                     fmt::format("{}: within 18 s the unadapted integrator reaches |Ω₃| = {:.3f} rad/s; lift "
-                                 "stays at {:.1e}. Its energy error is {:.1e}: as a free body it is fine.",
-                                 retraction, unadapted.constraint, find(outcomes, "lift s=1/2").constraint,
-                                 unadapted.energy_error));
+      story_.verdict(
+          unadapted.constraint > 1e-3 && unadapted.status.ok ? "ok" : "failed",
+          fmt::format("{}: within 18 s the unadapted integrator reaches |Ω₃| = {:.3f} rad/s; lift "
+                      "stays at {:.1e}. Its energy error is {:.1e}: as a free body it is fine.",
+                      retraction, unadapted.constraint, find(outcomes, "lift s=1/2").constraint,
+                      unadapted.energy_error));
       add_figures(page_, outcomes, {});
       add_table(page_, "Figure 2, " + retraction, outcomes);
     }
@@ -177,9 +195,10 @@ class Report {
         orders += fmt::format("{}`{}` {:.2e} ({:.2f})", i == 0 ? "" : ", ", readings()[i].name, e2,
                               std::log2(e1 / e2));
       }
-      story_.say({fmt::format("{} s with Cayley at h = {}, {}, {}. Configuration error at the end for the "
-                              "finest step, and the order measured: {}.",
-                              problem.until, problem.step, problem.step / 2, problem.step / 4, orders)});
+      story_.say(
+          {fmt::format("{} s with Cayley at h = {}, {}, {}. Configuration error at the end for the "
+                       "finest step, and the order measured: {}.",
+                       problem.until, problem.step, problem.step / 2, problem.step / 4, orders)});
       add_figures(page_, runs.front(), exact_momentum(problem));
       page_.table(problem.title + ", errors and measured order",
                   {"reading", fmt::format("error, h = {}", problem.step),
@@ -199,17 +218,25 @@ class Report {
     full.moments = {2, 0.3, 0.5, 3, 0.4, 4};
     const Vec<3> pi = full.inertia() * Vec<3>(1, 0.5, 0);
     story_.say({
-        fmt::format("1. The right side `= t I Ω` of both boxes must be `= I Ω`: as printed the first step "
-                    "turns the body by {:.3f} rad instead of {:.5f} rad.", literal, repaired),
-        "2. The printed Cay(x) = (I - x)⁻¹(I + x) has derivative 2x at 0, against the paper's own condition "
+        fmt::format(
+            "1. The right side `= t I Ω` of both boxes must be `= I Ω`: as printed the first step "
+            "turns the body by {:.3f} rad instead of {:.5f} rad.",
+            literal, repaired),
+        "2. The printed Cay(x) = (I - x)⁻¹(I + x) has derivative 2x at 0, against the paper's own "
+        "condition "
         "τ'(0) = id; hamel uses x/2.",
-        fmt::format("3. The last line Π' = exp(tΩ)Π has the sign of the inverse: one step moves the spatial "
-                    "momentum of a free body with full inertia by {:.1e}; with exp(-tΩ) by {:.0e}. The "
-                    "diagonal Suslov problem cannot see it.",
-                    spatial_momentum_jump(+1), spatial_momentum_jump(-1)),
-        fmt::format("4. Both lines need ι* in front, and the embedding of 𝔡* is π*μ = IΩ: for the full "
-                    "inertia below and Ω = (1, ½, 0) its third component is {:.2f}, not 0.", pi[2]),
-        "5. With all of this repaired the boxes are the scheme `boxed`: order 1, with the drift of figure 1. "
+        fmt::format(
+            "3. The last line Π' = exp(tΩ)Π has the sign of the inverse: one step moves the "
+            "spatial "
+            "momentum of a free body with full inertia by {:.1e}; with exp(-tΩ) by {:.0e}. The "
+            "diagonal Suslov problem cannot see it.",
+            spatial_momentum_jump(+1), spatial_momentum_jump(-1)),
+        fmt::format(
+            "4. Both lines need ι* in front, and the embedding of 𝔡* is π*μ = IΩ: for the full "
+            "inertia below and Ω = (1, ½, 0) its third component is {:.2f}, not 0.",
+            pi[2]),
+        "5. With all of this repaired the boxes are the scheme `boxed`: order 1, with the drift of "
+        "figure 1. "
         "The paper's own diagram, read literally, is the scheme `lift`: order 2.",
     });
   }
@@ -218,7 +245,8 @@ class Report {
     const auto path = [&](const char* name) {
       return (std::filesystem::path(options.directory) / name).string();
     };
-    const std::string text = fmt::format("The paper's experiment, every reading side by side\n{}", story_.text());
+    const std::string text =
+        fmt::format("The paper's experiment, every reading side by side\n{}", story_.text());
     write_file(path("summary.txt"), text);
     write_file(path("readings.csv"), csv_);
     if (!options.quiet) fmt::print("{}\n", text);
@@ -235,11 +263,13 @@ class Report {
   bool ok() const { return ok_; }
 
  private:
-  void keep(const Case& problem, const std::string& retraction, const std::vector<Outcome>& outcomes) {
+  void keep(const Case& problem, const std::string& retraction,
+            const std::vector<Outcome>& outcomes) {
     for (const Outcome& o : outcomes) {
-      csv_ += fmt::format("{},{},{},{},{},{:.6e},{:.6e},{:.6e},{:.6e},{:.6e}\n", problem.title, o.name,
-                          retraction, problem.step, o.status.ok ? "ok" : "failed", o.energy_error,
-                          o.configuration_error, o.velocity_error, o.constraint, o.group_defect);
+      csv_ +=
+          fmt::format("{},{},{},{},{},{:.6e},{:.6e},{:.6e},{:.6e},{:.6e}\n", problem.title, o.name,
+                      retraction, problem.step, o.status.ok ? "ok" : "failed", o.energy_error,
+                      o.configuration_error, o.velocity_error, o.constraint, o.group_defect);
       ok_ = ok_ && o.status.ok;
     }
   }
@@ -249,7 +279,8 @@ class Report {
   Story story_;
   Progress progress_;
   std::string csv_ =
-      "case,reading,retraction,step,status,energy_error,configuration_error,velocity_error,constraint,"
+      "case,reading,retraction,step,status,energy_error,configuration_error,velocity_error,"
+      "constraint,"
       "group_defect\n";
   int done_ = 0;
   bool ok_ = true;

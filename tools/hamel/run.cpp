@@ -31,8 +31,9 @@ std::vector<std::string> output_mistakes(const RunOptions& options) {
   if (!options.report.empty()) {
     check(options.report, {".html"});
     if (report_page().empty()) {
-      mistakes.push_back("--report: this program was built without the page (node and npm were "
-                         "missing at build time); run tools/setup and build again");
+      mistakes.push_back(
+          "--report: this program was built without the page (node and npm were "
+          "missing at build time); run tools/setup and build again");
     }
   }
   return mistakes;
@@ -72,7 +73,8 @@ int run(const RunOptions& options) {
   else if (!options.quiet) fmt::print("{}", result.report());
   if (!result.status.ok) {
     fmt::print(stderr, "hamel: failed in step {} at t = {:.6g}: {} (residual {:.2e})\n",
-               result.status.step, result.status.time, result.status.reason, result.status.residual);
+               result.status.step, result.status.time, result.status.reason,
+               result.status.residual);
   }
   return result.status.ok ? 0 : 1;
 }

@@ -26,13 +26,15 @@ std::vector<size_t> thin_rows(const Result& result, size_t points) {
 
 std::string headline(const Result& r) {
   if (!r.status.ok) {
-    return fmt::format("Failed in step {} at t = {:.6g}: {} (residual {:.2e}). {} good steps are kept.",
-                       r.status.step, r.status.time, r.status.reason, r.status.residual, r.steps);
+    return fmt::format(
+        "Failed in step {} at t = {:.6g}: {} (residual {:.2e}). {} good steps are kept.",
+        r.status.step, r.status.time, r.status.reason, r.status.residual, r.steps);
   }
-  return fmt::format("{} steps of h = {} to t = {:.6g}; constraint residual at most {:.1e}, group "
-                     "defect at most {:.1e}, energy error at most {:.1e}.",
-                     r.steps, r.config.step, r.last.time, r.constraint_max, r.group_defect_max,
-                     r.energy_error_max);
+  return fmt::format(
+      "{} steps of h = {} to t = {:.6g}; constraint residual at most {:.1e}, group "
+      "defect at most {:.1e}, energy error at most {:.1e}.",
+      r.steps, r.config.step, r.last.time, r.constraint_max, r.group_defect_max,
+      r.energy_error_max);
 }
 
 }  // namespace
@@ -93,9 +95,10 @@ Page run_page(const Result& r) {
   }
   page.plot("Energy error", with(log, "|E - E0| / E0"), {curve(r, name, "energy_error")});
   if (exact) {
-    page.plot("Error against the exact motion", with(log, "|difference|"),
-              {curve(r, "configuration", "exact_error"), curve(r, "velocity", "exact_velocity_error")},
-              "Euclidean distance of the element's columns, and of the body velocities.");
+    page.plot(
+        "Error against the exact motion", with(log, "|difference|"),
+        {curve(r, "configuration", "exact_error"), curve(r, "velocity", "exact_velocity_error")},
+        "Euclidean distance of the element's columns, and of the body velocities.");
   }
   page.plot("Constraint residual", with(log, "|A xi/h|"), {curve(r, name, "constraint")},
             "The step's velocity is recovered from consecutive configurations; its floor is about "
