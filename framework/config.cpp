@@ -17,6 +17,29 @@ const std::vector<std::string>& keys() {
   return all;
 }
 
+// A TOML basic string.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+      continue;
+    }
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+// A TOML key: bare where it may be.
+std::string key_of(const std::string& name) {
+  const bool bare =
+      !name.empty() &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+          std::string::npos;
+  return bare ? name : quoted(name);
+}
+
 // Reads nodes of one TOML table into fields, noting what does not fit.
 class Reader {
  public:
@@ -109,7 +132,7 @@ Config Config::from_toml(const std::string& text, const std::string& origin) {
 std::string Config::to_toml() const {
   std::string out;
   const auto text = [&](const char* key, const std::string& v) {
-    out += fmt::format("{} = \"{}\"\n", key, v);
+    out += fmt::format("{} = {}\n", key, quoted(v));
   };
   const auto number = [](double v) {  // TOML floats need a point or an exponent
     std::string digits = fmt::format("{}", v);
@@ -132,7 +155,7 @@ std::string Config::to_toml() const {
   text("compose", compose);
   out += fmt::format("step = {}\nuntil = {}\nevery = {}\n", number(step), number(until), every);
   if (!parameters.empty()) out += "[set]\n";
-  for (const auto& [name, values] : parameters) list(name, values);
+  for (const auto& [name, values] : parameters) list(key_of(name), values);
   return out;
 }
 

@@ -27,9 +27,11 @@ struct Lift {
   static std::string source() { return "Vivek, Martin de Diego, Banavar: D^{D*}, read literally"; }
   static constexpr bool adapted = true;
   static constexpr bool uses_s = true;
+  /// A symmetric tau gives order 2 for every s. The step is reversible at s = 1/2, and at s = 0 and 1 when
+  /// tau is symmetric; between them only when tau(a xi) and tau(b xi) commute (exp, Cayley, polar), which
+  /// is not claimed: tau_s(xi)^-1 = tau((1-s) xi)^-1 tau(-s xi) is tau_s(-xi) only then.
   static ClaimedOrder claimed_order(double s, bool symmetric_tau) {
-    const bool symmetric = symmetric_tau || s == 0.5;
-    return {symmetric ? 2 : 1, symmetric};
+    return {symmetric_tau || s == 0.5 ? 2 : 1, s == 0.5 || (symmetric_tau && (s == 0 || s == 1))};
   }
 
   template <class Problem, class Tau>

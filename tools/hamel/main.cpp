@@ -21,6 +21,10 @@ constexpr int kBadInput = 2;
 
 // "1,10,100" -> {1, 10, 100}.
 std::vector<double> read_numbers(const std::string& option, const std::string& text) {
+  if (text.empty() || text.back() == ',') {
+    throw ConfigError(
+        {fmt::format("{}: got '{}', expected numbers separated by commas", option, text)});
+  }
   std::vector<double> out;
   std::istringstream in(text);
   for (std::string word; std::getline(in, word, ',');) {
@@ -36,14 +40,13 @@ std::vector<double> read_numbers(const std::string& option, const std::string& t
     }
     out.push_back(value);
   }
-  if (out.empty())
-    throw ConfigError({fmt::format("{}: expected numbers separated by commas", option)});
   return out;
 }
 
 // The options of `hamel run` as given; the file first, then what the command line says.
 struct RunLine {
-  std::string system, config_file, configuration, velocity, momentum;
+  std::string system, config_file;
+  std::optional<std::string> configuration, velocity, momentum;
   std::vector<std::string> sets;
   std::optional<std::string> scheme, retraction, solver, compose;
   std::optional<double> s, tolerance, step, until;
@@ -108,10 +111,11 @@ struct RunLine {
         mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
       }
     };
-    const auto list = [&](const char* option, const std::string& text, std::vector<double>& out) {
-      if (!text.empty()) collect([&] { out = read_numbers(option, text); });
+    const auto list = [&](const char* option, const std::optional<std::string>& text,
+                          std::vector<double>& out) {
+      if (text) collect([&] { out = read_numbers(option, *text); });
     };
-    if (!velocity.empty() || !momentum.empty()) config.start.velocity = config.start.momentum = {};
+    if (velocity || momentum) config.start.velocity = config.start.momentum = {};
     list("--configuration", configuration, config.start.configuration);
     list("--velocity", velocity, config.start.velocity);
     list("--momentum", momentum, config.start.momentum);
