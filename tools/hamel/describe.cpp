@@ -1,4 +1,7 @@
 // hamel describe: formula, parameters with units and defaults, what is exactly known, source.
+#include <algorithm>
+#include <sstream>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -45,6 +48,37 @@ Json describe_group(const GroupInfo& info) {
           {"retractions", registry().retractions(info.name)}};
 }
 
+// A product that has no kernels of its own: its factors' members, put together. Null when a factor is
+// unknown.
+Json describe_product(const std::string& name) {
+  std::istringstream in(name);
+  std::vector<std::string> columns, retractions;
+  std::vector<double> identity;
+  int dim = 0, factor = 0;
+  for (std::string word; std::getline(in, word, '*');) {
+    const GroupInfo* info = registry().group(word);
+    if (info == nullptr) return nullptr;
+    ++factor;
+    dim += info->dim;
+    for (const std::string& column : info->columns) {
+      columns.push_back(fmt::format("{}_{}", factor, column));
+    }
+    identity.insert(identity.end(), info->identity.begin(), info->identity.end());
+    const std::vector<std::string> offered = registry().retractions(word);
+    if (factor == 1) retractions = offered;
+    std::erase_if(retractions, [&](const std::string& r) {
+      return std::find(offered.begin(), offered.end(), r) == offered.end();
+    });
+  }
+  return {{"kind", "group"},
+          {"name", name},
+          {"summary", "a product without compiled kernels: add_group<Product<...>>() in a program"},
+          {"dim", dim},
+          {"columns", columns},
+          {"identity", identity},
+          {"retractions", retractions}};
+}
+
 Json describe_retraction(const std::string& name) {
   Json where = Json::array();
   for (const std::string& group : registry().groups()) {
@@ -83,6 +117,9 @@ Json description_of(const std::string& name) {
   if (const SolverInfo* info = all.solver(name)) {
     return {
         {"kind", "solver"}, {"name", name}, {"summary", info->summary}, {"source", info->source}};
+  }
+  if (name.find('*') != std::string::npos) {
+    if (const Json product = describe_product(name); !product.is_null()) return product;
   }
   std::vector<std::string> known;
   for (const std::string& retraction : all.retractions()) {
