@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <hamel/framework/types.hpp>
@@ -19,6 +20,12 @@ namespace hamel {
 struct DomainError : std::domain_error {
   using std::domain_error::domain_error;
 };
+
+/// A fixed-size matrix or vector (or expression) of R rows and C columns. convertible_to would not do:
+/// Eigen declares conversions that then fail to compile.
+template <class X, int R, int C>
+concept Shape =
+    std::remove_cvref_t<X>::RowsAtCompileTime == R&& std::remove_cvref_t<X>::ColsAtCompileTime == C;
 
 /// A Lie group G of dimension n. Everything is static and templated on the scalar T:
 ///   `template <class T> using Element`   the representation of a group element;
@@ -35,11 +42,11 @@ concept Group = requires(const typename G::template Element<double>& g, const Ve
   { G::compose(g, g) } -> std::convertible_to<typename G::template Element<double>>;
   { G::inverse(g) } -> std::convertible_to<typename G::template Element<double>>;
   // Ad_g (matrix of eta -> g eta g^-1) and ad_xi (matrix of eta -> [xi, eta]), n x n.
-  { G::Ad(g) } -> std::convertible_to<Mat<G::dim, G::dim>>;
-  { G::ad(xi) } -> std::convertible_to<Mat<G::dim, G::dim>>;
+  { G::Ad(g) } -> Shape<G::dim, G::dim>;
+  { G::ad(xi) } -> Shape<G::dim, G::dim>;
   // (Ad_g)^T mu, and the n x n matrix K(mu) with K(mu) eta = (ad_eta)^T mu.
-  { G::Ad_transpose(g, xi) } -> std::convertible_to<Vec<G::dim>>;
-  { G::coad(xi) } -> std::convertible_to<Mat<G::dim, G::dim>>;
+  { G::Ad_transpose(g, xi) } -> Shape<G::dim, 1>;
+  { G::coad(xi) } -> Shape<G::dim, G::dim>;
   // The nearest group element to one that carries round-off, and how far g is from the group.
   { G::normalise(g) } -> std::convertible_to<typename G::template Element<double>>;
   { G::defect(g) } -> std::convertible_to<double>;
@@ -65,19 +72,17 @@ concept Retraction = requires(const Vec<R::Group::dim>& xi, const Vec<R::Group::
   { R::one_parameter } -> std::convertible_to<bool>;
   { R::tau(xi) } -> std::convertible_to<typename R::Group::template Element<double>>;
   // Throws DomainError outside the range of tau.
-  { R::tau_inverse(g) } -> std::convertible_to<Vec<R::Group::dim>>;
+  { R::tau_inverse(g) } -> Shape<R::Group::dim, 1>;
   // dR, its inverse, dL, its inverse: n x n.
-  { R::dtau_right(xi) } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
-  { R::dtau_right_inverse(xi) } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
-  { R::dtau_left(xi) } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
-  { R::dtau_left_inverse(xi) } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
+  { R::dtau_right(xi) } -> Shape<R::Group::dim, R::Group::dim>;
+  { R::dtau_right_inverse(xi) } -> Shape<R::Group::dim, R::Group::dim>;
+  { R::dtau_left(xi) } -> Shape<R::Group::dim, R::Group::dim>;
+  { R::dtau_left_inverse(xi) } -> Shape<R::Group::dim, R::Group::dim>;
   // (dR^-1)^T p and (dL^-1)^T p: what a step evaluates.
-  { R::dtau_right_inverse_transpose(xi, p) } -> std::convertible_to<Vec<R::Group::dim>>;
-  { R::dtau_left_inverse_transpose(xi, p) } -> std::convertible_to<Vec<R::Group::dim>>;
+  { R::dtau_right_inverse_transpose(xi, p) } -> Shape<R::Group::dim, 1>;
+  { R::dtau_left_inverse_transpose(xi, p) } -> Shape<R::Group::dim, 1>;
   // What Newton needs: the n x n matrix of d/dxi [ (dR tau_xi)^-T p ] with the covector p held fixed.
-  {
-    R::dtau_right_inverse_transpose_derivative(xi, p)
-    } -> std::convertible_to<Mat<R::Group::dim, R::Group::dim>>;
+  { R::dtau_right_inverse_transpose_derivative(xi, p) } -> Shape<R::Group::dim, R::Group::dim>;
   // Is xi inside the ball (or box) on which tau is a diffeomorphism with inverse tau_inverse?
   { R::in_domain(xi) } -> std::convertible_to<bool>;
   // That domain in words, for `hamel describe` and errors: "|omega| < pi".

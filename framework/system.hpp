@@ -134,7 +134,10 @@ constexpr int constraint_count() {
 template <class S>
 concept System = requires(const S& s) {
   requires Group<typename S::Group>;
-  { s.inertia() } -> std::convertible_to<Mat<S::Group::dim, S::Group::dim>>;
+  { s.inertia() } -> Shape<S::Group::dim, S::Group::dim>;
+  // k rows of n columns, where there are any.
+  requires !requires { s.constraints(); }
+  || Shape<decltype(s.constraints()), constraint_count<S>(), S::Group::dim>;
 };
 
 /// The name, group and fields of a system; nothing that its parameters could break.

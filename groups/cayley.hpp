@@ -60,6 +60,9 @@ struct Cayley<SO2> : CayleyDefaults<SO2> {
 
 template <>
 struct Cayley<SO3> : CayleyDefaults<SO3> {
+  /// dR^-1 is quadratic in xi, so the weight of its even part is one (framework/hamel_form.hpp).
+  static double quadratic_weight(double /*x*/) { return 1.0; }
+  static double angle_squared(const Vec<3>& xi) { return xi.dot(xi); }
   /// I + (omega^ + omega^2/2)/(1 + |omega|^2/4).
   template <class T>
   static MatT<T, 3, 3> tau(const VecT<T, 3>& xi) {
@@ -114,6 +117,9 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
 
 template <>
 struct Cayley<SE2> : CayleyDefaults<SE2> {
+  /// dR^-1 is quadratic in xi, so the weight of its even part is one (framework/hamel_form.hpp).
+  static double quadratic_weight(double /*x*/) { return 1.0; }
+  static double angle_squared(const Vec<3>& xi) { return xi[0] * xi[0]; }
   /// (cay omega, (I - omega J/2)^-1 v).
   template <class T>
   static SE2Element<T> tau(const VecT<T, 3>& xi) {

@@ -121,6 +121,9 @@ struct Exp<SO2> : CircleExponential<Exp<SO2>> {
 
 template <>
 struct Exp<SO3> : ExpDefaults<SO3> {
+  /// dR^-1 = 1 - ad/2 + cotc(x) ad^2 (framework/hamel_form.hpp).
+  static double quadratic_weight(double x) { return cotc(x); }
+  static double angle_squared(const Vec<3>& xi) { return xi.dot(xi); }
   template <class T>
   static MatT<T, 3, 3> tau(const VecT<T, 3>& xi) {
     const T x = xi.dot(xi);
@@ -179,6 +182,9 @@ struct Exp<SO3> : ExpDefaults<SO3> {
 
 template <>
 struct Exp<SE2> : ExpDefaults<SE2> {
+  /// dR^-1 = 1 - ad/2 + cotc(x) ad^2 (framework/hamel_form.hpp).
+  static double quadratic_weight(double x) { return cotc(x); }
+  static double angle_squared(const Vec<3>& xi) { return xi[0] * xi[0]; }
   /// (exp omega, (sinc I + omega cosc J) v).
   template <class T>
   static SE2Element<T> tau(const VecT<T, 3>& xi) {

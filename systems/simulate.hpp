@@ -16,15 +16,19 @@ Registry& registry();
 inline Simulation simulate(std::string system) { return {registry(), std::move(system)}; }
 
 /// A system object, on a registered group.
-template <System S>
-Simulation simulate(const S& system) {
+template <class S>
+requires(!std::convertible_to<const S&, std::string>) Simulation simulate(const S& system) {
+  static_assert(System<S>,
+                "this type does not satisfy hamel::System: Group, inertia(), constraints()");
   return {registry(), erase_words(system).name, maker(system)};
 }
 
 /// A system object with the scheme and the retraction named by type; nothing needs to be registered.
 ///   hamel::simulate<hamel::Lift, hamel::Cayley>(Sleigh{.a = 0.3})
-template <class Scheme, template <class> class Tau, System S>
+template <class Scheme, template <class> class Tau, class S>
 Simulation simulate(const S& system) {
+  static_assert(System<S>,
+                "this type does not satisfy hamel::System: Group, inertia(), constraints()");
   using R = Tau<typename S::Group>;
   constexpr int m = S::Group::dim - constraint_count<S>();
   Simulation simulation(registry(), erase_words(system).name, maker(system));

@@ -11,6 +11,7 @@
 // This is the discrete Lagrange-d'Alembert principle for L_d = h l(xi/h) (Cortes, Martinez 2001).
 #pragma once
 
+#include <hamel/framework/hamel_form.hpp>
 #include <hamel/framework/problem.hpp>
 #include <hamel/framework/schemes/traits.hpp>
 #include <hamel/framework/trivialised.hpp>
@@ -45,7 +46,7 @@ struct Lift {
     using Momentum = typename Problem::Reduced;
 
     Step(const Problem& problem, double s)
-        : problem_(problem), s_(s), one_sided_(s == 0 || Tau::one_parameter) {}
+        : problem_(problem), form_(problem), s_(s), one_sided_(s == 0 || Tau::one_parameter) {}
 
     void begin(const Momentum& mu, double h) {
       mu_ = mu;
@@ -59,7 +60,11 @@ struct Lift {
     /// F(y) = E^T mu0 - mu_bar.
     [[gnu::always_inline]] void residual(const Unknown& y, Unknown& f) const {
       if (one_sided_) [[likely]] {
-        f = problem_.reduce(Tau::dtau_right_inverse_transpose(xi(y), problem_.momentum(y))) - mu_;
+        if constexpr (has_form) {
+          f = form_(y, h_) - mu_;
+        } else {
+          f = problem_.reduce(Tau::dtau_right_inverse_transpose(xi(y), problem_.momentum(y))) - mu_;
+        }
       } else {
         two_sided_residual(y, f);
       }
@@ -90,7 +95,11 @@ struct Lift {
       if (one_sided_) [[likely]] {
         const Vec<n> step = xi(y);
         increment = Tau::tau(step);
-        mu = problem_.reduce(Tau::dtau_left_inverse_transpose(step, problem_.momentum(y)));
+        if constexpr (has_form) {
+          mu = form_(y, -h_);
+        } else {
+          mu = problem_.reduce(Tau::dtau_left_inverse_transpose(step, problem_.momentum(y)));
+        }
       } else {
         two_sided_finish(y, increment, mu);
       }
@@ -115,7 +124,13 @@ struct Lift {
       return c.inverse();
     }
 
+    static constexpr bool has_form = has_hamel_form<Problem, Tau>;
+    struct NoForm {
+      explicit NoForm(const Problem& /*problem*/) {}
+    };
+
     Problem problem_;
+    [[no_unique_address]] std::conditional_t<has_form, HamelForm<Problem, Tau>, NoForm> form_;
     double s_, h_ = 0;
     bool one_sided_;
     Momentum mu_;
