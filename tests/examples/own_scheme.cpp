@@ -26,6 +26,7 @@ struct EnergyPreserving {
   class Step {
    public:
     using G = typename Problem::Group;
+    using Element = typename G::template Element<double>;
     using Velocity = hamel::Vec<Problem::n>;
     using Unknown = typename Problem::Reduced;
     using Jacobian = typename Problem::ReducedMatrix;
@@ -51,8 +52,7 @@ struct EnergyPreserving {
       j = -h_ * (problem_.reduce_both(G::coad(p)) + problem_.reduce_momentum(G::ad(w).transpose()));
       j.diagonal().array() += 2;
     }
-    void finish(const Unknown& y, typename G::template Element<double>& increment,
-                Momentum& mu) const {
+    void finish(const Unknown& y, Element& increment, Momentum& mu) const {
       increment = Tau::tau(xi(y));
       mu = 2 * y - mu_;
     }
