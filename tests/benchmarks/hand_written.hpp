@@ -169,6 +169,7 @@ struct HandSuslov {
 struct HandSleigh {
   double mass = 1, offset = 0.2, about_blade = 0.1 + 0.04, h = 0.01;
   double cosine = 1, sine = 0, x = 0, y = 0;
+  int turns = 0;
   double mu1, mu2;
   Guess guess;
 
@@ -181,6 +182,7 @@ struct HandSleigh {
     x += cosine * dx - sine * dy;
     y += sine * dx + cosine * dy;
     const double nc = cosine * c - sine * s, ns = sine * c + cosine * s;
+    if (nc < 0 && sine * ns < 0) turns += ns < 0 ? 1 : -1;  // the heading is unwrapped
     const double k = (3 - (nc * nc + ns * ns)) / 2;
     cosine = k * nc;
     sine = k * ns;

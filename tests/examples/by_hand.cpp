@@ -18,7 +18,7 @@ int main() {
             << now.coordinates[0] << ", energy " << now.energy << ", constraint residual "
             << now.constraint << "\n";
 
-  // A run that an observer ends: every recorded state is shown to it.
+  // A run that an observer ends is a good run: every recorded state is shown to it.
   const auto watched = hamel::simulate("chaplygin_sleigh")
                            .observe([](const hamel::Snapshot& s) { return s.velocity[1] < 0; })
                            .run();
@@ -44,7 +44,7 @@ int main() {
     std::cout << error.what() << "\n";
   }
 
-  const bool good = std::abs(now.coordinates[0]) < 1.6 && now.constraint < 1e-12 && !watched &&
+  const bool good = std::abs(now.coordinates[0]) < 1.6 && now.constraint < 1e-12 && watched &&
                     watched.last.velocity[1] >= 0 && !failed && failed.steps > 0 &&
                     failed.status.step == failed.steps + 1 &&
                     failed.trajectory.rows() == static_cast<size_t>(failed.steps) + 1 &&
