@@ -24,8 +24,9 @@ export function readCurves(block, { sorted, logX = false, logY = false }) {
     const n = series.x.length;
     const order = sorted ? orderOf(series.x) : null;
     const curve = {
-      name: String(series.name ?? ''), style: styleOf(series), show: true, n,
-      x: new Float64Array(n), y: new Float64Array(n), markers: sorted && n <= FEW,
+      name: String(series.name ?? ''), style: styleOf(series), show: true, picked: true, n,
+      x: new Float64Array(n), y: new Float64Array(n), markers: series.markers === true || (sorted && n <= FEW),
+      tags: series.tags, fit: readFit(series.fit),
     };
     for (let i = 0; i < n; ++i) {
       const from = order ? order[i] : i;
@@ -37,6 +38,12 @@ export function readCurves(block, { sorted, logX = false, logY = false }) {
     return curve;
   });
   return { x, y, curves, hidden };
+}
+
+/** What the legend says of a fitted line; its slope where the data has no words for it. */
+function readFit(fit) {
+  if (!fit) return '';
+  return String(fit.text || (typeof fit.slope === 'number' ? `slope ${fit.slope.toFixed(2)}` : ''));
 }
 
 function orderOf(x) {

@@ -6,6 +6,7 @@ import './figures.css';
 import './print.css';
 import { h, inline, problem } from './dom.js';
 import { assignStyles } from './palette.js';
+import { heatmap } from './heatmap.js';
 import { path, plot } from './plot.js';
 import { preparePrinting } from './print.js';
 import { record } from './record.js';
@@ -13,11 +14,12 @@ import { sphere } from './sphere.js';
 import { table } from './table.js';
 import { text, verdict } from './text.js';
 
-const KINDS = { text, verdict, table, record, plot, path, sphere };
-const FIGURES = new Set(['plot', 'path', 'sphere']);
+const KINDS = { text, verdict, table, record, plot, path, sphere, heatmap };
+const FIGURES = new Set(['plot', 'path', 'sphere', 'heatmap']);
 const HELP = 'Charts: drag to zoom, Ctrl and wheel (after a click the wheel alone) to zoom at the pointer, ' +
   'double-click to see all again. A click on a name hides or shows its curve. Spheres turn by dragging or with ' +
-  'the arrow keys; the side away from you is drawn faint, a ring marks where a curve starts.';
+  'the arrow keys; the side away from you is drawn faint, a ring marks where a curve starts. Cells of heat ' +
+  'maps are read with the pointer or the arrow keys.';
 
 function readData() {
   const source = document.getElementById('hamel-data')?.textContent.trim() ?? '';
@@ -74,8 +76,10 @@ function showSection(section, place, counter, later) {
       grid = null;
       element.append(shown);
     } else {
-      if (!grid) element.append(grid = h('div', { class: 'figures' }));
+      const wide = shown.classList.contains('wide');
+      if (!grid || wide) element.append(grid = h('div', { class: 'figures' }));
       grid.append(shown);
+      if (wide) grid = null;
     }
   }
   return element;

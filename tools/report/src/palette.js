@@ -2,17 +2,25 @@
 // Ito, and Tol). Beyond ten names a colour serves again where the two never meet in a figure; then come dashes.
 
 const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#b0508c', '#e69f00', '#2e2585', '#56b4e9', '#7a1f3d',
-  '#6b6b6b', '#8a8a1c'];
+  '#786048', '#8a8a1c'];
 const DASHES = [[], [8, 3], [2, 3], [9, 3, 2, 3]];
 const DASHED = [7, 4];
 
 let styles = new Map();
 
+/** The names of a block that are seen at one time: all, or those whose tags a filter shows together. */
+function seenTogether(block) {
+  if (!Array.isArray(block?.series)) return [];
+  const names = (series) => series.map((s) => String(s?.name));
+  if (!Array.isArray(block.filters)) return [names(block.series)];
+  const tags = (s) => JSON.stringify(block.filters.map((filter) => s?.tags?.[filter?.name]));
+  return [...new Set(block.series.map(tags))].map((group) => names(block.series.filter((s) => tags(s) === group)));
+}
+
 /** Gives every name of the page its style. */
 export function assignStyles(sections) {
   styles = new Map();
-  const figures = sections.flatMap((section) => section?.blocks ?? [])
-    .map((block) => (Array.isArray(block?.series) ? block.series.map((s) => String(s?.name)) : []));
+  const figures = sections.flatMap((section) => section?.blocks ?? []).flatMap(seenTogether);
   const all = DASHES.flatMap((dash) => COLOURS.map((colour) => ({ colour, dash, names: 0 })));
   for (const name of figures.flat()) {
     if (styles.has(name)) continue;

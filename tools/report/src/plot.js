@@ -4,7 +4,8 @@ import { h, inline } from './dom.js';
 import { MISSING } from './format.js';
 import { nearestInPlane, nearestInX, readCurves } from './curves.js';
 import { makeChart, refresh, View } from './chart.js';
-import { makeLegend } from './legend.js';
+import { makeFilters } from './filters.js';
+import { makeLegend, MANY } from './legend.js';
 import { onPrint } from './print.js';
 import { figure } from './figure.js';
 
@@ -33,7 +34,12 @@ export function path(block) {
 }
 
 function chartFigure(block, data, manner, kind) {
-  const view = new View(data, manner.equal);
+  const filters = makeFilters(block.filters, () => {
+    offer();
+    if (!view.zoomed) view.goHome();
+    u?.batch(() => data.curves.forEach((curve, i) => u.setSeries(i + 1, { show: curve.show })));
+    redraw();
+  });
   const holder = h('div', { class: 'chart', role: 'img', 'aria-label': describe(block, data, kind) });
   const reset = h('button', { type: 'button', class: 'reset', hidden: true,
     onclick: () => { view.goHome(); redraw(); } }, 'reset zoom');
@@ -45,7 +51,7 @@ function chartFigure(block, data, manner, kind) {
   };
   const legend = makeLegend(data.curves, {
     onToggle: (i, visible) => {
-      data.curves[i].show = visible;
+      data.curves[i].show = data.curves[i].picked = visible;
       if (!view.zoomed) view.goHome();
       u.setSeries(i + 1, { show: visible });
       redraw();
@@ -53,6 +59,13 @@ function chartFigure(block, data, manner, kind) {
     onFocus: (i) => { if (data.curves.length > 1) u.setSeries(i === null ? null : i + 1, { focus: true }); },
   });
 
+  const offer = () => data.curves.forEach((curve, i) => {
+    const passes = filters.passes(curve.tags);
+    curve.show = curve.picked && passes;
+    legend.offer(i, passes, filters.rest(curve.tags));
+  });
+  offer();
+  const view = new View(data, manner.equal);
   holder.append(legend.cursor);
   const notes = [];
   if (data.hidden > 0) {
@@ -60,7 +73,8 @@ function chartFigure(block, data, manner, kind) {
     notes.push(h('p', { class: 'remark' }, `${points} at or below zero not drawn.`));
   }
   if (block.note) notes.push(h('p', { class: 'remark' }, inline(block.note)));
-  const element = figure(block, [holder, legend.element, ...notes], reset);
+  const element = figure(block, [filters.element, holder, legend.element, ...notes].filter(Boolean), reset);
+  if (data.curves.length > MANY) element.classList.add('wide');
 
   const draw = () => {
     u = makeChart(holder, data, view, manner, {

@@ -5,6 +5,12 @@ const SHARPER = 2;
 export const PAGE_WIDTH = 660;  // CSS pixels between the margins of A4, frame taken off
 
 const charts = [];
+const preparations = [];
+
+/** Something to be done before any printing and undone after it. */
+export function onPaper(prepare, restore) {
+  preparations.push({ prepare, restore });
+}
 
 /** draw(place, width, height, k) -> canvas that is ready after the current task's microtasks. */
 export function onPrint(holder, height, draw) {
@@ -15,6 +21,7 @@ export function preparePrinting() {
   const stage = document.createElement('div');
   stage.className = 'stage';
   window.addEventListener('beforeprint', () => {
+    preparations.forEach(({ prepare }) => prepare());
     document.body.append(stage);
     for (const { holder, height, draw } of charts) {
       const half = holder.closest('.figure.path') !== null;
@@ -30,6 +37,7 @@ export function preparePrinting() {
   window.addEventListener('afterprint', () => {
     stage.replaceChildren();
     stage.remove();
+    preparations.forEach(({ restore }) => restore());
     document.querySelectorAll('canvas.paper').forEach((canvas) => canvas.remove());
   });
 }

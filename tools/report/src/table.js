@@ -1,7 +1,13 @@
-// A table sorted by a click on a column's head: first rising, then falling, then as it was.
+// A table sorted by a click on a column's head: first rising, then falling, then as it was. With filters where the
+// data asks for them. Long tables stand in a box of their own and grow while they are scrolled.
 
 import { h, inline } from './dom.js';
 import { formatValue } from './format.js';
+import { onPaper } from './print.js';
+import { compare, makeFilter } from './table_filter.js';
+
+const SLICE = 150;  // rows made at a time
+const TALL = 40;    // more rows stand in a box
 
 export function table(block) {
   if (!Array.isArray(block.columns) || !Array.isArray(block.rows)) throw new Error('no list "columns" or "rows"');
@@ -9,13 +15,25 @@ export function table(block) {
     const cells = block.rows.map((row) => row?.[c]).filter((cell) => cell !== null && cell !== undefined);
     return cells.length > 0 && cells.filter((cell) => typeof cell === 'number').length * 2 > cells.length;
   });
-  const rows = block.rows.map((row, place) => ({ row, place, element: line(row, numeric) }));
-  const body = h('tbody', {}, rows.map((row) => row.element));
+  const rows = block.rows.map((row, place) => ({ row: row ?? [], place }));
+  const body = h('tbody');
   const heads = block.columns.map((name, c) => h('th', { scope: 'col', class: numeric[c] ? 'number' : null },
     h('button', { type: 'button', title: 'sort by this column', onclick: () => sort(c) },
       h('span', {}, inline(name)), h('span', { class: 'arrow', 'aria-hidden': 'true' }))));
 
   let sorted = { column: -1, direction: 1 };
+  let order = rows;  // what passes the filter, sorted; the first rows of it are in the document
+  const grow = (end) => body.append(...order.slice(body.childElementCount, end)
+    .map((entry) => (entry.element ??= line(entry.row, numeric))));
+  const refill = () => {
+    const kept = filter ? rows.filter((entry) => filter.passes(entry)) : [...rows];
+    const { column, direction } = sorted;
+    order = column < 0 ? kept : kept.sort((a, b) => compare(a.row[column], b.row[column], direction) || a.place - b.place);
+    body.replaceChildren();
+    grow(SLICE);
+    box.scrollTop = 0;
+    filter?.say(order.length, rows.length);
+  };
   const sort = (c) => {
     if (sorted.column !== c) sorted = { column: c, direction: 1 };
     else if (sorted.direction === 1) sorted = { column: c, direction: -1 };
@@ -24,21 +42,26 @@ export function table(block) {
       if (i !== sorted.column) head.removeAttribute('aria-sort');
       else head.setAttribute('aria-sort', sorted.direction === 1 ? 'ascending' : 'descending');
     });
-    const order = sorted.column < 0 ? [...rows] : [...rows].sort((a, b) =>
-      compare(a.row[c], b.row[c], sorted.direction) || a.place - b.place);
-    body.append(...order.map((row) => row.element));
+    refill();
   };
 
-  const element = h('div', { class: 'table-block' },
-    h('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': `Table: ${block.title ?? 'untitled'}` },
-      h('table', {}, h('caption', {}, block.title || 'Table'), h('thead', {}, h('tr', {}, heads)), body)),
+  const box = h('div', { class: rows.length > TALL ? 'scroll tall' : 'scroll', tabindex: 0, role: 'region',
+    'aria-label': `Table: ${block.title ?? 'untitled'}` },
+    h('table', {}, h('caption', {}, block.title || 'Table'), h('thead', {}, h('tr', {}, heads)), body));
+  box.addEventListener('scroll', () => {
+    if (box.scrollTop + 3 * box.clientHeight > box.scrollHeight) grow(body.childElementCount + SLICE);
+  });
+  onPaper(() => grow(order.length), () => refill());
+  const filter = block.filter ? makeFilter(block, rows, refill) : null;
+  refill();
+  const element = h('div', { class: 'table-block' }, filter?.element, box,
     block.note ? h('p', { class: 'remark' }, inline(block.note)) : null);
   return { element };
 }
 
 function line(row, numeric) {
   return h('tr', {}, numeric.map((isNumber, c) => {
-    const value = row?.[c];
+    const value = row[c];
     const exact = typeof value === 'number' && !Number.isInteger(value) ? String(value) : null;
     const status = ['ok', 'failed'].includes(value) ? `status ${value}` : null;
     const text = typeof value === 'string' ? inline(value) : [formatValue(value)];
@@ -46,14 +69,4 @@ function line(row, numeric) {
     return h('td', { class: isNumber ? 'number' : short, title: exact },
       status ? h('span', { class: status }, text) : text);
   }));
-}
-
-/** Numbers before texts; what is missing comes last in either direction. */
-function compare(a, b, direction) {
-  const missing = (v) => v === null || v === undefined || Number.isNaN(v);
-  if (missing(a) || missing(b)) return missing(a) - missing(b);
-  const [numberA, numberB] = [typeof a === 'number', typeof b === 'number'];
-  if (numberA && numberB) return direction * (a - b);
-  if (numberA !== numberB) return numberA ? -1 : 1;
-  return direction * String(a).localeCompare(String(b), 'en', { numeric: true });
 }

@@ -1,12 +1,14 @@
 // node test/check.mjs [BUILT.html]: the sample page passes render.mjs, and pages with a planted fault do not.
 
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { fill } from './fill.mjs';
+import { luminance, sequential } from '../src/colours.js';
 import { sample } from './sample_data.mjs';
+import { convergence, errorMap, longTable } from './sample_study.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'hamel-report-'));
@@ -24,6 +26,21 @@ const small = (block) => fill(page, JSON.stringify({ title: 'Fault', sections: [
 const text = { kind: 'text', paragraphs: ['A text.'] };
 const series = [{ name: 'a', x: [0, 1, 2], y: [0, 1, 0] }];
 const plot = { kind: 'plot', title: 'A plot', x: 'x', y: 'y', series };
+const unmarked = { ...errorMap, marks: undefined };
+
+/** A page built from sources in which one text was replaced: a planted bug. */
+function bent(block, file, from, to) {
+  const copy = mkdtempSync(join(folder, 'bent-'));
+  for (const part of ['src', 'build.mjs', 'package.json']) cpSync(join(here, '..', part), join(copy, part), { recursive: true });
+  symlinkSync(join(here, '../node_modules'), join(copy, 'node_modules'));
+  const source = readFileSync(join(copy, 'src', file), 'utf8');
+  if (source.split(from).length !== 2) throw new Error(`${file} holds “${from}” not exactly once: plant elsewhere`);
+  writeFileSync(join(copy, 'src', file), source.replace(from, () => to));
+  const output = join(copy, 'page.html');
+  const build = spawnSync(process.execPath, [join(copy, 'build.mjs'), output], { encoding: 'utf8' });
+  if (build.status !== 0) throw new Error(`${file} with “${to}” does not build: ${build.stderr}`);
+  return fill(readFileSync(output, 'utf8'), JSON.stringify({ title: 'Fault', sections: [{ title: 'One', blocks: [block] }] }));
+}
 
 /** name, page, exit status, what the message must say. */
 const cases = [
@@ -42,9 +59,27 @@ const cases = [
   ['a blank chart', small(plot).replace('</body>', `<script>addEventListener('load', () => setTimeout(() => {
     const c = document.querySelector('.chart canvas'); c.width = c.width; }, 60));</script></body>`), 1, /is not blank/],
   ['something too wide', small(text).replace('</body>', '<div style="width:1500px;height:9px"></div></body>'), 1, /no horizontal overflow at 1280/],
+  ['a heat map alone', small(errorMap), 0, /passed, 0 failed/],
+  ['2000 rows of 20 columns', small(longTable(2000, 20)), 0, /passed, 0 failed/],
+  ['a heat map with a short row', small({ ...errorMap, values: [[1], ...errorMap.values.slice(1)] }), 1, /row 1 of "values" has 1 entries, "x_values" has 5/],
+  ['marks that do not fit', small({ ...errorMap, marks: [] }), 1, /"marks" has 0 rows, "y_values" has 8 values/],
+  ['a filter without values', small({ ...convergence, filters: [{ name: 'system' }] }), 1, /the filter system needs the list values/],
+  ['a scale turned round', bent(errorMap, 'heatmap_draw.js', 'sequential(part(map, cell.at))', 'sequential(1 - part(map, cell.at))'), 1, /larger is darker/],
+  ['rows upside down', bent(errorMap, 'heatmap.js', 'if (rises)', 'if (!rises)'), 1, /larger is darker|is hatched/],
+  ['empty cells left white', bent(unmarked, 'heatmap_draw.js', 'cell.missing ? hatch : ', ''), 1, /is hatched and says so/],
+  ['a dead arrow key', bent(errorMap, 'heatmap.js', 'ArrowDown: [0, 1]', 'ArrowDown: [0, 0]'), 1, /heat map .*(darker|read out)/],
+  ['filters that hide nothing', bent(convergence, 'filters.js', '|| tag(tags, name) === select.value', '|| true'), 1, /the first value is chosen at the start: 40 series, not 4/],
+  ['fits left out', bent(convergence, 'curves.js', 'String(fit.text ||', 'String('), 1, /a fit is in the legend/],
+  ['words that are not looked for', bent(longTable(50, 8), 'table_filter.js', 'text(entry).includes(word)', 'true'), 1, /the words filter the rows/],
+  ['a dead drop-down', bent(longTable(50, 8), 'table_filter.js', "=== list[select.value]", '!== undefined'), 1, /a drop-down filters the rows/],
+  ['all rows at once', bent(longTable(400, 8), 'table.js', 'const SLICE = 150', 'const SLICE = 1e9'), 1, /made in slices/],
+  ['rows that never come', bent(longTable(400, 8), 'table.js', 'grow(body.childElementCount + SLICE)', 'grow(0)'), 1, /scrolling makes more rows/],
 ];
 
 let [passed, failed] = [0, 0];
+const lights = Array.from({ length: 101 }, (_, i) => luminance(sequential(i / 100)));
+if (lights.every((light, i) => i === 0 || light < lights[i - 1])) ++passed;
+else ++failed, console.log('FAILED the colour scale gets darker throughout');
 for (const [name, html, status, message] of cases) {
   const file = join(folder, 'page.html');
   writeFileSync(file, html);

@@ -6,6 +6,7 @@ import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
+import { useFilters, useHeatmap, useTable } from './use_study.mjs';
 
 const [file, ...rest] = process.argv.slice(2);
 const options = {};
@@ -91,6 +92,7 @@ function drawable() {
   const good = (v, log) => typeof v === 'number' && (!log || v > 0);
   return data.sections.flatMap((section) => section.blocks ?? []).map((block) => {
     if (block.kind === 'sphere') return block.series.some((s) => s.points.filter((p) => p?.every(Number.isFinite)).length > 1);
+    if (block.kind === 'heatmap') return true;  // its scale at least
     if (!['plot', 'path'].includes(block.kind)) return false;
     return block.series.some((s) => s.x.some((x, i) => good(x, block.log_x) && good(s.y[i], block.log_y)));
   });
@@ -153,6 +155,9 @@ async function useIt(page) {
     await button.click();
     await button.click();
   }
+  await useHeatmap(page, check);
+  await useFilters(page, check);
+  await useTable(page, check);
   const globe = page.locator('canvas.globe').first();
   if (await globe.count()) {
     const picture = () => globe.evaluate((canvas) => canvas.toDataURL());

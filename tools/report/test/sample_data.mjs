@@ -1,6 +1,8 @@
 // A report with every kind of block and the awkward cases: 2000-point curves, 8 and 10 series, logarithms over
 // 19 decades, zeros, NaN gaps, tiny and nearly constant ranges, hostile text.
 
+import { study } from './sample_study.mjs';
+
 const range = (n, at) => Array.from({ length: n }, (_, i) => at(i));
 const t = (n, end) => range(n, (i) => (i * end) / (n - 1));
 let seed = 12345;
@@ -87,6 +89,7 @@ export const sample = {
       { kind: 'sphere', title: 'Motion of the body axes', series: [1, 2, 3].map((k) => ({ name: `e${k}`, points: onSphere(k) })), note: 'From t = 0 to 1800 s.' },
       plot('Ten series', 'time t [s]', 'ω₁ [rad/s]', range(10, (k) => ({ name: `run ${k + 1}, a rather long name`, x: t(400, 20), y: t(400, 20).map((at) => Math.sin(at * 0.5 + k * 0.3) * (1 + k / 5)) }))),
     ] },
+    study,
     { title: 'Corner cases', blocks: [
       plot('Constant', 't [s]', 'value', [{ name: 'constant', x: [0, 1, 2], y: [1, 1, 1] }]),
       plot('Less than one decade', 'h', 'error', [{ name: 'lift s=1', x: t(50, 1), y: t(50, 1).map((v) => 3e-7 * (1 + v)) }], { log_y: true }),

@@ -1,0 +1,120 @@
+// Uses the blocks of a study the way a reader does: reads cells, chooses among filters, types into the table's box.
+
+/** The data of the page's first block that `wanted` (a function's text) accepts. */
+const blockOf = (page, wanted) => page.evaluate((source) => {
+  const data = JSON.parse(document.getElementById('hamel-data').textContent);
+  const accepts = new Function('b', `return ${source}`);
+  return data.sections.flatMap((section) => section.blocks ?? []).find(accepts) ?? null;
+}, wanted);
+
+/** Every heat map: the keyboard reads the largest and the smallest value, and the larger is the darker cell. */
+export async function useHeatmap(page, check) {
+  const maps = page.locator('.figure.heatmap .chart');
+  const blocks = await page.evaluate(() => JSON.parse(document.getElementById('hamel-data').textContent)
+    .sections.flatMap((section) => section.blocks ?? []).filter((block) => block.kind === 'heatmap'));
+  for (let n = 0; n < await maps.count(); ++n) {
+    const { title, log, values, marks, y_values: ys } = blocks[n];
+    const map = maps.nth(n);
+    await map.scrollIntoViewIfNeeded();
+    await map.focus();
+    const upward = ys.every((y) => typeof y === 'number') && ys.at(-1) > ys[0];
+    const all = values.flatMap((row, r) => row.map((value, c) => ({ value, c, row: upward ? ys.length - 1 - r : r, mark: marks?.[r][c] })));
+    const known = all.filter(({ value }) => typeof value === 'number' && (!log || value > 0)).sort((a, b) => a.value - b.value);
+    const at = [0, 0];  // the cell of the keyboard
+    const look = async ({ c, row }) => {
+      for (const [key, times] of [['ArrowRight', c - at[0]], ['ArrowLeft', at[0] - c], ['ArrowDown', row - at[1]], ['ArrowUp', at[1] - row]]) {
+        for (let i = 0; i < times; ++i) await page.keyboard.press(key);
+      }
+      [at[0], at[1]] = [c, row];
+      if (c + row === 0) { await page.keyboard.press('ArrowLeft'); }
+      return map.evaluate((holder) => {
+        const [canvas, cell] = [holder.querySelector('canvas'), holder.querySelector('.cell')];
+        const k = canvas.width / canvas.clientWidth;
+        const [left, top, width, height] = ['left', 'top', 'width', 'height'].map((side) => parseFloat(cell.style[side]) * k);
+        const [x, y, w, h] = [left + width * 0.15, top + height * 0.15, width * 0.7, height * 0.7];  // without the rim
+        const copy = new OffscreenCanvas(w, h).getContext('2d', { willReadFrequently: true });
+        copy.drawImage(canvas, -x, -y);
+        const { data } = copy.getImageData(0, 0, w, h);
+        let [red, green, blue, white] = [0, 0, 0, 0];
+        for (let i = 0; i < data.length; i += 4) {
+          [red, green, blue] = [red + data[i], green + data[i + 1], blue + data[i + 2]];
+          white += data[i] + data[i + 1] + data[i + 2] > 750;
+        }
+        return { light: (red + green + blue) / data.length, white: white / (data.length / 4), tip: holder.querySelector('.tip').textContent };
+      });
+    };
+    if (known.length > 1 && known.at(-1).value > known[0].value) {
+      const [least, most] = [await look(known[0]), await look(known.at(-1))];
+      check(`heat map ${title}: larger is darker`, most.light < least.light - 20, `${most.light} and ${least.light}`);
+      check(`heat map ${title}: the cell is read out`, /\d/.test(most.tip) && most.tip !== least.tip, most.tip);
+    }
+    const empty = all.find(({ value, mark }) => value === null && !mark);
+    if (empty) {
+      const { tip, white } = await look(empty);
+      check(`heat map ${title}: an empty cell is hatched and says so`, white > 0.3 && white < 0.97 && tip.includes('no value'), `${tip}, ${white} white`);
+    }
+    const marked = all.find(({ mark }) => mark);
+    if (marked) check(`heat map ${title}: a mark is read out`, (await look(marked)).tip.includes(`(${marked.mark})`));
+  }
+}
+
+/** A plot with filters shows exactly the series of the chosen tags, by keyboard too. */
+export async function useFilters(page, check) {
+  const block = await blockOf(page, "b.kind === 'plot' && b.filters?.length > 0");
+  if (!block) return;
+  const figure = page.locator('.figure.plot:has(.filters)').first();
+  await figure.scrollIntoViewIfNeeded();
+  const entries = () => figure.locator('.legend .entry:visible').count();
+  const [{ name, values }] = block.filters;
+  const expected = (first) => block.series.filter((s) => block.filters.every((filter, i) => {
+    const wanted = i ? filter.values[0] : first;
+    return wanted === 'all' || s.tags?.[filter.name] === undefined || s.tags[filter.name] === wanted;
+  })).length;
+  const ink = () => figure.locator('canvas').first().evaluate((canvas) => canvas.toDataURL());
+  check(`filter ${name}: the first value is chosen at the start`, await entries() === expected(values[0]), `${await entries()} series, not ${expected(values[0])}`);
+  const before = await ink();
+  const select = figure.locator('.filters select').first();
+  await select.focus();
+  await page.keyboard.press('End');  // “all” stands last
+  await page.keyboard.press('Enter');
+  await page.waitForTimeout(100);
+  check(`filter ${name}: “all” shows all, by keyboard`, await entries() === expected('all'), `${await entries()} series, not ${expected('all')}`);
+  check(`filter ${name}: the picture follows`, expected('all') === expected(values[0]) || before !== await ink());
+  const fit = block.series.find((s) => s.fit?.text)?.fit.text;
+  if (fit) check('a fit is in the legend', (await figure.locator('.legend').textContent()).includes(fit), fit);
+}
+
+/** A table with a filter: only rows with the words stay, and the count says how many. */
+export async function useTable(page, check) {
+  const block = await blockOf(page, "b.kind === 'table' && b.filter && b.rows.length > 0");
+  if (!block) return;
+  const shown = page.locator('.table-block:has(.count)').first();
+  await shown.scrollIntoViewIfNeeded();
+  const count = () => shown.locator('.count').textContent();
+  const made = await shown.locator('tbody tr').count();
+  check('a long table is made in slices', made <= 200, `${made} rows made at once`);
+  check('all rows are counted', await count() === `${block.rows.length} of ${block.rows.length} rows`, await count());
+  const column = block.rows[0].findIndex((cell) => typeof cell === 'string' && cell.length > 2);
+  if (column >= 0) {
+    const word = block.rows[0][column];
+    await shown.locator('input').fill(word.toUpperCase());
+    const rows = await shown.locator('tbody tr').allTextContents();
+    const expected = block.rows.filter((row) => row.some((cell) => String(cell).toLowerCase().includes(word.toLowerCase()))).length;
+    check('the words filter the rows', await count() === `${expected} of ${block.rows.length} rows` && rows.every((row) => row.includes(word)), `“${word}”: ${await count()}, not ${expected}`);
+    await shown.locator('input').fill('');
+  }
+  const select = shown.locator('select').first();
+  if (await select.count()) {
+    await select.selectOption({ index: 1 });
+    const [kept, all] = (await count()).match(/\d+/g).map(Number);
+    check('a drop-down filters the rows', kept > 0 && kept < all, await count());
+    await select.selectOption({ index: 0 });
+  }
+  const box = shown.locator('.scroll.tall');
+  if (await box.count()) {
+    await box.evaluate((element) => { element.scrollTop = element.scrollHeight; });
+    await page.waitForTimeout(100);
+    const more = await shown.locator('tbody tr').count();
+    check('scrolling makes more rows', more > made || made === block.rows.length, `${more} rows after ${made}`);
+  }
+}
