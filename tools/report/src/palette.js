@@ -1,5 +1,6 @@
 // One look per series name on the whole page: ten colours that stay apart for colour-blind eyes (after Okabe and
-// Ito, and Tol). Beyond ten names a colour serves again where the two never meet in a figure; then come dashes.
+// Ito, and Tol). Beyond ten names a colour serves again where the two never meet in a figure (or, if need be, are kept
+// apart by its filters); then come dashes.
 
 const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#b0508c', '#e69f00', '#2e2585', '#56b4e9', '#7a1f3d',
   '#786048', '#8a8a1c'];
@@ -8,25 +9,28 @@ const DASHED = [7, 4];
 
 let styles = new Map();
 
+const nameOf = (series) => String(series?.name);
+
 /** The names of a block that are seen at one time: all, or those whose tags a filter shows together. */
 function seenTogether(block) {
-  if (!Array.isArray(block?.series)) return [];
-  const names = (series) => series.map((s) => String(s?.name));
-  if (!Array.isArray(block.filters)) return [names(block.series)];
+  if (!Array.isArray(block.filters)) return [block.series.map(nameOf)];
   const tags = (s) => JSON.stringify(block.filters.map((filter) => s?.tags?.[filter?.name]));
-  return [...new Set(block.series.map(tags))].map((group) => names(block.series.filter((s) => tags(s) === group)));
+  return [...new Set(block.series.map(tags))].map((group) => block.series.filter((s) => tags(s) === group).map(nameOf));
 }
 
 /** Gives every name of the page its style. */
 export function assignStyles(sections) {
   styles = new Map();
-  const figures = sections.flatMap((section) => section?.blocks ?? []).flatMap(seenTogether);
+  const blocks = sections.flatMap((section) => section?.blocks ?? []).filter((block) => Array.isArray(block?.series));
+  const figures = blocks.flatMap(seenTogether);
+  const inBlock = blocks.map((block) => block.series.map(nameOf));
   const all = DASHES.flatMap((dash) => COLOURS.map((colour) => ({ colour, dash, names: 0 })));
   for (const name of figures.flat()) {
     if (styles.has(name)) continue;
-    const met = new Set(figures.filter((names) => names.includes(name)).flat().map((other) => styles.get(other)));
+    const stylesNear = (lists) => new Set(lists.filter((names) => names.includes(name)).flat().map((other) => styles.get(other)));
+    const [met, near] = [stylesNear(figures), stylesNear(inBlock)];
     const free = all.filter((style) => !met.has(style));
-    const solid = free.filter((style) => style.dash.length === 0).sort((a, b) => a.names - b.names);
+    const solid = free.filter((style) => style.dash.length === 0).sort((a, b) => near.has(a) - near.has(b) || a.names - b.names);
     const style = solid[0] ?? free[0] ?? all[styles.size % all.length];
     ++style.names;
     styles.set(name, style);

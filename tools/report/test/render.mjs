@@ -179,7 +179,12 @@ async function checkPrint(page) {
   await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
   const blank = await page.evaluate(() => [...document.querySelectorAll('.chart')]
     .filter((chart) => !(chart.querySelector('canvas.paper')?.width > 0)).length);
+  await page.emulateMedia({ media: 'print' });
+  const doubled = await page.evaluate(() => [...document.querySelectorAll('.chart')]
+    .filter((chart) => [...chart.querySelectorAll('canvas')].filter((canvas) => canvas.getClientRects().length).length !== 1).length);
+  await page.emulateMedia({ media: null });
   await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));
+  check('every chart is printed once', doubled === 0, `${doubled} not`);
   check('every chart has its copy for paper', blank === 0, `${blank} without`);
 }
 
