@@ -2,6 +2,7 @@
 
 # What single tests NEED beyond the library, headers of installed packages:
 #   hamel_jet      ceres::Jet                         hamel_mpreal   mpfr::mpreal, any number of digits
+#   hamel_page     the program's report page in C++; the test brings its own report_page()
 find_path(HAMEL_CERES_INCLUDE ceres/jet.h REQUIRED)
 find_path(HAMEL_MPREAL_INCLUDE mpreal.h REQUIRED)
 find_library(HAMEL_MPFR mpfr REQUIRED)
@@ -11,6 +12,10 @@ target_include_directories(hamel_jet SYSTEM INTERFACE ${HAMEL_CERES_INCLUDE})
 add_library(hamel_mpreal INTERFACE)
 target_include_directories(hamel_mpreal SYSTEM INTERFACE ${HAMEL_MPREAL_INCLUDE})
 target_link_libraries(hamel_mpreal INTERFACE ${HAMEL_MPFR} ${HAMEL_GMP})
+add_library(hamel_page INTERFACE)
+target_sources(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel/page.cpp)
+target_include_directories(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel)
+target_link_libraries(hamel_page INTERFACE fmt::fmt nlohmann_json::nlohmann_json)
 
 # What every test, example and benchmark has in common: build/tests/<name>, the library, our warnings.
 function(hamel_test_executable target name)
@@ -122,7 +127,7 @@ endfunction()
 function(hamel_page_script name)
   add_test(NAME page/${name} COMMAND ${HAMEL_NODE} ${ARGN}
            WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/tools/report)
-  set_tests_properties(page/${name} PROPERTIES LABELS page TIMEOUT 180)
+  set_tests_properties(page/${name} PROPERTIES LABELS page TIMEOUT 600)
   if(NOT HAMEL_REPORT_PAGE STREQUAL "ON")
     set_tests_properties(page/${name} PROPERTIES SKIP_RETURN_CODE 77)
   endif()

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -19,22 +20,64 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Six digits are more than a plot shows, and keep the page small.
-Json numbers(const std::vector<double>& values) {
+Json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+}
+
+Json numbers(std::span<const double> values) {
   Json out = Json::array();
-  for (double v : values) {
-    if (std::isfinite(v)) out.push_back(std::strtod(fmt::format("{:.6g}", v).c_str(), nullptr));
-    else out.push_back(nullptr);
-  }
+  for (double v : values) out.push_back(number(v));
   return out;
 }
 
 Json curves(const std::vector<Series>& series) {
   Json out = Json::array();
   for (const Series& s : series) {
-    out.push_back(
-        {{"name", s.name}, {"x", numbers(s.x)}, {"y", numbers(s.y)}, {"dashed", s.dashed}});
+    Json& curve = out.emplace_back(
+        Json{{"name", s.name}, {"x", numbers(s.x)}, {"y", numbers(s.y)}, {"dashed", s.dashed}});
+    if (s.markers) curve["markers"] = true;
+    if (s.fit) curve["fit"] = {{"slope", number(s.fit->slope)}, {"text", s.fit->text}};
+    if (!s.tags.empty()) curve["tags"] = s.tags;
   }
   return out;
+}
+
+Json cells(const std::vector<Cell>& values) {
+  Json out = Json::array();
+  for (const Cell& cell : values) {
+    if (!cell.is_number) out.push_back(cell.text);
+    else if (std::isfinite(cell.number)) out.push_back(cell.number);
+    else out.push_back(nullptr);
+  }
+  return out;
+}
+
+Json shape(const BodyShape& s) {
+  Json out = {{"shape", s.kind}, {"color", s.look.color}};
+  if (s.look.at != Look{}.at) out["at"] = numbers(s.look.at);
+  if (s.look.axis != Look{}.axis) out["axis"] = numbers(s.look.axis);
+  if (s.kind == "box") out["size"] = numbers(s.sizes);
+  if (s.kind == "ellipsoid") out["radii"] = numbers(s.sizes);
+  if (s.kind == "cylinder" || s.kind == "sphere") out["radius"] = number(s.sizes.at(0));
+  if (s.kind == "cylinder") out["length"] = number(s.sizes.at(1));
+  if (s.kind == "arrow") out["to"] = numbers(s.points.at(0));
+  if (s.kind == "line") {
+    for (const Point& point : s.points) out["points"].push_back(numbers(point));
+  }
+  return out;
+}
+
+Json moving(const MovingBody& body) {
+  Json poses = Json::array(), parts = Json::array();
+  for (const auto& [x, q] : body.poses)
+    poses.push_back(numbers(std::array{x[0], x[1], x[2], q[0], q[1], q[2], q[3]}));
+  for (const BodyShape& s : body.shapes) parts.push_back(shape(s));
+  return {{"name", body.name},
+          {"poses", poses},
+          {"shapes", parts},
+          {"trail", body.trail},
+          {"trail_point", numbers(body.trail_point)}};
 }
 
 constexpr std::string_view kPlaceholder = "__HAMEL_DATA__";
@@ -70,25 +113,23 @@ void Page::verdict(const std::string& status, const std::string& text) {
   data_->blocks().push_back({{"kind", "verdict"}, {"status", status}, {"text", text}});
 }
 void Page::table(const std::string& title, const std::vector<std::string>& columns,
-                 const std::vector<std::vector<Cell>>& rows, const std::string& note) {
-  Json cells = Json::array();
-  for (const auto& row : rows) {
-    Json line = Json::array();
-    for (const Cell& cell : row) {
-      if (!cell.is_number) line.push_back(cell.text);
-      else if (std::isfinite(cell.number)) line.push_back(cell.number);
-      else line.push_back(nullptr);
-    }
-    cells.push_back(line);
-  }
-  data_->blocks().push_back(
-      {{"kind", "table"}, {"title", title}, {"columns", columns}, {"rows", cells}, {"note", note}});
+                 const std::vector<std::vector<Cell>>& rows, const std::string& note, bool filter) {
+  Json lines = Json::array();
+  for (const auto& row : rows) lines.push_back(cells(row));
+  data_->blocks().push_back({{"kind", "table"},
+                             {"title", title},
+                             {"columns", columns},
+                             {"rows", lines},
+                             {"filter", filter},
+                             {"note", note}});
 }
 void Page::record(const std::string& json) {
   data_->blocks().push_back({{"kind", "record"}, {"record", Json::parse(json)}});
 }
 void Page::plot(const std::string& title, const Axes& axes, const std::vector<Series>& series,
-                const std::string& note) {
+                const std::string& note, const std::vector<Filter>& filters) {
+  Json selectors = Json::array();
+  for (const Filter& f : filters) selectors.push_back({{"name", f.name}, {"values", f.values}});
   data_->blocks().push_back({{"kind", "plot"},
                              {"title", title},
                              {"x", axes.x},
@@ -96,6 +137,7 @@ void Page::plot(const std::string& title, const Axes& axes, const std::vector<Se
                              {"log_x", axes.log_x},
                              {"log_y", axes.log_y},
                              {"series", curves(series)},
+                             {"filters", selectors},
                              {"note", note}});
 }
 void Page::path(const std::string& title, const Axes& axes, const std::vector<Series>& series) {
@@ -115,6 +157,34 @@ void Page::sphere(const std::string& title, const std::vector<SphereCurve>& seri
   }
   data_->blocks().push_back(
       {{"kind", "sphere"}, {"title", title}, {"series", out}, {"note", note}});
+}
+
+void Page::heatmap(const HeatMap& map) {
+  Json rows = Json::array();
+  for (const auto& row : map.values) rows.push_back(numbers(row));
+  Json block = {{"kind", "heatmap"},
+                {"title", map.title},
+                {"x", map.x},
+                {"y", map.y},
+                {"x_values", cells(map.x_values)},
+                {"y_values", cells(map.y_values)},
+                {"values", rows},
+                {"log", map.log},
+                {"unit", map.unit},
+                {"note", map.note}};
+  if (!map.marks.empty()) block["marks"] = map.marks;
+  data_->blocks().push_back(block);
+}
+void Page::animation(const Animation& animation) {
+  Json bodies = Json::array();
+  for (const MovingBody& body : animation.bodies) bodies.push_back(moving(body));
+  data_->blocks().push_back({{"kind", "animation"},
+                             {"title", animation.title},
+                             {"view", animation.from_above ? "top" : "3d"},
+                             {"times", numbers(animation.times)},
+                             {"floor", animation.floor},
+                             {"bodies", bodies},
+                             {"note", animation.note}});
 }
 
 void Page::write(const std::string& path) const {

@@ -1,41 +1,46 @@
 // A report page: sections of blocks, written as the data of the bundled HTML page (tools/report).
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "page_figures.hpp"
 
 namespace hamel::tools {
 
 /// The bundled page with its placeholder; empty when the program was built without node.
 std::string_view report_page();
 
+/// A fitted line, told in the legend: the text, or the slope where there is none.
+struct Fit {
+  double slope = 0;
+  std::string text = "";
+};
+
 struct Series {
   std::string name;
   std::vector<double> x, y;
   bool dashed = false;
+  bool markers = false;  // in a plot up to 48 points have them anyway
+  std::optional<Fit> fit = {};
+  std::map<std::string, std::string> tags = {};  // what the plot's filters choose by
+};
+
+/// A selector over a plot: only series whose tag `name` has the chosen value (the first, at the start)
+/// are shown; a series without that tag always is.
+struct Filter {
+  std::string name;
+  std::vector<std::string> values;
 };
 
 /// Axis labels; logarithmic where it helps.
 struct Axes {
   std::string x, y;
   bool log_x = false, log_y = false;
-};
-
-struct SphereCurve {
-  std::string name;
-  std::vector<std::vector<double>> points;  // of three entries
-};
-
-/// A table cell: a word, or a number that the page formats.
-struct Cell {
-  Cell(std::string word) : text(std::move(word)) {}
-  Cell(const char* word) : text(word) {}
-  Cell(double value) : number(value), is_number(true) {}
-  std::string text;
-  double number = 0;
-  bool is_number = false;
 };
 
 class Page {
@@ -48,15 +53,19 @@ class Page {
   void text(const std::vector<std::string>& paragraphs);
   /// status: ok, failed or note.
   void verdict(const std::string& status, const std::string& text);
+  /// filter: a text box over the table, and a drop-down for each column of few values.
   void table(const std::string& title, const std::vector<std::string>& columns,
-             const std::vector<std::vector<Cell>>& rows, const std::string& note = "");
+             const std::vector<std::vector<Cell>>& rows, const std::string& note = "",
+             bool filter = false);
   /// The JSON record of a run.
   void record(const std::string& json);
   void plot(const std::string& title, const Axes& axes, const std::vector<Series>& series,
-            const std::string& note = "");
+            const std::string& note = "", const std::vector<Filter>& filters = {});
   void path(const std::string& title, const Axes& axes, const std::vector<Series>& series);
   void sphere(const std::string& title, const std::vector<SphereCurve>& curves,
               const std::string& note = "");
+  void heatmap(const HeatMap& map);
+  void animation(const Animation& animation);
   /// Throws ConfigError when the page is not in this program or the file cannot be written.
   void write(const std::string& path) const;
 

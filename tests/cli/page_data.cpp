@@ -1,0 +1,116 @@
+// The data of a report page, as tools/report/README.md describes them. The page here is its placeholder alone, so that
+// what is written is the JSON.
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "page.hpp"
+
+namespace hamel::tools {
+std::string_view report_page() { return "__HAMEL_DATA__"; }
+}  // namespace hamel::tools
+
+namespace {
+
+using namespace hamel::tools;
+using Json = nlohmann::json;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The one block that `fill` puts on a page.
+Json block(const std::function<void(Page&)>& fill) {
+  Page page("title", "subtitle");
+  page.section("one");
+  fill(page);
+  const auto path = std::filesystem::path(testing::TempDir()) / "hamel_page_data.json";
+  page.write(path.string());
+  std::ifstream file(path);
+  const Json data = Json::parse(file);
+  std::filesystem::remove(path);
+  EXPECT_EQ(data["sections"].size(), 1);
+  EXPECT_EQ(data["sections"][0]["blocks"].size(), 1);
+  return data["sections"][0]["blocks"][0];
+}
+
+TEST(PageData, HeatMap) {
+  const Json b = block([](Page& page) {
+    page.heatmap({.title = "Errors",
+                  .x = "system",
+                  .y = "step",
+                  .x_values = {"suslov", "sleigh"},
+                  .y_values = {0.1, 0.05, 0.025},
+                  .values = {{1, 2}, {3, kNaN}, {1e-15, 6}},
+                  .marks = {{"", ""}, {"", "failed"}, {"", ""}},
+                  .log = true,
+                  .unit = "m"});
+  });
+  EXPECT_EQ(b, Json::parse(R"({"kind": "heatmap", "title": "Errors", "x": "system", "y": "step",
+      "x_values": ["suslov", "sleigh"], "y_values": [0.1, 0.05, 0.025], "log": true, "unit": "m", "note": "",
+      "values": [[1.0, 2.0], [3.0, null], [1e-15, 6.0]], "marks": [["", ""], ["", "failed"], ["", ""]]})"));
+}
+
+TEST(PageData, PlotWithFitsMarkersAndFilters) {
+  const Json b = block([](Page& page) {
+    Series first{"lift", {0.1, 0.2}, {1, 2}};
+    first.markers = true;
+    first.fit = Fit{2.0004, "order 2.00"};
+    first.tags = {{"system", "suslov"}};
+    page.plot("Order", {.x = "h", .y = "error", .log_x = true, .log_y = true},
+              {first, {"h squared", {0.1, 0.2}, {1, 4}}}, "note",
+              {{"system", {"suslov", "sleigh"}}});
+  });
+  EXPECT_EQ(b["filters"], Json::parse(R"([{"name": "system", "values": ["suslov", "sleigh"]}])"));
+  EXPECT_EQ(b["series"][0],
+            Json::parse(R"({"name": "lift", "x": [0.1, 0.2], "y": [1.0, 2.0], "dashed": false,
+      "markers": true, "fit": {"slope": 2.0004, "text": "order 2.00"}, "tags": {"system": "suslov"}})"));
+  EXPECT_EQ(
+      b["series"][1],
+      Json::parse(R"({"name": "h squared", "x": [0.1, 0.2], "y": [1.0, 4.0], "dashed": false})"));
+  EXPECT_EQ(b["log_y"], true);
+}
+
+TEST(PageData, TableWithFilter) {
+  const Json b = block([](Page& page) {
+    page.table("Runs", {"name", "error"}, {{"lift", 1.5}, {"boxed", kNaN}}, "note", true);
+  });
+  EXPECT_EQ(b, Json::parse(R"({"kind": "table", "title": "Runs", "columns": ["name", "error"],
+      "rows": [["lift", 1.5], ["boxed", null]], "filter": true, "note": "note"})"));
+}
+
+TEST(PageData, Animation) {
+  const Json b = block([](Page& page) {
+    MovingBody disk;
+    disk.name = "disk";
+    disk.poses = {{{1, 2, 3}, {1, 0, 0, 0}}, {{1, 2, 4}, {0, 0.6, 0.8, 0}}};
+    disk.shapes = {
+        shapes::cylinder(0.5, 0.1, {.at = {0, 0, 1}, .axis = {0, 1, 0}, .color = "accent"}),
+        shapes::box({1, 2, 3}),
+        shapes::sphere(2, {.color = "#123456"}),
+        shapes::ellipsoid({3, 2, 1}),
+        shapes::line({{0, 0, 0}, {1, 0, 0}}),
+        shapes::arrow({0, 0, 2}),
+    };
+    disk.trail = true;
+    disk.trail_point = {0, 0, -1};
+    page.animation({.title = "Rolling", .times = {0, 0.5}, .bodies = {disk}, .floor = true});
+  });
+  const Json& body = b["bodies"][0];
+  EXPECT_EQ(body["poses"], Json::parse("[[1.0, 2.0, 3.0, 1.0, 0.0, 0.0, 0.0],"
+                                       " [1.0, 2.0, 4.0, 0.0, 0.6, 0.8, 0.0]]"));
+  EXPECT_EQ(body["shapes"], Json::parse(R"([
+      {"shape": "cylinder", "color": "accent", "at": [0.0, 0.0, 1.0], "axis": [0.0, 1.0, 0.0], "radius": 0.5, "length": 0.1},
+      {"shape": "box", "color": "body", "size": [1.0, 2.0, 3.0]},
+      {"shape": "sphere", "color": "#123456", "radius": 2.0},
+      {"shape": "ellipsoid", "color": "body", "radii": [3.0, 2.0, 1.0]},
+      {"shape": "line", "color": "body", "points": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]},
+      {"shape": "arrow", "color": "body", "to": [0.0, 0.0, 2.0]}])"));
+  EXPECT_EQ(body["trail"], true);
+  EXPECT_EQ(body["trail_point"], Json::parse("[0.0, 0.0, -1.0]"));
+  EXPECT_EQ(b["view"], "3d");
+  EXPECT_EQ(b["floor"], true);
+  EXPECT_EQ(b["times"], Json::parse("[0.0, 0.5]"));
+}
+
+}  // namespace
