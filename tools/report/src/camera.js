@@ -1,13 +1,16 @@
-// How the unit sphere is looked at: from far away (orthographic), z up, turned by two angles.
+// How the unit sphere and moving bodies are looked at: from far away (orthographic), z up, turned by two angles.
 
-const HOME = { yaw: -0.6, pitch: 0.42 };
+export const HOME = { yaw: -0.6, pitch: 0.42 };
+export const ABOVE = { yaw: -Math.PI / 2, pitch: Math.PI / 2 };  // x to the right, y up
 const STEEPEST = Math.PI / 2 - 0.001;
 export const RADIUS = 0.39;  // of the sphere, as a part of the picture's shorter side
 
 export class Camera {
-  constructor() { this.goHome(); }
+  constructor(home = HOME) { this.goTo(home); this.home = home; }
 
-  goHome() { Object.assign(this, HOME); }
+  goTo({ yaw, pitch }) { Object.assign(this, { yaw, pitch }); }
+
+  goHome() { this.goTo(this.home); }
 
   copy() { return Object.assign(new Camera(), this); }
 

@@ -8,7 +8,8 @@ import { styleOf } from './palette.js';
 import { FONT } from './chart.js';
 import { followWidth } from './plot.js';
 import { drawFlat } from './sphere_flat.js';
-import { makeScene, webglWorks } from './sphere_webgl.js';
+import { makeScene } from './sphere_webgl.js';
+import { webglWorks } from './webgl.js';
 
 const HEIGHT = 340;
 const SHARPEST = 2;  // device pixels per CSS pixel at least, so that print is sharp too
