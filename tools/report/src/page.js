@@ -4,6 +4,7 @@ import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import './figures.css';
 import './print.css';
+import { animation } from './animation.js';
 import { h, inline, problem } from './dom.js';
 import { assignStyles } from './palette.js';
 import { heatmap } from './heatmap.js';
@@ -14,12 +15,12 @@ import { sphere } from './sphere.js';
 import { table } from './table.js';
 import { text, verdict } from './text.js';
 
-const KINDS = { text, verdict, table, record, plot, path, sphere, heatmap };
-const FIGURES = new Set(['plot', 'path', 'sphere', 'heatmap']);
+const KINDS = { text, verdict, table, record, plot, path, sphere, heatmap, animation };
+const FIGURES = new Set(['plot', 'path', 'sphere', 'heatmap', 'animation']);
 const HELP = 'Charts: drag to zoom, Ctrl and wheel (after a click the wheel alone) to zoom at the pointer, ' +
   'double-click to see all again. A click on a name hides or shows its curve. Spheres turn by dragging or with ' +
   'the arrow keys; the side away from you is drawn faint, a ring marks where a curve starts. Cells of heat ' +
-  'maps are read with the pointer or the arrow keys.';
+  'maps are read with the pointer or the arrow keys. Animations turn by dragging; Ctrl and wheel or plus and minus zoom.';
 
 function readData() {
   const source = document.getElementById('hamel-data')?.textContent.trim() ?? '';

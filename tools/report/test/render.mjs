@@ -6,6 +6,7 @@ import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
+import { useAnimation } from './use_animation.mjs';
 import { useFilters, useHeatmap, useTable } from './use_study.mjs';
 
 const [file, ...rest] = process.argv.slice(2);
@@ -93,6 +94,10 @@ function drawable() {
   return data.sections.flatMap((section) => section.blocks ?? []).map((block) => {
     if (block.kind === 'sphere') return block.series.some((s) => s.points.filter((p) => p?.every(Number.isFinite)).length > 1);
     if (block.kind === 'heatmap') return true;  // its scale at least
+    if (block.kind === 'animation') {
+      return block.bodies.some(({ poses, shapes }) => poses[0]?.every(Number.isFinite) &&
+        shapes.some(({ color }) => ['body', 'accent', undefined].includes(color)));
+    }
     if (!['plot', 'path'].includes(block.kind)) return false;
     return block.series.some((s) => s.x.some((x, i) => good(x, block.log_x) && good(s.y[i], block.log_y)));
   });
@@ -115,7 +120,7 @@ async function checkBlocks(page) {
     check(`${name} is not blank`, block.canvas.inked > 200, `${block.canvas.inked} inked pixels`);
     if (expected[i]) check(`${name} shows curves`, block.canvas.colours > 20, `${block.canvas.colours} coloured pixels`);
   });
-  return found.blocks.includes('sphere');
+  return found.blocks.includes('sphere') || found.blocks.includes('animation');
 }
 
 async function checkWidth(page, width) {
@@ -158,6 +163,7 @@ async function useIt(page) {
   await useHeatmap(page, check);
   await useFilters(page, check);
   await useTable(page, check);
+  await useAnimation(page, check);
   const globe = page.locator('canvas.globe').first();
   if (await globe.count()) {
     const picture = () => globe.evaluate((canvas) => canvas.toDataURL());
@@ -190,7 +196,7 @@ async function checkPrint(page) {
 
 const browser = await launch();
 const { page, complaints } = await open(browser);
-const spheres = await checkBlocks(page);
+const solid = await checkBlocks(page);
 await checkWidth(page, 390);
 if (options.narrow) await page.screenshot({ path: options.narrow, fullPage: true });
 await checkWidth(page, 1280);
@@ -198,12 +204,14 @@ if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPa
 await checkPrint(page);
 await useIt(page);
 check('no console message, error or request', complaints.length === 0, complaints.join('; '));
-if (spheres) {  // once more without WebGL
+if (solid) {  // once more without WebGL
   const flat = await open(browser, { webgl: false });
   await checkBlocks(flat.page);
-  const says = await flat.page.evaluate(() => /no WebGL/.test(document.querySelector('.figure.sphere').textContent));
-  check('without WebGL the sphere is drawn flat and says so', says);
-  if (options.fallback) await flat.page.locator('.figure.sphere').first().screenshot({ path: options.fallback });
+  const figures = '.figure:is(.sphere, .animation)';
+  const silent = await flat.page.locator(figures).filter({ hasNotText: 'no WebGL' }).count();
+  check('without WebGL spheres and bodies are drawn flat and say so', silent === 0, `${silent} say nothing`);
+  if (options.fallback) await flat.page.locator(figures).first().screenshot({ path: options.fallback });
+  await useAnimation(flat.page, check);
   check('no console message, error or request without WebGL', flat.complaints.length === 0, flat.complaints.join('; '));
 }
 await browser.close();

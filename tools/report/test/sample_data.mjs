@@ -1,6 +1,7 @@
 // A report with every kind of block and the awkward cases: 2000-point curves, 8 and 10 series, logarithms over
 // 19 decades, zeros, NaN gaps, tiny and nearly constant ranges, hostile text.
 
+import { motion } from './sample_motion.mjs';
 import { study } from './sample_study.mjs';
 
 const range = (n, at) => Array.from({ length: n }, (_, i) => at(i));
@@ -90,6 +91,7 @@ export const sample = {
       plot('Ten series', 'time t [s]', 'ω₁ [rad/s]', range(10, (k) => ({ name: `run ${k + 1}, a rather long name`, x: t(400, 20), y: t(400, 20).map((at) => Math.sin(at * 0.5 + k * 0.3) * (1 + k / 5)) }))),
     ] },
     study,
+    motion,
     { title: 'Corner cases', blocks: [
       plot('Constant', 't [s]', 'value', [{ name: 'constant', x: [0, 1, 2], y: [1, 1, 1] }]),
       plot('Less than one decade', 'h', 'error', [{ name: 'lift s=1', x: t(50, 1), y: t(50, 1).map((v) => 3e-7 * (1 + v)) }], { log_y: true }),

@@ -1,0 +1,143 @@
+// Moving bodies as data: poses at times, what lies between them, ways of points, and how much room all of it takes.
+// A pose is {at: [x, y, z], turn: [w, x, y, z]}; null where a pose is missing.
+
+const COLOURS = { body: '#4d86bd', accent: '#d55e00', dark: '#2f3a46', light: '#dfe5ec' };
+const NEEDS = { box: 'size', cylinder: 'radius', sphere: 'radius', ellipsoid: 'radii', line: 'points', arrow: 'to' };
+
+export const add = (a, b) => a.map((v, i) => v + b[i]);
+const isPoint = (p) => Array.isArray(p) && p.length === 3 && p.every(Number.isFinite);
+
+/** The vector v turned by the unit quaternion q. */
+export function turned([w, x, y, z], [a, b, c]) {
+  const [p, q, r] = [2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)];
+  return [a + w * p + y * r - z * q, b + w * q + z * p - x * r, c + w * r + x * q - y * p];
+}
+
+/** A point of the body in space. */
+export const placed = (pose, point) => add(pose.at, turned(pose.turn, point));
+
+/** The rotation that takes the z axis to `axis` (any length) on the shortest way. */
+export function turnFromZ(axis) {
+  const length = Math.hypot(...axis);
+  const [x, y, z] = axis.map((v) => v / length);
+  if (z < -1 + 1e-9) return [0, 1, 0, 0];
+  const w = Math.sqrt((1 + z) / 2);
+  return [w, -y / (2 * w), x / (2 * w), 0];
+}
+
+/** Between two unit quaternions, evenly along the shorter arc. */
+export function slerp(p, q, u) {
+  let cosine = p.reduce((sum, v, i) => sum + v * q[i], 0);
+  const sign = cosine < 0 ? -1 : 1;
+  cosine *= sign;
+  const angle = Math.acos(Math.min(1, cosine));
+  const [a, b] = angle < 1e-6 ? [1 - u, u] : [Math.sin((1 - u) * angle), Math.sin(u * angle)].map((v) => v / Math.sin(angle));
+  const mixed = p.map((v, i) => a * v + sign * b * q[i]);
+  const size = Math.hypot(...mixed);
+  return mixed.map((v) => v / size);
+}
+
+function readPose(numbers) {
+  if (!Array.isArray(numbers) || numbers.length !== 7 || !numbers.every(Number.isFinite)) return null;
+  const size = Math.hypot(...numbers.slice(3));
+  return size > 0 ? { at: numbers.slice(0, 3), turn: numbers.slice(3).map((v) => v / size) } : null;
+}
+
+function readShape(shape, where) {
+  const need = Object.hasOwn(NEEDS, shape?.shape) ? NEEDS[shape.shape] : null;
+  if (!need) throw new Error(`${where}: unknown shape “${shape?.shape}”; known are ${Object.keys(NEEDS).join(', ')}`);
+  const value = shape[need];
+  const good = need === 'radius' ? Number.isFinite(value) : need === 'points' ? Array.isArray(value) && value.every(isPoint) : isPoint(value);
+  if (!good) throw new Error(`${where}: a ${shape.shape} needs “${need}”`);
+  if (shape.shape === 'cylinder' && !Number.isFinite(shape.length)) throw new Error(`${where}: a cylinder needs “length”`);
+  const name = shape.color ?? 'body';
+  const colour = Object.hasOwn(COLOURS, name) ? COLOURS[name] : name;
+  if (!/^#[0-9a-f]{6}$/i.test(colour)) {
+    throw new Error(`${where}: unknown color “${name}”; known are ${Object.keys(COLOURS).join(', ')} and #rrggbb`);
+  }
+  const axis = isPoint(shape.axis) && Math.hypot(...shape.axis) > 0 ? shape.axis : [0, 0, 1];
+  return { ...shape, colour, pose: { at: isPoint(shape.at) ? shape.at : [0, 0, 0], turn: turnFromZ(axis) } };
+}
+
+/** Points of a shape, in its own frame, that its hull goes around; `air` around them. */
+function hullOf(shape) {
+  const corners = (sizes) => [0, 1, 2, 3, 4, 5, 6, 7].map((k) => sizes.map((v, i) => ((k >> i) & 1 ? v : -v)));
+  switch (shape.shape) {
+    case 'box': return { points: corners(shape.size.map((v) => v / 2)), air: 0 };
+    case 'cylinder': return { points: [0, 1, 2, 3, 4, 5, 6, 7].flatMap((k) => [-0.5, 0.5].map((z) =>
+      [shape.radius * Math.cos((k * Math.PI) / 4), shape.radius * Math.sin((k * Math.PI) / 4), z * shape.length])), air: 0 };
+    case 'sphere': return { points: [[0, 0, 0]], air: shape.radius };
+    case 'ellipsoid': return { points: corners(shape.radii.map((v) => v * Math.SQRT1_2)), air: 0 };
+    case 'line': return { points: shape.points, air: 0 };
+    default: return { points: [[0, 0, 0], shape.to], air: 0 };
+  }
+}
+
+/** The block -> {times, bodies, box, reach, missing}; a body: {name, poses, shapes, hull, way: points or null, reach}. */
+export function readMotion(block) {
+  const { times } = block;
+  if (!Array.isArray(times) || times.length === 0) throw new Error('no list "times"');
+  if (times.some((t, i) => !Number.isFinite(t) || (i > 0 && t <= times[i - 1]))) throw new Error('"times" do not rise');
+  if (!Array.isArray(block.bodies) || block.bodies.length === 0) throw new Error('no list "bodies"');
+  const bodies = block.bodies.map((body, b) => {
+    const where = `body ${b + 1} (${body?.name})`;
+    if (!Array.isArray(body?.poses) || !Array.isArray(body.shapes)) throw new Error(`${where} needs the lists poses and shapes`);
+    if (body.poses.length !== times.length) throw new Error(`${where} has ${body.poses.length} poses for ${times.length} times`);
+    const poses = body.poses.map(readPose);
+    const shapes = body.shapes.map((shape) => readShape(shape, where));
+    const hull = shapes.flatMap((shape) => {
+      const { points, air } = hullOf(shape);
+      return points.map((p) => ({ point: placed(shape.pose, p), air }));
+    });
+    const point = isPoint(body.trail_point) ? body.trail_point : [0, 0, 0];
+    return { name: String(body.name ?? ''), poses, shapes, point, hull,
+      way: body.trail ? poses.map((pose) => (pose ? placed(pose, point) : null)) : null,
+      reach: Math.max(0, ...hull.map((p) => Math.hypot(...p.point) + p.air)) };
+  });
+  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  const take = (point, air) => point.forEach((v, i) => {
+    box[0][i] = Math.min(box[0][i], v - air);
+    box[1][i] = Math.max(box[1][i], v + air);
+  });
+  for (const { poses, hull, way } of bodies) {
+    for (const pose of poses) if (pose) hull.forEach(({ point, air }) => take(placed(pose, point), air));
+    way?.forEach((point) => point && take(point, 0));
+  }
+  if (block.floor) [box[0][2], box[1][2]] = [Math.min(0, box[0][2]), Math.max(0, box[1][2])];
+  if (!(box[0][0] < Infinity)) [box[0], box[1]] = [[-1, -1, -1], [1, 1, 1]];
+  return { times, bodies, box, reach: Math.max(1e-9, ...bodies.map((body) => body.reach)),
+    missing: Math.max(...bodies.map((body) => body.poses.filter((pose) => !pose).length)) };
+}
+
+/** Where a time stands between the nodes: {i, u}, u from 0 to 1 on the way from node i to i + 1. */
+export function placeInTime(times, t) {
+  let [low, high] = [0, times.length - 1];
+  if (high === 0) return { i: 0, u: 0 };
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t) low = middle; else high = middle;
+  }
+  return { i: low, u: Math.max(0, Math.min(1, (t - times[low]) / (times[high] - times[low]))) };
+}
+
+/** A body's pose there; null in a gap. */
+export function poseAt({ poses }, { i, u }) {
+  const [a, b] = [poses[i], poses[i + 1] ?? null];
+  if (u === 0) return a;
+  if (u === 1 || !a || !b) return u === 1 ? b : null;
+  return { at: a.at.map((v, k) => v + u * (b.at[k] - v)), turn: slerp(a.turn, b.turn, u) };
+}
+
+/** The grid under the box, a hair below z = 0: {step, lines: [[from, to], …]}; its step about `wanted` or larger. */
+export function floorGrid([low, high], wanted = 0) {
+  const size = Math.max(high[0] - low[0], high[1] - low[1]);
+  const least = wanted > 0 ? Math.max(wanted, size / 150) : size / 12;
+  const decade = 10 ** Math.floor(Math.log10(least));
+  const step = decade * [1, 2, 5, 10].find((factor) => factor * decade >= least * 0.999);
+  const z = -0.003 * step;
+  const [x, y] = [0, 1].map((k) => [Math.floor(low[k] / step - 0.2), Math.ceil(high[k] / step + 0.2)]);
+  const grid = [];
+  for (let i = x[0]; i <= x[1]; ++i) grid.push([[i * step, y[0] * step, z], [i * step, y[1] * step, z]]);
+  for (let i = y[0]; i <= y[1]; ++i) grid.push([[x[0] * step, i * step, z], [x[1] * step, i * step, z]]);
+  return { step, lines: grid };
+}
