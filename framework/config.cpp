@@ -5,7 +5,8 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
+
+#include <hamel/framework/toml_reader.hpp>
 
 namespace hamel {
 namespace {
@@ -40,61 +41,12 @@ std::string key_of(const std::string& name) {
   return bare ? name : quoted(name);
 }
 
-// Reads nodes of one TOML table into fields, noting what does not fit.
-class Reader {
- public:
-  Reader(const std::string& origin) : origin_(origin) {}
-
-  void text(const toml::node& node, const std::string& key, std::string& out) {
-    if (auto value = node.value<std::string>()) out = *value;
-    else wrong(node, key, "a string");
-  }
-  void number(const toml::node& node, const std::string& key, double& out) {
-    if (auto value = node.value<double>()) out = *value;
-    else wrong(node, key, "a number");
-  }
-  void whole(const toml::node& node, const std::string& key, long& out) {
-    if (auto value = node.value<int64_t>(); value && node.is_integer()) out = *value;
-    else wrong(node, key, "a whole number");
-  }
-  void list(const toml::node& node, const std::string& key, std::vector<double>& out) {
-    out.clear();
-    if (const toml::array* array = node.as_array()) {
-      for (const toml::node& entry : *array) {
-        if (auto value = entry.value<double>()) out.push_back(*value);
-        else wrong(entry, key, "a list of numbers");
-      }
-    } else if (auto value = node.value<double>()) {
-      out.push_back(*value);
-    } else {
-      wrong(node, key, "a number or a list of numbers");
-    }
-  }
-  void wrong(const toml::node& node, const std::string& key, const std::string& expected) {
-    const auto at = node.source().begin;
-    mistakes.push_back(
-        fmt::format("{}:{}:{}: {}: expected {}", origin_, at.line, at.column, key, expected));
-  }
-
-  std::vector<std::string> mistakes;
-
- private:
-  const std::string& origin_;
-};
-
 }  // namespace
 
 Config Config::from_toml(const std::string& text, const std::string& origin) {
-  toml::table table;
-  try {
-    table = toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    const auto at = error.source().begin;
-    throw ConfigError(
-        {fmt::format("{}:{}:{}: {}", origin, at.line, at.column, error.description())});
-  }
+  TomlReader read(origin);
+  const toml::table table = read.parse(text);
   Config config;
-  Reader read(origin);
   for (const auto& [name, node] : table) {
     const std::string key(name.str());
     if (key == "system") read.text(node, key, config.system);
@@ -120,9 +72,7 @@ Config Config::from_toml(const std::string& text, const std::string& origin) {
         read.wrong(node, key, "a table of parameters");
       }
     } else {
-      const auto at = node.source().begin;
-      read.mistakes.push_back(fmt::format("{}:{}:{}: {}", origin, at.line, at.column,
-                                          unknown_name("key", key, keys())));
+      read.unknown_key(node, key, keys());
     }
   }
   if (!read.mistakes.empty()) throw ConfigError(read.mistakes);

@@ -12,4 +12,10 @@ std::string_view version();
 /// clone.
 std::string_view git_hash();
 
+/// "GCC 12.2.0".
+std::string_view compiler();
+
+/// The build type and what the user added: "Release -O3 -DNDEBUG; kernels -O3".
+std::string_view build_flags();
+
 }  // namespace hamel

@@ -10,6 +10,22 @@ option(HAMEL_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitize
 set(HAMEL_REPORT_PAGE AUTO CACHE STRING
     "The report page needs node and npm: ON fails without them, AUTO builds the program without it")
 set_property(CACHE HAMEL_REPORT_PAGE PROPERTY STRINGS AUTO ON OFF)
+set(HAMEL_HDF5 AUTO CACHE STRING
+    "Studies also write HDF5 (libhdf5-dev): ON fails without it, AUTO builds without it")
+set_property(CACHE HAMEL_HDF5 PROPERTY STRINGS AUTO ON OFF)
+if(HAMEL_HDF5 STREQUAL "OFF")
+  unset(HAMEL_HDF5_LIBRARY CACHE)
+else()  # CMake's FindHDF5 wants a C compiler, which this project does not ask for
+  find_path(HAMEL_HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
+  find_library(HAMEL_HDF5_LIBRARY NAMES hdf5 hdf5_serial)
+  if(NOT HAMEL_HDF5_INCLUDE OR NOT HAMEL_HDF5_LIBRARY)
+    if(HAMEL_HDF5 STREQUAL "ON")
+      message(FATAL_ERROR "HAMEL_HDF5 is ON, but HDF5 was not found: install libhdf5-dev")
+    endif()
+    unset(HAMEL_HDF5_LIBRARY CACHE)
+    message(STATUS "hamel: studies write no cells.h5 (libhdf5-dev is missing)")
+  endif()
+endif()
 
 if(PROJECT_IS_TOP_LEVEL)
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)

@@ -1,0 +1,133 @@
+// From the axes to the cells: every combination, in order, and why some of them are not run.
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/composition.hpp>
+#include <hamel/framework/study.hpp>
+
+namespace hamel {
+namespace {
+
+std::vector<std::string> words(const std::vector<double>& numbers) {
+  std::vector<std::string> out;
+  for (const double x : numbers) out.push_back(fmt::format("{}", x));
+  return out;
+}
+
+// The order that the scheme claims here. A composition reaches its own over a reversible step of order 2.
+int claim(const Registry& registry, const StudyCell& cell, const std::string& group) {
+  const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
+  const RetractionInfo* tau = registry.retraction(group, cell.config.retraction);
+  const ClaimedOrder plain =
+      scheme->claimed_order(scheme->uses_s ? cell.config.s : 0.0, tau->symmetric);
+  for (const Composition& table : compositions()) {
+    if (table.name == cell.config.compose && plain.reversible && plain.order == 2)
+      return table.order;
+  }
+  return plain.order;
+}
+
+// "" or the reason of the first exclusion that matches.
+std::string excluded_by(const StudyConfig& config, const StudyCell& cell) {
+  for (const StudyExclusion& exclusion : config.exclude) {
+    const bool matches =
+        std::all_of(exclusion.values.begin(), exclusion.values.end(), [&](const auto& entry) {
+          const auto& [axis, values] = entry;
+          return std::find(values.begin(), values.end(), cell.axes.at(axis)) != values.end();
+        });
+    if (matches) return exclusion.why;
+  }
+  return "";
+}
+
+// The index into each axis for the i-th combination.
+std::vector<size_t> indices(const StudyConfig& config, const std::vector<size_t>& sizes, size_t i) {
+  std::vector<size_t> out(sizes.size());
+  for (size_t k = sizes.size(); k-- > 0;) {
+    if (config.zipped) {
+      out[k] = sizes[k] == 1 ? 0 : i;
+    } else {
+      out[k] = i % sizes[k];
+      i /= sizes[k];
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<std::string>& study_axes() {
+  static const std::vector<std::string> all = {"system", "scheme",  "retraction", "s",
+                                               "solver", "compose", "tolerance",  "step"};
+  return all;
+}
+
+std::vector<std::string> StudyConfig::values(const std::string& axis) const {
+  if (axis == "system") {
+    std::vector<std::string> labels;
+    for (const StudySystem& system : systems) labels.push_back(system.label);
+    return labels;
+  }
+  if (axis == "scheme") return schemes;
+  if (axis == "retraction") return retractions;
+  if (axis == "s") return words(s);
+  if (axis == "solver") return solvers;
+  if (axis == "compose") return compositions;
+  if (axis == "tolerance") return words(tolerances);
+  return words(steps);
+}
+
+std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& registry) {
+  std::vector<size_t> sizes;
+  size_t count = 1;
+  for (const std::string& axis : study_axes()) {
+    sizes.push_back(config.values(axis).size());
+    count = config.zipped ? std::max(count, sizes.back()) : count * sizes.back();
+  }
+  std::vector<StudyCell> cells;
+  std::set<std::map<std::string, std::string>> seen;
+  for (size_t i = 0; i < count; ++i) {
+    const std::vector<size_t> at = indices(config, sizes, i);
+    StudyCell cell;
+    for (size_t k = 0; k < at.size(); ++k)
+      cell.axes[study_axes()[k]] = config.values(study_axes()[k])[at[k]];
+    cell.system = at[0];
+    const StudySystem& system = config.systems[at[0]];
+    cell.config.system = system.name;
+    cell.config.parameters = system.parameters;
+    cell.config.start = system.start;
+    cell.config.scheme = config.schemes[at[1]];
+    cell.config.retraction = config.retractions[at[2]];
+    cell.config.s = config.s[at[3]];
+    cell.config.solver = config.solvers[at[4]];
+    cell.config.compose = config.compositions[at[5]];
+    cell.config.tolerance = config.tolerances[at[6]];
+    cell.config.step = config.steps[at[7]];
+    cell.config.until = config.until;
+
+    const std::string group = registry.system(system.name)->group.name;
+    const bool uses_s = registry.scheme(cell.config.scheme)->uses_s;
+    std::map<std::string, std::string> same = cell.axes;
+    if (!uses_s) same["s"] = "";
+    if (cell.why = excluded_by(config, cell); !cell.why.empty()) {
+      cell.skipped = "excluded";
+    } else if (registry.retraction(group, cell.config.retraction) == nullptr) {
+      cell.skipped = "impossible";
+      cell.why = fmt::format("{} has no retraction {}", group, cell.config.retraction);
+    } else if (!seen.insert(same).second) {
+      cell.skipped = "duplicate";
+      cell.why = uses_s ? "the same combination stands above"
+                        : fmt::format("{} does not use s: one cell stands for all",
+                                      cell.config.scheme);
+    } else {
+      cell.claimed_order = claim(registry, cell, group);
+      cell.axes = std::move(same);
+    }
+    cells.push_back(std::move(cell));
+  }
+  return cells;
+}
+
+}  // namespace hamel

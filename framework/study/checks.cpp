@@ -1,0 +1,235 @@
+// Everything that can be wrong with a study, found before anything runs, each mistake with its place.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/simulate.hpp>
+#include <hamel/framework/study.hpp>
+
+namespace hamel {
+namespace {
+
+constexpr size_t kMaxCells = 200'000;
+
+class Checks {
+ public:
+  Checks(const StudyConfig& study, const Registry& registry) : study_(study), registry_(registry) {}
+
+  std::vector<std::string> all() {
+    plain_numbers();
+    for (const std::string& axis : study_axes()) repeated(axis);
+    for (size_t i = 0; i < study_.systems.size(); ++i) system(i);
+    if (study_.systems.empty()) add("", "system: give at least one, headed [[system]]");
+    names_and_numbers();
+    lengths();
+    for (size_t i = 0; i < study_.exclude.size(); ++i) exclusion(i);
+    if (out_.empty()) combinations();
+    return std::move(out_);
+  }
+
+ private:
+  // With the place of the longest part of the key that has one: "exclude[0].s" or "exclude[0]".
+  void add(std::string key, const std::string& mistake) {
+    auto place = study_.where.find(key);
+    while (place == study_.where.end() && key.find_last_of(".[") != std::string::npos) {
+      key.resize(key.find_last_of(".["));
+      place = study_.where.find(key);
+    }
+    out_.push_back(place == study_.where.end() ? mistake
+                                               : fmt::format("{}: {}", place->second, mistake));
+  }
+
+  void plain_numbers() {
+    if (!(study_.until > 0) || !std::isfinite(study_.until))
+      add("until", fmt::format("until: got {}, expected a positive number", study_.until));
+    if (study_.repeats < 1 || study_.repeats > 1000)
+      add("repeats", fmt::format("repeats: got {}, expected 1 to 1000", study_.repeats));
+  }
+
+  void repeated(const std::string& axis) {
+    const std::vector<std::string> values = study_.values(axis);
+    if (study_.zipped) return;
+    for (size_t i = 0; i < values.size(); ++i) {
+      if (std::find(values.begin(), values.begin() + static_cast<long>(i), values[i]) ==
+              values.begin() + static_cast<long>(i) ||
+          values[i].empty()) {
+        continue;
+      }
+      if (axis == "system") {
+        add(fmt::format("system[{}].name", i),
+            fmt::format("label: two systems are called '{}'; give each its label", values[i]));
+      } else {
+        add(fmt::format("{}[{}]", axis, i), fmt::format("{}: {} stands twice", axis, values[i]));
+      }
+    }
+  }
+
+  // A run that is right but for what a study changes in it.
+  Config sound(const StudySystem& system) const {
+    Config config;
+    config.system = system.name;
+    config.parameters = system.parameters;
+    config.start = system.start;
+    if (const SystemInfo* info = registry_.system(system.name)) {
+      const auto known = registry_.retractions(info->group.name);
+      if (!known.empty() && registry_.retraction(info->group.name, config.retraction) == nullptr)
+        config.retraction = known.front();
+    }
+    return config;
+  }
+  std::vector<std::string> mistakes_of(const Config& config) const {
+    return Simulation(registry_, config.system).config(config).mistakes();
+  }
+
+  void system(size_t i) {
+    const StudySystem& given = study_.systems[i];
+    const std::string prefix = fmt::format("system[{}]", i);
+    if (given.name.empty()) return add(prefix, "system: give each its name");
+    for (const std::string& mistake : mistakes_of(sound(given))) {
+      std::string key = prefix + ".name";
+      for (const char* start : {"configuration", "velocity", "momentum", "start"})
+        if (mistake.starts_with(std::string(start) + ":")) key = prefix + "." + start;
+      for (const auto& [parameter, value] : given.parameters)
+        if (mistake.find("'" + parameter + "'") != std::string::npos ||
+            mistake.find(parameter + ":") != std::string::npos)
+          key = prefix + ".set." + parameter;
+      add(key, mistake);
+    }
+  }
+
+  // What a run with this value has to say that one without it has not.
+  template <class Value>
+  void axis(const char* name, const std::vector<Value>& values, Value Config::*member) {
+    const Config base = study_.systems.empty() ? Config{} : sound(study_.systems.front());
+    const std::vector<std::string> known = mistakes_of(base);
+    for (size_t i = 0; i < values.size(); ++i) {
+      Config config = base;
+      config.*member = values[i];
+      for (const std::string& mistake : mistakes_of(config)) {
+        if (std::find(known.begin(), known.end(), mistake) == known.end())
+          add(fmt::format("{}[{}]", name, i), mistake);
+      }
+    }
+  }
+
+  void names_and_numbers() {
+    axis("scheme", study_.schemes, &Config::scheme);
+    axis("s", study_.s, &Config::s);
+    axis("solver", study_.solvers, &Config::solver);
+    axis("compose", study_.compositions, &Config::compose);
+    axis("tolerance", study_.tolerances, &Config::tolerance);
+    const std::vector<std::string> retractions = registry_.retractions();
+    for (size_t i = 0; i < study_.retractions.size(); ++i) {  // some group must have it
+      const std::string& name = study_.retractions[i];
+      if (std::find(retractions.begin(), retractions.end(), name) == retractions.end())
+        add(fmt::format("retraction[{}]", i), unknown_name("retraction", name, retractions));
+    }
+    for (size_t i = 0; i < study_.steps.size(); ++i) {
+      const double h = study_.steps[i];
+      const std::string key = fmt::format("step[{}]", i);
+      if (!(h > 0) || !std::isfinite(h)) {
+        add(key, fmt::format("step: got {}, expected a positive number", h));
+        continue;
+      }
+      // Errors are compared at times that all steps reach.
+      const double count = study_.until / h;
+      if (std::abs(count - std::round(count)) > 1e-9 * count || count < 0.5)
+        add(key, fmt::format("step: {} does not divide until = {} into whole steps; {} does", h,
+                             study_.until, study_.until / std::max(1.0, std::round(count))));
+      else if (count > 1e9) add(key, fmt::format("step: {} takes {:.2g} steps, more than 1e9", h, count));
+    }
+  }
+
+  void lengths() {
+    size_t longest = 1, product = 1;
+    std::string longest_axis;
+    for (const std::string& axis : study_axes()) {
+      const size_t size = study_.values(axis).size();
+      if (size == 0 && axis != "system" && !study_.where.contains(axis))  // else the file's reader said it
+        add(axis, fmt::format("{}: give at least one value", axis));
+      product = std::min(product * std::max<size_t>(size, 1), 1000 * kMaxCells);
+      if (size > longest) longest_axis = axis;
+      longest = std::max(longest, size);
+    }
+    if (!study_.zipped) {
+      if (product > kMaxCells)
+        add("", fmt::format("the axes make {} or more combinations, expected at most {}", product,
+                            kMaxCells));
+      return;
+    }
+    for (const std::string& axis : study_axes()) {
+      const size_t size = study_.values(axis).size();
+      if (size > 1 && size != longest)
+        add(axis, fmt::format("{}: {} values, but {} has {}: zipped lists are of one length, or of "
+                              "one value",
+                              axis, size, longest_axis, longest));
+    }
+  }
+
+  void exclusion(size_t i) {
+    const StudyExclusion& given = study_.exclude[i];
+    const std::string prefix = fmt::format("exclude[{}]", i);
+    if (given.why.empty()) add(prefix, "exclude: say why");
+    if (given.values.empty()) add(prefix, "exclude: name at least one axis with its values");
+    for (const auto& [axis, values] : given.values) {
+      const std::vector<std::string> known = study_.values(axis);
+      for (const std::string& value : values)
+        if (std::find(known.begin(), known.end(), value) == known.end())
+          add(prefix + "." + axis, "exclude: " + unknown_name(axis, value, known));
+    }
+  }
+
+  // What only shows when the axes meet.
+  void combinations() {
+    for (const std::string& axis : study_axes())
+      if (study_.values(axis).empty()) return;
+    std::set<std::string> seen;
+    size_t count = 0;
+    for (const StudyCell& cell : study_cells(study_, registry_)) {
+      if (!cell.runs()) continue;
+      ++count;
+      const std::string key = fmt::format("{}/{}/{}", cell.system, cell.config.scheme,
+                                          cell.config.retraction);
+      if (!seen.insert(key).second) continue;
+      for (const std::string& mistake : mistakes_of(cell.config))
+        add(fmt::format("system[{}]", cell.system), mistake);
+    }
+    if (count == 0) add("exclude", "nothing is left to run");
+  }
+
+  const StudyConfig& study_;
+  const Registry& registry_;
+  std::vector<std::string> out_;
+};
+
+}  // namespace
+
+std::vector<std::string> StudyConfig::mistakes(const Registry& registry) const {
+  return Checks(*this, registry).all();
+}
+
+std::string StudyConfig::fingerprint() const {
+  std::string out = fmt::format("mode = {}\nuntil = {}\nrepeats = {}\n",
+                                zipped ? "zipped" : "factorial", until, repeats);
+  for (const StudySystem& system : systems) {
+    out += fmt::format("system {} = {}, configuration ({}), velocity ({}), momentum ({})",
+                       system.label, system.name, join(system.start.configuration),
+                       join(system.start.velocity), join(system.start.momentum));
+    for (const auto& [name, value] : system.parameters)
+      out += fmt::format(", {} ({})", name, join(value));
+    out += '\n';
+  }
+  for (const std::string& axis : study_axes())
+    if (axis != "system") out += fmt::format("{} = {}\n", axis, join(values(axis)));
+  for (const StudyExclusion& exclusion : exclude) {
+    out += "exclude";
+    for (const auto& [axis, excluded] : exclusion.values)
+      out += fmt::format(" {} = {};", axis, join(excluded));
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace hamel

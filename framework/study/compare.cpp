@@ -1,0 +1,57 @@
+// What only several cells together show: the order over the steps, and whether the solvers agree.
+#include <algorithm>
+#include <cmath>
+
+#include <hamel/framework/study/parts.hpp>
+
+namespace hamel::study {
+namespace {
+
+// An error beyond this part of the motion's extent tells nothing of the order any more.
+constexpr double kLost = 0.3;
+
+// The cells that were run and differ in one axis only, in the order of the cells.
+std::vector<std::vector<size_t>> groups(const std::vector<StudyCell>& cells, const char* axis) {
+  std::map<std::map<std::string, std::string>, size_t> index;
+  std::vector<std::vector<size_t>> out;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    if (!cells[i].runs()) continue;
+    auto rest = cells[i].axes;
+    rest.erase(axis);
+    const auto [at, added] = index.try_emplace(rest, out.size());
+    if (added) out.emplace_back();
+    out[at->second].push_back(i);
+  }
+  return out;
+}
+
+}  // namespace
+
+void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
+             const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics) {
+  for (const auto& group : groups(cells, "step")) {
+    std::vector<double> steps, errors;
+    for (const size_t i : group) {
+      const StudyMetrics& m = metrics[i];
+      if (m.ok && m.error > m.floor && m.error < kLost * references[cells[i].system].extent) {
+        steps.push_back(std::log(cells[i].config.step));
+        errors.push_back(std::log(m.error));
+      }
+    }
+    for (const size_t i : group) {
+      metrics[i].order = slope(steps, errors);
+      metrics[i].order_points = static_cast<int>(steps.size());
+      metrics[i].order_of = static_cast<int>(group.size());
+    }
+  }
+  if (config.solvers.size() < 2) return;
+  for (const auto& group : groups(cells, "solver")) {
+    const auto first = std::find_if(group.begin(), group.end(), [&](size_t i) { return metrics[i].ok; });
+    if (first == group.end()) continue;
+    for (auto i = first + 1; i != group.end(); ++i)
+      if (metrics[*i].ok)
+        metrics[*i].solver_difference = distance(metrics[*i].final, metrics[*first].final);
+  }
+}
+
+}  // namespace hamel::study

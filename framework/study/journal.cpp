@@ -1,0 +1,161 @@
+#include <hamel/framework/study/journal.hpp>
+
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hamel/framework/result.hpp>
+#include <hamel/framework/version.hpp>
+
+namespace hamel::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+std::string header(const StudyConfig& config) {
+  return Json{{"journal", 1},
+              {"version", fmt::format("{} ({})", version(), git_hash())},
+              {"study", lines_of(config.fingerprint())}}
+      .dump();
+}
+
+// The lines of one that the other has not, the first few.
+std::string difference(const Json& there, const Json& here) {
+  std::string out;
+  int count = 0;
+  const auto list = [&](const char* sign, const Json& some, const Json& others) {
+    for (const auto& line : some)
+      if (std::find(others.begin(), others.end(), line) == others.end() && ++count <= 6)
+        out += fmt::format("\n  {} {}", sign, line.get<std::string>());
+  };
+  list("there:", there, here);
+  list("here: ", here, there);
+  return out;
+}
+
+// The numbers of StudyMetrics by name, for writing and reading alike.
+template <class Metrics, class Visit>
+void numbers(Metrics& m, Visit visit) {
+  visit("steps", m.steps);
+  visit("time", m.time);
+  visit("failure_residual", m.failure_residual);
+  visit("error", m.error);
+  visit("error_final", m.error_final);
+  visit("velocity_error", m.velocity_error);
+  visit("energy_error", m.energy_error);
+  visit("energy_slope", m.energy_slope);
+  visit("constraint", m.constraint);
+  visit("group_defect", m.group_defect);
+  visit("iterations", m.iterations);
+  visit("evaluations", m.evaluations);
+  visit("iterations_max", m.iterations_max);
+  visit("residual", m.residual);
+  visit("floor", m.floor);
+}
+
+Json json_of(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json json_of(long x) { return x; }
+void take(const Json& from, double& x) { x = from.is_null() ? kNotMeasured : from.get<double>(); }
+void take(const Json& from, long& x) { x = from.get<long>(); }
+
+}  // namespace
+
+Journal::Journal(const std::string& folder, const StudyConfig& config, bool fresh) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  path_ = (std::filesystem::path(folder) / "journal.jsonl").string();
+  file_ = std::fopen(path_.c_str(), "a");
+  if (file_ == nullptr) throw ConfigError({fmt::format("output: cannot write '{}'", path_)});
+  const auto refuse = [&](const std::string& why) {
+    std::fclose(file_);
+    throw ConfigError({why});
+  };
+  if (flock(fileno(file_), LOCK_EX | LOCK_NB) != 0)
+    refuse(fmt::format("output: another study is running in '{}'", folder));
+  std::ifstream in(path_, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  old_ = text.str();
+  const std::string first = old_.substr(0, old_.find('\n')), mine = header(config);
+  const Json there = Json::parse(first, nullptr, false), here = Json::parse(mine);
+  const bool ours = there.is_object() && there.contains("study") && there.contains("version");
+  if (!ours && !first.empty() && !first.starts_with("{\"journal\""))
+    refuse(fmt::format("output: '{}' is no journal of a study; use another folder", path_));
+  if (!fresh && ours && first != mine) {
+    std::string why = difference(there["study"], here["study"]);
+    if (there["version"] != here["version"])
+      why += fmt::format("\n  there: hamel {}\n  here:  hamel {}",
+                         there["version"].get<std::string>(), here["version"].get<std::string>());
+    refuse(fmt::format("output: '{}' holds the cells of another study or program; --fresh forgets "
+                       "them, or use another folder{}",
+                       folder, why));
+  }
+  // A torn last line is a cell that was in flight (npos + 1 = 0).
+  old_.resize(fresh || !ours ? 0 : old_.rfind('\n') + 1);
+  if (ftruncate(fileno(file_), static_cast<off_t>(old_.size())) != 0)
+    refuse(fmt::format("output: cannot write '{}'", path_));
+  if (old_.empty()) append(mine);
+}
+
+Journal::~Journal() { std::fclose(file_); }
+
+void Journal::append(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  if (std::fputs((line + "\n").c_str(), file_) < 0 || std::fflush(file_) != 0)
+    throw std::runtime_error(fmt::format("cannot write '{}'", path_));
+}
+
+void Journal::measured(size_t cell, const StudyMetrics& metrics) {
+  Json line = {{"cell", cell}, {"ok", metrics.ok}, {"reason", metrics.reason}};
+  numbers(metrics, [&](const char* name, const auto& x) { line[name] = json_of(x); });
+  line["final"] = Json::array();
+  for (const double x : metrics.final) line["final"].push_back(json_of(x));
+  append(line.dump());
+}
+
+void Journal::timed(size_t cell, size_t round, double nanoseconds) {
+  append(Json{{"cell", cell}, {"round", round}, {"ns", json_of(nanoseconds)}}.dump());
+}
+
+std::vector<StudyMetrics> Journal::read(size_t cells, size_t rounds) const {
+  std::vector<StudyMetrics> out(cells);
+  std::istringstream in(old_);
+  std::string text;
+  std::getline(in, text);
+  for (size_t number = 2; std::getline(in, text); ++number) {
+    try {
+      const Json line = Json::parse(text);
+      StudyMetrics& m = out.at(line.at("cell").get<size_t>());
+      if (line.contains("round")) {
+        m.nanoseconds.resize(rounds, -1);  // -1: not yet timed
+        take(line.at("ns"), m.nanoseconds.at(line.at("round").get<size_t>()));
+        continue;
+      }
+      m.done = true;
+      m.ok = line.at("ok").get<bool>();
+      m.reason = line.at("reason").get<std::string>();
+      numbers(m, [&](const char* name, auto& x) { take(line.at(name), x); });
+      for (const auto& x : line.at("final")) take(x, m.final.emplace_back());
+    } catch (const std::exception& error) {
+      throw ConfigError({fmt::format("output: {}:{}: {}; --fresh begins anew", path_, number,
+                                     error.what())});
+    }
+  }
+  return out;
+}
+
+}  // namespace hamel::study

@@ -1,0 +1,144 @@
+// One cell: a run with recording, and the time of one without.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <hamel/framework/simulate.hpp>
+#include <hamel/framework/study/parts.hpp>
+
+namespace hamel::study {
+namespace {
+
+constexpr long kLeastRows = 50;
+
+// The largest so far; NaN once something was not finite.
+void raise(double& largest, double value) {
+  if (std::isnan(largest)) return;
+  largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : kNotMeasured;
+}
+
+double norm(const std::vector<double>& v) { return distance(v, std::vector<double>(v.size(), 0)); }
+
+// Rows for each common interval: the fewest that divide its steps and make kLeastRows rows in all.
+long rows_each(long steps_each, long intervals) {
+  for (long rows = 1; rows < steps_each; ++rows)
+    if (steps_each % rows == 0 && rows * intervals >= kLeastRows) return rows;
+  return steps_each;
+}
+
+// Follows a run along the reference.
+class Meter {
+ public:
+  Meter(const StudyReference& reference, StudyMetrics& out) : reference_(reference), out_(out) {
+    out_.energy_error = out_.constraint = out_.group_defect = 0;
+    out_.error = out_.error_final = out_.velocity_error = 0;
+  }
+
+  void row(const Snapshot& state) {
+    if (times_.empty()) energy_start_ = state.energy;
+    const double scale = energy_start_ != 0 ? std::abs(energy_start_) : 1.0;
+    times_.push_back(state.time);
+    energy_.push_back((state.energy - energy_start_) / scale);
+    raise(out_.energy_error, energy_.back());
+    raise(out_.constraint, state.constraint);
+    raise(out_.group_defect, state.group_defect);
+    raise(size_, norm(state.coordinates));
+  }
+  void compare(const Snapshot& state, size_t k) {
+    if (reference_.coordinates.empty()) return;
+    out_.error_final = distance(state.coordinates, reference_.coordinates[k]);
+    raise(out_.error, out_.error_final);
+    raise(out_.velocity_error, distance(state.velocity, reference_.velocities[k]));
+  }
+  void finish(Integration& run) {
+    const SolverStats& stats = run.stats();
+    const Snapshot& state = run.state();
+    out_.done = true;
+    out_.steps = state.step;
+    out_.time = state.time;
+    out_.final = state.coordinates;
+    out_.iterations = stats.iterations;
+    out_.evaluations = stats.evaluations;
+    out_.iterations_max = stats.iterations_max;
+    out_.residual = stats.residual_max;
+    out_.energy_slope = slope(times_, energy_);
+    out_.floor = 10 * (reference_.bound +
+                       (stats.residual_max + 2.2e-16) * (1 + size_) *
+                           std::sqrt(static_cast<double>(std::max(state.step, 1L))));
+    if (!out_.ok || reference_.coordinates.empty())
+      out_.error = out_.error_final = out_.velocity_error = kNotMeasured;
+  }
+
+ private:
+  const StudyReference& reference_;
+  StudyMetrics& out_;
+  double energy_start_ = 0, size_ = 0;
+  std::vector<double> times_, energy_;
+};
+
+}  // namespace
+
+double slope(const std::vector<double>& x, const std::vector<double>& y) {
+  const double n = static_cast<double>(x.size());
+  double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
+  for (size_t i = 0; i < x.size(); ++i) {
+    mean_x += x[i] / n;
+    mean_y += y[i] / n;
+  }
+  for (size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+  }
+  return xx > 0 && std::isfinite(xy) ? xy / xx : kNotMeasured;
+}
+
+StudyMetrics measure(const Registry& registry, const StudyCell& cell,
+                     const StudyReference& reference, const std::atomic<bool>* stop) {
+  StudyMetrics out;
+  Integration run = Simulation(registry, cell.config.system).config(cell.config).build();
+  const long steps = cell.config.steps();
+  const long intervals = static_cast<long>(reference.times.size()) - 1;
+  const long rows = rows_each(steps / intervals, intervals), every = steps / (intervals * rows);
+  Meter meter(reference, out);
+  out.ok = true;
+  meter.row(run.state());
+  meter.compare(run.state(), 0);
+  for (long row = 1; row <= intervals * rows; ++row) {
+    if (stopped(stop)) return out;
+    const Status status = run.step(every);
+    const Snapshot& state = run.state();
+    meter.row(state);
+    if (!status.ok) {
+      out.ok = false;
+      out.reason = status.reason;
+      out.failure_residual = status.residual;
+      break;
+    }
+    if (row % rows == 0) meter.compare(state, static_cast<size_t>(row / rows));
+  }
+  meter.finish(run);
+  return out;
+}
+
+double time_per_step(const Registry& registry, const StudyCell& cell,
+                     const std::atomic<bool>* stop) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double kShortest = 2e5;  // ns: a shorter run is repeated until this is reached
+  constexpr long kChunk = 4096;
+  const Simulation simulation = Simulation(registry, cell.config.system).config(cell.config);
+  double nanoseconds = 0;
+  long steps = 0;
+  for (int i = 0; i < 20 && nanoseconds < kShortest; ++i) {
+    Integration run = simulation.build();
+    const auto begin = Clock::now();
+    for (long left = cell.config.steps(); left > 0; left -= kChunk) {
+      if (stopped(stop)) return kNotMeasured;
+      if (!run.step(std::min(left, kChunk)).ok) break;
+    }
+    nanoseconds += std::chrono::duration<double, std::nano>(Clock::now() - begin).count();
+    steps += run.state().step;
+  }
+  return steps > 0 ? nanoseconds / static_cast<double>(steps) : kNotMeasured;
+}
+
+}  // namespace hamel::study

@@ -1,0 +1,43 @@
+// A table with named columns, each with its unit and meaning: written as CSV and as HDF5.
+//
+// In the CSV a number that is not finite is an empty field. In the HDF5 file each column is a data set
+// of its own name, numbers as 64-bit floats (NaN where there is none) or integers, words as UTF-8
+// strings; `unit` and `meaning` are its attributes, further texts attributes of the file.
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace hamel {
+
+struct TableColumn {
+  using Values =
+      std::variant<std::vector<double>, std::vector<long long>, std::vector<std::string>>;
+  std::string name, unit, meaning;
+  Values values;
+
+  size_t size() const;
+  /// One entry as text: shortest round trip, empty where a number is not finite.
+  std::string text(size_t row) const;
+};
+
+struct Table {
+  std::vector<TableColumn> columns;
+
+  size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
+  /// The column; ConfigError naming the nearest when there is none.
+  const TableColumn& column(const std::string& name) const;
+  std::string csv() const;
+  /// Appears whole or not at all; ConfigError when it cannot be written, or without HDF5 in the build.
+  void write_hdf5(const std::string& path, const std::map<std::string, std::string>& texts) const;
+};
+
+/// Whether this build can write HDF5, and the version it uses ("" without).
+std::string hdf5_version();
+
+/// Reads back what write_hdf5 wrote (texts: the attributes of the file).
+Table read_hdf5(const std::string& path, std::map<std::string, std::string>* texts = nullptr);
+
+}  // namespace hamel
