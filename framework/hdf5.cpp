@@ -68,9 +68,9 @@ void write_column(hid_t file, const TableColumn& column) {
   const hsize_t size = column.size();
   const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, "H5Screate_simple");
   const auto write = [&](hid_t stored, hid_t memory, const void* data) {
-    const Handle set(H5Dcreate2(file, column.name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT,
-                                H5P_DEFAULT),
-                     H5Dclose, "H5Dcreate2");
+    const Handle set(
+        H5Dcreate2(file, column.name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose, "H5Dcreate2");
     if (size > 0) check(H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "H5Dwrite");
     write_text(set, "unit", column.unit);
     write_text(set, "meaning", column.meaning);
@@ -98,8 +98,14 @@ TableColumn read_column(hid_t file, const std::string& name) {
     if (size > 0) check(H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "H5Dread");
   };
   switch (H5Tget_class(type)) {
-    case H5T_FLOAT: read(H5T_NATIVE_DOUBLE, (out.values = std::vector<double>(size), std::get<0>(out.values).data())); break;
-    case H5T_INTEGER: read(H5T_NATIVE_LLONG, (out.values = std::vector<long long>(size), std::get<1>(out.values).data())); break;
+    case H5T_FLOAT:
+      read(H5T_NATIVE_DOUBLE,
+           (out.values = std::vector<double>(size), std::get<0>(out.values).data()));
+      break;
+    case H5T_INTEGER:
+      read(H5T_NATIVE_LLONG,
+           (out.values = std::vector<long long>(size), std::get<1>(out.values).data()));
+      break;
     default: {
       std::vector<char*> words(size, nullptr);
       read(text_type(), words.data());
@@ -177,8 +183,8 @@ namespace hamel {
 std::string hdf5_version() { return ""; }
 
 void Table::write_hdf5(const std::string& path, const std::map<std::string, std::string>&) const {
-  throw ConfigError({fmt::format("output: cannot write '{}': this build has no HDF5 (libhdf5-dev)",
-                                 path)});
+  throw ConfigError(
+      {fmt::format("output: cannot write '{}': this build has no HDF5 (libhdf5-dev)", path)});
 }
 
 Table read_hdf5(const std::string& path, std::map<std::string, std::string>*) {

@@ -75,7 +75,7 @@ struct StudyCell {
   std::map<std::string, std::string> axes;
   std::string skipped;  // "" (it is run), "excluded", "impossible" or "duplicate"
   std::string why;
-  int claimed_order = 0;  // of the scheme with this s and retraction, composed or not
+  int claimed_order = 0;  // with this s, retraction and composition; 0: it claims none
 
   bool runs() const { return skipped.empty(); }
 };
@@ -85,26 +85,29 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
+/// An error above this part of the motion's extent tells nothing of the order.
+constexpr double kAsymptotic = 0.1;
+
 /// What one cell left. NaN: not measured, or nothing finite.
 struct StudyMetrics {
   bool done = false;  // false: the study was stopped before
   bool ok = false;
-  std::string reason;       // of a failure
-  long steps = 0;           // good ones
-  double time = 0;          // reached, seconds
+  std::string reason;  // of a failure
+  long steps = 0;      // good ones
+  double time = 0;     // reached, seconds
   double failure_residual = kNotMeasured;
   // Over the common times, distance from the exact motion or the reference.
   double error = kNotMeasured, error_final = kNotMeasured, velocity_error = kNotMeasured;
   double energy_error = kNotMeasured, energy_slope = kNotMeasured;  // relative; relative per second
   double constraint = kNotMeasured, group_defect = kNotMeasured;
   long iterations = 0, evaluations = 0, iterations_max = 0;
-  double residual = kNotMeasured;    // relative, the largest of the run
-  double floor = kNotMeasured;       // errors below are round-off, residuals and the reference
-  std::vector<double> final;         // the element's columns where the run ended
-  std::vector<double> nanoseconds;   // per step, one for each timing round
+  double residual = kNotMeasured;   // relative, the largest of the run
+  double floor = kNotMeasured;      // errors below are round-off, residuals and the reference
+  std::vector<double> final;        // the element's columns where the run ended
+  std::vector<double> nanoseconds;  // per step, one for each timing round
   // From all cells together.
-  double order = kNotMeasured;       // least-squares slope of log error over log step
-  int order_points = 0, order_of = 0;  // the points used, of how many
+  double order = kNotMeasured;              // least-squares slope of log error over log step
+  int order_points = 0, order_of = 0;       // the points used, of how many
   double solver_difference = kNotMeasured;  // of `final`, from the first solver of the same cell
 
   double nanoseconds_median() const;
@@ -112,9 +115,9 @@ struct StudyMetrics {
 
 /// What the cells of one system are compared with.
 struct StudyReference {
-  std::string kind;  // "exact", "converged", or why there is none
-  double bound = 0;  // of the reference's own error; 0 for an exact motion
-  double extent = 0; // how far the motion gets from its start
+  std::string kind;   // "exact", "converged", or why there is none
+  double bound = 0;   // of the reference's own error; 0 for an exact motion
+  double extent = 0;  // how far the motion gets from its start
   std::vector<double> times;
   std::vector<std::vector<double>> coordinates, velocities;
 };
@@ -122,7 +125,7 @@ struct StudyReference {
 struct StudyResult {
   StudyConfig config;
   std::vector<StudyCell> cells;
-  std::vector<StudyMetrics> metrics;  // one for each cell; not done where the cell is skipped
+  std::vector<StudyMetrics> metrics;       // one for each cell; not done where the cell is skipped
   std::vector<StudyReference> references;  // one for each system
   bool complete = false;
   size_t resumed = 0;  // cells taken over from the journal

@@ -21,8 +21,7 @@ class TomlReader {
     try {
       return toml::parse(text);
     } catch (const toml::parse_error& error) {
-      throw ConfigError(
-          {fmt::format("{}: {}", place(error.source().begin), error.description())});
+      throw ConfigError({fmt::format("{}: {}", place(error.source().begin), error.description())});
     }
   }
 

@@ -19,6 +19,7 @@ std::vector<std::string> words(const std::vector<double>& numbers) {
 // The order that the scheme claims here. A composition reaches its own over a reversible step of order 2.
 int claim(const Registry& registry, const StudyCell& cell, const std::string& group) {
   const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
+  if (!scheme->adapted) return 0;  // of the free motion only: here it approximates nothing
   const RetractionInfo* tau = registry.retraction(group, cell.config.retraction);
   const ClaimedOrder plain =
       scheme->claimed_order(scheme->uses_s ? cell.config.s : 0.0, tau->symmetric);
@@ -118,9 +119,9 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
       cell.why = fmt::format("{} has no retraction {}", group, cell.config.retraction);
     } else if (!seen.insert(same).second) {
       cell.skipped = "duplicate";
-      cell.why = uses_s ? "the same combination stands above"
-                        : fmt::format("{} does not use s: one cell stands for all",
-                                      cell.config.scheme);
+      cell.why =
+          uses_s ? "the same combination stands above"
+                 : fmt::format("{} does not use s: one cell stands for all", cell.config.scheme);
     } else {
       cell.claimed_order = claim(registry, cell, group);
       cell.axes = std::move(same);

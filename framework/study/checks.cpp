@@ -138,7 +138,8 @@ class Checks {
       if (std::abs(count - std::round(count)) > 1e-9 * count || count < 0.5)
         add(key, fmt::format("step: {} does not divide until = {} into whole steps; {} does", h,
                              study_.until, study_.until / std::max(1.0, std::round(count))));
-      else if (count > 1e9) add(key, fmt::format("step: {} takes {:.2g} steps, more than 1e9", h, count));
+      else if (count > 1e9)
+        add(key, fmt::format("step: {} takes {:.2g} steps, more than 1e9", h, count));
     }
   }
 
@@ -147,7 +148,8 @@ class Checks {
     std::string longest_axis;
     for (const std::string& axis : study_axes()) {
       const size_t size = study_.values(axis).size();
-      if (size == 0 && axis != "system" && !study_.where.contains(axis))  // else the file's reader said it
+      if (size == 0 && axis != "system" &&
+          !study_.where.contains(axis))  // else the file's reader said it
         add(axis, fmt::format("{}: give at least one value", axis));
       product = std::min(product * std::max<size_t>(size, 1), 1000 * kMaxCells);
       if (size > longest) longest_axis = axis;
@@ -190,8 +192,8 @@ class Checks {
     for (const StudyCell& cell : study_cells(study_, registry_)) {
       if (!cell.runs()) continue;
       ++count;
-      const std::string key = fmt::format("{}/{}/{}", cell.system, cell.config.scheme,
-                                          cell.config.retraction);
+      const std::string key =
+          fmt::format("{}/{}/{}", cell.system, cell.config.scheme, cell.config.retraction);
       if (!seen.insert(key).second) continue;
       for (const std::string& mistake : mistakes_of(cell.config))
         add(fmt::format("system[{}]", cell.system), mistake);

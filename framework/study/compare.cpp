@@ -7,9 +7,6 @@
 namespace hamel::study {
 namespace {
 
-// An error beyond this part of the motion's extent tells nothing of the order any more.
-constexpr double kLost = 0.3;
-
 // The cells that were run and differ in one axis only, in the order of the cells.
 std::vector<std::vector<size_t>> groups(const std::vector<StudyCell>& cells, const char* axis) {
   std::map<std::map<std::string, std::string>, size_t> index;
@@ -33,7 +30,7 @@ void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
     std::vector<double> steps, errors;
     for (const size_t i : group) {
       const StudyMetrics& m = metrics[i];
-      if (m.ok && m.error > m.floor && m.error < kLost * references[cells[i].system].extent) {
+      if (m.ok && m.error > m.floor && m.error < kAsymptotic * references[cells[i].system].extent) {
         steps.push_back(std::log(cells[i].config.step));
         errors.push_back(std::log(m.error));
       }
@@ -46,7 +43,8 @@ void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
   }
   if (config.solvers.size() < 2) return;
   for (const auto& group : groups(cells, "solver")) {
-    const auto first = std::find_if(group.begin(), group.end(), [&](size_t i) { return metrics[i].ok; });
+    const auto first =
+        std::find_if(group.begin(), group.end(), [&](size_t i) { return metrics[i].ok; });
     if (first == group.end()) continue;
     for (auto i = first + 1; i != group.end(); ++i)
       if (metrics[*i].ok)

@@ -40,7 +40,9 @@ class StudyReader {
     return all;
   }
 
-  void at(const std::string& key, const toml::node& node) { config_.where[key] = read_.place(node); }
+  void at(const std::string& key, const toml::node& node) {
+    config_.where[key] = read_.place(node);
+  }
 
   void mode(const toml::node& node) {
     std::string word;

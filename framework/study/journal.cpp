@@ -100,9 +100,10 @@ Journal::Journal(const std::string& folder, const StudyConfig& config, bool fres
     if (there["version"] != here["version"])
       why += fmt::format("\n  there: hamel {}\n  here:  hamel {}",
                          there["version"].get<std::string>(), here["version"].get<std::string>());
-    refuse(fmt::format("output: '{}' holds the cells of another study or program; --fresh forgets "
-                       "them, or use another folder{}",
-                       folder, why));
+    refuse(
+        fmt::format("output: '{}' holds the cells of another study or program; --fresh forgets "
+                    "them, or use another folder{}",
+                    folder, why));
   }
   // A torn last line is a cell that was in flight (npos + 1 = 0).
   old_.resize(fresh || !ours ? 0 : old_.rfind('\n') + 1);
@@ -151,8 +152,8 @@ std::vector<StudyMetrics> Journal::read(size_t cells, size_t rounds) const {
       numbers(m, [&](const char* name, auto& x) { take(line.at(name), x); });
       for (const auto& x : line.at("final")) take(x, m.final.emplace_back());
     } catch (const std::exception& error) {
-      throw ConfigError({fmt::format("output: {}:{}: {}; --fresh begins anew", path_, number,
-                                     error.what())});
+      throw ConfigError(
+          {fmt::format("output: {}:{}: {}; --fresh begins anew", path_, number, error.what())});
     }
   }
   return out;

@@ -62,9 +62,9 @@ class Meter {
     out_.iterations_max = stats.iterations_max;
     out_.residual = stats.residual_max;
     out_.energy_slope = slope(times_, energy_);
-    out_.floor = 10 * (reference_.bound +
-                       (stats.residual_max + 2.2e-16) * (1 + size_) *
-                           std::sqrt(static_cast<double>(std::max(state.step, 1L))));
+    out_.floor =
+        10 * (reference_.bound + (stats.residual_max + 2.2e-16) * (1 + size_) *
+                                     std::sqrt(static_cast<double>(std::max(state.step, 1L))));
     if (!out_.ok || reference_.coordinates.empty())
       out_.error = out_.error_final = out_.velocity_error = kNotMeasured;
   }

@@ -73,8 +73,8 @@ StudyReference converged(const Registry& registry, const StudyConfig& study, Con
     const double difference =
         last.ok && next.ok ? apart(last, next) : std::numeric_limits<double>::infinity();
     if (std::isfinite(difference) && difference < out.bound) {
-      out.kind = fmt::format("converged: lift, s = 0.5, {}, kahan_li6, {} steps",
-                             config.retraction, each * intervals);
+      out.kind = fmt::format("converged: lift, s = 0.5, {}, kahan_li6, {} steps", config.retraction,
+                             each * intervals);
       out.bound = difference;
       out.coordinates = next.coordinates;
       out.velocities = next.velocities;

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <functional>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/result.hpp>
@@ -82,10 +82,10 @@ Table StudyResult::table() const {
   c.setting("tolerance", "1", "axis", [](Cell cell, Metrics) { return cell.config.tolerance; });
   c.setting("step", "s", "axis", [](Cell cell, Metrics) { return cell.config.step; });
   c.words("status", "ok, failed, excluded, impossible or duplicate", status_of);
-  c.words("reason", "of a failure, or why it was not run", [](Cell cell, Metrics m) {
-    return cell.runs() ? m.reason : cell.why;
-  });
-  c.measured("steps", "1", "good steps", [](Cell, Metrics m) { return static_cast<double>(m.steps); });
+  c.words("reason", "of a failure, or why it was not run",
+          [](Cell cell, Metrics m) { return cell.runs() ? m.reason : cell.why; });
+  c.measured("steps", "1", "good steps",
+             [](Cell, Metrics m) { return static_cast<double>(m.steps); });
   c.measured("time", "s", "reached", [](Cell, Metrics m) { return m.time; });
   c.measured("error", "columns of g", "largest distance from the reference at the common times",
              [](Cell, Metrics m) { return m.error; });
@@ -99,10 +99,10 @@ Table StudyResult::table() const {
              [](Cell, Metrics m) { return m.floor; });
   c.measured("order", "1", "slope of log error over log step, least squares",
              [](Cell, Metrics m) { return m.order; });
-  c.measured("order_points", "1", "steps used for it: above the floor, below 0.3 of the motion",
+  c.measured("order_points", "1", "steps used for it: above the floor, below 0.1 of the motion",
              [](Cell, Metrics m) { return m.order_points; });
   c.measured("order_of", "1", "steps there are", [](Cell, Metrics m) { return m.order_of; });
-  c.measured("claimed_order", "1", "by the scheme, for this s, retraction and composition",
+  c.measured("claimed_order", "1", "with this s, retraction and composition; 0: none",
              [](Cell cell, Metrics) { return cell.claimed_order; });
   c.measured("energy_error", "1", "largest |E - E0| / |E0|",
              [](Cell, Metrics m) { return m.energy_error; });
@@ -163,14 +163,15 @@ std::string StudyResult::record() const {
       {"compiler", compiler()},
       {"flags", build_flags()},
       {"libraries",
-       {{"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                              EIGEN_MINOR_VERSION)},
-        {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
-                            FMT_VERSION % 100)},
+       {{"eigen",
+         fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+        {"fmt",
+         fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
         {"hdf5", hdf5_version()}}},
       {"fingerprint", config.fingerprint()},
       {"study", config.text},
-  }.dump(2);
+  }
+      .dump(2);
 }
 
 void StudyResult::write(const std::string& folder) const {

@@ -63,7 +63,8 @@ class Runner {
  private:
   void work(const std::vector<Piece>& pieces) {
     try {
-      for (size_t i = next_++; i < pieces.size() && !study::stopped(stop_) && !failed_; i = next_++) {
+      for (size_t i = next_++; i < pieces.size() && !study::stopped(stop_) && !failed_;
+           i = next_++) {
         if (!(pieces[i].round < 0 ? measure(pieces[i].cell) : time(pieces[i]))) return;
         finished_ += result_.cells[pieces[i].cell].config.steps();
         report();
@@ -77,8 +78,8 @@ class Runner {
   // Each piece has its own place in the metrics: no lock.
   bool measure(size_t cell) {
     StudyMetrics& mine = result_.metrics[cell];
-    StudyMetrics measured = study::measure(
-        registry_, result_.cells[cell], result_.references[result_.cells[cell].system], stop_);
+    StudyMetrics measured = study::measure(registry_, result_.cells[cell],
+                                           result_.references[result_.cells[cell].system], stop_);
     if (!measured.done) return false;
     measured.nanoseconds = mine.nanoseconds;
     mine = std::move(measured);

@@ -1,6 +1,7 @@
 // The commands of the program; main.cpp reads the command line into these and calls them.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,16 @@ struct ReproduceOptions {
 };
 int reproduce(const ReproduceOptions& options);
 
-/// A progress bar on standard error; silent when that is no terminal.
+struct StudyOptions {
+  std::string file, directory;  // empty: the file's name with -study
+  int threads = 0;              // 0: all cores
+  bool fresh = false;
+  bool json = false;
+  bool quiet = false;
+};
+int study(const StudyOptions& options);
+
+/// A progress bar with the time left on standard error; silent when that is no terminal.
 class Progress {
  public:
   Progress(std::string what, bool quiet);
@@ -45,6 +55,8 @@ class Progress {
  private:
   std::string what_;
   bool active_;
+  double first_ = -1;  // the fraction that was done when the clock started
+  std::chrono::steady_clock::time_point begin_, shown_;
 };
 
 }  // namespace hamel::tools

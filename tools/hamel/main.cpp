@@ -143,6 +143,7 @@ int program(int argc, char** argv) {
       "  hamel list systems\n"
       "  hamel describe suslov\n"
       "  hamel run suslov --retraction exp --s 0 --until 20 -o suslov.csv\n"
+      "  hamel study tools/studies/readings.toml -o readings\n"
       "  hamel reproduce -o figures\n"
       "Every command has --help with examples.");
   std::function<int()> command;
@@ -169,6 +170,27 @@ int program(int argc, char** argv) {
   CLI::App* run_command = app.add_subcommand("run", "One trajectory");
   line.define(*run_command);
   run_command->callback([&] { command = [&] { return run(line.resolve()); }; });
+
+  StudyOptions studying;
+  CLI::App* study_command = app.add_subcommand(
+      "study", "A comparative study: every combination of a file's lists, measured alike");
+  study_command->add_option("FILE", studying.file, "a study, TOML (tools/studies)")->required();
+  study_command->add_option("-o,--output", studying.directory,
+                            "the folder for cells.csv, cells.h5, record.json, report.html "
+                            "[FILE's name with -study]");
+  study_command->add_option("--threads", studying.threads, "how many cells at a time [all cores]")
+      ->check(CLI::Range(1, 1024));
+  study_command->add_flag("--fresh", studying.fresh,
+                          "begin anew where the folder has cells of an earlier run");
+  study_command->add_flag("--json", studying.json, "print the record as JSON");
+  study_command->add_flag("--quiet", studying.quiet, "print nothing but errors (and --json)");
+  study_command->footer(
+      "A study that was interrupted or killed goes on when the same command is given again.\n"
+      "Exit status: 0 done (failed cells are results), 1 interrupted, 2 bad input.\n"
+      "Examples:\n"
+      "  hamel study tools/studies/readings.toml -o readings\n"
+      "  hamel study tools/studies/solvers.toml -o solvers --threads 1   # quieter times");
+  study_command->callback([&] { command = [&] { return study(studying); }; });
 
   ReproduceOptions reproduction;
   CLI::App* reproduce_command =

@@ -38,7 +38,7 @@ std::string summary(const StudyResult& result) {
       out += fmt::format("  reference              {}: {}, its error at most {:.1e}\n",
                          result.config.systems[i].label, reference.kind, reference.bound);
   }
-  for (const Verdict& verdict : study_verdicts(result)) 
+  for (const Verdict& verdict : study_verdicts(result))
     out += fmt::format("  [{}] {}\n", verdict.status, verdict.text);
   return out + fmt::format("  time                   {:.1f} s on {} thread{}\n", result.seconds,
                            result.threads, result.threads == 1 ? "" : "s");
@@ -48,8 +48,9 @@ std::string summary(const StudyResult& result) {
 
 int study(const StudyOptions& options) {
   namespace fs = std::filesystem;
-  const std::string folder =
-      options.directory.empty() ? fs::path(options.file).stem().string() + "-study" : options.directory;
+  const std::string folder = options.directory.empty()
+                                 ? fs::path(options.file).stem().string() + "-study"
+                                 : options.directory;
   Study study(registry(), read_study(options.file, registry()));
   study.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_asked);
   std::signal(SIGINT, ask_to_stop);

@@ -22,7 +22,4 @@ std::vector<Verdict> study_verdicts(const StudyResult& result);
 /// Verdicts, work-precision diagrams, order plots, heat maps over s and h, the table of all cells.
 Page study_page(const StudyResult& result);
 
-/// An axis value as text is to show it: "s = 0.5", "h = 0.1", else the name.
-std::string axis_words(const std::string& axis, const std::string& value);
-
 }  // namespace hamel::tools
