@@ -1,0 +1,231 @@
+// hamel study: its files, its mistakes, and that neither threads nor a kill change what it finds.
+#include <fcntl.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include <hamel/framework/study.hpp>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace hamel::test;
+using Json = nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// 39 cells of 2 systems x 3 schemes x 2 retractions x 2 s x 3 steps; polar is not on se2, boxed does not use s.
+constexpr const char* kSmall = R"(title = "Small"
+until = 2
+repeats = 2
+scheme = ["lift", "balance", "boxed"]
+retraction = ["cayley", "polar"]
+s = [0, 0.5]
+step = [0.2, 0.1, 0.05]
+[[system]]
+name = "suslov"
+set = { inertia = [2, 0.3, 0.5, 3, 0.4, 4] }
+velocity = [1, 0.5, 0]
+[[system]]
+name = "chaplygin_sleigh"
+[[exclude]]
+scheme = "balance"
+step = 0.2
+why = "to see it excluded"
+)";
+
+class StudyCommand : public CommandLine {
+ protected:
+  std::string study(const std::string& text, const std::string& name = "small.toml") const {
+    std::ofstream(file(name)) << text;
+    return name;
+  }
+  /// The rows of cells.csv without the columns that are times.
+  std::vector<std::string> cells(const std::string& folder) const {
+    std::vector<std::string> out;
+    for (const std::string& line : lines(contents(file(folder + "/cells.csv"))))
+      out.push_back(line.substr(0, line.rfind(',', line.rfind(',') - 1)));
+    EXPECT_FALSE(out.empty());
+    return out;
+  }
+  size_t count(const std::vector<std::string>& rows, const std::string& piece) const {
+    return static_cast<size_t>(std::count_if(rows.begin(), rows.end(), [&](const auto& row) {
+      return row.find(piece) != std::string::npos;
+    }));
+  }
+};
+
+TEST_F(StudyCommand, WritesEveryCombination) {
+  const Outcome o = run({"study", study(kSmall), "-o", "out"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, AllOf(HasSubstr("39 cells run: 39 ok, 0 failed"), HasSubstr("reference")))
+      << o.out;
+  const std::vector<std::string> rows = cells("out");
+  EXPECT_EQ(rows.size(), 1u + 2 * 3 * 2 * 2 * 3);
+  EXPECT_EQ(count(rows, ",impossible,se2 has no retraction polar"),
+            16u);  // 4 of balance are excluded
+  EXPECT_EQ(count(rows, ",excluded,to see it excluded"), 8u);
+  const Json record = Json::parse(contents(file("out/record.json")));
+  EXPECT_EQ(record["study"], kSmall);
+  EXPECT_EQ(record["cells"]["ok"].get<int>() + record["cells"]["impossible"].get<int>() +
+                record["cells"]["excluded"].get<int>() + record["cells"]["duplicate"].get<int>(),
+            72);
+  for (const char* key : {"version", "git", "host", "compiler", "flags", "libraries"})
+    EXPECT_TRUE(record.contains(key)) << key;
+}
+
+/// Every mistake of the file at once, each with its place, and nothing is written.
+TEST_F(StudyCommand, SaysWhatIsWrongWithTheFile) {
+  const std::string name = study(R"(mode = "zippd"
+until = 2
+scheme = ["lift", "blance"]
+retraction = ["cayly"]
+s = [0, 2]
+step = [0.3]
+tolerance = ["small"]
+wrong = 1
+[[system]]
+name = "suslov"
+set = { inertai = [1, 2, 3] }
+velocity = [1, 2]
+[[system]]
+name = "suslof"
+[[exclude]]
+s = 0.25
+)");
+  const Outcome o = run({"study", name, "-o", "out"});
+  EXPECT_EQ(o.status, 2);
+  for (const char* piece :
+       {"small.toml:1:8: unknown mode 'zippd'", "did you mean 'zipped'",
+        "small.toml:3:19: unknown scheme 'blance'", "did you mean 'balance'",
+        "small.toml:4:15: unknown retraction 'cayly'", "small.toml:5:9: s: got 2",
+        "small.toml:6:9: step: 0.3 does not divide until = 2",
+        "small.toml:7:14: tolerance: expected a number", "small.toml:8:9: unknown key 'wrong'",
+        "small.toml:11:19: unknown parameter of suslov 'inertai'",
+        "small.toml:14:8: unknown system 'suslof'", "exclude: say why",
+        "small.toml:16:5: exclude: unknown s '0.25'"}) {
+    EXPECT_THAT(o.err, HasSubstr(piece));
+  }
+  EXPECT_FALSE(std::filesystem::exists(file("out")));
+  EXPECT_THAT(run({"study", "nowhere.toml"}).err, HasSubstr("cannot read 'nowhere.toml'"));
+}
+
+TEST_F(StudyCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
+  const std::string name = study(kSmall);
+  ASSERT_EQ(run({"study", name, "-o", "one", "--threads", "1", "--quiet"}).status, 0);
+  ASSERT_EQ(run({"study", name, "-o", "two", "--threads", "2", "--quiet"}).status, 0);
+  EXPECT_EQ(cells("one"), cells("two"));
+}
+
+/// A study killed outright and continued has the cells of one that was left alone, and did not begin anew.
+TEST_F(StudyCommand, GoesOnAfterAKill) {
+  std::string longer = kSmall;
+  longer.replace(longer.find("repeats = 2"), 11, "repeats = 40");
+  longer.replace(longer.find("until = 2"), 9, "until = 100");
+  const std::string name = study(longer);
+  for (const int signal : {SIGKILL, SIGINT}) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      const int nowhere = open("/dev/null", O_WRONLY);
+      dup2(nowhere, STDERR_FILENO);
+      dup2(nowhere, STDOUT_FILENO);
+      if (chdir(std::filesystem::path(file("")).c_str()) == 0)
+        execl(std::getenv("HAMEL_PROGRAM"), "hamel", "study", name.c_str(), "-o", "killed",
+              nullptr);
+      _exit(127);
+    }
+    // As soon as it has kept some cells more.
+    const std::string journal = file("killed/journal.jsonl");
+    const size_t before = lines(contents(journal)).size();
+    for (int i = 0; i < 1000 && lines(contents(journal)).size() < before + 10; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    kill(child, signal);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    if (signal == SIGINT) {
+      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+    }
+    EXPECT_GE(lines(contents(journal)).size(), before + 10);
+    EXPECT_FALSE(std::filesystem::exists(file("killed/cells.csv")));
+  }
+  std::ofstream(file("killed/journal.jsonl"), std::ios::app)
+      << "{\"cell\": 3, \"ro";  // a torn line
+  const Outcome o = run({"study", name, "-o", "killed"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("were there"));
+  ASSERT_EQ(run({"study", name, "-o", "whole", "--quiet"}).status, 0);
+  EXPECT_EQ(cells("killed"), cells("whole"));
+  // Once more: everything is there, and nothing is run.
+  const std::string journal = contents(file("killed/journal.jsonl"));
+  ASSERT_EQ(run({"study", name, "-o", "killed", "--quiet"}).status, 0);
+  EXPECT_EQ(contents(file("killed/journal.jsonl")), journal);
+}
+
+TEST_F(StudyCommand, AnotherStudyNeedsAnotherFolder) {
+  ASSERT_EQ(run({"study", study(kSmall), "-o", "out", "--quiet"}).status, 0);
+  std::string other = kSmall;
+  other.replace(other.find("0.05"), 4, "0.04");
+  const std::string name = study(other);
+  const Outcome o = run({"study", name, "-o", "out"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, AllOf(HasSubstr("--fresh"), HasSubstr("there: step = 0.2, 0.1, 0.05"),
+                           HasSubstr("here:  step = 0.2, 0.1, 0.04")));
+  EXPECT_EQ(run({"study", name, "-o", "out", "--fresh", "--quiet"}).status, 0);
+  std::filesystem::create_directories(file("taken"));
+  std::ofstream(file("taken/journal.jsonl")) << "precious";
+  EXPECT_EQ(run({"study", name, "-o", "taken", "--fresh"}).status, 2);
+  EXPECT_EQ(contents(file("taken/journal.jsonl")), "precious");
+}
+
+/// The HDF5 file holds the same numbers as the CSV, bit for bit, with units.
+TEST_F(StudyCommand, Hdf5HoldsWhatTheCsvHolds) {
+  if (hamel::hdf5_version().empty()) GTEST_SKIP() << "this build has no HDF5";
+  ASSERT_EQ(run({"study", study(kSmall), "-o", "out", "--quiet"}).status, 0);
+  std::map<std::string, std::string> texts;
+  const hamel::Table table = hamel::read_hdf5(file("out/cells.h5"), &texts);
+  EXPECT_EQ(table.csv(), contents(file("out/cells.csv")));
+  EXPECT_EQ(table.column("step").unit, "s");
+  EXPECT_EQ(table.column("ns_per_step").unit, "ns");
+  EXPECT_EQ(Json::parse(texts.at("record"))["title"], "Small");
+  EXPECT_THROW(hamel::read_hdf5(file("out/cells.csv")), hamel::ConfigError);
+}
+
+/// A step beyond the domain of exp fails, and is seen in every output.
+TEST_F(StudyCommand, FailedCellsAreResults) {
+  const std::string name = study(R"(until = 12
+retraction = "exp"
+step = [6, 0.1]
+[[system]]
+name = "chaplygin_sleigh"
+velocity = [3, 1, 0]
+)");
+  const Outcome o = run({"study", name, "-o", "out"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, AllOf(HasSubstr("1 failed"), HasSubstr("[failed] 1 cell failed, `newton`"),
+                           HasSubstr("Where: h 6")));
+  EXPECT_EQ(count(cells("out"), ",failed,"), 1u);
+  if (std::filesystem::exists(file("out/report.html"))) {
+    EXPECT_THAT(contents(file("out/report.html")), HasSubstr("\"marks\":[[\"failed\",\"\"]]"));
+  }
+}
+
+/// The bar with the time left, on a terminal only.
+TEST_F(StudyCommand, ShowsProgressOnATerminal) {
+  std::string longer = kSmall;
+  longer.replace(longer.find("until = 2"), 9, "until = 1500");
+  const std::string name = study(longer);
+  if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1)";
+  const std::string command = "cd " + file("") + " && script -qec \"$HAMEL_PROGRAM study " + name +
+                              " -o out\" /dev/null >bar.txt </dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_THAT(contents(file("bar.txt")), AllOf(HasSubstr("study [="), HasSubstr(" s left")));
+  const Outcome o = run({"study", name, "-o", "out"});
+  EXPECT_EQ(o.err, "");
+}
+
+}  // namespace
