@@ -103,8 +103,8 @@ class StudyPage {
       if (series.x.empty()) continue;
       const StudyMetrics& m = view_.metrics(cells.front());
       if (with_fit && std::isfinite(m.order)) {
-        series.fit = m.order;
-        series.fit_text = fmt::format("{:.2f} ({} of {})", m.order, m.order_points, m.order_of);
+        series.fit =
+            Fit{m.order, fmt::format("{:.2f} ({} of {})", m.order, m.order_points, m.order_of)};
       }
       out.push_back(std::move(series));
     }
@@ -206,6 +206,7 @@ class StudyPage {
     HeatMap map;
     map.title = title;
     map.unit = unit;
+    map.log = true;
     map.x = "step h [s]";
     map.y = "";
     const std::vector<std::string> steps = view_.values("step");
@@ -231,7 +232,7 @@ class StudyPage {
       else if (!view_.metrics(i).ok) map.marks[row][column] = "failed";
       else map.values[row][column] = value(i);
     }
-    page_.heat_map(map);
+    page_.heatmap(map);
   }
 
   // Every cell that was run, without the columns that say the same in each row.
