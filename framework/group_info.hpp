@@ -24,6 +24,9 @@ struct GroupInfo {
   std::function<std::vector<Eigen::MatrixXd>(std::span<const double>)> matrices;
 };
 
+/// The product of groups, factor after factor; columns carry the number of the factor.
+GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors);
+
 /// Erases G.
 template <Group G>
 GroupInfo group_info() {

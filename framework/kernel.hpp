@@ -50,6 +50,7 @@ struct KernelSetup {
   std::string fallback_name;
   std::vector<double> configuration;  // the element's coordinates at t = 0
   Eigen::VectorXd momentum;           // mu_bar at t = 0, m entries
+  Eigen::VectorXd velocity;           // xi at t = 0, n entries (general kernels)
 };
 
 /// A step that failed and was rescued.
@@ -82,10 +83,12 @@ struct Snapshot {
   std::vector<double> velocity;     // nodal body velocity, n
   std::vector<double> momentum;     // nodal body momentum, n
   double energy = 0;
-  double constraint = 0;    // |A xi/h| of the last step, xi recovered from the configurations
-  double group_defect = 0;  // how far g is from the group
-  int iterations = 0;       // of the last step, all substeps
-  double residual = 0;      // relative, the largest of the last step's substeps
+  double constraint = 0;         // |A xi/h| of the last step, xi recovered from the configurations
+  double holonomic = 0;          // max |phi(g)|
+  double group_defect = 0;       // how far g is from the group
+  int iterations = 0;            // of the last step, all substeps
+  double residual = 0;           // relative, the largest of the last step's substeps
+  std::vector<double> reaction;  // the multipliers lambda of A xi = b at this state
 };
 
 class Kernel {

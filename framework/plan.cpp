@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 
 #include <hamel/framework/composition.hpp>
 #include <hamel/framework/frame.hpp>
@@ -99,22 +100,81 @@ Simulation::Plan Simulation::plan() const {
     plan.add({fmt::format("{}: {}", config_.system, error.what())});
     return plan;
   }
+  if (plan.system.group.dim == 0) {  // a product by name alone
+    const std::string name = plan.system.group.name;
+    if (auto group = registry_->group_or_product(name)) plan.system.group = *group;
+    else plan.add({unknown_name("group", name, registry_->groups())});
+  }
+  if (plan.system.group.dim == 0) return plan;
+  plan.fill_start();
   const SystemModel& system = plan.system;
-  const int n = system.group.dim;
-  const auto matrix_mistakes = check_system_matrices(system.inertia, system.constraints, n);
-  plan.add(matrix_mistakes);
+  const std::string& group = system.group.name;
 
-  // The start: the user's, else the system's own, else rest at the identity.
-  Start& start = plan.config.start;
+  // The kernel: the user's own, the one compiled for this group, or the general one.
+  std::shared_ptr<const Geometry> geometry;
+  if (!compiled) {
+    geometry = registry_->geometry(group, config_.retraction);
+    const auto offered = registry_->retractions_or_common(group);
+    if (offered.empty()) {
+      plan.add(
+          {fmt::format("group '{}' is not registered: call hamel::add_group<...>() once, or "
+                       "use simulate<Scheme, Retraction>(system)",
+                       group)});
+    } else if (geometry == nullptr) {
+      plan.add({unknown_name("retraction of " + group, config_.retraction, offered)});
+    }
+  }
+  plan.look_at_start(geometry);
+  const auto m = plan.inertia.rows() - plan.constraints.rows();
+  const KernelFactory* fast =
+      scheme == nullptr || system.mechanics != nullptr || geometry == nullptr
+          ? nullptr
+          : registry_->kernel(group, scheme->adapted ? static_cast<int>(m) : system.group.dim,
+                              config_.retraction, config_.scheme);
+  if (compiled) {
+    plan.kernel = kernel_;
+  } else if (fast != nullptr) {
+    plan.kernel = *fast;
+  } else if (scheme != nullptr && geometry != nullptr) {
+    if (scheme->general) {
+      plan.use_general(*registry_, *scheme, geometry);
+    } else {
+      plan.add({fmt::format("scheme: {} is {}; {} here", config_.scheme,
+                            system.mechanics != nullptr
+                                ? "defined for left-invariant systems only"
+                                : "not compiled for " + group + " with " + config_.retraction,
+                            "lift and balance are offered")});
+    }
+  }
+
+  const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
+  const auto width = static_cast<double>(columns_of(system).size());
+  if (rows * width > kMaxNumbers) {
+    plan.add({fmt::format(
+        "every: {:.3g} rows would be recorded, more than memory holds; record "
+        "every {:.0f} steps or more",
+        rows, std::ceil(rows * static_cast<double>(config_.every) * width / kMaxNumbers))});
+  }
+  if (!plan.mistakes.empty()) return plan;
+  plan.project(*scheme);
+  plan.setup.s = config_.s;
+  plan.setup.step = config_.step;
+  plan.setup.tolerance = config_.tolerance;
+  for (const Field& field : system.fields) plan.config.parameters[field.name] = field.value;
+  return plan;
+}
+
+// The user's start, else the system's own, else rest at the identity.
+void Simulation::Plan::fill_start() {
+  Start& start = config.start;
   if (!start.velocity.empty() && !start.momentum.empty()) {
-    plan.add({"start: give velocity or momentum, not both"});
+    add({"start: give velocity or momentum, not both"});
   }
   if (start.velocity.empty() && start.momentum.empty()) {
     start.velocity = system.start.velocity;
     start.momentum = system.start.momentum;
     if (start.velocity.empty() && start.momentum.empty()) {
-      plan.add(
-          {fmt::format("start: {} has no default start; give velocity or momentum", system.name)});
+      add({fmt::format("start: {} has no default start; give velocity or momentum", system.name)});
     }
   }
   if (start.configuration.empty()) start.configuration = system.start.configuration;
@@ -122,80 +182,92 @@ Simulation::Plan Simulation::plan() const {
   try {
     start.configuration = system.group.element(start.configuration);
   } catch (const std::invalid_argument& error) {
-    plan.add({fmt::format("configuration: {}", error.what())});
+    add({fmt::format("configuration: {}", error.what())});
+    start.configuration = system.group.identity;
   }
+  const auto n = static_cast<size_t>(system.group.dim);
   for (const auto& [name, values] :
        {std::pair{"velocity", &start.velocity}, std::pair{"momentum", &start.momentum}}) {
     if (values->empty()) continue;
-    if (values->size() != static_cast<size_t>(n)) {
-      plan.add({fmt::format("{}: got {} values, expected {} for {}", name, values->size(), n,
-                            system.group.name)});
+    if (values->size() != n) {
+      add({fmt::format("{}: got {} values, expected {} for {}", name, values->size(), n,
+                       system.group.name)});
     } else if (!finite(*values)) {
-      plan.add({fmt::format("{}: {} is not finite", name, join(*values))});
+      add({fmt::format("{}: {} is not finite", name, join(*values))});
     }
   }
+}
 
-  // The kernel compiled for this group, number of directions, retraction and scheme.
-  const int m = n - static_cast<int>(system.constraints.rows());
-  if (compiled) {
-    plan.kernel = kernel_;
-  } else if (registry_->group(system.group.name) == nullptr) {
-    plan.add(
-        {fmt::format("group '{}' has no compiled kernels: call hamel::add_group<...>() once, or "
-                     "use simulate<Scheme, Retraction>(system)",
-                     system.group.name)});
-  } else if (registry_->retraction(system.group.name, config_.retraction) == nullptr) {
-    plan.add({unknown_name("retraction of " + system.group.name, config_.retraction,
-                           registry_->retractions(system.group.name))});
-  } else if (scheme != nullptr && matrix_mistakes.empty()) {
-    const KernelFactory* factory = registry_->kernel(system.group.name, scheme->adapted ? m : n,
-                                                     config_.retraction, config_.scheme);
-    if (factory != nullptr) plan.kernel = *factory;
-    else
-      plan.add({fmt::format("no kernel for {} with {} and {}", system.group.name,
-                            config_.retraction, config_.scheme)});
+// I, A and b where the run starts, checked.
+void Simulation::Plan::look_at_start(const std::shared_ptr<const Geometry>& geometry) {
+  const int n = system.group.dim;
+  inertia = system.inertia;
+  constraints = system.constraints;
+  if (const Mechanics* mechanics = system.mechanics.get()) {
+    inertia = Eigen::MatrixXd::Identity(n, n);
+    constraints.resize(0, n);
+    if (geometry == nullptr) return;
+    Eigen::VectorXd g(geometry->size());
+    geometry->from_coordinates(config.start.configuration, g.data());
+    constraints.resize(mechanics->rows(), n);
+    drift.resize(mechanics->rows());
+    mechanics->inertia(g.data(), inertia);
+    mechanics->constraints(0, g.data(), constraints, drift);
+    Eigen::VectorXd phi(mechanics->holonomic_rows());
+    mechanics->holonomic(g.data(), phi);
+    if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-9)) {
+      add({fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {}",
+                       join(config.start.configuration), join(to_vector(phi)))});
+    }
+  } else {
+    drift = Eigen::VectorXd::Zero(constraints.rows());
   }
+  add(check_system_matrices(inertia, constraints, n));
+}
 
-  const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
-  if (rows * static_cast<double>(columns_of(system).size()) > kMaxNumbers) {
-    plan.add(
-        {fmt::format("every: {:.3g} rows would be recorded, more than memory holds; record "
-                     "every {:.0f} steps or more",
-                     rows,
-                     std::ceil(rows * static_cast<double>(config_.every) *
-                               static_cast<double>(columns_of(system).size()) / kMaxNumbers))});
+void Simulation::Plan::use_general(const Registry& registry, const SchemeInfo& scheme,
+                                   std::shared_ptr<const Geometry> geometry) {
+  GeneralSetup general{std::move(geometry), system.mechanics, config.s};
+  if (general.mechanics == nullptr) {
+    general.mechanics = std::make_shared<InvariantMechanics>(inertia, constraints);
   }
-  if (!plan.mistakes.empty()) return plan;
+  kernel = [general, make = scheme.general, loop = registry.general_kernel()](
+               const KernelSetup& setup) { return loop(setup, general, make(general)); };
+}
 
-  // mu_bar = E^T mu, and what the projection dropped.
-  const Eigen::MatrixXd frame = hamel_frame(system.inertia, system.constraints);
+// The admissible start, mu_bar = E^T mu, and what the projection dropped.
+void Simulation::Plan::project(const SchemeInfo& scheme) {
+  Start& start = config.start;
+  const Eigen::Index n = inertia.rows();
+  const Eigen::MatrixXd frame = hamel_frame(inertia, constraints);
   const bool by_velocity = !start.velocity.empty();
   const auto& given = by_velocity ? start.velocity : start.momentum;
   const Eigen::VectorXd datum = Eigen::Map<const Eigen::VectorXd>(given.data(), n);
-  const Eigen::VectorXd mu = by_velocity ? Eigen::VectorXd(system.inertia * datum) : datum;
-  const Eigen::VectorXd mu_bar = frame.transpose() * mu, velocity = frame * mu_bar;
+  const Eigen::VectorXd mu = by_velocity ? Eigen::VectorXd(inertia * datum) : datum;
+  const Eigen::VectorXd mu_bar = frame.transpose() * mu;
+  Eigen::VectorXd velocity = frame * mu_bar;
+  if (drift.size() > 0) {  // the shortest xi with A xi = b
+    const Eigen::MatrixXd reach = inertia.ldlt().solve(constraints.transpose());
+    velocity += reach * (constraints * reach).ldlt().solve(drift);
+  }
   const Eigen::VectorXd dropped =
-      datum - (by_velocity ? velocity : Eigen::VectorXd(system.inertia * velocity));
+      datum - (by_velocity ? velocity : Eigen::VectorXd(inertia * velocity));
   if (dropped.norm() > 1e-12 * datum.norm()) {
-    plan.notes.push_back(fmt::format("the start's {} was projected onto {}: dropped ({})",
-                                     by_velocity ? "velocity" : "momentum",
-                                     by_velocity ? "d" : "d*", join(to_vector(dropped))));
+    notes.push_back(fmt::format("the start's {} was projected onto {}: dropped ({})",
+                                by_velocity ? "velocity" : "momentum", by_velocity ? "d" : "d*",
+                                join(to_vector(dropped))));
   }
   start.velocity = to_vector(velocity);
   start.momentum.clear();
-  for (const Field& field : system.fields) plan.config.parameters[field.name] = field.value;
 
-  const Eigen::MatrixXd whole = hamel_frame(system.inertia, Eigen::MatrixXd(0, n));
-  plan.setup.inertia = system.inertia;
-  plan.setup.constraints = system.constraints;
-  plan.setup.frame = scheme->adapted ? frame : whole;
-  plan.setup.momentum =
-      scheme->adapted ? mu_bar : Eigen::VectorXd(whole.transpose() * (system.inertia * velocity));
-  plan.setup.s = config_.s;
-  plan.setup.step = config_.step;
-  plan.setup.tolerance = config_.tolerance;
-  plan.setup.configuration = start.configuration;
-  return plan;
+  const Eigen::MatrixXd whole = hamel_frame(inertia, Eigen::MatrixXd(0, n));
+  setup.inertia = inertia;
+  setup.constraints = constraints;
+  setup.frame = scheme.adapted ? frame : whole;
+  setup.momentum =
+      scheme.adapted ? mu_bar : Eigen::VectorXd(whole.transpose() * (inertia * velocity));
+  setup.velocity = velocity;
+  setup.configuration = start.configuration;
 }
 
 }  // namespace hamel

@@ -13,12 +13,19 @@ struct Simulation::Plan {
   std::vector<std::string> mistakes, notes;
   Config config;
   SystemModel system;
+  Eigen::MatrixXd inertia, constraints;  // at the start
+  Eigen::VectorXd drift;
   KernelSetup setup;
   KernelFactory kernel;
 
   void add(const std::vector<std::string>& more) {
     mistakes.insert(mistakes.end(), more.begin(), more.end());
   }
+  void fill_start();
+  void look_at_start(const std::shared_ptr<const Geometry>& geometry);
+  void use_general(const Registry& registry, const SchemeInfo& scheme,
+                   std::shared_ptr<const Geometry> geometry);
+  void project(const SchemeInfo& scheme);
 };
 
 /// The columns of a trajectory of this system, as in contract.md.

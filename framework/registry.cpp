@@ -1,6 +1,8 @@
 #include <hamel/framework/registry.hpp>
 
+#include <charconv>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -79,6 +81,63 @@ const KernelFactory* Registry::kernel(const std::string& group, int m,
                                       const std::string& scheme) const {
   const KernelFactory* exact = find(kernels_, kernel_key(group, m, retraction, scheme));
   return exact != nullptr ? exact : find(kernels_, kernel_key(group, kRunTime, retraction, scheme));
+}
+
+namespace {
+
+// "se2*so2^3" -> {"se2", "so2", "so2", "so2"}; empty when it cannot be read.
+std::vector<std::string> factors_of(const std::string& name) {
+  std::vector<std::string> out;
+  std::istringstream in(name);
+  for (std::string word; std::getline(in, word, '*');) {
+    long count = 1;
+    if (const size_t hat = word.find('^'); hat != std::string::npos) {
+      const std::string power = word.substr(hat + 1);
+      const auto [end, error] = std::from_chars(power.data(), power.data() + power.size(), count);
+      if (error != std::errc() || end != power.data() + power.size() || count < 0 || count > 1000) {
+        return {};
+      }
+      word.resize(hat);
+    }
+    out.insert(out.end(), static_cast<size_t>(count), word);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<GroupInfo> Registry::group_or_product(const std::string& name) const {
+  if (const GroupInfo* info = group(name)) return *info;
+  std::vector<GroupInfo> factors;
+  for (const std::string& word : factors_of(name)) {
+    const GroupInfo* info = group(word);
+    if (info == nullptr) return {};
+    factors.push_back(*info);
+  }
+  if (factors.empty()) return {};
+  return product_info(name, factors);
+}
+
+std::shared_ptr<const Geometry> Registry::geometry(const std::string& group,
+                                                   const std::string& retraction) const {
+  if (const RetractionInfo* info = this->retraction(group, retraction)) return info->geometry;
+  std::vector<std::shared_ptr<const Geometry>> parts;
+  for (const std::string& word : factors_of(group)) {
+    const RetractionInfo* info = this->retraction(word, retraction);
+    if (info == nullptr) return nullptr;
+    parts.push_back(info->geometry);
+  }
+  if (parts.empty()) return nullptr;
+  return std::make_shared<ProductGeometry>(parts);
+}
+
+std::vector<std::string> Registry::retractions_or_common(const std::string& group) const {
+  std::vector<std::string> out = retractions(group);
+  if (!out.empty()) return out;
+  for (const std::string& name : retractions()) {
+    if (geometry(group, name) != nullptr) out.push_back(name);
+  }
+  return out;
 }
 
 std::vector<std::string> Registry::groups() const { return names(groups_); }

@@ -7,9 +7,11 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/general/step.hpp>
 #include <hamel/framework/kernel.hpp>
 #include <hamel/framework/schemes/traits.hpp>
 #include <hamel/framework/system.hpp>
@@ -21,13 +23,18 @@ struct RetractionInfo {
   std::string name, group, formula, domain;
   bool symmetric = false;
   bool one_parameter = false;
+  std::shared_ptr<const Geometry> geometry;  // what the general schemes evaluate
 };
 
 struct SchemeInfo {
   std::string name, formula, source;
   bool adapted = true;  // keeps the constraint; otherwise the frame is the whole algebra
   bool uses_s = true;
+  /// On left-invariant systems.
   std::function<ClaimedOrder(double s, bool symmetric_tau)> claimed_order;
+  /// The scheme on general systems, and what it claims there; null when it is not defined.
+  std::function<std::unique_ptr<GeneralStep>(const GeneralSetup&)> general = {};
+  std::function<ClaimedOrder(double s)> general_order = {};
 };
 
 struct SolverInfo {
@@ -45,6 +52,8 @@ using SolveFunction =
     std::function<void(const Equation& equation, std::span<double> x, double tolerance)>;
 
 using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
+using GeneralKernelFactory = std::function<std::unique_ptr<Kernel>(
+    const KernelSetup&, const GeneralSetup&, std::unique_ptr<GeneralStep>)>;
 
 class Registry {
  public:
@@ -60,6 +69,8 @@ class Registry {
   /// m = kRunTime: a kernel for any number of admissible directions.
   void add_kernel(const std::string& group, int m, const std::string& retraction,
                   const std::string& scheme, KernelFactory factory);
+  /// The time loop of every general scheme.
+  void set_general_kernel(GeneralKernelFactory factory) { general_kernel_ = std::move(factory); }
 
   // Null when there is no such name.
   const GroupInfo* group(const std::string& name) const;
@@ -71,6 +82,17 @@ class Registry {
   /// The kernel compiled for m if there is one, else the one for any m.
   const KernelFactory* kernel(const std::string& group, int m, const std::string& retraction,
                               const std::string& scheme) const;
+
+  const GeneralKernelFactory& general_kernel() const { return general_kernel_; }
+
+  // Products written "se2*so2^3" that nobody registered are put together from their factors.
+  /// Nothing when a factor is unknown.
+  std::optional<GroupInfo> group_or_product(const std::string& name) const;
+  /// Null when a factor has no such retraction.
+  std::shared_ptr<const Geometry> geometry(const std::string& group,
+                                           const std::string& retraction) const;
+  /// The retractions of a group, or those that all factors of a product offer.
+  std::vector<std::string> retractions_or_common(const std::string& group) const;
 
   // Sorted names.
   std::vector<std::string> groups() const;
@@ -90,6 +112,7 @@ class Registry {
   std::map<std::string, SolverInfo> solvers_, absent_solvers_;
   std::map<std::string, SystemInfo> systems_;
   std::map<std::string, KernelFactory> kernels_;
+  GeneralKernelFactory general_kernel_;
 };
 
 }  // namespace hamel

@@ -42,6 +42,14 @@ struct Concatenate<TypeList<As...>, TypeList<Bs...>, Rest...> {
   using type = typename Concatenate<TypeList<As..., Bs...>, Rest...>::type;
 };
 
+/// The first of a list.
+template <class List>
+struct FirstOf;
+template <class T, class... Ts>
+struct FirstOf<TypeList<T, Ts...>> {
+  using type = T;
+};
+
 /// Is every entry a finite number? (Works for automatic-differentiation scalars.)
 template <class T, int N>
 bool all_finite(const Eigen::Matrix<T, N, 1>& xi) {

@@ -4,10 +4,12 @@
 //   using Group = ...;                 the configuration group, of dimension n
 //   auto inertia() const;              n x n symmetric positive definite, l(xi) = 1/2 xi^T I xi
 //   auto constraints() const;          k x n rows A of full rank, A xi = 0 (k = 0: leave it out)
-// and, where it has them,
+// (inertia(g), constraints(g), holonomic(g), potential(g), ... for those that are not left-invariant:
+// general_system.hpp) and, where it has them,
 //   void fields(auto& f);              f("mass", mass, "kg", "what it is"): parameters, units, words
 //   Start start() const;               the default start
 //   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
+//   bool has_exact() const;            where the exact motion depends on the parameters
 //   void invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
 //   static name(), summary(), formula(), known(), source()   words for `hamel describe`
 #pragma once
@@ -53,12 +55,16 @@ struct Invariant {
       value;
 };
 
+class Mechanics;
+
 /// A system with its parameters set and its type erased.
 struct SystemModel {
   std::string name;
   GroupInfo group;
+  // Left-invariant systems: the matrices. Others: everything, and no matrices.
   Eigen::MatrixXd inertia;
   Eigen::MatrixXd constraints;
+  std::shared_ptr<const Mechanics> mechanics;
   std::vector<Field> fields;
   Start start;
   /// Empty when nothing is known exactly.
@@ -121,23 +127,71 @@ void check_parameters(const std::string& system, const std::vector<Field>& field
 
 }  // namespace detail
 
-/// k of a system, from the shape of its constraints().
+/// The rows of constraints(), constraints(g) or constraints(t, g), from their shape.
 template <class S>
 constexpr int constraint_count() {
+  using Element = typename S::Group::template Element<double>;
+  const auto rows = []<class A>(std::type_identity<A>) {
+    return std::decay_t<A>::RowsAtCompileTime;
+  };
   if constexpr (requires(const S& s) { s.constraints(); }) {
-    return std::decay_t<decltype(std::declval<const S&>().constraints())>::RowsAtCompileTime;
+    return rows(std::type_identity<decltype(std::declval<const S&>().constraints())>{});
+  } else if constexpr (requires(const S& s, const Element& g) { s.constraints(g); }) {
+    return rows(std::type_identity<decltype(std::declval<const S&>().constraints(
+                    std::declval<const Element&>()))>{});
+  } else if constexpr (requires(const S& s, const Element& g) { s.constraints(0.0, g); }) {
+    return rows(std::type_identity<decltype(std::declval<const S&>().constraints(
+                    0.0, std::declval<const Element&>()))>{});
   } else {
     return 0;
   }
 }
 
+/// The rows of holonomic(g).
 template <class S>
-concept System = requires(const S& s) {
+constexpr int holonomic_count() {
+  using Element = typename S::Group::template Element<double>;
+  if constexpr (requires(const S& s, const Element& g) { s.holonomic(g); }) {
+    return std::decay_t<decltype(std::declval<const S&>().holonomic(
+        std::declval<const Element&>()))>::RowsAtCompileTime;
+  } else {
+    return 0;
+  }
+}
+
+/// Constant inertia and rows, and nothing else: the small fast path.
+template <class S>
+constexpr bool is_left_invariant() {
+  using Element = typename S::Group::template Element<double>;
+  constexpr int n = S::Group::dim;
+  return requires(const S& s) { s.inertia(); }
+  &&(constraint_count<S>() == 0 || requires(const S& s) { s.constraints(); }) &&
+      !requires(const S& s, const Element& g) {
+    s.potential(g);
+  }
+  &&!requires(const S& s, const Element& g) { s.holonomic(g); }
+  &&!requires(const S& s, const Element& g) { s.drift(0.0, g); }
+  &&!requires(const S& s, const Element& g, const Vec<n>& xi) { s.force(0.0, g, xi); };
+}
+
+template <class S>
+concept System = requires(const S& s, const typename S::Group::template Element<double>& g) {
   requires Group<typename S::Group>;
-  { s.inertia() } -> Shape<S::Group::dim, S::Group::dim>;
+  requires requires {
+    { s.inertia() } -> Shape<S::Group::dim, S::Group::dim>;
+  } || requires {
+    { s.inertia(g) } -> Shape<S::Group::dim, S::Group::dim>;
+  };
   // k rows of n columns, where there are any.
   requires !requires { s.constraints(); }
   || Shape<decltype(s.constraints()), constraint_count<S>(), S::Group::dim>;
+};
+
+/// How a system that is not left-invariant becomes Mechanics; defined in general_system.hpp, which its
+/// file includes.
+template <class S>
+struct MechanicsOf {
+  static std::shared_ptr<const Mechanics> make(const S& system);
 };
 
 /// The name, group and fields of a system; nothing that its parameters could break.
@@ -158,20 +212,27 @@ SystemModel erase(const S& system) {
   constexpr int n = G::dim;
   using Element = typename G::template Element<double>;
   SystemModel model = erase_words(system);
-  model.inertia = system.inertia();
-  model.constraints.resize(0, n);
-  if constexpr (requires { system.constraints(); }) model.constraints = system.constraints();
+  if constexpr (is_left_invariant<S>()) {
+    model.inertia = system.inertia();
+    model.constraints.resize(0, n);
+    if constexpr (requires { system.constraints(); }) model.constraints = system.constraints();
+  } else {
+    model.mechanics = MechanicsOf<S>::make(system);
+  }
   if constexpr (requires { system.start(); }) model.start = system.start();
+  bool exact = true;
+  if constexpr (requires { system.has_exact(); }) exact = system.has_exact();
   if constexpr (requires(Element g, Vec<n> xi) { system.exact(g, xi); }) {
-    model.exact = [system](const Start& start) -> ExactFlow {
-      auto flow = std::make_shared<decltype(system.exact(std::declval<Element>(), Vec<n>()))>(
-          system.exact(G::from_coordinates(start.configuration),
-                       Eigen::Map<const Vec<n>>(start.velocity.data())));
-      return [flow](double t) {
-        const auto [g, xi] = (*flow)(t);
-        return std::pair{G::coordinates(g), std::vector<double>(xi.begin(), xi.end())};
+    if (exact)
+      model.exact = [system](const Start& start) -> ExactFlow {
+        auto flow = std::make_shared<decltype(system.exact(std::declval<Element>(), Vec<n>()))>(
+            system.exact(G::from_coordinates(start.configuration),
+                         Eigen::Map<const Vec<n>>(start.velocity.data())));
+        return [flow](double t) {
+          const auto [g, xi] = (*flow)(t);
+          return std::pair{G::coordinates(g), std::vector<double>(xi.begin(), xi.end())};
+        };
       };
-    };
   }
   auto add = [&model](std::string name, auto value) {
     model.invariants.push_back(

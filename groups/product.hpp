@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <hamel/framework/geometry.hpp>
 #include <hamel/framework/retraction_defaults.hpp>
 #include <hamel/framework/types.hpp>
 #include <hamel/groups/coordinates.hpp>
@@ -106,6 +107,17 @@ struct Product {
   template <class T>
   static Element<T> inverse(const ProductElement<T, Gs...>& g) {
     return each<T>([&](auto i) { return Factor<i>::inverse(g.template part<i>()); });
+  }
+  /// g over another scalar, its derivatives zero.
+  template <class T>
+  static Element<T> constant(const ProductElement<double, Gs...>& g) {
+    return each<T>([&](auto i) {
+      if constexpr (requires { g.template part<i>().template cast<T>(); }) {
+        return typename Factor<i>::template Element<T>(g.template part<i>().template cast<T>());
+      } else {
+        return Factor<i>::template constant<T>(g.template part<i>());
+      }
+    });
   }
   template <class T>
   static MatT<T, dim, dim> Ad(const ProductElement<T, Gs...>& g) {
@@ -318,6 +330,28 @@ struct ProductRetraction {
       joined += (i == 0 ? "" : "; ") + std::to_string(i + 1) + ": " + texts[i];
     }
     return joined;
+  }
+};
+
+/// Kept factor after factor, as ProductGeometry has it.
+template <class... Gs>
+struct Packing<Product<Gs...>> {
+  using G = Product<Gs...>;
+  using Element = typename G::template Element<double>;
+  static constexpr int size = (Packing<Gs>::size + ...);
+  static Element load(const double* from) {
+    return G::template each<double>([&](auto i) {
+      using Part = Packing<typename G::template Factor<i>>;
+      from += Part::size;
+      return Part::load(from - Part::size);
+    });
+  }
+  static void store(const Element& g, double* to) {
+    G::for_each_factor([&](auto i) {
+      using Part = Packing<typename G::template Factor<i>>;
+      Part::store(g.template part<i>(), to);
+      to += Part::size;
+    });
   }
 };
 

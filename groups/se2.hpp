@@ -49,6 +49,11 @@ struct SE2 {
   static Element<T> inverse(const SE2Element<T>& g) {
     return {SO2::inverse(g.rotation), -g.rotation.rotate_back(g.translation)};
   }
+  /// g over another scalar, its derivatives zero.
+  template <class T>
+  static Element<T> constant(const SE2Element<double>& g) {
+    return {SO2::constant<T>(g.rotation), g.translation.template cast<T>()};
+  }
   template <class T>
   static MatT<T, 3, 3> Ad(const SE2Element<T>& g) {
     const T zero(0.0), &c = g.rotation.c, &s = g.rotation.s;

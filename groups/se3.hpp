@@ -46,6 +46,11 @@ struct SE3 {
   static Element<T> inverse(const SE3Element<T>& g) {
     return {g.rotation.transpose(), -(g.rotation.transpose().lazyProduct(g.translation))};
   }
+  /// g over another scalar, its derivatives zero.
+  template <class T>
+  static Element<T> constant(const SE3Element<double>& g) {
+    return {g.rotation.template cast<T>(), g.translation.template cast<T>()};
+  }
   template <class T>
   static MatT<T, 6, 6> Ad(const SE3Element<T>& g) {
     return block(g.rotation, MatT<T, 3, 3>(cross_matrix(g.translation).lazyProduct(g.rotation)));

@@ -79,6 +79,12 @@ struct SO2 {
     return {g.c, -g.s, -g.turns - (half_turn ? 1 : 0)};
   }
 
+  /// g over another scalar, its derivatives zero.
+  template <class T>
+  static Element<T> constant(const SO2Element<double>& g) {
+    return {T(g.c), T(g.s), g.turns};
+  }
+
   template <class T>
   static MatT<T, 1, 1> Ad(const SO2Element<T>&) {
     return MatT<T, 1, 1>::Ones();

@@ -50,9 +50,9 @@ class Inverse {
     else factors_.compute(jacobian);
   }
   template <class Vector>
-  Vector solve(const Vector& f) const {
-    if constexpr (closed_form) return factors_ * f;
-    else return factors_.solve(f);
+  void solve(const Vector& f, Vector& out) const {
+    if constexpr (closed_form) out = factors_ * f;
+    else out = factors_.solve(f);
   }
 
  private:
@@ -75,10 +75,22 @@ struct Newton {
   }
   static std::string source() { return "Kelley 2003"; }
 
+  /// The work vectors of a solve: locals, but for sizes without bound kept in the memory (no heap).
+  template <class Unknown>
+  struct Work {
+    Unknown f, correction, trial, trial_f;
+    void resize(const Unknown& x) { f = correction = trial = trial_f = x; }
+  };
+
   /// The factors of the last Jacobian, kept from one step of a run to the next.
   template <class Step>
   struct Memory {
+    using Unknown = typename Step::Unknown;
+    static constexpr bool bounded = Unknown::MaxRowsAtCompileTime != Eigen::Dynamic;
+    struct Nothing {};
     Inverse<typename Step::Jacobian> factors;
+    typename Step::Jacobian jacobian;
+    [[no_unique_address]] std::conditional_t<bounded, Nothing, Work<Unknown>> work;
     bool valid = false;
   };
 
@@ -87,22 +99,36 @@ struct Newton {
   [[gnu::always_inline]] static inline SolveReport solve(const Step& step,
                                                          typename Step::Unknown& x,
                                                          double tolerance, Memory<Step>& memory) {
+    if constexpr (Memory<Step>::bounded) {
+      Work<typename Step::Unknown> work;
+      return solve(step, x, tolerance, memory, work);
+    } else {
+      return solve(step, x, tolerance, memory, memory.work);
+    }
+  }
+
+ private:
+  template <class Step>
+  [[gnu::always_inline]] static inline SolveReport solve(const Step& step,
+                                                         typename Step::Unknown& x,
+                                                         double tolerance, Memory<Step>& memory,
+                                                         Work<typename Step::Unknown>& work) {
     const double given = step.scale_squared(), scale = given > 0 ? given : 1.0;
     if (memory.valid) [[likely]] {  // one correction with the last Jacobian: nearly every step
-      typename Step::Unknown f = x;
-      step.residual(x, f);
-      const typename Step::Unknown trial = x - memory.factors.solve(f);
-      step.residual(trial, f);
-      const double size = f.squaredNorm(), target = aim(tolerance);
+      work.f = x;
+      step.residual(x, work.f);
+      memory.factors.solve(work.f, work.correction);
+      work.trial = x - work.correction;
+      step.residual(work.trial, work.f);
+      const double size = work.f.squaredNorm(), target = aim(tolerance);
       if (size <= target * target * scale) [[likely]] {
-        x = trial;
+        x = work.trial;
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
       }
     }
     return iterate(step, x, tolerance, scale, memory);
   }
 
- private:
   // What is aimed at: two digits below the tolerance, at most to the round-off of a residual. A kept
   // Jacobian leaves an error of one sign, which must not add up over the steps.
   static constexpr double aim(double tolerance) {
@@ -118,7 +144,13 @@ struct Newton {
     const double accepted = tolerance * tolerance * scale, round_off = floor * floor * scale;
     const double target = std::min(aim(tolerance), tolerance), aimed = target * target * scale;
 
-    Unknown f = x, trial = x, trial_f = x;
+    Work<Unknown> own;
+    auto& work = [&]() -> Work<Unknown>& {
+      if constexpr (Memory<Step>::bounded) return own;
+      else return memory.work;
+    }();
+    work.resize(x);
+    auto& [f, correction, trial, trial_f] = work;
     SolveReport report;
     double size = 0;  // |F|^2
     bool fresh = false;
@@ -138,7 +170,7 @@ struct Newton {
       }
       if (!std::isfinite(size)) return finish(Reason::not_finite);
       ++report.iterations;
-      const Unknown correction = memory.factors.solve(f);
+      memory.factors.solve(f, correction);
       double length = 1, trial_size = 0;
       do {
         trial = x - length * correction;
@@ -167,9 +199,8 @@ struct Newton {
   template <class Step>
   [[gnu::noinline]] static void factor_at(const Step& step, const typename Step::Unknown& x,
                                           typename Step::Unknown& f, Memory<Step>& memory) {
-    typename Step::Jacobian jacobian;
-    step.linearise(x, f, jacobian);
-    memory.factors.compute(jacobian);
+    step.linearise(x, f, memory.jacobian);
+    memory.factors.compute(memory.jacobian);
     memory.valid = true;
   }
 };

@@ -23,14 +23,28 @@ using Schemes = TypeList<Lift, Balance, Boxed, BoxedLiteral, Unadapted>;
 
 template <class Tau>
 RetractionInfo retraction_info() {
-  return {Tau::name(),   Tau::Group::name(), Tau::formula(),
-          Tau::domain(), Tau::symmetric,     Tau::one_parameter};
+  return {Tau::name(),
+          Tau::Group::name(),
+          Tau::formula(),
+          Tau::domain(),
+          Tau::symmetric,
+          Tau::one_parameter,
+          std::make_shared<TypedGeometry<Tau>>()};
 }
 
 template <class Scheme>
 SchemeInfo scheme_info() {
-  return {Scheme::name(),  Scheme::formula(), Scheme::source(),
-          Scheme::adapted, Scheme::uses_s,    &Scheme::claimed_order};
+  SchemeInfo info{.name = Scheme::name(),
+                  .formula = Scheme::formula(),
+                  .source = Scheme::source(),
+                  .adapted = Scheme::adapted,
+                  .uses_s = Scheme::uses_s,
+                  .claimed_order = &Scheme::claimed_order};
+  if constexpr (requires { &Scheme::general; }) {
+    info.general = &Scheme::general;
+    info.general_order = &Scheme::general_order;
+  }
+  return info;
 }
 
 /// The time loop compiled for these types; M = kRunTime for any number of admissible directions.

@@ -3,8 +3,12 @@
 #include <hamel/solvers/ceres_tiny.hpp>
 #include <hamel/solvers/hybrid.hpp>
 #include <hamel/solvers/nlopt.hpp>
+#include <hamel/systems/ball_on_turntable.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
+#include <hamel/systems/falling_disk.hpp>
 #include <hamel/systems/kernels/groups.hpp>
+#include <hamel/systems/knife_edge_on_incline.hpp>
+#include <hamel/systems/nonholonomic_particle.hpp>
 #include <hamel/systems/rolling_disk.hpp>
 #include <hamel/systems/simulate.hpp>
 #include <hamel/systems/suslov.hpp>
@@ -52,11 +56,16 @@ Registry make_registry() {
   add_se3(registry);
   add_rn(registry);
   add_se2_so2(registry);
+  add_general(registry);
 
   Schemes::for_each(
       [&]<class Scheme>(std::type_identity<Scheme>) { registry.add(scheme_info<Scheme>()); });
   add_solvers(registry);
 
+  add_system<BallOnTurntable>(registry);
+  add_system<FallingDisk>(registry);
+  add_system<KnifeEdgeOnIncline>(registry);
+  add_system<NonholonomicParticle>(registry);
   add_system<Suslov>(registry);
   add_system<ChaplyginSleigh>(registry);
   add_system<RollingDisk>(registry);

@@ -29,6 +29,10 @@ struct Balance {
     return {s == 0.5 ? 2 : 1, s == 0.5};
   }
 
+  /// The scheme on systems that are not left-invariant: general/balance.hpp.
+  static std::unique_ptr<GeneralStep> general(const GeneralSetup& setup);
+  static ClaimedOrder general_order(double s) { return {s == 0.5 ? 2 : 1, s == 0.5}; }
+
   template <class Problem, class Tau>
   class Step {
    public:

@@ -35,6 +35,10 @@ struct Lift {
     return {symmetric_tau || s == 0.5 ? 2 : 1, s == 0.5 || (symmetric_tau && (s == 0 || s == 1))};
   }
 
+  /// The scheme on systems that are not left-invariant: general/lift.hpp.
+  static std::unique_ptr<GeneralStep> general(const GeneralSetup& setup);
+  static ClaimedOrder general_order(double s) { return {s == 0.5 ? 2 : 1, s == 0.5}; }
+
   template <class Problem, class Tau>
   class Step {
    public:

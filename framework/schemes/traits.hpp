@@ -2,9 +2,13 @@
 #pragma once
 
 #include <concepts>
+#include <memory>
 #include <string>
 
 namespace hamel {
+
+class GeneralStep;
+struct GeneralSetup;
 
 /// The order a scheme claims on left-invariant systems, and whether its step is time-reversible.
 struct ClaimedOrder {

@@ -1,0 +1,58 @@
+// A nonholonomic system as the general schemes see it: everything may depend on the configuration.
+//
+//   L(g, xi) = 1/2 xi^T I(g) xi - V(g),  forces f(t, g, xi) in the dual of the algebra,
+//   A(t, g) xi = b(t, g)  (k rows; the last of them are the differentials of the holonomic rows),
+//   phi(g) = 0            (holonomic rows, kept at the ends of each step).
+// A system's struct says what it has; the rest follows (general_system.hpp). Run-time sizes: a system
+// whose dimension is a parameter derives from Mechanics itself (systems/n_trailer.hpp).
+#pragma once
+
+#include <Eigen/Core>
+
+namespace hamel {
+
+/// Sizes never change in the life of an object; out-parameters have these sizes. Elements as Packing.
+class Mechanics {
+ public:
+  using Vector = Eigen::Ref<Eigen::VectorXd>;
+  using Matrix = Eigen::Ref<Eigen::MatrixXd>;
+  using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
+
+  virtual ~Mechanics() = default;
+  virtual int dim() const = 0;   // n
+  virtual int rows() const = 0;  // k
+  virtual int holonomic_rows() const { return 0; }
+  virtual bool constant_inertia() const { return true; }
+
+  /// I(g), n x n.
+  virtual void inertia(const double* g, Matrix out) const = 0;
+  /// A(t, g), k x n, and b(t, g).
+  virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
+  /// phi(g).
+  virtual void holonomic(const double* /*g*/, Vector /*out*/) const {}
+  /// f - dV + 1/2 d(xi^T I(g) xi): everything in the dual that drives the momentum, per unit of time.
+  virtual void force(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector out) const {
+    out.setZero();
+  }
+  /// V(g).
+  virtual double potential(const double* /*g*/) const { return 0; }
+};
+
+/// The left-invariant case: constant inertia and rows, nothing else.
+class InvariantMechanics final : public Mechanics {
+ public:
+  InvariantMechanics(Eigen::MatrixXd inertia, Eigen::MatrixXd constraints)
+      : inertia_(std::move(inertia)), constraints_(std::move(constraints)) {}
+  int dim() const override { return static_cast<int>(inertia_.rows()); }
+  int rows() const override { return static_cast<int>(constraints_.rows()); }
+  void inertia(const double* /*g*/, Matrix out) const override { out = inertia_; }
+  void constraints(double /*t*/, const double* /*g*/, Matrix a, Vector b) const override {
+    a = constraints_;
+    b.setZero();
+  }
+
+ private:
+  Eigen::MatrixXd inertia_, constraints_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,114 @@
+// falling_disk: a thin disk that rolls on a plane without slipping, free to lean and fall.
+//
+//   SE(3), body frame at the centre with axis e3, plane z = 0, z up; xi = (omega, v) of the centre.
+//   l = 1/2 A (w1^2 + w2^2) + 1/2 C w3^2 + 1/2 m |v|^2 - m g z.
+// With gamma = R^T e_z and r = -rho (gamma - gamma_3 e3)/|...| from the centre to the contact, the contact
+// rests: v + omega x r = 0. Its two horizontal parts are rows of A; the vertical one is the differential of
+//   phi = z - rho sqrt(gamma_1^2 + gamma_2^2) = 0.
+// Steady motions (theta axis to vertical, alpha precession rate about the vertical, w3 the spin about the axis):
+//   (C + m rho^2) w3 alpha sin(theta) = A alpha^2 sin(theta) cos(theta) - m g rho cos(theta).
+// Upright rolling is stable when w3^2 > A m g rho / (C (C + m rho^2)); upright spinning when
+// w^2 > m g rho / (A + m rho^2).
+// Source: Neimark and Fufaev, Dynamics of Nonholonomic Systems (1972), ch. V; O'Reilly, Nonlinear Dyn. 10 (1996).
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include <hamel/framework/general_system.hpp>
+#include <hamel/groups/se3.hpp>
+
+namespace hamel {
+
+struct FallingDisk {
+  using Group = SE3;
+  using Element = SE3::Element<double>;
+  double mass = 1.0;                  // kg
+  double radius = 0.5;                // m
+  double axial_inertia = 0.125;       // kg m^2, C
+  double diametral_inertia = 0.0625;  // kg m^2, A
+  double gravity = 9.81;              // m/s^2
+
+  static std::string name() { return "falling_disk"; }
+  static std::string summary() { return "thin disk that rolls on a plane and may fall"; }
+  static std::string formula() {
+    return "SE(3), l = 1/2 A (w1^2 + w2^2) + 1/2 C w3^2 + 1/2 m |v|^2 - m g z, v + w x r = 0 at "
+           "the "
+           "contact, height of the contact holonomic";
+  }
+  static std::string known() {
+    return "steady motions, stability of upright rolling and spinning; invariants: energy";
+  }
+  static std::string source() { return "Neimark and Fufaev 1972, ch. V; O'Reilly 1996"; }
+
+  void fields(auto& f) {
+    f("mass", mass, "kg", "total mass");
+    f("radius", radius, "m", "radius of the disk");
+    f("axial_inertia", axial_inertia, "kg m^2", "moment about the axis");
+    f("diametral_inertia", diametral_inertia, "kg m^2", "moment about a diameter");
+    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+  }
+  Mat<6, 6> inertia() const {
+    Vec<6> d;
+    d << diametral_inertia, diametral_inertia, axial_inertia, mass, mass, mass;
+    return d.asDiagonal();
+  }
+
+  // The vertical and the contact, seen from the body.
+  struct Contact {
+    Vec<3> gamma, along, across, r;
+    Contact(const Element& g, double radius) {
+      gamma = g.rotation.row(2).transpose();
+      const double lean = std::hypot(gamma[0], gamma[1]);
+      along = Vec<3>(-gamma[1], gamma[0], 0) / lean;  // e3 x gamma: where it rolls
+      across = gamma.cross(along);
+      r = Vec<3>(gamma[0], gamma[1], 0) * (-radius / lean);
+    }
+  };
+  Mat<2, 6> constraints(const Element& g) const {
+    const Contact c(g, radius);
+    Mat<2, 6> a;
+    a << c.r.cross(c.along).transpose(), c.along.transpose(), c.r.cross(c.across).transpose(),
+        c.across.transpose();
+    return a;
+  }
+  auto holonomic(const auto& g) const {
+    using std::sqrt;
+    const auto &r31 = g.rotation(2, 0), &r32 = g.rotation(2, 1);
+    using T = std::decay_t<decltype(r31)>;
+    return VecT<T, 1>(g.translation[2] - radius * sqrt(r31 * r31 + r32 * r32));
+  }
+  Mat<1, 6> holonomic_differential(const Element& g) const {
+    const Contact c(g, radius);
+    Mat<1, 6> d;
+    d << c.r.cross(c.gamma).transpose(), c.gamma.transpose();
+    return d;
+  }
+  auto potential(const auto& g) const { return mass * gravity * g.translation[2]; }
+  Vec<6> potential_differential(const Element& g) const {
+    Vec<6> d;
+    d << 0, 0, 0, mass * gravity * g.rotation.row(2).transpose();
+    return d;
+  }
+
+  /// At x = y = 0 with the axis at theta from the vertical and rolling without slip with body rates omega.
+  Start rolling(double theta, const Vec<3>& omega) const {
+    const double c = std::cos(theta), s = std::sin(theta);
+    const double z = radius * s;
+    // R turns e3 by theta about x.
+    const Element g{Mat<3, 3>{{1, 0, 0}, {0, c, -s}, {0, s, c}}, Vec<3>(0, 0, z)};
+    const Vec<3> v = -omega.cross(Contact(g, radius).r);
+    return {.configuration = SE3::coordinates(g),
+            .velocity = {omega[0], omega[1], omega[2], v[0], v[1], v[2]},
+            .momentum = {}};
+  }
+  Start start() const { return rolling(1.3, {0.1, 0.4, 5}); }
+
+  void invariants(auto& add) const {
+    add("energy", [*this](const auto& g, const Vec<6>& xi) {
+      return 0.5 * xi.dot(inertia() * xi) + potential(g);
+    });
+  }
+};
+
+}  // namespace hamel

@@ -1,0 +1,64 @@
+// nonholonomic_particle: the smallest nonholonomic system.
+//
+//   R^3, l = 1/2 m (x'^2 + y'^2 + z'^2) - 1/2 k y^2,   z' = y x'.
+// x' sqrt(1 + y^2) = c is kept for every V(y). Without the spring y = y0 + v t and
+//   x = x0 + (c/v) asinh(y) |,  z = z0 + (c/v) sqrt(1 + y^2) |   (differences from y0).
+// Source: Rosenberg 1977; Bates and Sniatycki, Rep. Math. Phys. 32 (1993).
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include <hamel/framework/general_system.hpp>
+#include <hamel/groups/rn.hpp>
+
+namespace hamel {
+
+struct NonholonomicParticle {
+  using Group = Rn<3>;
+  using Element = Rn<3>::Element<double>;
+  double mass = 1.0;    // kg
+  double spring = 0.0;  // N/m
+
+  static std::string name() { return "nonholonomic_particle"; }
+  static std::string summary() { return "particle in space with z' = y x'"; }
+  static std::string formula() { return "R3, l = 1/2 m |x'|^2 - 1/2 k y^2, z' = y x'"; }
+  static std::string known() {
+    return "x' sqrt(1 + y^2) is kept; without the spring everything in closed form (asinh)";
+  }
+  static std::string source() { return "Rosenberg 1977; Bates and Sniatycki 1993"; }
+
+  void fields(auto& f) {
+    f("mass", mass, "kg", "mass");
+    f("spring", spring, "N/m", "stiffness of a spring along y");
+  }
+  Mat<3, 3> inertia() const { return Vec<3>::Constant(mass).asDiagonal(); }
+  Mat<1, 3> constraints(const Element& g) const { return Mat<1, 3>{-g[1], 0, 1}; }
+  auto potential(const auto& g) const { return (0.5 * spring) * (g[1] * g[1]); }
+  Start start() const {
+    return {.configuration = {0, 0.5, 0}, .velocity = {1, 0.7, 0.5}, .momentum = {}};
+  }
+  /// Without the spring only; empty otherwise.
+  bool has_exact() const { return spring == 0; }
+  auto exact(const Element& g0, const Vec<3>& xi0) const {
+    const double c = xi0[0] * std::hypot(1, g0[1]), v = xi0[1];
+    return [=](double t) {
+      const double y = g0[1] + v * t, slope = c / std::hypot(1, y);
+      Vec<3> g(g0[0] + slope * t, y, g0[2] + y * slope * t);
+      if (v != 0) {
+        g[0] = g0[0] + c / v * (std::asinh(y) - std::asinh(g0[1]));
+        g[2] = g0[2] + c / v * (std::hypot(1, y) - std::hypot(1, g0[1]));
+      }
+      return std::pair{g, Vec<3>(slope, v, y * slope)};
+    };
+  }
+  void invariants(auto& add) const {
+    add("x' sqrt(1 + y^2)",
+        [](const auto& g, const Vec<3>& xi) { return xi[0] * std::hypot(1, g[1]); });
+    add("energy", [*this](const auto& g, const Vec<3>& xi) {
+      return 0.5 * mass * xi.squaredNorm() + potential(g);
+    });
+  }
+};
+
+}  // namespace hamel
