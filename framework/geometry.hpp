@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <hamel/framework/concepts.hpp>
+#include <hamel/framework/general/small.hpp>
 
 namespace hamel {
 
@@ -58,6 +59,9 @@ class Geometry {
   virtual void dtau_right_inverse_transpose(const double* xi, const double* p,
                                             double* out) const = 0;
   virtual void dtau_left_inverse(const double* xi, const double* eta, double* out) const = 0;
+  /// The m0 of lift: (s dR_{z0} + (1-s) dR_{z1})^T m0 + (1-s) dR_{z1}^T nu = p, z0 = -s xi, z1 = (1-s) xi.
+  virtual void base_momentum(double s, const double* xi, const double* p, const double* nu,
+                             double* m0) const = 0;
   virtual bool in_domain(const double* xi) const = 0;
   // CSV columns.
   virtual int columns() const = 0;
@@ -116,6 +120,18 @@ class TypedGeometry final : public Geometry {
   void dtau_left_inverse(const double* xi, const double* eta, double* out) const override {
     put(Tau::dtau_left_inverse(vec(xi)) * vec(eta), out);
   }
+  void base_momentum(double s, const double* xi, const double* p, const double* nu,
+                     double* m0) const override {
+    if (s == 0) {
+      put(Tau::dtau_right_inverse_transpose(vec(xi), vec(p)) - vec(nu), m0);
+      return;
+    }
+    Mat<n, n> c = (1 - s) * Tau::dtau_right(Vec<n>((1 - s) * vec(xi))).transpose();
+    Vec<n> m = vec(p) - c.lazyProduct(vec(nu));
+    c += s * Tau::dtau_right(Vec<n>(-s * vec(xi))).transpose();
+    solve_in_place(c, m);
+    put(m, m0);
+  }
   bool in_domain(const double* xi) const override { return Tau::in_domain(vec(xi)); }
   int columns() const override { return static_cast<int>(G::columns().size()); }
   void coordinates(const double* g, double* out) const override {
@@ -148,6 +164,8 @@ class ProductGeometry final : public Geometry {
   void dtau_right(const double* xi, double* matrix) const override;
   void dtau_right_inverse_transpose(const double* xi, const double* p, double* out) const override;
   void dtau_left_inverse(const double* xi, const double* eta, double* out) const override;
+  void base_momentum(double s, const double* xi, const double* p, const double* nu,
+                     double* m0) const override;
   bool in_domain(const double* xi) const override;
   int columns() const override;
   void coordinates(const double* g, double* out) const override;

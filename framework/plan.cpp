@@ -232,7 +232,7 @@ void Simulation::Plan::use_general(const Registry& registry, const SchemeInfo& s
     general.mechanics = std::make_shared<InvariantMechanics>(inertia, constraints);
   }
   kernel = [general, make = scheme.general, loop = registry.general_kernel()](
-               const KernelSetup& setup) { return loop(setup, general, make(general)); };
+               const KernelSetup& run) { return loop(run, general, make(general)); };
 }
 
 // The admissible start, mu_bar = E^T mu, and what the projection dropped.

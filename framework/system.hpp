@@ -11,6 +11,7 @@
 //   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
 //   bool has_exact() const;            where the exact motion depends on the parameters
 //   void invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
+//   void draw(auto& scene) const;      how the report page shows it (drawing.hpp)
 //   static name(), summary(), formula(), known(), source()   words for `hamel describe`
 #pragma once
 
@@ -22,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/drawing.hpp>
 #include <hamel/framework/errors.hpp>
 #include <hamel/framework/group_info.hpp>
 
@@ -70,6 +72,7 @@ struct SystemModel {
   /// Empty when nothing is known exactly.
   std::function<ExactFlow(const Start&)> exact;
   std::vector<Invariant> invariants;
+  Drawing drawing;
 };
 
 /// A registered system: its words, its parameters, and how to make it.
@@ -241,6 +244,8 @@ SystemModel erase(const S& system) {
          }});
   };
   if constexpr (requires { system.invariants(add); }) system.invariants(add);
+  Scene<G> scene(model.drawing);
+  if constexpr (requires { system.draw(scene); }) system.draw(scene);
   return model;
 }
 

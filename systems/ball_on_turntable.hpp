@@ -116,6 +116,17 @@ struct BallOnTurntable {
              table_rate * (mass * (x[0] * xi[4] - x[1] * xi[3]) + moment * spin);
     });
   }
+  void draw(auto& scene) const {
+    scene.floor();
+    scene
+        .body("ball",
+              [r = radius](const auto& g) {
+                const auto& x = g.template part<1>();
+                return Placement{Vec<3>(x[0], x[1], r), g.template part<0>()};
+              },
+              {shapes::sphere(radius)})
+        .trail({0, 0, 0});
+  }
 };
 
 }  // namespace hamel

@@ -75,6 +75,16 @@ struct ChaplyginSleigh {
     add("kinetic energy",
         [i = inertia()](const auto& /*g*/, const Vec<3>& xi) { return 0.5 * xi.dot(i * xi); });
   }
+  void draw(auto& scene) const {
+    scene.from_above();
+    scene
+        .body("sleigh",
+              [](const auto& g) { return planar(g.translation[0], g.translation[1], g.angle()); },
+              {shapes::box({0.6, 0.4, 0.1}, {.at = {offset, 0, 0.15}}),
+               shapes::box({0.3, 0.02, 0.1}, {.at = {0, 0, 0.05}, .color = "accent"}),
+               shapes::sphere(0.05, {.at = {offset, 0, 0.22}, .color = "dark"})})
+        .trail();
+  }
 };
 
 }  // namespace hamel

@@ -109,6 +109,16 @@ struct FallingDisk {
       return 0.5 * xi.dot(inertia() * xi) + potential(g);
     });
   }
+  void draw(auto& scene) const {
+    scene.floor();
+    scene
+        .body("disk",
+              [](const auto& g) {
+                return Placement{g.translation, g.rotation};
+              },
+              {shapes::cylinder(radius, 0.04 * radius)})
+        .trail();
+  }
 };
 
 }  // namespace hamel

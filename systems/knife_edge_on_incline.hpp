@@ -77,6 +77,15 @@ struct KnifeEdgeOnIncline {
       return 0.5 * xi.dot(inertia() * xi) + potential(g);
     });
   }
+  void draw(auto& scene) const {
+    scene.from_above();
+    scene
+        .body("blade",
+              [](const auto& g) { return planar(g.translation[0], g.translation[1], g.angle()); },
+              {shapes::box({0.5, 0.04, 0.2}, {.at = {0, 0, 0.1}}),
+               shapes::arrow({0.5, 0, 0}, {.at = {0, 0, 0.1}, .color = "accent"})})
+        .trail();
+  }
 };
 
 }  // namespace hamel

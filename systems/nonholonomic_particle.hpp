@@ -59,6 +59,10 @@ struct NonholonomicParticle {
       return 0.5 * mass * xi.squaredNorm() + potential(g);
     });
   }
+  void draw(auto& scene) const {
+    scene.body("particle", [](const auto& g) { return Placement{g}; }, {shapes::sphere(0.08)})
+        .trail();
+  }
 };
 
 }  // namespace hamel

@@ -53,6 +53,23 @@ struct RollingDisk {
     add("yaw rate omega", [](const auto& /*g*/, const Vec<4>& xi) { return xi[0]; });
     add("spin rate phi'", [](const auto& /*g*/, const Vec<4>& xi) { return xi[3]; });
   }
+  void draw(auto& scene) const {
+    scene.floor();
+    scene
+        .body("disk",
+              [r = radius](const auto& g) {
+                const auto& contact = g.template part<0>();
+                const double roll = g.template part<1>().angle();
+                Placement p =
+                    planar(contact.translation[0], contact.translation[1], contact.angle(), r);
+                // The axle (e3 of the disk) lies along e2 of the heading; it rolls towards e1.
+                const double c = std::cos(roll), s = std::sin(roll);
+                p.rotation = p.rotation * Mat<3, 3>{{s, c, 0}, {0, 0, 1}, {c, -s, 0}};
+                return p;
+              },
+              {shapes::cylinder(radius, 0.05 * radius)})
+        .trail({0, 0, 0});
+  }
 };
 
 }  // namespace hamel

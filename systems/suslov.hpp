@@ -114,6 +114,17 @@ struct Suslov {
     add("kinetic energy",
         [i = inertia()](const auto& /*r*/, const Vec<3>& w) { return 0.5 * w.dot(i * w); });
   }
+  void draw(auto& scene) const {
+    const Vec<3> n = normal.normalized();
+    scene
+        .body("body",
+              [](const auto& r) {
+                return Placement{Vec<3>::Zero(), r};
+              },
+              {shapes::box({1.2, 0.8, 0.4}), shapes::arrow({1.0, 0, 0}, {.color = "dark"}),
+               shapes::arrow({n[0], n[1], n[2]}, {.color = "accent"})})
+        .trail({1.0, 0, 0});
+  }
 };
 
 }  // namespace hamel

@@ -1,8 +1,14 @@
 #include <hamel/framework/general/lift.hpp>
 
+#include <limits>
+#include <utility>
+
 #include <hamel/framework/schemes/lift.hpp>
 
 namespace hamel {
+namespace {
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+}
 
 template <int N>
 GeneralLift<N>::GeneralLift(const GeneralSetup& setup)
@@ -15,6 +21,7 @@ GeneralLift<N>::GeneralLift(const GeneralSetup& setup)
       target_(n_),
       start_(*system_),
       end_(*system_),
+      end_g_(g0_),
       f0_(g0_),
       f1_(g0_),
       base_(g0_),
@@ -22,14 +29,13 @@ GeneralLift<N>::GeneralLift(const GeneralSetup& setup)
       v_(n_),
       z0_(n_),
       z1_(n_),
+      step_(n_),
       p_(n_),
       nu_(n_),
       m_(n_),
       mu_(n_),
       r_(n_),
       inertia_(n_, n_),
-      right_(n_, n_),
-      c_(n_, n_),
       a_(system_->rows(), n_),
       b_(system_->rows()),
       rows_(system_->rows()),
@@ -41,7 +47,9 @@ void GeneralLift<N>::begin(const Node& node, double h) {
   h_ = h;
   g0_ = node.g;
   xi0_ = node.xi;
-  start_.set(*system_, t_, g0_.data());
+  if (end_time_ == t_ && end_g_ == g0_) std::swap(start_, end_);  // where the last step ended
+  else start_.set(*system_, t_, g0_.data());
+  end_time_ = kNever;
   if (system_->constant_inertia()) inertia_ = start_.inertia;
   target_ = start_.inertia.lazyProduct(xi0_);
   system_->force(t_, g0_.data(), xi0_, nu_);
@@ -70,21 +78,10 @@ void GeneralLift<N>::evaluate(const Unknown& x) const {
   p_ = inertia_.lazyProduct(v_);
   system_->force(t, base_.data(), v_, nu_);
   nu_ *= h_;
-  if (s_ == 0) {  // dR^T (m0 + nu) = p
-    geometry_->dtau_right_inverse_transpose(z1_.data(), p_.data(), m_.data());
-    m_ -= nu_;
-    mu_ = m_;
-  } else {
-    geometry_->dtau_right(z1_.data(), right_.data());
-    right_ *= 1 - s_;
-    p_ -= right_.transpose().lazyProduct(nu_);
-    c_ = right_.transpose();
-    geometry_->dtau_right(z0_.data(), right_.data());
-    c_ += s_ * right_.transpose();
-    c_factors_.compute(c_);
-    m_ = c_factors_.solve(p_);
-    geometry_->Ad_transpose(f0_.data(), m_.data(), mu_.data());
-  }
+  step_ = h_ * v_;
+  geometry_->base_momentum(s_, step_.data(), p_.data(), nu_.data(), m_.data());
+  if (s_ == 0) mu_ = m_;
+  else geometry_->Ad_transpose(f0_.data(), m_.data(), mu_.data());
   // mu_ is mu0, m_ is m0.
   r_ = mu_ - target_;
   if (rows_.size() > 0) {
@@ -108,14 +105,15 @@ void GeneralLift<N>::residual(const Unknown& x, Unknown& f) const {
 template <int N>
 bool GeneralLift<N>::finish(const Unknown& x, Node& next) const {
   if ((v_.array() != x.array()).any()) evaluate(x);
-  z1_ = h_ * v_;
-  if (!geometry_->in_domain(z1_.data())) return false;
+  if (!geometry_->in_domain(step_.data())) return false;
   m_ += nu_;
   geometry_->Ad_transpose(f1_.data(), m_.data(), mu_.data());
   next.t = t_ + h_;
   next.g = g1_;
   geometry_->normalise(next.g.data());
   end_.set(*system_, next.t, next.g.data());
+  end_time_ = next.t;
+  end_g_ = next.g;
   end_.admissible(mu_, p_);
   next.xi = p_;
   return true;

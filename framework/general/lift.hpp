@@ -10,7 +10,7 @@
 // This is the discrete Lagrange-d'Alembert principle for L_d(g0, g1) = h L(g, xi/h).
 #pragma once
 
-#include <Eigen/LU>
+#include <limits>
 
 #include <hamel/framework/general/place.hpp>
 #include <hamel/framework/general/step.hpp>
@@ -42,13 +42,13 @@ class GeneralLift final : public GeneralStep {
   Vector xi0_, target_;
   // Work: places at g0 and g1, and what the last x determined. Allocated once.
   mutable Place<N> start_, end_;
-  mutable double end_time_ = 0;
+  mutable Eigen::VectorXd end_g_;  // what end_ is for, and when
+  mutable double end_time_ = std::numeric_limits<double>::quiet_NaN();
   mutable Eigen::VectorXd f0_, f1_, base_, g1_;
-  mutable Vector v_, z0_, z1_, p_, nu_, m_, mu_, r_;
-  mutable typename Z::Matrix inertia_, right_, c_;
+  mutable Vector v_, z0_, z1_, step_, p_, nu_, m_, mu_, r_;
+  mutable typename Z::Matrix inertia_;
   mutable typename Z::Rows a_;
   mutable typename Z::Few b_, rows_, phi_;
-  mutable Eigen::PartialPivLU<typename Z::Matrix> c_factors_;
 };
 
 }  // namespace hamel

@@ -10,6 +10,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <hamel/framework/general/small.hpp>
 #include <hamel/framework/mechanics.hpp>
 
 namespace hamel {
@@ -57,10 +58,8 @@ class Place {
     system.constraints(t, g, a, b);
     q = a.lazyProduct(inverse);
     s_ = q.lazyProduct(a.transpose());
-    s_factors_.compute(s_);
-    w = a.transpose();
-    s_factors_.matrixU().template solveInPlace<Eigen::OnTheRight>(w);
-    s_factors_.matrixL().template solveInPlace<Eigen::OnTheRight>(w);
+    invert_definite(s_);
+    w = a.transpose().lazyProduct(s_);
   }
 
   /// (*): r + W (c - Q r), in place of r.
@@ -82,7 +81,6 @@ class Place {
   typename Z::FewSquare s_;
   typename Z::Vector reduced_;
   Eigen::LLT<typename Z::Matrix> inertia_factors_;
-  Eigen::LLT<typename Z::FewSquare> s_factors_;
   bool inertia_known_ = false;
 };
 
