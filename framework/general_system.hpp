@@ -78,6 +78,11 @@ class TypedMechanics final : public Mechanics {
     return requires(const S& s) { s.inertia(); };
   }
 
+  bool constant_constraints() const override {
+    return r == 0 && !requires(const S& s, const Element& g) { s.drift(0.0, g); }
+    &&(own == 0 || requires(const S& s) { s.constraints(); });
+  }
+
   void inertia(const double* g, Matrix out) const override {
     if constexpr (requires(const S& s) { s.inertia(); }) out = system_.inertia();
     else out = system_.inertia(load(g));

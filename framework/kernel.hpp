@@ -1,7 +1,4 @@
-// The time loop, compiled for one (group, m, tau, scheme, solver).
-//
-// Kernel is what the run-time layer holds: one virtual call per run or per recorded row, none inside a
-// step. CompiledKernel is the loop itself: fixed sizes, no heap, the solver inlined.
+// The time loop, compiled for one (group, m, tau, scheme, solver): fixed sizes, no heap, the solver inlined.
 //
 // Large steps. Far from the identity the equation of a step can have roots that have nothing to do with
 // the motion, inside the domain of tau too. The one that is meant is where the solution y of F(y; lambda h)
@@ -19,90 +16,27 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <hamel/framework/diagnostics.hpp>
 #include <hamel/framework/problem.hpp>
-#include <hamel/framework/solver.hpp>
+#include <hamel/framework/time_loop.hpp>
 
 namespace hamel {
-
-/// What becomes of a step that fails: the run stops there; another solver tries; it is taken as two
-/// halves, each of which may be halved again, up to ten times.
-enum class OnFailure { stop, retry, halve };
-
-/// Everything a kernel needs to know of a run; matrices are erased here and fixed in the kernel.
-struct KernelSetup {
-  Eigen::MatrixXd inertia;      // n x n, symmetric positive definite
-  Eigen::MatrixXd constraints;  // k x n, rank k
-  Eigen::MatrixXd frame;        // n x m, E
-  double s = 0.5;
-  double step = 0.01;  // h, of either sign
-  double tolerance = 1e-13;
-  std::vector<double> composition = {1.0};
-  std::shared_ptr<Solver> solver;  // null: the solver compiled into the kernel
-  OnFailure on_failure = OnFailure::stop;
-  std::shared_ptr<Solver> fallback;  // for retry; null as above
-  std::string fallback_name;
-  std::vector<double> configuration;  // the element's coordinates at t = 0
-  Eigen::VectorXd momentum;           // mu_bar at t = 0, m entries
-  Eigen::VectorXd velocity;           // xi at t = 0, n entries (general kernels)
-};
-
-/// A step that failed and was rescued.
-struct Fallback {
-  long step = 0;
-  double time = 0;  // at its beginning
-  std::string action;
-};
-
-/// Running totals over the steps taken.
-struct SolverStats {
-  long iterations = 0;
-  long evaluations = 0;
-  int iterations_max = 0;  // over one step
-  double residual_max = 0;
-  long fallbacks = 0;
-  std::vector<Fallback> first_fallbacks;  // at most 20
-};
 
 /// inverse = matrix^-1, column-major n x n; matrix is overwritten. NaN where it is singular.
 void invert(double* matrix, double* inverse, int n);
 /// The Frobenius norm of inverse * matrix - 1.
 double departure(const double* inverse, const double* matrix, int n);
 
-/// A state with its measurements.
-struct Snapshot {
-  long step = 0;
-  double time = 0;
-  std::vector<double> coordinates;  // of g
-  std::vector<double> velocity;     // nodal body velocity, n
-  std::vector<double> momentum;     // nodal body momentum, n
-  double energy = 0;
-  double constraint = 0;         // |A xi/h| of the last step, xi recovered from the configurations
-  double holonomic = 0;          // max |phi(g)|
-  double group_defect = 0;       // how far g is from the group
-  int iterations = 0;            // of the last step, all substeps
-  double residual = 0;           // relative, the largest of the last step's substeps
-  std::vector<double> reaction;  // the multipliers lambda of A xi = b at this state
-};
-
-class Kernel {
- public:
-  virtual ~Kernel() = default;
-  /// count steps. On failure the state is that of the last good step.
-  virtual Status advance(long count) = 0;
-  /// Measures the current state into out (its vectors are reused).
-  virtual void measure(Snapshot& out) const = 0;
-  virtual const SolverStats& stats() const = 0;
-};
-
 template <class G, int M, class Tau, class Scheme, class Newton>
-class CompiledKernel final : public Kernel {
+class CompiledKernel final : public TimeLoop<CompiledKernel<G, M, Tau, Scheme, Newton>> {
+  using Loop = TimeLoop<CompiledKernel>;
+  friend Loop;
+  using Loop::composition_, Loop::h_, Loop::last_, Loop::solver_, Loop::steps_, Loop::tolerance_;
+
  public:
   using Problem = LeftInvariant<G, M>;
   using Step = typename Scheme::template Step<Problem, Tau>;
@@ -111,17 +45,11 @@ class CompiledKernel final : public Kernel {
   static constexpr int n = G::dim;
 
   explicit CompiledKernel(const KernelSetup& setup)
-      : problem_(Mat<n, n>(setup.inertia), typename Problem::Frame(setup.frame)),
+      : Loop(setup),
+        problem_(Mat<n, n>(setup.inertia), typename Problem::Frame(setup.frame)),
         scheme_(problem_, Scheme::uses_s ? setup.s : 0.0),
         constraints_(setup.constraints),
         s_(Scheme::uses_s ? setup.s : 0.0),
-        h_(setup.step),
-        tolerance_(setup.tolerance),
-        composition_(setup.composition),
-        solver_(setup.solver),
-        on_failure_(setup.on_failure),
-        fallback_(setup.fallback),
-        fallback_name_(setup.fallback_name),
         element_(G::from_coordinates(setup.configuration)),
         previous_(element_),
         momentum_(setup.momentum),
@@ -133,23 +61,6 @@ class CompiledKernel final : public Kernel {
     scheme_.linearise(scheme_.guess(), f, jacobian);
     rest_inverse_ = jacobian;
     invert(jacobian.data(), rest_inverse_.data(), static_cast<int>(f.size()));
-  }
-
-  Status advance(long count) override {
-    for (long k = 0; k < count; ++k) {
-      SolveReport report = one_step();
-      if (!report.ok()) [[unlikely]] {
-        report = recover(report);
-        if (!report.ok()) return failure(report);
-      }
-      last_ = report;
-      ++steps_;
-      stats_.iterations += report.iterations;
-      stats_.evaluations += report.evaluations;
-      stats_.iterations_max = std::max(stats_.iterations_max, report.iterations);
-      stats_.residual_max = std::max(stats_.residual_max, report.residual);
-    }
-    return {};
   }
 
   void measure(Snapshot& out) const override {
@@ -166,7 +77,6 @@ class CompiledKernel final : public Kernel {
     out.iterations = last_.iterations;
     out.residual = last_.residual;
   }
-  const SolverStats& stats() const override { return stats_; }
   const Element& element() const { return element_; }
 
  private:
@@ -206,7 +116,7 @@ class CompiledKernel final : public Kernel {
 
   SolveReport step() {
     const bool composed = stages_.size() > 1;
-    if (composed) start_of_step_ = {element_, previous_, momentum_, last_h_};
+    if (composed) start_of_step_ = save();
     SolveReport total;
     for (size_t i = 0; i < stages_.size(); ++i) {
       Stage& stage = stages_[i];
@@ -277,70 +187,12 @@ class CompiledKernel final : public Kernel {
     return y;
   }
 
-  // A step has failed, and the state is still that of the last good one: what on_failure asks for.
-  [[gnu::noinline, gnu::cold]] SolveReport recover(SolveReport failed) {
-    if (on_failure_ == OnFailure::stop) return failed;
-    const State start = {element_, previous_, momentum_, last_h_};
-    const double h = h_;
-    if (stages_.size() > 1) forget();  // its first substeps are solved a second time
-    SolveReport rescued;
-    std::string action;
-    if (on_failure_ == OnFailure::retry) {
-      std::swap(solver_, fallback_);
-      rescued = one_step();
-      std::swap(solver_, fallback_);
-      action = "solved by " + fallback_name_;
-    } else {
-      int parts = 0;
-      rescued = halve(1, parts);
-      h_ = h;
-      forget();
-      action = "taken in " + std::to_string(parts) + " parts";
-    }
-    if (!rescued.ok()) restore(start);
-    else if (++stats_.fallbacks <= 20) {
-      stats_.first_fallbacks.push_back({steps_ + 1, static_cast<double>(steps_) * h_, action});
-    }
-    SolveReport& report = rescued.ok() ? rescued : failed;
-    const SolveReport& other = rescued.ok() ? failed : rescued;
-    report.iterations += other.iterations;
-    report.evaluations += other.evaluations;
-    return report;
-  }
-
-  // h_ as two steps of half its size, each halved again where it fails.
-  SolveReport halve(int level, int& parts) {
-    SolveReport total;
-    const double half = h_ / 2;
-    for (int i = 0; i < 2 && total.ok(); ++i) {
-      forget();  // of steps of another size
-      h_ = half;
-      SolveReport part = one_step();
-      if (part.ok()) ++parts;
-      else if (level < 10) {
-        const SolveReport finer = halve(level + 1, parts);
-        part = {finer.reason, finer.residual, part.iterations + finer.iterations,
-                part.evaluations + finer.evaluations};
-      }
-      total = {part.reason, std::max(total.residual, part.residual),
-               total.iterations + part.iterations, total.evaluations + part.evaluations};
-    }
-    return total;
-  }
-
   // Nothing to extrapolate, and no Jacobian kept.
   void forget() {
     for (Stage& stage : stages_) {
       stage.count = 0;
       stage.trusted = stage.memory.valid = false;
     }
-  }
-
-  Status failure(const SolveReport& report) const {
-    std::string reason = to_string(report.reason);
-    if (on_failure_ == OnFailure::halve) reason += ", in halved steps too";
-    if (on_failure_ == OnFailure::retry) reason += ", and " + fallback_name_ + " failed too";
-    return {false, steps_ + 1, static_cast<double>(steps_) * h_, report.residual, reason};
   }
 
   SolveReport solve(Stage& stage, Unknown& x) {
@@ -355,6 +207,7 @@ class CompiledKernel final : public Kernel {
     typename Step::Momentum momentum;
     double last_h = 1;
   };
+  State save() const { return {element_, previous_, momentum_, last_h_}; }
   void restore(const State& state) {
     element_ = state.element;
     previous_ = state.previous;
@@ -392,20 +245,12 @@ class CompiledKernel final : public Kernel {
   Step scheme_;
   Eigen::Matrix<double, Eigen::Dynamic, n, n == 1 ? Eigen::AutoAlign : Eigen::ColMajor, n, n>
       constraints_;
-  double s_, h_, last_h_ = 1, tolerance_;
-  std::vector<double> composition_;
-  std::shared_ptr<Solver> solver_;
-  OnFailure on_failure_;
-  std::shared_ptr<Solver> fallback_;
-  std::string fallback_name_;
+  double s_, last_h_ = 1;
   typename Step::Jacobian rest_inverse_;
   Element element_, previous_;
   typename Step::Momentum momentum_;
   State start_of_step_;
   std::vector<Stage> stages_;
-  SolverStats stats_;
-  SolveReport last_;
-  long steps_ = 0;
 };
 
 }  // namespace hamel

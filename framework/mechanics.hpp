@@ -23,6 +23,7 @@ class Mechanics {
   virtual int rows() const = 0;  // k
   virtual int holonomic_rows() const { return 0; }
   virtual bool constant_inertia() const { return true; }
+  virtual bool constant_constraints() const { return false; }
 
   /// I(g), n x n.
   virtual void inertia(const double* g, Matrix out) const = 0;
@@ -45,6 +46,7 @@ class InvariantMechanics final : public Mechanics {
       : inertia_(std::move(inertia)), constraints_(std::move(constraints)) {}
   int dim() const override { return static_cast<int>(inertia_.rows()); }
   int rows() const override { return static_cast<int>(constraints_.rows()); }
+  bool constant_constraints() const override { return true; }
   void inertia(const double* /*g*/, Matrix out) const override { out = inertia_; }
   void constraints(double /*t*/, const double* /*g*/, Matrix a, Vector b) const override {
     a = constraints_;

@@ -111,9 +111,8 @@ Simulation::Plan Simulation::plan() const {
   const std::string& group = system.group.name;
 
   // The kernel: the user's own, the one compiled for this group, or the general one.
-  std::shared_ptr<const Geometry> geometry;
+  const auto& geometry = plan.geometry = registry_->geometry(group, config_.retraction);
   if (!compiled) {
-    geometry = registry_->geometry(group, config_.retraction);
     const auto offered = registry_->retractions_or_common(group);
     if (offered.empty()) {
       plan.add(
@@ -124,7 +123,7 @@ Simulation::Plan Simulation::plan() const {
       plan.add({unknown_name("retraction of " + group, config_.retraction, offered)});
     }
   }
-  plan.look_at_start(geometry);
+  plan.look_at_start();
   const auto m = plan.inertia.rows() - plan.constraints.rows();
   const KernelFactory* fast =
       scheme == nullptr || system.mechanics != nullptr || geometry == nullptr
@@ -137,7 +136,7 @@ Simulation::Plan Simulation::plan() const {
     plan.kernel = *fast;
   } else if (scheme != nullptr && geometry != nullptr) {
     if (scheme->general) {
-      plan.use_general(*registry_, *scheme, geometry);
+      plan.use_general(*registry_, *scheme);
     } else {
       plan.add({fmt::format("scheme: {} is {}; {} here", config_.scheme,
                             system.mechanics != nullptr
@@ -199,11 +198,12 @@ void Simulation::Plan::fill_start() {
 }
 
 // I, A and b where the run starts, checked.
-void Simulation::Plan::look_at_start(const std::shared_ptr<const Geometry>& geometry) {
+void Simulation::Plan::look_at_start() {
   const int n = system.group.dim;
   inertia = system.inertia;
   constraints = system.constraints;
-  if (const Mechanics* mechanics = system.mechanics.get()) {
+  mechanics = system.mechanics;
+  if (mechanics != nullptr) {
     inertia = Eigen::MatrixXd::Identity(n, n);
     constraints.resize(0, n);
     if (geometry == nullptr) return;
@@ -221,18 +221,16 @@ void Simulation::Plan::look_at_start(const std::shared_ptr<const Geometry>& geom
     }
   } else {
     drift = Eigen::VectorXd::Zero(constraints.rows());
+    mechanics = std::make_shared<InvariantMechanics>(inertia, constraints);
   }
   add(check_system_matrices(inertia, constraints, n));
 }
 
-void Simulation::Plan::use_general(const Registry& registry, const SchemeInfo& scheme,
-                                   std::shared_ptr<const Geometry> geometry) {
-  GeneralSetup general{std::move(geometry), system.mechanics, config.s};
-  if (general.mechanics == nullptr) {
-    general.mechanics = std::make_shared<InvariantMechanics>(inertia, constraints);
-  }
-  kernel = [general, make = scheme.general, loop = registry.general_kernel()](
-               const KernelSetup& run) { return loop(run, general, make(general)); };
+void Simulation::Plan::use_general(const Registry& registry, const SchemeInfo& scheme) {
+  kernel = [general = GeneralSetup{geometry, mechanics, config.s}, make = scheme.general,
+            loop = registry.general_kernel()](const KernelSetup& run) {
+    return loop(run, general, make(general));
+  };
 }
 
 // The admissible start, mu_bar = E^T mu, and what the projection dropped.

@@ -15,6 +15,8 @@ struct Simulation::Plan {
   SystemModel system;
   Eigen::MatrixXd inertia, constraints;  // at the start
   Eigen::VectorXd drift;
+  std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
+  std::shared_ptr<const Mechanics> mechanics;
   KernelSetup setup;
   KernelFactory kernel;
 
@@ -22,9 +24,8 @@ struct Simulation::Plan {
     mistakes.insert(mistakes.end(), more.begin(), more.end());
   }
   void fill_start();
-  void look_at_start(const std::shared_ptr<const Geometry>& geometry);
-  void use_general(const Registry& registry, const SchemeInfo& scheme,
-                   std::shared_ptr<const Geometry> geometry);
+  void look_at_start();
+  void use_general(const Registry& registry, const SchemeInfo& scheme);
   void project(const SchemeInfo& scheme);
 };
 

@@ -98,7 +98,7 @@ Json record_of(const Result& r) {
         {"energy", number(r.last.energy)}}},
       {"diagnostics",
        {{"constraint_max", number(r.constraint_max)},
-        {"holonomic_max", nullptr},
+        {"holonomic_max", number(r.holonomic_max)},
         {"group_defect_max", number(r.group_defect_max)},
         {"energy_error_max", number(r.energy_error_max)},
         {"exact_error_final", number(r.exact_error_final)},

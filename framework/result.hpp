@@ -53,6 +53,7 @@ struct Result {
   SolverStats stats;
   std::vector<InvariantDrift> invariants;
   double constraint_max = 0;
+  double holonomic_max = 0;  // max |phi|, NaN where there are no holonomic rows
   double group_defect_max = 0;
   double energy_error_max = 0;   // relative to the start's energy
   double exact_error_final = 0;  // |coordinates - exact coordinates|, NaN where nothing is known

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <hamel/framework/general/motion.hpp>
 #include <hamel/framework/plan.hpp>
 
 namespace hamel {
@@ -69,6 +70,32 @@ void compare_with_exact(Result& result) {
   result.exact_velocity_error_max = largest(velocity_error);
   rows.add_column("exact_error", error);
   rows.add_column("exact_velocity_error", velocity_error);
+}
+
+// After the loop: the multipliers of A xi = b at the recorded states, from the continuous equations
+// there, and the power A xi - b of the discrete velocity would let them have.
+void add_reactions(Result& result, const std::shared_ptr<const Geometry>& geometry,
+                   const std::shared_ptr<const Mechanics>& mechanics) {
+  if (geometry == nullptr || mechanics->rows() == 0) return;
+  Trajectory& rows = result.trajectory;
+  const size_t n = static_cast<size_t>(result.system.group.dim),
+               coordinates = result.system.group.columns.size();
+  Motion motion(geometry, mechanics);
+  Eigen::VectorXd g(geometry->size());
+  std::vector<std::vector<double>> columns(static_cast<size_t>(mechanics->rows()),
+                                           std::vector<double>(rows.rows()));
+  for (size_t i = 0; i < rows.rows(); ++i) {
+    geometry->from_coordinates(rows.row(i).subspan(1, coordinates), g.data());
+    const Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(
+        rows.row(i).subspan(1 + coordinates, n).data(), static_cast<Eigen::Index>(n));
+    motion(rows.at(i, 0), g.data(), xi);
+    for (size_t j = 0; j < columns.size(); ++j) {
+      columns[j][i] = motion.reaction()[static_cast<Eigen::Index>(j)];
+    }
+  }
+  for (size_t j = 0; j < columns.size(); ++j) {
+    rows.add_column("lambda" + std::to_string(j + 1), columns[j]);
+  }
 }
 
 }  // namespace
@@ -188,13 +215,14 @@ Result Simulation::run() const {
 
   Snapshot& state = result.last;
   std::vector<double> row;
-  double energy_start = 0;
+  double energy_start = 0, holonomic_max = plan.mechanics->holonomic_rows() > 0 ? 0.0 : kNaN;
   const auto record = [&] {
     const long recorded = row.empty() ? -1 : state.step;
     kernel->measure(state);
     if (state.step == recorded) return true;  // nothing new: a chunk failed in its first step
     if (state.step == 0) energy_start = state.energy;
     fill_row(state, energy_start, row);
+    if (state.holonomic > holonomic_max) holonomic_max = state.holonomic;
     result.trajectory.append(row);
     return !observer_ || observer_(state);
   };
@@ -221,6 +249,8 @@ Result Simulation::run() const {
   result.constraint_max = largest(result.trajectory.column("constraint"));
   result.group_defect_max = largest(result.trajectory.column("group_defect"));
   result.energy_error_max = largest(result.trajectory.column("energy_error"));
+  result.holonomic_max = holonomic_max;
+  add_reactions(result, plan.geometry, plan.mechanics);
   compare_with_exact(result);
   return result;
 }

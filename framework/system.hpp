@@ -249,8 +249,38 @@ SystemModel erase(const S& system) {
   return model;
 }
 
+/// A system whose dimension is one of its parameters: it names its group ("se2*so2^5") and gives its
+/// Mechanics itself. start() as for any system; invariants(add) and draw(scene) see coordinates.
+template <class S>
+concept RunTimeSystem = requires(const S& s) {
+  { s.group() } -> std::convertible_to<std::string>;
+  { s.mechanics() } -> std::convertible_to<std::shared_ptr<const Mechanics>>;
+};
+
+template <RunTimeSystem S>
+SystemModel erase_words(const S& system) {
+  SystemModel model;
+  model.name = S::name();
+  model.group.name = system.group();  // completed by the registry
+  model.fields = detail::fields_of(system);
+  return model;
+}
+
+template <RunTimeSystem S>
+SystemModel erase(const S& system) {
+  SystemModel model = erase_words(system);
+  model.mechanics = system.mechanics();
+  model.start = system.start();
+  auto add = [&model](std::string name, auto value) {
+    model.invariants.push_back({std::move(name), value});
+  };
+  if constexpr (requires { system.invariants(add); }) system.invariants(add);
+  if constexpr (requires { system.draw(model.drawing); }) system.draw(model.drawing);
+  return model;
+}
+
 /// From parameters to the erased system; everything not given stays as it is in `system`.
-template <System S>
+template <class S>
 std::function<SystemModel(const Parameters&)> maker(const S& system) {
   return [system](const Parameters& given) {
     S copy = system;
@@ -263,7 +293,7 @@ std::function<SystemModel(const Parameters&)> maker(const S& system) {
 }
 
 /// What the registry keeps of the system type S; S{} holds the defaults.
-template <System S>
+template <class S>
 SystemInfo system_info() {
   SystemInfo info;
   info.name = S::name();
@@ -271,7 +301,7 @@ SystemInfo system_info() {
   if constexpr (requires { S::formula(); }) info.formula = S::formula();
   if constexpr (requires { S::known(); }) info.known = S::known();
   if constexpr (requires { S::source(); }) info.source = S::source();
-  info.group = group_info<typename S::Group>();
+  info.group = erase_words(S{}).group;
   info.fields = detail::fields_of(S{});
   info.make = maker(S{});
   return info;

@@ -130,7 +130,8 @@ void add_scheme(Registry& registry) {
 /// A system; its group must be one of the registry's.
 template <class S>
 void add_system(Registry& registry) {
-  static_assert(System<S>, "this type does not satisfy hamel::System: Group, inertia()");
+  static_assert(System<S> || RunTimeSystem<S>,
+                "this type does not satisfy hamel::System: Group, inertia()");
   registry.add(system_info<S>());
 }
 

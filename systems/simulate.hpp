@@ -18,7 +18,7 @@ inline Simulation simulate(std::string system) { return {registry(), std::move(s
 /// A system object, on a registered group.
 template <class S>
 requires(!std::convertible_to<const S&, std::string>) Simulation simulate(const S& system) {
-  static_assert(System<S>,
+  static_assert(System<S> || RunTimeSystem<S>,
                 "this type does not satisfy hamel::System: Group, inertia(), constraints()");
   return {registry(), erase_words(system).name, maker(system)};
 }
@@ -29,6 +29,7 @@ template <class Scheme, template <class> class Tau, class S>
 Simulation simulate(const S& system) {
   static_assert(System<S>,
                 "this type does not satisfy hamel::System: Group, inertia(), constraints()");
+  static_assert(is_left_invariant<S>(), "a system that is not left-invariant is run by names");
   using R = Tau<typename S::Group>;
   constexpr int m = S::Group::dim - constraint_count<S>();
   Simulation simulation(registry(), erase_words(system).name, maker(system));

@@ -11,25 +11,25 @@
 
 #include <hamel/framework/general/motion.hpp>
 #include <hamel/framework/general/step.hpp>
-#include <hamel/framework/kernel.hpp>
+#include <hamel/framework/time_loop.hpp>
 
 namespace hamel {
 
 template <class Newton>
-class GeneralKernel final : public Kernel {
+class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
+  using Loop = TimeLoop<GeneralKernel>;
+  friend Loop;
+  using Loop::composition_, Loop::h_, Loop::last_, Loop::solver_, Loop::steps_, Loop::tolerance_;
+
  public:
   GeneralKernel(const KernelSetup& setup, const GeneralSetup& general,
                 std::unique_ptr<GeneralStep> step)
-      : geometry_(general.geometry),
+      : Loop(setup),
+        geometry_(general.geometry),
         system_(general.mechanics),
         step_(std::move(step)),
-        motion_(geometry_, system_),
         place_(*system_),
         s_(general.s),
-        h_(setup.step),
-        tolerance_(setup.tolerance),
-        composition_(setup.composition),
-        solver_(setup.solver),
         stages_(setup.composition.size()) {
     now_.g.resize(geometry_->size());
     geometry_->from_coordinates(setup.configuration, now_.g.data());
@@ -39,17 +39,6 @@ class GeneralKernel final : public Kernel {
     for (Stage& stage : stages_) {
       for (Eigen::VectorXd& x : stage.x) x.resize(step_->size());
     }
-  }
-
-  Status advance(long count) override {
-    for (long k = 0; k < count; ++k) {
-      const SolveReport report = whole_step();
-      if (!report.ok()) {
-        return {false, steps_ + 1, static_cast<double>(steps_) * h_, report.residual,
-                to_string(report.reason)};
-      }
-    }
-    return {};
   }
 
   void measure(Snapshot& out) const override {
@@ -69,10 +58,7 @@ class GeneralKernel final : public Kernel {
     out.group_defect = geometry_->defect(now_.g.data());
     out.iterations = last_.iterations;
     out.residual = last_.residual;
-    motion_(now_.t, now_.g.data(), now_.xi);
-    out.reaction.assign(motion_.reaction().begin(), motion_.reaction().end());
   }
-  const SolverStats& stats() const override { return stats_; }
 
  private:
   // The guess is the polynomial extrapolation of up to six solutions (as in CompiledKernel).
@@ -101,7 +87,6 @@ class GeneralKernel final : public Kernel {
     Eigen::VectorXd v = now_.xi, base = now_.g;
     double t = now_.t;
     if (steps_ > 0) {
-      const int n = geometry_->dim();
       Eigen::VectorXd delta(geometry_->size());
       geometry_->inverse(previous_.g.data(), delta.data());
       geometry_->compose(delta.data(), now_.g.data(), delta.data());
@@ -115,14 +100,13 @@ class GeneralKernel final : public Kernel {
       const double h = now_.t - previous_.t;
       t = previous_.t + s_ * h;
       v /= h;
-      (void)n;
     }
     place_.set(*system_, t, base.data());
     const Eigen::VectorXd rows = place_.a * v - place_.b;
     return rows.head(rows.size() - system_->holonomic_rows()).norm();
   }
 
-  SolveReport whole_step() {
+  SolveReport one_step() {
     start_of_step_ = now_;
     before_ = previous_;
     SolveReport total;
@@ -135,17 +119,23 @@ class GeneralKernel final : public Kernel {
       if (!total.ok()) {
         now_ = start_of_step_;
         previous_ = before_;
-        return total;
+        break;
       }
     }
-    last_ = total;
-    ++steps_;
-    now_.t = static_cast<double>(steps_) * h_;
-    stats_.iterations += total.iterations;
-    stats_.evaluations += total.evaluations;
-    stats_.iterations_max = std::max(stats_.iterations_max, total.iterations);
-    stats_.residual_max = std::max(stats_.residual_max, total.residual);
     return total;
+  }
+
+  using State = std::pair<Node, Node>;
+  State save() const { return {now_, previous_}; }
+  void restore(const State& state) {
+    now_ = state.first;
+    previous_ = state.second;
+  }
+  void forget() {
+    for (Stage& stage : stages_) {
+      stage.count = 0;
+      stage.memory.valid = false;
+    }
   }
 
   SolveReport substep(Stage& stage, double h) {
@@ -198,17 +188,11 @@ class GeneralKernel final : public Kernel {
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> system_;
   std::unique_ptr<GeneralStep> step_;
-  mutable Motion motion_;
   mutable Place<Eigen::Dynamic> place_;
-  double s_, h_, tolerance_;
-  std::vector<double> composition_;
-  std::shared_ptr<Solver> solver_;
+  double s_;
   Node now_, previous_, next_, start_of_step_, before_;
   Eigen::VectorXd x_;
   std::vector<Stage> stages_;
-  SolverStats stats_;
-  SolveReport last_;
-  long steps_ = 0;
 };
 
 }  // namespace hamel

@@ -27,19 +27,20 @@ void Motion::operator()(double t, const double* g, const Eigen::VectorXd& xi) {
   inertia_rate_.setZero();
   constexpr std::array weights = {45.0 / 60, -9.0 / 60, 1.0 / 60};
   const double unit = 2e-3 / std::max(1.0, xi.norm());
-  for (int i = -3; i <= 3; ++i) {
+  const bool moves = !system_->constant_constraints(), varies = !system_->constant_inertia();
+  for (int i = -3; i <= 3 && (moves || varies); ++i) {
     if (i == 0) continue;
     const double shift = i * unit;
     const double weight = (i > 0 ? 1 : -1) * weights[static_cast<size_t>(std::abs(i) - 1)] / unit;
     step_ = shift * xi;
     geometry_->tau(step_.data(), moved_.data());
     geometry_->compose(g, moved_.data(), moved_.data());
-    if (b_.size() > 0) {
+    if (moves) {
       system_->constraints(t + shift, moved_.data(), a_, b_);
       a_rate_ += weight * a_;
       b_rate_ += weight * b_;
     }
-    if (!system_->constant_inertia()) {
+    if (varies) {
       system_->inertia(moved_.data(), inertia_);
       inertia_rate_ += weight * inertia_;
     }

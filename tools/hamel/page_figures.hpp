@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/drawing.hpp>
+
 namespace hamel::tools {
 
 /// A cell of a table, or a value on the axis of a heat map: a word, or a number that the page formats.
@@ -35,46 +37,6 @@ struct HeatMap {
   std::string unit = "";                             // what they are
   std::string note = "";
 };
-
-using Point = std::array<double, 3>;
-
-/// Where a shape stands in the body's frame, where its own z axis points, and its colour: "body",
-/// "accent", "dark", "light" or "#rrggbb".
-struct Look {
-  Point at = {0, 0, 0};
-  Point axis = {0, 0, 1};
-  std::string color = "body";
-};
-
-/// A shape fixed in a body; its length unit is that of the positions.
-struct BodyShape {
-  std::string kind;
-  std::vector<double>
-      sizes;  // box: edges, ellipsoid: radii, cylinder: radius and length, sphere: radius
-  std::vector<Point> points;  // line: its corners, arrow: its tip
-  Look look;
-};
-
-namespace shapes {
-inline BodyShape box(Point edges, Look look = {}) {
-  return {"box", {edges.begin(), edges.end()}, {}, std::move(look)};
-}
-/// About its own z axis; a disk has a small length. Marked, so that it is seen to turn.
-inline BodyShape cylinder(double radius, double length, Look look = {}) {
-  return {"cylinder", {radius, length}, {}, std::move(look)};
-}
-/// Marked, so that it is seen to turn.
-inline BodyShape sphere(double radius, Look look = {}) {
-  return {"sphere", {radius}, {}, std::move(look)};
-}
-inline BodyShape ellipsoid(Point radii, Look look = {}) {
-  return {"ellipsoid", {radii.begin(), radii.end()}, {}, std::move(look)};
-}
-inline BodyShape line(std::vector<Point> points, Look look = {}) {
-  return {"line", {}, std::move(points), std::move(look)};
-}
-inline BodyShape arrow(Point to, Look look = {}) { return {"arrow", {}, {to}, std::move(look)}; }
-}  // namespace shapes
 
 /// Position, and rotation as a unit quaternion (w, x, y, z), body to space.
 struct Pose {
