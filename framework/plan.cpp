@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include <hamel/framework/composition.hpp>
+#include <hamel/framework/data_system.hpp>
 #include <hamel/framework/frame.hpp>
 
 namespace hamel {
@@ -83,6 +84,9 @@ Simulation::Plan Simulation::plan() const {
 
   // The system with its parameters; nothing below makes sense without it.
   Maker make = make_;
+  if (!make && config_.system.ends_with(".toml")) {
+    make = data_system_maker(*registry_, config_.system);
+  }
   if (!make) {
     const SystemInfo* info = registry_->system(config_.system);
     if (info == nullptr) {

@@ -126,6 +126,10 @@ size_t Trajectory::index(const std::string& column) const {
   return static_cast<size_t>(it - columns_.begin());
 }
 
+bool Trajectory::has(const std::string& column) const {
+  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+}
+
 std::vector<double> Trajectory::column(const std::string& name) const {
   const size_t j = index(name);
   std::vector<double> out(rows());

@@ -23,6 +23,7 @@ class Trajectory {
   /// The index of a column; ConfigError naming the nearest when there is none.
   size_t index(const std::string& column) const;
   std::vector<double> column(const std::string& name) const;
+  bool has(const std::string& column) const;
   void append(std::span<const double> row) {
     values_.insert(values_.end(), row.begin(), row.end());
   }

@@ -17,9 +17,11 @@ int list(const ListOptions& options);
 
 struct DescribeOptions {
   std::string name;
+  bool analyse = false;
   bool json = false;
 };
 int describe(const DescribeOptions& options);
+int analyse(const DescribeOptions& options);
 
 struct RunOptions {
   Config config;

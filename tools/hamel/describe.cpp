@@ -182,6 +182,7 @@ void print(const Json& json) {
 }  // namespace
 
 int describe(const DescribeOptions& options) {
+  if (options.analyse) return analyse(options);
   const Json json = description_of(options.name);
   if (options.json) fmt::print("{}\n", json.dump(2));
   else print(json);

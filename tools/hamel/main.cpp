@@ -54,7 +54,8 @@ struct RunLine {
   RunOptions options;
 
   void define(CLI::App& app) {
-    app.add_option("SYSTEM", system, "a registered system (hamel list systems)");
+    app.add_option("SYSTEM", system,
+                   "a registered system (hamel list systems) or a file my_system.toml");
     app.add_option("--config", config_file,
                    "a TOML file with the same names; the command line wins");
     app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
@@ -163,10 +164,13 @@ int program(int argc, char** argv) {
   CLI::App* describe_command = app.add_subcommand(
       "describe", "One group, retraction, scheme, solver or system: formula, parameters, source");
   describe_command->add_option("NAME", description.name, "a name (hamel list)")->required();
+  describe_command->add_flag("--analyse", description.analyse,
+                             "a system (or a file my_system.toml): frame, structure constants, "
+                             "growth of brackets, what is kept");
   describe_command->add_flag("--json", description.json, "as JSON");
   describe_command->footer(
       "Examples:\n  hamel describe suslov\n  hamel describe 'se2*so2'\n  hamel describe cayley "
-      "--json");
+      "--json\n  hamel describe --analyse chaplygin_sleigh");
   describe_command->callback([&] { command = [&] { return describe(description); }; });
 
   RunLine line;

@@ -1,8 +1,10 @@
 #include "run_page.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 namespace hamel::tools {
 namespace {
@@ -72,6 +74,34 @@ std::vector<SphereCurve> axes_on_sphere(const Result& result) {
   return out;
 }
 
+namespace {
+
+std::optional<Animation> animation_of(const Result& result) {
+  const Drawing& drawing = result.system.drawing;
+  if (drawing.bodies.empty()) return {};
+  Animation out;
+  out.title = "Motion";
+  out.from_above = drawing.from_above;
+  out.floor = drawing.has_floor;
+  const std::vector<size_t> rows = thin_rows(result, 900);
+  for (size_t i : rows) out.times.push_back(result.trajectory.at(i, 0));
+  for (const DrawnBody& drawn : drawing.bodies) {
+    MovingBody body{drawn.name, {}, drawn.shapes, drawn.has_trail, drawn.trail_point};
+    for (size_t i : rows) {
+      const auto coordinates =
+          result.trajectory.row(i).subspan(1, result.system.group.columns.size());
+      const Placement at = drawn.place(coordinates);
+      const Eigen::Quaterniond q(at.rotation);
+      body.poses.push_back(
+          {{at.position[0], at.position[1], at.position[2]}, {q.w(), q.x(), q.y(), q.z()}});
+    }
+    out.bodies.push_back(std::move(body));
+  }
+  return out;
+}
+
+}  // namespace
+
 Page run_page(const Result& r) {
   Page page(fmt::format("{}: {} with {}", r.system.name, r.config.scheme, r.config.retraction),
             fmt::format("{}, s = {}, h = {}, solver {}{}", r.system.group.name, r.config.s,
@@ -86,6 +116,7 @@ Page run_page(const Result& r) {
     axes.y = y;
     return axes;
   };
+  if (const auto animation = animation_of(r)) page.animation(*animation);
   const bool exact = r.trajectory.columns().back() == "exact_velocity_error";
   if (const Series path = plane_path(r, name); !path.x.empty()) {
     page.path("Path in the plane", {.x = "x [m]", .y = "y [m]"}, {path});
@@ -111,6 +142,17 @@ Page run_page(const Result& r) {
   }
   page.plot("Body momentum", {.x = "time t [s]", .y = "mu"}, momentum);
   page.plot("Body velocity", {.x = "time t [s]", .y = "xi"}, velocity);
+  if (r.system.mechanics != nullptr || r.system.constraints.rows() > 0) {
+    std::vector<Series> reactions;
+    for (int i = 1; r.trajectory.has(fmt::format("lambda{}", i)); ++i) {
+      reactions.push_back(curve(r, fmt::format("lambda{}", i), fmt::format("lambda{}", i), false));
+    }
+    if (!reactions.empty()) {
+      page.plot("Reaction forces", {.x = "time t [s]", .y = "lambda"}, reactions,
+                "Multipliers of the rows A xi = b, from the equations of motion at the recorded "
+                "states. They do no work on motions with A xi = 0.");
+    }
+  }
   page.section("Record");
   page.record(r.record());
   return page;

@@ -1,0 +1,101 @@
+// hamel describe --analyse: what a system is, read off its equations.
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hamel/framework/analysis.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "commands.hpp"
+
+namespace hamel::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rows_of(const Eigen::MatrixXd& m) {
+  Json out = Json::array();
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(m(i, j));
+    out.push_back(row);
+  }
+  return out;
+}
+
+void print_rows(const Eigen::MatrixXd& m) {
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    fmt::print("    ");
+    for (Eigen::Index j = 0; j < m.cols(); ++j) fmt::print(" {:>10.5g}", m(i, j) + 0.0);
+    fmt::print("\n");
+  }
+}
+
+std::string verdict(const Analysis& a) {
+  if (a.rows == 0) return "no constraint";
+  std::string growth;
+  for (int d : a.growth) growth += fmt::format("{}{}", growth.empty() ? "" : ", ", d);
+  if (a.integrable()) {
+    return fmt::format(
+        "integrable: d is closed under brackets (dimension {}); the constraint is "
+        "holonomic in disguise",
+        a.m);
+  }
+  if (a.spans()) {
+    return fmt::format("nonholonomic: brackets of {} fields span all {} directions (growth {})",
+                       a.growth.size(), a.n, growth);
+  }
+  return fmt::format("nonholonomic, but brackets reach only {} of {} directions (growth {})",
+                     a.growth.back(), a.n, growth);
+}
+
+}  // namespace
+
+int analyse(const DescribeOptions& options) {
+  const Analysis a = hamel::analyse(registry(), options.name);
+  if (options.json) {
+    Json structure = Json::array(), conserved = Json::array();
+    for (const auto& c : a.structure) structure.push_back(rows_of(c));
+    for (const auto& c : a.conserved) {
+      conserved.push_back({{"expression", c.expression}, {"change", c.change}});
+    }
+    const Json json = {{"system", options.name},
+                       {"dimension", a.n},
+                       {"rows", a.rows},
+                       {"rank", a.rank},
+                       {"holonomic_rows", a.holonomic_rows},
+                       {"directions", a.m},
+                       {"left_invariant", a.left_invariant},
+                       {"affine", a.affine},
+                       {"growth", a.growth},
+                       {"integrable", a.integrable()},
+                       {"verdict", verdict(a)},
+                       {"frame", rows_of(a.frame)},
+                       {"structure_constants", structure},
+                       {"conserved", conserved},
+                       {"notes", a.notes}};
+    fmt::print("{}\n", json.dump(2));
+    return 0;
+  }
+  fmt::print("{}: n = {}, {} row{} of rank {}{}{}, {} direction{}; {}\n", options.name, a.n, a.rows,
+             a.rows == 1 ? "" : "s", a.rank,
+             a.holonomic_rows > 0 ? fmt::format(" ({} holonomic)", a.holonomic_rows) : "",
+             a.rank < a.rows ? ", some redundant" : "", a.m, a.m == 1 ? "" : "s",
+             a.left_invariant ? "left-invariant"
+             : a.affine       ? "affine, not left-invariant"
+                              : "not left-invariant");
+  fmt::print("  {}\n", verdict(a));
+  fmt::print("  Hamel frame at the start (columns, I-orthonormal)\n");
+  print_rows(a.frame);
+  for (size_t d = 0; d < a.structure.size(); ++d) {
+    fmt::print("  structure constants along direction {}: [X_i, X_j]\n", d + 1);
+    print_rows(a.structure[d]);
+  }
+  fmt::print("  kept along four motions (E energy, J spatial momentum, xi body velocity)\n");
+  if (a.conserved.empty()) fmt::print("     nothing among their linear combinations\n");
+  for (const auto& c : a.conserved)
+    fmt::print("     {}   (change {:.1e})\n", c.expression, c.change);
+  for (const std::string& note : a.notes) fmt::print("  {}\n", note);
+  return 0;
+}
+
+}  // namespace hamel::tools
