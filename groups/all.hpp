@@ -3,6 +3,7 @@
 
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/exp.hpp>
+#include <hamel/groups/heisenberg.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/radial.hpp>
 #include <hamel/groups/rn.hpp>

@@ -107,6 +107,14 @@ void add_group(Registry& registry) {
       [&]<class Tau>(std::type_identity<Tau>) { add_retraction<Tau, Ms...>(registry); });
 }
 
+/// A group with the retractions it lists and no kernels of its own: its systems run on the general loop.
+template <class G>
+void add_geometry(Registry& registry) {
+  registry.add(group_info<G>());
+  RetractionsOf<G>::type::for_each(
+      [&]<class Tau>(std::type_identity<Tau>) { registry.add(retraction_info<Tau>()); });
+}
+
 /// Kernels with m fixed at compile time, for the schemes and retractions in most use.
 template <class G, int M>
 void add_fast_kernels(Registry& registry) {

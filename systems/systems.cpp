@@ -4,14 +4,22 @@
 #include <hamel/solvers/hybrid.hpp>
 #include <hamel/solvers/nlopt.hpp>
 #include <hamel/systems/ball_on_turntable.hpp>
+#include <hamel/systems/chaplygin_ball.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
+#include <hamel/systems/contact_oscillator.hpp>
+#include <hamel/systems/differential_drive.hpp>
 #include <hamel/systems/falling_disk.hpp>
+#include <hamel/systems/heisenberg_particle.hpp>
 #include <hamel/systems/kernels/groups.hpp>
 #include <hamel/systems/knife_edge_on_incline.hpp>
 #include <hamel/systems/nonholonomic_particle.hpp>
+#include <hamel/systems/rolling_ball.hpp>
 #include <hamel/systems/rolling_disk.hpp>
 #include <hamel/systems/simulate.hpp>
 #include <hamel/systems/suslov.hpp>
+#include <hamel/systems/suslov_in_potential.hpp>
+#include <hamel/systems/unicycle_3d.hpp>
+#include <hamel/systems/veselova.hpp>
 
 namespace hamel {
 namespace {
@@ -56,6 +64,7 @@ Registry make_registry() {
   add_se3(registry);
   add_rn(registry);
   add_se2_so2(registry);
+  add_geometry<Heisenberg>(registry);
   add_general(registry);
 
   Schemes::for_each(
@@ -63,12 +72,20 @@ Registry make_registry() {
   add_solvers(registry);
 
   add_system<BallOnTurntable>(registry);
+  add_system<ChaplyginBall>(registry);
+  add_system<ChaplyginSleigh>(registry);
+  add_system<ContactOscillator>(registry);
+  add_system<DifferentialDrive>(registry);
   add_system<FallingDisk>(registry);
+  add_system<HeisenbergParticle>(registry);
   add_system<KnifeEdgeOnIncline>(registry);
   add_system<NonholonomicParticle>(registry);
-  add_system<Suslov>(registry);
-  add_system<ChaplyginSleigh>(registry);
+  add_system<RollingBall>(registry);
   add_system<RollingDisk>(registry);
+  add_system<Suslov>(registry);
+  add_system<SuslovInPotential>(registry);
+  add_system<Unicycle3d>(registry);
+  add_system<Veselova>(registry);
   return registry;
 }
 

@@ -1,0 +1,130 @@
+// differential_drive: a cart on two driven wheels, the motors off.
+//
+//   SE(2) x T^2, xi = (omega, v1, v2, right', left'), axle centre as origin, mass centre a ahead of it:
+//   l = 1/2 J w^2 + 1/2 m (v1^2 + (v2 + a w)^2) + 1/2 J_w (right'^2 + left'^2),
+//   v2 = 0,  v1 + c w = R right',  v1 - c w = R left'.
+// On d it is the Chaplygin sleigh with m and J + m a^2 replaced by M = m + 2 J_w/R^2 and
+// K = J + m a^2 + 2 J_w c^2/R^2:  M v1' = m a w^2,  K w' = -m a v1 w.
+// Source: Campion, Bastin, d'Andrea-Novel 1996; Bloch 2003.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <hamel/framework/system.hpp>
+#include <hamel/groups/product.hpp>
+#include <hamel/groups/se2.hpp>
+#include <hamel/groups/so2.hpp>
+#include <hamel/systems/reconstruction.hpp>
+
+namespace hamel {
+
+struct DifferentialDrive {
+  using Group = Product<SE2, SO2, SO2>;
+  double mass = 5.0;            // kg
+  double moment = 0.2;          // kg m^2, about the mass centre
+  double offset = 0.1;          // m, a
+  double wheel_radius = 0.1;    // m, R
+  double half_track = 0.2;      // m, c
+  double wheel_inertia = 0.01;  // kg m^2, J_w, about the axle
+
+  static std::string name() { return "differential_drive"; }
+  static std::string summary() { return "cart on two wheels that roll without slipping"; }
+  static std::string formula() {
+    return "SE(2)*T2, l = 1/2 J w^2 + 1/2 m (v1^2 + (v2 + a w)^2) + 1/2 J_w (right'^2 + left'^2), "
+           "v2 = 0, v1 +- c w = R wheel'";
+  }
+  static std::string known() {
+    return "(omega, v1) in closed form as for the sleigh, the rest by quadrature; invariants: "
+           "energy";
+  }
+  static std::string source() { return "Campion, Bastin and d'Andrea-Novel 1996"; }
+
+  void fields(auto& f) {
+    f("mass", mass, "kg", "total mass");
+    f("inertia", moment, "kg m^2", "moment about the mass centre");
+    f("offset", offset, "m", "axle to mass centre, forwards");
+    f("wheel_radius", wheel_radius, "m", "radius of the wheels");
+    f("half_track", half_track, "m", "centre to wheel, along the axle");
+    f("wheel_inertia", wheel_inertia, "kg m^2", "moment of a wheel about the axle");
+  }
+  Mat<5, 5> inertia() const {
+    Mat<5, 5> i = Mat<5, 5>::Zero();
+    i.diagonal() << moment + mass * offset * offset, mass, mass, wheel_inertia, wheel_inertia;
+    i(0, 2) = i(2, 0) = mass * offset;
+    return i;
+  }
+  Mat<3, 5> constraints() const {
+    return Mat<3, 5>{{0, 0, 1, 0, 0},
+                     {half_track, 1, 0, -wheel_radius, 0},
+                     {-half_track, 1, 0, 0, -wheel_radius}};
+  }
+  Start start() const {
+    return {.configuration = {}, .velocity = rolling(0.9, -1), .momentum = {}};
+  }
+  /// xi of a cart that turns at omega and moves at v.
+  std::vector<double> rolling(double omega, double v) const {
+    return {omega, v, 0, (v + half_track * omega) / wheel_radius,
+            (v - half_track * omega) / wheel_radius};
+  }
+
+  struct Velocity {
+    double u, w, kappa, c, radius, half_track;
+    Vec<5> operator()(double t) const {
+      const double x = kappa * t + c, omega = w / std::cosh(x), v = u * std::tanh(x);
+      Vec<5> xi;
+      xi << omega, v, 0, (v + half_track * omega) / radius, (v - half_track * omega) / radius;
+      return xi;
+    }
+  };
+  auto exact(const Group::Element<double>& g0, const Vec<5>& xi0) const {
+    const double wheels = 2 * wheel_inertia / (wheel_radius * wheel_radius);
+    const double m = mass + wheels,
+                 k = moment + mass * offset * offset + wheels * half_track * half_track;
+    const double omega = xi0[0], v = xi0[1], twice_energy = k * omega * omega + m * v * v;
+    const double u = std::sqrt(twice_energy / m), w = std::sqrt(twice_energy / k);
+    const bool constant = offset == 0 || omega == 0;
+    const Velocity velocity{u,
+                            std::copysign(w, omega),
+                            mass * offset * u / k,
+                            constant ? 0 : std::asinh(v / u / (std::abs(omega) / w)),
+                            wheel_radius,
+                            half_track};
+    Reconstruction<Group, Velocity> path(g0, velocity,
+                                         0.02 / std::max(w + std::abs(velocity.kappa), 1e-9));
+    auto steady = one_parameter_motion<Group>(g0, xi0);
+    return [path, steady, constant](double t) mutable { return constant ? steady(t) : path(t); };
+  }
+  void invariants(auto& add) const {
+    add("kinetic energy",
+        [i = inertia()](const auto& /*g*/, const Vec<5>& xi) { return 0.5 * xi.dot(i * xi); });
+  }
+  void draw(auto& scene) const {
+    scene.floor();
+    const auto cart = [](const auto& g) { return g.template part<0>(); };
+    scene
+        .body("cart",
+              [cart](const auto& g) {
+                return planar(cart(g).translation[0], cart(g).translation[1], cart(g).angle());
+              },
+              {shapes::box({0.3, 2 * half_track - 0.06, 0.06}, {.at = {offset, 0, wheel_radius}})})
+        .trail();
+    const auto wheel = [&](const char* name, double side, auto angle) {
+      scene.body(name,
+                 [cart, side, angle, r = wheel_radius](const auto& g) {
+                   const double c = std::cos(angle(g)), s = std::sin(angle(g));
+                   Placement p =
+                       planar(cart(g).translation[0], cart(g).translation[1], cart(g).angle(), r);
+                   p.position += p.rotation * Vec<3>(0, side, 0);
+                   p.rotation = p.rotation * Mat<3, 3>{{s, c, 0}, {0, 0, 1}, {c, -s, 0}};
+                   return p;
+                 },
+                 {shapes::cylinder(wheel_radius, 0.03, {.color = "dark"})});
+    };
+    wheel("right wheel", -half_track, [](const auto& g) { return g.template part<1>().angle(); });
+    wheel("left wheel", half_track, [](const auto& g) { return g.template part<2>().angle(); });
+  }
+};
+
+}  // namespace hamel

@@ -1,0 +1,76 @@
+// rolling_ball: a homogeneous ball that rolls without slipping on a plane.
+//
+//   SO(3) x R^2, xi = (omega in the body, x', y'), l = 1/2 I |omega|^2 + 1/2 m (x'^2 + y'^2),
+//   with w = R omega:  x' = rho w_y,  y' = -rho w_x.
+// omega is constant in the body and in space although the structure constants of d do not vanish, and the
+// centre runs straight: wrong signs show at once.
+// Source: Neimark and Fufaev 1972; Bloch, Krishnaprasad, Marsden and Murray 1996.
+#pragma once
+
+#include <string>
+
+#include <hamel/framework/general_system.hpp>
+#include <hamel/groups/product.hpp>
+#include <hamel/groups/rn.hpp>
+#include <hamel/groups/so3.hpp>
+#include <hamel/systems/reconstruction.hpp>
+
+namespace hamel {
+
+struct RollingBall {
+  using Group = Product<SO3, Rn<2>>;
+  using Element = Group::Element<double>;
+  double mass = 1.0;    // kg
+  double radius = 0.5;  // m
+  double moment = 0.1;  // kg m^2
+
+  static std::string name() { return "rolling_ball"; }
+  static std::string summary() { return "homogeneous ball that rolls on a plane"; }
+  static std::string formula() {
+    return "SO(3)*R2, l = 1/2 I |w|^2 + 1/2 m |x'|^2, x' = rho w_y, y' = -rho w_x (in space)";
+  }
+  static std::string known() { return "everything: omega is constant, the centre runs straight"; }
+  static std::string source() { return "Neimark and Fufaev 1972"; }
+
+  void fields(auto& f) {
+    f("mass", mass, "kg", "total mass");
+    f("radius", radius, "m", "radius of the ball");
+    f("inertia", moment, "kg m^2", "moment about the centre");
+  }
+  Mat<5, 5> inertia() const {
+    Vec<5> d;
+    d << moment, moment, moment, mass, mass;
+    return d.asDiagonal();
+  }
+  Mat<2, 5> constraints(const Element& g) const {
+    const auto& r = g.part<0>();
+    Mat<2, 5> a;
+    a << -radius * r.row(1), 1, 0, radius * r.row(0), 0, 1;
+    return a;
+  }
+  Start start() const {
+    return {.configuration = {}, .velocity = {0.4, 1.5, 0.8, 0.75, -0.2}, .momentum = {}};
+  }
+  auto exact(const Element& g0, const Vec<5>& xi0) const {
+    return one_parameter_motion<Group>(g0, xi0);
+  }
+  void invariants(auto& add) const {
+    for (int i = 0; i < 3; ++i) {
+      add("omega_" + std::to_string(i + 1),
+          [i](const auto& /*g*/, const Vec<5>& xi) { return xi[i]; });
+    }
+  }
+  void draw(auto& scene) const {
+    scene.floor();
+    scene
+        .body("ball",
+              [r = radius](const auto& g) {
+                const auto& x = g.template part<1>();
+                return Placement{Vec<3>(x[0], x[1], r), g.template part<0>()};
+              },
+              {shapes::sphere(radius)})
+        .trail({0, 0, 0});
+  }
+};
+
+}  // namespace hamel
