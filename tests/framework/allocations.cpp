@@ -106,6 +106,21 @@ TEST_F(Allocations, NoneOnSO3Free) { expect_none(test::FreeBody<SO3>{}); }  // m
 TEST_F(Allocations, NoneOnSE2) { expect_none(test::Body<SE2, 1>{}); }
 TEST_F(Allocations, NoneOnSE3) { expect_none(test::Body<SE3, 2>{}); }
 TEST_F(Allocations, NoneOnAProduct) { expect_none(test::Body<Product<SE2, SO2>, 2>{}); }
+/// General systems: fixed n (falling_disk, 6) and n at run time (differential_drive with lift: 5).
+TEST_F(Allocations, NoneOnGeneralSystems) {
+  for (const std::string& system : registry().systems()) {
+    for (const std::string& scheme : registry().schemes()) {
+      if (!registry().scheme(scheme)->general) continue;
+      for (const double s : {0.0, 0.5}) {
+        Integration run = simulate(system).scheme(scheme).s(s).step(0.002).build();
+        run.step(3);  // the first steps size what is kept
+        Status status;
+        EXPECT_EQ(counted(run, 20, status), 0) << system << " " << scheme << " s = " << s;
+        EXPECT_TRUE(status.ok) << system << " " << scheme << ": " << status.reason;
+      }
+    }
+  }
+}
 TEST_F(Allocations, NoneWhenComposed) {
   for (const Composition& c : compositions()) expect_none(test::Body<SE2, 1>{}, c.name);
 }
