@@ -5,6 +5,7 @@
 #include <hamel/framework/group_defaults.hpp>
 #include <hamel/framework/retraction_defaults.hpp>
 #include <hamel/framework/simulate.hpp>
+#include <hamel/framework/study.hpp>
 #include <hamel/groups/all.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
 #include <hamel/systems/rolling_disk.hpp>

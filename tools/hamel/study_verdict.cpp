@@ -154,7 +154,7 @@ class Judge {
   }
 
   void orders() {
-    std::vector<std::string> axes = study_axes(), short_of;
+    std::vector<std::string> axes = study_axes(), short_of, late;
     axes.pop_back();  // the step
     size_t measured = 0, reach = 0;
     std::vector<std::string> unknown;
@@ -174,8 +174,9 @@ class Judge {
         ++reach;
         worst = std::min(worst, m.order - claim);
       } else {
-        short_of.push_back(fmt::format("{} {:.2f} of {} ({} of {} steps)", name, m.order, claim,
-                                       m.order_points, m.order_of));
+        auto& list = m.order_finest >= claim - kShortOfClaim ? late : short_of;
+        list.push_back(fmt::format("{} {:.2f} of {} ({} of {} steps; the two finest {:.2f})", name,
+                                   m.order, claim, m.order_points, m.order_of, m.order_finest));
       }
     }
     if (measured > 0) {
@@ -184,6 +185,7 @@ class Judge {
                       measured, kShortOfClaim);
       if (reach > 0) text += fmt::format(" (at worst {:+.2f})", worst);
       text += ".";
+      if (!late.empty()) text += " Only with the finest steps: " + first_few(late, 6) + ".";
       if (!short_of.empty()) text += " Below it: " + first_few(short_of, 8) + ".";
       say(short_of.empty() ? "ok" : "failed", text);
     }
