@@ -135,11 +135,12 @@ class Judge {
     std::string text = fmt::format("{}: at the error {:.0e} the least time is {} by `{}`", system,
                                    target, time_words(ranked[0].first), ranked[0].second);
     if (ranked.size() > 1) {
-      text += fmt::format(
-          ", then {:.2g} times that by `{}`; the slowest of {} that get there takes "
-          "{:.2g} times as long: `{}`",
-          ranked[1].first / ranked[0].first, ranked[1].second, ranked.size(),
-          ranked.back().first / ranked[0].first, ranked.back().second);
+      const double next = ranked[1].first / ranked[0].first;
+      text += next < 1.05 ? fmt::format(", level with it `{}`", ranked[1].second)
+                          : fmt::format(", then {:.3g} times that by `{}`", next, ranked[1].second);
+      text +=
+          fmt::format("; the slowest of {} that get there takes {:.3g} times as long: `{}`",
+                      ranked.size(), ranked.back().first / ranked[0].first, ranked.back().second);
     }
     text += ".";
     if (!never.empty())
