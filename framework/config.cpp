@@ -13,8 +13,9 @@ namespace {
 
 const std::vector<std::string>& keys() {
   static const std::vector<std::string> all = {
-      "system",     "set",    "configuration", "velocity", "momentum", "scheme", "s",
-      "retraction", "solver", "tolerance",     "compose",  "step",     "until",  "every"};
+      "system",     "set",     "configuration", "velocity", "momentum",
+      "scheme",     "s",       "retraction",    "solver",   "tolerance",
+      "on_failure", "compose", "step",          "until",    "every"};
   return all;
 }
 
@@ -53,6 +54,7 @@ Config Config::from_toml(const std::string& text, const std::string& origin) {
     else if (key == "scheme") read.text(node, key, config.scheme);
     else if (key == "retraction") read.text(node, key, config.retraction);
     else if (key == "solver") read.text(node, key, config.solver);
+    else if (key == "on_failure") read.text(node, key, config.on_failure);
     else if (key == "compose") read.text(node, key, config.compose);
     else if (key == "s") read.number(node, key, config.s);
     else if (key == "tolerance") read.number(node, key, config.tolerance);
@@ -102,6 +104,7 @@ std::string Config::to_toml() const {
   text("retraction", retraction);
   text("solver", solver);
   out += fmt::format("tolerance = {}\n", number(tolerance));
+  text("on_failure", on_failure);
   text("compose", compose);
   out += fmt::format("step = {}\nuntil = {}\nevery = {}\n", number(step), number(until), every);
   if (!parameters.empty()) out += "[set]\n";

@@ -16,7 +16,8 @@ struct Config {
   double s = 0.5;  // in [0, 1]
   std::string retraction = "cayley";
   std::string solver = "newton";
-  double tolerance = 1e-13;  // on |F| / scale
+  double tolerance = 1e-13;         // on |F| / scale
+  std::string on_failure = "stop";  // a failed step: stop, halve, or retry:<solver>
   std::string compose = "none";
   double step = 0.01;  // h, seconds, of either sign
   double until = 20;   // seconds, of the sign of step

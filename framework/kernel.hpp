@@ -2,13 +2,25 @@
 //
 // Kernel is what the run-time layer holds: one virtual call per run or per recorded row, none inside a
 // step. CompiledKernel is the loop itself: fixed sizes, no heap, the solver inlined.
+//
+// Large steps. Far from the identity the equation of a step can have roots that have nothing to do with
+// the motion, inside the domain of tau too. The one that is meant is where the solution y of F(y; lambda h)
+// = 0 arrives that begins at lambda = 0. A root is taken for that one
+//   - if one correction with the kept Jacobian gave it, or it is within a percent of the extrapolation,
+//     and the roots before it were the ones meant;
+//   - if |J_rest^-1 J - 1| <= 1/2 there: J is then regular on the whole segment from rest to it;
+//   - else if following the path from lambda = 0 to 1 ends there. That costs some thirty solves.
+// Otherwise it is refused, as is a root outside the domain (measured by tests/solvers/large_steps.cpp).
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,6 +31,10 @@
 
 namespace hamel {
 
+/// What becomes of a step that fails: the run stops there; another solver tries; it is taken as two
+/// halves, each of which may be halved again, up to ten times.
+enum class OnFailure { stop, retry, halve };
+
 /// Everything a kernel needs to know of a run; matrices are erased here and fixed in the kernel.
 struct KernelSetup {
   Eigen::MatrixXd inertia;      // n x n, symmetric positive definite
@@ -28,9 +44,19 @@ struct KernelSetup {
   double step = 0.01;  // h, of either sign
   double tolerance = 1e-13;
   std::vector<double> composition = {1.0};
-  std::shared_ptr<Solver> solver;     // null: the solver compiled into the kernel
+  std::shared_ptr<Solver> solver;  // null: the solver compiled into the kernel
+  OnFailure on_failure = OnFailure::stop;
+  std::shared_ptr<Solver> fallback;  // for retry; null as above
+  std::string fallback_name;
   std::vector<double> configuration;  // the element's coordinates at t = 0
   Eigen::VectorXd momentum;           // mu_bar at t = 0, m entries
+};
+
+/// A step that failed and was rescued.
+struct Fallback {
+  long step = 0;
+  double time = 0;  // at its beginning
+  std::string action;
 };
 
 /// Running totals over the steps taken.
@@ -39,7 +65,14 @@ struct SolverStats {
   long evaluations = 0;
   int iterations_max = 0;  // over one step
   double residual_max = 0;
+  long fallbacks = 0;
+  std::vector<Fallback> first_fallbacks;  // at most 20
 };
+
+/// inverse = matrix^-1, column-major n x n; matrix is overwritten. NaN where it is singular.
+void invert(double* matrix, double* inverse, int n);
+/// The Frobenius norm of inverse * matrix - 1.
+double departure(const double* inverse, const double* matrix, int n);
 
 /// A state with its measurements.
 struct Snapshot {
@@ -83,18 +116,35 @@ class CompiledKernel final : public Kernel {
         tolerance_(setup.tolerance),
         composition_(setup.composition),
         solver_(setup.solver),
+        on_failure_(setup.on_failure),
+        fallback_(setup.fallback),
+        fallback_name_(setup.fallback_name),
         element_(G::from_coordinates(setup.configuration)),
         previous_(element_),
         momentum_(setup.momentum),
-        stages_(setup.composition.size()) {}
+        stages_(setup.composition.size()) {
+    const typename Step::Momentum rest = 0 * momentum_;
+    scheme_.begin(rest, 1e-3 * h_);
+    Unknown f = scheme_.guess();
+    typename Step::Jacobian jacobian;
+    scheme_.linearise(scheme_.guess(), f, jacobian);
+    rest_inverse_ = jacobian;
+    invert(jacobian.data(), rest_inverse_.data(), static_cast<int>(f.size()));
+  }
 
   Status advance(long count) override {
     for (long k = 0; k < count; ++k) {
-      const SolveReport report = M == kRunTime ? step() : flat_step();
-      if (!report.ok()) {
-        return {false, steps_ + 1, static_cast<double>(steps_) * h_, report.residual,
-                to_string(report.reason)};
+      SolveReport report = one_step();
+      if (!report.ok()) [[unlikely]] {
+        report = recover(report);
+        if (!report.ok()) return failure(report);
       }
+      last_ = report;
+      ++steps_;
+      stats_.iterations += report.iterations;
+      stats_.evaluations += report.evaluations;
+      stats_.iterations_max = std::max(stats_.iterations_max, report.iterations);
+      stats_.residual_max = std::max(stats_.residual_max, report.residual);
     }
     return {};
   }
@@ -122,6 +172,7 @@ class CompiledKernel final : public Kernel {
   struct Stage {
     std::array<Unknown, 6> x;
     int count = 0;
+    bool trusted = false;  // the last solution was the root that is meant
     typename Newton::template Memory<Step> memory;
 
     void push(const Unknown& latest) {
@@ -145,6 +196,8 @@ class CompiledKernel final : public Kernel {
     return recover_step<Tau>(G::compose(G::inverse(previous_), element_), s_) / last_h_;
   }
 
+  SolveReport one_step() { return M == kRunTime ? step() : flat_step(); }
+
   // With m fixed at compile time every small product is inlined: half the time of a step.
   [[gnu::flatten]] SolveReport flat_step() { return step(); }
 
@@ -162,7 +215,7 @@ class CompiledKernel final : public Kernel {
       total.evaluations += report.evaluations;
       total.residual = std::max(total.residual, report.residual);
       total.reason = report.reason;
-      if (report.ok() && !Tau::in_domain(scheme_.xi(x))) total.reason = Reason::outside_domain;
+      if (report.ok() && !is_meant(stage, report, x, h)) total.reason = Reason::outside_domain;
       if (!total.ok()) {
         if (composed) restore(start_of_step_);
         return total;
@@ -174,13 +227,117 @@ class CompiledKernel final : public Kernel {
       element_ = G::normalise(G::compose(element_, increment));
       last_h_ = h;
     }
-    last_ = total;
-    ++steps_;
-    stats_.iterations += total.iterations;
-    stats_.evaluations += total.evaluations;
-    stats_.iterations_max = std::max(stats_.iterations_max, total.iterations);
-    stats_.residual_max = std::max(stats_.residual_max, total.residual);
     return total;
+  }
+
+  // Whether this root is the one that the motion means (top of this file).
+  bool is_meant(Stage& stage, const SolveReport& report, const Unknown& x, double h) {
+    if (!Tau::in_domain(scheme_.xi(x))) return false;
+    if (stage.trusted && solver_ == nullptr && report.iterations <= 1) [[likely]]
+      return true;
+    stage.trusted = examine(stage, x, h);
+    return stage.trusted;
+  }
+  [[gnu::noinline]] bool examine(const Stage& stage, const Unknown& x, double h) {
+    if (Scheme::claimed_order(s_, Tau::symmetric).order == 0) return true;  // no limit, no meaning
+    const double size = x.squaredNorm();
+    if (stage.trusted && (x - stage.extrapolate()).squaredNorm() <= 1e-4 * size) return true;
+    Unknown f = x;
+    typename Step::Jacobian jacobian;
+    scheme_.linearise(x, f, jacobian);
+    if (departure(rest_inverse_.data(), jacobian.data(), static_cast<int>(x.size())) <= 0.5)
+      return true;
+    return (x - end_of_path(size, h)).squaredNorm() <= 1e-10 * size;
+  }
+  // Follows the root from lambda = 0 to 1 with steps that move it by 3 percent at most; NaN where the path ends.
+  Unknown end_of_path(double size, double h) {
+    Unknown y = scheme_.guess();
+    typename Newton::template Memory<Step> memory;
+    for (double at = 0, length = 0.1; at < 1;) {
+      const double next = std::min(at + length, 1.0);
+      scheme_.begin(momentum_, next * h);
+      Unknown trial = y;
+      const SolveReport report = Newton::solve(scheme_, trial, 1e-9, memory);
+      if (report.ok() && (trial - y).squaredNorm() <= 1e-3 * size) {
+        y = trial;
+        at = next;
+        length *= 1.5;
+      } else {
+        length /= 2;
+        if (length < 1e-4) {
+          y.setConstant(std::numeric_limits<double>::quiet_NaN());
+          break;
+        }
+      }
+    }
+    scheme_.begin(momentum_, h);
+    return y;
+  }
+
+  // A step has failed, and the state is still that of the last good one: what on_failure asks for.
+  [[gnu::noinline, gnu::cold]] SolveReport recover(SolveReport failed) {
+    if (on_failure_ == OnFailure::stop) return failed;
+    const State start = {element_, previous_, momentum_, last_h_};
+    const double h = h_;
+    if (stages_.size() > 1) forget();  // its first substeps are solved a second time
+    SolveReport rescued;
+    std::string action;
+    if (on_failure_ == OnFailure::retry) {
+      std::swap(solver_, fallback_);
+      rescued = one_step();
+      std::swap(solver_, fallback_);
+      action = "solved by " + fallback_name_;
+    } else {
+      int parts = 0;
+      rescued = halve(1, parts);
+      h_ = h;
+      forget();
+      action = "taken in " + std::to_string(parts) + " parts";
+    }
+    if (!rescued.ok()) restore(start);
+    else if (++stats_.fallbacks <= 20) {
+      stats_.first_fallbacks.push_back({steps_ + 1, static_cast<double>(steps_) * h_, action});
+    }
+    SolveReport& report = rescued.ok() ? rescued : failed;
+    const SolveReport& other = rescued.ok() ? failed : rescued;
+    report.iterations += other.iterations;
+    report.evaluations += other.evaluations;
+    return report;
+  }
+
+  // h_ as two steps of half its size, each halved again where it fails.
+  SolveReport halve(int level, int& parts) {
+    SolveReport total;
+    const double half = h_ / 2;
+    for (int i = 0; i < 2 && total.ok(); ++i) {
+      forget();  // of steps of another size
+      h_ = half;
+      SolveReport part = one_step();
+      if (part.ok()) ++parts;
+      else if (level < 10) {
+        const SolveReport finer = halve(level + 1, parts);
+        part = {finer.reason, finer.residual, part.iterations + finer.iterations,
+                part.evaluations + finer.evaluations};
+      }
+      total = {part.reason, std::max(total.residual, part.residual),
+               total.iterations + part.iterations, total.evaluations + part.evaluations};
+    }
+    return total;
+  }
+
+  // Nothing to extrapolate, and no Jacobian kept.
+  void forget() {
+    for (Stage& stage : stages_) {
+      stage.count = 0;
+      stage.trusted = stage.memory.valid = false;
+    }
+  }
+
+  Status failure(const SolveReport& report) const {
+    std::string reason = to_string(report.reason);
+    if (on_failure_ == OnFailure::halve) reason += ", in halved steps too";
+    if (on_failure_ == OnFailure::retry) reason += ", and " + fallback_name_ + " failed too";
+    return {false, steps_ + 1, static_cast<double>(steps_) * h_, report.residual, reason};
   }
 
   SolveReport solve(Stage& stage, Unknown& x) {
@@ -235,6 +392,10 @@ class CompiledKernel final : public Kernel {
   double s_, h_, last_h_ = 1, tolerance_;
   std::vector<double> composition_;
   std::shared_ptr<Solver> solver_;
+  OnFailure on_failure_;
+  std::shared_ptr<Solver> fallback_;
+  std::string fallback_name_;
+  typename Step::Jacobian rest_inverse_;
   Element element_, previous_;
   typename Step::Momentum momentum_;
   State start_of_step_;

@@ -19,6 +19,31 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
+// "stop", "halve", "retry:<solver>"; returns what is wrong.
+std::vector<std::string> read_on_failure(const Config& config, const Registry& registry,
+                                         KernelSetup& setup) {
+  const std::string& policy = config.on_failure;
+  if (policy == "stop") return {};
+  if (policy == "halve") {
+    setup.on_failure = OnFailure::halve;
+    return {};
+  }
+  const std::string retry = "retry:";
+  if (!policy.starts_with(retry)) {
+    return {unknown_name("on_failure", policy, {"stop", "halve", "retry:<solver>"})};
+  }
+  const std::string other = policy.substr(retry.size());
+  const SolverInfo* solver = registry.solver(other);
+  if (solver == nullptr) return {"on_failure: " + registry.missing_solver(other)};
+  if (other == config.solver) {
+    return {fmt::format("on_failure: got '{}', expected another solver than '{}'", policy, other)};
+  }
+  setup.on_failure = OnFailure::retry;
+  setup.fallback_name = other;
+  if (solver->make) setup.fallback = solver->make();
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> columns_of(const SystemModel& system) {
@@ -43,8 +68,9 @@ Simulation::Plan Simulation::plan() const {
   const SchemeInfo* scheme = compiled ? &kernel_scheme_ : registry_->scheme(config_.scheme);
   if (scheme == nullptr) plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
   const SolverInfo* solver = registry_->solver(config_.solver);
-  if (solver == nullptr) plan.add({unknown_name("solver", config_.solver, registry_->solvers())});
+  if (solver == nullptr) plan.add({registry_->missing_solver(config_.solver)});
   else if (solver->make) plan.setup.solver = solver->make();
+  plan.add(read_on_failure(config_, *registry_, plan.setup));
   std::vector<std::string> tables;
   for (const Composition& c : compositions()) {
     tables.push_back(c.name);

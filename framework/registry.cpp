@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/scaled_equation.hpp>
+
 namespace hamel {
 namespace {
 
@@ -25,12 +27,36 @@ std::string kernel_key(const std::string& group, int m, const std::string& retra
   return fmt::format("{}/{}/{}/{}", group, m, retraction, scheme);
 }
 
+class FunctionSolver final : public Solver {
+ public:
+  explicit FunctionSolver(SolveFunction solve) : solve_(std::move(solve)) {}
+  SolveReport solve(const Equation& equation, std::span<double> x, double tolerance) override {
+    equation_.start(equation, x, tolerance);
+    solve_(equation_, x, equation_.target());
+    const int evaluations = equation_.evaluations();
+    return equation_.finish(x, evaluations);
+  }
+
+ private:
+  ScaledEquation equation_;
+  SolveFunction solve_;
+};
+
 }  // namespace
 
 void Registry::add(GroupInfo info) { groups_[info.name] = std::move(info); }
 void Registry::add(RetractionInfo info) { retractions_[{info.group, info.name}] = std::move(info); }
 void Registry::add(SchemeInfo info) { schemes_[info.name] = std::move(info); }
-void Registry::add(SolverInfo info) { solvers_[info.name] = std::move(info); }
+void Registry::add(SolverInfo info) {
+  absent_solvers_.erase(info.name);
+  solvers_[info.name] = std::move(info);
+}
+void Registry::add_solver(const std::string& name, const std::string& summary,
+                          SolveFunction solve) {
+  add(SolverInfo{name, summary, "",
+                 [solve = std::move(solve)] { return std::make_shared<FunctionSolver>(solve); }});
+}
+void Registry::add_absent(SolverInfo info) { absent_solvers_[info.name] = std::move(info); }
 void Registry::add(SystemInfo info) { systems_[info.name] = std::move(info); }
 void Registry::add_kernel(const std::string& group, int m, const std::string& retraction,
                           const std::string& scheme, KernelFactory factory) {
@@ -44,6 +70,9 @@ const RetractionInfo* Registry::retraction(const std::string& group,
 }
 const SchemeInfo* Registry::scheme(const std::string& name) const { return find(schemes_, name); }
 const SolverInfo* Registry::solver(const std::string& name) const { return find(solvers_, name); }
+const SolverInfo* Registry::absent_solver(const std::string& name) const {
+  return find(absent_solvers_, name);
+}
 const SystemInfo* Registry::system(const std::string& name) const { return find(systems_, name); }
 const KernelFactory* Registry::kernel(const std::string& group, int m,
                                       const std::string& retraction,
@@ -67,6 +96,14 @@ std::vector<std::string> Registry::retractions(const std::string& group) const {
 }
 std::vector<std::string> Registry::schemes() const { return names(schemes_); }
 std::vector<std::string> Registry::solvers() const { return names(solvers_); }
+std::vector<std::string> Registry::absent_solvers() const { return names(absent_solvers_); }
+std::string Registry::missing_solver(const std::string& name) const {
+  if (const SolverInfo* info = absent_solver(name)) {
+    return fmt::format("solver '{}' needs the package {}: install it and build again", name,
+                       info->package);
+  }
+  return unknown_name("solver", name, solvers());
+}
 std::vector<std::string> Registry::systems() const { return names(systems_); }
 
 }  // namespace hamel

@@ -34,7 +34,15 @@ struct SolverInfo {
   std::string name, summary, source;
   /// Null for the solver that is compiled into the kernels.
   std::function<std::shared_ptr<Solver>()> make;
+  std::string method = {};   // what an iteration does
+  std::string stops = {};    // what ends a solve
+  std::string package = {};  // the Debian package that brings it, where one is needed
 };
+
+/// A solver as one function: improve x, the guess, until |F(x)| <= tolerance. F comes scaled, and x is
+/// judged by the best residual that was evaluated: no report is asked for.
+using SolveFunction =
+    std::function<void(const Equation& equation, std::span<double> x, double tolerance)>;
 
 using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
 
@@ -46,6 +54,9 @@ class Registry {
   void add(SchemeInfo info);
   void add(SolverInfo info);
   void add(SystemInfo info);
+  void add_solver(const std::string& name, const std::string& summary, SolveFunction solve);
+  /// A solver that this build has not, for want of info.package: no solver(), but words about it.
+  void add_absent(SolverInfo info);
   /// m = kRunTime: a kernel for any number of admissible directions.
   void add_kernel(const std::string& group, int m, const std::string& retraction,
                   const std::string& scheme, KernelFactory factory);
@@ -55,6 +66,7 @@ class Registry {
   const RetractionInfo* retraction(const std::string& group, const std::string& name) const;
   const SchemeInfo* scheme(const std::string& name) const;
   const SolverInfo* solver(const std::string& name) const;
+  const SolverInfo* absent_solver(const std::string& name) const;
   const SystemInfo* system(const std::string& name) const;
   /// The kernel compiled for m if there is one, else the one for any m.
   const KernelFactory* kernel(const std::string& group, int m, const std::string& retraction,
@@ -66,13 +78,16 @@ class Registry {
   std::vector<std::string> retractions(const std::string& group) const;
   std::vector<std::string> schemes() const;
   std::vector<std::string> solvers() const;
+  std::vector<std::string> absent_solvers() const;
+  /// Why there is no solver of this name: a nearest name, or the package to install.
+  std::string missing_solver(const std::string& name) const;
   std::vector<std::string> systems() const;
 
  private:
   std::map<std::string, GroupInfo> groups_;
   std::map<std::pair<std::string, std::string>, RetractionInfo> retractions_;  // (group, name)
   std::map<std::string, SchemeInfo> schemes_;
-  std::map<std::string, SolverInfo> solvers_;
+  std::map<std::string, SolverInfo> solvers_, absent_solvers_;
   std::map<std::string, SystemInfo> systems_;
   std::map<std::string, KernelFactory> kernels_;
 };

@@ -46,6 +46,14 @@ Json element(const Result& result) {
   return out;
 }
 
+Json fallbacks(const SolverStats& stats) {
+  Json out = Json::array();
+  for (const Fallback& f : stats.first_fallbacks) {
+    out.push_back({{"step", f.step}, {"time", number(f.time)}, {"action", f.action}});
+  }
+  return out;
+}
+
 Json record_of(const Result& r) {
   Json parameters = Json::object();
   for (const Field& field : r.system.fields) {
@@ -65,6 +73,7 @@ Json record_of(const Result& r) {
       {"retraction", r.config.retraction},
       {"solver", r.config.solver},
       {"tolerance", r.config.tolerance},
+      {"on_failure", r.config.on_failure},
       {"compose", r.config.compose},
       {"step", r.config.step},
       {"until", r.config.until},
@@ -101,6 +110,7 @@ Json record_of(const Result& r) {
         {"iterations_max", r.stats.iterations_max},
         {"evaluations_mean", static_cast<double>(r.stats.evaluations) / steps},
         {"residual_max", number(r.stats.residual_max)}}},
+      {"fallbacks", {{"count", r.stats.fallbacks}, {"first", fallbacks(r.stats)}}},
       {"timing", {{"seconds", r.seconds}, {"nanoseconds_per_step", r.seconds * 1e9 / steps}}},
       {"version", version()},
       {"git", git_hash()},
@@ -160,6 +170,11 @@ std::string Result::report() const {
   line("solver", fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
                              static_cast<double>(stats.iterations) / count, stats.iterations_max,
                              stats.residual_max));
+  if (stats.fallbacks > 0) {
+    const Fallback& first = stats.first_fallbacks.front();
+    line("fallbacks", fmt::format("{} of {} steps; the first, step {} (t = {:.6g}): {}",
+                                  stats.fallbacks, steps, first.step, first.time, first.action));
+  }
   line("constraint residual", fmt::format("{:.2e}", constraint_max));
   line("group defect", fmt::format("{:.2e}", group_defect_max));
   line("energy error", fmt::format("{:.2e} (relative)", energy_error_max));

@@ -124,6 +124,10 @@ Simulation& Simulation::solver(std::string name, SolverOptions options) {
   config_.tolerance = options.tolerance;
   return *this;
 }
+Simulation& Simulation::on_failure(std::string policy) {
+  config_.on_failure = std::move(policy);
+  return *this;
+}
 Simulation& Simulation::compose(std::string name) {
   config_.compose = std::move(name);
   return *this;

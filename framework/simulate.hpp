@@ -65,6 +65,9 @@ class Simulation {
   Simulation& s(double value);
   Simulation& retraction(std::string name);
   Simulation& solver(std::string name, SolverOptions options = {});
+  /// What becomes of a step that fails: "stop" (default), "retry:<solver>" (solved again by another),
+  /// "halve" (taken as two halves, each of which may be halved again).
+  Simulation& on_failure(std::string policy);
   /// A composition table by name: none, yoshida4, suzuki4, ...
   Simulation& compose(std::string name);
   /// The step h in seconds, of either sign.

@@ -63,6 +63,17 @@ class Inverse {
 struct Newton {
   static constexpr int max_iterations = 50;
   static std::string name() { return "newton"; }
+  static std::string summary() {
+    return "Newton with the Jacobian kept while it contracts, compiled into the kernels";
+  }
+  static std::string method() {
+    return "x <- x - J^-1 F(x), halved where a fresh J does not reduce |F|";
+  }
+  static std::string stops() {
+    return "the residual at two digits below the tolerance, or where it stops falling; 50 "
+           "iterations";
+  }
+  static std::string source() { return "Kelley 2003"; }
 
   /// The factors of the last Jacobian, kept from one step of a run to the next.
   template <class Step>

@@ -1,4 +1,8 @@
 // The composition root: the one file that links everything by name.
+#include <hamel/solvers/ceres.hpp>
+#include <hamel/solvers/ceres_tiny.hpp>
+#include <hamel/solvers/hybrid.hpp>
+#include <hamel/solvers/nlopt.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
 #include <hamel/systems/kernels/groups.hpp>
 #include <hamel/systems/rolling_disk.hpp>
@@ -7,6 +11,38 @@
 
 namespace hamel {
 namespace {
+
+template <class S>
+SolverInfo words_of(const S& solver) {
+  SolverInfo info{solver.name(), solver.summary(), solver.source(),
+                  nullptr,       solver.method(),  solver.stops()};
+  if constexpr (requires { solver.package(); }) info.package = solver.package();
+  return info;
+}
+
+template <class S>
+void add_solver(Registry& registry, const S& solver) {
+  SolverInfo info = words_of(solver);
+  if constexpr (requires { solver.make(); }) info.make = [solver] { return solver.make(); };
+  registry.add(std::move(info));
+}
+
+void add_solvers(Registry& registry) {
+  add_solver(registry, Newton{});
+  add_solver(registry, Hybrid{});
+#ifdef HAMEL_HAS_CERES
+  add_solver(registry, Ceres{});
+  add_solver(registry, CeresTiny{});
+#else
+  registry.add_absent(words_of(Ceres{}));
+  registry.add_absent(words_of(CeresTiny{}));
+#endif
+#ifdef HAMEL_HAS_NLOPT
+  for (const Nlopt& algorithm : kNlopt) add_solver(registry, algorithm);
+#else
+  for (const Nlopt& algorithm : kNlopt) registry.add_absent(words_of(algorithm));
+#endif
+}
 
 Registry make_registry() {
   Registry registry;
@@ -19,9 +55,7 @@ Registry make_registry() {
 
   Schemes::for_each(
       [&]<class Scheme>(std::type_identity<Scheme>) { registry.add(scheme_info<Scheme>()); });
-  registry.add(SolverInfo{
-      Newton::name(), "Newton with the Jacobian kept while it contracts, compiled into the kernels",
-      "Kelley 2003", nullptr});
+  add_solvers(registry);
 
   add_system<Suslov>(registry);
   add_system<ChaplyginSleigh>(registry);

@@ -45,6 +45,8 @@ TEST_F(BadInput, Names) {
   refused({"suslov", "--scheme", "lfit"}, "did you mean 'lift'?");
   refused({"suslov", "--retraction", "cayly"}, "did you mean 'cayley'?");
   refused({"suslov", "--solver", "newtn"}, "did you mean 'newton'?");
+  refused({"suslov", "--on-failure", "hlave"}, "did you mean 'halve'?");
+  refused({"suslov", "--on-failure", "retry:newtn"}, "did you mean 'newton'?");
   refused({"suslov", "--compose", "suzuki"}, "did you mean 'suzuki4'?");
   refused({"suslov", "--set", "inerta=1,2,3"}, "did you mean 'inertia'?");
   refused({"chaplygin_sleigh", "--retraction", "polar"}, "unknown retraction of se2 'polar'");

@@ -53,7 +53,7 @@ TEST_F(List, HasThePromisedNames) {
   expect("groups", {"so2", "so3", "se2", "se3", "r2", "se2*so2"});
   expect("retractions", {"exp", "cayley"});
   expect("schemes", {"lift", "balance", "boxed", "boxed_literal", "unadapted"});
-  expect("solvers", {"newton"});
+  expect("solvers", {"newton", "hybrid", "ceres", "ceres_tiny", "nlopt", "nlopt:lbfgs"});
   expect("systems", {"suslov", "chaplygin_sleigh", "rolling_disk"});
 }
 
@@ -127,8 +127,8 @@ TEST_F(Help, OfEveryCommandHasExamples) {
   const std::string help = run({"run", "--help"}).out;
   for (const char* option :
        {"--set", "--configuration", "--velocity", "--momentum", "--scheme", "--s", "--retraction",
-        "--solver", "--tolerance", "--compose", "--step", "--until", "--every", "-o", "--report",
-        "--config", "--json", "--quiet"}) {
+        "--solver", "--tolerance", "--on-failure", "--compose", "--step", "--until", "--every",
+        "-o", "--report", "--config", "--json", "--quiet"}) {
     EXPECT_THAT(help, HasSubstr(option));
   }
   EXPECT_THAT(help, HasSubstr("Exit status"));

@@ -75,7 +75,8 @@ TEST_F(Record, HasExactlyTheseKeys) {
                         "parameters", "status", "reason", "steps", "time", "final", "diagnostics",
                         "solver_stats", "timing", "version", "git", "host",
                         // added to the contract's:
-                        "tolerance", "until", "every", "start", "notes", "failure"));
+                        "tolerance", "on_failure", "until", "every", "start", "notes", "failure",
+                        "fallbacks"));
 }
 
 TEST_F(Record, OfEverySystem) {

@@ -24,6 +24,7 @@ void expect_equal(const Config& a, const Config& b) {
   EXPECT_EQ(a.retraction, b.retraction);
   EXPECT_EQ(a.solver, b.solver);
   EXPECT_EQ(a.tolerance, b.tolerance);
+  EXPECT_EQ(a.on_failure, b.on_failure);
   EXPECT_EQ(a.compose, b.compose);
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.until, b.until);
@@ -42,6 +43,7 @@ Config unusual() {
   c.s = 0.1 + 0.2;
   c.retraction = "polar";
   c.tolerance = 3e-15;
+  c.on_failure = "retry:hybrid";
   c.compose = "suzuki4";
   c.step = -1.0 / 7;
   c.until = -1e5;

@@ -4,6 +4,11 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS hamel_framework hamel_groups hamel_solvers hamel_systems hamel_umbrella
         EXPORT hamelTargets FILE_SET HEADERS)
+foreach(package ceres nlopt)
+  if(TARGET hamel_solvers_${package})
+    install(TARGETS hamel_solvers_${package} EXPORT hamelTargets)
+  endif()
+endforeach()
 if(TARGET hamel_program)
   install(TARGETS hamel_program)
 endif()

@@ -27,6 +27,29 @@ else()  # CMake's FindHDF5 wants a C compiler, which this project does not ask f
   endif()
 endif()
 
+foreach(package CERES NLOPT)
+  set(HAMEL_${package} AUTO CACHE STRING
+      "Solvers of ${package}: ON fails without the package, AUTO builds without them, OFF never")
+  set_property(CACHE HAMEL_${package} PROPERTY STRINGS AUTO ON OFF)
+endforeach()
+
+# hamel_find_optional(CERES Ceres): HAMEL_HAS_CERES, by HAMEL_CERES and what is installed.
+function(hamel_find_optional package name)
+  set(found FALSE)
+  if(NOT HAMEL_${package} STREQUAL "OFF")
+    set(required)
+    if(HAMEL_${package} STREQUAL "ON")
+      set(required REQUIRED)
+    endif()
+    find_package(${name} ${required} QUIET GLOBAL)
+    set(found ${${name}_FOUND})
+    if(NOT found)
+      message(STATUS "hamel: no ${name}: its solvers are left out")
+    endif()
+  endif()
+  set(HAMEL_HAS_${package} ${found} PARENT_SCOPE)
+endfunction()
+
 if(PROJECT_IS_TOP_LEVEL)
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo or MinSizeRel" FORCE)

@@ -109,15 +109,26 @@ Json describe_scheme(const SchemeInfo& info) {
           {"source", info.source}};
 }
 
+Json describe_solver(const SolverInfo& info, bool built) {
+  Json out = {{"kind", "solver"},
+              {"name", info.name},
+              {"summary", info.summary},
+              {"method", info.method},
+              {"stops_at", info.stops},
+              {"judged_by", "|F(x)|/scale <= tolerance, evaluated at the x returned"},
+              {"package", info.package},
+              {"source", info.source}};
+  if (!built) out["built"] = registry().missing_solver(info.name);
+  return out;
+}
+
 Json description_of(const std::string& name) {
   const Registry& all = registry();
   if (const SystemInfo* info = all.system(name)) return describe_system(*info);
   if (const GroupInfo* info = all.group(name)) return describe_group(*info);
   if (const SchemeInfo* info = all.scheme(name)) return describe_scheme(*info);
-  if (const SolverInfo* info = all.solver(name)) {
-    return {
-        {"kind", "solver"}, {"name", name}, {"summary", info->summary}, {"source", info->source}};
-  }
+  if (const SolverInfo* info = all.solver(name)) return describe_solver(*info, true);
+  if (const SolverInfo* info = all.absent_solver(name)) return describe_solver(*info, false);
   if (name.find('*') != std::string::npos) {
     if (const Json product = describe_product(name); !product.is_null()) return product;
   }

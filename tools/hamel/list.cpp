@@ -84,6 +84,11 @@ std::vector<Table> tables() {
   for (const std::string& name : all.solvers()) {
     solvers.rows.push_back({name, all.solver(name)->summary});
   }
+  for (const std::string& name : all.absent_solvers()) {
+    const SolverInfo& info = *all.absent_solver(name);
+    solvers.rows.push_back(
+        {name, fmt::format("not built (needs {}): {}", info.package, info.summary)});
+  }
   Table systems{"systems", {"name", "group", "parameters", "summary"}, {}};
   for (const std::string& name : all.systems()) {
     const SystemInfo& info = *all.system(name);

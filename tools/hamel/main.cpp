@@ -48,7 +48,7 @@ struct RunLine {
   std::string system, config_file;
   std::optional<std::string> configuration, velocity, momentum;
   std::vector<std::string> sets;
-  std::optional<std::string> scheme, retraction, solver, compose;
+  std::optional<std::string> scheme, retraction, solver, on_failure, compose;
   std::optional<double> s, tolerance, step, until;
   std::optional<long> every;
   RunOptions options;
@@ -67,6 +67,8 @@ struct RunLine {
     app.add_option("--retraction", retraction, "retraction map [cayley]");
     app.add_option("--solver", solver, "implicit-equation solver [newton]");
     app.add_option("--tolerance", tolerance, "relative residual of each step [1e-13]");
+    app.add_option("--on-failure", on_failure,
+                   "a step that fails: stop, halve, or retry:<solver> [stop]");
     app.add_option("--compose", compose,
                    "none, yoshida4, suzuki4, yoshida6, kahan_li6 or suzuki_umeno8 [none]");
     app.add_option("--step", step, "step in seconds, of either sign [0.01]");
@@ -98,6 +100,7 @@ struct RunLine {
     take(scheme, config.scheme);
     take(retraction, config.retraction);
     take(solver, config.solver);
+    take(on_failure, config.on_failure);
     take(compose, config.compose);
     take(s, config.s);
     take(tolerance, config.tolerance);

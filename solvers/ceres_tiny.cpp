@@ -1,0 +1,85 @@
+#include <hamel/solvers/ceres_tiny.hpp>
+
+#include <limits>
+
+#include <ceres/tiny_solver.h>
+
+#include <hamel/framework/scaled_equation.hpp>
+
+namespace hamel {
+namespace {
+
+// F with its size fixed up to 4, so that the small solves stay free of heap.
+template <int N>
+struct Function {
+  using Scalar = double;
+  enum { NUM_RESIDUALS = N, NUM_PARAMETERS = N };
+  const ScaledEquation* equation = nullptr;
+
+  int NumResiduals() const { return equation->size(); }
+  int NumParameters() const { return equation->size(); }
+  bool operator()(const double* x, double* f, double* jacobian) const {
+    const size_t n = N == Eigen::Dynamic ? static_cast<size_t>(equation->size()) : N;
+    equation->evaluate({x, n}, {f, n}, {jacobian, jacobian == nullptr ? 0 : n * n});
+    return true;
+  }
+};
+
+template <int N>
+class Tiny {
+ public:
+  SolveReport solve(ScaledEquation& equation, std::span<double> x) {
+    const Function<N> function{&equation};
+    const auto n = static_cast<Eigen::Index>(x.size());
+    x_ = Eigen::Map<const Parameters>(x.data(), n);
+    value_.resize(n);
+    // TinySolver asks its cost threshold at the guess already; a guess that meets it is corrected once.
+    function(x_.data(), value_.data(), nullptr);
+    const double target = equation.target();
+    const bool met = equation.residual() <= target;
+    tiny_.options.cost_threshold = met ? 0 : 0.5 * target * target;
+    tiny_.options.max_num_iterations = met ? 2 : 50;  // the first of them is the guess
+    tiny_.options.function_tolerance = tiny_.options.gradient_tolerance = 0;
+    tiny_.options.parameter_tolerance = std::numeric_limits<double>::epsilon();
+    tiny_.options.initial_trust_region_radius = 1e16;
+    if (equation.finite()) tiny_.Solve(function, &x_);
+    const bool ran_out =
+        !met && tiny_.summary.status == ceres::TinySolver<Function<N>>::HIT_MAX_ITERATIONS;
+    return equation.finish(x, tiny_.summary.iterations,
+                           ran_out ? Reason::max_iterations : Reason::stagnated);
+  }
+
+ private:
+  using Parameters = Eigen::Matrix<double, N, 1>;
+  ceres::TinySolver<Function<N>> tiny_;
+  Parameters x_, value_;
+};
+
+class CeresTinySolver final : public Solver {
+ public:
+  SolveReport solve(const Equation& equation, std::span<double> x, double tolerance) override {
+    equation_.start(equation, x, tolerance);
+    switch (x.size()) {
+      case 1: return one_.solve(equation_, x);
+      case 2: return two_.solve(equation_, x);
+      case 3: return three_.solve(equation_, x);
+      case 4: return four_.solve(equation_, x);
+      default: return any_.solve(equation_, x);
+    }
+  }
+  EIGEN_MAKE_ALIGNED_OPERATOR_NEW
+
+ private:
+  ScaledEquation equation_;
+  Tiny<1> one_;
+  Tiny<2> two_;
+  Tiny<3> three_;
+  Tiny<4> four_;
+  Tiny<Eigen::Dynamic> any_;
+};
+
+}  // namespace
+
+std::shared_ptr<Solver> CeresTiny::make() { return std::make_shared<CeresTinySolver>(); }
+
+}  // namespace hamel
