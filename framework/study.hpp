@@ -107,6 +107,7 @@ struct StudyMetrics {
   std::vector<double> nanoseconds;  // per step, one for each timing round
   // From all cells together.
   double order = kNotMeasured;              // least-squares slope of log error over log step
+  double order_finest = kNotMeasured;       // the same from the two finest of the points used
   int order_points = 0, order_of = 0;       // the points used, of how many
   double solver_difference = kNotMeasured;  // of `final`, from the first solver of the same cell
 

@@ -32,17 +32,20 @@ class Tiny {
     const Function<N> function{&equation};
     const auto n = static_cast<Eigen::Index>(x.size());
     x_ = Eigen::Map<const Parameters>(x.data(), n);
-    value_.resize(n);
-    // TinySolver asks its cost threshold at the guess already; a guess that meets it is corrected once.
-    function(x_.data(), value_.data(), nullptr);
     const double target = equation.target();
-    const bool met = equation.residual() <= target;
-    tiny_.options.cost_threshold = met ? 0 : 0.5 * target * target;
-    tiny_.options.max_num_iterations = met ? 2 : 50;  // the first of them is the guess
     tiny_.options.function_tolerance = tiny_.options.gradient_tolerance = 0;
     tiny_.options.parameter_tolerance = std::numeric_limits<double>::epsilon();
     tiny_.options.initial_trust_region_radius = 1e16;
-    if (equation.finite()) tiny_.Solve(function, &x_);
+    tiny_.options.cost_threshold = 0.5 * target * target;
+    tiny_.options.max_num_iterations = 50;
+    tiny_.Solve(function, &x_);
+    // TinySolver asks its cost threshold at the guess already; a guess that meets it is corrected once.
+    const bool met = tiny_.summary.iterations == 0 && equation.residual() > 0;
+    if (met) {
+      tiny_.options.cost_threshold = 0;
+      tiny_.options.max_num_iterations = 2;  // the first of them is the guess
+      tiny_.Solve(function, &x_);
+    }
     const bool ran_out =
         !met && tiny_.summary.status == ceres::TinySolver<Function<N>>::HIT_MAX_ITERATIONS;
     return equation.finish(x, tiny_.summary.iterations,
@@ -52,7 +55,7 @@ class Tiny {
  private:
   using Parameters = Eigen::Matrix<double, N, 1>;
   ceres::TinySolver<Function<N>> tiny_;
-  Parameters x_, value_;
+  Parameters x_;
 };
 
 class CeresTinySolver final : public Solver {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include <hamel/framework/compiled_kernel.hpp>
 #include <hamel/framework/registry.hpp>
 #include <hamel/framework/schemes/balance.hpp>
 #include <hamel/framework/schemes/boxed.hpp>

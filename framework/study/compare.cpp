@@ -26,7 +26,9 @@ std::vector<std::vector<size_t>> groups(const std::vector<StudyCell>& cells, con
 
 void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
              const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics) {
-  for (const auto& group : groups(cells, "step")) {
+  for (auto& group : groups(cells, "step")) {
+    std::sort(group.begin(), group.end(),
+              [&](size_t a, size_t b) { return cells[a].config.step > cells[b].config.step; });
     std::vector<double> steps, errors;
     for (const size_t i : group) {
       const StudyMetrics& m = metrics[i];
@@ -35,8 +37,13 @@ void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
         errors.push_back(std::log(m.error));
       }
     }
+    const size_t used = steps.size();
+    const double finest =
+        used < 2 ? kNotMeasured
+                 : slope({steps[used - 2], steps[used - 1]}, {errors[used - 2], errors[used - 1]});
     for (const size_t i : group) {
       metrics[i].order = slope(steps, errors);
+      metrics[i].order_finest = finest;
       metrics[i].order_points = static_cast<int>(steps.size());
       metrics[i].order_of = static_cast<int>(group.size());
     }

@@ -99,6 +99,8 @@ Table StudyResult::table() const {
              [](Cell, Metrics m) { return m.floor; });
   c.measured("order", "1", "slope of log error over log step, least squares",
              [](Cell, Metrics m) { return m.order; });
+  c.measured("order_finest", "1", "the same from the two finest steps used",
+             [](Cell, Metrics m) { return m.order_finest; });
   c.measured("order_points", "1", "steps used for it: above the floor, below 0.1 of the motion",
              [](Cell, Metrics m) { return m.order_points; });
   c.measured("order_of", "1", "steps there are", [](Cell, Metrics m) { return m.order_of; });
@@ -168,8 +170,7 @@ std::string StudyResult::record() const {
         {"fmt",
          fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
         {"hdf5", hdf5_version()}}},
-      {"fingerprint", config.fingerprint()},
-      {"study", config.text},
+      {"study", config.text.empty() ? config.fingerprint() : config.text},
   }
       .dump(2);
 }

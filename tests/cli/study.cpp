@@ -125,7 +125,7 @@ TEST_F(StudyCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
 TEST_F(StudyCommand, GoesOnAfterAKill) {
   std::string longer = kSmall;
   longer.replace(longer.find("repeats = 2"), 11, "repeats = 40");
-  longer.replace(longer.find("until = 2"), 9, "until = 100");
+  longer.replace(longer.find("until = 2"), 9, "until = 40");
   const std::string name = study(longer);
   for (const int signal : {SIGKILL, SIGINT}) {
     const pid_t child = fork();
@@ -217,7 +217,7 @@ velocity = [3, 1, 0]
 /// The bar with the time left, on a terminal only.
 TEST_F(StudyCommand, ShowsProgressOnATerminal) {
   std::string longer = kSmall;
-  longer.replace(longer.find("until = 2"), 9, "until = 1500");
+  longer.replace(longer.find("until = 2"), 9, "until = 800");
   const std::string name = study(longer);
   if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1)";
   const std::string command = "cd " + file("") + " && script -qec \"$HAMEL_PROGRAM study " + name +

@@ -127,7 +127,7 @@ endfunction()
 function(hamel_page_script name)
   add_test(NAME page/${name} COMMAND ${HAMEL_NODE} ${ARGN}
            WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/tools/report)
-  set_tests_properties(page/${name} PROPERTIES LABELS page TIMEOUT 600)
+  set_tests_properties(page/${name} PROPERTIES LABELS page TIMEOUT 1200)
   if(NOT HAMEL_REPORT_PAGE STREQUAL "ON")
     set_tests_properties(page/${name} PROPERTIES SKIP_RETURN_CODE 77)
   endif()

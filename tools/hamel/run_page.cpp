@@ -32,11 +32,17 @@ std::string headline(const Result& r) {
         "Failed in step {} at t = {:.6g}: {} (residual {:.2e}). {} good steps are kept.",
         r.status.step, r.status.time, r.status.reason, r.status.residual, r.steps);
   }
-  return fmt::format(
+  std::string out = fmt::format(
       "{} steps of h = {} to t = {:.6g}; constraint residual at most {:.1e}, group "
       "defect at most {:.1e}, energy error at most {:.1e}.",
       r.steps, r.config.step, r.last.time, r.constraint_max, r.group_defect_max,
       r.energy_error_max);
+  if (r.stats.fallbacks > 0) {
+    const Fallback& first = r.stats.first_fallbacks.front();
+    out += fmt::format(" {} steps failed and were rescued, the first at t = {:.6g}: {}.",
+                       r.stats.fallbacks, first.time, first.action);
+  }
+  return out;
 }
 
 }  // namespace

@@ -150,7 +150,8 @@ class StudyPage {
     axes.pop_back();  // the step
     std::vector<std::string> columns = view_.varying_without({"step"});
     const std::vector<std::string> shown = columns;
-    for (const char* more : {"order", "claimed", "verdict", "points", "of", "least error"})
+    for (const char* more :
+         {"order", "finest", "claimed", "verdict", "points", "of", "least error"})
       columns.emplace_back(more);
     std::vector<std::vector<Cell>> rows;
     for (const auto& [key, cells] : view_.groups(axes)) {
@@ -162,12 +163,13 @@ class StudyPage {
       std::vector<Cell> row;
       for (const std::string& axis : shown)
         row.emplace_back(view_.cell(cells.front()).axes.at(axis));
-      const char* verdict = claim == 0                ? "claims none"
-                            : std::isnan(m.order)     ? "not measured"
-                            : m.order >= claim - 0.25 ? "ok"
-                                                      : "below its claim";
-      for (const Cell& cell : std::vector<Cell>{m.order, static_cast<double>(claim), verdict,
-                                                static_cast<double>(m.order_points),
+      const char* verdict = claim == 0                       ? "claims none"
+                            : std::isnan(m.order)            ? "not measured"
+                            : m.order >= claim - 0.25        ? "ok"
+                            : m.order_finest >= claim - 0.25 ? "finest only"
+                                                             : "below its claim";
+      for (const Cell& cell : std::vector<Cell>{m.order, m.order_finest, static_cast<double>(claim),
+                                                verdict, static_cast<double>(m.order_points),
                                                 static_cast<double>(m.order_of), least})
         row.push_back(cell);
       rows.push_back(std::move(row));
@@ -258,8 +260,10 @@ class StudyPage {
     for (const size_t i : view_.run()) {
       std::vector<Cell> row;
       for (const TableColumn* column : shown) {
-        if (const auto* numbers = std::get_if<std::vector<double>>(&column->values))
-          row.emplace_back((*numbers)[i]);
+        const auto* numbers = std::get_if<std::vector<double>>(&column->values);
+        const auto axis = view_.cell(i).axes.find(column->name);
+        if (axis != view_.cell(i).axes.end()) row.emplace_back(axis->second);  // as it was given
+        else if (numbers != nullptr) row.emplace_back((*numbers)[i]);
         else row.emplace_back(column->text(i));
       }
       rows.push_back(std::move(row));
@@ -270,20 +274,35 @@ class StudyPage {
         true);
   }
 
+  // One row for all steps of a kind.
   void skipped() {
-    std::vector<std::vector<Cell>> rows;
+    std::vector<std::vector<std::string>> kinds;
+    std::vector<std::string> steps;
     for (const StudyCell& cell : result_.cells) {
       if (cell.runs()) continue;
-      std::vector<Cell> row;
-      for (const std::string& axis : study_axes()) row.emplace_back(cell.axes.at(axis));
-      row.emplace_back(cell.skipped);
-      row.emplace_back(cell.why);
-      rows.push_back(std::move(row));
+      std::vector<std::string> row;
+      for (const std::string& axis : study_axes())
+        if (axis != "step") row.push_back(cell.axes.at(axis));
+      row.push_back(cell.skipped);
+      row.push_back(cell.why);
+      const auto at =
+          static_cast<size_t>(std::find(kinds.begin(), kinds.end(), row) - kinds.begin());
+      if (at == kinds.size()) {
+        kinds.push_back(row);
+        steps.push_back(cell.axes.at("step"));
+      } else {
+        steps[at] += ", " + cell.axes.at("step");
+      }
     }
-    if (rows.empty()) return;
+    if (kinds.empty()) return;
     std::vector<std::string> columns = study_axes();
-    columns.emplace_back("kind");
-    columns.emplace_back("why");
+    columns.back() = "kind";
+    columns.insert(columns.end(), {"why", "steps"});
+    std::vector<std::vector<Cell>> rows;
+    for (size_t i = 0; i < kinds.size(); ++i) {
+      rows.emplace_back(kinds[i].begin(), kinds[i].end());
+      rows.back().emplace_back(steps[i]);
+    }
     page_.table("Combinations that were not run", columns, rows, "", true);
   }
 

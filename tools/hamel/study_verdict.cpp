@@ -135,11 +135,12 @@ class Judge {
     std::string text = fmt::format("{}: at the error {:.0e} the least time is {} by `{}`", system,
                                    target, time_words(ranked[0].first), ranked[0].second);
     if (ranked.size() > 1) {
-      text += fmt::format(
-          ", then {:.2g} times that by `{}`; the slowest of {} that get there takes "
-          "{:.2g} times as long: `{}`",
-          ranked[1].first / ranked[0].first, ranked[1].second, ranked.size(),
-          ranked.back().first / ranked[0].first, ranked.back().second);
+      const double next = ranked[1].first / ranked[0].first;
+      text += next < 1.05 ? fmt::format(", level with it `{}`", ranked[1].second)
+                          : fmt::format(", then {:.3g} times that by `{}`", next, ranked[1].second);
+      text +=
+          fmt::format("; the slowest of {} that get there takes {:.3g} times as long: `{}`",
+                      ranked.size(), ranked.back().first / ranked[0].first, ranked.back().second);
     }
     text += ".";
     if (!never.empty())
@@ -154,7 +155,7 @@ class Judge {
   }
 
   void orders() {
-    std::vector<std::string> axes = study_axes(), short_of;
+    std::vector<std::string> axes = study_axes(), short_of, late;
     axes.pop_back();  // the step
     size_t measured = 0, reach = 0;
     std::vector<std::string> unknown;
@@ -174,8 +175,9 @@ class Judge {
         ++reach;
         worst = std::min(worst, m.order - claim);
       } else {
-        short_of.push_back(fmt::format("{} {:.2f} of {} ({} of {} steps)", name, m.order, claim,
-                                       m.order_points, m.order_of));
+        auto& list = m.order_finest >= claim - kShortOfClaim ? late : short_of;
+        list.push_back(fmt::format("{} {:.2f} of {} ({} of {} steps; the two finest {:.2f})", name,
+                                   m.order, claim, m.order_points, m.order_of, m.order_finest));
       }
     }
     if (measured > 0) {
@@ -184,6 +186,7 @@ class Judge {
                       measured, kShortOfClaim);
       if (reach > 0) text += fmt::format(" (at worst {:+.2f})", worst);
       text += ".";
+      if (!late.empty()) text += " Only with the finest steps: " + first_few(late, 6) + ".";
       if (!short_of.empty()) text += " Below it: " + first_few(short_of, 8) + ".";
       say(short_of.empty() ? "ok" : "failed", text);
     }

@@ -67,12 +67,14 @@ export function animation(block) {
     again = true;
     if (drawing) return;
     drawing = true;
-    requestAnimationFrame(async () => {
-      again = false;
-      await paint();
-      drawing = false;
-      if (again) repaint();
-    });
+    canvas.setAttribute('aria-busy', 'true');
+    requestAnimationFrame(paintNow);
+  };
+  const paintNow = async () => {
+    again = false;
+    await paint();
+    drawing = false;
+    if (again) repaint(); else canvas.setAttribute('aria-busy', 'false');
   };
   const look = (change) => {
     change();
@@ -115,14 +117,15 @@ export function animation(block) {
     h('div', { class: 'player' }, play, bar, clock, h('label', {}, 'speed ', speed), h('span', { class: 'views' }, tools)),
     notes.map((text) => h('p', { class: 'remark' }, text)), block.note ? h('p', { class: 'remark' }, inline(block.note)) : null]);
   const draw = () => {
+    drawing = true;  // until all is set
     if (solid) stage = makeStage(motion, grid, trails, view.depth);
     else flat = makeFlat(motion, grid);
     view.handle(canvas, look, () => (playing ? pause() : run()));
     followWidth(canvas, repaint);
     say();
     seek(start);
-    look(() => { view.goHome(); });
-    return paint();
+    look(() => view.goHome());
+    return paintNow();
   };
   return { element, draw };
 }

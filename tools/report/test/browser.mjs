@@ -11,7 +11,19 @@ function skip(reason) {
   process.exit(77);
 }
 
+/** One browser for several processes: its address goes to them in $HAMEL_BROWSER. */
+export async function serve() {
+  const { playwright, options } = await find();
+  return playwright.chromium.launchServer(options);
+}
+
 export async function launch() {
+  const { playwright, options } = await find();
+  const running = process.env.HAMEL_BROWSER;
+  return running ? playwright.chromium.connect(running) : playwright.chromium.launch(options);
+}
+
+async function find() {
   const executablePath = process.env.CHROMIUM || '/usr/bin/chromium';
   if (!existsSync(executablePath)) skip(`no Chromium at ${executablePath}`);
   let playwright;
@@ -20,5 +32,5 @@ export async function launch() {
   } catch {
     skip('playwright-core is not installed (npm ci)');
   }
-  return playwright.chromium.launch({ executablePath, args: [...FLAGS, ...SOFTWARE_WEBGL] });
+  return { playwright, options: { executablePath, args: [...FLAGS, ...SOFTWARE_WEBGL] } };
 }

@@ -1,14 +1,16 @@
 // node test/check.mjs [BUILT.html]: the sample page passes render.mjs, and pages with a planted fault do not.
 
-import { spawnSync } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { serve } from './browser.mjs';
 import { fill } from './fill.mjs';
-import { luminance, sequential } from '../src/colours.js';
 import { sample } from './sample_data.mjs';
+import { body } from './sample_motion.mjs';
 import { convergence, errorMap, longTable } from './sample_study.mjs';
+import { units } from './units.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'hamel-report-'));
@@ -42,6 +44,11 @@ function bent(block, file, from, to) {
   return fill(readFileSync(output, 'utf8'), JSON.stringify({ title: 'Fault', sections: [{ title: 'One', blocks: [block] }] }));
 }
 
+// A disk that turns about its own axis and leaves no trail: only its mark shows it.
+const spin = { kind: 'animation', title: 'Spin', view: '3d', times: [0, 8], floor: true, bodies: [{ name: 'disk',
+  poses: [[0, 0, 1, 1, 0, 0, 0], [0, 0, 1, Math.SQRT1_2, 0, 0, Math.SQRT1_2]], shapes: [{ shape: 'cylinder', radius: 1, length: 0.2, color: 'accent' }] }] };
+const shaped = (shape) => ({ ...spin, bodies: [{ ...spin.bodies[0], shapes: [shape] }] });
+
 /** name, page, exit status, what the message must say. */
 const cases = [
   ['the sample', good, 0, /passed, 0 failed/],
@@ -64,37 +71,63 @@ const cases = [
   ['a heat map with a short row', small({ ...errorMap, values: [[1], ...errorMap.values.slice(1)] }), 1, /row 1 of "values" has 1 entries, "x_values" has 5/],
   ['marks that do not fit', small({ ...errorMap, marks: [] }), 1, /"marks" has 0 rows, "y_values" has 8 values/],
   ['a filter without values', small({ ...convergence, filters: [{ name: 'system' }] }), 1, /the filter system needs the list values/],
-  ['a scale turned round', bent(errorMap, 'heatmap_draw.js', 'sequential(part(map, cell.at))', 'sequential(1 - part(map, cell.at))'), 1, /larger is darker/],
-  ['rows upside down', bent(errorMap, 'heatmap.js', 'if (rises)', 'if (!rises)'), 1, /larger is darker|is hatched/],
-  ['empty cells left white', bent(unmarked, 'heatmap_draw.js', 'cell.missing ? hatch : ', ''), 1, /is hatched and says so/],
-  ['a dead arrow key', bent(errorMap, 'heatmap.js', 'ArrowDown: [0, 1]', 'ArrowDown: [0, 0]'), 1, /heat map .*(darker|read out)/],
-  ['filters that hide nothing', bent(convergence, 'filters.js', '|| tag(tags, name) === select.value', '|| true'), 1, /the first value is chosen at the start: 40 series, not 4/],
-  ['fits left out', bent(convergence, 'curves.js', 'String(fit.text ||', 'String('), 1, /a fit is in the legend/],
-  ['words that are not looked for', bent(longTable(50, 8), 'table_filter.js', 'text(entry).includes(word)', 'true'), 1, /the words filter the rows/],
-  ['a dead drop-down', bent(longTable(50, 8), 'table_filter.js', "=== list[select.value]", '!== undefined'), 1, /a drop-down filters the rows/],
-  ['all rows at once', bent(longTable(400, 8), 'table.js', 'const SLICE = 150', 'const SLICE = 1e9'), 1, /made in slices/],
-  ['rows that never come', bent(longTable(400, 8), 'table.js', 'grow(body.childElementCount + SLICE)', 'grow(0)'), 1, /scrolling makes more rows/],
+  ['a scale turned round', () => bent(errorMap, 'heatmap_draw.js', 'sequential(part(map, cell.at))', 'sequential(1 - part(map, cell.at))'), 1, /larger is darker/],
+  ['rows upside down', () => bent(errorMap, 'heatmap.js', 'if (rises)', 'if (!rises)'), 1, /larger is darker|is hatched/],
+  ['empty cells left white', () => bent(unmarked, 'heatmap_draw.js', 'cell.missing ? hatch : ', ''), 1, /is hatched and says so/],
+  ['a dead arrow key', () => bent(errorMap, 'heatmap.js', 'ArrowDown: [0, 1]', 'ArrowDown: [0, 0]'), 1, /heat map .*(darker|read out)/],
+  ['filters that hide nothing', () => bent(convergence, 'filters.js', '|| tag(tags, name) === select.value', '|| true'), 1, /the first value is chosen at the start: 40 series, not 4/],
+  ['fits left out', () => bent(convergence, 'curves.js', 'String(fit.text ||', 'String('), 1, /a fit is in the legend/],
+  ['words that are not looked for', () => bent(longTable(50, 8), 'table_filter.js', 'text(entry).includes(word)', 'true'), 1, /the words filter the rows/],
+  ['a dead drop-down', () => bent(longTable(50, 8), 'table_filter.js', "=== list[select.value]", '!== undefined'), 1, /a drop-down filters the rows/],
+  ['all rows at once', () => bent(longTable(400, 8), 'table.js', 'const SLICE = 150', 'const SLICE = 1e9'), 1, /made in slices/],
+  ['rows that never come', () => bent(longTable(400, 8), 'table.js', 'grow(body.childElementCount + SLICE)', 'grow(0)'), 1, /scrolling makes more rows/],
+  ['a moving body alone', small(spin), 0, /passed, 0 failed/],
+  ['an unknown shape', small(shaped({ shape: 'cone' })), 1, /body 1 \(disk\): unknown shape “cone”; known are box, cylinder/],
+  ['a sphere without radius', small(shaped({ shape: 'sphere' })), 1, /a sphere needs “radius”/],
+  ['an unknown colour', small(shaped({ shape: 'sphere', radius: 1, color: 'blue' })), 1, /unknown color “blue”; known are body, accent/],
+  ['too few poses', small({ ...spin, times: [0, 1, 2] }), 1, /has 2 poses for 3 times/],
+  ['times that stand', small({ ...spin, times: [1, 1] }), 1, /"times" do not rise/],
+  ['a clock that stands', () => bent(spin, 'animation.js', '* speed.value)', '* 0)'), 1, /: plays/],
+  ['no pause', () => bent(body(), 'animation.js', "const pause = () => {\n    playing = false;", 'const pause = () => {'), 1, /: pauses/],
+  ['a dead bar', () => bent(spin, 'animation.js', 'seek(start + (bar.value / TICKS) * (end - start));', ''), 1, /: scrubs to the end/],
+  ['bodies that stand', () => bent(spin, 'animation_webgl.js', 'stand(body, poses[b])', 'stand(body, motion.bodies[b].poses[0])'), 1, /: the body has moved/],
+  ['a disk without its mark', () => bent(spin, 'animation_webgl.js', 'color: markOf(colour), side', 'color: colour, side'), 1, /: the body has moved/],
+  ['dead keys', () => bent(spin, 'view.js', 'this.turn(-0.12, 0)', 'this.turn(0, 0)'), 1, /: an arrow key turns the view/],
+  ['no dragging', () => bent(spin, 'view.js', 'this.turn(-event.movementX * perPixel, event.movementY * perPixel)', 'this.turn(0, 0)'), 1, /: dragging turns the view/],
+  ['no way home', () => bent(spin, 'animation.js', "class: 'home', onclick: () => look(() => view.goHome())", "class: 'home'"), 1, /: the view resets/],
+  ['no word about WebGL', () => bent(spin, 'animation.js', 'offers no WebGL', 'is as it is'), 1, /drawn flat and say so: 1 say nothing/],
 ];
 
 let [passed, failed] = [0, 0];
-const lights = Array.from({ length: 101 }, (_, i) => luminance(sequential(i / 100)));
-if (lights.every((light, i) => i === 0 || light < lights[i - 1])) ++passed;
-else ++failed, console.log('FAILED the colour scale gets darker throughout');
-for (const [name, html, status, message] of cases) {
-  const file = join(folder, 'page.html');
-  writeFileSync(file, html);
-  const run = spawnSync(process.execPath, [join(here, 'render.mjs'), file], { encoding: 'utf8' });
-  if (run.status === 77) {
-    console.log(run.stdout.trim());
-    process.exit(77);
-  }
-  const said = run.stdout + run.stderr;
-  if (run.status === status && message.test(said)) {
-    ++passed;
-  } else {
-    ++failed;
-    console.log(`FAILED ${name}: exit status ${run.status}, not ${status}, or not ${message}:\n${said}`);
+function judge(name, good, detail = '') {
+  if (good) ++passed;
+  else ++failed, console.log(`FAILED ${name}${detail}`);
+}
+
+units.forEach(([name, good]) => judge(name, good));
+
+const server = await serve();
+
+/** render.mjs on a page -> {status, said}. */
+const look = (file) => new Promise((resolve) => {
+  const run = spawn(process.execPath, [join(here, 'render.mjs'), file], { env: { ...process.env, HAMEL_BROWSER: server.wsEndpoint() } });
+  let said = '';
+  for (const stream of [run.stdout, run.stderr]) stream.on('data', (data) => { said += data; });
+  run.on('close', (status) => resolve({ status, said }));
+});
+
+let next = 0;
+async function work() {
+  while (next < cases.length) {
+    const number = next++;
+    const [name, html, status, message] = cases[number];
+    const file = join(folder, `page${number}.html`);
+    writeFileSync(file, typeof html === 'function' ? html() : html);
+    const run = await look(file);
+    judge(name, run.status === status && message.test(run.said), `: exit status ${run.status}, not ${status}, or not ${message}:\n${run.said}`);
   }
 }
+await Promise.all([work(), work()]);
+await server.close();
 console.log(`${passed} passed, ${failed} failed`);
 process.exit(failed === 0 ? 0 : 1);

@@ -1,4 +1,4 @@
-#include <hamel/framework/kernel.hpp>
+#include <hamel/framework/compiled_kernel.hpp>
 
 #include <algorithm>
 #include <cmath>

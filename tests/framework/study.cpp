@@ -1,0 +1,213 @@
+// Studies from C++: combinations, what cells are compared with, orders, stopping and going on.
+#include <atomic>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <hamel/framework/study/parts.hpp>
+#include <hamel/hamel.hpp>
+
+namespace {
+
+using namespace hamel;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const StudySystem kFull = {.label = "full inertia",
+                           .name = "suslov",
+                           .parameters = {{"inertia", {2, 0.3, 0.5, 3, 0.4, 4}}},
+                           .start = {.velocity = {1, 0.5, 0}}};
+
+StudyConfig small() {
+  StudyConfig config;
+  config.until = 2;
+  config.repeats = 1;
+  config.systems = {kFull};
+  config.steps = {0.1, 0.05, 0.025};
+  return config;
+}
+
+StudyResult run(const StudyConfig& config) { return Study(registry(), config).threads(2).run(); }
+
+std::vector<std::string> mistakes_of(const StudyConfig& config) {
+  try {
+    Study(registry(), config);
+  } catch (const ConfigError& error) {
+    return error.mistakes();
+  }
+  return {};
+}
+
+/// With one step size every state is compared: the error is that of a run with every step recorded.
+TEST(Study, MeasuresWhatARunMeasures) {
+  StudyConfig config = small();
+  config.steps = {0.05};
+  config.schemes = {"boxed"};
+  const StudyResult study = run(config);
+  const Result one = simulate("suslov")
+                         .set("inertia", kFull.parameters.at("inertia"))
+                         .start(kFull.start)
+                         .scheme("boxed")
+                         .step(0.05)
+                         .until(2)
+                         .run();
+  ASSERT_EQ(study.metrics.size(), 1u);
+  const StudyMetrics& m = study.metrics.front();
+  EXPECT_NEAR(m.error, one.exact_error_max, 1e-13);  // times k T/K and k h: an ulp apart
+  EXPECT_NEAR(m.error_final, one.exact_error_final, 1e-13);
+  EXPECT_NEAR(m.velocity_error, one.exact_velocity_error_max, 1e-13);
+  EXPECT_EQ(m.energy_error, one.energy_error_max);
+  EXPECT_EQ(m.constraint, one.constraint_max);
+  EXPECT_EQ(m.group_defect, one.group_defect_max);
+  EXPECT_EQ(m.iterations, one.stats.iterations);
+  EXPECT_EQ(m.evaluations, one.stats.evaluations);
+  EXPECT_EQ(m.residual, one.stats.residual_max);
+  EXPECT_EQ(m.steps, 40);
+  EXPECT_EQ(m.nanoseconds.size(), 1u);
+  EXPECT_GT(m.nanoseconds_median(), 0);
+}
+
+/// The claims of the schemes on a system without special symmetry; within 0.15 on these steps.
+TEST(Study, MeasuresOrders) {
+  StudyConfig config = small();
+  config.schemes = {"lift", "balance", "boxed", "unadapted"};
+  config.s = {0, 0.5};
+  for (const StudyResult study = run(config); const StudyCell& cell : study.cells) {
+    if (!cell.runs()) continue;
+    const StudyMetrics& m = study.metrics[static_cast<size_t>(&cell - study.cells.data())];
+    const std::string& scheme = cell.config.scheme;
+    const int order = scheme == "unadapted"                            ? 0
+                      : scheme == "lift" || cell.axes.at("s") == "0.5" ? 2
+                                                                       : 1;
+    EXPECT_EQ(cell.claimed_order, order) << scheme << cell.axes.at("s");
+    if (order > 0) {
+      EXPECT_NEAR(m.order, order, 0.15) << scheme << " s = " << cell.axes.at("s");
+    }
+    EXPECT_EQ(m.order_of, 3);
+  }
+}
+
+/// Order 6 and 8 reach round-off within these steps: points on the floor must not enter the slope.
+TEST(Study, OrdersAreFittedAboveTheFloor) {
+  StudyConfig config = small();
+  config.compositions = {"kahan_li6", "suzuki_umeno8"};
+  config.steps = {0.2, 0.1, 0.05, 0.025, 0.0125, 0.00625};
+  const StudyResult study = run(config);
+  for (const size_t i : {size_t{0}, size_t{6}}) {
+    const StudyMetrics& m = study.metrics[i];
+    EXPECT_GT(m.order, study.cells[i].claimed_order - 0.5);
+    EXPECT_GE(m.order_points, 2);
+    EXPECT_LT(m.order_points, m.order_of);
+  }
+  EXPECT_EQ(study.cells[0].claimed_order, 6);
+  EXPECT_EQ(study.cells[6].claimed_order, 8);
+}
+
+// Suslov's body that does not know its motion.
+struct Forgetful {
+  using Group = SO3;
+  std::vector<double> moments = {2, 0.3, 0.5, 3, 0.4, 4};
+  static std::string name() { return "forgetful"; }
+  Mat<3, 3> inertia() const { return Suslov{.moments = moments}.inertia(); }
+  Mat<1, 3> constraints() const { return {0, 0, 1}; }
+};
+
+/// A converged reference measures the errors that the exact motion does, to its bound.
+TEST(Study, ConvergedReferenceAgreesWithTheExact) {
+  Registry all = registry();
+  add_system<Forgetful>(all);
+  StudyConfig config = small();
+  config.schemes = {"lift", "boxed"};
+  config.systems.push_back({.label = "forgetful", .name = "forgetful", .start = kFull.start});
+  const StudyResult study = Study(all, config).run();
+  EXPECT_EQ(study.references[0].kind, "exact");
+  EXPECT_THAT(study.references[1].kind, HasSubstr("converged: lift, s = 0.5, exp, kahan_li6"));
+  const double bound = study.references[1].bound;
+  EXPECT_GT(bound, 0);
+  EXPECT_LT(bound, 1e-12);
+  const size_t half = study.cells.size() / 2;
+  for (size_t i = 0; i < half;
+       ++i) {  // the quadrature behind the exact motion has its round-off too
+    EXPECT_NEAR(study.metrics[i].error, study.metrics[half + i].error, 1e-12 + bound);
+    EXPECT_GT(study.metrics[i].error, 1e-5);
+  }
+}
+
+TEST(Study, ZippedListsRunTogether) {
+  StudyConfig config = small();
+  config.zipped = true;
+  config.schemes = {"lift", "boxed", "balance"};
+  std::vector<std::string> names;
+  const Study study(registry(), config);
+  for (const StudyCell& cell : study.cells())
+    names.push_back(cell.config.scheme + " " + cell.axes.at("step"));
+  EXPECT_THAT(names, ElementsAre("lift 0.1", "boxed 0.05", "balance 0.025"));
+  config.schemes.pop_back();
+  EXPECT_THAT(mistakes_of(config), ElementsAre(HasSubstr("scheme: 2 values, but step has 3")));
+}
+
+TEST(Study, SaysWhatIsWrong) {
+  StudyConfig config = small();
+  config.schemes = {"lfit"};
+  config.steps = {0.1, -1, 0.1};
+  config.systems.push_back(kFull);
+  config.until = 2;
+  config.repeats = 0;
+  const auto mistakes = mistakes_of(config);
+  for (const char* piece : {"did you mean 'lift'", "step: got -1", "step: 0.1 stands twice",
+                            "two systems are called 'full inertia'", "repeats: got 0"}) {
+    EXPECT_THAT(mistakes, Contains(HasSubstr(piece)));
+  }
+  config = small();
+  config.exclude = {{{{"scheme", {"lift"}}}, "nothing is good enough"}};
+  EXPECT_THAT(mistakes_of(config), ElementsAre("nothing is left to run"));
+}
+
+/// A stopped study returns what it has; the same folder then holds it, and the rest is the same.
+TEST(Study, StopsAndGoesOn) {
+  std::string folder = (std::filesystem::temp_directory_path() / "hamel_study_XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  StudyConfig config = small();
+  config.retractions = {"cayley", "exp", "polar"};
+  config.repeats = 3;
+  std::atomic<bool> stop = false;
+  Study study(registry(), config);
+  const StudyResult part = study.threads(1)
+                               .folder(folder)
+                               .stop(&stop)
+                               .progress([&](double fraction) { stop = fraction > 0.2; })
+                               .run();
+  EXPECT_FALSE(part.complete);
+  stop = false;
+  const StudyResult rest = study.progress({}).run();
+  EXPECT_TRUE(rest.complete);
+  EXPECT_GT(rest.resumed, 0u);
+  const StudyResult whole = run(config);
+  for (size_t i = 0; i < whole.metrics.size(); ++i) {
+    EXPECT_EQ(rest.metrics[i].error, whole.metrics[i].error);
+    EXPECT_EQ(rest.metrics[i].energy_slope, whole.metrics[i].energy_slope);
+    EXPECT_EQ(rest.metrics[i].order, whole.metrics[i].order);
+    EXPECT_EQ(rest.metrics[i].nanoseconds.size(), 3u);
+  }
+  const StudyConfig other = small();
+  EXPECT_THROW(Study(registry(), other).folder(folder).run(), ConfigError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Study, SlopeIsThatOfALine) {
+  EXPECT_DOUBLE_EQ(study::slope({0, 1, 2, 5}, {1, 3, 5, 11}), 2);
+  EXPECT_TRUE(std::isnan(study::slope({1, 1}, {0, 1})));
+  EXPECT_TRUE(std::isnan(study::slope({}, {})));
+}
+
+TEST(Table, QuotesWhatNeedsIt) {
+  const Table table = {
+      {{"a,b", "", "", std::vector<std::string>{"say \"x\"", "two\nlines", "plain"}},
+       {"x", "s", "", std::vector<double>{0.1, kNotMeasured, 3}}}};
+  EXPECT_EQ(table.csv(), "\"a,b\",x\n\"say \"\"x\"\"\",0.1\n\"two\nlines\",\nplain,3\n");
+  EXPECT_THROW(table.column("y"), ConfigError);
+}
+
+}  // namespace

@@ -1,0 +1,34 @@
+// What can be checked without a browser: [what, whether it is so].
+
+import { luminance, sequential } from '../src/colours.js';
+import { floorGrid, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/motion.js';
+
+const near = (a, b) => a.length === b.length && a.every((v, i) => Math.abs(v - b[i]) < 1e-12);
+const about = (axis, angle) => [Math.cos(angle / 2), ...axis.map((v) => v * Math.sin(angle / 2))];
+const X = [1, 0, 0];
+const Z = [0, 0, 1];
+const axis = [2, -1, 2].map((v) => v / 3);
+const [from, to] = [about(axis, 0.3), about(axis, 1.7)];
+const lights = Array.from({ length: 101 }, (_, i) => luminance(sequential(i / 100)));
+const quarter = about(Z, Math.PI / 2);
+const motion = readMotion({ times: [0, 1, 3], bodies: [{ name: 'b', trail: true, trail_point: [1, 0, 0], shapes: [{ shape: 'sphere', radius: 1 }],
+  poses: [[0, 0, 0, 1, 0, 0, 0], [2, 0, 0, 2 * quarter[0], 0, 0, 2 * quarter[3]], [null, 0, 0, 1, 0, 0, 0]] }] });
+const at = (t) => poseAt(motion.bodies[0], placeInTime(motion.times, t));
+const grid = floorGrid([[0, 0, 0], [10, 3, 1]]);
+
+export const units = [
+  ['the colour scale gets darker throughout', lights.every((light, i) => i === 0 || light < lights[i - 1])],
+  ['a quarter turn about z takes x to y', near(turned(quarter, X), [0, 1, 0])],
+  ['a turn keeps its axis and lengths', near(turned(from, axis), axis) && Math.abs(Math.hypot(...turned(from, [3, 4, 12])) - 13) < 1e-12],
+  ['slerp goes evenly about the common axis', [0, 0.25, 0.5, 1].every((u) => near(slerp(from, to, u), about(axis, 0.3 + 1.4 * u)))],
+  ['slerp takes the shorter arc', near(slerp(from, to.map((v) => -v), 0.5), about(axis, 1))],
+  ['slerp of nearly equal turns', near(slerp(from, about(axis, 0.3 + 1e-9), 0.5), about(axis, 0.3 + 5e-10))],
+  ['z is taken to any axis', [[1, 0, 0], [0, 0, -2], [1, -2, 3], [0, 0, 1]].every((v) =>
+    near(turned(turnFromZ(v), Z), v.map((c) => c / Math.hypot(...v))))],
+  ['poses at the nodes', near(at(0).at, [0, 0, 0]) && near(at(1).turn, quarter)],
+  ['half way between two poses', near(at(0.5).at, [1, 0, 0]) && near(at(0.5).turn, about(Z, Math.PI / 4))],
+  ['a point of the body in space', near(placed(at(1), X), [2, 1, 0]) && near(motion.bodies[0].way[1], [2, 1, 0])],
+  ['beyond the last good pose there is none', at(2) === null && at(3) === null && motion.missing === 1],
+  ['the room that a motion takes', near(motion.box[0], [-1, -1, -1]) && near(motion.box[1], [3, 1, 1])],
+  ['the floor reaches under all of it', Math.max(...grid.lines.flat().map((p) => p[0])) >= 10 && grid.lines.length < 40],
+];
