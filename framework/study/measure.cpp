@@ -60,6 +60,7 @@ class Meter {
     out_.iterations = stats.iterations;
     out_.evaluations = stats.evaluations;
     out_.iterations_max = stats.iterations_max;
+    out_.fallbacks = stats.fallbacks;
     out_.residual = stats.residual_max;
     out_.energy_slope = slope(times_, energy_);
     out_.floor =

@@ -43,7 +43,8 @@ class StudyPage {
   void divide_axes() {
     filters_ =
         view_.varies("system") ? std::vector<std::string>{"system"} : std::vector<std::string>{};
-    for (const char* axis : {"solver", "scheme", "s", "retraction", "compose", "tolerance"}) {
+    for (const char* axis :
+         {"solver", "scheme", "s", "retraction", "compose", "on_failure", "tolerance"}) {
       if (!view_.varies(axis)) continue;
       std::vector<std::string> longer = names_;
       longer.emplace_back(axis);
