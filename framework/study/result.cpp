@@ -133,7 +133,7 @@ Table StudyResult::table() const {
   c.measured("solver_difference", "columns of g",
              "at the end, from the first solver in the same cell that did not fail",
              [](Cell, Metrics m) { return m.solver_difference; });
-  c.measured("ns_per_step", "ns", "median of the timing rounds, nothing recorded",
+  c.measured("ns_per_step", "ns", "processor time, median of the timing rounds, nothing recorded",
              [](Cell, Metrics m) { return m.nanoseconds_median(); });
   c.measured("seconds", "s", "steps times ns_per_step", [](Cell, Metrics m) {
     return 1e-9 * m.nanoseconds_median() * static_cast<double>(m.steps);

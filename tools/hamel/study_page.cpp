@@ -125,7 +125,8 @@ class StudyPage {
         "Error against time",
         {.x = "time of the run [s]", .y = "trajectory error", .log_x = true, .log_y = true},
         curves([&](size_t i) { return view_.seconds(i); }, false),
-        "Steps times the median time per step, nothing recorded. Lower left is better." + missing,
+        "Steps times the median processor time per step, nothing recorded. Lower left is better." +
+            missing,
         filters);
     page_.plot(
         "Error against evaluations",
