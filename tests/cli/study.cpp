@@ -217,7 +217,7 @@ velocity = [3, 1, 0]
 /// The bar with the time left, on a terminal only.
 TEST_F(StudyCommand, ShowsProgressOnATerminal) {
   std::string longer = kSmall;
-  longer.replace(longer.find("until = 2"), 9, "until = 800");
+  longer.replace(longer.find("until = 2"), 9, "until = 2500");
   const std::string name = study(longer);
   if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1)";
   const std::string command = "cd " + file("") + " && script -qec \"$HAMEL_PROGRAM study " + name +

@@ -117,7 +117,11 @@ class Judge {
     std::sort(reached.begin(), reached.end());
     const double third = reached[(reached.size() - 1) / 3];
     if (!std::isfinite(third)) return;
-    const double target = std::pow(10.0, std::ceil(std::log10(third)));
+    double extent = 0;  // nothing above a tenth of it is worth comparing
+    for (const size_t i : of_system)
+      extent = view_.result().references[view_.cell(i).system].extent;
+    const double target = std::min(std::pow(10.0, std::ceil(std::log10(third))),
+                                   std::pow(10.0, std::floor(std::log10(kAsymptotic * extent))));
     std::vector<std::pair<double, std::string>> ranked;
     std::vector<std::string> never;
     std::vector<size_t> never_cells;
@@ -130,7 +134,10 @@ class Judge {
         never_cells.insert(never_cells.end(), cells.begin(), cells.end());
       }
     }
-    if (ranked.empty()) return;
+    if (ranked.empty())
+      return say("note",
+                 fmt::format("{}: no method gets the error down to {:.0e} with these steps.",
+                             system, target));
     std::sort(ranked.begin(), ranked.end());
     std::string text = fmt::format("{}: at the error {:.0e} the least time is {} by `{}`", system,
                                    target, time_words(ranked[0].first), ranked[0].second);
