@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/problem.hpp>
 #include <hamel/framework/scaled_equation.hpp>
 
 namespace hamel {

@@ -1,5 +1,5 @@
 // A comparative study: one run ("cell") for each combination of systems, schemes, retractions, s, solvers,
-// compositions, steps and tolerances, all measured in the same way.
+// compositions, steps, tolerances and what is done on failure, all measured in the same way.
 //
 //   auto config = hamel::read_study("readings.toml", hamel::registry());
 //   auto result = hamel::Study(hamel::registry(), config).threads(2).folder("out").run();
@@ -44,7 +44,7 @@ struct StudyConfig {
   int repeats = 3;      // timing rounds
   std::vector<StudySystem> systems;
   std::vector<std::string> schemes = {"lift"}, retractions = {"cayley"}, solvers = {"newton"},
-                           compositions = {"none"};
+                           compositions = {"none"}, on_failures = {"stop"};
   std::vector<double> s = {0.5}, steps = {0.01}, tolerances = {1e-13};
   std::vector<StudyExclusion> exclude;
   std::string text;  // the file that it came from, for the record
@@ -60,7 +60,7 @@ struct StudyConfig {
   std::string fingerprint() const;
 };
 
-/// system, scheme, retraction, s, solver, compose, tolerance, step: the last runs fastest.
+/// system, scheme, retraction, s, solver, compose, on_failure, tolerance, step: the last runs fastest.
 const std::vector<std::string>& study_axes();
 
 /// Throws ConfigError with all mistakes of the file, each with line and column.
@@ -101,6 +101,7 @@ struct StudyMetrics {
   double energy_error = kNotMeasured, energy_slope = kNotMeasured;  // relative; relative per second
   double constraint = kNotMeasured, group_defect = kNotMeasured;
   long iterations = 0, evaluations = 0, iterations_max = 0;
+  long fallbacks = 0;               // steps that failed and were rescued by on_failure
   double residual = kNotMeasured;   // relative, the largest of the run
   double floor = kNotMeasured;      // errors below are round-off, residuals and the reference
   std::vector<double> final;        // the element's columns where the run ended

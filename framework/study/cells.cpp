@@ -60,8 +60,9 @@ std::vector<size_t> indices(const StudyConfig& config, const std::vector<size_t>
 }  // namespace
 
 const std::vector<std::string>& study_axes() {
-  static const std::vector<std::string> all = {"system", "scheme",  "retraction", "s",
-                                               "solver", "compose", "tolerance",  "step"};
+  static const std::vector<std::string> all = {"system",     "scheme",    "retraction",
+                                               "s",          "solver",    "compose",
+                                               "on_failure", "tolerance", "step"};
   return all;
 }
 
@@ -76,6 +77,7 @@ std::vector<std::string> StudyConfig::values(const std::string& axis) const {
   if (axis == "s") return words(s);
   if (axis == "solver") return solvers;
   if (axis == "compose") return compositions;
+  if (axis == "on_failure") return on_failures;
   if (axis == "tolerance") return words(tolerances);
   return words(steps);
 }
@@ -104,8 +106,9 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     cell.config.s = config.s[at[3]];
     cell.config.solver = config.solvers[at[4]];
     cell.config.compose = config.compositions[at[5]];
-    cell.config.tolerance = config.tolerances[at[6]];
-    cell.config.step = config.steps[at[7]];
+    cell.config.on_failure = config.on_failures[at[6]];
+    cell.config.tolerance = config.tolerances[at[7]];
+    cell.config.step = config.steps[at[8]];
     cell.config.until = config.until;
 
     const std::string group = registry.system(system.name)->group.name;
@@ -117,6 +120,9 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     } else if (registry.retraction(group, cell.config.retraction) == nullptr) {
       cell.skipped = "impossible";
       cell.why = fmt::format("{} has no retraction {}", group, cell.config.retraction);
+    } else if (cell.config.on_failure == "retry:" + cell.config.solver) {
+      cell.skipped = "impossible";
+      cell.why = fmt::format("{} is the solver that failed", cell.config.solver);
     } else if (!seen.insert(same).second) {
       cell.skipped = "duplicate";
       cell.why =

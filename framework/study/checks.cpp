@@ -120,6 +120,7 @@ class Checks {
     axis("solver", study_.solvers, &Config::solver);
     axis("compose", study_.compositions, &Config::compose);
     axis("tolerance", study_.tolerances, &Config::tolerance);
+    on_failures();
     const std::vector<std::string> retractions = registry_.retractions();
     for (size_t i = 0; i < study_.retractions.size(); ++i) {  // some group must have it
       const std::string& name = study_.retractions[i];
@@ -140,6 +141,21 @@ class Checks {
                              study_.until, study_.until / std::max(1.0, std::round(count))));
       else if (count > 1e9)
         add(key, fmt::format("step: {} takes {:.2g} steps, more than 1e9", h, count));
+    }
+  }
+
+  // Beside a solver that is not the one to retry with: the two meet in the cells.
+  void on_failures() {
+    Config config = study_.systems.empty() ? Config{} : sound(study_.systems.front());
+    for (size_t i = 0; i < study_.on_failures.size(); ++i) {
+      config.on_failure = "stop";
+      for (const std::string& solver : registry_.solvers())
+        if (study_.on_failures[i] != "retry:" + solver) config.solver = solver;
+      const std::vector<std::string> known = mistakes_of(config);
+      config.on_failure = study_.on_failures[i];
+      for (const std::string& mistake : mistakes_of(config))
+        if (std::find(known.begin(), known.end(), mistake) == known.end())
+          add(fmt::format("on_failure[{}]", i), mistake);
     }
   }
 

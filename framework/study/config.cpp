@@ -35,8 +35,8 @@ class StudyReader {
  private:
   static const std::vector<std::string>& keys() {
     static const std::vector<std::string> all = {
-        "title",      "mode", "until",  "repeats", "system",    "exclude", "scheme",
-        "retraction", "s",    "solver", "compose", "tolerance", "step"};
+        "title",      "mode", "until",  "repeats", "system",     "exclude",   "scheme",
+        "retraction", "s",    "solver", "compose", "on_failure", "tolerance", "step"};
     return all;
   }
 
@@ -59,6 +59,7 @@ class StudyReader {
     else if (key == "s") each(node, key, config_.s, "a number");
     else if (key == "solver") each(node, key, config_.solvers, "a string");
     else if (key == "compose") each(node, key, config_.compositions, "a string");
+    else if (key == "on_failure") each(node, key, config_.on_failures, "a string");
     else if (key == "tolerance") each(node, key, config_.tolerances, "a number");
     else if (key == "step") each(node, key, config_.steps, "a number");
     else return false;

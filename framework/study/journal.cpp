@@ -63,6 +63,7 @@ void numbers(Metrics& m, Visit visit) {
   visit("iterations", m.iterations);
   visit("evaluations", m.evaluations);
   visit("iterations_max", m.iterations_max);
+  visit("fallbacks", m.fallbacks);
   visit("residual", m.residual);
   visit("floor", m.floor);
 }

@@ -77,7 +77,7 @@ Table StudyResult::table() const {
   c.setting("s", "1", "axis; empty where the scheme does not use it", [](Cell cell, Metrics) {
     return cell.axes.at("s").empty() ? kNotMeasured : cell.config.s;
   });
-  for (const char* axis : {"solver", "compose"})
+  for (const char* axis : {"solver", "compose", "on_failure"})
     c.words(axis, "axis", [axis](Cell cell, Metrics) { return cell.axes.at(axis); });
   c.setting("tolerance", "1", "axis", [](Cell cell, Metrics) { return cell.config.tolerance; });
   c.setting("step", "s", "axis", [](Cell cell, Metrics) { return cell.config.step; });
@@ -125,13 +125,15 @@ Table StudyResult::table() const {
              [&](Cell, Metrics m) { return per_step(m.evaluations, m.steps); });
   c.measured("evaluations", "1", "of the equation, whole run",
              [](Cell, Metrics m) { return static_cast<double>(m.evaluations); });
+  c.measured("fallbacks", "1", "steps that failed and were rescued by on_failure",
+             [](Cell, Metrics m) { return static_cast<double>(m.fallbacks); });
   c.measured("residual", "1", "largest |F| / scale", [](Cell, Metrics m) { return m.residual; });
   c.measured("failure_residual", "1", "|F| / scale of the step that failed",
              [](Cell, Metrics m) { return m.failure_residual; });
   c.measured("solver_difference", "columns of g",
              "at the end, from the first solver in the same cell that did not fail",
              [](Cell, Metrics m) { return m.solver_difference; });
-  c.measured("ns_per_step", "ns", "median of the timing rounds, nothing recorded",
+  c.measured("ns_per_step", "ns", "processor time, median of the timing rounds, nothing recorded",
              [](Cell, Metrics m) { return m.nanoseconds_median(); });
   c.measured("seconds", "s", "steps times ns_per_step", [](Cell, Metrics m) {
     return 1e-9 * m.nanoseconds_median() * static_cast<double>(m.steps);

@@ -115,7 +115,10 @@ s = 0.25
 }
 
 TEST_F(StudyCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
-  const std::string name = study(kSmall);
+  std::string all = "solver = [";
+  for (const auto& solver : Json::parse(run({"list", "solvers", "--json"}).out))
+    all += solver["name"].dump() + ", ";
+  const std::string name = study(all + "]\n" + kSmall);
   ASSERT_EQ(run({"study", name, "-o", "one", "--threads", "1", "--quiet"}).status, 0);
   ASSERT_EQ(run({"study", name, "-o", "two", "--threads", "2", "--quiet"}).status, 0);
   EXPECT_EQ(cells("one"), cells("two"));
@@ -217,7 +220,7 @@ velocity = [3, 1, 0]
 /// The bar with the time left, on a terminal only.
 TEST_F(StudyCommand, ShowsProgressOnATerminal) {
   std::string longer = kSmall;
-  longer.replace(longer.find("until = 2"), 9, "until = 800");
+  longer.replace(longer.find("until = 2"), 9, "until = 2500");
   const std::string name = study(longer);
   if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1)";
   const std::string command = "cd " + file("") + " && script -qec \"$HAMEL_PROGRAM study " + name +

@@ -165,6 +165,44 @@ TEST(Study, SaysWhatIsWrong) {
   EXPECT_THAT(mistakes_of(config), ElementsAre("nothing is left to run"));
 }
 
+/// What is done on failure is an axis: steps beyond the domain of exp fail, or are rescued in parts.
+TEST(Study, RescuesWhatFails) {
+  StudyConfig config;
+  config.until = 12;
+  config.repeats = 1;
+  config.systems = {
+      {.label = "sleigh", .name = "chaplygin_sleigh", .start = {.velocity = {3, 1, 0}}}};
+  config.retractions = {"exp"};
+  config.steps = {6};
+  config.on_failures = {"stop", "halve", "retry:newton"};
+  const StudyResult study = run(config);
+  EXPECT_FALSE(study.metrics[0].ok);
+  EXPECT_TRUE(study.metrics[1].ok) << study.metrics[1].reason;
+  EXPECT_GT(study.metrics[1].fallbacks, 0);
+  EXPECT_EQ(study.cells[2].skipped, "impossible");
+  config.on_failures = {"hlave"};
+  EXPECT_THAT(mistakes_of(config), ElementsAre(HasSubstr("did you mean 'halve'")));
+}
+
+/// At the same residual every solver gives the same trajectory, to 1e-10.
+TEST(Study, SolversAgree) {
+  StudyConfig config = small();
+  config.solvers = {"newton", "hybrid"};
+  for (const char* more : {"ceres", "ceres_tiny", "nlopt"})
+    if (registry().solver(more) != nullptr) config.solvers.push_back(more);
+  config.s = {0, 0.5};
+  const StudyResult study = run(config);
+  size_t compared = 0;
+  for (const StudyMetrics& m : study.metrics) {
+    EXPECT_TRUE(m.ok) << m.reason;
+    EXPECT_LE(m.residual, 1e-13);
+    if (std::isnan(m.solver_difference)) continue;
+    ++compared;
+    EXPECT_LE(m.solver_difference, 1e-10);
+  }
+  EXPECT_EQ(compared, (config.solvers.size() - 1) * 2 * 3);
+}
+
 /// A stopped study returns what it has; the same folder then holds it, and the rest is the same.
 TEST(Study, StopsAndGoesOn) {
   std::string folder = (std::filesystem::temp_directory_path() / "hamel_study_XXXXXX").string();

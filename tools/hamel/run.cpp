@@ -58,7 +58,7 @@ void Progress::operator()(double fraction) {
   shown_ = now;
   const double seconds = std::chrono::duration<double>(now - begin_).count();
   std::string left;
-  if (fraction > first_ && seconds > 0.5) {
+  if (fraction > first_ && seconds > 0.3) {
     const long rest = std::lround(seconds * (1 - fraction) / (fraction - first_));
     left = rest < 60 ? fmt::format(", {} s left", rest)
                      : fmt::format(", {} min {:02} s left", rest / 60, rest % 60);

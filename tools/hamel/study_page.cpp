@@ -43,7 +43,8 @@ class StudyPage {
   void divide_axes() {
     filters_ =
         view_.varies("system") ? std::vector<std::string>{"system"} : std::vector<std::string>{};
-    for (const char* axis : {"solver", "scheme", "s", "retraction", "compose", "tolerance"}) {
+    for (const char* axis :
+         {"solver", "scheme", "s", "retraction", "compose", "on_failure", "tolerance"}) {
       if (!view_.varies(axis)) continue;
       std::vector<std::string> longer = names_;
       longer.emplace_back(axis);
@@ -124,7 +125,8 @@ class StudyPage {
         "Error against time",
         {.x = "time of the run [s]", .y = "trajectory error", .log_x = true, .log_y = true},
         curves([&](size_t i) { return view_.seconds(i); }, false),
-        "Steps times the median time per step, nothing recorded. Lower left is better." + missing,
+        "Steps times the median processor time per step, nothing recorded. Lower left is better." +
+            missing,
         filters);
     page_.plot(
         "Error against evaluations",

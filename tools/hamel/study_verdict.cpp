@@ -117,7 +117,11 @@ class Judge {
     std::sort(reached.begin(), reached.end());
     const double third = reached[(reached.size() - 1) / 3];
     if (!std::isfinite(third)) return;
-    const double target = std::pow(10.0, std::ceil(std::log10(third)));
+    double extent = 0;  // nothing above a tenth of it is worth comparing
+    for (const size_t i : of_system)
+      extent = view_.result().references[view_.cell(i).system].extent;
+    const double target = std::min(std::pow(10.0, std::ceil(std::log10(third))),
+                                   std::pow(10.0, std::floor(std::log10(kAsymptotic * extent))));
     std::vector<std::pair<double, std::string>> ranked;
     std::vector<std::string> never;
     std::vector<size_t> never_cells;
@@ -130,7 +134,10 @@ class Judge {
         never_cells.insert(never_cells.end(), cells.begin(), cells.end());
       }
     }
-    if (ranked.empty()) return;
+    if (ranked.empty())
+      return say("note",
+                 fmt::format("{}: no method gets the error down to {:.0e} with these steps.",
+                             system, target));
     std::sort(ranked.begin(), ranked.end());
     std::string text = fmt::format("{}: at the error {:.0e} the least time is {} by `{}`", system,
                                    target, time_words(ranked[0].first), ranked[0].second);
@@ -282,8 +289,40 @@ class Judge {
                     plural(lost.size(), "cell"), kGoodEnergy, least, kLost, view_.where(lost)));
   }
 
+  // Where some solvers find a step's solution and others do not.
+  void basins() {
+    std::map<std::string, size_t> failed;
+    std::vector<size_t> mixed;
+    size_t all = 0, none = 0, some = 0;
+    for (const auto& cells : view_.otherwise_equal("solver")) {
+      const auto good = static_cast<size_t>(
+          std::count_if(cells.begin(), cells.end(), [&](size_t i) { return view_.metrics(i).ok; }));
+      ++(good == cells.size() ? all : good == 0 ? none : some);
+      if (good == 0 || good == cells.size()) continue;
+      for (const size_t i : cells)
+        if (!view_.metrics(i).ok) {
+          ++failed[view_.cell(i).axes.at("solver")];
+          mixed.push_back(i);
+        }
+    }
+    if (none + some == 0) return;
+    std::string text = fmt::format(
+        "Where the solvers end: of {} otherwise equal cells {} are solved by "
+        "all, {} by none, {} by some.",
+        all + none + some, all, none, some);
+    if (some > 0) {
+      std::string words;
+      for (const std::string& solver : view_.values("solver"))
+        words += fmt::format("{}`{}` {}", words.empty() ? "" : ", ", solver, failed[solver]);
+      text +=
+          fmt::format(" Of those, failed by: {}. Where: {}.", words, view_.where(mixed, "solver"));
+    }
+    say("note", text);
+  }
+
   void solvers() {
     if (!view_.varies("solver")) return;
+    basins();
     double largest = 0;
     std::vector<size_t> apart;
     size_t count = 0;

@@ -12,6 +12,7 @@ std::string axis_words(const std::string& axis, const std::string& value) {
   if (axis == "step") return "h = " + value;
   if (axis == "tolerance") return "tolerance " + value;
   if (axis == "compose" && value == "none") return "not composed";
+  if (axis == "on_failure") return "on failure " + value;
   return value;
 }
 
