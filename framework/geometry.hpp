@@ -68,6 +68,8 @@ class Geometry {
   virtual void coordinates(const double* g, double* out) const = 0;
   /// Throws std::invalid_argument when the values are no element.
   virtual void from_coordinates(std::span<const double> values, double* out) const = 0;
+  /// The element next to values that are no element, as a Runge-Kutta stage leaves them.
+  virtual void nearest(std::span<const double> values, double* out) const = 0;
 };
 
 template <class Tau>
@@ -141,6 +143,10 @@ class TypedGeometry final : public Geometry {
   void from_coordinates(std::span<const double> values, double* out) const override {
     Pack::store(G::from_coordinates(values), out);
   }
+  void nearest(std::span<const double> values, double* out) const override {
+    if constexpr (requires { G::nearest(values); }) Pack::store(G::nearest(values), out);
+    else Pack::store(G::from_coordinates(values), out);
+  }
 };
 
 /// The product of its factors' geometries, of any number chosen at run time.
@@ -170,6 +176,7 @@ class ProductGeometry final : public Geometry {
   int columns() const override;
   void coordinates(const double* g, double* out) const override;
   void from_coordinates(std::span<const double> values, double* out) const override;
+  void nearest(std::span<const double> values, double* out) const override;
 
  private:
   struct Factor {

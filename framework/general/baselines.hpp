@@ -72,7 +72,9 @@ struct Rk4Projected {
   static std::string formula() {
     return "RK4 for (q, xi)' in the coordinates q of the element, then projected to group and rows";
   }
-  static std::string source() { return "what a user would write by hand; Hairer, Lubich, Wanner IV.4"; }
+  static std::string source() {
+    return "what a user would write by hand; Hairer, Lubich, Wanner IV.4";
+  }
   static constexpr bool uses_s = false;
   static constexpr bool invariant_only = false;
   static constexpr bool steps_admissible = false;

@@ -17,6 +17,7 @@ namespace hamel {
 struct Node {
   double t = 0;
   Eigen::VectorXd g, xi;
+  Eigen::VectorXd memory = {};  // what else a scheme carries from node to node; empty at the start
 };
 
 class GeneralStep {
