@@ -119,4 +119,12 @@ void ProductGeometry::from_coordinates(std::span<const double> values, double* o
   }
 }
 
+void ProductGeometry::nearest(std::span<const double> values, double* out) const {
+  for (const Factor& f : factors_) {
+    f.geometry->nearest(
+        values.subspan(static_cast<size_t>(f.column), static_cast<size_t>(f.geometry->columns())),
+        out + f.element);
+  }
+}
+
 }  // namespace hamel

@@ -30,6 +30,9 @@ struct SchemeInfo {
   std::string name, formula, source;
   bool adapted = true;  // keeps the constraint; otherwise the frame is the whole algebra
   bool uses_s = true;
+  bool steps_admissible =
+      true;  // the velocity of a step satisfies A xi = b, not that of its ends only
+  bool invariant_only = false;  // defined for left-invariant systems only
   /// On left-invariant systems.
   std::function<ClaimedOrder(double s, bool symmetric_tau)> claimed_order;
   /// The scheme on general systems, and what it claims there; null when it is not defined.

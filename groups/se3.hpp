@@ -129,6 +129,11 @@ struct SE3 {
     return {SO3::rotation_from("se3", values), {values[9], values[10], values[11]}};
   }
 
+  /// The element next to values whose rotation is off by less than about 0.3.
+  static Element<double> nearest(std::span<const double> values) {
+    return {SO3::nearest(values), {values[9], values[10], values[11]}};
+  }
+
   /// [[a, 0], [b, a]]: the shape of Ad, of ad and of every function of ad.
   template <class T>
   static MatT<T, 6, 6> block(const MatT<T, 3, 3>& a, const MatT<T, 3, 3>& b) {

@@ -121,6 +121,14 @@ struct SO3 {
     return rotation_from("so3", values);
   }
 
+  /// The rotation next to the first 9 values, row by row, which are off by less than about 0.3.
+  static Element<double> nearest(std::span<const double> values) {
+    Element<double> g;
+    for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(i)];
+    for (int i = 0; i < 6; ++i) g = normalise(g);
+    return g;
+  }
+
   /// The rotation in the first 9 values, row by row, if its defect is at most 1e-6 (then normalised
   /// to round-off), else std::invalid_argument in the name of `group`.
   static Element<double> rotation_from(const std::string& group, std::span<const double> values) {

@@ -48,6 +48,22 @@ SchemeInfo scheme_info() {
   return info;
 }
 
+/// A scheme that exists on the general loop only.
+template <class Scheme>
+void add_general_scheme(Registry& registry) {
+  SchemeInfo info;
+  info.name = Scheme::name();
+  info.formula = Scheme::formula();
+  info.source = Scheme::source();
+  info.uses_s = Scheme::uses_s;
+  info.invariant_only = Scheme::invariant_only;
+  info.steps_admissible = Scheme::steps_admissible;
+  info.claimed_order = &Scheme::order;
+  info.general = &Scheme::general;
+  info.general_order = [](double s) { return Scheme::order(s, true); };
+  registry.add(std::move(info));
+}
+
 /// The time loop compiled for these types; M = kRunTime for any number of admissible directions.
 template <class Scheme, class Tau, int M>
 KernelFactory compile() {

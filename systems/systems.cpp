@@ -1,4 +1,5 @@
 // The composition root: the one file that links everything by name.
+#include <hamel/framework/general/baselines.hpp>
 #include <hamel/solvers/ceres.hpp>
 #include <hamel/solvers/ceres_tiny.hpp>
 #include <hamel/solvers/hybrid.hpp>
@@ -69,6 +70,11 @@ Registry make_registry() {
 
   Schemes::for_each(
       [&]<class Scheme>(std::type_identity<Scheme>) { registry.add(scheme_info<Scheme>()); });
+  add_general_scheme<EnergyPreserving>(registry);
+  add_general_scheme<Gni>(registry);
+  add_general_scheme<Reversible>(registry);
+  add_general_scheme<Rk4Projected>(registry);
+  add_general_scheme<Rkmk4>(registry);
   add_solvers(registry);
 
   add_system<BallOnTurntable>(registry);

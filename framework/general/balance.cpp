@@ -1,14 +1,16 @@
 #include <hamel/framework/general/balance.hpp>
 
+#include <hamel/framework/general/baselines.hpp>
 #include <hamel/framework/schemes/balance.hpp>
 
 namespace hamel {
 
 template <int N>
-GeneralBalance<N>::GeneralBalance(const GeneralSetup& setup)
+GeneralBalance<N>::GeneralBalance(const GeneralSetup& setup, bool ends_only)
     : geometry_(setup.geometry),
       system_(setup.mechanics),
       n_(system_->dim()),
+      ends_only_(ends_only),
       s_(setup.s),
       g0_(geometry_->size()),
       xi0_(n_),
@@ -98,7 +100,7 @@ void GeneralBalance<N>::evaluate(const Unknown& x) const {
     end_rows_ = a_.lazyProduct(w_);
     end_rows_ -= b_;
   }
-  base_place_.join(r_, rows_);
+  if (!ends_only_) base_place_.join(r_, rows_);
   base_place_.join(u_, end_rows_);
 }
 
@@ -121,6 +123,17 @@ bool GeneralBalance<N>::finish(const Unknown& x, Node& next) const {
   geometry_->normalise(next.g.data());
   next.xi = w_;
   return true;
+}
+
+// reversible: both equations of the cotangent lift at s = 1/2 with nu = h (f + A(g)^T lambda), the multiplier
+// at the midpoint, and the constraint enforced at the ends, A(g1) xi_1 = b. It is balance with (1) in full:
+// the velocity v of the step is not admissible at the midpoint. Symmetric, order 2. Weakness: the
+// configurations satisfy the constraint of the step to O(h^2) only, and holonomic rows drift.
+// Source: McLachlan and Perlmutter, Integrators for nonholonomic mechanical systems, J. Nonlinear Sci. 16 (2006).
+std::unique_ptr<GeneralStep> Reversible::general(const GeneralSetup& setup) {
+  GeneralSetup at_midpoint = setup;
+  at_midpoint.s = 0.5;
+  return std::make_unique<GeneralBalance<Eigen::Dynamic>>(at_midpoint, true);
 }
 
 std::unique_ptr<GeneralStep> Balance::general(const GeneralSetup& setup) {

@@ -19,7 +19,8 @@ class GeneralBalance final : public GeneralStep {
   using Vector = typename Z::Vector;
 
  public:
-  explicit GeneralBalance(const GeneralSetup& setup);
+  /// ends_only: the scheme reversible (balance.cpp).
+  explicit GeneralBalance(const GeneralSetup& setup, bool ends_only = false);
   int size() const override { return 2 * n_; }
   void begin(const Node& node, double h) override;
   void guess(Unknown& x) const override;
@@ -33,6 +34,7 @@ class GeneralBalance final : public GeneralStep {
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> system_;
   int n_;
+  bool ends_only_;
   double s_, t_ = 0, h_ = 0, scale_squared_ = 0;
   Eigen::VectorXd g0_;
   Vector xi0_, mu0_;

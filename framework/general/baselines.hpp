@@ -1,5 +1,5 @@
 // Baselines to compare the paper's schemes with (method.md, section 7). One file each: energy_preserving.cpp,
-// gni.cpp, reversible.cpp, rkmk4.cpp, rk4_projected.cpp, where the equations and the known weaknesses stand.
+// gni.cpp, rkmk4.cpp, rk4_projected.cpp, and reversible in balance.cpp, where the equations and the known weaknesses stand.
 #pragma once
 
 #include <memory>
