@@ -47,6 +47,12 @@ class FunctionSolver final : public Solver {
 
 }  // namespace
 
+ClaimedOrder SchemeInfo::claim(double s, bool symmetric_tau, bool left_invariant) const {
+  if (!uses_s) s = 0;
+  if (left_invariant) return claimed_order(s, symmetric_tau);
+  return general_order && !invariant_only ? general_order(s) : ClaimedOrder{0, false};
+}
+
 void Registry::add(GroupInfo info) { groups_[info.name] = std::move(info); }
 void Registry::add(RetractionInfo info) { retractions_[{info.group, info.name}] = std::move(info); }
 void Registry::add(SchemeInfo info) { schemes_[info.name] = std::move(info); }

@@ -38,6 +38,9 @@ struct SchemeInfo {
   /// The scheme on general systems, and what it claims there; null when it is not defined.
   std::function<std::unique_ptr<GeneralStep>(const GeneralSetup&)> general = {};
   std::function<ClaimedOrder(double s)> general_order = {};
+
+  /// What it claims for a run; order 0 where it is not defined.
+  ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) const;
 };
 
 struct SolverInfo {

@@ -20,9 +20,10 @@ std::vector<std::string> words(const std::vector<double>& numbers) {
 int claim(const Registry& registry, const StudyCell& cell, const std::string& group) {
   const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
   if (!scheme->adapted) return 0;  // of the free motion only: here it approximates nothing
-  const RetractionInfo* tau = registry.retraction(group, cell.config.retraction);
-  const ClaimedOrder plain =
-      scheme->claimed_order(scheme->uses_s ? cell.config.s : 0.0, tau->symmetric);
+  const bool left_invariant =
+      registry.system(cell.config.system)->make(cell.config.parameters).mechanics == nullptr;
+  const ClaimedOrder plain = scheme->claim(
+      cell.config.s, registry.geometry(group, cell.config.retraction)->symmetric(), left_invariant);
   for (const Composition& table : compositions()) {
     if (table.name == cell.config.compose && plain.reversible && plain.order == 2)
       return table.order;
@@ -117,7 +118,7 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     if (!uses_s) same["s"] = "";
     if (cell.why = excluded_by(config, cell); !cell.why.empty()) {
       cell.skipped = "excluded";
-    } else if (registry.retraction(group, cell.config.retraction) == nullptr) {
+    } else if (registry.geometry(group, cell.config.retraction) == nullptr) {
       cell.skipped = "impossible";
       cell.why = fmt::format("{} has no retraction {}", group, cell.config.retraction);
     } else if (cell.config.on_failure == "retry:" + cell.config.solver) {

@@ -73,8 +73,8 @@ class Checks {
     config.parameters = system.parameters;
     config.start = system.start;
     if (const SystemInfo* info = registry_.system(system.name)) {
-      const auto known = registry_.retractions(info->group.name);
-      if (!known.empty() && registry_.retraction(info->group.name, config.retraction) == nullptr)
+      const auto known = registry_.retractions_or_common(info->group.name);
+      if (!known.empty() && registry_.geometry(info->group.name, config.retraction) == nullptr)
         config.retraction = known.front();
     }
     return config;

@@ -51,7 +51,7 @@ double apart(const Motion& a, const Motion& b) {
 StudyReference converged(const Registry& registry, const StudyConfig& study, Config config,
                          long intervals) {
   const std::string group = registry.system(config.system)->group.name;
-  const std::vector<std::string> known = registry.retractions(group);
+  const std::vector<std::string> known = registry.retractions_or_common(group);
   config.retraction = known.front();
   for (const char* good : {"cayley", "exp"})
     if (std::find(known.begin(), known.end(), good) != known.end()) config.retraction = good;

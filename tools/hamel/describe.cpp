@@ -1,6 +1,5 @@
 // hamel describe: formula, parameters with units and defaults, what is exactly known, source.
 #include <algorithm>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -45,38 +44,7 @@ Json describe_group(const GroupInfo& info) {
           {"dim", info.dim},
           {"columns", info.columns},
           {"identity", info.identity},
-          {"retractions", registry().retractions(info.name)}};
-}
-
-// A product that has no kernels of its own: its factors' members, put together. Null when a factor is
-// unknown.
-Json describe_product(const std::string& name) {
-  std::istringstream in(name);
-  std::vector<std::string> columns, retractions;
-  std::vector<double> identity;
-  int dim = 0, factor = 0;
-  for (std::string word; std::getline(in, word, '*');) {
-    const GroupInfo* info = registry().group(word);
-    if (info == nullptr) return nullptr;
-    ++factor;
-    dim += info->dim;
-    for (const std::string& column : info->columns) {
-      columns.push_back(fmt::format("{}_{}", factor, column));
-    }
-    identity.insert(identity.end(), info->identity.begin(), info->identity.end());
-    const std::vector<std::string> offered = registry().retractions(word);
-    if (factor == 1) retractions = offered;
-    std::erase_if(retractions, [&](const std::string& r) {
-      return std::find(offered.begin(), offered.end(), r) == offered.end();
-    });
-  }
-  return {{"kind", "group"},
-          {"name", name},
-          {"summary", "a product without compiled kernels: add_group<Product<...>>() in a program"},
-          {"dim", dim},
-          {"columns", columns},
-          {"identity", identity},
-          {"retractions", retractions}};
+          {"retractions", registry().retractions_or_common(info.name)}};
 }
 
 Json describe_retraction(const std::string& name) {
@@ -102,10 +70,17 @@ Json describe_scheme(const SchemeInfo& info) {
           {"formula", info.formula},
           {"uses_s", info.uses_s},
           {"keeps_the_constraint", info.adapted},
+          {"steps_admissible", info.steps_admissible},
+          {"general_systems", info.general && !info.invariant_only},
           {"claims",
            {{"s = 1/2", order(0.5, true)},
             {"other s, symmetric retraction", order(0, true)},
             {"other s, other retraction", order(0, false)}}},
+          {"claims_on_general_systems",
+           info.general_order && !info.invariant_only
+               ? Json{{"s = 1/2", {{"order", info.general_order(0.5).order}}},
+                      {"other s", {{"order", info.general_order(0).order}}}}
+               : Json(nullptr)},
           {"source", info.source}};
 }
 
@@ -125,13 +100,10 @@ Json describe_solver(const SolverInfo& info, bool built) {
 Json description_of(const std::string& name) {
   const Registry& all = registry();
   if (const SystemInfo* info = all.system(name)) return describe_system(*info);
-  if (const GroupInfo* info = all.group(name)) return describe_group(*info);
   if (const SchemeInfo* info = all.scheme(name)) return describe_scheme(*info);
   if (const SolverInfo* info = all.solver(name)) return describe_solver(*info, true);
   if (const SolverInfo* info = all.absent_solver(name)) return describe_solver(*info, false);
-  if (name.find('*') != std::string::npos) {
-    if (const Json product = describe_product(name); !product.is_null()) return product;
-  }
+  if (const auto info = all.group_or_product(name)) return describe_group(*info);
   std::vector<std::string> known;
   for (const std::string& retraction : all.retractions()) {
     if (retraction == name) return describe_retraction(name);
