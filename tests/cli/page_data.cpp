@@ -14,6 +14,7 @@ std::string_view report_page() { return "__HAMEL_DATA__"; }
 
 namespace {
 
+using namespace hamel;
 using namespace hamel::tools;
 using Json = nlohmann::json;
 
