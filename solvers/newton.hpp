@@ -43,7 +43,8 @@ class Inverse {
  public:
   static constexpr int size = Jacobian::RowsAtCompileTime;
   static constexpr bool closed_form = size != Eigen::Dynamic && size <= 4;
-  static constexpr bool small = Jacobian::MaxRowsAtCompileTime <= SmallLu::max_size;
+  static constexpr int bound = Jacobian::MaxRowsAtCompileTime;  // Dynamic is -1
+  static constexpr bool small = bound != Eigen::Dynamic && bound <= SmallLu::max_size;
 
   void compute(const Jacobian& jacobian) {
     if constexpr (closed_form) factors_ = jacobian.inverse();

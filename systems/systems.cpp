@@ -13,10 +13,16 @@
 #include <hamel/systems/heisenberg_particle.hpp>
 #include <hamel/systems/kernels/groups.hpp>
 #include <hamel/systems/knife_edge_on_incline.hpp>
+#include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/nonholonomic_particle.hpp>
+#include <hamel/systems/rattleback.hpp>
+#include <hamel/systems/roller_racer.hpp>
 #include <hamel/systems/rolling_ball.hpp>
 #include <hamel/systems/rolling_disk.hpp>
+#include <hamel/systems/routh_sphere.hpp>
+#include <hamel/systems/segway.hpp>
 #include <hamel/systems/simulate.hpp>
+#include <hamel/systems/snakeboard.hpp>
 #include <hamel/systems/suslov.hpp>
 #include <hamel/systems/suslov_in_potential.hpp>
 #include <hamel/systems/unicycle_3d.hpp>
@@ -85,9 +91,15 @@ Registry make_registry() {
   add_system<FallingDisk>(registry);
   add_system<HeisenbergParticle>(registry);
   add_system<KnifeEdgeOnIncline>(registry);
+  add_system<NTrailer>(registry);
   add_system<NonholonomicParticle>(registry);
+  add_system<Rattleback>(registry);
+  add_system<RollerRacer>(registry);
   add_system<RollingBall>(registry);
   add_system<RollingDisk>(registry);
+  add_system<RouthSphere>(registry);
+  add_system<Segway>(registry);
+  add_system<Snakeboard>(registry);
   add_system<Suslov>(registry);
   add_system<SuslovInPotential>(registry);
   add_system<Unicycle3d>(registry);

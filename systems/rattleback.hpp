@@ -1,0 +1,127 @@
+// rattleback: half an ellipsoid that rolls on a plane on its round side and prefers one sense of spin.
+//
+//   SE(3), body frame at the mass centre with the axes of the ellipsoid, z up; xi = (omega, v).
+//   l = 1/2 omega^T I omega + 1/2 m |v|^2 - m g z,  I = R3(delta) diag(I1, I2, I3) R3(delta)^T:
+// the axes of inertia are turned by delta about e3 against those of the surface. The centre of the ellipsoid
+// is at d e3. With gamma = R^T e_z, D = diag(a1, a2, a3), the contact lies at
+//   r = d e3 - D^2 gamma / sqrt(gamma^T D^2 gamma)
+// from the mass centre, and rests: v + omega x r = 0. Its horizontal parts are rows of A (along the axes x
+// and y of space: R (v + omega x r)); the vertical one is the differential of the height of the contact,
+//   phi = z + gamma . r = z + d gamma_3 - sqrt(gamma^T D^2 gamma) = 0.
+// Spun one way the rattleback keeps spinning for long, spun the other way it starts to rattle and reverses.
+// The energy is kept. The default is large and slow: it rocks at some 10 rad/s and reverses within 20 s. The
+// stone of Kane and Levinson (semi_axes 0.2, 0.03, 0.02; depth 0.01; inertia 2e-4, 1.6e-3, 1.7e-3; skew
+// 0.0143) rocks at 100 rad/s.
+// Source: Walker 1896; Kane and Levinson, Int. J. Non-Linear Mech. 17 (1982); Garcia and Hubbard 1988.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include <hamel/framework/general_system.hpp>
+#include <hamel/groups/se3.hpp>
+
+namespace hamel {
+
+struct Rattleback {
+  using Group = SE3;
+  using Element = SE3::Element<double>;
+  double mass = 1.0;                       // kg
+  Vec<3> semi_axes = {0.4, 0.2, 0.2};      // m
+  double depth = 0.075;                    // m, d
+  Vec<3> moments = {0.012, 0.036, 0.040};  // kg m^2
+  double skew = 0.4;                       // rad, delta
+  double gravity = 9.81;                   // m/s^2
+
+  static std::string name() { return "rattleback"; }
+  static std::string summary() { return "half ellipsoid with skewed inertia: reverses its spin"; }
+  static std::string formula() {
+    return "SE(3), l = 1/2 w' I w + 1/2 m |v|^2 - m g z, v + w x r = 0 at the contact, height of "
+           "the contact holonomic";
+  }
+  static std::string known() { return "spins on one way, reverses the other; invariants: energy"; }
+  static std::string source() { return "Walker 1896; Kane and Levinson 1982"; }
+
+  void fields(auto& f) {
+    f("mass", mass, "kg", "total mass");
+    f("semi_axes", semi_axes, "m", "semi-axes of the ellipsoid");
+    f("depth", depth, "m", "mass centre below the centre of the ellipsoid");
+    f("inertia", moments, "kg m^2", "principal moments about the mass centre");
+    f("skew", skew, "rad", "angle of the axes of inertia against those of the surface, about e3");
+    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+  }
+  Mat<6, 6> inertia() const {
+    const double c = std::cos(skew), s = std::sin(skew);
+    const Mat<3, 3> turn{{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
+    Mat<6, 6> i = Mat<6, 6>::Zero();
+    i.topLeftCorner<3, 3>() = turn * moments.asDiagonal() * turn.transpose();
+    i.diagonal().tail<3>().setConstant(mass);
+    return i;
+  }
+  /// From the mass centre to the contact.
+  Vec<3> contact(const Element& g) const {
+    const Vec<3> gamma = g.rotation.row(2).transpose(), d = semi_axes.cwiseProduct(gamma);
+    return Vec<3>(0, 0, depth) - semi_axes.cwiseProduct(d) / d.norm();
+  }
+  // u . (v + omega x r) = u . v + (r x u) . omega.
+  Mat<2, 6> constraints(const Element& g) const {
+    const Vec<3> r = contact(g);
+    Mat<2, 6> a;
+    for (int i = 0; i < 2; ++i) {
+      const Vec<3> u = g.rotation.row(i).transpose();
+      a.row(i) << r.cross(u).transpose(), u.transpose();
+    }
+    return a;
+  }
+  auto holonomic(const auto& g) const {
+    using std::sqrt;
+    const auto& r = g.rotation;
+    using T = std::decay_t<decltype(r(0, 0))>;
+    T square(0.0);
+    for (int i = 0; i < 3; ++i) square += (semi_axes[i] * semi_axes[i]) * (r(2, i) * r(2, i));
+    return VecT<T, 1>(g.translation[2] + depth * r(2, 2) - sqrt(square));
+  }
+  Mat<1, 6> holonomic_differential(const Element& g) const {
+    const Vec<3> gamma = g.rotation.row(2).transpose();
+    Mat<1, 6> d;
+    d << contact(g).cross(gamma).transpose(), gamma.transpose();
+    return d;
+  }
+  auto potential(const auto& g) const { return mass * gravity * g.translation[2]; }
+  Vec<6> potential_differential(const Element& g) const {
+    Vec<6> d;
+    d << 0, 0, 0, mass * gravity * g.rotation.row(2).transpose();
+    return d;
+  }
+
+  /// Level but for a tilt about its long axis, spinning about the vertical.
+  Start spinning(double spin, double tilt) const {
+    const double c = std::cos(tilt), s = std::sin(tilt);
+    Element g{Mat<3, 3>{{1, 0, 0}, {0, c, -s}, {0, s, c}}, Vec<3>::Zero()};
+    g.translation[2] = -holonomic(g)[0];
+    const Vec<3> omega = spin * g.rotation.row(2).transpose(), v = -omega.cross(contact(g));
+    return {.configuration = SE3::coordinates(g),
+            .velocity = {omega[0], omega[1], omega[2], v[0], v[1], v[2]},
+            .momentum = {}};
+  }
+  /// The way that reverses.
+  Start start() const { return spinning(-1.5, 0.02); }
+
+  void invariants(auto& add) const {
+    add("energy", [*this](const auto& g, const Vec<6>& xi) {
+      return 0.5 * xi.dot(inertia() * xi) + potential(g);
+    });
+  }
+  void draw(auto& scene) const {
+    scene.floor();
+    const auto place = [](const auto& g) { return Placement{g.translation, g.rotation}; };
+    const double a = semi_axes[0], b = semi_axes[1];
+    scene
+        .body("rattleback", place,
+              {shapes::ellipsoid({a, b, semi_axes[2]}, {.at = {0, 0, depth}}),
+               shapes::line({{-a, 0, depth}, {a, 0, depth}}, {.color = "accent"})})
+        .trail({a, 0, depth});
+  }
+};
+
+}  // namespace hamel

@@ -1,0 +1,111 @@
+// roller_racer: two bodies with a hinge between them, each on one axle; the rider swings the handlebar.
+//
+//   SE(2) x S^1, xi = (omega, v1, v2, phi'), origin at the rear axle, the hinge at a e1, phi the angle of
+//   the front body, whose axle is at b in front of the hinge; its mass is left out, its moment is I_f:
+//   l = 1/2 m (v1^2 + v2^2) + 1/2 I omega^2 + 1/2 I_f (omega + phi')^2 - 1/2 k phi^2,
+//   v2 = 0,   -sin phi v1 + cos phi (v2 + a omega) + b (omega + phi') = 0,
+// with the torque T cos(Omega t) on phi. Neither wheel is driven, and no symmetry points forwards: the
+// momentum is not kept, and swinging the handlebar makes the racer run. Without torque the energy is kept.
+// Source: Krishnaprasad and Tsakiris, Oscillations, SE(2)-snakes and motion control: a study of the
+// roller racer, Dynamical Systems 16 (2001).
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include <hamel/framework/general_system.hpp>
+#include <hamel/groups/product.hpp>
+#include <hamel/groups/se2.hpp>
+#include <hamel/groups/so2.hpp>
+
+namespace hamel {
+
+struct RollerRacer {
+  using Group = Product<SE2, SO2>;
+  using Element = Group::Element<double>;
+  double mass = 1.0;           // kg
+  double moment = 0.05;        // kg m^2, I
+  double front_moment = 0.01;  // kg m^2, I_f
+  double rear_length = 0.3;    // m, a
+  double front_length = 0.1;   // m, b
+  double stiffness = 0.5;      // N m, k
+  double torque = 0.2;         // N m, T
+  double frequency = 3.0;      // rad/s, Omega
+
+  static std::string name() { return "roller_racer"; }
+  static std::string summary() { return "two hinged bodies on wheels, run by steering alone"; }
+  static std::string formula() {
+    return "SE(2)*S1, l = 1/2 m |v|^2 + 1/2 I w^2 + 1/2 I_f (w + phi')^2 - 1/2 k phi^2, v2 = 0, "
+           "-sin phi v1 + cos phi (v2 + a w) + b (w + phi') = 0, torque T cos(Omega t) on phi";
+  }
+  static std::string known() {
+    return "undulation propels; invariants: energy when the torque is 0";
+  }
+  static std::string source() { return "Krishnaprasad and Tsakiris 2001"; }
+
+  void fields(auto& f) {
+    f("mass", mass, "kg", "mass, at the rear axle");
+    f("inertia", moment, "kg m^2", "moment of the rear body");
+    f("front_inertia", front_moment, "kg m^2", "moment of the front body");
+    f("rear_length", rear_length, "m", "rear axle to hinge");
+    f("front_length", front_length, "m", "hinge to front axle");
+    f("stiffness", stiffness, "N m", "spring that centres the handlebar");
+    f("torque", torque, "N m", "amplitude of the torque on the handlebar");
+    f("frequency", frequency, "rad/s", "of the torque");
+  }
+  Mat<4, 4> inertia() const {
+    Mat<4, 4> i = Vec<4>(moment + front_moment, mass, mass, front_moment).asDiagonal();
+    i(0, 3) = i(3, 0) = front_moment;
+    return i;
+  }
+  Mat<2, 4> constraints(const Element& g) const {
+    const auto& phi = g.part<1>();
+    return Mat<2, 4>{{0, 0, 1, 0},
+                     {rear_length * phi.c + front_length, -phi.s, phi.c, front_length}};
+  }
+  auto potential(const auto& g) const {
+    const auto phi = g.template part<1>().angle();
+    return (0.5 * stiffness) * (phi * phi);
+  }
+  Vec<4> force(double t, const Element& /*g*/, const Vec<4>& /*xi*/) const {
+    return {0, 0, 0, torque * std::cos(frequency * t)};
+  }
+  /// Straight, swinging the handlebar at phi_rate while it runs at v.
+  Start swinging(double phi_rate, double v) const {
+    return {.configuration = {},
+            .velocity = {-front_length * phi_rate / (rear_length + front_length), v, 0, phi_rate},
+            .momentum = {}};
+  }
+  Start start() const { return swinging(1, 0.2); }
+  void invariants(auto& add) const {
+    if (torque == 0) {
+      add("energy", [*this](const auto& g, const Vec<4>& xi) {
+        return 0.5 * xi.dot(inertia() * xi) + potential(g);
+      });
+    }
+  }
+  void draw(auto& scene) const {
+    scene.from_above();
+    const auto rear = [](const auto& g) {
+      const auto& at = g.template part<0>();
+      return planar(at.translation[0], at.translation[1], at.angle());
+    };
+    const auto front = [rear, a = rear_length](const auto& g) {
+      const Placement p = rear(g);
+      const auto& phi = g.template part<1>();
+      return Placement{p.position + a * p.rotation.col(0),
+                       p.rotation * Mat<3, 3>{{phi.c, -phi.s, 0}, {phi.s, phi.c, 0}, {0, 0, 1}}};
+    };
+    const double a = rear_length, b = front_length;
+    scene
+        .body("rear", rear,
+              {shapes::box({a, 0.06, 0.05}, {.at = {a / 2, 0, 0.05}}),
+               shapes::box({0.02, 0.2, 0.03}, {.at = {0, 0, 0.03}, .color = "dark"})})
+        .trail();
+    scene.body("handlebar", front,
+               {shapes::box({b, 0.05, 0.05}, {.at = {b / 2, 0, 0.08}, .color = "accent"}),
+                shapes::box({0.02, 0.16, 0.03}, {.at = {b, 0, 0.03}, .color = "dark"})});
+  }
+};
+
+}  // namespace hamel

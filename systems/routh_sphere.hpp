@@ -1,0 +1,109 @@
+// routh_sphere: a ball whose mass centre lies off its centre, on an axis of symmetry, rolling on a plane.
+//
+//   SO(3) x R^2, xi = (omega in the body, x', y' of the centre of the ball), mass centre at a e3,
+//   l = 1/2 omega^T I omega + 1/2 m |(x', y', 0) + R (omega x a e3)|^2 - m g a gamma_3,  I1 = I2,
+//   with w = R omega, gamma = R^T e_z:  x' = rho w_y,  y' = -rho w_x.
+// The metric depends on R: it couples the rotation with the translation in space.
+// With r = -rho gamma - a e3 from the mass centre to the contact three functions are kept: the energy,
+//   Jellett's omega^T I r   and   Routh's omega_3 sqrt(I1 I3 + m r^T I r).
+// Source: Routh, Advanced Rigid Dynamics (1884), art. 243; Cushman, Routh's sphere, Rep. Math. Phys. 42 (1998).
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include <hamel/framework/general_system.hpp>
+#include <hamel/groups/product.hpp>
+#include <hamel/groups/rn.hpp>
+#include <hamel/groups/so3.hpp>
+
+namespace hamel {
+
+struct RouthSphere {
+  using Group = Product<SO3, Rn<2>>;
+  using Element = Group::Element<double>;
+  double mass = 1.0;         // kg
+  double radius = 0.5;       // m
+  double offset = 0.15;      // m, a
+  double transverse = 0.12;  // kg m^2, I1 = I2, about the mass centre
+  double axial = 0.08;       // kg m^2, I3
+  double gravity = 9.81;     // m/s^2
+
+  static std::string name() { return "routh_sphere"; }
+  static std::string summary() { return "ball with its mass centre off the centre, on a plane"; }
+  static std::string formula() {
+    return "SO(3)*R2, l = 1/2 w' I w + 1/2 m |x' + R (w x a e3)|^2 - m g a gamma_3, "
+           "x' = rho w_y, y' = -rho w_x (in space)";
+  }
+  static std::string known() { return "invariants: energy, Jellett's, Routh's (integrable)"; }
+  static std::string source() { return "Routh 1884, art. 243; Cushman 1998"; }
+
+  void fields(auto& f) {
+    f("mass", mass, "kg", "total mass");
+    f("radius", radius, "m", "radius of the ball");
+    f("offset", offset, "m", "centre of the ball to mass centre, along the axis");
+    f("transverse_inertia", transverse, "kg m^2", "moment across the axis, about the mass centre");
+    f("axial_inertia", axial, "kg m^2", "moment about the axis");
+    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+  }
+  // omega x a e3 = a (w2, -w1, 0).
+  auto inertia(const auto& g) const {
+    const auto& r = g.template part<0>();
+    using T = std::decay_t<decltype(r(0, 0))>;
+    MatT<T, 5, 5> i = MatT<T, 5, 5>::Zero();
+    const double about_centre = transverse + mass * offset * offset;
+    i.diagonal() << T(about_centre), T(about_centre), T(axial), T(mass), T(mass);
+    for (int k = 0; k < 2; ++k) {
+      i(0, 3 + k) = i(3 + k, 0) = -(mass * offset) * r(k, 1);
+      i(1, 3 + k) = i(3 + k, 1) = (mass * offset) * r(k, 0);
+    }
+    return i;
+  }
+  Mat<2, 5> constraints(const Element& g) const {
+    const auto& r = g.part<0>();
+    Mat<2, 5> a;
+    a << -radius * r.row(1), 1, 0, radius * r.row(0), 0, 1;
+    return a;
+  }
+  auto potential(const auto& g) const {
+    return (mass * gravity * offset) * g.template part<0>()(2, 2);
+  }
+  /// The axis leaning by 0.5 rad, spinning.
+  Start start() const {
+    const double c = std::cos(0.5), s = std::sin(0.5);
+    const Mat<3, 3> r{{1, 0, 0}, {0, c, -s}, {0, s, c}};
+    const Vec<3> omega(0.5, 1.0, 4.0), w = r * omega;
+    return {.configuration = {1, 0, 0, 0, c, -s, 0, s, c, 0, 0},
+            .velocity = {omega[0], omega[1], omega[2], radius * w[1], -radius * w[0]},
+            .momentum = {}};
+  }
+  void invariants(auto& add) const {
+    add("energy", [*this](const auto& g, const Vec<5>& xi) {
+      return 0.5 * xi.dot(inertia(g) * xi) + potential(g);
+    });
+    const auto contact = [*this](const auto& g) {
+      return Vec<3>(-radius * g.template part<0>().row(2).transpose() - offset * Vec<3>::UnitZ());
+    };
+    const Vec<3> moments(transverse, transverse, axial);
+    add("Jellett", [=](const auto& g, const Vec<5>& xi) {
+      return contact(g).dot(moments.cwiseProduct(xi.template head<3>()));
+    });
+    add("Routh", [=, *this](const auto& g, const Vec<5>& xi) {
+      const Vec<3> r = contact(g);
+      return xi[2] * std::sqrt(transverse * axial + mass * r.dot(moments.cwiseProduct(r)));
+    });
+  }
+  void draw(auto& scene) const {
+    scene.floor();
+    scene
+        .body("ball",
+              [r = radius](const auto& g) {
+                const auto& x = g.template part<1>();
+                return Placement{Vec<3>(x[0], x[1], r), g.template part<0>()};
+              },
+              {shapes::sphere(radius), shapes::arrow({0, 0, 1.3 * radius}, {.color = "accent"})})
+        .trail({0, 0, offset});
+  }
+};
+
+}  // namespace hamel
