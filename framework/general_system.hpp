@@ -88,34 +88,39 @@ class TypedMechanics final : public Mechanics {
     else out = system_.inertia(load(g));
   }
 
-  void constraints(double t, const double* at, Matrix a, Vector b) const override {
+  void constraints(double t, const double* at, Matrix to_a, Vector to_b) const override {
     const Element g = load(at);
+    constexpr int k = own + r;
+    Mat<k, n> a;
+    Vec<k> b = Vec<k>::Zero();
     if constexpr (own > 0) {
       if constexpr (requires { system_.constraints(t, g); }) {
-        a.topRows(own) = system_.constraints(t, g);
+        a.template topRows<own>() = system_.constraints(t, g);
       } else if constexpr (requires { system_.constraints(g); }) {
-        a.topRows(own) = system_.constraints(g);
+        a.template topRows<own>() = system_.constraints(g);
       } else {
-        a.topRows(own) = system_.constraints();
+        a.template topRows<own>() = system_.constraints();
       }
     }
-    b.setZero();
-    if constexpr (requires { system_.drift(t, g); }) b.head(own) = system_.drift(t, g);
-    if constexpr (r > 0) a.bottomRows(r) = holonomic_differential(g);
+    if constexpr (requires { system_.drift(t, g); }) b.template head<own>() = system_.drift(t, g);
+    if constexpr (r > 0) a.template bottomRows<r>() = holonomic_differential(g);
+    if (to_a.outerStride() == k) Eigen::Map<Mat<k, n>>(to_a.data()) = a;  // sizes known: unrolled
+    else to_a = a;
+    Eigen::Map<Vec<k>>(to_b.data()) = b;
   }
 
   void holonomic(const double* g, Vector out) const override {
     if constexpr (r > 0) out = system_.holonomic(load(g));
   }
 
-  void force(double t, const double* at, ConstVector xi, Vector out) const override {
+  void force(double t, const double* at, ConstVector velocity, Vector to) const override {
     const Element g = load(at);
-    out.setZero();
+    const Vec<n> xi = Eigen::Map<const Vec<n>>(velocity.data());
+    Vec<n> out = Vec<n>::Zero();
     if constexpr (requires { system_.potential(g); }) out -= potential_differential(g);
-    if constexpr (requires { system_.force(t, g, Vec<n>(xi)); }) {
-      out += system_.force(t, g, Vec<n>(xi));
-    }
+    if constexpr (requires { system_.force(t, g, xi); }) out += system_.force(t, g, xi);
     if constexpr (!requires(const S& s) { s.inertia(); }) out += inertia_differential(g, xi);
+    Eigen::Map<Vec<n>>(to.data()) = out;
   }
 
   double potential(const double* g) const override {

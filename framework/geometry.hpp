@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include <hamel/framework/concepts.hpp>
 #include <hamel/framework/general/small.hpp>
 
@@ -128,11 +130,20 @@ class TypedGeometry final : public Geometry {
       put(Tau::dtau_right_inverse_transpose(vec(xi), vec(p)) - vec(nu), m0);
       return;
     }
-    Mat<n, n> c = (1 - s) * Tau::dtau_right(Vec<n>((1 - s) * vec(xi))).transpose();
-    Vec<n> m = vec(p) - c.lazyProduct(vec(nu));
-    c += s * Tau::dtau_right(Vec<n>(-s * vec(xi))).transpose();
-    solve_in_place(c, m);
-    put(m, m0);
+    // With A_i = dR_{z_i}^-1 and M = s A_1 + (1-s) A_0:  s dR_{z0} + (1-s) dR_{z1} = A_0^-1 M A_1^-1, so that
+    // m0 = A_0^T M^-T (A_1^T p - (1-s) nu): no dR is formed.
+    const Vec<n> z0 = -s * vec(xi), z1 = (1 - s) * vec(xi);
+    const Mat<n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
+    Vec<n> m = Tau::dtau_right_inverse_transpose(z1, vec(p)) - (1 - s) * vec(nu);
+    if constexpr (requires { G::solve_transposed(mix, m); }) {
+      m = G::solve_transposed(mix, m);
+    } else if constexpr (n <= 4) {
+      m = (mix.transpose().inverse() * m).eval();
+    } else {
+      Mat<n, n> transposed = mix.transpose();
+      solve_in_place(transposed, m);
+    }
+    put(Tau::dtau_right_inverse_transpose(z0, m), m0);
   }
   bool in_domain(const double* xi) const override { return Tau::in_domain(vec(xi)); }
   int columns() const override { return static_cast<int>(G::columns().size()); }

@@ -8,6 +8,7 @@
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
 
+#include <Eigen/LU>
 #include <hamel/framework/types.hpp>
 #include <hamel/groups/coordinates.hpp>
 #include <hamel/groups/retractions.hpp>
@@ -127,6 +128,16 @@ struct SE3 {
   static Element<double> from_coordinates(std::span<const double> values) {
     check_coordinates("se3", values, columns());
     return {SO3::rotation_from("se3", values), {values[9], values[10], values[11]}};
+  }
+
+  /// m^-T u for a matrix of the shape of dR: block lower triangular.
+  static Vec<6> solve_transposed(const Mat<6, 6>& m, const Vec<6>& u) {
+    const Mat<3, 3> a = m.topLeftCorner<3, 3>(), b = m.bottomLeftCorner<3, 3>(),
+                    c = m.bottomRightCorner<3, 3>();
+    const Vec<3> lower = c.inverse().transpose() * u.tail<3>();
+    Vec<6> out;
+    out << a.inverse().transpose() * Vec<3>(u.head<3>() - b.transpose() * lower), lower;
+    return out;
   }
 
   /// The element next to values whose rotation is off by less than about 0.3.

@@ -37,7 +37,8 @@ class SmallLu {
   Eigen::PartialPivLU<Matrix> lu_;
 };
 
-/// J^-1: in closed form up to 4 x 4, by LU beyond.
+/// J^-1: in closed form up to 4 x 4, by LU beyond; without a bound, up to 16 x 16 as a matrix (it only
+/// steers, and is used many times).
 template <class Jacobian>
 class Inverse {
  public:
@@ -49,16 +50,27 @@ class Inverse {
   void compute(const Jacobian& jacobian) {
     if constexpr (closed_form) factors_ = jacobian.inverse();
     else factors_.compute(jacobian);
+    if constexpr (bound == Eigen::Dynamic) {
+      if (jacobian.rows() <= 16) inverse_ = factors_.inverse();
+    }
   }
   template <class Vector>
   void solve(const Vector& f, Vector& out) const {
-    if constexpr (closed_form) out = factors_ * f;
-    else out = factors_.solve(f);
+    if constexpr (closed_form) {
+      out = factors_ * f;
+    } else if constexpr (bound == Eigen::Dynamic) {
+      if (f.size() <= 16) out = inverse_.lazyProduct(f);
+      else out = factors_.solve(f);
+    } else {
+      out = factors_.solve(f);
+    }
   }
 
  private:
   using Lu = std::conditional_t<small, SmallLu, Eigen::PartialPivLU<Jacobian>>;
+  struct Nothing {};
   std::conditional_t<closed_form, Jacobian, Lu> factors_;
+  [[no_unique_address]] std::conditional_t<bound == Eigen::Dynamic, Jacobian, Nothing> inverse_;
 };
 
 struct Newton {

@@ -59,7 +59,7 @@ struct FallingDisk {
     Vec<3> gamma, along, across, r;
     Contact(const Element& g, double radius) {
       gamma = g.rotation.row(2).transpose();
-      const double lean = std::hypot(gamma[0], gamma[1]);
+      const double lean = std::sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]);
       along = Vec<3>(-gamma[1], gamma[0], 0) / lean;  // e3 x gamma: where it rolls
       across = gamma.cross(along);
       r = Vec<3>(gamma[0], gamma[1], 0) * (-radius / lean);

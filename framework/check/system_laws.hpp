@@ -80,11 +80,11 @@ inline double difference(const std::vector<double>& a, const std::vector<double>
 inline LawReport check_system(const SystemModel& model, double until = 5,
                               const Geometry* geometry = nullptr) {
   LawReport report;
-  const auto at_start = check::matrices_at(
+  const auto initial = check::matrices_at(
       model, geometry,
       model.start.configuration.empty() ? model.group.identity : model.start.configuration);
-  const Eigen::MatrixXd& inertia = at_start.inertia;
-  const Eigen::MatrixXd& rows = at_start.rows;
+  const Eigen::MatrixXd& inertia = initial.inertia;
+  const Eigen::MatrixXd& rows = initial.rows;
   report.push_back({"inertia symmetric", (inertia - inertia.transpose()).norm() / inertia.norm(),
                     check::algebraic});
   const Eigen::VectorXd values =

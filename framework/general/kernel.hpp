@@ -107,8 +107,11 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
   }
 
   SolveReport one_step() {
-    start_of_step_ = now_;
-    before_ = previous_;
+    const bool composed = stages_.size() > 1;  // else a failed substep leaves the state alone
+    if (composed) {
+      start_of_step_ = now_;
+      before_ = previous_;
+    }
     SolveReport total;
     for (size_t i = 0; i < stages_.size(); ++i) {
       const SolveReport report = substep(stages_[i], composition_[i] * h_);
@@ -117,8 +120,10 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
       total.residual = std::max(total.residual, report.residual);
       total.reason = report.reason;
       if (!total.ok()) {
-        now_ = start_of_step_;
-        previous_ = before_;
+        if (composed) {
+          now_ = start_of_step_;
+          previous_ = before_;
+        }
         break;
       }
     }

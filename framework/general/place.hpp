@@ -64,10 +64,14 @@ class Place {
 
   /// (*): r + W (c - Q r), in place of r.
   void join(typename Z::Vector& r, const typename Z::Few& c) {
-    if (a.rows() == 0) return;
-    few_ = c;
-    few_ -= q.lazyProduct(r);
-    r += w.lazyProduct(few_);
+    const Eigen::Index k = a.rows(), n = N == Eigen::Dynamic ? r.size() : N;
+    for (Eigen::Index i = 0; i < k; ++i) few_[i] = c[i];
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = 0; i < k; ++i) few_[i] -= q(i, j) * r[j];
+    }
+    for (Eigen::Index i = 0; i < k; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) r[j] += w(j, i) * few_[i];
+    }
   }
   /// I^-1 (mu - W (Q mu - b)).
   void admissible(const typename Z::Vector& mu, typename Z::Vector& xi) {

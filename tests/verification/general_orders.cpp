@@ -84,7 +84,7 @@ TEST_P(GeneralOrders, AreAsClaimed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Systems, GeneralOrders, testing::ValuesIn(general_systems()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& it) { return it.param; });
 
 /// On a left-invariant system the general schemes are the compiled ones.
 TEST(GeneralSchemes, AreTheCompiledOnesOnLeftInvariantSystems) {

@@ -190,7 +190,7 @@ TEST_P(Every, AgreesWithTheMultiplierEquations) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Systems, Every, testing::ValuesIn(registry().systems()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& it) { return it.param; });
 
 }  // namespace
 }  // namespace hamel
