@@ -25,7 +25,6 @@ struct Analysis {
   std::vector<Eigen::MatrixXd> structure;  // c^d_ab: entry d, at (a, b): [X_a, X_b] along X_d, on d
   std::vector<int> growth;                 // dim d, dim (d + [d, d]), ... until it stays
   bool integrable() const { return growth.size() == 1 && m < n; }
-  bool spans() const { return growth.back() == n; }
   struct Conserved {
     std::string expression;  // "E", "0.5 J3 - ..."
     double change;           // largest relative change seen

@@ -40,9 +40,10 @@ std::string verdict(const Analysis& a) {
         "holonomic in disguise",
         a.m);
   }
-  if (a.spans()) {
-    return fmt::format("nonholonomic: brackets of {} fields span all {} directions (growth {})",
-                       a.growth.size(), a.n, growth);
+  if (a.growth.back() == a.n - a.holonomic_rows) {
+    return fmt::format("nonholonomic: brackets of {} fields span all {} directions{} (growth {})",
+                       a.growth.size(), a.growth.back(),
+                       a.holonomic_rows > 0 ? " that the holonomic rows leave" : "", growth);
   }
   return fmt::format("nonholonomic, but brackets reach only {} of {} directions (growth {})",
                      a.growth.back(), a.n, growth);
