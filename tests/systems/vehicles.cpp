@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <hamel/groups/exp.hpp>
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/roller_racer.hpp>
 #include <hamel/systems/segway.hpp>
@@ -201,6 +202,25 @@ TEST(Segway, FallsAtTheKnownRate) {
   }
   EXPECT_NEAR(run(simulate("segway").start(Segway{}.rolling(0, 0, 1)), 0.01, 2).last.coordinates[5],
               0, 1e-9);
+}
+
+// Without moments and wheels the metric is that of a point: m/2 |d/dt (x, y, z)|^2 of the mass centre.
+TEST(Segway, MovesItsMassCentre) {
+  Segway segway;
+  segway.moments.setZero();
+  segway.wheel_mass = segway.wheel_inertia = segway.wheel_diameter = 0;
+  using G = Segway::Group;
+  const auto g = G::from_coordinates(std::vector<double>{0.4, 1, 2, 0, 0, 0.7});
+  Vec<6> xi;
+  xi << 0.5, 1.2, -0.3, 0, 0, 0.8;
+  const auto place = [&](double t) {
+    const auto moved = G::compose(g, Exp<G>::tau(Vec<6>(t * xi)));
+    const auto &cart = moved.part<0>(), &pitch = moved.part<3>();
+    const Vec<2> p = cart.translation + cart.rotation.rotate(Vec<2>(segway.height * pitch.s, 0));
+    return Vec<3>(p[0], p[1], segway.height * pitch.c);
+  };
+  const Vec<3> velocity = (place(1e-5) - place(-1e-5)) / 2e-5;
+  EXPECT_NEAR(xi.dot(segway.inertia(g) * xi), segway.mass * velocity.squaredNorm(), 1e-7);
 }
 
 // x = (g s/2 omega^2) sin^2(omega t): down and back, while a free body would slide g s t^2/2.
