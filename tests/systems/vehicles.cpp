@@ -215,7 +215,8 @@ TEST(Segway, MovesItsMassCentre) {
   xi << 0.5, 1.2, -0.3, 0, 0, 0.8;
   const auto place = [&](double t) {
     const auto moved = G::compose(g, Exp<G>::tau(Vec<6>(t * xi)));
-    const auto &cart = moved.part<0>(), &pitch = moved.part<3>();
+    const auto& cart = moved.part<0>();
+    const auto& pitch = moved.part<3>();
     const Vec<2> p = cart.translation + cart.rotation.rotate(Vec<2>(segway.height * pitch.s, 0));
     return Vec<3>(p[0], p[1], segway.height * pitch.c);
   };
