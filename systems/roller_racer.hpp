@@ -1,9 +1,9 @@
 // roller_racer: two bodies with a hinge between them, each on one axle; the rider swings the handlebar.
 //
 //   SE(2) x S^1, xi = (omega, v1, v2, phi'), origin at the rear axle, the hinge at a e1, phi the angle of
-//   the front body, whose axle is at b in front of the hinge; its mass is left out, its moment is I_f:
+//   the front body, whose axle trails the hinge by b; its mass is left out, its moment is I_f:
 //   l = 1/2 m (v1^2 + v2^2) + 1/2 I omega^2 + 1/2 I_f (omega + phi')^2 - 1/2 k phi^2,
-//   v2 = 0,   -sin phi v1 + cos phi (v2 + a omega) + b (omega + phi') = 0,
+//   v2 = 0,   -sin phi v1 + cos phi (v2 + a omega) - b (omega + phi') = 0,
 // with the torque T cos(Omega t) on phi. Neither wheel is driven, and no symmetry points forwards: the
 // momentum is not kept, and swinging the handlebar makes the racer run. Without torque the energy is kept.
 // Source: Krishnaprasad and Tsakiris, Oscillations, SE(2)-snakes and motion control: a study of the
@@ -36,7 +36,7 @@ struct RollerRacer {
   static std::string summary() { return "two hinged bodies on wheels, run by steering alone"; }
   static std::string formula() {
     return "SE(2)*S1, l = 1/2 m |v|^2 + 1/2 I w^2 + 1/2 I_f (w + phi')^2 - 1/2 k phi^2, v2 = 0, "
-           "-sin phi v1 + cos phi (v2 + a w) + b (w + phi') = 0, torque T cos(Omega t) on phi";
+           "-sin phi v1 + cos phi (v2 + a w) - b (w + phi') = 0, torque T cos(Omega t) on phi";
   }
   static std::string known() {
     return "undulation propels; invariants: energy when the torque is 0";
@@ -48,7 +48,7 @@ struct RollerRacer {
     f("inertia", moment, "kg m^2", "moment of the rear body");
     f("front_inertia", front_moment, "kg m^2", "moment of the front body");
     f("rear_length", rear_length, "m", "rear axle to hinge");
-    f("front_length", front_length, "m", "hinge to front axle");
+    f("front_length", front_length, "m", "front axle to hinge, which it trails");
     f("stiffness", stiffness, "N m", "spring that centres the handlebar");
     f("torque", torque, "N m", "amplitude of the torque on the handlebar");
     f("frequency", frequency, "rad/s", "of the torque");
@@ -61,7 +61,7 @@ struct RollerRacer {
   Mat<2, 4> constraints(const Element& g) const {
     const auto& phi = g.part<1>();
     return Mat<2, 4>{{0, 0, 1, 0},
-                     {rear_length * phi.c + front_length, -phi.s, phi.c, front_length}};
+                     {rear_length * phi.c - front_length, -phi.s, phi.c, -front_length}};
   }
   auto potential(const auto& g) const {
     const auto phi = g.template part<1>().angle();
@@ -70,13 +70,13 @@ struct RollerRacer {
   Vec<4> force(double t, const Element& /*g*/, const Vec<4>& /*xi*/) const {
     return {0, 0, 0, torque * std::cos(frequency * t)};
   }
-  /// Straight, swinging the handlebar at phi_rate while it runs at v.
-  Start swinging(double phi_rate, double v) const {
+  /// Straight, turning at omega while it runs at v.
+  Start turning(double omega, double v) const {
     return {.configuration = {},
-            .velocity = {-front_length * phi_rate / (rear_length + front_length), v, 0, phi_rate},
+            .velocity = {omega, v, 0, (rear_length - front_length) / front_length * omega},
             .momentum = {}};
   }
-  Start start() const { return swinging(1, 0.2); }
+  Start start() const { return turning(0.5, 0.2); }
   void invariants(auto& add) const {
     if (torque == 0) {
       add("energy", [*this](const auto& g, const Vec<4>& xi) {
@@ -103,8 +103,8 @@ struct RollerRacer {
                shapes::box({0.02, 0.2, 0.03}, {.at = {0, 0, 0.03}, .color = "dark"})})
         .trail();
     scene.body("handlebar", front,
-               {shapes::box({b, 0.05, 0.05}, {.at = {b / 2, 0, 0.08}, .color = "accent"}),
-                shapes::box({0.02, 0.16, 0.03}, {.at = {b, 0, 0.03}, .color = "dark"})});
+               {shapes::box({b, 0.05, 0.05}, {.at = {-b / 2, 0, 0.08}, .color = "accent"}),
+                shapes::box({0.02, 0.16, 0.03}, {.at = {-b, 0, 0.03}, .color = "dark"})});
   }
 };
 

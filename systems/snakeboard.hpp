@@ -36,7 +36,7 @@ struct Snakeboard {
   double axle_inertia = 0.006;      // kg m^2, J_1
   double rotor_amplitude = 0.7;     // rad, psi_a
   double steering_amplitude = 0.3;  // rad, phi_a
-  double frequency = 1.0;           // rad/s, Omega
+  double frequency = 2.0;           // rad/s, Omega
 
   static std::string name() { return "snakeboard"; }
   static std::string summary() { return "board on steered axles, run by swinging a rotor"; }
