@@ -63,7 +63,7 @@ struct BallOnTurntable {
   }
   Start start() const {
     return {.configuration = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0.8, 0},
-            .velocity = {0.2, 1.5, 0.3, 0.4, 0.5},
+            .velocity = {0.2, 1.5, 0.3, 0.75, 0.7},
             .momentum = {}};
   }
 
