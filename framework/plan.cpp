@@ -139,7 +139,7 @@ Simulation::Plan Simulation::plan() const {
   } else if (fast != nullptr) {
     plan.kernel = *fast;
   } else if (scheme != nullptr && geometry != nullptr) {
-    if (scheme->general && !(scheme->invariant_only && system.mechanics != nullptr)) {
+    if (scheme->general && scheme->defined(system.mechanics == nullptr)) {
       plan.use_general(*registry_, *scheme);
     } else {
       plan.add({fmt::format("scheme: {} is {}; {} here", config_.scheme,

@@ -50,7 +50,7 @@ class FunctionSolver final : public Solver {
 ClaimedOrder SchemeInfo::claim(double s, bool symmetric_tau, bool left_invariant) const {
   if (!uses_s) s = 0;
   if (left_invariant) return claimed_order(s, symmetric_tau);
-  return general_order && !invariant_only ? general_order(s) : ClaimedOrder{0, false};
+  return defined(false) ? general_order(s) : ClaimedOrder{0, false};
 }
 
 void Registry::add(GroupInfo info) { groups_[info.name] = std::move(info); }

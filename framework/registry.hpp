@@ -39,6 +39,11 @@ struct SchemeInfo {
   std::function<std::unique_ptr<GeneralStep>(const GeneralSetup&)> general = {};
   std::function<ClaimedOrder(double s)> general_order = {};
 
+  bool explicit_step = false;  // no equation to solve
+
+  bool defined(bool left_invariant) const {
+    return left_invariant || (general != nullptr && !invariant_only);
+  }
   /// What it claims for a run; order 0 where it is not defined.
   ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) const;
 };

@@ -60,7 +60,8 @@ void add_general_scheme(Registry& registry) {
   info.steps_admissible = Scheme::steps_admissible;
   info.claimed_order = &Scheme::order;
   info.general = &Scheme::general;
-  info.general_order = [](double s) { return Scheme::order(s, true); };
+  info.general_order = [](double s) { return Scheme::order(s, s == 0.5); };
+  info.explicit_step = Scheme::explicit_step;
   registry.add(std::move(info));
 }
 

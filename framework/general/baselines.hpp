@@ -19,6 +19,7 @@ struct EnergyPreserving {
   static constexpr bool uses_s = false;
   static constexpr bool invariant_only = true;
   static constexpr bool steps_admissible = true;
+  static constexpr bool explicit_step = false;
   static ClaimedOrder order(double /*s*/, bool symmetric_tau) {
     return {symmetric_tau ? 2 : 1, symmetric_tau};
   }
@@ -33,7 +34,10 @@ struct Gni {
   static constexpr bool uses_s = true;
   static constexpr bool invariant_only = false;
   static constexpr bool steps_admissible = false;
-  static ClaimedOrder order(double s, bool /*symmetric_tau*/) { return {s == 0.5 ? 2 : 1, false}; }
+  static constexpr bool explicit_step = false;
+  static ClaimedOrder order(double s, bool symmetric_tau) {
+    return {s == 0.5 || symmetric_tau ? 2 : 1, false};
+  }
   static std::unique_ptr<GeneralStep> general(const GeneralSetup& setup);
 };
 
@@ -48,6 +52,7 @@ struct Reversible {
   static constexpr bool uses_s = false;
   static constexpr bool invariant_only = false;
   static constexpr bool steps_admissible = false;
+  static constexpr bool explicit_step = false;
   static ClaimedOrder order(double /*s*/, bool /*symmetric_tau*/) { return {2, true}; }
   static std::unique_ptr<GeneralStep> general(const GeneralSetup& setup);
 };
@@ -62,6 +67,7 @@ struct Rkmk4 {
   static constexpr bool uses_s = false;
   static constexpr bool invariant_only = false;
   static constexpr bool steps_admissible = false;
+  static constexpr bool explicit_step = true;
   static ClaimedOrder order(double /*s*/, bool /*symmetric_tau*/) { return {4, false}; }
   static std::unique_ptr<GeneralStep> general(const GeneralSetup& setup);
 };
@@ -78,6 +84,7 @@ struct Rk4Projected {
   static constexpr bool uses_s = false;
   static constexpr bool invariant_only = false;
   static constexpr bool steps_admissible = false;
+  static constexpr bool explicit_step = true;
   static ClaimedOrder order(double /*s*/, bool /*symmetric_tau*/) { return {4, false}; }
   static std::unique_ptr<GeneralStep> general(const GeneralSetup& setup);
 };

