@@ -217,6 +217,16 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     m.template bottomRightCorner<3, 3>() = last;
     return m;
   }
+  /// The transpose of that, applied to p without forming it.
+  template <class T>
+  static VecT<T, 6> dtau_right_inverse_transpose(const VecT<T, 6>& xi, const VecT<T, 6>& p) {
+    const VecT<T, 3> w = 0.5 * xi.template head<3>(), v = 0.5 * xi.template tail<3>(),
+                     m = p.template head<3>(), f = p.template tail<3>();
+    VecT<T, 6> out;
+    out.template head<3>() = m + w.cross(m) + w * (w.dot(m) + v.dot(f)) - w.dot(v) * f + v.cross(f);
+    out.template tail<3>() = f + w.cross(f);
+    return out;
+  }
   /// Rows of omega: N_cay(omega, m) + (v.f I - f v^T)/4 and -(f + omega x f/2)^/2; rows of v: -f^/2
   /// and 0.
   template <class T>

@@ -20,6 +20,7 @@
 
 #include <Eigen/LU>
 
+#include <hamel/framework/compiled_kernel.hpp>
 #include <hamel/framework/status.hpp>
 
 namespace hamel {
@@ -48,11 +49,16 @@ class Inverse {
   static constexpr bool small = bound != Eigen::Dynamic && bound <= SmallLu::max_size;
 
   void compute(const Jacobian& jacobian) {
+    if constexpr (bound == Eigen::Dynamic) {
+      if (jacobian.rows() <= 16) {  // in loops of our own: Eigen's would take memory
+        inverse_.resize(jacobian.rows(), jacobian.cols());
+        work_ = jacobian;
+        invert(work_.data(), inverse_.data(), static_cast<int>(jacobian.rows()));
+        return;
+      }
+    }
     if constexpr (closed_form) factors_ = jacobian.inverse();
     else factors_.compute(jacobian);
-    if constexpr (bound == Eigen::Dynamic) {
-      if (jacobian.rows() <= 16) inverse_ = factors_.inverse();
-    }
   }
   template <class Vector>
   void solve(const Vector& f, Vector& out) const {
@@ -70,7 +76,8 @@ class Inverse {
   using Lu = std::conditional_t<small, SmallLu, Eigen::PartialPivLU<Jacobian>>;
   struct Nothing {};
   std::conditional_t<closed_form, Jacobian, Lu> factors_;
-  [[no_unique_address]] std::conditional_t<bound == Eigen::Dynamic, Jacobian, Nothing> inverse_;
+  [[no_unique_address]] std::conditional_t<bound == Eigen::Dynamic, Jacobian, Nothing> inverse_,
+      work_;
 };
 
 struct Newton {
@@ -168,7 +175,8 @@ struct Newton {
     double size = 0;  // |F|^2
     bool fresh = false;
     const auto finish = [&](Reason reason) {
-      memory.valid = memory.valid && report.iterations <= 1;
+      // Without a bound a Jacobian costs n residuals and more: it is kept longer.
+      memory.valid = memory.valid && report.iterations <= (Memory<Step>::bounded ? 1 : 3);
       report.reason = reason;
       report.residual = std::sqrt(size / scale);
       return report;

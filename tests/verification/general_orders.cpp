@@ -52,13 +52,14 @@ TEST_P(GeneralOrders, AreAsClaimed) {
   const std::string group = reference.system.group.name;
   for (const std::string& scheme : registry().schemes()) {
     const SchemeInfo& info = *registry().scheme(scheme);
-    if (!info.general || !info.defined(reference.system.mechanics == nullptr)) continue;
+    if (!info.adapted || !info.general || !info.defined(reference.system.mechanics == nullptr))
+      continue;
     for (const std::string retraction : {"exp", "cayley"}) {
       for (const double s : info.uses_s ? std::vector<double>{0, 0.5, 1} : std::vector<double>{0}) {
         const ClaimedOrder claim =
             info.claim(s, true, reference.system.mechanics == nullptr);  // exp, cayley: symmetric
         // First-order errors show their order late.
-        const long coarse = claim.order == 1 ? 800 : claim.order == 2 ? 160 : 80;
+        const long coarse = claim.order == 1 ? 800 : claim.order == 2 ? 160 : 24;
         const Result a = run_of(system, scheme, s, retraction, coarse).run();
         const Result b = run_of(system, scheme, s, retraction, 2 * coarse).run();
         const std::string what =
@@ -67,7 +68,7 @@ TEST_P(GeneralOrders, AreAsClaimed) {
         ASSERT_TRUE(b.status.ok) << what << ": " << b.status.reason;
         const double coarse_error = distance(end_of(a), end), fine_error = distance(end_of(b), end);
         const double order = std::log2(coarse_error / fine_error);
-        if (fine_error > 1e-11) {  // else exact up to round-off: nothing to measure
+        if (fine_error > 1e-10) {  // else exact up to round-off: nothing to measure
           const double bound = claim.order == 1 ? 0.1 : claim.order == 2 ? 0.05 : 0.2;
           EXPECT_GT(order, claim.order - bound)
               << what << ", errors " << coarse_error << ", " << fine_error;

@@ -27,6 +27,10 @@ TEST_P(SchemeLaws, Hold) {
         // Order 1 shows within 0.1 from h = 0.01 on: at 0.05 the next term is a tenth of the first.
         const bool symmetric = all.retraction(group, retraction)->symmetric;
         if (all.scheme(scheme)->claimed_order(s, symmetric).order == 1) c.step /= 5;
+        // A steady motion leaves a baseline nothing to err on.
+        if (all.kernel(group, kRunTime, retraction, scheme) == nullptr) {
+          c.generic = c.system != "rolling_disk";
+        }
         for (const LawResult& law : check_scheme(all, c)) {
           EXPECT_TRUE(law.passed()) << GetParam().name << ", " << scheme << ", " << retraction
                                     << ", s = " << s << "\n  " << law;
