@@ -54,7 +54,7 @@ void Motion::operator()(double t, const double* g, const Eigen::VectorXd& xi) {
   b_rate_.noalias() -= a_rate_ * xi;
   if (b_.size() > 0) {
     b_rate_.noalias() -= place_.q * change_;
-    reaction_ = (place_.q * place_.a.transpose()).llt().solve(b_rate_);
+    reaction_.noalias() = place_.s_inverse * b_rate_;
     change_.noalias() += place_.a.transpose() * reaction_;
   }
   acceleration_.noalias() = place_.inverse * change_;

@@ -34,6 +34,7 @@ class Place {
   typename Z::Rows a, q;                // A, Q
   typename Z::Columns w;                // W
   typename Z::Few b;
+  typename Z::FewSquare s_inverse;      // S^-1
 
   explicit Place(const Mechanics& system)
       : inertia(system.dim(), system.dim()),
@@ -42,8 +43,8 @@ class Place {
         q(system.rows(), system.dim()),
         w(system.dim(), system.rows()),
         b(system.rows()),
-        few_(system.rows()),
-        s_(system.rows(), system.rows()) {}
+        s_inverse(system.rows(), system.rows()),
+        few_(system.rows()) {}
 
   /// Everything at (t, g).
   void set(const Mechanics& system, double t, const double* g) {
@@ -57,9 +58,9 @@ class Place {
     if (a.rows() == 0) return;
     system.constraints(t, g, a, b);
     q = a.lazyProduct(inverse);
-    s_ = q.lazyProduct(a.transpose());
-    invert_definite(s_);
-    w = a.transpose().lazyProduct(s_);
+    s_inverse = q.lazyProduct(a.transpose());
+    invert_definite(s_inverse);
+    w = a.transpose().lazyProduct(s_inverse);
   }
 
   /// (*): r + W (c - Q r), in place of r.
@@ -82,7 +83,6 @@ class Place {
 
  private:
   typename Z::Few few_;
-  typename Z::FewSquare s_;
   typename Z::Vector reduced_;
   Eigen::LLT<typename Z::Matrix> inertia_factors_;
   bool inertia_known_ = false;
