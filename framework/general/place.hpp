@@ -34,7 +34,7 @@ class Place {
   typename Z::Rows a, q;                // A, Q
   typename Z::Columns w;                // W
   typename Z::Few b;
-  typename Z::FewSquare s_inverse;      // S^-1
+  typename Z::FewSquare s_inverse;  // S^-1
 
   explicit Place(const Mechanics& system)
       : inertia(system.dim(), system.dim()),
