@@ -4,7 +4,7 @@
 // reaction can carry (place.hpp). Then the unconstrained step of the cotangent lift: mu0(v) = p+, p- = mu1.
 // Order 2 (s = 1/2, or V = f = 0 with a symmetric tau). Weakness: |det| of the map is 1, while systems
 // such as Suslov's with full inertia contract phase volume; a parasitic mode (-1)^k e^{+A t} grows
-// beside the motion and ends long runs (tests/verification/baselines.cpp). A teaching baseline.
+// beside the motion and ends long runs. A teaching baseline.
 // Source: Ferraro, Iglesias, Martin de Diego, Momentum and energy preserving integrators for nonholonomic
 // dynamics, Nonlinearity 21 (2008).
 #include <hamel/framework/general/baselines.hpp>

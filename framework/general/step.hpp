@@ -51,7 +51,7 @@ struct GeneralSetup {
   double s = 0.5;
 };
 
-/// Step<n> for the dimension of the system: fixed for 3 to 6, at run time otherwise.
+/// Step<n> for the dimension of the system: fixed for 6 (motions of space), at run time otherwise.
 template <template <int> class Step>
 std::unique_ptr<GeneralStep> make_sized(const GeneralSetup& setup) {
   switch (setup.mechanics->dim()) {
