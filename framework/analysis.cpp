@@ -30,11 +30,12 @@ class Fields {
 
   Field of_frame(Eigen::Index a) const {
     return [this, a](const Vector& g) -> Vector {
-      Place<Eigen::Dynamic> place(*mechanics_);
+      Place<> place(*mechanics_);
       place.set(*mechanics_, 0, g.data());
-      const Vector e = frame_.col(a);
-      if (place.a.rows() == 0) return e;
-      return e - place.inverse * (place.w * (place.a * e));
+      place.b.setZero();
+      Vector e = frame_.col(a);
+      place.admissible(place.inertia * e, e);  // the I-orthogonal projection onto ker A(g)
+      return e;
     };
   }
   /// [X, Y], the derivatives by fourth-order central differences.

@@ -88,7 +88,8 @@ class TypedMechanics final : public Mechanics {
     else out = system_.inertia(load(g));
   }
 
-  void constraints(double t, const double* at, Matrix to_a, Vector to_b) const override {
+  [[gnu::flatten]] void constraints(double t, const double* at, Matrix to_a,
+                                    Vector to_b) const override {
     const Element g = load(at);
     constexpr int k = own + r;
     Mat<k, n> a;
@@ -109,11 +110,12 @@ class TypedMechanics final : public Mechanics {
     Eigen::Map<Vec<k>>(to_b.data()) = b;
   }
 
-  void holonomic(const double* g, Vector out) const override {
+  [[gnu::flatten]] void holonomic(const double* g, Vector out) const override {
     if constexpr (r > 0) out = system_.holonomic(load(g));
   }
 
-  void force(double t, const double* at, ConstVector velocity, Vector to) const override {
+  [[gnu::flatten]] void force(double t, const double* at, ConstVector velocity,
+                              Vector to) const override {
     const Element g = load(at);
     const Vec<n> xi = Eigen::Map<const Vec<n>>(velocity.data());
     Vec<n> out = Vec<n>::Zero();

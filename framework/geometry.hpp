@@ -13,10 +13,8 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include <hamel/framework/concepts.hpp>
-#include <hamel/framework/general/small.hpp>
+#include <hamel/framework/trivialised.hpp>
 
 namespace hamel {
 
@@ -61,7 +59,7 @@ class Geometry {
   virtual void dtau_right_inverse_transpose(const double* xi, const double* p,
                                             double* out) const = 0;
   virtual void dtau_left_inverse(const double* xi, const double* eta, double* out) const = 0;
-  /// The m0 of lift: (s dR_{z0} + (1-s) dR_{z1})^T m0 + (1-s) dR_{z1}^T nu = p, z0 = -s xi, z1 = (1-s) xi.
+  /// base_momentum of trivialised.hpp.
   virtual void base_momentum(double s, const double* xi, const double* p, const double* nu,
                              double* m0) const = 0;
   virtual bool in_domain(const double* xi) const = 0;
@@ -74,6 +72,7 @@ class Geometry {
   virtual void nearest(std::span<const double> values, double* out) const = 0;
 };
 
+/// What a step calls is flattened: a kernel's unit is too large for the compiler to inline it by itself.
 template <class Tau>
 class TypedGeometry final : public Geometry {
   using G = typename Tau::Group;
@@ -89,15 +88,18 @@ class TypedGeometry final : public Geometry {
   bool one_parameter() const override { return Tau::one_parameter; }
   std::string domain() const override { return Tau::domain(); }
 
-  void compose(const double* g, const double* h, double* out) const override {
+  [[gnu::flatten]] void compose(const double* g, const double* h, double* out) const override {
     Pack::store(G::compose(Pack::load(g), Pack::load(h)), out);
   }
-  void inverse(const double* g, double* out) const override {
+  [[gnu::flatten]] void inverse(const double* g, double* out) const override {
     Pack::store(G::inverse(Pack::load(g)), out);
   }
-  void normalise(double* g) const override { Pack::store(G::normalise(Pack::load(g)), g); }
+  [[gnu::flatten]] void normalise(double* g) const override {
+    Pack::store(G::normalise(Pack::load(g)), g);
+  }
   double defect(const double* g) const override { return G::defect(Pack::load(g)); }
-  void Ad_transpose(const double* g, const double* mu, double* out) const override {
+  [[gnu::flatten]] void Ad_transpose(const double* g, const double* mu,
+                                     double* out) const override {
     put(G::Ad_transpose(Pack::load(g), vec(mu)), out);
   }
   void ad_transpose(const double* xi, const double* mu, double* out) const override {
@@ -106,7 +108,9 @@ class TypedGeometry final : public Geometry {
   void Ad(const double* g, const double* xi, double* out) const override {
     put(G::Ad(Pack::load(g)) * vec(xi), out);
   }
-  void tau(const double* xi, double* out) const override { Pack::store(Tau::tau(vec(xi)), out); }
+  [[gnu::flatten]] void tau(const double* xi, double* out) const override {
+    Pack::store(Tau::tau(vec(xi)), out);
+  }
   bool tau_inverse(const double* g, double* out) const override {
     try {
       put(Tau::tau_inverse(Pack::load(g)), out);
@@ -124,26 +128,9 @@ class TypedGeometry final : public Geometry {
   void dtau_left_inverse(const double* xi, const double* eta, double* out) const override {
     put(Tau::dtau_left_inverse(vec(xi)) * vec(eta), out);
   }
-  void base_momentum(double s, const double* xi, const double* p, const double* nu,
-                     double* m0) const override {
-    if (s == 0) {
-      put(Tau::dtau_right_inverse_transpose(vec(xi), vec(p)) - vec(nu), m0);
-      return;
-    }
-    // With A_i = dR_{z_i}^-1 and M = s A_1 + (1-s) A_0:  s dR_{z0} + (1-s) dR_{z1} = A_0^-1 M A_1^-1, so that
-    // m0 = A_0^T M^-T (A_1^T p - (1-s) nu): no dR is formed.
-    const Vec<n> z0 = -s * vec(xi), z1 = (1 - s) * vec(xi);
-    const Mat<n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
-    Vec<n> m = Tau::dtau_right_inverse_transpose(z1, vec(p)) - (1 - s) * vec(nu);
-    if constexpr (requires { G::solve_transposed(mix, m); }) {
-      m = G::solve_transposed(mix, m);
-    } else if constexpr (n <= 4) {
-      m = (mix.transpose().inverse() * m).eval();
-    } else {
-      Mat<n, n> transposed = mix.transpose();
-      solve_in_place(transposed, m);
-    }
-    put(Tau::dtau_right_inverse_transpose(z0, m), m0);
+  [[gnu::flatten]] void base_momentum(double s, const double* xi, const double* p, const double* nu,
+                                      double* m0) const override {
+    put(hamel::base_momentum<Tau>(s, vec(xi), vec(p), vec(nu)), m0);
   }
   bool in_domain(const double* xi) const override { return Tau::in_domain(vec(xi)); }
   int columns() const override { return static_cast<int>(G::columns().size()); }

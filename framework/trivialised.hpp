@@ -9,9 +9,35 @@
 // where (d) is (a) and (c) applied to dL^T mu = R^T Ad_{f^-1}^T mu.
 #pragma once
 
+#include <Eigen/LU>
+
 #include <hamel/framework/concepts.hpp>
 
 namespace hamel {
+
+/// m0 of the cotangent lift (method.md, (1) and (2), both end momenta carried to the base point, m1 = m0 + nu):
+///   s dR_{z0}^T m0 + (1-s) dR_{z1}^T (m0 + nu) = p,   z0 = -s xi, z1 = (1-s) xi.
+/// With A_i = dR_{z_i}^-1 and M = s A_1 + (1-s) A_0:  s dR_{z0} + (1-s) dR_{z1} = A_0^-1 M A_1^-1, so that
+/// m0 = A_0^T M^-T (A_1^T p - (1-s) nu), and no dR is formed. Where A is quadratic, A(xi) = 1 + odd + even
+/// (Cayley), the odd parts cancel: M = 1 + s (1-s) even(xi), which the retraction solves in closed form.
+template <class Tau>
+Vec<Tau::Group::dim> base_momentum(double s, const Vec<Tau::Group::dim>& xi,
+                                   const Vec<Tau::Group::dim>& p, const Vec<Tau::Group::dim>& nu) {
+  using G = typename Tau::Group;
+  constexpr int n = G::dim;
+  if (s == 0) return Tau::dtau_right_inverse_transpose(xi, p) - nu;
+  const Vec<n> z0 = -s * xi, z1 = (1 - s) * xi;
+  Vec<n> m = Tau::dtau_right_inverse_transpose(z1, p) - (1 - s) * nu;
+  if constexpr (requires { Tau::solve_even_transposed(xi, s, m); }) {
+    m = Tau::solve_even_transposed(xi, s * (1 - s), m);
+  } else {
+    const Mat<n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
+    if constexpr (requires { G::solve_transposed(mix, m); }) m = G::solve_transposed(mix, m);
+    else if constexpr (n <= 4) m = (mix.transpose().inverse() * m).eval();
+    else m = mix.transpose().partialPivLu().solve(m).eval();
+  }
+  return Tau::dtau_right_inverse_transpose(z0, m);
+}
 
 /// tau and its right derivative at one point z: what every scheme evaluates there.
 template <class Tau>

@@ -18,7 +18,8 @@
 
 namespace hamel {
 
-/// What all Cayley maps share.
+/// What all Cayley maps share. Each gives solve_even_transposed(xi, c, m) = (1 + c even)^-T m, where
+/// dR_xi^-1 = 1 + odd + even in xi (trivialised.hpp).
 template <class G>
 struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {
   static constexpr bool symmetric = true;
@@ -55,6 +56,9 @@ struct Cayley<SO2> : CayleyDefaults<SO2> {
   static MatT<T, 1, 1> dtau_right_inverse_transpose_derivative(const VecT<T, 1>& xi,
                                                                const VecT<T, 1>& p) {
     return MatT<T, 1, 1>(0.5 * xi[0] * p[0]);
+  }
+  static Vec<1> solve_even_transposed(const Vec<1>& xi, double c, const Vec<1>& m) {
+    return Vec<1>(m[0] / (1 + 0.25 * c * xi[0] * xi[0]));
   }
 };
 
@@ -100,6 +104,10 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
     return {p[0] + h[1] * p[2] - h[2] * p[1] + d * h[0],
             p[1] + h[2] * p[0] - h[0] * p[2] + d * h[1],
             p[2] + h[0] * p[1] - h[1] * p[0] + d * h[2]};
+  }
+  static Vec<3> solve_even_transposed(const Vec<3>& xi, double c, const Vec<3>& m) {
+    const double k = 0.25 * c;
+    return m - (k * xi.dot(m) / (1 + k * xi.dot(xi))) * xi;
   }
   /// (omega.p I + omega p^T)/4 - p^/2.
   template <class T>
@@ -155,6 +163,10 @@ struct Cayley<SE2> : CayleyDefaults<SE2> {
     const T w = 0.5 * xi[0], v1 = 0.5 * xi[1], v2 = 0.5 * xi[2];
     const T q1 = p[1] - w * p[2], q2 = p[2] + w * p[1];
     return {p[0] + w * w * p[0] + v1 * q2 - v2 * q1, q1, q2};
+  }
+  static Vec<3> solve_even_transposed(const Vec<3>& xi, double c, const Vec<3>& m) {
+    const double k = 0.25 * c * xi[0];
+    return {m[0] - k * xi.dot(m) / (1 + k * xi[0]), m[1], m[2]};
   }
   template <class T>
   static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,
@@ -225,6 +237,16 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     VecT<T, 6> out;
     out.template head<3>() = m + w.cross(m) + w * (w.dot(m) + v.dot(f)) - w.dot(v) * f + v.cross(f);
     out.template tail<3>() = f + w.cross(f);
+    return out;
+  }
+  /// The transpose of the even part is [[omega omega^T, omega v^T - (omega.v) I], [0, 0]]/4.
+  static Vec<6> solve_even_transposed(const Vec<6>& xi, double c, const Vec<6>& m) {
+    const double k = 0.25 * c;
+    const Vec<3> omega = xi.head<3>(), v = xi.tail<3>(), force = m.tail<3>();
+    const Vec<3> moment = m.head<3>() + k * (omega.dot(v) * force - v.dot(force) * omega);
+    Vec<6> out;
+    out.head<3>() = moment - (k * omega.dot(moment) / (1 + k * omega.dot(omega))) * omega;
+    out.tail<3>() = force;
     return out;
   }
   /// Rows of omega: N_cay(omega, m) + (v.f I - f v^T)/4 and -(f + omega x f/2)^/2; rows of v: -f^/2

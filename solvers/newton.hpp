@@ -3,7 +3,8 @@
 //   x <- x - J^-1 F(x),   accepted when |F(x)| <= tolerance * scale, F evaluated at the x returned.
 // Along a trajectory J changes by O(h) a step and the extrapolated guess is good, so that one correction
 // with the last J usually does. J is evaluated anew when a correction does not cut |F| by ten, and for the
-// next step when more than one correction was needed; a fresh correction that does not reduce |F| is
+// next step when more than one correction was needed (by two, more than three where J is made of
+// differences); a fresh correction that does not reduce |F| is
 // halved, up to ten times. At least one correction is made: a guess that already meets the tolerance
 // would leave its extrapolation error, always of one sign, in every step. When |F| stops falling it is
 // accepted at the round-off floor (64 eps), else it is stagnated. The iteration aims two digits below the
@@ -134,10 +135,12 @@ struct Newton {
                                                          double tolerance, Memory<Step>& memory,
                                                          Work<typename Step::Unknown>& work) {
     const double given = step.scale_squared(), scale = given > 0 ? given : 1.0;
+    SolveReport tried;
     if (memory.valid) [[likely]] {  // one correction with the last Jacobian: nearly every step
       work.f = x;
       step.residual(x, work.f);
-      memory.factors.solve(work.f, work.correction);
+      [[maybe_unused]] const double before = Memory<Step>::bounded ? 0 : work.f.squaredNorm();
+      correct(step, memory, work.f, work.correction);
       work.trial = x - work.correction;
       step.residual(work.trial, work.f);
       const double size = work.f.squaredNorm(), target = aim(tolerance);
@@ -145,8 +148,14 @@ struct Newton {
         x = work.trial;
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
       }
+      tried.evaluations = 2;
+      memory.valid = !Memory<Step>::bounded && worth_keeping<Step>(before, size, scale);
+      if (memory.valid) {
+        x = work.trial;
+        tried.iterations = 1;
+      }
     }
-    return iterate(step, x, tolerance, scale, memory);
+    return iterate(step, x, tolerance, scale, memory, tried);
   }
 
   // What is aimed at: two digits below the tolerance, at most to the round-off of a residual. A kept
@@ -155,13 +164,37 @@ struct Newton {
     return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
   }
 
+  // Corrections in coordinates of the step's own choice (general/step.hpp)?
+  template <class Step>
+  static constexpr bool has_frame = requires(const Step& step, typename Step::Unknown& z) {
+    step.from_frame(z);
+  };
+  // J^-1 F.
+  template <class Step>
+  [[gnu::always_inline]] static inline void correct(const Step& step, const Memory<Step>& memory,
+                                                    const typename Step::Unknown& f,
+                                                    typename Step::Unknown& out) {
+    memory.factors.solve(f, out);
+    if constexpr (has_frame<Step>) step.from_frame(out);
+  }
+
+  static constexpr double kRoundOff =  // of |F|^2, relative
+      64 * 64 * std::numeric_limits<double>::epsilon() * std::numeric_limits<double>::epsilon();
+
+  // Is a J that has taken |F|^2 from before to after good enough for the next correction? It should cut |F|
+  // by ten; where it is made of differences and costs n + 1 residuals by two, or reach the round-off.
+  template <class Step>
+  static bool worth_keeping(double before, double after, double scale) {
+    if (Memory<Step>::bounded) return after <= 0.01 * before;
+    return after <= 0.25 * before || after <= kRoundOff * scale;
+  }
+
   template <class Step>
   [[gnu::noinline]] static SolveReport iterate(const Step& step, typename Step::Unknown& x,
-                                               double tolerance, double scale,
-                                               Memory<Step>& memory) {
+                                               double tolerance, double scale, Memory<Step>& memory,
+                                               SolveReport report) {
     using Unknown = typename Step::Unknown;
-    constexpr double floor = 64 * std::numeric_limits<double>::epsilon();
-    const double accepted = tolerance * tolerance * scale, round_off = floor * floor * scale;
+    const double accepted = tolerance * tolerance * scale, round_off = kRoundOff * scale;
     const double target = std::min(aim(tolerance), tolerance), aimed = target * target * scale;
 
     Work<Unknown> own;
@@ -169,19 +202,18 @@ struct Newton {
       if constexpr (Memory<Step>::bounded) return own;
       else return memory.work;
     }();
-    work.resize(x);
-    auto& [f, correction, trial, trial_f] = work;
-    SolveReport report;
     double size = 0;  // |F|^2
+    if (Memory<Step>::bounded || !memory.valid) work.resize(x);
+    else size = work.f.squaredNorm();  // J is kept, and f is F(x)
+    auto& [f, correction, trial, trial_f] = work;
     bool fresh = false;
     const auto finish = [&](Reason reason) {
-      // Without a bound a Jacobian costs n residuals and more: it is kept longer.
+      // Without a bound a Jacobian costs n + 1 residuals: it is kept longer.
       memory.valid = memory.valid && report.iterations <= (Memory<Step>::bounded ? 1 : 3);
       report.reason = reason;
       report.residual = std::sqrt(size / scale);
       return report;
     };
-    memory.valid = false;
     while (report.iterations < max_iterations) {
       if (!memory.valid) {
         factor_at(step, x, f, memory);
@@ -191,7 +223,7 @@ struct Newton {
       }
       if (!std::isfinite(size)) return finish(Reason::not_finite);
       ++report.iterations;
-      memory.factors.solve(f, correction);
+      correct(step, memory, f, correction);
       double length = 1, trial_size = 0;
       do {
         trial = x - length * correction;
@@ -207,7 +239,7 @@ struct Newton {
         memory.valid = false;
         continue;
       }
-      memory.valid = trial_size <= 0.01 * size;  // contracted by ten
+      memory.valid = worth_keeping<Step>(size, trial_size, scale);
       fresh = false;
       x = trial;
       f = trial_f;
@@ -220,7 +252,8 @@ struct Newton {
   template <class Step>
   [[gnu::noinline]] static void factor_at(const Step& step, const typename Step::Unknown& x,
                                           typename Step::Unknown& f, Memory<Step>& memory) {
-    step.linearise(x, f, memory.jacobian);
+    if constexpr (has_frame<Step>) step.linearise_in_frame(x, f, memory.jacobian);
+    else step.linearise(x, f, memory.jacobian);
     memory.factors.compute(memory.jacobian);
     memory.valid = true;
   }

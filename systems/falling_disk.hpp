@@ -59,10 +59,10 @@ struct FallingDisk {
     Vec<3> gamma, along, across, r;
     Contact(const Element& g, double radius) {
       gamma = g.rotation.row(2).transpose();
-      const double lean = std::sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]);
-      along = Vec<3>(-gamma[1], gamma[0], 0) / lean;  // e3 x gamma: where it rolls
+      const double lean = 1 / std::sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]);
+      along = lean * Vec<3>(-gamma[1], gamma[0], 0);  // e3 x gamma: where it rolls
       across = gamma.cross(along);
-      r = Vec<3>(gamma[0], gamma[1], 0) * (-radius / lean);
+      r = (-radius * lean) * Vec<3>(gamma[0], gamma[1], 0);
     }
   };
   Mat<2, 6> constraints(const Element& g) const {

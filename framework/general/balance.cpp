@@ -5,8 +5,8 @@
 
 namespace hamel {
 
-template <int N>
-GeneralBalance<N>::GeneralBalance(const GeneralSetup& setup, bool ends_only)
+template <int N, int K>
+GeneralBalance<N, K>::GeneralBalance(const GeneralSetup& setup, bool ends_only)
     : geometry_(setup.geometry),
       system_(setup.mechanics),
       n_(system_->dim()),
@@ -38,28 +38,29 @@ GeneralBalance<N>::GeneralBalance(const GeneralSetup& setup, bool ends_only)
       end_rows_(system_->rows()),
       phi_(system_->holonomic_rows()) {}
 
-template <int N>
-void GeneralBalance<N>::begin(const Node& node, double h) {
+template <int N, int K>
+void GeneralBalance<N, K>::begin(const Node& node, double h) {
   t_ = node.t;
   h_ = h;
   g0_ = node.g;
   xi0_ = node.xi;
-  system_->inertia(g0_.data(), inertia_);
+  base_place_.set(*system_, t_, g0_.data());  // here the frame of the step gets its signs
+  inertia_ = base_place_.inertia;
   mu0_ = inertia_.lazyProduct(xi0_);
   system_->force(t_, g0_.data(), xi0_, nu_);
-  const double size = 2 * mu0_.norm() + std::abs(h) * nu_.norm();
-  scale_squared_ = size > 0 ? size * size : inertia_.squaredNorm();
+  const double size = 2 * base_place_.size(mu0_) + std::abs(h) * base_place_.size(nu_);
+  scale_squared_ = size > 0 ? size * size : n_;
 }
 
-template <int N>
-void GeneralBalance<N>::guess(Unknown& x) const {
+template <int N, int K>
+void GeneralBalance<N, K>::guess(Unknown& x) const {
   x.resize(2 * n_);
   x.head(n_) = xi0_;
   x.tail(n_) = xi0_;
 }
 
-template <int N>
-void GeneralBalance<N>::evaluate(const Unknown& x) const {
+template <int N, int K>
+void GeneralBalance<N, K>::evaluate(const Unknown& x) const {
   v_ = x.head(n_);
   w_ = x.tail(n_);
   z0_ = (-s_ * h_) * v_;
@@ -72,7 +73,7 @@ void GeneralBalance<N>::evaluate(const Unknown& x) const {
   geometry_->inverse(f1_.data(), f1_.data());
 
   const double t = t_ + s_ * h_;
-  base_place_.set(*system_, t, base_.data());
+  base_place_.set(*system_, t, base_.data(), true);
   if (system_->constant_inertia()) inertia_ = base_place_.inertia;
   else system_->inertia(g1_.data(), inertia_);
   mu_ = inertia_.lazyProduct(w_);
@@ -100,19 +101,20 @@ void GeneralBalance<N>::evaluate(const Unknown& x) const {
     end_rows_ = a_.lazyProduct(w_);
     end_rows_ -= b_;
   }
-  if (!ends_only_) base_place_.join(r_, rows_);
+  if (ends_only_) base_place_.weigh(r_);
+  else base_place_.join(r_, rows_);
   base_place_.join(u_, end_rows_);
 }
 
-template <int N>
-void GeneralBalance<N>::residual(const Unknown& x, Unknown& f) const {
+template <int N, int K>
+void GeneralBalance<N, K>::residual(const Unknown& x, Unknown& f) const {
   evaluate(x);
   f.head(n_) = r_;
   f.tail(n_) = u_;
 }
 
-template <int N>
-bool GeneralBalance<N>::finish(const Unknown& x, Node& next) const {
+template <int N, int K>
+bool GeneralBalance<N, K>::finish(const Unknown& x, Node& next) const {
   if ((v_.array() != x.head(n_).array()).any() || (w_.array() != x.tail(n_).array()).any()) {
     evaluate(x);
   }
@@ -133,7 +135,7 @@ bool GeneralBalance<N>::finish(const Unknown& x, Node& next) const {
 std::unique_ptr<GeneralStep> Reversible::general(const GeneralSetup& setup) {
   GeneralSetup at_midpoint = setup;
   at_midpoint.s = 0.5;
-  return std::make_unique<GeneralBalance<Eigen::Dynamic>>(at_midpoint, true);
+  return std::make_unique<GeneralBalance<Eigen::Dynamic, Eigen::Dynamic>>(at_midpoint, true);
 }
 
 std::unique_ptr<GeneralStep> Balance::general(const GeneralSetup& setup) {

@@ -5,7 +5,7 @@
 // nu = h force(t + s h, g, v), both equations of the cotangent lift are balanced on d at g:
 //   E(g)^T ( s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 - I(g) v ) = 0,   A(g) v = b(t + s h, g),
 //   E(g)^T ( m1 - m0 - nu ) = 0,                                   A(g1) w = b(t + h, g1),
-// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one equation (*) of place.hpp.
+// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one (*) of place.hpp, in the frame at g.
 #pragma once
 
 #include <hamel/framework/general/place.hpp>
@@ -13,9 +13,9 @@
 
 namespace hamel {
 
-template <int N>
+template <int N, int K>
 class GeneralBalance final : public GeneralStep {
-  using Z = Sized<N>;
+  using Z = Sized<N, K>;
   using Vector = typename Z::Vector;
 
  public:
@@ -27,6 +27,10 @@ class GeneralBalance final : public GeneralStep {
   double scale_squared() const override { return scale_squared_; }
   void residual(const Unknown& x, Unknown& f) const override;
   bool finish(const Unknown& x, Node& next) const override;
+  void from_frame(Unknown& z) const override {
+    base_place_.from_frame(z.data());
+    base_place_.from_frame(z.data() + n_);
+  }
 
  private:
   void evaluate(const Unknown& x) const;
@@ -39,12 +43,13 @@ class GeneralBalance final : public GeneralStep {
   Eigen::VectorXd g0_;
   Vector xi0_, mu0_;
   // Work: the place at the base point, and what the last x determined. Allocated once.
-  mutable Place<N> base_place_;
+  mutable Place<N, K> base_place_;
   mutable Eigen::VectorXd f0_, f1_, base_, g1_;
   mutable Vector v_, w_, z0_, z1_, nu_, m0_, m1_, mu_, r_, u_;
   mutable typename Z::Matrix inertia_, right_;
   mutable typename Z::Rows a_;
-  mutable typename Z::Few b_, rows_, end_rows_, phi_;
+  mutable typename Z::Few b_, rows_, end_rows_;
+  mutable Eigen::VectorXd phi_;
 };
 
 }  // namespace hamel

@@ -33,7 +33,10 @@ class Step final : public GeneralStep {
     momentum_.noalias() = place_.inertia * xi0_;
   }
   void guess(Unknown& x) const override { x = xi0_; }
-  double scale_squared() const override { return 4 * momentum_.squaredNorm(); }
+  double scale_squared() const override {
+    const double size = place_.size(momentum_);
+    return 4 * size * size;
+  }
   void residual(const Unknown& x, Unknown& f) const override {
     w_ = 0.5 * (xi0_ + x);
     f.noalias() = place_.inertia * w_;
@@ -45,6 +48,7 @@ class Step final : public GeneralStep {
     place_.join(r_, rows_);
     f = r_;
   }
+  void from_frame(Unknown& z) const override { place_.from_frame(z.data()); }
   bool finish(const Unknown& x, Node& next) const override {
     w_ = (0.5 * h_) * (xi0_ + x);
     if (!geometry_->in_domain(w_.data())) return false;
@@ -60,7 +64,7 @@ class Step final : public GeneralStep {
  private:
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> system_;
-  mutable Place<Eigen::Dynamic> place_;
+  mutable Place<> place_;
   double t_ = 0, h_ = 0;
   Eigen::VectorXd g_, xi0_;
   mutable Eigen::VectorXd w_, momentum_, r_, rows_;

@@ -94,7 +94,7 @@ class Step final : public GeneralStep {
   std::shared_ptr<const Mechanics> system_;
   double s_, t_ = 0, h_ = 0;
   Eigen::VectorXd g_, xi0_;
-  mutable Place<Eigen::Dynamic> place_;
+  mutable Place<> place_;
   mutable Eigen::VectorXd leaving_, v_, z_, p_, nu_, m_, mu_, xi_, f0_, f1_, base_;
   mutable Eigen::MatrixXd inertia_;
 };

@@ -79,8 +79,11 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
       static constexpr double weights[6][6] = {
           {1}, {2, -1}, {3, -3, 1}, {4, -6, 4, -1}, {5, -10, 10, -5, 1}, {6, -15, 20, -15, 6, -1}};
       const double* weight = weights[count - 1];
-      out = weight[0] * x[0];
-      for (size_t i = 1; i < static_cast<size_t>(count); ++i) out += weight[i] * x[i];
+      out.setZero();
+      for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
+        const double* from = x[i].data();
+        for (Eigen::Index j = 0; j < out.size(); ++j) out.data()[j] += weight[i] * from[j];
+      }
     }
   };
 
@@ -196,7 +199,7 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> system_;
   std::unique_ptr<GeneralStep> step_;
-  mutable Place<Eigen::Dynamic> place_;
+  mutable Place<> place_;
   double s_;
   Node now_, previous_, next_, start_of_step_, before_;
   Eigen::VectorXd x_;

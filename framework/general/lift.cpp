@@ -1,34 +1,30 @@
 #include <hamel/framework/general/lift.hpp>
 
 #include <limits>
-#include <utility>
 
 #include <hamel/framework/schemes/lift.hpp>
 
 namespace hamel {
-namespace {
-constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
-}
 
-template <int N>
-GeneralLift<N>::GeneralLift(const GeneralSetup& setup)
+template <int N, int K>
+GeneralLift<N, K>::GeneralLift(const GeneralSetup& setup)
     : geometry_(setup.geometry),
       system_(setup.mechanics),
       n_(system_->dim()),
       s_(setup.s),
+      mirrored_(s_ == 0.5 && geometry_->symmetric()),
       g0_(geometry_->size()),
       xi0_(n_),
       target_(n_),
-      start_(*system_),
-      end_(*system_),
-      end_g_(g0_),
+      place_(*system_),
+      place_g_(g0_),
+      place_time_(std::numeric_limits<double>::quiet_NaN()),
       f0_(g0_),
       f1_(g0_),
       base_(g0_),
       g1_(g0_),
       v_(n_),
-      z0_(n_),
-      z1_(n_),
+      z_(n_),
       step_(n_),
       p_(n_),
       nu_(n_),
@@ -41,33 +37,39 @@ GeneralLift<N>::GeneralLift(const GeneralSetup& setup)
       rows_(system_->rows()),
       phi_(system_->holonomic_rows()) {}
 
-template <int N>
-void GeneralLift<N>::begin(const Node& node, double h) {
+template <int N, int K>
+void GeneralLift<N, K>::begin(const Node& node, double h) {
   t_ = node.t;
   h_ = h;
   g0_ = node.g;
   xi0_ = node.xi;
-  if (end_time_ == t_ && end_g_ == g0_) std::swap(start_, end_);  // where the last step ended
-  else start_.set(*system_, t_, g0_.data());
-  end_time_ = kNever;
-  if (system_->constant_inertia()) inertia_ = start_.inertia;
-  target_ = start_.inertia.lazyProduct(xi0_);
+  if (!(place_time_ == t_ && place_g_ == g0_)) {  // else it is where the last step ended
+    place_.set(*system_, t_, g0_.data());
+    place_time_ = t_;
+    place_g_ = g0_;
+  }
+  inertia_ = place_.inertia;
+  target_ = inertia_.lazyProduct(xi0_);
   system_->force(t_, g0_.data(), xi0_, nu_);
-  // |mu| + |I xi/h| + |nu|; at rest without force the inertia itself.
-  const double size = 2 * target_.norm() + std::abs(h) * nu_.norm();
-  scale_squared_ = size > 0 ? size * size : start_.inertia.squaredNorm();
+  // |mu0| + |I xi/h| + |h force| in the units of (*); at rest without force those of unit velocities.
+  const double size = 2 * place_.size(target_) + std::abs(h) * place_.size(nu_);
+  scale_squared_ = size > 0 ? size * size : n_;
 }
 
-template <int N>
-void GeneralLift<N>::evaluate(const Unknown& x) const {
+template <int N, int K>
+void GeneralLift<N, K>::evaluate(const Unknown& x) const {
   v_ = x;
-  z1_ = ((1 - s_) * h_) * v_;
-  geometry_->tau(z1_.data(), f1_.data());
+  step_ = h_ * v_;
+  z_ = (1 - s_) * step_;
+  geometry_->tau(z_.data(), f1_.data());
   if (s_ == 0) {
     base_ = g0_;
+  } else if (mirrored_) {
+    geometry_->inverse(f1_.data(), f0_.data());
+    geometry_->compose(g0_.data(), f1_.data(), base_.data());
   } else {
-    z0_ = (-s_ * h_) * v_;
-    geometry_->tau(z0_.data(), f0_.data());
+    z_ = -s_ * step_;
+    geometry_->tau(z_.data(), f0_.data());
     geometry_->inverse(f0_.data(), base_.data());
     geometry_->compose(g0_.data(), base_.data(), base_.data());
   }
@@ -78,7 +80,6 @@ void GeneralLift<N>::evaluate(const Unknown& x) const {
   p_ = inertia_.lazyProduct(v_);
   system_->force(t, base_.data(), v_, nu_);
   nu_ *= h_;
-  step_ = h_ * v_;
   geometry_->base_momentum(s_, step_.data(), p_.data(), nu_.data(), m_.data());
   if (s_ == 0) mu_ = m_;
   else geometry_->Ad_transpose(f0_.data(), m_.data(), mu_.data());
@@ -88,22 +89,22 @@ void GeneralLift<N>::evaluate(const Unknown& x) const {
     system_->constraints(t, base_.data(), a_, b_);
     rows_ = a_.lazyProduct(v_);
     rows_ -= b_;
-    if (phi_.size() > 0) {  // in metres per second: a velocity error would show as h times itself
+    if (phi_.size() > 0) {  // in metres: a velocity error would show as h times itself
       system_->holonomic(g1_.data(), phi_);
       rows_.tail(phi_.size()) = phi_;
     }
   }
 }
 
-template <int N>
-void GeneralLift<N>::residual(const Unknown& x, Unknown& f) const {
+template <int N, int K>
+void GeneralLift<N, K>::residual(const Unknown& x, Unknown& f) const {
   evaluate(x);
-  start_.join(r_, rows_);
+  place_.join(r_, rows_);
   f = r_;
 }
 
-template <int N>
-bool GeneralLift<N>::finish(const Unknown& x, Node& next) const {
+template <int N, int K>
+bool GeneralLift<N, K>::finish(const Unknown& x, Node& next) const {
   if ((v_.array() != x.array()).any()) evaluate(x);
   if (!geometry_->in_domain(step_.data())) return false;
   m_ += nu_;
@@ -111,10 +112,10 @@ bool GeneralLift<N>::finish(const Unknown& x, Node& next) const {
   next.t = t_ + h_;
   next.g = g1_;
   geometry_->normalise(next.g.data());
-  end_.set(*system_, next.t, next.g.data());
-  end_time_ = next.t;
-  end_g_ = next.g;
-  end_.admissible(mu_, p_);
+  place_.set(*system_, next.t, next.g.data());
+  place_time_ = next.t;
+  place_g_ = next.g;
+  place_.admissible(mu_, p_);
   next.xi = p_;
   return true;
 }

@@ -50,14 +50,12 @@ void Motion::operator()(double t, const double* g, const Eigen::VectorXd& xi) {
   change_.noalias() -= inertia_rate_ * xi;
   geometry_->ad_transpose(xi.data(), momentum_.data(), step_.data());
   change_ += step_;
-  // A I^-1 (change + A^T lambda) = db/dt - dA/dt xi.
+  // I xi' = change + A^T lambda, A xi' = db/dt - dA/dt xi.
   b_rate_.noalias() -= a_rate_ * xi;
-  if (b_.size() > 0) {
-    b_rate_.noalias() -= place_.q * change_;
-    reaction_.noalias() = place_.s_inverse * b_rate_;
-    change_.noalias() += place_.a.transpose() * reaction_;
-  }
-  acceleration_.noalias() = place_.inverse * change_;
+  place_.velocity(change_, b_rate_, acceleration_);
+  momentum_.noalias() = place_.inertia * acceleration_;
+  momentum_ -= change_;
+  place_.multipliers(momentum_, reaction_);
 }
 
 bool recover_step(const Geometry& geometry, const double* delta, double s, Eigen::VectorXd& xi) {

@@ -23,7 +23,7 @@ class Motion {
  private:
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> system_;
-  Place<Eigen::Dynamic> place_;
+  Place<> place_;
   Eigen::VectorXd acceleration_, reaction_, momentum_, change_, step_, b_, b_rate_, moved_;
   Eigen::MatrixXd a_, a_rate_, inertia_, inertia_rate_;
 };

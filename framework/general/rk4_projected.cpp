@@ -85,7 +85,7 @@ class Step final : public GeneralStep {
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> system_;
   mutable Motion motion_;
-  mutable Place<Eigen::Dynamic> place_;
+  mutable Place<> place_;
   Node start_;
   double h_ = 0;
   mutable Eigen::VectorXd element_, moved_, xi_, xi_sum_, mu_, step_, q0_, q_, rate_, q_sum_, plus_;

@@ -67,7 +67,7 @@ class Step final : public GeneralStep {
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> system_;
   mutable Motion motion_;
-  mutable Place<Eigen::Dynamic> place_;
+  mutable Place<> place_;
   Node start_;
   double h_ = 0;
   mutable Eigen::VectorXd moved_, eta_, rate_, eta_sum_, xi_sum_, xi_, mu_;

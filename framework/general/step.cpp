@@ -5,23 +5,24 @@
 
 namespace hamel {
 
-void GeneralStep::linearise(const Unknown& x, Unknown& f, Jacobian& j) const {
+void GeneralStep::differentiate(const Unknown& x, Unknown& f, Jacobian& j, bool in_frame) const {
   const double size = x.lpNorm<Eigen::Infinity>();
-  const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * (size > 0 ? size : 1.0);
-  shifted_ = x;
+  const double step = std::sqrt(std::numeric_limits<double>::epsilon()) * (size > 0 ? size : 1.0);
+  direction_.resize(x.size());
+  shifted_.resize(x.size());
   shifted_f_.resize(x.size());
   f.resize(x.size());
   j.resize(x.size(), x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    shifted_[i] = x[i] + step;
-    const double above = shifted_[i];
-    residual(shifted_, shifted_f_);
-    shifted_[i] = x[i] - step;
-    residual(shifted_, f);
-    j.col(i) = (shifted_f_ - f) / (above - shifted_[i]);
-    shifted_[i] = x[i];
-  }
   residual(x, f);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    direction_.setZero();
+    direction_[i] = 1;
+    if (in_frame) from_frame(direction_);
+    const double length = step / direction_.lpNorm<Eigen::Infinity>();
+    shifted_ = x + length * direction_;
+    residual(shifted_, shifted_f_);
+    j.col(i) = (shifted_f_ - f) / length;
+  }
 }
 
 }  // namespace hamel

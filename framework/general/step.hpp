@@ -31,17 +31,24 @@ class GeneralStep {
   virtual void begin(const Node& node, double h) = 0;
   /// A first x, when there is no history to extrapolate from.
   virtual void guess(Unknown& x) const = 0;
-  /// The squared size of the momenta that the equation balances.
+  /// The squared size of the terms that the equation balances, in the units of F.
   virtual double scale_squared() const = 0;
-  /// F(x), in momenta.
+  /// F(x).
   virtual void residual(const Unknown& x, Unknown& f) const = 0;
-  /// F and dF/dx, by central differences, error about 1e-10: it only steers Newton.
-  virtual void linearise(const Unknown& x, Unknown& f, Jacobian& j) const;
+  /// F and dF/dx, by differences, error about 1e-8: it only steers the solver.
+  void linearise(const Unknown& x, Unknown& f, Jacobian& j) const { differentiate(x, f, j, false); }
+  /// Coordinates of corrections in which the Jacobian changes little along a motion: z -> dx, in place.
+  virtual void from_frame(Unknown& /*z*/) const {}
+  /// F and dF/dz, x + from_frame(z).
+  void linearise_in_frame(const Unknown& x, Unknown& f, Jacobian& j) const {
+    differentiate(x, f, j, true);
+  }
   /// The next node; false when the step leaves the domain of the retraction.
   virtual bool finish(const Unknown& x, Node& next) const = 0;
 
  private:
-  mutable Unknown shifted_, shifted_f_;
+  void differentiate(const Unknown& x, Unknown& f, Jacobian& j, bool in_frame) const;
+  mutable Unknown direction_, shifted_, shifted_f_;
 };
 
 /// What a scheme needs to make its step.
@@ -51,13 +58,13 @@ struct GeneralSetup {
   double s = 0.5;
 };
 
-/// Step<n> for the dimension of the system: fixed for 6 (motions of space), at run time otherwise.
-template <template <int> class Step>
+/// Step<n, k>: fixed for a body of space that rolls (6, 3), at run time otherwise.
+template <template <int, int> class Step>
 std::unique_ptr<GeneralStep> make_sized(const GeneralSetup& setup) {
-  switch (setup.mechanics->dim()) {
-    case 6: return std::make_unique<Step<6>>(setup);
-    default: return std::make_unique<Step<Eigen::Dynamic>>(setup);
+  if (setup.mechanics->dim() == 6 && setup.mechanics->rows() == 3) {
+    return std::make_unique<Step<6, 3>>(setup);
   }
+  return std::make_unique<Step<Eigen::Dynamic, Eigen::Dynamic>>(setup);
 }
 
 }  // namespace hamel

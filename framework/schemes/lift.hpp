@@ -112,16 +112,18 @@ struct Lift {
    private:
     // Out of line, so that the one-sided loop stays small.
     [[gnu::noinline]] void two_sided_residual(const Unknown& y, Unknown& f) const {
-      const Vec<n> p = problem_.momentum(y), step = xi(y);
-      const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
-      f = problem_.reduce(z0.pull(inverse_of_c(z0, z1) * p)) - mu_;
+      const Vec<n> step = xi(y);
+      f = problem_.reduce(G::Ad_transpose(Tau::tau(Vec<n>(-s_ * step)), base(y, step))) - mu_;
     }
     [[gnu::noinline]] void two_sided_finish(const Unknown& y, Element& increment,
                                             Momentum& mu) const {
-      const Vec<n> p = problem_.momentum(y), step = xi(y);
-      const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
-      increment = G::compose(G::inverse(z0.f), z1.f);
-      mu = problem_.reduce(z1.pull(inverse_of_c(z0, z1) * p));
+      const Vec<n> step = xi(y);
+      const Element f1 = Tau::tau(Vec<n>((1 - s_) * step));
+      increment = G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), f1);
+      mu = problem_.reduce(G::Ad_transpose(f1, base(y, step)));
+    }
+    Vec<n> base(const Unknown& y, const Vec<n>& step) const {  // m = C^-1 I xi/h
+      return base_momentum<Tau>(s_, step, problem_.momentum(y), Vec<n>::Zero());
     }
     Mat<n, n> inverse_of_c(const At<Tau>& z0, const At<Tau>& z1) const {
       const Mat<n, n> c = (s_ * z0.right + (1 - s_) * z1.right).transpose();
