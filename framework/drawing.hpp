@@ -72,6 +72,11 @@ inline Placement planar(double x, double y, double theta, double z = 0) {
   return {Vec<3>(x, y, z), Mat<3, 3>{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
 }
 
+/// The same for an element of SE(2).
+Placement planar(const auto& g, double z = 0) {
+  return planar(g.translation[0], g.translation[1], g.angle(), z);
+}
+
 struct DrawnBody {
   std::string name;
   std::function<Placement(std::span<const double> coordinates)> place;

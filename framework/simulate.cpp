@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <hamel/framework/general/motion.hpp>
+#include <hamel/framework/measures.hpp>
 #include <hamel/framework/plan.hpp>
 
 namespace hamel {
@@ -18,22 +19,15 @@ void fill_row(const Snapshot& state, double energy_start, std::vector<double>& r
   row.push_back(state.time);
   row.insert(row.end(), state.coordinates.begin(), state.coordinates.end());
   row.insert(row.end(), state.velocity.begin(), state.velocity.end());
-  const double scale = energy_start != 0 ? std::abs(energy_start) : 1.0;
   row.insert(row.end(),
-             {state.energy, (state.energy - energy_start) / scale, state.constraint,
+             {state.energy, energy_error(state.energy, energy_start), state.constraint,
               state.group_defect, static_cast<double>(state.iterations), state.residual});
   row.insert(row.end(), state.momentum.begin(), state.momentum.end());
 }
 
-double distance(std::span<const double> a, const std::vector<double>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < b.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
 double largest(const std::vector<double>& values) {
   double out = 0;
-  for (double x : values) out = std::isfinite(x) ? std::max(out, std::abs(x)) : kNaN;
+  for (const double x : values) raise(out, x);
   return out;
 }
 
@@ -62,8 +56,8 @@ void compare_with_exact(Result& result) {
   std::vector<double> error(rows.rows()), velocity_error(rows.rows());
   for (size_t i = 0; i < rows.rows(); ++i) {
     const auto [g, xi] = flow(rows.at(i, 0));
-    error[i] = distance(element(i), g);
-    velocity_error[i] = distance(velocity(i), xi);
+    error[i] = euclidean_distance(element(i), g);
+    velocity_error[i] = euclidean_distance(velocity(i), xi);
   }
   result.exact_error_final = error.back();
   result.exact_error_max = largest(error);

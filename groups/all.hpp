@@ -5,6 +5,7 @@
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/heisenberg.hpp>
 #include <hamel/groups/product.hpp>
+#include <hamel/groups/product_retraction.hpp>
 #include <hamel/groups/radial.hpp>
 #include <hamel/groups/rn.hpp>
 #include <hamel/groups/se2.hpp>

@@ -1,12 +1,11 @@
-// Products of groups: G1 x G2 x ..., and retractions factor by factor.
+// Products of groups: G1 x G2 x ...
 //
 // Element: the tuple of the factors' elements (part<I>()). Algebra: the factors' coordinates one
 // after another; Ad, ad, dR, dL are block diagonal. Columns carry the number of the factor:
-// 1_theta, 1_x, 1_y, 2_theta. A product offers every retraction that all its factors offer;
-// ProductRetraction<Exp<SE2>, Cayley<SO2>> mixes them.
+// 1_theta, 1_x, 1_y, 2_theta. A product offers every retraction that all its factors offer; they
+// are in product_retraction.hpp.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <hamel/framework/geometry.hpp>
@@ -228,111 +227,6 @@ struct Product {
   }
 };
 
-/// tau = (tau_1, tau_2, ...): one retraction for each factor.
-template <class... Rs>
-struct ProductRetraction {
-  using Group = Product<typename Rs::Group...>;
-  static constexpr int dim = Group::dim;
-  static constexpr bool symmetric = (Rs::symmetric && ...);
-  static constexpr bool one_parameter = (Rs::one_parameter && ...);
-  template <std::size_t I>
-  using Part = std::tuple_element_t<I, std::tuple<Rs...>>;
-
-  /// "exp", or "exp*cayley" when the factors' names differ.
-  static std::string name() {
-    const std::vector<std::string> names = {Rs::name()...};
-    std::string joined = names.front();
-    bool same = true;
-    for (std::size_t i = 1; i < names.size(); ++i) {
-      same = same && names[i] == names[0];
-      joined += "*" + names[i];
-    }
-    return same ? names.front() : joined;
-  }
-  static std::string domain() { return join({Rs::domain()...}); }
-  static std::string formula() { return join({Rs::formula()...}); }
-
-  template <class T>
-  static ProductElement<T, typename Rs::Group...> tau(const VecT<T, dim>& xi) {
-    return Group::template each<T>(
-        [&](auto i) { return Part<i>::tau(Group::template segment<i>(xi)); });
-  }
-  template <class T>
-  static VecT<T, dim> tau_inverse(const ProductElement<T, typename Rs::Group...>& g) {
-    VecT<T, dim> xi;
-    Group::for_each_factor([&](auto i) {
-      xi.template segment<Part<i>::Group::dim>(Group::offsets[i]) =
-          Part<i>::tau_inverse(g.template part<i>());
-    });
-    return xi;
-  }
-  template <class T>
-  static MatT<T, dim, dim> dtau_right(const VecT<T, dim>& xi) {
-    return Group::template block_diagonal<T>(
-        [&](auto i) { return Part<i>::dtau_right(Group::template segment<i>(xi)); });
-  }
-  template <class T>
-  static MatT<T, dim, dim> dtau_right_inverse(const VecT<T, dim>& xi) {
-    return Group::template block_diagonal<T>(
-        [&](auto i) { return Part<i>::dtau_right_inverse(Group::template segment<i>(xi)); });
-  }
-  template <class T>
-  static MatT<T, dim, dim> dtau_left(const VecT<T, dim>& xi) {
-    return Group::template block_diagonal<T>(
-        [&](auto i) { return Part<i>::dtau_left(Group::template segment<i>(xi)); });
-  }
-  template <class T>
-  static MatT<T, dim, dim> dtau_left_inverse(const VecT<T, dim>& xi) {
-    return Group::template block_diagonal<T>(
-        [&](auto i) { return Part<i>::dtau_left_inverse(Group::template segment<i>(xi)); });
-  }
-  template <class T>
-  static VecT<T, dim> dtau_right_inverse_transpose(const VecT<T, dim>& xi, const VecT<T, dim>& p) {
-    VecT<T, dim> q;
-    Group::for_each_factor([&](auto i) {
-      q.template segment<Part<i>::Group::dim>(Group::offsets[i]) =
-          Part<i>::dtau_right_inverse_transpose(Group::template segment<i>(xi),
-                                                Group::template segment<i>(p));
-    });
-    return q;
-  }
-  template <class T>
-  static VecT<T, dim> dtau_left_inverse_transpose(const VecT<T, dim>& xi, const VecT<T, dim>& p) {
-    VecT<T, dim> q;
-    Group::for_each_factor([&](auto i) {
-      q.template segment<Part<i>::Group::dim>(Group::offsets[i]) =
-          Part<i>::dtau_left_inverse_transpose(Group::template segment<i>(xi),
-                                               Group::template segment<i>(p));
-    });
-    return q;
-  }
-  template <class T>
-  static MatT<T, dim, dim> dtau_right_inverse_transpose_derivative(const VecT<T, dim>& xi,
-                                                                   const VecT<T, dim>& p) {
-    return Group::template block_diagonal<T>([&](auto i) {
-      return Part<i>::dtau_right_inverse_transpose_derivative(Group::template segment<i>(xi),
-                                                              Group::template segment<i>(p));
-    });
-  }
-  template <class T>
-  static bool in_domain(const VecT<T, dim>& xi) {
-    bool inside = true;
-    Group::for_each_factor(
-        [&](auto i) { inside = inside && Part<i>::in_domain(Group::template segment<i>(xi)); });
-    return inside;
-  }
-
- private:
-  /// "1: |omega| < pi; 2: all finite xi".
-  static std::string join(const std::vector<std::string>& texts) {
-    std::string joined;
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-      joined += (i == 0 ? "" : "; ") + std::to_string(i + 1) + ": " + texts[i];
-    }
-    return joined;
-  }
-};
-
 /// Kept factor after factor, as ProductGeometry has it.
 template <class... Gs>
 struct Packing<Product<Gs...>> {
@@ -354,16 +248,5 @@ struct Packing<Product<Gs...>> {
     });
   }
 };
-
-template <class... Gs>
-struct Exp<Product<Gs...>> : ProductRetraction<Exp<Gs>...> {};
-template <class... Gs>
-struct Cayley<Product<Gs...>> : ProductRetraction<Cayley<Gs>...> {};
-template <class... Gs>
-struct Polar<Product<Gs...>> : ProductRetraction<Polar<Gs>...> {};
-template <class... Gs>
-struct SecondKind<Product<Gs...>> : ProductRetraction<SecondKind<Gs>...> {};
-template <class... Gs>
-struct SecondKindSymmetric<Product<Gs...>> : ProductRetraction<SecondKindSymmetric<Gs>...> {};
 
 }  // namespace hamel

@@ -13,15 +13,13 @@
 #include <string>
 
 #include <hamel/framework/general_system.hpp>
-#include <hamel/groups/product.hpp>
-#include <hamel/groups/rn.hpp>
-#include <hamel/groups/so3.hpp>
+#include <hamel/systems/ball_on_plane.hpp>
 #include <hamel/systems/reconstruction.hpp>
 
 namespace hamel {
 
 struct BallOnTurntable {
-  using Group = Product<SO3, Rn<2>>;
+  using Group = ball_on_plane::Group;
   using Element = Group::Element<double>;
   double mass = 1.0;        // kg
   double radius = 0.5;      // m
@@ -46,16 +44,9 @@ struct BallOnTurntable {
     f("inertia", moment, "kg m^2", "moment about the centre");
     f("table_rate", table_rate, "rad/s", "angular velocity of the table");
   }
-  Mat<5, 5> inertia() const {
-    Vec<5> d;
-    d << moment, moment, moment, mass, mass;
-    return d.asDiagonal();
-  }
+  Mat<5, 5> inertia() const { return ball_on_plane::inertia(Vec<3>::Constant(moment), mass); }
   Mat<2, 5> constraints(const Element& g) const {
-    const auto& rotation = g.part<0>();
-    Mat<2, 5> a;
-    a << -radius * rotation.row(1), 1, 0, radius * rotation.row(0), 0, 1;
-    return a;
+    return ball_on_plane::contact_velocity(g, radius);
   }
   Vec<2> drift(double /*t*/, const Element& g) const {
     const auto& x = g.part<1>();
@@ -116,17 +107,7 @@ struct BallOnTurntable {
              table_rate * (mass * (x[0] * xi[4] - x[1] * xi[3]) + moment * spin);
     });
   }
-  void draw(auto& scene) const {
-    scene.floor();
-    scene
-        .body("ball",
-              [r = radius](const auto& g) {
-                const auto& x = g.template part<1>();
-                return Placement{Vec<3>(x[0], x[1], r), g.template part<0>()};
-              },
-              {shapes::sphere(radius)})
-        .trail({0, 0, 0});
-  }
+  void draw(auto& scene) const { ball_on_plane::draw(scene, radius); }
 };
 
 }  // namespace hamel

@@ -10,14 +10,13 @@
 #include <string>
 
 #include <hamel/framework/general_system.hpp>
-#include <hamel/groups/product.hpp>
-#include <hamel/groups/rn.hpp>
-#include <hamel/groups/so3.hpp>
+#include <hamel/systems/ball_on_plane.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
 struct ChaplyginBall {
-  using Group = Product<SO3, Rn<2>>;
+  using Group = ball_on_plane::Group;
   using Element = Group::Element<double>;
   double mass = 1.0;                    // kg
   double radius = 0.5;                  // m
@@ -38,23 +37,15 @@ struct ChaplyginBall {
     f("radius", radius, "m", "radius of the ball");
     f("inertia", moments, "kg m^2", "principal moments about the centre");
   }
-  Mat<5, 5> inertia() const {
-    Vec<5> d;
-    d << moments, mass, mass;
-    return d.asDiagonal();
-  }
+  Mat<5, 5> inertia() const { return ball_on_plane::inertia(moments, mass); }
   Mat<2, 5> constraints(const Element& g) const {
-    const auto& r = g.part<0>();
-    Mat<2, 5> a;
-    a << -radius * r.row(1), 1, 0, radius * r.row(0), 0, 1;
-    return a;
+    return ball_on_plane::contact_velocity(g, radius);
   }
   Start start() const {
     return {.configuration = {}, .velocity = {1.2, 2.0, 0.7, 1.0, -0.6}, .momentum = {}};
   }
   void invariants(auto& add) const {
-    add("energy",
-        [i = inertia()](const auto& /*g*/, const Vec<5>& xi) { return 0.5 * xi.dot(i * xi); });
+    add("energy", energy_of(*this));
     for (int axis = 0; axis < 3; ++axis) {
       add("M_" + std::string(1, "xyz"[axis]), [*this, axis](const auto& g, const Vec<5>& xi) {
         const auto& r = g.template part<0>();
@@ -65,17 +56,7 @@ struct ChaplyginBall {
       });
     }
   }
-  void draw(auto& scene) const {
-    scene.floor();
-    scene
-        .body("ball",
-              [r = radius](const auto& g) {
-                const auto& x = g.template part<1>();
-                return Placement{Vec<3>(x[0], x[1], r), g.template part<0>()};
-              },
-              {shapes::sphere(radius)})
-        .trail({0, 0, 0});
-  }
+  void draw(auto& scene) const { ball_on_plane::draw(scene, radius); }
 };
 
 }  // namespace hamel

@@ -16,9 +16,40 @@
 
 #include <hamel/framework/system.hpp>
 #include <hamel/groups/se2.hpp>
+#include <hamel/systems/energy.hpp>
 #include <hamel/systems/reconstruction.hpp>
 
 namespace hamel {
+
+/// (omega, v) of m v' = b omega^2, k omega' = -b v omega in closed form, and the motion it leads along.
+struct SleighRates {
+  double u, w, kappa, c;  // w carries the sign of omega(0)
+  bool constant;
+
+  SleighRates(double m, double k, double b, double omega, double v) {
+    const double twice_energy = k * omega * omega + m * v * v;
+    u = std::sqrt(twice_energy / m);
+    const double size = std::sqrt(twice_energy / k);
+    w = std::copysign(size, omega);
+    kappa = b * u / k;
+    constant = b == 0 || omega == 0;
+    c = constant ? 0 : std::asinh(v / u / (std::abs(omega) / size));
+  }
+  /// The motion of a system on G whose body velocity is body(omega, v).
+  template <class G, class Body>
+  auto motion(const typename G::template Element<double>& g0, const Vec<G::dim>& xi0,
+              Body body) const {
+    const auto velocity = [rates = *this, body](double t) {
+      const double x = rates.kappa * t + rates.c;
+      return body(rates.w / std::cosh(x), rates.u * std::tanh(x));
+    };
+    Reconstruction<G, decltype(velocity)> path(
+        g0, velocity, 0.02 / std::max(std::abs(w) + std::abs(kappa), 1e-9));
+    auto steady = one_parameter_motion<G>(g0, xi0);
+    return
+        [path, steady, still = constant](double t) mutable { return still ? steady(t) : path(t); };
+  }
+};
 
 struct ChaplyginSleigh {
   using Group = SE2;
@@ -49,37 +80,16 @@ struct ChaplyginSleigh {
   Mat<1, 3> constraints() const { return Mat<1, 3>{0, 0, 1}; }
   Start start() const { return {.configuration = {}, .velocity = {0.9, -1, 0}, .momentum = {}}; }
 
-  /// xi(t) = (omega, v1, 0).
-  struct Velocity {
-    double u, w, kappa, c;  // w carries the sign of omega(0)
-    Vec<3> operator()(double t) const {
-      const double x = kappa * t + c;
-      return {w / std::cosh(x), u * std::tanh(x), 0};
-    }
-  };
-
   auto exact(const SE2::Element<double>& g0, const Vec<3>& xi0) const {
-    const double about_blade = moment + mass * offset * offset, omega = xi0[0], v = xi0[1];
-    const double twice_energy = about_blade * omega * omega + mass * v * v;
-    const double u = std::sqrt(twice_energy / mass), w = std::sqrt(twice_energy / about_blade);
-    const bool constant = offset == 0 || omega == 0;
-    const Velocity velocity{u, std::copysign(w, omega), mass * offset * u / about_blade,
-                            constant ? 0 : std::asinh(v / u / (std::abs(omega) / w))};
-    const double rate = w + std::abs(velocity.kappa);
-    Reconstruction<SE2, Velocity> path(g0, velocity, 0.02 / std::max(rate, 1e-9));
-    auto steady = one_parameter_motion<SE2>(g0, xi0);
-    return [path, steady, constant](double t) mutable { return constant ? steady(t) : path(t); };
+    const SleighRates rates(mass, moment + mass * offset * offset, mass * offset, xi0[0], xi0[1]);
+    return rates.motion<SE2>(g0, xi0, [](double omega, double v) { return Vec<3>(omega, v, 0); });
   }
 
-  void invariants(auto& add) const {
-    add("kinetic energy",
-        [i = inertia()](const auto& /*g*/, const Vec<3>& xi) { return 0.5 * xi.dot(i * xi); });
-  }
+  void invariants(auto& add) const { add("kinetic energy", energy_of(*this)); }
   void draw(auto& scene) const {
     scene.from_above();
     scene
-        .body("sleigh",
-              [](const auto& g) { return planar(g.translation[0], g.translation[1], g.angle()); },
+        .body("sleigh", [](const auto& g) { return planar(g); },
               {shapes::box({0.6, 0.4, 0.1}, {.at = {offset, 0, 0.15}}),
                shapes::box({0.3, 0.02, 0.1}, {.at = {0, 0, 0.05}, .color = "accent"}),
                shapes::sphere(0.05, {.at = {offset, 0, 0.22}, .color = "dark"})})

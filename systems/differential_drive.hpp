@@ -8,7 +8,6 @@
 // Source: Campion, Bastin, d'Andrea-Novel 1996; Bloch 2003.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -16,7 +15,8 @@
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
-#include <hamel/systems/reconstruction.hpp>
+#include <hamel/systems/chaplygin_sleigh.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
@@ -61,61 +61,38 @@ struct DifferentialDrive {
                      {-half_track, 1, 0, 0, -wheel_radius}};
   }
   Start start() const {
-    return {.configuration = {}, .velocity = rolling(0.9, -1), .momentum = {}};
+    const Vec<5> xi = rolling(0.9, -1);
+    return {.configuration = {}, .velocity = {xi.begin(), xi.end()}, .momentum = {}};
   }
   /// xi of a cart that turns at omega and moves at v.
-  std::vector<double> rolling(double omega, double v) const {
-    return {omega, v, 0, (v + half_track * omega) / wheel_radius,
-            (v - half_track * omega) / wheel_radius};
+  Vec<5> rolling(double omega, double v) const {
+    Vec<5> xi;
+    xi << omega, v, 0, (v + half_track * omega) / wheel_radius,
+        (v - half_track * omega) / wheel_radius;
+    return xi;
   }
 
-  struct Velocity {
-    double u, w, kappa, c, radius, half_track;
-    Vec<5> operator()(double t) const {
-      const double x = kappa * t + c, omega = w / std::cosh(x), v = u * std::tanh(x);
-      Vec<5> xi;
-      xi << omega, v, 0, (v + half_track * omega) / radius, (v - half_track * omega) / radius;
-      return xi;
-    }
-  };
   auto exact(const Group::Element<double>& g0, const Vec<5>& xi0) const {
     const double wheels = 2 * wheel_inertia / (wheel_radius * wheel_radius);
     const double m = mass + wheels,
                  k = moment + mass * offset * offset + wheels * half_track * half_track;
-    const double omega = xi0[0], v = xi0[1], twice_energy = k * omega * omega + m * v * v;
-    const double u = std::sqrt(twice_energy / m), w = std::sqrt(twice_energy / k);
-    const bool constant = offset == 0 || omega == 0;
-    const Velocity velocity{u,
-                            std::copysign(w, omega),
-                            mass * offset * u / k,
-                            constant ? 0 : std::asinh(v / u / (std::abs(omega) / w)),
-                            wheel_radius,
-                            half_track};
-    Reconstruction<Group, Velocity> path(g0, velocity,
-                                         0.02 / std::max(w + std::abs(velocity.kappa), 1e-9));
-    auto steady = one_parameter_motion<Group>(g0, xi0);
-    return [path, steady, constant](double t) mutable { return constant ? steady(t) : path(t); };
+    const SleighRates rates(m, k, mass * offset, xi0[0], xi0[1]);
+    return rates.motion<Group>(
+        g0, xi0, [cart = *this](double omega, double v) { return cart.rolling(omega, v); });
   }
-  void invariants(auto& add) const {
-    add("kinetic energy",
-        [i = inertia()](const auto& /*g*/, const Vec<5>& xi) { return 0.5 * xi.dot(i * xi); });
-  }
+  void invariants(auto& add) const { add("kinetic energy", energy_of(*this)); }
   void draw(auto& scene) const {
     scene.floor();
     const auto cart = [](const auto& g) { return g.template part<0>(); };
     scene
-        .body("cart",
-              [cart](const auto& g) {
-                return planar(cart(g).translation[0], cart(g).translation[1], cart(g).angle());
-              },
+        .body("cart", [cart](const auto& g) { return planar(cart(g)); },
               {shapes::box({0.3, 2 * half_track - 0.06, 0.06}, {.at = {offset, 0, wheel_radius}})})
         .trail();
     const auto wheel = [&](const char* name, double side, auto angle) {
       scene.body(name,
                  [cart, side, angle, r = wheel_radius](const auto& g) {
                    const double c = std::cos(angle(g)), s = std::sin(angle(g));
-                   Placement p =
-                       planar(cart(g).translation[0], cart(g).translation[1], cart(g).angle(), r);
+                   Placement p = planar(cart(g), r);
                    p.position += p.rotation * Vec<3>(0, side, 0);
                    p.rotation = p.rotation * Mat<3, 3>{{s, c, 0}, {0, 0, 1}, {c, -s, 0}};
                    return p;

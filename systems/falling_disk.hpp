@@ -16,7 +16,8 @@
 #include <string>
 
 #include <hamel/framework/general_system.hpp>
-#include <hamel/groups/se3.hpp>
+#include <hamel/systems/body_on_plane.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
@@ -33,8 +34,7 @@ struct FallingDisk {
   static std::string summary() { return "thin disk that rolls on a plane and may fall"; }
   static std::string formula() {
     return "SE(3), l = 1/2 A (w1^2 + w2^2) + 1/2 C w3^2 + 1/2 m |v|^2 - m g z, v + w x r = 0 at "
-           "the "
-           "contact, height of the contact holonomic";
+           "the contact, height of the contact holonomic";
   }
   static std::string known() {
     return "steady motions, stability of upright rolling and spinning; invariants: energy";
@@ -68,8 +68,8 @@ struct FallingDisk {
   Mat<2, 6> constraints(const Element& g) const {
     const Contact c(g, radius);
     Mat<2, 6> a;
-    a << c.r.cross(c.along).transpose(), c.along.transpose(), c.r.cross(c.across).transpose(),
-        c.across.transpose();
+    a.row(0) = body_on_plane::contact_velocity(c.r, c.along);
+    a.row(1) = body_on_plane::contact_velocity(c.r, c.across);
     return a;
   }
   auto holonomic(const auto& g) const {
@@ -80,35 +80,21 @@ struct FallingDisk {
   }
   Mat<1, 6> holonomic_differential(const Element& g) const {
     const Contact c(g, radius);
-    Mat<1, 6> d;
-    d << c.r.cross(c.gamma).transpose(), c.gamma.transpose();
-    return d;
+    return body_on_plane::contact_velocity(c.r, c.gamma);
   }
   auto potential(const auto& g) const { return mass * gravity * g.translation[2]; }
   Vec<6> potential_differential(const Element& g) const {
-    Vec<6> d;
-    d << 0, 0, 0, mass * gravity * g.rotation.row(2).transpose();
-    return d;
+    return mass * gravity * body_on_plane::height_differential(g);
   }
 
   /// At x = y = 0 with the axis at theta from the vertical and rolling without slip with body rates omega.
   Start rolling(double theta, const Vec<3>& omega) const {
-    const double c = std::cos(theta), s = std::sin(theta);
-    const double z = radius * s;
-    // R turns e3 by theta about x.
-    const Element g{Mat<3, 3>{{1, 0, 0}, {0, c, -s}, {0, s, c}}, Vec<3>(0, 0, z)};
-    const Vec<3> v = -omega.cross(Contact(g, radius).r);
-    return {.configuration = SE3::coordinates(g),
-            .velocity = {omega[0], omega[1], omega[2], v[0], v[1], v[2]},
-            .momentum = {}};
+    const Element g = body_on_plane::leaning(theta, radius * std::sin(theta));
+    return body_on_plane::rolling(g, omega, Contact(g, radius).r);
   }
   Start start() const { return rolling(1.3, {0.1, 0.4, 5}); }
 
-  void invariants(auto& add) const {
-    add("energy", [*this](const auto& g, const Vec<6>& xi) {
-      return 0.5 * xi.dot(inertia() * xi) + potential(g);
-    });
-  }
+  void invariants(auto& add) const { add("energy", energy_of(*this)); }
   void draw(auto& scene) const {
     scene.floor();
     scene

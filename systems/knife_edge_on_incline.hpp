@@ -15,6 +15,7 @@
 
 #include <hamel/framework/general_system.hpp>
 #include <hamel/groups/se2.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
@@ -73,15 +74,12 @@ struct KnifeEdgeOnIncline {
   }
   void invariants(auto& add) const {
     add("turning rate omega", [](const auto& /*g*/, const Vec<3>& xi) { return xi[0]; });
-    add("energy", [*this](const auto& g, const Vec<3>& xi) {
-      return 0.5 * xi.dot(inertia() * xi) + potential(g);
-    });
+    add("energy", energy_of(*this));
   }
   void draw(auto& scene) const {
     scene.from_above();
     scene
-        .body("blade",
-              [](const auto& g) { return planar(g.translation[0], g.translation[1], g.angle()); },
+        .body("blade", [](const auto& g) { return planar(g); },
               {shapes::box({0.5, 0.04, 0.2}, {.at = {0, 0, 0.1}}),
                shapes::arrow({0.5, 0, 0}, {.at = {0, 0, 0.1}, .color = "accent"})})
         .trail();

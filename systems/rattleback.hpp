@@ -19,7 +19,8 @@
 #include <string>
 
 #include <hamel/framework/general_system.hpp>
-#include <hamel/groups/se3.hpp>
+#include <hamel/systems/body_on_plane.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
@@ -63,13 +64,11 @@ struct Rattleback {
     const Vec<3> gamma = g.rotation.row(2).transpose(), d = semi_axes.cwiseProduct(gamma);
     return Vec<3>(0, 0, depth) - semi_axes.cwiseProduct(d) / d.norm();
   }
-  // u . (v + omega x r) = u . v + (r x u) . omega.
   Mat<2, 6> constraints(const Element& g) const {
     const Vec<3> r = contact(g);
     Mat<2, 6> a;
     for (int i = 0; i < 2; ++i) {
-      const Vec<3> u = g.rotation.row(i).transpose();
-      a.row(i) << r.cross(u).transpose(), u.transpose();
+      a.row(i) = body_on_plane::contact_velocity(r, g.rotation.row(i).transpose());
     }
     return a;
   }
@@ -82,36 +81,23 @@ struct Rattleback {
     return VecT<T, 1>(g.translation[2] + depth * r(2, 2) - sqrt(square));
   }
   Mat<1, 6> holonomic_differential(const Element& g) const {
-    const Vec<3> gamma = g.rotation.row(2).transpose();
-    Mat<1, 6> d;
-    d << contact(g).cross(gamma).transpose(), gamma.transpose();
-    return d;
+    return body_on_plane::contact_velocity(contact(g), g.rotation.row(2).transpose());
   }
   auto potential(const auto& g) const { return mass * gravity * g.translation[2]; }
   Vec<6> potential_differential(const Element& g) const {
-    Vec<6> d;
-    d << 0, 0, 0, mass * gravity * g.rotation.row(2).transpose();
-    return d;
+    return mass * gravity * body_on_plane::height_differential(g);
   }
 
   /// Level but for a tilt about its long axis, spinning about the vertical.
   Start spinning(double spin, double tilt) const {
-    const double c = std::cos(tilt), s = std::sin(tilt);
-    Element g{Mat<3, 3>{{1, 0, 0}, {0, c, -s}, {0, s, c}}, Vec<3>::Zero()};
+    Element g = body_on_plane::leaning(tilt);
     g.translation[2] = -holonomic(g)[0];
-    const Vec<3> omega = spin * g.rotation.row(2).transpose(), v = -omega.cross(contact(g));
-    return {.configuration = SE3::coordinates(g),
-            .velocity = {omega[0], omega[1], omega[2], v[0], v[1], v[2]},
-            .momentum = {}};
+    return body_on_plane::rolling(g, spin * g.rotation.row(2).transpose(), contact(g));
   }
   /// The way that reverses.
   Start start() const { return spinning(-1.5, 0.02); }
 
-  void invariants(auto& add) const {
-    add("energy", [*this](const auto& g, const Vec<6>& xi) {
-      return 0.5 * xi.dot(inertia() * xi) + potential(g);
-    });
-  }
+  void invariants(auto& add) const { add("energy", energy_of(*this)); }
   void draw(auto& scene) const {
     scene.floor();
     const auto place = [](const auto& g) { return Placement{g.translation, g.rotation}; };

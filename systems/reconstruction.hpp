@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <hamel/groups/exp.hpp>
+#include <hamel/groups/product_retraction.hpp>
 
 namespace hamel {
 

@@ -17,6 +17,7 @@
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
@@ -78,17 +79,13 @@ struct RollerRacer {
   }
   Start start() const { return turning(0.5, 0.2); }
   void invariants(auto& add) const {
-    if (torque == 0) {
-      add("energy", [*this](const auto& g, const Vec<4>& xi) {
-        return 0.5 * xi.dot(inertia() * xi) + potential(g);
-      });
-    }
+    if (torque == 0) add("energy", energy_of(*this));
   }
   void draw(auto& scene) const {
     scene.from_above();
     const auto rear = [](const auto& g) {
       const auto& at = g.template part<0>();
-      return planar(at.translation[0], at.translation[1], at.angle());
+      return planar(at);
     };
     const auto front = [rear, a = rear_length](const auto& g) {
       const Placement p = rear(g);

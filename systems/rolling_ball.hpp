@@ -10,15 +10,13 @@
 #include <string>
 
 #include <hamel/framework/general_system.hpp>
-#include <hamel/groups/product.hpp>
-#include <hamel/groups/rn.hpp>
-#include <hamel/groups/so3.hpp>
+#include <hamel/systems/ball_on_plane.hpp>
 #include <hamel/systems/reconstruction.hpp>
 
 namespace hamel {
 
 struct RollingBall {
-  using Group = Product<SO3, Rn<2>>;
+  using Group = ball_on_plane::Group;
   using Element = Group::Element<double>;
   double mass = 1.0;    // kg
   double radius = 0.5;  // m
@@ -37,16 +35,9 @@ struct RollingBall {
     f("radius", radius, "m", "radius of the ball");
     f("inertia", moment, "kg m^2", "moment about the centre");
   }
-  Mat<5, 5> inertia() const {
-    Vec<5> d;
-    d << moment, moment, moment, mass, mass;
-    return d.asDiagonal();
-  }
+  Mat<5, 5> inertia() const { return ball_on_plane::inertia(Vec<3>::Constant(moment), mass); }
   Mat<2, 5> constraints(const Element& g) const {
-    const auto& r = g.part<0>();
-    Mat<2, 5> a;
-    a << -radius * r.row(1), 1, 0, radius * r.row(0), 0, 1;
-    return a;
+    return ball_on_plane::contact_velocity(g, radius);
   }
   Start start() const {
     return {.configuration = {}, .velocity = {0.4, 1.5, 0.8, 0.75, -0.2}, .momentum = {}};
@@ -60,17 +51,7 @@ struct RollingBall {
           [i](const auto& /*g*/, const Vec<5>& xi) { return xi[i]; });
     }
   }
-  void draw(auto& scene) const {
-    scene.floor();
-    scene
-        .body("ball",
-              [r = radius](const auto& g) {
-                const auto& x = g.template part<1>();
-                return Placement{Vec<3>(x[0], x[1], r), g.template part<0>()};
-              },
-              {shapes::sphere(radius)})
-        .trail({0, 0, 0});
-  }
+  void draw(auto& scene) const { ball_on_plane::draw(scene, radius); }
 };
 
 }  // namespace hamel

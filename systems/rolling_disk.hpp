@@ -60,8 +60,7 @@ struct RollingDisk {
               [r = radius](const auto& g) {
                 const auto& contact = g.template part<0>();
                 const double roll = g.template part<1>().angle();
-                Placement p =
-                    planar(contact.translation[0], contact.translation[1], contact.angle(), r);
+                Placement p = planar(contact, r);
                 // The axle (e3 of the disk) lies along e2 of the heading; it rolls towards e1.
                 const double c = std::cos(roll), s = std::sin(roll);
                 p.rotation = p.rotation * Mat<3, 3>{{s, c, 0}, {0, 0, 1}, {c, -s, 0}};

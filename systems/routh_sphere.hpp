@@ -13,14 +13,13 @@
 #include <string>
 
 #include <hamel/framework/general_system.hpp>
-#include <hamel/groups/product.hpp>
-#include <hamel/groups/rn.hpp>
-#include <hamel/groups/so3.hpp>
+#include <hamel/systems/ball_on_plane.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
 struct RouthSphere {
-  using Group = Product<SO3, Rn<2>>;
+  using Group = ball_on_plane::Group;
   using Element = Group::Element<double>;
   double mass = 1.0;         // kg
   double radius = 0.5;       // m
@@ -60,10 +59,7 @@ struct RouthSphere {
     return i;
   }
   Mat<2, 5> constraints(const Element& g) const {
-    const auto& r = g.part<0>();
-    Mat<2, 5> a;
-    a << -radius * r.row(1), 1, 0, radius * r.row(0), 0, 1;
-    return a;
+    return ball_on_plane::contact_velocity(g, radius);
   }
   auto potential(const auto& g) const {
     return (mass * gravity * offset) * g.template part<0>()(2, 2);
@@ -78,9 +74,7 @@ struct RouthSphere {
             .momentum = {}};
   }
   void invariants(auto& add) const {
-    add("energy", [*this](const auto& g, const Vec<5>& xi) {
-      return 0.5 * xi.dot(inertia(g) * xi) + potential(g);
-    });
+    add("energy", energy_of(*this));
     const auto contact = [*this](const auto& g) {
       return Vec<3>(-radius * g.template part<0>().row(2).transpose() - offset * Vec<3>::UnitZ());
     };
@@ -94,15 +88,8 @@ struct RouthSphere {
     });
   }
   void draw(auto& scene) const {
-    scene.floor();
-    scene
-        .body("ball",
-              [r = radius](const auto& g) {
-                const auto& x = g.template part<1>();
-                return Placement{Vec<3>(x[0], x[1], r), g.template part<0>()};
-              },
-              {shapes::sphere(radius), shapes::arrow({0, 0, 1.3 * radius}, {.color = "accent"})})
-        .trail({0, 0, offset});
+    ball_on_plane::draw(scene, radius, {shapes::arrow({0, 0, 1.3 * radius}, {.color = "accent"})},
+                        {0, 0, offset});
   }
 };
 

@@ -20,6 +20,7 @@
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
@@ -92,17 +93,13 @@ struct Segway {
                      (total * (moments[1] + first * height) - first * first));
   }
 
-  void invariants(auto& add) const {
-    add("energy", [*this](const auto& g, const Vec<6>& xi) {
-      return 0.5 * xi.dot(inertia(g) * xi) + potential(g);
-    });
-  }
+  void invariants(auto& add) const { add("energy", energy_of(*this)); }
   void draw(auto& scene) const {
     scene.floor();
     // At side of the axle, turned about it by an angle that leans forwards.
     const auto at = [r = wheel_radius](const auto& g, double side, const auto& angle) {
       const auto& cart = g.template part<0>();
-      Placement p = planar(cart.translation[0], cart.translation[1], cart.angle(), r);
+      Placement p = planar(cart, r);
       p.position += p.rotation * Vec<3>(0, side, 0);
       p.rotation = p.rotation * Mat<3, 3>{{angle.c, 0, angle.s}, {0, 1, 0}, {-angle.s, 0, angle.c}};
       return p;

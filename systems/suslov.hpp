@@ -22,6 +22,7 @@
 
 #include <hamel/framework/system.hpp>
 #include <hamel/groups/so3.hpp>
+#include <hamel/systems/energy.hpp>
 #include <hamel/systems/reconstruction.hpp>
 
 namespace hamel {
@@ -110,10 +111,7 @@ struct Suslov {
     };
   }
 
-  void invariants(auto& add) const {
-    add("kinetic energy",
-        [i = inertia()](const auto& /*r*/, const Vec<3>& w) { return 0.5 * w.dot(i * w); });
-  }
+  void invariants(auto& add) const { add("kinetic energy", energy_of(*this)); }
   void draw(auto& scene) const {
     const Vec<3> n = normal.normalized();
     scene

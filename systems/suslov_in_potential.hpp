@@ -9,6 +9,7 @@
 
 #include <hamel/framework/general_system.hpp>
 #include <hamel/groups/so3.hpp>
+#include <hamel/systems/energy.hpp>
 
 namespace hamel {
 
@@ -36,11 +37,7 @@ struct SuslovInPotential {
     return weight[0] * r(2, 0) + weight[1] * r(2, 1) + weight[2] * r(2, 2);
   }
   Start start() const { return {.configuration = {}, .velocity = {1, 0.5, 0}, .momentum = {}}; }
-  void invariants(auto& add) const {
-    add("energy", [*this](const auto& r, const Vec<3>& omega) {
-      return 0.5 * omega.dot(inertia() * omega) + potential(r);
-    });
-  }
+  void invariants(auto& add) const { add("energy", energy_of(*this)); }
   void draw(auto& scene) const {
     const Vec<3> to = weight.normalized();
     scene

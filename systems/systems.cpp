@@ -1,5 +1,7 @@
 // The composition root: the one file that links everything by name.
 #include <hamel/framework/general/baselines.hpp>
+#include <hamel/groups/exp.hpp>
+#include <hamel/groups/product_retraction.hpp>
 #include <hamel/solvers/ceres.hpp>
 #include <hamel/solvers/ceres_tiny.hpp>
 #include <hamel/solvers/hybrid.hpp>

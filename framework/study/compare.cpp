@@ -55,7 +55,8 @@ void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
     if (first == group.end()) continue;
     for (auto i = first + 1; i != group.end(); ++i)
       if (metrics[*i].ok)
-        metrics[*i].solver_difference = distance(metrics[*i].final, metrics[*first].final);
+        metrics[*i].solver_difference =
+            euclidean_distance(metrics[*i].final, metrics[*first].final);
   }
 }
 

@@ -12,13 +12,9 @@ namespace {
 
 constexpr long kLeastRows = 50;
 
-// The largest so far; NaN once something was not finite.
-void raise(double& largest, double value) {
-  if (std::isnan(largest)) return;
-  largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : kNotMeasured;
+double norm(const std::vector<double>& v) {
+  return euclidean_distance(v, std::vector<double>(v.size(), 0));
 }
-
-double norm(const std::vector<double>& v) { return distance(v, std::vector<double>(v.size(), 0)); }
 
 // Rows for each common interval: the fewest that divide its steps and make kLeastRows rows in all.
 long rows_each(long steps_each, long intervals) {
@@ -44,9 +40,8 @@ class Meter {
 
   void row(const Snapshot& state) {
     if (times_.empty()) energy_start_ = state.energy;
-    const double scale = energy_start_ != 0 ? std::abs(energy_start_) : 1.0;
     times_.push_back(state.time);
-    energy_.push_back((state.energy - energy_start_) / scale);
+    energy_.push_back(energy_error(state.energy, energy_start_));
     raise(out_.energy_error, energy_.back());
     raise(out_.constraint, state.constraint);
     raise(out_.group_defect, state.group_defect);
@@ -54,9 +49,9 @@ class Meter {
   }
   void compare(const Snapshot& state, size_t k) {
     if (reference_.coordinates.empty()) return;
-    out_.error_final = distance(state.coordinates, reference_.coordinates[k]);
+    out_.error_final = euclidean_distance(state.coordinates, reference_.coordinates[k]);
     raise(out_.error, out_.error_final);
-    raise(out_.velocity_error, distance(state.velocity, reference_.velocities[k]));
+    raise(out_.velocity_error, euclidean_distance(state.velocity, reference_.velocities[k]));
   }
   void finish(Integration& run) {
     const SolverStats& stats = run.stats();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/measures.hpp>
 #include <hamel/framework/study.hpp>
 
 namespace hamel::study {
@@ -30,8 +31,6 @@ void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
 
 /// Least-squares slope of y over x; NaN for fewer than two different x.
 double slope(const std::vector<double>& x, const std::vector<double>& y);
-
-double distance(const std::vector<double>& a, const std::vector<double>& b);
 
 inline bool stopped(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
 

@@ -40,8 +40,8 @@ Motion follow(const Registry& registry, Config config, long intervals, long step
 double apart(const Motion& a, const Motion& b) {
   double out = 0;
   for (size_t k = 0; k < a.coordinates.size(); ++k) {
-    const double d = std::max(distance(a.coordinates[k], b.coordinates[k]),
-                              distance(a.velocities[k], b.velocities[k]));
+    const double d = std::max(euclidean_distance(a.coordinates[k], b.coordinates[k]),
+                              euclidean_distance(a.velocities[k], b.velocities[k]));
     out = std::isfinite(d) ? std::max(out, d) : std::numeric_limits<double>::infinity();
   }
   return out;
@@ -93,12 +93,6 @@ StudyReference converged(const Registry& registry, const StudyConfig& study, Con
 
 }  // namespace
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (size_t i = 0; i < b.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
 long common_intervals(const StudyConfig& config) {
   long common = 0;
   for (const double h : config.steps) common = std::gcd(common, std::lround(config.until / h));
@@ -127,7 +121,7 @@ StudyReference reference(const Registry& registry, const StudyConfig& config, co
   }
   out.times = std::move(times);
   for (const auto& there : out.coordinates)
-    out.extent = std::max(out.extent, distance(there, out.coordinates.front()));
+    out.extent = std::max(out.extent, euclidean_distance(there, out.coordinates.front()));
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product.hpp>
+#include <hamel/groups/product_retraction.hpp>
 #include <hamel/groups/radial.hpp>
 #include <hamel/groups/second_kind.hpp>
 

@@ -4,6 +4,7 @@
 #include <hamel/framework/check/group_laws.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product.hpp>
+#include <hamel/groups/product_retraction.hpp>
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <hamel/framework/check/system_laws.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product.hpp>
+#include <hamel/groups/product_retraction.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
 #include <hamel/systems/rolling_disk.hpp>
 #include <hamel/systems/simulate.hpp>

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "study_tables.hpp"
 #include "study_view.hpp"
 
 namespace hamel::tools {
@@ -28,11 +29,11 @@ class StudyPage {
     page_.section("Verdict");
     for (const Verdict& verdict : study_verdicts(result_))
       page_.verdict(verdict.status, verdict.text);
-    references();
+    add_references(page_, result_);
     diagrams();
     heat_maps();
-    cells();
-    skipped();
+    add_cells(page_, view_);
+    add_skipped(page_, result_);
     page_.section("Record");
     page_.record(result_.record());
     return std::move(page_);
@@ -64,21 +65,6 @@ class StudyPage {
       out.push_back(std::move(filter));
     }
     return out;
-  }
-
-  void references() {
-    std::vector<std::vector<Cell>> rows;
-    for (size_t i = 0; i < result_.references.size(); ++i) {
-      const StudyReference& reference = result_.references[i];
-      if (reference.times.empty()) continue;
-      rows.push_back({result_.config.systems[i].label, reference.kind, reference.bound,
-                      reference.extent, static_cast<double>(reference.times.size())});
-    }
-    page_.table(
-        "What the cells are compared with",
-        {"system", "reference", "bound of its error", "extent of the motion", "times"}, rows,
-        "An error is the largest Euclidean distance of the element's columns at these times, "
-        "which every step reaches.");
   }
 
   // One curve for each method, by a number of each cell.
@@ -144,39 +130,7 @@ class StudyPage {
         "above the floor and below 0.1 of the motion." +
             missing,
         filters);
-    order_table();
-  }
-
-  void order_table() {
-    std::vector<std::string> axes = study_axes();
-    axes.pop_back();  // the step
-    std::vector<std::string> columns = view_.varying_without({"step"});
-    const std::vector<std::string> shown = columns;
-    for (const char* more :
-         {"order", "finest", "claimed", "verdict", "points", "of", "least error"})
-      columns.emplace_back(more);
-    std::vector<std::vector<Cell>> rows;
-    for (const auto& [key, cells] : view_.groups(axes)) {
-      const StudyMetrics& m = view_.metrics(cells.front());
-      const int claim = view_.cell(cells.front()).claimed_order;
-      double least = kNotMeasured;
-      for (const size_t i : cells)
-        if (view_.metrics(i).ok) least = std::fmin(least, view_.metrics(i).error);
-      std::vector<Cell> row;
-      for (const std::string& axis : shown)
-        row.emplace_back(view_.cell(cells.front()).axes.at(axis));
-      const char* verdict = claim == 0                       ? "claims none"
-                            : std::isnan(m.order)            ? "not measured"
-                            : m.order >= claim - 0.25        ? "ok"
-                            : m.order_finest >= claim - 0.25 ? "finest only"
-                                                             : "below its claim";
-      for (const Cell& cell : std::vector<Cell>{m.order, m.order_finest, static_cast<double>(claim),
-                                                verdict, static_cast<double>(m.order_points),
-                                                static_cast<double>(m.order_of), least})
-        row.push_back(cell);
-      rows.push_back(std::move(row));
-    }
-    page_.table("Measured orders", columns, rows, "", true);
+    add_orders(page_, view_);
   }
 
   void heat_maps() {
@@ -237,75 +191,6 @@ class StudyPage {
       else map.values[row][column] = value(i);
     }
     page_.heatmap(map);
-  }
-
-  // Every cell that was run, without the columns that say the same in each row.
-  void cells() {
-    page_.section("All cells");
-    const Table table = result_.table();
-    std::vector<const TableColumn*> shown;
-    std::vector<std::string> names;
-    for (const TableColumn& column : table.columns) {
-      const bool axis =
-          std::find(study_axes().begin(), study_axes().end(), column.name) != study_axes().end();
-      bool needed = axis ? view_.varies(column.name) : false;
-      for (const size_t i : view_.run())
-        needed = needed || (!axis && !column.text(i).empty() && column.text(i) != "0");
-      if (!needed) continue;
-      shown.push_back(&column);
-      names.push_back(column.unit.empty() || column.unit == "1" ||
-                              column.unit.starts_with("columns")
-                          ? column.name
-                          : fmt::format("{} [{}]", column.name, column.unit));
-    }
-    std::vector<std::vector<Cell>> rows;
-    for (const size_t i : view_.run()) {
-      std::vector<Cell> row;
-      for (const TableColumn* column : shown) {
-        const auto* numbers = std::get_if<std::vector<double>>(&column->values);
-        const auto axis = view_.cell(i).axes.find(column->name);
-        if (axis != view_.cell(i).axes.end()) row.emplace_back(axis->second);  // as it was given
-        else if (numbers != nullptr) row.emplace_back((*numbers)[i]);
-        else row.emplace_back(column->text(i));
-      }
-      rows.push_back(std::move(row));
-    }
-    page_.table(
-        "All cells that were run", names, rows,
-        "The same, and what is empty or equal in all rows, is in `cells.csv` and `cells.h5`.",
-        true);
-  }
-
-  // One row for all steps of a kind.
-  void skipped() {
-    std::vector<std::vector<std::string>> kinds;
-    std::vector<std::string> steps;
-    for (const StudyCell& cell : result_.cells) {
-      if (cell.runs()) continue;
-      std::vector<std::string> row;
-      for (const std::string& axis : study_axes())
-        if (axis != "step") row.push_back(cell.axes.at(axis));
-      row.push_back(cell.skipped);
-      row.push_back(cell.why);
-      const auto at =
-          static_cast<size_t>(std::find(kinds.begin(), kinds.end(), row) - kinds.begin());
-      if (at == kinds.size()) {
-        kinds.push_back(row);
-        steps.push_back(cell.axes.at("step"));
-      } else {
-        steps[at] += ", " + cell.axes.at("step");
-      }
-    }
-    if (kinds.empty()) return;
-    std::vector<std::string> columns = study_axes();
-    columns.back() = "kind";
-    columns.insert(columns.end(), {"why", "steps"});
-    std::vector<std::vector<Cell>> rows;
-    for (size_t i = 0; i < kinds.size(); ++i) {
-      rows.emplace_back(kinds[i].begin(), kinds[i].end());
-      rows.back().emplace_back(steps[i]);
-    }
-    page_.table("Combinations that were not run", columns, rows, "", true);
   }
 
   const StudyResult& result_;

@@ -9,6 +9,9 @@
 
 namespace hamel::tools {
 
+/// An order measured this much below its claim falls short.
+constexpr double kShortOfClaim = 0.25;
+
 class StudyView {
  public:
   explicit StudyView(const StudyResult& result);

@@ -1,0 +1,52 @@
+// What balls that roll on the plane z = 0 without slipping have in common.
+//
+//   SO(3) x R^2: the rotation R and the position (x, y) of the centre, which stays at the height rho;
+//   xi = (omega in the body, x', y'). With w = R omega the contact moves at
+//   (x' - rho w_y, y' + rho w_x): 0 on a plane at rest, the plane's own velocity on one that moves.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/drawing.hpp>
+#include <hamel/groups/product.hpp>
+#include <hamel/groups/rn.hpp>
+#include <hamel/groups/so3.hpp>
+
+namespace hamel::ball_on_plane {
+
+using Group = Product<SO3, Rn<2>>;
+using Element = Group::Element<double>;
+
+/// diag(I1, I2, I3, m, m): the mass centre at the centre of the ball, principal axes as body axes.
+inline Mat<5, 5> inertia(const Vec<3>& moments, double mass) {
+  Vec<5> d;
+  d << moments, mass, mass;
+  return d.asDiagonal();
+}
+
+/// Rows of the velocity of the contact, (x' - rho w_y, y' + rho w_x).
+inline Mat<2, 5> contact_velocity(const Element& g, double radius) {
+  const auto& r = g.part<0>();
+  Mat<2, 5> a;
+  a << -radius * r.row(1), 1, 0, radius * r.row(0), 0, 1;
+  return a;
+}
+
+/// The ball on its floor, with marks fixed in it; the trail follows a point of the body.
+void draw(auto& scene, double radius, const std::vector<BodyShape>& marks = {}, Point trail = {}) {
+  scene.floor();
+  std::vector<BodyShape> shapes = {shapes::sphere(radius)};
+  shapes.insert(shapes.end(), marks.begin(), marks.end());
+  scene
+      .body(
+          "ball",
+          [radius](const auto& g) {
+            const auto& x = g.template part<1>();
+            return Placement{Vec<3>(x[0], x[1], radius), g.template part<0>()};
+          },
+          std::move(shapes))
+      .trail(trail);
+}
+
+}  // namespace hamel::ball_on_plane

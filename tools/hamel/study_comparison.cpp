@@ -1,0 +1,241 @@
+// Which method of a study is better: the least time at equal error, orders against claims, and which value
+// of an axis is worse and by how much.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "study_verdict.hpp"
+
+namespace hamel::tools {
+namespace {
+
+// The first few of a list, and how many more there are.
+std::string first_few(const std::vector<std::string>& words, size_t count) {
+  std::string out;
+  for (size_t i = 0; i < std::min(words.size(), count); ++i)
+    out += fmt::format("{}{}", i == 0 ? "" : "; ", words[i]);
+  if (words.size() > count) out += fmt::format("; and {} more", words.size() - count);
+  return out;
+}
+
+std::string time_words(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} µs", 1e6 * seconds);
+  return seconds < 1 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
+
+class Comparison {
+ public:
+  Comparison(const StudyView& view, std::vector<Verdict>& out) : view_(view), out_(out) {}
+
+  void all() {
+    for (const auto& [system, cells] : view_.groups({"system"})) best(system[0], cells);
+    orders();
+    for (const std::string& axis : view_.varying_without({"system", "step"})) worse(axis);
+  }
+
+ private:
+  void say(const std::string& status, const std::string& text) { out_.push_back({status, text}); }
+
+  // The time at which a method reaches an error, by straight lines between its cells in the diagram; the
+  // time of the fastest cell that is good enough when no line crosses. NaN: never.
+  double time_at(std::vector<size_t> cells, double error) const {
+    std::erase_if(cells, [&](size_t i) {
+      return !view_.metrics(i).ok || !(view_.metrics(i).error >= 0) || !(view_.seconds(i) > 0);
+    });
+    std::sort(cells.begin(), cells.end(),
+              [&](size_t a, size_t b) { return view_.seconds(a) < view_.seconds(b); });
+    for (size_t k = 0; k < cells.size(); ++k) {
+      const double e1 = view_.metrics(cells[k]).error, t1 = view_.seconds(cells[k]);
+      if (e1 > error) continue;
+      if (k == 0) return t1;
+      const double e0 = view_.metrics(cells[k - 1]).error, t0 = view_.seconds(cells[k - 1]);
+      if (!(e1 > 0) || !(e0 > e1)) return t1;
+      const double part = std::log(e0 / error) / std::log(e0 / e1);
+      return t0 * std::pow(t1 / t0, std::clamp(part, 0.0, 1.0));
+    }
+    return kNotMeasured;
+  }
+
+  void best(const std::string& system, const std::vector<size_t>& of_system) {
+    const std::vector<std::string> axes = view_.varying_without({"system", "step"});
+    if (axes.empty()) return;
+    std::map<std::string, std::vector<size_t>> methods;
+    for (const size_t i : of_system) methods[view_.words(i, axes)].push_back(i);
+    // The error that a third of the methods reach, as a power of ten.
+    std::vector<double> reached;
+    for (const auto& [name, cells] : methods) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const size_t i : cells)
+        if (view_.metrics(i).ok && view_.metrics(i).error >= 0)
+          least = std::min(least, std::max(view_.metrics(i).error, 1e-14));
+      reached.push_back(least);
+    }
+    std::sort(reached.begin(), reached.end());
+    const double third = reached[(reached.size() - 1) / 3];
+    if (!std::isfinite(third)) return;
+    double extent = 0;  // nothing above a tenth of it is worth comparing
+    for (const size_t i : of_system)
+      extent = view_.result().references[view_.cell(i).system].extent;
+    const double target = std::min(std::pow(10.0, std::ceil(std::log10(third))),
+                                   std::pow(10.0, std::floor(std::log10(kAsymptotic * extent))));
+    std::vector<std::pair<double, std::string>> ranked;
+    std::vector<std::string> never;
+    std::vector<size_t> never_cells;
+    for (const auto& [name, cells] : methods) {
+      const double time = time_at(cells, target);
+      if (time > 0) {
+        ranked.emplace_back(time, name);
+      } else {
+        never.push_back("`" + name + "`");
+        never_cells.insert(never_cells.end(), cells.begin(), cells.end());
+      }
+    }
+    if (ranked.empty())
+      return say("note",
+                 fmt::format("{}: no method gets the error down to {:.0e} with these steps.",
+                             system, target));
+    std::sort(ranked.begin(), ranked.end());
+    std::string text = fmt::format("{}: at the error {:.0e} the least time is {} by `{}`", system,
+                                   target, time_words(ranked[0].first), ranked[0].second);
+    if (ranked.size() > 1) {
+      const double next = ranked[1].first / ranked[0].first;
+      text += next < 1.05 ? fmt::format(", level with it `{}`", ranked[1].second)
+                          : fmt::format(", then {:.3g} times that by `{}`", next, ranked[1].second);
+      text +=
+          fmt::format("; the slowest of {} that get there takes {:.3g} times as long: `{}`",
+                      ranked.size(), ranked.back().first / ranked[0].first, ranked.back().second);
+    }
+    text += ".";
+    if (!never.empty())
+      text += fmt::format(
+          " {} with these steps: {}.",
+          never.size() == 1 ? "1 method does not get there"
+                            : fmt::format("{} methods do not get there", never.size()),
+          never.size() > 4
+              ? view_.where(never_cells, "system") + ", among them " + first_few(never, 3)
+              : first_few(never, 4));
+    say("note", text);
+  }
+
+  void orders() {
+    std::vector<std::string> axes = study_axes(), short_of, late;
+    axes.pop_back();  // the step
+    size_t measured = 0, reach = 0;
+    std::vector<std::string> unknown;
+    double worst = std::numeric_limits<double>::infinity();
+    for (const auto& [key, cells] : view_.groups(axes)) {
+      const StudyMetrics& m = view_.metrics(cells.front());
+      const std::string name =
+          "`" + view_.words(cells.front(), view_.varying_without({"step"})) + "`";
+      const int claim = view_.cell(cells.front()).claimed_order;
+      if (m.order_of < 2 || claim == 0) continue;
+      if (std::isnan(m.order)) {
+        unknown.push_back(name);
+        continue;
+      }
+      ++measured;
+      if (m.order >= claim - kShortOfClaim) {
+        ++reach;
+        worst = std::min(worst, m.order - claim);
+      } else {
+        auto& list = m.order_finest >= claim - kShortOfClaim ? late : short_of;
+        list.push_back(fmt::format("{} {:.2f} of {} ({} of {} steps; the two finest {:.2f})", name,
+                                   m.order, claim, m.order_points, m.order_of, m.order_finest));
+      }
+    }
+    if (measured > 0) {
+      std::string text =
+          fmt::format("{} of {} measured orders reach the claim of their scheme to {}", reach,
+                      measured, kShortOfClaim);
+      if (reach > 0) text += fmt::format(" (at worst {:+.2f})", worst);
+      text += ".";
+      if (!late.empty()) text += " Only with the finest steps: " + first_few(late, 6) + ".";
+      if (!short_of.empty()) text += " Below it: " + first_few(short_of, 8) + ".";
+      say(short_of.empty() ? "ok" : "failed", text);
+    }
+    if (!unknown.empty())
+      say("note",
+          fmt::format("{}: fewer than two steps have an error above the floor and below {} of "
+                      "the motion: {}.",
+                      plural(unknown.size(), "method") + " without an order", kAsymptotic,
+                      first_few(unknown, 6)));
+  }
+
+  // Which value of an axis is worse at otherwise equal cells: geometric means of the factor over the best.
+  void worse(const std::string& axis) {
+    struct Tally {
+      double error = 0, time = 0;
+      size_t groups = 0, timed = 0, worst = 0, failed = 0;
+    };
+    std::map<std::string, Tally> tallies;
+    size_t compared = 0;
+    for (const auto& cells : view_.otherwise_equal(axis)) {
+      double least = std::numeric_limits<double>::infinity(), fastest = least, largest = 0;
+      size_t good = 0;
+      const auto error = [&](size_t i) {  // below the floor all are equal
+        return std::max(view_.metrics(i).error, view_.metrics(i).floor);
+      };
+      for (const size_t i : cells) {
+        if (!view_.metrics(i).ok) {
+          ++tallies[view_.cell(i).axes.at(axis)].failed;
+        } else if (std::isfinite(error(i))) {
+          ++good;
+          least = std::min(least, error(i));
+          largest = std::max(largest, error(i));
+          if (view_.seconds(i) > 0) fastest = std::min(fastest, view_.seconds(i));
+        }
+      }
+      if (good < 2) continue;
+      ++compared;
+      for (const size_t i : cells) {
+        if (!view_.metrics(i).ok || !std::isfinite(error(i))) continue;
+        Tally& tally = tallies[view_.cell(i).axes.at(axis)];
+        ++tally.groups;
+        tally.error += std::log(error(i) / least);
+        if (view_.seconds(i) > 0) {
+          ++tally.timed;
+          tally.time += std::log(view_.seconds(i) / fastest);
+        }
+        if (error(i) == largest && largest > 1.05 * least) ++tally.worst;
+      }
+    }
+    if (compared == 0) return;
+    std::string text = fmt::format(
+        "**{}**, {} of otherwise equal cells; error and time over the best of the group "
+        "(geometric mean): ",
+        axis, plural(compared, "group"));
+    const auto mean = [](double sum, size_t n) {
+      return n == 0 ? kNotMeasured : std::exp(sum / static_cast<double>(n));
+    };
+    std::pair<double, std::string> wrong = {1.05, ""}, slow = {1.05, ""};
+    bool first = true;
+    for (const std::string& value : view_.values(axis)) {
+      const Tally& tally = tallies[value];
+      if (tally.groups + tally.failed == 0) continue;
+      const double error = mean(tally.error, tally.groups), time = mean(tally.time, tally.timed);
+      wrong = std::max(wrong, {error, value});
+      slow = std::max(slow, {time, value});
+      text +=
+          fmt::format("{}`{}` error ×{:.3g}, time ×{:.3g}", first ? "" : "; ", value, error, time);
+      if (tally.worst > 0) text += fmt::format(", worst in {}", tally.worst);
+      if (tally.failed > 0) text += fmt::format(", **{} failed**", tally.failed);
+      first = false;
+    }
+    text += wrong.second.empty() ? ". None is worse in error"
+                                 : ". Worst in error: `" + wrong.second + "`";
+    if (!slow.second.empty()) text += "; slowest: `" + slow.second + "`";
+    say("note", text + ".");
+  }
+
+  const StudyView& view_;
+  std::vector<Verdict>& out_;
+};
+
+}  // namespace
+
+void compare_methods(const StudyView& view, std::vector<Verdict>& out) {
+  Comparison(view, out).all();
+}
+
+}  // namespace hamel::tools

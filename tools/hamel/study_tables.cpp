@@ -1,0 +1,118 @@
+#include "study_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace hamel::tools {
+
+void add_references(Page& page, const StudyResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (size_t i = 0; i < result.references.size(); ++i) {
+    const StudyReference& reference = result.references[i];
+    if (reference.times.empty()) continue;
+    rows.push_back({result.config.systems[i].label, reference.kind, reference.bound,
+                    reference.extent, static_cast<double>(reference.times.size())});
+  }
+  page.table("What the cells are compared with",
+             {"system", "reference", "bound of its error", "extent of the motion", "times"}, rows,
+             "An error is the largest Euclidean distance of the element's columns at these times, "
+             "which every step reaches.");
+}
+
+void add_orders(Page& page, const StudyView& view) {
+  std::vector<std::string> axes = study_axes();
+  axes.pop_back();  // the step
+  std::vector<std::string> columns = view.varying_without({"step"});
+  const std::vector<std::string> shown = columns;
+  for (const char* more : {"order", "finest", "claimed", "verdict", "points", "of", "least error"})
+    columns.emplace_back(more);
+  std::vector<std::vector<Cell>> rows;
+  for (const auto& [key, cells] : view.groups(axes)) {
+    const StudyMetrics& m = view.metrics(cells.front());
+    const int claim = view.cell(cells.front()).claimed_order;
+    double least = kNotMeasured;
+    for (const size_t i : cells)
+      if (view.metrics(i).ok) least = std::fmin(least, view.metrics(i).error);
+    std::vector<Cell> row;
+    for (const std::string& axis : shown) row.emplace_back(view.cell(cells.front()).axes.at(axis));
+    const char* verdict = claim == 0                                ? "claims none"
+                          : std::isnan(m.order)                     ? "not measured"
+                          : m.order >= claim - kShortOfClaim        ? "ok"
+                          : m.order_finest >= claim - kShortOfClaim ? "finest only"
+                                                                    : "below its claim";
+    for (const Cell& cell : std::vector<Cell>{m.order, m.order_finest, static_cast<double>(claim),
+                                              verdict, static_cast<double>(m.order_points),
+                                              static_cast<double>(m.order_of), least})
+      row.push_back(cell);
+    rows.push_back(std::move(row));
+  }
+  page.table("Measured orders", columns, rows, "", true);
+}
+
+void add_cells(Page& page, const StudyView& view) {
+  page.section("All cells");
+  const Table table = view.result().table();
+  std::vector<const TableColumn*> shown;
+  std::vector<std::string> names;
+  for (const TableColumn& column : table.columns) {
+    const bool axis =
+        std::find(study_axes().begin(), study_axes().end(), column.name) != study_axes().end();
+    bool needed = axis ? view.varies(column.name) : false;
+    for (const size_t i : view.run())
+      needed = needed || (!axis && !column.text(i).empty() && column.text(i) != "0");
+    if (!needed) continue;
+    shown.push_back(&column);
+    names.push_back(column.unit.empty() || column.unit == "1" || column.unit.starts_with("columns")
+                        ? column.name
+                        : fmt::format("{} [{}]", column.name, column.unit));
+  }
+  std::vector<std::vector<Cell>> rows;
+  for (const size_t i : view.run()) {
+    std::vector<Cell> row;
+    for (const TableColumn* column : shown) {
+      const auto* numbers = std::get_if<std::vector<double>>(&column->values);
+      const auto axis = view.cell(i).axes.find(column->name);
+      if (axis != view.cell(i).axes.end()) row.emplace_back(axis->second);  // as it was given
+      else if (numbers != nullptr) row.emplace_back((*numbers)[i]);
+      else row.emplace_back(column->text(i));
+    }
+    rows.push_back(std::move(row));
+  }
+  page.table("All cells that were run", names, rows,
+             "The same, and what is empty or equal in all rows, is in `cells.csv` and `cells.h5`.",
+             true);
+}
+
+void add_skipped(Page& page, const StudyResult& result) {
+  std::vector<std::vector<std::string>> kinds;
+  std::vector<std::string> steps;
+  for (const StudyCell& cell : result.cells) {
+    if (cell.runs()) continue;
+    std::vector<std::string> row;
+    for (const std::string& axis : study_axes())
+      if (axis != "step") row.push_back(cell.axes.at(axis));
+    row.push_back(cell.skipped);
+    row.push_back(cell.why);
+    const auto at = static_cast<size_t>(std::find(kinds.begin(), kinds.end(), row) - kinds.begin());
+    if (at == kinds.size()) {
+      kinds.push_back(row);
+      steps.push_back(cell.axes.at("step"));
+    } else {
+      steps[at] += ", " + cell.axes.at("step");
+    }
+  }
+  if (kinds.empty()) return;
+  std::vector<std::string> columns = study_axes();
+  columns.back() = "kind";
+  columns.insert(columns.end(), {"why", "steps"});
+  std::vector<std::vector<Cell>> rows;
+  for (size_t i = 0; i < kinds.size(); ++i) {
+    rows.emplace_back(kinds[i].begin(), kinds[i].end());
+    rows.back().emplace_back(steps[i]);
+  }
+  page.table("Combinations that were not run", columns, rows, "", true);
+}
+
+}  // namespace hamel::tools

@@ -1,0 +1,21 @@
+// The tables of a study's page.
+#pragma once
+
+#include "page.hpp"
+#include "study_view.hpp"
+
+namespace hamel::tools {
+
+/// What the cells of each system are compared with.
+void add_references(Page& page, const StudyResult& result);
+
+/// The measured order of each method against its claim.
+void add_orders(Page& page, const StudyView& view);
+
+/// Every cell that was run, without the columns that say the same in each row.
+void add_cells(Page& page, const StudyView& view);
+
+/// The combinations that were not run and why, one row for all steps of a kind.
+void add_skipped(Page& page, const StudyResult& result);
+
+}  // namespace hamel::tools
