@@ -72,7 +72,9 @@ class CompiledKernel final : public TimeLoop<CompiledKernel<G, M, Tau, Scheme, N
     out.momentum.assign(full.begin(), full.end());
     out.energy = 0.5 * full.dot(velocity);
     const Vec<n> discrete = steps_ == 0 ? velocity : recovered_velocity();
-    out.constraint = constraints_.lazyProduct(discrete).norm();
+    const Eigen::VectorXd rates = constraints_.lazyProduct(discrete);
+    out.row_rates.assign(rates.begin(), rates.end());
+    out.constraint = rates.norm();
     out.group_defect = G::defect(element_);
     out.iterations = last_.iterations;
     out.residual = last_.residual;

@@ -59,11 +59,12 @@ struct Snapshot {
   std::vector<double> velocity;     // nodal body velocity, n
   std::vector<double> momentum;     // nodal body momentum, n
   double energy = 0;
-  double constraint = 0;    // |A xi/h| of the last step, xi recovered from the configurations
-  double holonomic = 0;     // max |phi(g)|
-  double group_defect = 0;  // how far g is from the group
-  int iterations = 0;       // of the last step, all substeps
-  double residual = 0;      // relative, the largest of the last step's substeps
+  std::vector<double> row_rates;  // A v of the last step, v recovered from the configurations; k
+  double constraint = 0;          // |A v - b|, holonomic rows left out
+  double holonomic = 0;           // max |phi(g)|
+  double group_defect = 0;        // how far g is from the group
+  int iterations = 0;             // of the last step, all substeps
+  double residual = 0;            // relative, the largest of the last step's substeps
 };
 
 class Kernel {

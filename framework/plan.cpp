@@ -69,6 +69,7 @@ Simulation::Plan Simulation::plan() const {
                         config_.retraction == kernel_retraction_.name;
   const SchemeInfo* scheme = compiled ? &kernel_scheme_ : registry_->scheme(config_.scheme);
   if (scheme == nullptr) plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
+  else if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
   const SolverInfo* solver = registry_->solver(config_.solver);
   if (solver == nullptr) plan.add({registry_->missing_solver(config_.solver)});
   else if (solver->make) plan.setup.solver = solver->make();
@@ -160,7 +161,7 @@ Simulation::Plan Simulation::plan() const {
   }
   if (!plan.mistakes.empty()) return plan;
   plan.project(*scheme);
-  plan.setup.s = config_.s;
+  plan.setup.s = plan.config.s;
   plan.setup.step = config_.step;
   plan.setup.tolerance = config_.tolerance;
   for (const Field& field : system.fields) plan.config.parameters[field.name] = field.value;

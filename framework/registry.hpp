@@ -30,6 +30,7 @@ struct SchemeInfo {
   std::string name, formula, source;
   bool adapted = true;  // keeps the constraint; otherwise the frame is the whole algebra
   bool uses_s = true;
+  double fixed_s = 0;  // where it does not: the s that its steps, and their measurement, have
   bool steps_admissible =
       true;  // the velocity of a step satisfies A xi = b, not that of its ends only
   bool invariant_only = false;  // defined for left-invariant systems only

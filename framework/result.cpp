@@ -101,6 +101,7 @@ Json record_of(const Result& r) {
         {"holonomic_max", number(r.holonomic_max)},
         {"group_defect_max", number(r.group_defect_max)},
         {"energy_error_max", number(r.energy_error_max)},
+        {"reaction_work", number(r.reaction_work)},
         {"exact_error_final", number(r.exact_error_final)},
         {"exact_error_max", number(r.exact_error_max)},
         {"exact_velocity_error_max", number(r.exact_velocity_error_max)},
@@ -182,6 +183,9 @@ std::string Result::report() const {
   line("constraint residual", fmt::format("{:.2e}", constraint_max));
   line("group defect", fmt::format("{:.2e}", group_defect_max));
   line("energy error", fmt::format("{:.2e} (relative)", energy_error_max));
+  if (std::isfinite(reaction_work)) {
+    line("work of reactions", fmt::format("{:.2e}", reaction_work));
+  }
   for (const InvariantDrift& i : invariants) {
     line(i.name, fmt::format("{:.6g}, drift {:.2e}", i.start, i.drift_max));
   }

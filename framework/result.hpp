@@ -57,6 +57,7 @@ struct Result {
   double holonomic_max = 0;  // max |phi|, NaN where there are no holonomic rows
   double group_defect_max = 0;
   double energy_error_max = 0;   // relative to the start's energy
+  double reaction_work = 0;      // of A^T lambda, by trapezoids over the rows; NaN without rows
   double exact_error_final = 0;  // |coordinates - exact coordinates|, NaN where nothing is known
   double exact_error_max = 0;
   double exact_velocity_error_max = 0;  // |xi - exact xi|

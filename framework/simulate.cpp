@@ -42,8 +42,7 @@ void compare_with_exact(Result& result) {
   for (const Invariant& invariant : result.system.invariants) {
     InvariantDrift drift{invariant.name, invariant.value(element(0), velocity(0)), 0};
     for (size_t i = 1; i < rows.rows(); ++i) {
-      drift.drift_max = std::max(drift.drift_max,
-                                 std::abs(invariant.value(element(i), velocity(i)) - drift.start));
+      raise(drift.drift_max, std::abs(invariant.value(element(i), velocity(i)) - drift.start));
     }
     result.invariants.push_back(drift);
   }
@@ -66,18 +65,22 @@ void compare_with_exact(Result& result) {
   rows.add_column("exact_velocity_error", velocity_error);
 }
 
-// After the loop: the multipliers of A xi = b at the recorded states, from the continuous equations
-// there, and the power A xi - b of the discrete velocity would let them have.
+// After the loop: the multipliers lambda of A xi = b at the recorded states, from the continuous equations
+// there, and their power lambda . A v, where A v is recovered from the configurations (Snapshot::row_rates):
+// round-off where b = 0, the power that a moving constraint feeds in where it is not.
 void add_reactions(Result& result, const std::shared_ptr<const Geometry>& geometry,
-                   const std::shared_ptr<const Mechanics>& mechanics) {
+                   const std::shared_ptr<const Mechanics>& mechanics,
+                   const std::vector<double>& rates) {
+  result.reaction_work = kNaN;
   if (geometry == nullptr || mechanics->rows() == 0) return;
   Trajectory& rows = result.trajectory;
   const size_t n = static_cast<size_t>(result.system.group.dim),
                coordinates = result.system.group.columns.size();
   Motion motion(geometry, mechanics);
   Eigen::VectorXd g(geometry->size());
-  std::vector<std::vector<double>> columns(static_cast<size_t>(mechanics->rows()),
-                                           std::vector<double>(rows.rows()));
+  const auto k = static_cast<size_t>(mechanics->rows());
+  std::vector<std::vector<double>> columns(k, std::vector<double>(rows.rows()));
+  std::vector<double> power(rows.rows());
   for (size_t i = 0; i < rows.rows(); ++i) {
     geometry->from_coordinates(rows.row(i).subspan(1, coordinates), g.data());
     const Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(
@@ -85,11 +88,16 @@ void add_reactions(Result& result, const std::shared_ptr<const Geometry>& geomet
     motion(rows.at(i, 0), g.data(), xi);
     for (size_t j = 0; j < columns.size(); ++j) {
       columns[j][i] = motion.reaction()[static_cast<Eigen::Index>(j)];
+      power[i] += columns[j][i] * rates[i * k + j];
     }
+    if (i == 0) result.reaction_work = 0;
+    else
+      result.reaction_work += (power[i - 1] + power[i]) / 2 * (rows.at(i, 0) - rows.at(i - 1, 0));
   }
   for (size_t j = 0; j < columns.size(); ++j) {
     rows.add_column("lambda" + std::to_string(j + 1), columns[j]);
   }
+  rows.add_column("reaction_power", power);
 }
 
 }  // namespace
@@ -209,14 +217,17 @@ Result Simulation::run() const {
 
   Snapshot& state = result.last;
   std::vector<double> row;
-  double energy_start = 0, holonomic_max = plan.mechanics->holonomic_rows() > 0 ? 0.0 : kNaN;
+  std::vector<double> rates;  // A v, row after row of the trajectory
+  const bool held = plan.mechanics->holonomic_rows() > 0;
+  double energy_start = 0, holonomic_max = held ? 0.0 : kNaN;
   const auto record = [&] {
     const long recorded = row.empty() ? -1 : state.step;
     kernel->measure(state);
     if (state.step == recorded) return true;  // nothing new: a chunk failed in its first step
     if (state.step == 0) energy_start = state.energy;
     fill_row(state, energy_start, row);
-    if (state.holonomic > holonomic_max) holonomic_max = state.holonomic;
+    if (held) raise(holonomic_max, state.holonomic);
+    rates.insert(rates.end(), state.row_rates.begin(), state.row_rates.end());
     result.trajectory.append(row);
     return !observer_ || observer_(state);
   };
@@ -244,7 +255,7 @@ Result Simulation::run() const {
   result.group_defect_max = largest(result.trajectory.column("group_defect"));
   result.energy_error_max = largest(result.trajectory.column("energy_error"));
   result.holonomic_max = holonomic_max;
-  add_reactions(result, plan.geometry, plan.mechanics);
+  add_reactions(result, plan.geometry, plan.mechanics, rates);
   compare_with_exact(result);
   return result;
 }

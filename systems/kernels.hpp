@@ -56,6 +56,7 @@ void add_general_scheme(Registry& registry) {
   info.formula = Scheme::formula();
   info.source = Scheme::source();
   info.uses_s = Scheme::uses_s;
+  if constexpr (requires { Scheme::fixed_s; }) info.fixed_s = Scheme::fixed_s;
   info.invariant_only = Scheme::invariant_only;
   info.steps_admissible = Scheme::steps_admissible;
   info.claimed_order = &Scheme::order;

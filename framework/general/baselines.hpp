@@ -50,6 +50,7 @@ struct Reversible {
   }
   static std::string source() { return "McLachlan and Perlmutter 2006"; }
   static constexpr bool uses_s = false;
+  static constexpr double fixed_s = 0.5;
   static constexpr bool invariant_only = false;
   static constexpr bool steps_admissible = false;
   static constexpr bool explicit_step = false;
@@ -65,6 +66,7 @@ struct Rkmk4 {
   }
   static std::string source() { return "Munthe-Kaas 1998; Iserles et al. 2000"; }
   static constexpr bool uses_s = false;
+  static constexpr double fixed_s = 0.5;
   static constexpr bool invariant_only = false;
   static constexpr bool steps_admissible = false;
   static constexpr bool explicit_step = true;
@@ -82,6 +84,7 @@ struct Rk4Projected {
     return "what a user would write by hand; Hairer, Lubich, Wanner IV.4";
   }
   static constexpr bool uses_s = false;
+  static constexpr double fixed_s = 0.5;
   static constexpr bool invariant_only = false;
   static constexpr bool steps_admissible = false;
   static constexpr bool explicit_step = true;

@@ -38,10 +38,10 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
     x_.resize(step_->size());
     for (Stage& stage : stages_) {
       for (Eigen::VectorXd& x : stage.x) x.resize(step_->size());
-      stage.memory.work.resize(x_);
-      stage.memory.jacobian.setIdentity(step_->size(), step_->size());
-      if (step_->size() > 0) stage.memory.factors.compute(stage.memory.jacobian);
+      prepare(stage.memory, x_);
     }
+    guess_ = path_x_ = x_;
+    prepare(path_memory_, x_);
   }
 
   void measure(Snapshot& out) const override {
@@ -54,7 +54,7 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
     const Eigen::VectorXd momentum = place_.inertia * now_.xi;
     out.momentum.assign(momentum.begin(), momentum.end());
     out.energy = 0.5 * momentum.dot(now_.xi) + system_->potential(now_.g.data());
-    out.constraint = recovered_residual();
+    out.constraint = recover_rates(out.row_rates);
     Eigen::VectorXd phi(system_->holonomic_rows());
     system_->holonomic(now_.g.data(), phi);
     out.holonomic = phi.size() == 0 ? 0.0 : phi.template lpNorm<Eigen::Infinity>();
@@ -64,11 +64,19 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
   }
 
  private:
+  using Memory = typename Newton::template Memory<GeneralStep>;
+  static void prepare(Memory& memory, const Eigen::VectorXd& x) {  // so that no step takes memory
+    memory.work.resize(x);
+    memory.jacobian.setIdentity(x.size(), x.size());
+    if (x.size() > 0) memory.factors.compute(memory.jacobian);
+  }
+
   // The guess is the polynomial extrapolation of up to six solutions (as in CompiledKernel).
   struct Stage {
     std::array<Eigen::VectorXd, 6> x;
     int count = 0;
-    typename Newton::template Memory<GeneralStep> memory;
+    bool trusted = false;  // the last solution was the root that is meant
+    Memory memory;
 
     void push(const Eigen::VectorXd& latest) {
       std::rotate(x.begin(), x.end() - 1, x.end());
@@ -87,9 +95,12 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
     }
   };
 
-  // |A v - b| of the last substep, v recovered from its two configurations.
-  double recovered_residual() const {
-    if (system_->rows() == 0) return 0;
+  // A v of the last substep, v recovered from its two configurations; for holonomic rows the change of
+  // phi. Returns |A v - b| over the other rows.
+  double recover_rates(std::vector<double>& rates) const {
+    const Eigen::Index k = system_->rows(), held = system_->holonomic_rows(), free = k - held;
+    rates.assign(static_cast<size_t>(k), std::numeric_limits<double>::quiet_NaN());
+    if (k == 0) return 0;
     Eigen::VectorXd v = now_.xi, base = now_.g;
     double t = now_.t;
     if (steps_ > 0) {
@@ -103,13 +114,19 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
       geometry_->tau(z.data(), delta.data());
       geometry_->inverse(delta.data(), delta.data());
       geometry_->compose(previous_.g.data(), delta.data(), base.data());
-      const double h = now_.t - previous_.t;
-      t = previous_.t + s_ * h;
-      v /= h;
+      t = previous_.t + s_ * last_h_;
+      v /= last_h_;
     }
     place_.set(*system_, t, base.data());
-    const Eigen::VectorXd rows = place_.a * v - place_.b;
-    return rows.head(rows.size() - system_->holonomic_rows()).norm();
+    Eigen::VectorXd found = place_.a * v;
+    if (steps_ > 0 && held > 0) {
+      Eigen::VectorXd before(held), after(held);
+      system_->holonomic(previous_.g.data(), before);
+      system_->holonomic(now_.g.data(), after);
+      found.tail(held) = (after - before) / last_h_;
+    }
+    rates.assign(found.begin(), found.end());
+    return (found - place_.b).head(free).norm();
   }
 
   SolveReport one_step() {
@@ -117,6 +134,7 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
     if (composed) {
       start_of_step_ = now_;
       before_ = previous_;
+      h_before_ = last_h_;
     }
     SolveReport total;
     for (size_t i = 0; i < stages_.size(); ++i) {
@@ -129,6 +147,7 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
         if (composed) {
           now_ = start_of_step_;
           previous_ = before_;
+          last_h_ = h_before_;
         }
         break;
       }
@@ -136,16 +155,20 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
     return total;
   }
 
-  using State = std::pair<Node, Node>;
-  State save() const { return {now_, previous_}; }
+  struct State {
+    Node now, previous;
+    double last_h;
+  };
+  State save() const { return {now_, previous_, last_h_}; }
   void restore(const State& state) {
-    now_ = state.first;
-    previous_ = state.second;
+    now_ = state.now;
+    previous_ = state.previous;
+    last_h_ = state.last_h;
   }
   void forget() {
     for (Stage& stage : stages_) {
       stage.count = 0;
-      stage.memory.valid = false;
+      stage.trusted = stage.memory.valid = false;
     }
   }
 
@@ -155,14 +178,53 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
     if (step_->size() > 0) {
       if (stage.count == 0) step_->guess(x_);
       else stage.extrapolate(x_);
+      guess_ = x_;
       report = solve(stage);
+      if (report.ok() && !is_meant(stage, report, h)) report.reason = Reason::outside_domain;
     }
     if (report.ok() && !step_->finish(x_, next_)) report.reason = Reason::outside_domain;
     if (!report.ok()) return report;
+    last_h_ = h;
     if (step_->size() > 0) stage.push(x_);
     std::swap(previous_, now_);
     std::swap(now_, next_);
     return report;
+  }
+
+  // Whether x is the root that the motion means: one that a kept Jacobian reached or that is within a percent
+  // of the extrapolation, the roots before it being the ones meant, or the end of the path that begins at
+  // rest (top of compiled_kernel.hpp).
+  bool is_meant(Stage& stage, const SolveReport& report, double h) {
+    const double size = x_.squaredNorm();
+    if (stage.trusted && solver_ == nullptr && report.iterations <= 2) return true;
+    if (stage.trusted && (x_ - guess_).squaredNorm() <= 1e-4 * size) return true;
+    follow_path(size + 1e-20 * step_->scale_squared(), h);
+    stage.trusted = (x_ - path_x_).squaredNorm() <= 1e-10 * size + 1e-20 * step_->scale_squared();
+    return stage.trusted;
+  }
+  // The solution for lambda h from lambda = 0 to 1, with steps that move it by 3 percent at most; NaN where the
+  // path ends.
+  void follow_path(double size, double h) {
+    step_->guess(path_x_);
+    path_memory_.valid = false;
+    for (double at = 0, length = 0.1; at < 1;) {
+      const double next = std::min(at + length, 1.0);
+      step_->begin(now_, next * h);
+      guess_ = path_x_;
+      const SolveReport report = Newton::solve(*step_, guess_, 1e-9, path_memory_);
+      if (report.ok() && (guess_ - path_x_).squaredNorm() <= 1e-3 * size) {
+        path_x_ = guess_;
+        at = next;
+        length *= 1.5;
+      } else {
+        length /= 2;
+        if (length < 1e-4) {
+          path_x_.setConstant(std::numeric_limits<double>::quiet_NaN());
+          break;
+        }
+      }
+    }
+    step_->begin(now_, h);
   }
 
   SolveReport solve(Stage& stage) {
@@ -200,9 +262,10 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
   std::shared_ptr<const Mechanics> system_;
   std::unique_ptr<GeneralStep> step_;
   mutable Place<> place_;
-  double s_;
+  double s_, last_h_ = 1, h_before_ = 1;
   Node now_, previous_, next_, start_of_step_, before_;
-  Eigen::VectorXd x_;
+  Eigen::VectorXd x_, guess_, path_x_;
+  Memory path_memory_;
   std::vector<Stage> stages_;
 };
 

@@ -53,6 +53,7 @@ void expect_contract(const Json& r) {
                {"holonomic_max", '?'},
                {"group_defect_max", 'n'},
                {"energy_error_max", 'n'},
+               {"reaction_work", '?'},
                {"exact_error_final", '?'}},
               "diagnostics.");
   expect_keys(r["solver_stats"],

@@ -69,8 +69,22 @@ void add_wild(Registry& registry) {
       });
 }
 
+/// Where the step is solved: the loop compiled for the system, or that of all general systems.
+enum class On { compiled, general };
+
+template <class S>
+Simulation::Maker maker_on(On loop, const S& system) {
+  if (loop == On::compiled) return maker(system);
+  return [make = maker(system)](const Parameters& given) {
+    SystemModel model = make(given);
+    model.mechanics = std::make_shared<InvariantMechanics>(model.inertia, model.constraints);
+    return model;
+  };
+}
+
 template <class Scheme, template <class> class T, class S>
-void expect_no_spurious_root(const S& system, double s, std::map<std::string, Count>& counts) {
+void expect_no_spurious_root(const S& system, double s, std::map<std::string, Count>& counts,
+                             On loop = On::compiled) {
   using G = typename S::Group;
   using Tau = T<G>;
   constexpr int n = G::dim, m = Scheme::adapted ? n - constraint_count<S>() : n;
@@ -95,8 +109,11 @@ void expect_no_spurious_root(const S& system, double s, std::map<std::string, Co
       xi *= size(random) / xi.norm();
       const typename Step::Momentum mu = problem.reduce(inertia * Vec<n>(xi));
       const std::vector<double> expected = by_continuation<Step, Tau>(step, mu, h);
-      for (const std::string& solver : mine.solvers()) {
-        Simulation simulation(mine, "given", maker(system));
+      const auto solvers = loop == On::compiled
+                               ? mine.solvers()
+                               : std::vector<std::string>{"newton", "hybrid", "wild"};
+      for (const std::string& solver : solvers) {
+        Simulation simulation(mine, "given", maker_on(loop, system));
         simulation.start({.velocity = {xi.begin(), xi.end()}})
             .scheme(Scheme::name())
             .s(s)
@@ -153,6 +170,12 @@ void all_schemes(const S& system) {
   expect_no_spurious_root<Boxed, Exp>(system, 0, counts);
   expect_no_spurious_root<Unadapted, Cayley>(system, 0.5, counts);
   report(counts);
+  std::map<std::string, Count> general;
+  expect_no_spurious_root<Lift, Exp>(system, 0, general, On::general);
+  expect_no_spurious_root<Lift, Cayley>(system, 0.5, general, On::general);
+  expect_no_spurious_root<Balance, Exp>(system, 0.5, general, On::general);
+  expect_no_spurious_root<Balance, Cayley>(system, 0.5, general, On::general);
+  report(general);
 }
 
 TEST(LargeSteps, SuslovWithFullInertia) { all_schemes(body({2, .3, .5, 3, .4, 4})); }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include <hamel/hamel.hpp>
 
@@ -49,13 +50,18 @@ TEST_P(GeneralOrders, AreAsClaimed) {
   const Result reference = run_of(system, "lift", 0.5, "exp", 3200).compose("kahan_li6").run();
   ASSERT_TRUE(reference.status.ok) << reference.status.reason;
   const std::vector<double> end = end_of(reference);
-  const std::string group = reference.system.group.name;
+  // Motions with no symmetry that would raise the order.
+  const bool generic =
+      std::set<std::string>{"falling_disk", "ball_on_turntable", "snakeboard", "segway"}.contains(
+          system);
   for (const std::string& scheme : registry().schemes()) {
     const SchemeInfo& info = *registry().scheme(scheme);
     if (!info.adapted || !info.general || !info.defined(reference.system.mechanics == nullptr))
       continue;
     for (const std::string retraction : {"exp", "cayley"}) {
-      for (const double s : info.uses_s ? std::vector<double>{0, 0.5, 1} : std::vector<double>{0}) {
+      // Where s is not used, one that would show if it were.
+      for (const double s :
+           info.uses_s ? std::vector<double>{0, 0.5, 1} : std::vector<double>{0.25}) {
         const ClaimedOrder claim =
             info.claim(s, true, reference.system.mechanics == nullptr);  // exp, cayley: symmetric
         // First-order errors show their order late.
@@ -72,6 +78,10 @@ TEST_P(GeneralOrders, AreAsClaimed) {
           const double bound = claim.order == 1 ? 0.1 : claim.order == 2 ? 0.05 : 0.2;
           EXPECT_GT(order, claim.order - bound)
               << what << ", errors " << coarse_error << ", " << fine_error;
+          if (generic && claim.order < 4) {  // no better either: s is what the scheme makes of it
+            EXPECT_LT(order, claim.order + bound)
+                << what << ", errors " << coarse_error << ", " << fine_error;
+          }
         }
         if (info.steps_admissible) {
           EXPECT_LT(b.constraint_max, 1e-11) << what;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "study_growth.hpp"
 #include "study_tables.hpp"
 #include "study_view.hpp"
 
@@ -30,6 +31,7 @@ class StudyPage {
     for (const Verdict& verdict : study_verdicts(result_))
       page_.verdict(verdict.status, verdict.text);
     add_references(page_, result_);
+    add_growth(page_, view_);
     diagrams();
     heat_maps();
     add_cells(page_, view_);

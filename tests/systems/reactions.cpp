@@ -1,0 +1,72 @@
+// The reactions: what they do along the motion, measured on the configurations.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <hamel/hamel.hpp>
+
+namespace hamel {
+namespace {
+
+// Do the rows A xi = b move, b != 0 somewhere along the default motion?
+bool moves(const SystemModel& model, const Result& run) {
+  if (model.mechanics == nullptr) return false;
+  const Mechanics& mechanics = *model.mechanics;
+  const auto geometry = registry().geometry(run.system.group.name, "cayley");
+  Eigen::VectorXd g(geometry->size()), b(mechanics.rows());
+  Eigen::MatrixXd a(mechanics.rows(), mechanics.dim());
+  const auto columns = static_cast<size_t>(geometry->columns());
+  for (size_t i = 0; i < run.trajectory.rows(); ++i) {
+    geometry->from_coordinates(run.trajectory.row(i).subspan(1, columns), g.data());
+    mechanics.constraints(run.trajectory.at(i, 0), g.data(), a, b);
+    if (b.norm() > 0) return true;
+  }
+  return false;
+}
+
+/// Constraints that rest do no work: lambda . A v, the v of lift's steps recovered from the configurations.
+TEST(Reactions, DoNoWorkWhereTheConstraintRests) {
+  int seen = 0;
+  for (const std::string& system : registry().systems()) {
+    const Result run = simulate(system).step(0.01).until(4).run();
+    ASSERT_TRUE(run.status.ok) << system << ": " << run.status.reason;
+    if (std::isnan(run.reaction_work) || moves(registry().system(system)->make({}), run)) continue;
+    ++seen;
+    double effort = 0;  // what they could do in that time
+    for (int j = 1; run.trajectory.has("lambda" + std::to_string(j)); ++j) {
+      for (const double lambda : run.trajectory.column("lambda" + std::to_string(j))) {
+        effort = std::max(effort, std::abs(lambda));
+      }
+    }
+    EXPECT_LE(std::abs(run.reaction_work), 1e-11 * std::max(effort, 1.0)) << system;
+  }
+  EXPECT_GE(seen, 15);
+}
+
+/// A step that violates the constraint is seen to work: the column does not report what the code has set.
+TEST(Reactions, WorkWhereTheStepsLeaveTheConstraint) {
+  const Result run =
+      simulate("knife_edge_on_incline").scheme("reversible").step(0.1).until(4).run();
+  double largest = 0;
+  for (const double p : run.trajectory.column("reaction_power")) {
+    largest = std::max(largest, std::abs(p));
+  }
+  EXPECT_GT(largest, 1e-5);
+}
+
+/// On a turning table nothing but the reactions works on the ball: its energy changes by their work, to O(h^2).
+TEST(Reactions, OfAMovingConstraintFeedInTheEnergy) {
+  const auto balance = [](double h) {
+    const Result run = simulate("ball_on_turntable").step(h).until(2).run();
+    const std::vector<double> energy = run.trajectory.column("energy");
+    const double change = energy.back() - energy.front();
+    EXPECT_GT(std::abs(change), 1e-3);  // there is something to balance
+    return std::abs(run.reaction_work - change) / std::abs(change);
+  };
+  const double coarse = balance(0.02), fine = balance(0.01);
+  EXPECT_LT(fine, 1e-3);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.2);
+}
+
+}  // namespace
+}  // namespace hamel
