@@ -66,11 +66,12 @@ void compare_with_exact(Result& result) {
 }
 
 // After the loop: the multipliers lambda of A xi = b at the recorded states, from the continuous equations
-// there, and their power lambda . A v, where A v is recovered from the configurations (Snapshot::row_rates):
-// round-off where b = 0, the power that a moving constraint feeds in where it is not.
+// there, and their power lambda . A v in the last step before each, A v recovered from the configurations
+// (Snapshot::row_rates) and lambda interpolated to the same time, `lag` before the row: round-off where
+// b = 0, the power that a moving constraint feeds in where it is not.
 void add_reactions(Result& result, const std::shared_ptr<const Geometry>& geometry,
                    const std::shared_ptr<const Mechanics>& mechanics,
-                   const std::vector<double>& rates) {
+                   const std::vector<double>& rates, double lag) {
   result.reaction_work = kNaN;
   if (geometry == nullptr || mechanics->rows() == 0) return;
   Trajectory& rows = result.trajectory;
@@ -79,24 +80,27 @@ void add_reactions(Result& result, const std::shared_ptr<const Geometry>& geomet
   Motion motion(geometry, mechanics);
   Eigen::VectorXd g(geometry->size());
   const auto k = static_cast<size_t>(mechanics->rows());
-  std::vector<std::vector<double>> columns(k, std::vector<double>(rows.rows()));
+  std::vector<std::vector<double>> lambda(k, std::vector<double>(rows.rows()));
   std::vector<double> power(rows.rows());
+  double work = 0, before = 0;  // the time of the last power
   for (size_t i = 0; i < rows.rows(); ++i) {
     geometry->from_coordinates(rows.row(i).subspan(1, coordinates), g.data());
     const Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(
         rows.row(i).subspan(1 + coordinates, n).data(), static_cast<Eigen::Index>(n));
-    motion(rows.at(i, 0), g.data(), xi);
-    for (size_t j = 0; j < columns.size(); ++j) {
-      columns[j][i] = motion.reaction()[static_cast<Eigen::Index>(j)];
-      power[i] += columns[j][i] * rates[i * k + j];
+    const double t = rows.at(i, 0);
+    motion(t, g.data(), xi);
+    const double part = i == 0 ? 0 : lag / (t - rows.at(i - 1, 0));
+    for (size_t j = 0; j < k; ++j) {
+      const double now = lambda[j][i] = motion.reaction()[static_cast<Eigen::Index>(j)];
+      const double there = i == 0 ? now : now - part * (now - lambda[j][i - 1]);
+      power[i] += there * rates[i * k + j];
     }
-    if (i == 0) result.reaction_work = 0;
-    else
-      result.reaction_work += (power[i - 1] + power[i]) / 2 * (rows.at(i, 0) - rows.at(i - 1, 0));
+    const double time = i == 0 ? t : t - lag;
+    if (i > 0) work += (power[i - 1] + power[i]) / 2 * (time - before);
+    before = time;
   }
-  for (size_t j = 0; j < columns.size(); ++j) {
-    rows.add_column("lambda" + std::to_string(j + 1), columns[j]);
-  }
+  result.reaction_work = work + power.back() * (rows.at(rows.rows() - 1, 0) - before);
+  for (size_t j = 0; j < k; ++j) rows.add_column("lambda" + std::to_string(j + 1), lambda[j]);
   rows.add_column("reaction_power", power);
 }
 
@@ -255,7 +259,8 @@ Result Simulation::run() const {
   result.group_defect_max = largest(result.trajectory.column("group_defect"));
   result.energy_error_max = largest(result.trajectory.column("energy_error"));
   result.holonomic_max = holonomic_max;
-  add_reactions(result, plan.geometry, plan.mechanics, rates);
+  const double lag = (1 - plan.setup.s) * plan.setup.composition.back() * plan.setup.step;
+  add_reactions(result, plan.geometry, plan.mechanics, rates, lag);
   compare_with_exact(result);
   return result;
 }

@@ -99,7 +99,7 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
   // phi. Returns |A v - b| over the other rows.
   double recover_rates(std::vector<double>& rates) const {
     const Eigen::Index k = system_->rows(), held = system_->holonomic_rows(), free = k - held;
-    rates.assign(static_cast<size_t>(k), std::numeric_limits<double>::quiet_NaN());
+    rates.assign(static_cast<size_t>(k), kNaN);
     if (k == 0) return 0;
     Eigen::VectorXd v = now_.xi, base = now_.g;
     double t = now_.t;
@@ -108,7 +108,7 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
       geometry_->inverse(previous_.g.data(), delta.data());
       geometry_->compose(delta.data(), now_.g.data(), delta.data());
       if (!recover_step(*geometry_, delta.data(), s_, v)) {
-        return std::numeric_limits<double>::quiet_NaN();
+        return kNaN;
       }
       Eigen::VectorXd z = -s_ * v;
       geometry_->tau(z.data(), delta.data());
@@ -128,6 +128,8 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
     rates.assign(found.begin(), found.end());
     return (found - place_.b).head(free).norm();
   }
+
+  static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
   SolveReport one_step() {
     const bool composed = stages_.size() > 1;  // else a failed substep leaves the state alone
@@ -205,9 +207,13 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
   // The solution for lambda h from lambda = 0 to 1, with steps that move it by 3 percent at most; NaN where the
   // path ends.
   void follow_path(double size, double h) {
+    constexpr double start =
+        1e-3;  // where there is one root, not always next to the scheme's guess
+    step_->begin(now_, start * h);
     step_->guess(path_x_);
     path_memory_.valid = false;
-    for (double at = 0, length = 0.1; at < 1;) {
+    if (!Newton::solve(*step_, path_x_, 1e-9, path_memory_).ok()) path_x_.setConstant(kNaN);
+    for (double at = start, length = 0.1; at < 1 && path_x_.allFinite();) {
       const double next = std::min(at + length, 1.0);
       step_->begin(now_, next * h);
       guess_ = path_x_;
@@ -218,10 +224,7 @@ class GeneralKernel final : public TimeLoop<GeneralKernel<Newton>> {
         length *= 1.5;
       } else {
         length /= 2;
-        if (length < 1e-4) {
-          path_x_.setConstant(std::numeric_limits<double>::quiet_NaN());
-          break;
-        }
+        if (length < 1e-4) path_x_.setConstant(kNaN);
       }
     }
     step_->begin(now_, h);

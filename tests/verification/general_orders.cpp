@@ -78,7 +78,8 @@ TEST_P(GeneralOrders, AreAsClaimed) {
           const double bound = claim.order == 1 ? 0.1 : claim.order == 2 ? 0.05 : 0.2;
           EXPECT_GT(order, claim.order - bound)
               << what << ", errors " << coarse_error << ", " << fine_error;
-          if (generic && claim.order < 4) {  // no better either: s is what the scheme makes of it
+          // No better either, so that s is seen to be used.
+          if (generic && (scheme == "lift" || scheme == "balance")) {
             EXPECT_LT(order, claim.order + bound)
                 << what << ", errors " << coarse_error << ", " << fine_error;
           }
