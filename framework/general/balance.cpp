@@ -1,5 +1,7 @@
 #include <hamel/framework/general/balance.hpp>
 
+#include <limits>
+
 #include <hamel/framework/general/baselines.hpp>
 #include <hamel/framework/schemes/balance.hpp>
 
@@ -42,6 +44,7 @@ template <int N, int K>
 void GeneralBalance<N, K>::begin(const Node& node, double h) {
   t_ = node.t;
   h_ = h;
+  v_.setConstant(std::numeric_limits<double>::quiet_NaN());  // nothing is evaluated so far
   g0_ = node.g;
   xi0_ = node.xi;
   base_place_.set(*system_, t_, g0_.data());  // here the frame of the step gets its signs

@@ -5,6 +5,9 @@
 #include <hamel/framework/schemes/lift.hpp>
 
 namespace hamel {
+namespace {
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // evaluated so far
+}
 
 template <int N, int K>
 GeneralLift<N, K>::GeneralLift(const GeneralSetup& setup)
@@ -18,7 +21,7 @@ GeneralLift<N, K>::GeneralLift(const GeneralSetup& setup)
       target_(n_),
       place_(*system_),
       place_g_(g0_),
-      place_time_(std::numeric_limits<double>::quiet_NaN()),
+      place_time_(kNothing),
       f0_(g0_),
       f1_(g0_),
       base_(g0_),
@@ -41,6 +44,7 @@ template <int N, int K>
 void GeneralLift<N, K>::begin(const Node& node, double h) {
   t_ = node.t;
   h_ = h;
+  v_.setConstant(kNothing);
   g0_ = node.g;
   xi0_ = node.xi;
   if (!(place_time_ == t_ && place_g_ == g0_)) {  // else it is where the last step ended
