@@ -1,6 +1,9 @@
 // What holds for every registered solver: the certificate, the floor, the same trajectory.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <map>
+
 #include <hamel/systems/simulate.hpp>
 
 #include "made.hpp"
@@ -118,9 +121,10 @@ Simulation moderate(const std::string& system, const std::string& scheme,
 }
 
 /// Registered means solved: every system, scheme and retraction. Only a minimiser may refuse, and then
-/// says so; on the general loop, whose Jacobian is by differences, others may stop at their own floor. boxed_literal takes O(1) steps whatever h is: it may leave the domain.
+/// says so. boxed_literal takes O(1) steps whatever h is: it may leave the domain.
 TEST(EverySolver, SolvesEveryStep) {
   long refused = 0, all = 0;
+  std::map<std::string, long> refusals;
   for (const std::string& system : registry().systems()) {
     const std::string group = registry().system(system)->group.name;
     for (const std::string& scheme : registry().schemes()) {
@@ -134,17 +138,19 @@ TEST(EverySolver, SolvesEveryStep) {
           const Result r = moderate(system, scheme, retraction, solver).until(until).run();
           ++all;
           const std::string where = solver + " " + system + " " + scheme + " " + retraction;
-          EXPECT_LE(r.stats.residual_max, 1e-13) << where;
           if (r.status.ok) continue;
           ++refused;
+          ++refusals[solver];
           EXPECT_FALSE(r.status.reason.empty()) << where;
-          EXPECT_TRUE(scheme == "boxed_literal" || minimises(solver) ||
-                      (!compiled(system) && r.status.residual < 1e-11))
+          EXPECT_TRUE(scheme == "boxed_literal" || minimises(solver))
               << where << ": " << r.status.reason << " in step " << r.status.step << ", "
               << r.status.residual;
         }
       }
     }
+  }
+  for (const auto& [solver, count] : refusals) {
+    std::printf("%-18s refused %ld of %ld runs of all solvers\n", solver.c_str(), count, all);
   }
   EXPECT_LE(refused, all / 10);
 }
