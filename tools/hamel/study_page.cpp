@@ -31,8 +31,8 @@ class StudyPage {
     for (const Verdict& verdict : study_verdicts(result_))
       page_.verdict(verdict.status, verdict.text);
     add_references(page_, result_);
-    add_growth(page_, view_);
     diagrams();
+    add_growth(page_, view_);
     heat_maps();
     add_cells(page_, view_);
     add_skipped(page_, result_);
