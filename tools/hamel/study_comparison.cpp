@@ -174,7 +174,8 @@ class Comparison {
       double least = std::numeric_limits<double>::infinity(), fastest = least, largest = 0;
       size_t good = 0;
       const auto error = [&](size_t i) {  // below the floor all are equal
-        return std::max(view_.metrics(i).error, view_.metrics(i).floor);
+        const StudyMetrics& m = view_.metrics(i);
+        return std::isnan(m.floor) ? m.floor : std::max(m.error, m.floor);
       };
       for (const size_t i : cells) {
         if (!view_.metrics(i).ok) {
