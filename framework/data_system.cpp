@@ -252,16 +252,24 @@ SystemModel data_system(const Registry& registry, const std::string& text,
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path) {
   return [&registry, path](const Parameters& given) {
-    if (!given.empty()) {
-      throw ConfigError({fmt::format("set: {} is a file with no parameters, got '{}'", path,
-                                     given.begin()->first)});
-    }
     std::ifstream in(path);
     std::ostringstream text;
     if (!in || !(text << in.rdbuf())) {
       throw ConfigError({fmt::format("system: cannot read '{}'", path)});
     }
-    return data_system(registry, text.str(), path);
+    return data_system_maker(registry, path, text.str())(given);
+  };
+}
+
+std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
+                                                                const std::string& path,
+                                                                const std::string& text) {
+  return [&registry, path, text](const Parameters& given) {
+    if (!given.empty()) {
+      throw ConfigError({fmt::format("set: {} is a file with no parameters, got '{}'", path,
+                                     given.begin()->first)});
+    }
+    return data_system(registry, text, path);
   };
 }
 

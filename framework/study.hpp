@@ -23,11 +23,13 @@
 
 namespace hamel {
 
-/// A registered system with its parameters and start; the label is what tables call it.
+/// A registered system with its parameters and start, or a file "my_system.toml" (data_system.hpp); the
+/// label is what tables call it.
 struct StudySystem {
   std::string label, name;
   Parameters parameters = {};
   Start start = {};
+  std::string data = {};  // the file's text: a study reads it once, at its beginning
 };
 
 /// Combinations that are left out: one entry per axis named, any of its values; axes not named match all.
@@ -72,6 +74,7 @@ StudyConfig read_study(const std::string& path, const Registry& registry);
 struct StudyCell {
   size_t system = 0;   // index into the systems
   Config config = {};  // ready to run
+  /// The value on each axis as a word; of a cell that is run, empty where its scheme makes no use of it.
   std::map<std::string, std::string> axes;
   std::string skipped;  // "" (it is run), "excluded", "impossible" or "duplicate"
   std::string why;
@@ -117,7 +120,7 @@ struct StudyMetrics {
 
 /// What the cells of one system are compared with.
 struct StudyReference {
-  std::string kind;   // "exact", "converged", or why there is none
+  std::string kind;   // "exact", "converged: ..." by what, or "none: ..." and why
   double bound = 0;   // of the reference's own error; 0 for an exact motion
   double extent = 0;  // how far the motion gets from its start
   std::vector<double> times;
@@ -130,7 +133,7 @@ struct StudyResult {
   std::vector<StudyMetrics> metrics;       // one for each cell; not done where the cell is skipped
   std::vector<StudyReference> references;  // one for each system
   bool complete = false;
-  size_t resumed = 0;  // cells taken over from the journal
+  size_t resumed = 0;  // cells taken over from the journal, references not counted
   int threads = 1;
   double seconds = 0;  // of this session
 
@@ -155,9 +158,9 @@ class Study {
   Study& folder(std::string path);
   /// Forgets the journal that is there.
   Study& fresh(bool forget = true);
-  /// Called now and then, from one thread at a time, with the fraction of the work done.
+  /// Called now and then, from one thread at a time, with the fraction of the work done, references too.
   Study& progress(std::function<void(double)> report);
-  /// Polled between recorded states: true abandons the cells in flight and returns.
+  /// Polled every few hundred steps: true abandons what is in flight and returns.
   Study& stop(const std::atomic<bool>* flag);
   /// Throws ConfigError before anything runs: a folder that cannot be written, another study's journal.
   StudyResult run() const;

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/composition.hpp>
-#include <hamel/framework/study.hpp>
+#include <hamel/framework/study/parts.hpp>
 
 namespace hamel {
 namespace {
@@ -17,18 +17,47 @@ std::vector<std::string> words(const std::vector<double>& numbers) {
 }
 
 // The order that the scheme claims here. A composition reaches its own over a reversible step of order 2.
-int claim(const Registry& registry, const StudyCell& cell, const std::string& group) {
+int claim(const Registry& registry, const StudyCell& cell, const SystemModel& system) {
   const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
   if (!scheme->adapted) return 0;  // of the free motion only: here it approximates nothing
-  const bool left_invariant =
-      registry.system(cell.config.system)->make(cell.config.parameters).mechanics == nullptr;
-  const ClaimedOrder plain = scheme->claim(
-      cell.config.s, registry.geometry(group, cell.config.retraction)->symmetric(), left_invariant);
+  const bool symmetric = registry.geometry(system.group.name, cell.config.retraction)->symmetric();
+  const ClaimedOrder plain = scheme->claim(cell.config.s, symmetric, system.mechanics == nullptr);
   for (const Composition& table : compositions()) {
     if (table.name == cell.config.compose && plain.reversible && plain.order == 2)
       return table.order;
   }
   return plain.order;
+}
+
+// What a scheme makes no use of is empty in `axes` and the default in `run`, so that one cell stands for all
+// values. An explicit step that fails is not solved by another solver, but halves of it may well succeed.
+void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, std::string>& axes,
+                  Config& run) {
+  const Config plain;
+  if (!scheme.uses_s) {
+    axes["s"] = "";
+    run.s = plain.s;
+  }
+  if (!scheme.explicit_step) return;
+  axes["solver"] = axes["tolerance"] = "";
+  run.solver = plain.solver;
+  run.tolerance = plain.tolerance;
+  if (run.on_failure == "halve") return;
+  run.on_failure = "stop";
+  axes["on_failure"] = halving ? "stop" : "";
+}
+
+// Why a cell is another one's duplicate: "boxed does not use s: one cell stands for all".
+std::string same_as_above(const StudyConfig& config, const StudyCell& cell,
+                          const std::map<std::string, std::string>& same) {
+  std::string unused;
+  for (const std::string& axis : study_axes()) {
+    if (same.at(axis) == cell.axes.at(axis) || config.values(axis).size() < 2) continue;
+    unused += (unused.empty() ? "" : ", ") + (same.at(axis).empty() ? axis : cell.axes.at(axis));
+  }
+  return unused.empty() ? "the same combination stands above"
+                        : fmt::format("{} does not use {}: one cell stands for all",
+                                      cell.config.scheme, unused);
 }
 
 // "" or the reason of the first exclusion that matches.
@@ -90,6 +119,10 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     sizes.push_back(config.values(axis).size());
     count = config.zipped ? std::max(count, sizes.back()) : count * sizes.back();
   }
+  std::vector<SystemModel> models;
+  for (const StudySystem& system : config.systems) models.push_back(study::model(registry, system));
+  const bool halving = std::find(config.on_failures.begin(), config.on_failures.end(), "halve") !=
+                       config.on_failures.end();
   std::vector<StudyCell> cells;
   std::set<std::map<std::string, std::string>> seen;
   for (size_t i = 0; i < count; ++i) {
@@ -112,10 +145,9 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     cell.config.step = config.steps[at[8]];
     cell.config.until = config.until;
 
-    const std::string group = registry.system(system.name)->group.name;
-    const bool uses_s = registry.scheme(cell.config.scheme)->uses_s;
+    const std::string& group = models[at[0]].group.name;
     std::map<std::string, std::string> same = cell.axes;
-    if (!uses_s) same["s"] = "";
+    leave_unused(*registry.scheme(cell.config.scheme), halving, same, cell.config);
     if (cell.why = excluded_by(config, cell); !cell.why.empty()) {
       cell.skipped = "excluded";
     } else if (registry.geometry(group, cell.config.retraction) == nullptr) {
@@ -126,11 +158,9 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
       cell.why = fmt::format("{} is the solver that failed", cell.config.solver);
     } else if (!seen.insert(same).second) {
       cell.skipped = "duplicate";
-      cell.why =
-          uses_s ? "the same combination stands above"
-                 : fmt::format("{} does not use s: one cell stands for all", cell.config.scheme);
+      cell.why = same_as_above(config, cell, same);
     } else {
-      cell.claimed_order = claim(registry, cell, group);
+      cell.claimed_order = claim(registry, cell, models[at[0]]);
       cell.axes = std::move(same);
     }
     cells.push_back(std::move(cell));

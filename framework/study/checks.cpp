@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
-#include <hamel/framework/simulate.hpp>
-#include <hamel/framework/study.hpp>
+#include <hamel/framework/study/parts.hpp>
 
 namespace hamel {
 namespace {
@@ -72,22 +72,31 @@ class Checks {
     config.system = system.name;
     config.parameters = system.parameters;
     config.start = system.start;
-    if (const SystemInfo* info = registry_.system(system.name)) {
-      const auto known = registry_.retractions_or_common(info->group.name);
-      if (!known.empty() && registry_.geometry(info->group.name, config.retraction) == nullptr)
+    if (const std::string group = group_of(system); !group.empty()) {
+      const auto known = registry_.retractions_or_common(group);
+      if (!known.empty() && registry_.geometry(group, config.retraction) == nullptr)
         config.retraction = known.front();
     }
     return config;
   }
-  std::vector<std::string> mistakes_of(const Config& config) const {
-    return Simulation(registry_, config.system).config(config).mistakes();
+  // "" for a system that cannot be made; the run says why.
+  std::string group_of(const StudySystem& system) const {
+    if (!system.name.ends_with(".toml") && registry_.system(system.name) == nullptr) return "";
+    try {
+      return study::model(registry_, system).group.name;
+    } catch (const std::invalid_argument&) {
+      return "";
+    }
+  }
+  std::vector<std::string> mistakes_of(const StudySystem& system, const Config& config) const {
+    return study::simulation(registry_, system, config).mistakes();
   }
 
   void system(size_t i) {
     const StudySystem& given = study_.systems[i];
     const std::string prefix = fmt::format("system[{}]", i);
     if (given.name.empty()) return add(prefix, "system: give each its name");
-    for (const std::string& mistake : mistakes_of(sound(given))) {
+    for (const std::string& mistake : mistakes_of(given, sound(given))) {
       std::string key = prefix + ".name";
       for (const char* start : {"configuration", "velocity", "momentum", "start"})
         if (mistake.starts_with(std::string(start) + ":")) key = prefix + "." + start;
@@ -99,15 +108,20 @@ class Checks {
     }
   }
 
+  StudySystem some_system() const {
+    return study_.systems.empty() ? StudySystem{} : study_.systems.front();
+  }
+
   // What a run with this value has to say that one without it has not.
   template <class Value>
   void axis(const char* name, const std::vector<Value>& values, Value Config::*member) {
-    const Config base = study_.systems.empty() ? Config{} : sound(study_.systems.front());
-    const std::vector<std::string> known = mistakes_of(base);
+    const StudySystem system = some_system();
+    const Config base = sound(system);
+    const std::vector<std::string> known = mistakes_of(system, base);
     for (size_t i = 0; i < values.size(); ++i) {
       Config config = base;
       config.*member = values[i];
-      for (const std::string& mistake : mistakes_of(config)) {
+      for (const std::string& mistake : mistakes_of(system, config)) {
         if (std::find(known.begin(), known.end(), mistake) == known.end())
           add(fmt::format("{}[{}]", name, i), mistake);
       }
@@ -146,14 +160,15 @@ class Checks {
 
   // Beside a solver that is not the one to retry with: the two meet in the cells.
   void on_failures() {
-    Config config = study_.systems.empty() ? Config{} : sound(study_.systems.front());
+    const StudySystem system = some_system();
+    Config config = sound(system);
     for (size_t i = 0; i < study_.on_failures.size(); ++i) {
       config.on_failure = "stop";
       for (const std::string& solver : registry_.solvers())
         if (study_.on_failures[i] != "retry:" + solver) config.solver = solver;
-      const std::vector<std::string> known = mistakes_of(config);
+      const std::vector<std::string> known = mistakes_of(system, config);
       config.on_failure = study_.on_failures[i];
-      for (const std::string& mistake : mistakes_of(config))
+      for (const std::string& mistake : mistakes_of(system, config))
         if (std::find(known.begin(), known.end(), mistake) == known.end())
           add(fmt::format("on_failure[{}]", i), mistake);
     }
@@ -211,7 +226,7 @@ class Checks {
       const std::string key =
           fmt::format("{}/{}/{}", cell.system, cell.config.scheme, cell.config.retraction);
       if (!seen.insert(key).second) continue;
-      for (const std::string& mistake : mistakes_of(cell.config))
+      for (const std::string& mistake : mistakes_of(study_.systems[cell.system], cell.config))
         add(fmt::format("system[{}]", cell.system), mistake);
     }
     if (count == 0) add("exclude", "nothing is left to run");
@@ -238,6 +253,9 @@ std::string StudyConfig::fingerprint() const {
     for (const auto& [name, value] : system.parameters)
       out += fmt::format(", {} ({})", name, join(value));
     out += '\n';
+    std::istringstream lines(system.data);
+    for (std::string line; std::getline(lines, line);)
+      out += fmt::format("{}: {}\n", system.name, line);
   }
   for (const std::string& axis : study_axes())
     if (axis != "system") out += fmt::format("{} = {}\n", axis, join(values(axis)));

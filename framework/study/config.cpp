@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/study.hpp>
+#include <hamel/framework/study/parts.hpp>
 #include <hamel/framework/toml_reader.hpp>
 
 namespace hamel {
@@ -170,6 +170,7 @@ StudyConfig parse_study(const std::string& text, const std::string& origin,
                         const Registry& registry) {
   StudyReader reader(origin);
   StudyConfig config = reader.file(text);
+  study::read_data(config);
   std::vector<std::string> mistakes = reader.mistakes();
   for (const std::string& more : config.mistakes(registry)) mistakes.push_back(more);
   if (!mistakes.empty()) throw ConfigError(mistakes);

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/result.hpp>
+#include <hamel/framework/study/parts.hpp>
 #include <hamel/framework/version.hpp>
 
 namespace hamel::study {
@@ -27,9 +28,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 std::string header(const StudyConfig& config) {
-  return Json{{"journal", 1},
-              {"version", fmt::format("{} ({})", version(), git_hash())},
-              {"study", lines_of(config.fingerprint())}}
+  return Json{
+      {"journal", 1},
+      {"version", fmt::format("{} ({}; {}; {})", version(), git_hash(), compiler(), build_flags())},
+      {"study", lines_of(config.fingerprint())}}
       .dump();
 }
 
@@ -72,6 +74,27 @@ Json json_of(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 Json json_of(long x) { return x; }
 void take(const Json& from, double& x) { x = from.is_null() ? kNotMeasured : from.get<double>(); }
 void take(const Json& from, long& x) { x = from.get<long>(); }
+
+template <class List>
+Json json_of(const List& list) {
+  Json out = Json::array();
+  for (const auto& entry : list) out.push_back(json_of(entry));
+  return out;
+}
+template <class Entry>
+void take(const Json& from, std::vector<Entry>& list) {
+  for (const Json& entry : from) take(entry, list.emplace_back());
+}
+
+// What a reference consists of, for writing and reading alike.
+template <class Reference, class Visit>
+void members(Reference& r, Visit visit) {
+  visit("bound", r.bound);
+  visit("extent", r.extent);
+  visit("times", r.times);
+  visit("coordinates", r.coordinates);
+  visit("velocities", r.velocities);
+}
 
 }  // namespace
 
@@ -124,8 +147,13 @@ void Journal::append(const std::string& line) {
 void Journal::measured(size_t cell, const StudyMetrics& metrics) {
   Json line = {{"cell", cell}, {"ok", metrics.ok}, {"reason", metrics.reason}};
   numbers(metrics, [&](const char* name, const auto& x) { line[name] = json_of(x); });
-  line["final"] = Json::array();
-  for (const double x : metrics.final) line["final"].push_back(json_of(x));
+  line["final"] = json_of(metrics.final);
+  append(line.dump());
+}
+
+void Journal::referred(size_t system, const StudyReference& reference) {
+  Json line = {{"reference", system}, {"kind", reference.kind}};
+  members(reference, [&](const char* name, const auto& x) { line[name] = json_of(x); });
   append(line.dump());
 }
 
@@ -133,17 +161,22 @@ void Journal::timed(size_t cell, size_t round, double nanoseconds) {
   append(Json{{"cell", cell}, {"round", round}, {"ns", json_of(nanoseconds)}}.dump());
 }
 
-std::vector<StudyMetrics> Journal::read(size_t cells, size_t rounds) const {
-  std::vector<StudyMetrics> out(cells);
+void Journal::read(StudyResult& result) const {
   std::istringstream in(old_);
   std::string text;
   std::getline(in, text);
   for (size_t number = 2; std::getline(in, text); ++number) {
     try {
       const Json line = Json::parse(text);
-      StudyMetrics& m = out.at(line.at("cell").get<size_t>());
+      if (line.contains("reference")) {
+        StudyReference& r = result.references.at(line["reference"].get<size_t>());
+        r.kind = line.at("kind").get<std::string>();
+        members(r, [&](const char* name, auto& x) { take(line.at(name), x); });
+        continue;
+      }
+      StudyMetrics& m = result.metrics.at(line.at("cell").get<size_t>());
       if (line.contains("round")) {
-        m.nanoseconds.resize(rounds, -1);  // -1: not yet timed
+        m.nanoseconds.resize(static_cast<size_t>(result.config.repeats), kPending);
         take(line.at("ns"), m.nanoseconds.at(line.at("round").get<size_t>()));
         continue;
       }
@@ -151,13 +184,12 @@ std::vector<StudyMetrics> Journal::read(size_t cells, size_t rounds) const {
       m.ok = line.at("ok").get<bool>();
       m.reason = line.at("reason").get<std::string>();
       numbers(m, [&](const char* name, auto& x) { take(line.at(name), x); });
-      for (const auto& x : line.at("final")) take(x, m.final.emplace_back());
+      take(line.at("final"), m.final);
     } catch (const std::exception& error) {
       throw ConfigError(
           {fmt::format("output: {}:{}: {}; --fresh begins anew", path_, number, error.what())});
     }
   }
-  return out;
 }
 
 }  // namespace hamel::study

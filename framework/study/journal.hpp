@@ -21,8 +21,9 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// What the lines that were there hold; `rounds` timing rounds.
-  std::vector<StudyMetrics> read(size_t cells, size_t rounds) const;
+  /// Fills in what the lines that were there hold.
+  void read(StudyResult& result) const;
+  void referred(size_t system, const StudyReference& reference);
   void measured(size_t cell, const StudyMetrics& metrics);
   void timed(size_t cell, size_t round, double nanoseconds);
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <hamel/framework/simulate.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
@@ -96,10 +95,10 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
   return xx > 0 && std::isfinite(xy) ? xy / xx : kNotMeasured;
 }
 
-StudyMetrics measure(const Registry& registry, const StudyCell& cell,
+StudyMetrics measure(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const StudyReference& reference, const std::atomic<bool>* stop) {
   StudyMetrics out;
-  Integration run = Simulation(registry, cell.config.system).config(cell.config).build();
+  Integration run = simulation(registry, system, cell.config).build();
   const long steps = cell.config.steps();
   const long intervals = static_cast<long>(reference.times.size()) - 1;
   const long rows = rows_each(steps / intervals, intervals), every = steps / (intervals * rows);
@@ -108,8 +107,8 @@ StudyMetrics measure(const Registry& registry, const StudyCell& cell,
   meter.row(run.state());
   meter.compare(run.state(), 0);
   for (long row = 1; row <= intervals * rows; ++row) {
+    const Status status = advance(run, every, stop);
     if (stopped(stop)) return out;
-    const Status status = run.step(every);
     const Snapshot& state = run.state();
     meter.row(state);
     if (!status.ok) {
@@ -124,20 +123,17 @@ StudyMetrics measure(const Registry& registry, const StudyCell& cell,
   return out;
 }
 
-double time_per_step(const Registry& registry, const StudyCell& cell,
+double time_per_step(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const std::atomic<bool>* stop) {
   constexpr double kShortest = 2e5;  // ns: a shorter run is repeated until this is reached
-  constexpr long kChunk = 4096;
-  const Simulation simulation = Simulation(registry, cell.config.system).config(cell.config);
+  const Simulation simulation = study::simulation(registry, system, cell.config);
   double nanoseconds = 0;
   long steps = 0;
   for (int i = 0; i < 100 && nanoseconds < kShortest; ++i) {
     Integration run = simulation.build();
     const double begin = processor_time();
-    for (long left = cell.config.steps(); left > 0; left -= kChunk) {
-      if (stopped(stop)) return kNotMeasured;
-      if (!run.step(std::min(left, kChunk)).ok) break;
-    }
+    advance(run, cell.config.steps(), stop);
+    if (stopped(stop)) return kNotMeasured;
     nanoseconds += processor_time() - begin;
     steps += run.state().step;
   }

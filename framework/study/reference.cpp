@@ -1,12 +1,12 @@
 // What cells are compared with: the exact motion where the system has one, else lift at s = 1/2 composed to
-// order 6 (Kahan and Li), with steps halved until two of them agree. Their difference is the bound.
+// order 6 (Kahan and Li), with steps halved until two of them agree. Their difference is the bound. As the
+// order is 6, the first step need not be finer than those of the cells, and may be coarser.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
 
-#include <hamel/framework/simulate.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
@@ -14,6 +14,9 @@ namespace {
 
 constexpr long kMaxIntervals = 400;
 constexpr long kMaxReferenceSteps = 400'000;
+constexpr double kRoundOff = 1e-8;  // two runs that differ more are not at round-off yet
+constexpr const char* kTable = "kahan_li6";
+constexpr long kStages = 9;
 
 struct Motion {
   bool ok = true;
@@ -21,75 +24,109 @@ struct Motion {
   std::vector<std::vector<double>> coordinates, velocities;
 };
 
-// The states at the ends of the intervals, with that many steps in each.
-Motion follow(const Registry& registry, Config config, long intervals, long steps_each) {
-  config.step = config.until / static_cast<double>(intervals * steps_each);
-  Integration run = Simulation(registry, config.system).config(config).build();
-  Motion out;
-  for (long k = 0; k <= intervals; ++k) {
-    if (k > 0) {
-      const Status status = run.step(steps_each);
-      if (!status.ok) return {false, status.reason, {}, {}};
-    }
-    out.coordinates.push_back(run.state().coordinates);
-    out.velocities.push_back(run.state().velocity);
-  }
-  return out;
-}
-
 double apart(const Motion& a, const Motion& b) {
   double out = 0;
   for (size_t k = 0; k < a.coordinates.size(); ++k) {
-    const double d = std::max(euclidean_distance(a.coordinates[k], b.coordinates[k]),
-                              euclidean_distance(a.velocities[k], b.velocities[k]));
-    out = std::isfinite(d) ? std::max(out, d) : std::numeric_limits<double>::infinity();
+    raise(out, euclidean_distance(a.coordinates[k], b.coordinates[k]));
+    raise(out, euclidean_distance(a.velocities[k], b.velocities[k]));
   }
   return out;
 }
 
-// Halves the step until two motions agree to round-off, or agree no better than the pair before.
-StudyReference converged(const Registry& registry, const StudyConfig& study, Config config,
-                         long intervals) {
-  const std::string group = registry.system(config.system)->group.name;
-  const std::vector<std::string> known = registry.retractions_or_common(group);
-  config.retraction = known.front();
-  for (const char* good : {"cayley", "exp"})
-    if (std::find(known.begin(), known.end(), good) != known.end()) config.retraction = good;
-  config.scheme = "lift";
-  config.s = 0.5;
-  config.solver = "newton";
-  config.compose = "kahan_li6";
-  config.tolerance = 1e-14;
-  const double finest = *std::min_element(study.steps.begin(), study.steps.end());
-  long each = std::max(1L, std::lround(study.until / finest / static_cast<double>(intervals)));
+// Steps in each interval of the first run: the finest step of the cells, or a coarser one from which the
+// step can be halved three times.
+long first_steps_each(const StudyConfig& config) {
+  const long intervals = common_intervals(config);
+  const double finest = *std::min_element(config.steps.begin(), config.steps.end());
+  return std::clamp(std::lround(config.until / finest / static_cast<double>(intervals)), 1L,
+                    kMaxReferenceSteps / (8 * intervals));
+}
 
-  StudyReference out;
-  out.kind = "none";
-  out.bound = std::numeric_limits<double>::infinity();
-  Motion last = follow(registry, config, intervals, each);
-  while (2 * each * intervals <= kMaxReferenceSteps) {
-    each *= 2;
-    Motion next = follow(registry, config, intervals, each);
-    const double difference =
-        last.ok && next.ok ? apart(last, next) : std::numeric_limits<double>::infinity();
-    if (std::isfinite(difference) && difference < out.bound) {
-      out.kind = fmt::format("converged: lift, s = 0.5, {}, kahan_li6, {} steps", config.retraction,
-                             each * intervals);
-      out.bound = difference;
-      out.coordinates = next.coordinates;
-      out.velocities = next.velocities;
-      if (difference < 1e-13) break;
-    } else if (std::isfinite(out.bound)) {
-      break;  // round-off: the pair before was better
+class Convergence {
+ public:
+  Convergence(const Registry& registry, const StudyConfig& study, const StudySystem& system,
+              const Config& run, const std::function<void(long)>& stepped,
+              const std::atomic<bool>* stop)
+      : registry_(registry),
+        system_(system),
+        config_(run),
+        intervals_(common_intervals(study)),
+        each_(first_steps_each(study)),
+        stepped_(stepped),
+        stop_(stop) {
+    const std::string group = model(registry, system).group.name;
+    config_.retraction = registry.retractions_or_common(group).front();
+    for (const char* good : {"cayley", "exp"})
+      if (registry.geometry(group, good) != nullptr) config_.retraction = good;
+    config_.scheme = "lift";
+    config_.s = 0.5;
+    config_.solver = "newton";
+    config_.on_failure = "stop";
+    config_.compose = kTable;
+    config_.tolerance = 1e-14;
+  }
+
+  // Halves the step until two motions agree to round-off, or there agree no better than the pair before.
+  StudyReference find() {
+    const std::string method =
+        fmt::format("lift, s = {}, {}, {}", config_.s, config_.retraction, kTable);
+    StudyReference out;
+    out.bound = std::numeric_limits<double>::infinity();
+    Motion last = follow();
+    std::string why = last.reason;
+    const long coarsest = each_;
+    while (2 * each_ * intervals_ <= kMaxReferenceSteps && !stopped(stop_)) {
+      each_ *= 2;
+      Motion next = follow();
+      if (!next.ok) why = next.reason;
+      const double difference = last.ok && next.ok ? apart(last, next) : kNotMeasured;
+      if (difference < out.bound) {
+        out.kind = fmt::format("converged: {}, {} steps", method, each_ * intervals_);
+        out.bound = difference;
+        out.coordinates = next.coordinates;
+        out.velocities = next.velocities;
+        if (difference < 1e-13) break;
+      } else if (out.bound < kRoundOff) {
+        break;  // the pair before was better
+      }
+      last = std::move(next);
     }
-    last = std::move(next);
+    if (out.kind.empty()) {
+      out.kind =
+          fmt::format("none: {} fails with {} to {} steps: {}", method, coarsest * intervals_,
+                      each_ * intervals_, why.empty() ? "its states are not finite" : why);
+      out.bound = kNotMeasured;
+    }
+    return out;
   }
-  if (out.kind == "none") {
-    out.kind = last.ok ? "none: no two steps agree" : "none: " + last.reason;
-    out.bound = kNotMeasured;
+
+ private:
+  // The states at the ends of the intervals, with that many steps in each.
+  Motion follow() const {
+    Config config = config_;
+    config.step = config.until / static_cast<double>(intervals_ * each_);
+    Integration run = simulation(registry_, system_, config).build();
+    Motion out;
+    for (long k = 0; k <= intervals_; ++k) {
+      if (k > 0) {
+        const Status status = advance(run, each_, stop_);
+        if (stopped(stop_)) return {false, "interrupted", {}, {}};
+        if (!status.ok) return {false, status.reason, {}, {}};
+        stepped_(each_ * kStages);
+      }
+      out.coordinates.push_back(run.state().coordinates);
+      out.velocities.push_back(run.state().velocity);
+    }
+    return out;
   }
-  return out;
-}
+
+  const Registry& registry_;
+  const StudySystem& system_;
+  Config config_;
+  long intervals_, each_;
+  const std::function<void(long)>& stepped_;
+  const std::atomic<bool>* stop_;
+};
 
 }  // namespace
 
@@ -101,9 +138,18 @@ long common_intervals(const StudyConfig& config) {
   return 1;
 }
 
-StudyReference reference(const Registry& registry, const StudyConfig& config, const Config& run,
-                         long intervals) {
-  const Integration start = Simulation(registry, run.system).config(run).build();
+long reference_steps(const Registry& registry, const StudyConfig& config,
+                     const StudySystem& system) {
+  const long intervals = common_intervals(config);
+  if (model(registry, system).exact) return intervals;
+  return 7 * kStages * intervals * first_steps_each(config);  // a run, and twice with half the step
+}
+
+StudyReference reference(const Registry& registry, const StudyConfig& config,
+                         const StudySystem& system, const Config& run,
+                         const std::function<void(long)>& stepped, const std::atomic<bool>* stop) {
+  const long intervals = common_intervals(config);
+  const Integration start = simulation(registry, system, run).build();
   StudyReference out;
   std::vector<double> times;
   for (long k = 0; k <= intervals; ++k)
@@ -112,16 +158,18 @@ StudyReference reference(const Registry& registry, const StudyConfig& config, co
     out.kind = "exact";
     const ExactFlow flow = start.system().exact(start.config().start);
     for (const double t : times) {
+      if (stopped(stop)) break;
       auto [coordinates, velocity] = flow(t);
       out.coordinates.push_back(std::move(coordinates));
       out.velocities.push_back(std::move(velocity));
     }
   } else {
-    out = converged(registry, config, run, intervals);
+    out = Convergence(registry, config, system, run, stepped, stop).find();
   }
+  if (stopped(stop)) return {};
   out.times = std::move(times);
   for (const auto& there : out.coordinates)
-    out.extent = std::max(out.extent, euclidean_distance(there, out.coordinates.front()));
+    raise(out.extent, euclidean_distance(there, out.coordinates.front()));
   return out;
 }
 

@@ -79,7 +79,9 @@ Table StudyResult::table() const {
   });
   for (const char* axis : {"solver", "compose", "on_failure"})
     c.words(axis, "axis", [axis](Cell cell, Metrics) { return cell.axes.at(axis); });
-  c.setting("tolerance", "1", "axis", [](Cell cell, Metrics) { return cell.config.tolerance; });
+  c.setting("tolerance", "1", "axis; empty where nothing is solved", [](Cell cell, Metrics) {
+    return cell.axes.at("tolerance").empty() ? kNotMeasured : cell.config.tolerance;
+  });
   c.setting("step", "s", "axis", [](Cell cell, Metrics) { return cell.config.step; });
   c.words("status", "ok, failed, excluded, impossible or duplicate", status_of);
   c.words("reason", "of a failure, or why it was not run",
@@ -151,6 +153,9 @@ std::string StudyResult::record() const {
                               {"bound", number(references[i].bound)},
                               {"times", references[i].times.size()}});
   }
+  Json data = Json::object();
+  for (const StudySystem& system : config.systems)
+    if (!system.data.empty()) data[system.name] = system.data;
   return Json{
       {"title", config.title},
       {"status", complete ? "ok" : "failed"},
@@ -173,6 +178,7 @@ std::string StudyResult::record() const {
          fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
         {"hdf5", hdf5_version()}}},
       {"study", config.text.empty() ? config.fingerprint() : config.text},
+      {"data", data},
   }
       .dump(2);
 }

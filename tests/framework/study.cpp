@@ -1,44 +1,20 @@
 // Studies from C++: combinations, what cells are compared with, orders, stopping and going on.
 #include <atomic>
-#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <hamel/framework/study/parts.hpp>
-#include <hamel/hamel.hpp>
+
+#include "studies.hpp"
 
 namespace {
 
 using namespace hamel;
+using namespace hamel::test;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-const StudySystem kFull = {.label = "full inertia",
-                           .name = "suslov",
-                           .parameters = {{"inertia", {2, 0.3, 0.5, 3, 0.4, 4}}},
-                           .start = {.velocity = {1, 0.5, 0}}};
-
-StudyConfig small() {
-  StudyConfig config;
-  config.until = 2;
-  config.repeats = 1;
-  config.systems = {kFull};
-  config.steps = {0.1, 0.05, 0.025};
-  return config;
-}
-
-StudyResult run(const StudyConfig& config) { return Study(registry(), config).threads(2).run(); }
-
-std::vector<std::string> mistakes_of(const StudyConfig& config) {
-  try {
-    Study(registry(), config);
-  } catch (const ConfigError& error) {
-    return error.mistakes();
-  }
-  return {};
-}
 
 /// With one step size every state is compared: the error is that of a run with every step recorded.
 TEST(Study, MeasuresWhatARunMeasures) {
@@ -105,19 +81,9 @@ TEST(Study, OrdersAreFittedAboveTheFloor) {
   EXPECT_EQ(study.cells[6].claimed_order, 8);
 }
 
-// Suslov's body that does not know its motion.
-struct Forgetful {
-  using Group = SO3;
-  std::vector<double> moments = {2, 0.3, 0.5, 3, 0.4, 4};
-  static std::string name() { return "forgetful"; }
-  Mat<3, 3> inertia() const { return Suslov{.moments = moments}.inertia(); }
-  Mat<1, 3> constraints() const { return {0, 0, 1}; }
-};
-
 /// A converged reference measures the errors that the exact motion does, to its bound.
 TEST(Study, ConvergedReferenceAgreesWithTheExact) {
-  Registry all = registry();
-  add_system<Forgetful>(all);
+  const Registry all = with_forgetful();
   StudyConfig config = small();
   config.schemes = {"lift", "boxed"};
   config.systems.push_back({.label = "forgetful", .name = "forgetful", .start = kFull.start});
@@ -205,15 +171,14 @@ TEST(Study, SolversAgree) {
 
 /// A stopped study returns what it has; the same folder then holds it, and the rest is the same.
 TEST(Study, StopsAndGoesOn) {
-  std::string folder = (std::filesystem::temp_directory_path() / "hamel_study_XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const TemporaryFolder folder;
   StudyConfig config = small();
   config.retractions = {"cayley", "exp", "polar"};
   config.repeats = 3;
   std::atomic<bool> stop = false;
   Study study(registry(), config);
   const StudyResult part = study.threads(1)
-                               .folder(folder)
+                               .folder(folder.path())
                                .stop(&stop)
                                .progress([&](double fraction) { stop = fraction > 0.2; })
                                .run();
@@ -230,8 +195,7 @@ TEST(Study, StopsAndGoesOn) {
     EXPECT_EQ(rest.metrics[i].nanoseconds.size(), 3u);
   }
   const StudyConfig other = small();
-  EXPECT_THROW(Study(registry(), other).folder(folder).run(), ConfigError);
-  std::filesystem::remove_all(folder);
+  EXPECT_THROW(Study(registry(), other).folder(folder.path()).run(), ConfigError);
 }
 
 TEST(Study, SlopeIsThatOfALine) {

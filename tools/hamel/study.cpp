@@ -34,9 +34,11 @@ std::string summary(const StudyResult& result) {
                      result.resumed > 0 ? fmt::format("; {} were there", result.resumed) : "");
   for (size_t i = 0; i < result.references.size(); ++i) {
     const StudyReference& reference = result.references[i];
-    if (!reference.times.empty())
-      out += fmt::format("  reference              {}: {}, its error at most {:.1e}\n",
-                         result.config.systems[i].label, reference.kind, reference.bound);
+    if (reference.times.empty()) continue;
+    out += fmt::format("  reference              {}: {}", result.config.systems[i].label,
+                       reference.kind);
+    if (reference.bound >= 0) out += fmt::format(", its error at most {:.1e}", reference.bound);
+    out += '\n';
   }
   for (const Verdict& verdict : study_verdicts(result))
     out += fmt::format("  [{}] {}\n", verdict.status, verdict.text);

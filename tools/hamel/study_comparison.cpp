@@ -79,6 +79,7 @@ class Comparison {
       extent = view_.result().references[view_.cell(i).system].extent;
     const double target = std::min(std::pow(10.0, std::ceil(std::log10(third))),
                                    std::pow(10.0, std::floor(std::log10(kAsymptotic * extent))));
+    if (!(target > 0)) return;  // nothing moves
     std::vector<std::pair<double, std::string>> ranked;
     std::vector<std::string> never;
     std::vector<size_t> never_cells;
@@ -126,8 +127,7 @@ class Comparison {
     double worst = std::numeric_limits<double>::infinity();
     for (const auto& [key, cells] : view_.groups(axes)) {
       const StudyMetrics& m = view_.metrics(cells.front());
-      const std::string name =
-          "`" + view_.words(cells.front(), view_.varying_without({"step"})) + "`";
+      const std::string name = "`" + view_.name(cells.front()) + "`";
       const int claim = view_.cell(cells.front()).claimed_order;
       if (m.order_of < 2 || claim == 0) continue;
       if (std::isnan(m.order)) {
@@ -174,7 +174,8 @@ class Comparison {
       double least = std::numeric_limits<double>::infinity(), fastest = least, largest = 0;
       size_t good = 0;
       const auto error = [&](size_t i) {  // below the floor all are equal
-        return std::max(view_.metrics(i).error, view_.metrics(i).floor);
+        const StudyMetrics& m = view_.metrics(i);
+        return std::isnan(m.floor) ? m.floor : std::max(m.error, m.floor);
       };
       for (const size_t i : cells) {
         if (!view_.metrics(i).ok) {
@@ -214,12 +215,14 @@ class Comparison {
       const Tally& tally = tallies[value];
       if (tally.groups + tally.failed == 0) continue;
       const double error = mean(tally.error, tally.groups), time = mean(tally.time, tally.timed);
-      wrong = std::max(wrong, {error, value});
-      slow = std::max(slow, {time, value});
-      text +=
-          fmt::format("{}`{}` error ×{:.3g}, time ×{:.3g}", first ? "" : "; ", value, error, time);
+      if (error > wrong.first) wrong = {error, value};
+      if (time > slow.first) slow = {time, value};
+      text += fmt::format("{}`{}`", first ? "" : "; ", value);
+      if (tally.groups > 0) text += fmt::format(" error ×{:.3g}", error);
+      if (tally.timed > 0) text += fmt::format(", time ×{:.3g}", time);
       if (tally.worst > 0) text += fmt::format(", worst in {}", tally.worst);
-      if (tally.failed > 0) text += fmt::format(", **{} failed**", tally.failed);
+      if (tally.failed > 0)
+        text += fmt::format("{}**{} failed**", tally.groups > 0 ? ", " : " ", tally.failed);
       first = false;
     }
     text += wrong.second.empty() ? ". None is worse in error"

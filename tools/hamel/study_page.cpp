@@ -59,14 +59,12 @@ class StudyPage {
 
   std::vector<Filter> page_filters(const std::vector<std::string>& axes) const {
     std::vector<Filter> out;
-    for (const std::string& axis : axes) {
-      Filter filter{axis, {}};
-      for (const std::string& value : view_.values(axis))
-        if (!value.empty())
-          filter.values.push_back(value);  // "": an s that is not used fits every s
-      out.push_back(std::move(filter));
-    }
+    for (const std::string& axis : axes) out.push_back({axis, view_.values(axis)});
     return out;
+  }
+
+  bool drawn(size_t i) const {
+    return view_.metrics(i).ok && std::isfinite(view_.metrics(i).error);
   }
 
   // One curve for each method, by a number of each cell.
@@ -80,10 +78,10 @@ class StudyPage {
       series.markers = true;
       for (size_t k = 0; k < filters_.size(); ++k)
         if (const std::string& value = key[names_.size() + k]; !value.empty())
-          series.tags[filters_[k]] = value;
+          series.tags[filters_[k]] = value;  // no tag: it fits every value
       std::vector<size_t> good;
       for (const size_t i : cells)
-        if (view_.metrics(i).ok && std::isfinite(x(i))) good.push_back(i);
+        if (drawn(i) && std::isfinite(x(i)) && x(i) > 0) good.push_back(i);
       std::sort(good.begin(), good.end(), [&](size_t a, size_t b) { return x(a) < x(b); });
       for (const size_t i : good) {
         series.x.push_back(x(i));
@@ -108,30 +106,28 @@ class StudyPage {
                     : fmt::format(" {} failed cell{} no point here: see the heat maps.", failed,
                                   failed == 1 ? " has" : "s have");
     const std::vector<Filter> filters = page_filters(filters_);
-    page_.section("Work and precision");
-    page_.plot(
-        "Error against time",
-        {.x = "time of the run [s]", .y = "trajectory error", .log_x = true, .log_y = true},
-        curves([&](size_t i) { return view_.seconds(i); }, false),
-        "Steps times the median processor time per step, nothing recorded. Lower left is better." +
-            missing,
-        filters);
-    page_.plot(
+    const auto plot = [&](const char* title, const Axes& axes, const std::vector<Series>& series,
+                          const std::string& note) {
+      if (!series.empty()) page_.plot(title, axes, series, note + missing, filters);
+    };
+    if (std::any_of(view_.run().begin(), view_.run().end(), [&](size_t i) { return drawn(i); }))
+      page_.section("Work and precision");
+    plot("Error against time",
+         {.x = "time of the run [s]", .y = "trajectory error", .log_x = true, .log_y = true},
+         curves([&](size_t i) { return view_.seconds(i); }, false),
+         "Steps times the median processor time per step, nothing recorded. Lower left is better.");
+    plot(
         "Error against evaluations",
         {.x = "evaluations of the equation", .y = "trajectory error", .log_x = true, .log_y = true},
         curves([&](size_t i) { return static_cast<double>(view_.metrics(i).evaluations); }, false),
-        "Does not depend on the machine. What an evaluation costs differs between schemes." +
-            missing,
-        filters);
+        "Does not depend on the machine. What an evaluation costs differs between schemes; "
+        "explicit ones make none.");
     page_.section("Orders");
-    page_.plot(
-        "Error against step",
-        {.x = "step h [s]", .y = "trajectory error", .log_x = true, .log_y = true},
-        curves([&](size_t i) { return view_.cell(i).config.step; }, true),
-        "In the legend the slope by least squares, and of how many steps: those whose error is "
-        "above the floor and below 0.1 of the motion." +
-            missing,
-        filters);
+    plot("Error against step",
+         {.x = "step h [s]", .y = "trajectory error", .log_x = true, .log_y = true},
+         curves([&](size_t i) { return view_.cell(i).config.step; }, true),
+         "In the legend the slope by least squares, and of how many steps: those whose error is "
+         "above the floor and below 0.1 of the motion.");
     add_orders(page_, view_);
   }
 
@@ -146,7 +142,10 @@ class StudyPage {
       const std::string title = view_.words(panels, key);
       heat_map("Error" + (title.empty() ? "" : ": " + title), "trajectory error", rows, panels, key,
                [&](size_t i) { return view_.metrics(i).error; });
-      if (view_.varies("solver"))
+      const bool solved = std::any_of(cells.begin(), cells.end(), [&](size_t i) {
+        return !view_.cell(i).axes.at("solver").empty();
+      });
+      if (view_.varies("solver") && solved)
         heat_map("Evaluations" + (title.empty() ? "" : ": " + title), "evaluations per step", rows,
                  panels, key, [&](size_t i) {
                    const StudyMetrics& m = view_.metrics(i);

@@ -6,6 +6,12 @@
 #include <fmt/format.h>
 
 namespace hamel::tools {
+namespace {
+
+// A value as it was given.
+Cell axis_cell(const std::string& value) { return value.empty() ? kUnused : value; }
+
+}  // namespace
 
 void add_references(Page& page, const StudyResult& result) {
   std::vector<std::vector<Cell>> rows;
@@ -36,7 +42,8 @@ void add_orders(Page& page, const StudyView& view) {
     for (const size_t i : cells)
       if (view.metrics(i).ok) least = std::fmin(least, view.metrics(i).error);
     std::vector<Cell> row;
-    for (const std::string& axis : shown) row.emplace_back(view.cell(cells.front()).axes.at(axis));
+    for (const std::string& axis : shown)
+      row.push_back(axis_cell(view.cell(cells.front()).axes.at(axis)));
     const char* verdict = claim == 0                                ? "claims none"
                           : std::isnan(m.order)                     ? "not measured"
                           : m.order >= claim - kShortOfClaim        ? "ok"
@@ -74,7 +81,7 @@ void add_cells(Page& page, const StudyView& view) {
     for (const TableColumn* column : shown) {
       const auto* numbers = std::get_if<std::vector<double>>(&column->values);
       const auto axis = view.cell(i).axes.find(column->name);
-      if (axis != view.cell(i).axes.end()) row.emplace_back(axis->second);  // as it was given
+      if (axis != view.cell(i).axes.end()) row.push_back(axis_cell(axis->second));
       else if (numbers != nullptr) row.emplace_back((*numbers)[i]);
       else row.emplace_back(column->text(i));
     }

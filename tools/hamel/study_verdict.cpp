@@ -48,15 +48,16 @@ class Judge {
     say(ok == view_.run().size() ? "ok" : "note", text);
   }
 
-  // One sentence for each reason and solver.
+  // One sentence for each reason and solver, if one was used.
   void failures() {
     std::map<std::pair<std::string, std::string>, std::vector<size_t>> by_reason;
     for (const size_t i : view_.run())
       if (!view_.metrics(i).ok)
         by_reason[{view_.metrics(i).reason, view_.cell(i).axes.at("solver")}].push_back(i);
     for (const auto& [key, cells] : by_reason)
-      say("failed", fmt::format("{} failed, `{}`: {}. Where: {}.", plural(cells.size(), "cell"),
-                                key.second, key.first, view_.where(cells)));
+      say("failed", fmt::format("{} failed{}: {}. Where: {}.", plural(cells.size(), "cell"),
+                                key.second.empty() ? "" : ", `" + key.second + "`", key.first,
+                                view_.where(cells)));
   }
 
   void energy() {

@@ -8,7 +8,8 @@
 namespace hamel::tools {
 
 std::string axis_words(const std::string& axis, const std::string& value) {
-  if (axis == "s") return value.empty() ? "" : "s = " + value;
+  if (value.empty()) return "";
+  if (axis == "s") return "s = " + value;
   if (axis == "step") return "h = " + value;
   if (axis == "tolerance") return "tolerance " + value;
   if (axis == "compose" && value == "none") return "not composed";
@@ -36,7 +37,8 @@ std::vector<std::string> StudyView::values(const std::string& axis) const {
   std::vector<std::string> out;
   for (const size_t i : run_) {
     const std::string& value = cell(i).axes.at(axis);
-    if (std::find(out.begin(), out.end(), value) == out.end()) out.push_back(value);
+    if (!value.empty() && std::find(out.begin(), out.end(), value) == out.end())
+      out.push_back(value);
   }
   return out;
 }
@@ -63,12 +65,13 @@ std::vector<std::string> StudyView::varying_without(const std::vector<std::strin
 
 std::string StudyView::words(const std::vector<std::string>& axes,
                              const std::vector<std::string>& values) const {
-  std::string out;
+  std::string out, unused;
   for (size_t k = 0; k < axes.size(); ++k) {
     const std::string word = axis_words(axes[k], values[k]);
     if (!word.empty()) out += (out.empty() ? "" : ", ") + word;
+    else unused += fmt::format("{}{} {}", unused.empty() ? "" : ", ", axes[k], kUnused);
   }
-  return out;
+  return out.empty() ? unused : out;
 }
 
 std::string StudyView::words(size_t i, const std::vector<std::string>& axes) const {
@@ -77,25 +80,46 @@ std::string StudyView::words(size_t i, const std::vector<std::string>& axes) con
   return words(axes, all);
 }
 
+std::string StudyView::name(size_t i) const {
+  const std::vector<std::string> axes = varying_without({"step"});
+  return axes.empty() ? cell(i).config.scheme : words(i, axes);
+}
+
 std::vector<std::vector<size_t>> StudyView::otherwise_equal(const std::string& axis) const {
   std::vector<std::string> rest = study_axes();
   std::erase(rest, axis);
-  const auto s = static_cast<size_t>(std::find(rest.begin(), rest.end(), "s") - rest.begin());
-  std::vector<Group> with, without;
-  for (Group& group : groups(rest))
-    (s < rest.size() && group.first[s].empty() ? without : with).push_back(std::move(group));
-  std::vector<std::vector<size_t>> out;
-  for (Group& alone : without) {
-    bool joined = false;
-    for (Group& group : with) {
-      alone.first[s] = group.first[s];
-      if (alone.first != group.first) continue;
-      group.second.insert(group.second.end(), alone.second.begin(), alone.second.end());
-      joined = true;
-    }
-    if (!joined) out.push_back(std::move(alone.second));
+  std::vector<Group> all = groups(rest);
+  for (Group& group : all)
+    std::erase_if(group.second, [&](size_t i) { return cell(i).axes.at(axis).empty(); });
+  std::map<std::vector<std::string>, size_t> index;
+  std::set<std::vector<bool>> patterns;  // which of the axes some cells do not use
+  const auto unused = [](const std::vector<std::string>& key) {
+    std::vector<bool> out;
+    for (const std::string& value : key) out.push_back(value.empty());
+    return out;
+  };
+  for (size_t i = 0; i < all.size(); ++i) {
+    index[all[i].first] = i;
+    patterns.insert(unused(all[i].first));
   }
-  for (Group& group : with) out.push_back(std::move(group.second));
+  // Each group takes in those that its key becomes when more of it is left empty.
+  std::vector<std::vector<size_t>> joined(all.size()), out;
+  std::vector<bool> taken(all.size());
+  for (size_t i = 0; i < all.size(); ++i) {
+    joined[i] = all[i].second;
+    for (const std::vector<bool>& pattern : patterns) {
+      std::vector<std::string> key = all[i].first;
+      for (size_t k = 0; k < key.size(); ++k)
+        if (pattern[k]) key[k].clear();
+      const auto at = index.find(key);
+      if (at == index.end() || at->second == i) continue;
+      const std::vector<size_t>& more = all[at->second].second;
+      joined[i].insert(joined[i].end(), more.begin(), more.end());
+      taken[at->second] = true;
+    }
+  }
+  for (size_t i = 0; i < all.size(); ++i)
+    if (!taken[i] && !joined[i].empty()) out.push_back(std::move(joined[i]));
   return out;
 }
 
@@ -105,12 +129,14 @@ std::string StudyView::where(const std::vector<size_t>& some, const std::string&
     if (axis == known) continue;
     std::set<std::string> here;
     for (const size_t i : some) here.insert(cell(i).axes.at(axis));
-    const std::vector<std::string> all = values(axis);
-    if (here.size() == all.size()) continue;
     std::string list;
-    for (const std::string& value : all)
-      if (here.contains(value) && !value.empty()) list += (list.empty() ? "" : ", ") + value;
-    if (list.empty()) list = "unused";
+    bool all = true;
+    for (const std::string& value : values(axis)) {
+      all = all && here.contains(value);
+      if (here.contains(value)) list += (list.empty() ? "" : ", ") + value;
+    }
+    if (all) continue;
+    if (here.contains("")) list += fmt::format("{}{}", list.empty() ? "" : ", ", kUnused);
     out += fmt::format("{}{} {}", out.empty() ? "" : "; ", axis == "step" ? "h" : axis, list);
   }
   return out.empty() ? "everywhere" : out;

@@ -1,0 +1,176 @@
+#include <hamel/framework/study/runner.hpp>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include <hamel/framework/study/parts.hpp>
+
+namespace hamel::study {
+
+Runner::Runner(const Registry& registry, StudyResult& result, Journal* journal,
+               std::function<void(double)> progress, const std::atomic<bool>* stop)
+    : registry_(registry),
+      result_(result),
+      journal_(journal),
+      progress_(std::move(progress)),
+      stop_(stop) {}
+
+// The pieces that the result has not yet, and what part of all steps is done.
+void Runner::list() {
+  const auto rounds = static_cast<size_t>(result_.config.repeats);
+  references_.clear();
+  ready_.clear();
+  timings_.clear();
+  waiting_.assign(result_.config.systems.size(), {});
+  std::vector<bool> used(waiting_.size());
+  long left = 0;
+  all_ = 0;
+  for (size_t i = 0; i < result_.cells.size(); ++i) {
+    const StudyCell& cell = result_.cells[i];
+    if (!cell.runs()) continue;
+    all_ += static_cast<long>(rounds + 1) * cell.config.steps();
+    const bool there = !result_.references[cell.system].times.empty();
+    if (!used[cell.system]) {
+      used[cell.system] = true;
+      const long steps = steps_of_reference(cell.system);
+      all_ += steps;
+      if (!there) {
+        references_.push_back({Kind::reference, cell.system});
+        left += steps;
+      }
+    }
+    if (result_.metrics[i].done) continue;
+    (there ? ready_ : waiting_[cell.system]).push_back({Kind::measure, i});
+    left += cell.config.steps();
+  }
+  for (size_t round = 0; round < rounds; ++round) {
+    for (size_t i = 0; i < result_.cells.size(); ++i) {
+      if (!result_.cells[i].runs() || result_.metrics[i].nanoseconds[round] != kPending) continue;
+      timings_.push_back({Kind::time, i, round});
+      left += result_.cells[i].config.steps();
+    }
+  }
+  finished_ = all_ - left;
+}
+
+bool Runner::complete() const {
+  for (size_t i = 0; i < result_.cells.size(); ++i) {
+    const StudyMetrics& m = result_.metrics[i];
+    if (result_.cells[i].runs() &&
+        (!m.done || result_.references[result_.cells[i].system].times.empty() ||
+         std::count(m.nanoseconds.begin(), m.nanoseconds.end(), kPending) > 0))
+      return false;
+  }
+  return true;
+}
+
+void Runner::run() {
+  list();
+  finished(0);
+  {
+    std::vector<std::jthread> workers;
+    for (int i = 0; i < result_.threads; ++i) workers.emplace_back([this] { work(); });
+  }  // joins
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+// References first, then cells whose reference is there, then timings. Nothing: no more, or stopped.
+std::optional<Runner::Piece> Runner::next() {
+  std::unique_lock lock(mutex_);
+  while (!stopped(stop_) && !failure_) {
+    for (auto* queue : {&references_, &ready_, &timings_}) {
+      if (queue->empty()) continue;
+      const Piece piece = queue->front();
+      queue->pop_front();
+      if (piece.kind == Kind::reference) ++in_flight_;
+      return piece;
+    }
+    if (in_flight_ == 0) break;
+    changed_.wait(lock);
+  }
+  return {};
+}
+
+void Runner::work() {
+  while (const auto piece = next()) {
+    bool good = false;
+    try {
+      good = done(*piece);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+    if (piece->kind == Kind::reference) {
+      const std::lock_guard lock(mutex_);
+      --in_flight_;
+      if (good)
+        ready_.insert(ready_.end(), waiting_[piece->index].begin(), waiting_[piece->index].end());
+      changed_.notify_all();
+    }
+    if (!good) return;
+  }
+}
+
+long Runner::steps_of_reference(size_t system) const {
+  return reference_steps(registry_, result_.config, result_.config.systems[system]);
+}
+
+// False: stopped on the way.
+bool Runner::done(const Piece& piece) {
+  if (piece.kind == Kind::reference) return make_reference(piece.index);
+  if (!(piece.kind == Kind::measure ? measure(piece.index) : time(piece.index, piece.round)))
+    return false;
+  finished(result_.cells[piece.index].config.steps());
+  return true;
+}
+
+bool Runner::make_reference(size_t system) {
+  const auto cell = std::find_if(
+      result_.cells.begin(), result_.cells.end(),
+      [&](const StudyCell& candidate) { return candidate.runs() && candidate.system == system; });
+  long left = steps_of_reference(system);  // an estimate: no more than these are counted
+  const auto stepped = [&](long steps) {
+    finished(std::min(steps, left));
+    left -= std::min(steps, left);
+  };
+  StudyReference made = study::reference(registry_, result_.config, result_.config.systems[system],
+                                         cell->config, stepped, stop_);
+  if (made.times.empty()) return false;
+  if (journal_ != nullptr) journal_->referred(system, made);
+  finished(left);
+  result_.references[system] = std::move(made);  // nobody reads it before work() says so
+  return true;
+}
+
+bool Runner::measure(size_t cell) {
+  const size_t system = result_.cells[cell].system;
+  StudyMetrics measured = study::measure(registry_, result_.config.systems[system],
+                                         result_.cells[cell], result_.references[system], stop_);
+  if (!measured.done) return false;
+  if (journal_ != nullptr) journal_->measured(cell, measured);
+  const std::lock_guard lock(mutex_);  // the cell may be timed at the same time
+  StudyMetrics& mine = result_.metrics[cell];
+  measured.nanoseconds = std::move(mine.nanoseconds);
+  mine = std::move(measured);
+  return true;
+}
+
+bool Runner::time(size_t cell, size_t round) {
+  const double ns = time_per_step(registry_, result_.config.systems[result_.cells[cell].system],
+                                  result_.cells[cell], stop_);
+  if (stopped(stop_)) return false;
+  if (journal_ != nullptr) journal_->timed(cell, round, ns);
+  const std::lock_guard lock(mutex_);
+  result_.metrics[cell].nanoseconds[round] = ns;
+  return true;
+}
+
+void Runner::finished(long steps) {
+  finished_ += steps;
+  const std::unique_lock lock(reporting_, std::try_to_lock);
+  if (progress_ && lock)
+    progress_(static_cast<double>(finished_) / static_cast<double>(std::max(all_, 1L)));
+}
+
+}  // namespace hamel::study

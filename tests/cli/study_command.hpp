@@ -1,0 +1,42 @@
+// hamel study in a folder of its own, and the cells that it wrote.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace hamel::test {
+
+/// A system by data alone, whose motion is not known exactly.
+inline constexpr const char* kBowl = R"(group = "se2"
+inertia = [0.1, 1, 1]
+constraints = [[0, 0, 1]]
+velocity = [1.2, 0.5, 0]
+[linear]
+x = -0.5
+)";
+
+class StudyCommand : public CommandLine {
+ protected:
+  std::string study(const std::string& text, const std::string& name = "small.toml") const {
+    std::ofstream(file(name)) << text;
+    return name;
+  }
+  /// The rows of cells.csv without the columns that are times.
+  std::vector<std::string> cells(const std::string& folder) const {
+    std::vector<std::string> out;
+    for (const std::string& line : lines(contents(file(folder + "/cells.csv"))))
+      out.push_back(line.substr(0, line.rfind(',', line.rfind(',') - 1)));
+    EXPECT_FALSE(out.empty());
+    return out;
+  }
+  size_t count(const std::vector<std::string>& rows, const std::string& piece) const {
+    return static_cast<size_t>(std::count_if(rows.begin(), rows.end(), [&](const auto& row) {
+      return row.find(piece) != std::string::npos;
+    }));
+  }
+};
+
+}  // namespace hamel::test

@@ -1,0 +1,95 @@
+// hamel study: what it says of schemes that solve nothing, of failures alone, and of systems from files.
+#include <nlohmann/json.hpp>
+
+#include "study_command.hpp"
+
+namespace {
+
+using namespace hamel::test;
+using Json = nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A scheme that solves nothing is compared with no solver, and named without one.
+TEST_F(StudyCommand, ExplicitSchemesStandAlone) {
+  const std::string name = study(R"(until = 2
+scheme = ["lift", "rkmk4"]
+solver = ["newton", "hybrid"]
+step = [0.2, 0.1]
+[[system]]
+name = "chaplygin_sleigh"
+)");
+  Outcome o = run({"study", name, "-o", "out"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, AllOf(HasSubstr("6 cells run: 6 ok, 0 failed"), HasSubstr("`rkmk4`"),
+                           HasSubstr("**solver**, 2 groups of otherwise equal cells"),
+                           HasSubstr("The solvers agree: 2 runs end within"),
+                           HasSubstr("**scheme**, 4 groups")));
+  for (const char* wrong : {"rkmk4, newton", "rkmk4, hybrid", "newton, rkmk4", "``", "nan"})
+    EXPECT_THAT(o.out, Not(HasSubstr(wrong)));
+  EXPECT_EQ(count(cells("out"), "rkmk4,cayley,,,none,,,0.2,ok"), 1u);
+  if (std::filesystem::exists(file("out/report.html"))) {
+    EXPECT_THAT(contents(file("out/report.html")),
+                AllOf(HasSubstr("\"rkmk4\",\"unused\",\"0.2\""), Not(HasSubstr("rkmk4, newton"))));
+  }
+  o = run({"study",
+           study("until = 2\nscheme = \"rkmk4\"\nsolver = [\"newton\", \"hybrid\"]\nstep = "
+                 "[0.2, 0.1]\n[[system]]\nname = \"chaplygin_sleigh\"\n"),
+           "-o", "alone"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, AllOf(HasSubstr("2 cells run"), Not(HasSubstr("solvers agree")),
+                           Not(HasSubstr("**solver**"))));
+}
+
+/// Verdicts have a name and a number for what they say, also when all that is left of a scheme has failed
+/// and when there is nothing to compare with.
+TEST_F(StudyCommand, VerdictsNameWhatTheyCompare) {
+  Outcome o = run({"study", study(R"(until = 12
+retraction = "exp"
+scheme = ["lift", "boxed"]
+s = [0.5, 0.25]
+step = [6, 0.1]
+[[exclude]]
+scheme = "boxed"
+step = 0.1
+why = "only its failed cell is left"
+[[system]]
+name = "chaplygin_sleigh"
+velocity = [3, 1, 0]
+)"),
+                   "-o", "failed"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, AllOf(HasSubstr("3 failed"), HasSubstr("**s**"), Not(HasSubstr("``")),
+                           Not(HasSubstr("nan"))));
+  std::ofstream(file("bowl.toml")) << kBowl;
+  o = run({"study",
+           study("until = 2\nstep = [0.2, 0.1]\n[[system]]\nname = \"bowl.toml\"\n"
+                 "velocity = [1e9, 1, 0]\n"),
+           "-o", "none"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, AllOf(HasSubstr("reference              bowl.toml: none: lift"),
+                           HasSubstr("has nothing to compare with"), Not(HasSubstr("``")),
+                           Not(HasSubstr("nan"))));
+}
+
+/// A system's file is part of the study: its mistakes have both places, and its change is another study.
+TEST_F(StudyCommand, SystemsMayBeFiles) {
+  const std::string name =
+      study("until = 2\nstep = [0.2, 0.1]\n[[system]]\nname = \"bowl.toml\"\n");
+  EXPECT_THAT(run({"study", name, "-o", "out"}).err,
+              HasSubstr("small.toml:4:8: system: cannot read 'bowl.toml'"));
+  std::ofstream(file("bowl.toml")) << "group = \"so2*se7\"\n";
+  EXPECT_THAT(run({"study", name, "-o", "out"}).err,
+              HasSubstr("small.toml:4:8: bowl.toml:1:9: unknown group 'so2*se7'"));
+  std::ofstream(file("bowl.toml")) << kBowl;
+  Outcome o = run({"study", name, "-o", "out"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("2 cells run: 2 ok"));
+  EXPECT_EQ(Json::parse(contents(file("out/record.json")))["data"]["bowl.toml"], kBowl);
+  std::ofstream(file("bowl.toml"), std::ios::app) << "y = -0.25\n";
+  o = run({"study", name, "-o", "out"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("here:  bowl.toml: y = -0.25"));
+}
+
+}  // namespace

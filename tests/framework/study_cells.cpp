@@ -1,0 +1,126 @@
+// What the cells of a study are: systems from data files, and schemes that make no use of an axis.
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "studies.hpp"
+
+namespace {
+
+using namespace hamel;
+using namespace hamel::test;
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kSkate = R"(group = "se2"
+inertia = [0.1, 1.0, 1.0]
+constraints = [[0, 0, 1]]
+configuration = [0.4, 1.0, 0.0]
+velocity = [1.2, 0.5, 0.0]
+[spring]
+x = { stiffness = 2.0 }
+)";
+
+class DataFile : public testing::Test {
+ protected:
+  void write(const std::string& text) const { std::ofstream(path) << text; }
+  TemporaryFolder folder;
+  const std::string path = folder / "skate.toml";
+};
+
+/// A file's system is a system: its cells end where `hamel run` of the file does, and its claims are those of
+/// a system with a potential.
+TEST_F(DataFile, IsASystem) {
+  write(kSkate);
+  StudyConfig config = small();
+  config.schemes = {"lift", "rkmk4"};
+  config.s = {0};
+  config.systems.push_back({.label = "skate", .name = path});
+  const StudyResult study = run(config);
+  EXPECT_TRUE(study.complete);
+  EXPECT_THAT(study.references[1].kind, HasSubstr("converged"));
+  for (size_t i = 0; i < study.cells.size(); ++i) {
+    const StudyCell& cell = study.cells[i];
+    if (cell.system == 0) continue;
+    const Result alone = Simulation(registry(), path).config(cell.config).run();
+    const auto last = alone.trajectory.row(alone.trajectory.rows() - 1);
+    EXPECT_THAT(study.metrics[i].final, ElementsAre(last[1], last[2], last[3]));
+    EXPECT_EQ(cell.claimed_order, cell.config.scheme == "lift" ? 1 : 4);
+    EXPECT_NEAR(study.metrics[i].order, cell.claimed_order, 0.15);
+  }
+}
+
+/// The text belongs to the study: it is read once, another text is another study, and its mistakes are found
+/// before anything runs.
+TEST_F(DataFile, BelongsToTheStudy) {
+  write(kSkate);
+  StudyConfig config = small();
+  config.systems = {{.label = "skate", .name = path}};
+  const Study study(registry(), config);
+  EXPECT_THAT(study.config().fingerprint(), HasSubstr("stiffness = 2.0"));
+  const StudyResult before = study.run();
+  EXPECT_THAT(before.record(), HasSubstr("stiffness = 2.0"));
+  write("no system any more");
+  const StudyResult after = study.run();
+  EXPECT_EQ(before.metrics[0].final, after.metrics[0].final);
+  EXPECT_THAT(mistakes_of(config), AllOf(Contains(HasSubstr(path + ":1:")), Not(IsEmpty())));
+  std::filesystem::remove(path);
+  EXPECT_THAT(mistakes_of(config), Each(HasSubstr("cannot read '" + path + "'")));
+}
+
+/// rkmk4 solves no equation: one cell for all solvers and tolerances, with neither in the table; what it does
+/// about a failure matters where halves are tried, as they may succeed.
+TEST(StudyCells, ExplicitSchemesUseNoSolver) {
+  StudyConfig config = small();
+  config.schemes = {"lift", "rkmk4"};
+  config.s = {0, 0.5};
+  config.solvers = {"hybrid", "newton"};
+  config.tolerances = {1e-13, 1e-10};
+  config.on_failures = {"retry:newton", "stop"};
+  config.steps = {0.1};
+  const StudyResult study = run(config);
+  std::vector<size_t> of_rkmk4;
+  size_t duplicates = 0;
+  for (size_t i = 0; i < study.cells.size(); ++i) {
+    const StudyCell& cell = study.cells[i];
+    if (cell.config.scheme != "rkmk4") continue;
+    if (cell.runs()) of_rkmk4.push_back(i);
+    else ++duplicates;
+  }
+  ASSERT_EQ(of_rkmk4.size(), 1u);
+  EXPECT_EQ(duplicates, 15u);
+  const size_t one = of_rkmk4.front();
+  EXPECT_TRUE(study.metrics[one].ok) << study.metrics[one].reason;
+  EXPECT_TRUE(std::isnan(study.metrics[one].solver_difference));
+  const Table table = study.table();
+  for (const char* axis : {"s", "solver", "tolerance", "on_failure"}) {
+    EXPECT_EQ(table.column(axis).text(one), "") << axis;
+    EXPECT_NE(table.column(axis).text(0), "") << axis;
+  }
+  EXPECT_EQ(study.cells.back().why,
+            "rkmk4 does not use s, solver, on_failure, tolerance: one cell stands for all");
+
+  config.on_failures = {"retry:newton", "stop", "halve"};
+  std::vector<std::string> policies;
+  for (const StudyCell& cell : study_cells(config, registry()))
+    if (cell.runs() && cell.config.scheme == "rkmk4")
+      policies.push_back(cell.axes.at("on_failure"));
+  EXPECT_THAT(policies, ElementsAre("stop", "halve"));
+}
+
+/// boxed measures the same wherever the s of others stands in the list.
+TEST(StudyCells, AnUnusedValueIsTheDefault) {
+  StudyConfig config = small();
+  config.schemes = {"boxed"};
+  config.s = {0, 0.5};
+  const std::vector<StudyCell> cells = study_cells(config, registry());
+  EXPECT_TRUE(cells.front().runs());
+  EXPECT_EQ(cells.front().config.s, Config{}.s);
+}
+
+}  // namespace

@@ -1,0 +1,140 @@
+// What the cells of a study are compared with: how it is found, kept, and stopped on the way.
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <hamel/framework/study/parts.hpp>
+
+#include "studies.hpp"
+
+namespace {
+
+using namespace hamel;
+using namespace hamel::test;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+StudyReference reference_of(const Registry& all, const StudyConfig& config) {
+  const std::vector<StudyCell> cells = study_cells(config, all);
+  return study::reference(
+      all, config, config.systems[0], cells[0].config, [](long) {}, nullptr);
+}
+
+/// Cells of more steps than a reference may have are compared with a coarser run of order 6.
+TEST(StudyReferences, NeedNoFinerStepThanTheCells) {
+  StudyConfig config = forgetful();
+  config.until = 50;
+  config.steps = {1e-4};
+  const StudyReference reference = reference_of(with_forgetful(), config);
+  EXPECT_THAT(reference.kind, HasSubstr("converged"));
+  EXPECT_LT(reference.bound, 1e-9);
+  EXPECT_EQ(reference.coordinates.size(), reference.times.size());
+}
+
+/// A motion too fast for every step: the reason is that of the runs, and no number is invented.
+TEST(StudyReferences, SayWhyThereIsNone) {
+  StudyConfig config = forgetful();
+  config.systems[0].start.velocity = {1e9, 1e9, 0};
+  const StudyReference reference = reference_of(with_forgetful(), config);
+  EXPECT_THAT(reference.kind, AllOf(HasSubstr("none: lift, s = 0.5, exp, kahan_li6 fails with"),
+                                    HasSubstr(" steps: the "), Not(HasSubstr("nan"))));
+  EXPECT_TRUE(std::isnan(reference.bound));
+}
+
+/// They are made by Newton whatever the cells do on failure.
+TEST(StudyReferences, DoNotDependOnTheCells) {
+  StudyConfig config = forgetful();
+  config.solvers = {"hybrid"};
+  config.on_failures = {"retry:newton"};
+  EXPECT_THAT(reference_of(with_forgetful(), config).kind, HasSubstr("converged"));
+}
+
+// Suslov's body with an exact motion that is lost after a second.
+struct Lost : Forgetful {
+  static std::string name() { return "lost"; }
+  auto exact(const Mat<3, 3>& g0, const Vec<3>& xi0) const {
+    return [g0, xi0](double t) { return std::pair{Mat<3, 3>(t > 1 ? g0 * NAN : g0), xi0}; };
+  }
+};
+
+/// A motion that is not finite has no extent: the largest of the finite ones would be a lie.
+TEST(StudyReferences, DropNoNaN) {
+  Registry all = registry();
+  add_system<Lost>(all);
+  StudyConfig config = forgetful();
+  config.systems[0].name = "lost";
+  EXPECT_TRUE(std::isnan(reference_of(all, config).extent));
+  const StudyResult study = Study(all, config).run();
+  EXPECT_TRUE(std::isnan(study.metrics[0].error));
+}
+
+/// Work on a reference is shown, and ends when it is asked to.
+TEST(StudyReferences, AreStoppedOnTheWay) {
+  StudyConfig config = forgetful();
+  config.until = 2000;
+  std::atomic<bool> stop = false;
+  const Registry all = with_forgetful();
+  const StudyResult part = Study(all, config)
+                               .threads(1)
+                               .stop(&stop)
+                               .progress([&](double fraction) {
+                                 EXPECT_FALSE(stop) << "goes on at " << fraction;
+                                 EXPECT_LT(fraction, 0.1);
+                                 if (fraction > 0) stop = true;
+                               })
+                               .run();
+  EXPECT_FALSE(part.complete);
+  EXPECT_TRUE(part.references[0].times.empty());
+  EXPECT_FALSE(part.metrics[0].done);
+}
+
+/// A reference that is in the journal is not made again.
+TEST(StudyReferences, AreKept) {
+  const TemporaryFolder folder;
+  const Registry all = with_forgetful();
+  Study study(all, forgetful());
+  const StudyResult first = study.folder(folder.path()).run();
+  std::ostringstream text;
+  text << std::ifstream(folder / "journal.jsonl").rdbuf();
+  std::string journal = text.str();
+  ASSERT_NE(journal.find("converged: lift"), std::string::npos);
+  journal.replace(journal.find("converged: lift"), 15, "converged: kept");
+  std::ofstream(folder / "journal.jsonl") << journal;
+  const StudyResult again = study.run();
+  EXPECT_THAT(again.references[0].kind, HasSubstr("converged: kept"));
+  EXPECT_EQ(again.references[0].bound, first.references[0].bound);
+  EXPECT_EQ(again.references[0].extent, first.references[0].extent);
+  EXPECT_EQ(again.references[0].times, first.references[0].times);
+  EXPECT_EQ(again.references[0].coordinates, first.references[0].coordinates);
+  EXPECT_EQ(again.references[0].velocities, first.references[0].velocities);
+  EXPECT_EQ(again.metrics[0].order, first.metrics[0].order);
+}
+
+/// Neither the number of threads nor which of the references is ready first changes anything.
+TEST(StudyReferences, AreTheSameOnEveryNumberOfThreads) {
+  StudyConfig config = forgetful();
+  config.retractions = {"exp", "cayley"};
+  config.systems.push_back(kFull);
+  config.systems.push_back(
+      {.label = "slower", .name = "forgetful", .start = {.velocity = {0.3, 0, 0}}});
+  const Registry all = with_forgetful();
+  const StudyResult one = Study(all, config).threads(1).run();
+  const StudyResult four = Study(all, config).threads(4).run();
+  ASSERT_TRUE(one.complete && four.complete);
+  for (size_t i = 0; i < one.references.size(); ++i) {
+    EXPECT_EQ(one.references[i].kind, four.references[i].kind);
+    EXPECT_EQ(one.references[i].coordinates, four.references[i].coordinates);
+  }
+  for (size_t i = 0; i < one.metrics.size(); ++i) {
+    EXPECT_EQ(one.metrics[i].error, four.metrics[i].error);
+    EXPECT_EQ(one.metrics[i].order, four.metrics[i].order);
+    EXPECT_EQ(four.metrics[i].nanoseconds.size(), 1u);
+  }
+}
+
+}  // namespace
