@@ -19,105 +19,58 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-class Fields {
+// The fields X_a, and their brackets at one configuration.
+class Frame {
  public:
-  Fields(std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
-         Matrix frame)
-      : geometry_(std::move(geometry)),
-        mechanics_(std::move(mechanics)),
-        frame_(std::move(frame)) {}
-  using Field = std::function<Vector(const Vector& g)>;
+  Frame(const Geometry& geometry, const Mechanics& mechanics, const Vector& g, const Matrix& frame)
+      : geometry_(geometry), mechanics_(mechanics), place_(mechanics), g_(g), frame_(frame) {}
 
-  Field of_frame(Eigen::Index a) const {
-    return [this, a](const Vector& g) -> Vector {
-      Place<> place(*mechanics_);
-      place.set(*mechanics_, 0, g.data());
-      place.b.setZero();
-      Vector e = frame_.col(a);
-      place.admissible(place.inertia * e, e);  // the I-orthogonal projection onto ker A(g)
-      return e;
-    };
-  }
-  /// [X, Y], the derivatives by fourth-order central differences.
-  Field bracket(Field x, Field y) const {
-    return [this, x, y](const Vector& g) -> Vector {
-      const Vector xg = x(g), yg = y(g);
-      return derivative(y, g, xg) - derivative(x, g, yg) + ad(xg, yg);
-    };
+  /// [X_a, X_b](g).
+  Vector bracket(Eigen::Index a, Eigen::Index b) {
+    Vector out = ad(frame_.col(a), frame_.col(b));
+    if (!mechanics_.constant_constraints()) out += derivative(b, a) - derivative(a, b);
+    return out;
   }
 
  private:
-  Vector derivative(const Field& field, const Vector& g, const Vector& along) const {
-    if (mechanics_->constant_constraints()) return Vector::Zero(along.size());
-    const double size = along.norm();
-    if (size == 0) return Vector::Zero(along.size());
-    const double e = 0.01 / size;
-    const auto at = [&](double shift) {
-      Vector moved(g.size());
-      const Vector step = shift * along;
-      geometry_->tau(step.data(), moved.data());
-      geometry_->compose(g.data(), moved.data(), moved.data());
-      return field(moved);
-    };
-    return (8 * (at(e) - at(-e)) - (at(2 * e) - at(-2 * e))) / (12 * e);
+  Vector field(Eigen::Index a, const Vector& g) {
+    place_.set(mechanics_, 0, g.data());
+    place_.b.setZero();
+    Vector e = frame_.col(a);
+    place_.admissible(place_.inertia * e, e);  // the I-orthogonal projection onto ker A(g)
+    return e;
+  }
+  // dX_a(g) X_b(g), by sixth-order central differences.
+  Vector derivative(Eigen::Index a, Eigen::Index b) {
+    constexpr double weights[] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
+    const double unit = 0.01 / frame_.col(b).norm();
+    Vector out = Vector::Zero(frame_.rows()), moved(g_.size());
+    for (int k = -3; k <= 3; ++k) {
+      if (k == 0) continue;
+      const Vector step = k * unit * frame_.col(b);
+      geometry_.tau(step.data(), moved.data());
+      geometry_.compose(g_.data(), moved.data(), moved.data());
+      out += (k > 0 ? 1 : -1) * weights[std::abs(k) - 1] / unit * field(a, moved);
+    }
+    return out;
   }
   Vector ad(const Vector& x, const Vector& y) const {  // <mu, ad_x y> = <ad_x^T mu, y>
     Vector out(x.size()), mu = Vector::Zero(x.size()), row(x.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       mu[i] = 1;
-      geometry_->ad_transpose(x.data(), mu.data(), row.data());
+      geometry_.ad_transpose(x.data(), mu.data(), row.data());
       out[i] = row.dot(y);
       mu[i] = 0;
     }
     return out;
   }
 
-  std::shared_ptr<const Geometry> geometry_;
-  std::shared_ptr<const Mechanics> mechanics_;
+  const Geometry& geometry_;
+  const Mechanics& mechanics_;
+  Place<> place_;
+  Vector g_;
   Matrix frame_;
 };
-
-Eigen::Index rank_of(const Matrix& columns, double tolerance) {
-  if (columns.size() == 0) return 0;
-  Eigen::ColPivHouseholderQR<Matrix> qr(columns);
-  qr.setThreshold(tolerance);
-  return qr.rank();
-}
-
-// d, d + [d, d], ...: each new bracket is of a frame field with one of the last generation.
-std::vector<int> growth_of(const Fields& fields, const Vector& g, Eigen::Index n, Eigen::Index m) {
-  std::vector<Fields::Field> frame, last;
-  Matrix span(n, 0);
-  const auto add = [&](const Fields::Field& field) {
-    const Vector value = field(g);
-    if (value.norm() < 1e-6) return false;
-    Matrix wider(n, span.cols() + 1);
-    wider << span, value.normalized();
-    if (rank_of(wider, 1e-5) <= span.cols()) return false;
-    span = wider;
-    return true;
-  };
-  for (Eigen::Index a = 0; a < m; ++a) {
-    frame.push_back(fields.of_frame(a));
-    add(frame.back());
-  }
-  std::vector<int> growth = {static_cast<int>(m)};
-  last = frame;
-  for (int depth = 2; depth <= 5 && span.cols() < n; ++depth) {
-    std::vector<Fields::Field> next;
-    for (const auto& x : frame) {
-      for (const auto& y : last) {
-        if (span.cols() == n) break;
-        const auto z = fields.bracket(x, y);
-        if (add(z)) next.push_back(z);
-      }
-    }
-    if (next.empty()) break;
-    growth.push_back(static_cast<int>(span.cols()));
-    last = next;
-  }
-  return growth;
-}
 
 std::string combination(const Vector& weights, const std::vector<std::string>& names) {
   std::string out;
@@ -217,6 +170,11 @@ void find_conserved(const Registry& registry, const std::string& system,
 
 }  // namespace
 
+std::optional<bool> Analysis::integrable() const {
+  if (rows == 0 || std::max(growth.nearby, growth.dimensions.back()) > m) return false;
+  return growth.decided() ? std::optional(true) : std::nullopt;
+}
+
 Analysis analyse(const Registry& registry, const std::string& system,
                  const Parameters& parameters) {
   Simulation simulation(registry, system);
@@ -246,19 +204,17 @@ Analysis analyse(const Registry& registry, const std::string& system,
   mechanics->constraints(0, g.data(), a, b);
   out.n = static_cast<int>(n);
   out.rows = static_cast<int>(k);
-  out.rank = static_cast<int>(rank_of(a.transpose(), 1e-12));
+  out.rank = static_cast<int>(Eigen::ColPivHouseholderQR<Matrix>(a).setThreshold(1e-12).rank());
   out.m = out.n - out.rank;
   out.holonomic_rows = mechanics->holonomic_rows();
-  out.affine = b.norm() > 0;
   out.frame = hamel_frame(inertia, a);
 
-  const Fields fields(geometry, mechanics, out.frame);
-  out.growth = growth_of(fields, g, n, out.m);
+  out.growth = growth_of(*geometry, *mechanics, g.data());
+  Frame fields(*geometry, *mechanics, g, out.frame);
   out.structure.assign(static_cast<size_t>(out.m), Matrix::Zero(out.m, out.m));
   for (Eigen::Index i = 0; i < out.m; ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
-      const Vector bracket = fields.bracket(fields.of_frame(i), fields.of_frame(j))(g);
-      const Vector along = out.frame.transpose() * (inertia * bracket);
+      const Vector along = out.frame.transpose() * (inertia * fields.bracket(i, j));
       for (Eigen::Index d = 0; d < out.m; ++d) {
         out.structure[static_cast<size_t>(d)](i, j) = along[d];
         out.structure[static_cast<size_t>(d)](j, i) = -along[d];

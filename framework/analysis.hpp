@@ -4,14 +4,16 @@
 // onto ker A(g) along I^-1 A^T; in left trivialisation
 //   [X, Y](g) = dY(g) X - dX(g) Y + ad_{X(g)} Y(g).
 // The growth of d, d + [d, d], ... tells whether the constraint is integrable (it does not grow), and how
-// many brackets span the tangent space (Chow). Affine rows: the linear part A xi = 0 is analysed.
+// many brackets span the tangent space (Chow): growth.hpp, with the drift of affine rows, and its tolerances.
 // Conserved quantities are found, not proved: combinations of energy, spatial momenta Ad*_{g^-1} mu and body
 // velocities that keep their value along several motions (null vectors of their changes).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/growth.hpp>
 #include <hamel/framework/registry.hpp>
 #include <hamel/framework/simulate.hpp>
 
@@ -20,11 +22,12 @@ namespace hamel {
 struct Analysis {
   int n = 0, rows = 0, rank = 0, m = 0;  // of A at the start
   int holonomic_rows = 0;
-  bool affine = false, left_invariant = false;
+  bool left_invariant = false;
   Eigen::MatrixXd frame;                   // E at the start, n x m
   std::vector<Eigen::MatrixXd> structure;  // c^d_ab: entry d, at (a, b): [X_a, X_b] along X_d, on d
-  std::vector<int> growth;                 // dim d, dim (d + [d, d]), ... until it stays
-  bool integrable() const { return growth.size() == 1 && m < n; }
+  Growth growth;  // dim d, dim (d + [d, d]), ...; affine rows with their drift
+  /// Are the rows differentials in disguise (of functions of g; of g and t with a drift)? Empty: not decided.
+  std::optional<bool> integrable() const;
   struct Conserved {
     std::string expression;  // "E", "0.5 J3 - ..."
     double change;           // largest relative change seen

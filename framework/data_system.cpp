@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <hamel/framework/mechanics.hpp>
+#include <hamel/framework/toml_reader.hpp>
 
 namespace hamel {
 namespace {
@@ -18,6 +18,11 @@ namespace {
 struct Terms {
   Eigen::VectorXd weight, stiffness, rest;  // a number for each column
   Eigen::VectorXd damping;                  // n
+  explicit Terms(Eigen::Index columns = 0, Eigen::Index n = 0)
+      : weight(Eigen::VectorXd::Zero(columns)),
+        stiffness(weight),
+        rest(weight),
+        damping(Eigen::VectorXd::Zero(n)) {}
   bool potential() const { return (weight.array() != 0).any() || (stiffness.array() != 0).any(); }
 };
 
@@ -81,165 +86,184 @@ class DataMechanics final : public Mechanics {
 class File {
  public:
   File(const Registry& registry, const std::string& origin)
-      : registry_(registry), origin_(origin) {}
+      : registry_(registry), origin_(origin), read_(origin) {}
 
   SystemModel read(const std::string& text) {
-    toml::table table;
-    try {
-      table = toml::parse(text);
-    } catch (const toml::parse_error& error) {
-      const auto at = error.source().begin;
-      throw ConfigError(
-          {fmt::format("{}:{}:{}: {}", origin_, at.line, at.column, error.description())});
-    }
-    static const std::vector<std::string> keys = {
-        "configuration", "constraints", "damping", "drift",  "group",   "inertia",
-        "linear",        "momentum",    "name",    "spring", "summary", "velocity"};
-    for (const auto& [key, node] : table) {
-      const std::string name(key.str());
-      if (std::find(keys.begin(), keys.end(), name) == keys.end()) {
-        wrong(node, unknown_name("key", name, keys));
-      }
-    }
+    const toml::table table = read_.parse(text);
     SystemModel model;
-    model.name = table["name"].value_or(origin_);
-    const std::string group = table["group"].value_or("");
-    const auto info = registry_.group_or_product(group);
-    if (!info) {
-      if (const auto* node = table.get("group")) {
-        wrong(*node, unknown_name("group", group, registry_.groups()));
-      } else {
-        mistakes_.push_back(
-            fmt::format("{}: group: missing, expected the name of a group", origin_));
-      }
-      throw ConfigError(mistakes_);
-    }
-    model.group = *info;
-    const Eigen::Index n = model.group.dim;
-    Eigen::MatrixXd inertia = Eigen::MatrixXd::Identity(n, n), a(0, n);
-    if (const auto* node = table.get("inertia")) inertia = matrix(*node, "inertia", n, true);
-    else mistakes_.push_back(fmt::format("{}: inertia: missing, expected {} entries", origin_, n));
-    if (const auto* node = table.get("constraints")) a = matrix(*node, "constraints", n, false);
+    model.name = origin_;
+    model.group = group_of(table);
+    n_ = model.group.dim;
+    terms_ = Terms(static_cast<Eigen::Index>(model.group.columns.size()), n_);
+    Eigen::MatrixXd inertia = Eigen::MatrixXd::Identity(n_, n_), a(0, n_);
+    if (const auto* node = table.get("constraints")) rows(*node, "constraints", a);
     Eigen::VectorXd b = Eigen::VectorXd::Zero(a.rows());
-    if (const auto* node = table.get("drift")) b = numbers(*node, "drift", a.rows());
-    for (const auto& [key, to] : {std::pair{"configuration", &model.start.configuration},
-                                  std::pair{"velocity", &model.start.velocity},
-                                  std::pair{"momentum", &model.start.momentum}}) {
-      const auto* node = table.get(key);
-      if (node == nullptr) continue;
-      const bool columns = std::string(key) == "configuration";
-      const Eigen::VectorXd values =
-          numbers(*node, key, columns ? static_cast<Eigen::Index>(model.group.columns.size()) : n);
-      to->assign(values.begin(), values.end());
+    if (!table.contains("inertia")) {
+      read_.mistakes.push_back(
+          fmt::format("{}: inertia: missing, expected {} entries", origin_, n_));
     }
-    const Terms terms = read_terms(table, model.group);
-    if (!mistakes_.empty()) throw ConfigError(mistakes_);
-    const bool invariant = !terms.potential() && b.isZero(0) && terms.damping.isZero(0);
+    for (const auto& [name, node] : table) {
+      const std::string key(name.str());
+      if (key == "name") read_.text(node, key, model.name);
+      else if (key == "inertia") square(node, key, inertia);
+      else if (key == "drift") b = numbers(node, key, a.rows());
+      else if (key == "configuration")
+        start(node, key, terms_.rest.size(), model.start.configuration);
+      else if (key == "velocity") start(node, key, n_, model.start.velocity);
+      else if (key == "momentum") start(node, key, n_, model.start.momentum);
+      else if (key == "linear") linear(node, model.group);
+      else if (key == "spring") springs(node, model.group);
+      else if (key == "damping") damping(node);
+      else if (key != "group" && key != "constraints") read_.unknown_key(node, key, keys());
+    }
+    if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
+    const bool invariant = !terms_.potential() && b.isZero(0) && terms_.damping.isZero(0);
     if (invariant) {
       model.inertia = inertia;
       model.constraints = a;
     } else {
-      model.mechanics =
-          std::make_shared<DataMechanics>(inertia, a, b, terms, registry_.geometry(group, "exp"));
+      model.mechanics = std::make_shared<DataMechanics>(
+          inertia, a, b, terms_, registry_.geometry(model.group.name, "exp"));
     }
     return model;
   }
 
  private:
-  void wrong(const toml::node& node, const std::string& what) {
-    const auto at = node.source().begin;
-    mistakes_.push_back(fmt::format("{}:{}:{}: {}", origin_, at.line, at.column, what));
-  }
-  double number(const toml::node& node, const std::string& key) {
-    const auto value = node.value<double>();
-    if (!value || !std::isfinite(*value)) wrong(node, key + ": expected a finite number");
-    return value.value_or(0);
-  }
-  Eigen::VectorXd numbers(const toml::node& node, const std::string& key, Eigen::Index count) {
-    const toml::array* array = node.as_array();
-    if (array == nullptr || static_cast<Eigen::Index>(array->size()) != count) {
-      wrong(node, fmt::format("{}: expected {} numbers", key, count));
-      return Eigen::VectorXd::Zero(count);
-    }
-    Eigen::VectorXd out(count);
-    for (Eigen::Index i = 0; i < count; ++i) out[i] = number((*array)[static_cast<size_t>(i)], key);
-    return out;
-  }
-  // Rows of n; where square, n numbers are its diagonal.
-  Eigen::MatrixXd matrix(const toml::node& node, const std::string& key, Eigen::Index n,
-                         bool square) {
-    const toml::array* array = node.as_array();
-    const Eigen::MatrixXd nothing =
-        square ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)) : Eigen::MatrixXd(0, n);
-    if (array == nullptr || (square && static_cast<Eigen::Index>(array->size()) != n)) {
-      wrong(node, fmt::format("{}: expected {}", key,
-                              square ? fmt::format("{} numbers or {} rows", n, n)
-                                     : fmt::format("rows of {} numbers", n)));
-      return nothing;
-    }
-    if (square && !array->empty() && !array->front().is_array()) {
-      return numbers(node, key, n).asDiagonal();
-    }
-    Eigen::MatrixXd out(static_cast<Eigen::Index>(array->size()), n);
-    for (Eigen::Index i = 0; i < out.rows(); ++i) {
-      out.row(i) = numbers((*array)[static_cast<size_t>(i)], key, n).transpose();
-    }
-    return out;
+  static const std::vector<std::string>& keys() {
+    static const std::vector<std::string> all = {
+        "configuration", "constraints", "damping", "drift",  "group",   "inertia",
+        "linear",        "momentum",    "name",    "spring", "velocity"};
+    return all;
   }
 
-  Terms read_terms(const toml::table& table, const GroupInfo& group) {
-    const auto columns = static_cast<Eigen::Index>(group.columns.size());
-    Terms out{Eigen::VectorXd::Zero(columns), Eigen::VectorXd::Zero(columns),
-              Eigen::VectorXd::Zero(columns), Eigen::VectorXd::Zero(group.dim)};
-    const auto each = [&](const char* key, const auto& visit) {
-      const toml::node* node = table.get(key);
-      if (node == nullptr) return;
-      const toml::table* entries = node->as_table();
-      if (entries == nullptr) {
-        wrong(*node, fmt::format("{}: expected a table", key));
-        return;
-      }
-      for (const auto& [name, value] : *entries) visit(std::string(name.str()), value);
-    };
-    const auto column = [&](const std::string& name, const toml::node& node) -> Eigen::Index {
-      const auto it = std::find(group.columns.begin(), group.columns.end(), name);
-      if (it == group.columns.end()) {
-        wrong(node, unknown_name("column of " + group.name, name, group.columns));
-        return 0;
-      }
-      return it - group.columns.begin();
-    };
-    each("linear", [&](const std::string& name, const toml::node& node) {
-      out.weight[column(name, node)] = number(node, "linear." + name);
+  // Nothing else can be read without it.
+  GroupInfo group_of(const toml::table& table) {
+    std::string name;
+    const toml::node* node = table.get("group");
+    if (node == nullptr) {
+      read_.mistakes.push_back(
+          fmt::format("{}: group: missing, expected the name of a group", origin_));
+    } else {
+      read_.text(*node, "group", name);
+    }
+    const auto info = registry_.group_or_product(name);
+    if (info) return *info;
+    if (!name.empty()) read_.unknown(*node, "group", name, registry_.groups());
+    throw ConfigError(read_.mistakes);
+  }
+
+  double number(const toml::node& node, const std::string& key) {
+    double out = 0;
+    if (const auto value = node.value<double>(); value && std::isfinite(*value)) out = *value;
+    else read_.wrong(node, key, "a finite number");
+    return out;
+  }
+  Eigen::VectorXd numbers(const toml::node& node, const std::string& key, Eigen::Index count) {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(count);
+    const toml::array* array = node.as_array();
+    if (array == nullptr || static_cast<Eigen::Index>(array->size()) != count) {
+      read_.wrong(node, key, fmt::format("{} numbers", count));
+    } else {
+      for (Eigen::Index i = 0; i < count; ++i)
+        out[i] = number((*array)[static_cast<size_t>(i)], key);
+    }
+    return out;
+  }
+  void start(const toml::node& node, const std::string& key, Eigen::Index count,
+             std::vector<double>& out) {
+    const Eigen::VectorXd values = numbers(node, key, count);
+    out.assign(values.begin(), values.end());
+  }
+  void rows(const toml::node& node, const std::string& key, Eigen::MatrixXd& out) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr) {
+      read_.wrong(node, key, fmt::format("rows of {} numbers", n_));
+      return;
+    }
+    out.resize(static_cast<Eigen::Index>(array->size()), n_);
+    for (Eigen::Index i = 0; i < out.rows(); ++i) {
+      out.row(i) = numbers((*array)[static_cast<size_t>(i)], key, n_).transpose();
+    }
+  }
+  // n rows, or n numbers, the diagonal.
+  void square(const toml::node& node, const std::string& key, Eigen::MatrixXd& out) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || static_cast<Eigen::Index>(array->size()) != n_) {
+      read_.wrong(node, key, fmt::format("{} numbers or {} rows", n_, n_));
+    } else if (array->front().is_array()) {
+      rows(node, key, out);
+    } else {
+      out = numbers(node, key, n_).asDiagonal();
+    }
+  }
+
+  // visit(name, full key, value) for each entry of a table.
+  template <class Visit>
+  void each(const toml::node& node, const std::string& key, const Visit& visit) {
+    const toml::table* entries = node.as_table();
+    if (entries == nullptr) {
+      read_.wrong(node, key, "a table");
+      return;
+    }
+    for (const auto& [name, value] : *entries) {
+      const std::string word(name.str());
+      visit(word, key + "." + word, value);
+    }
+  }
+  // -1 for a name that the group does not have.
+  Eigen::Index column(const toml::node& node, const GroupInfo& group, const std::string& name) {
+    const auto it = std::find(group.columns.begin(), group.columns.end(), name);
+    if (it != group.columns.end()) return it - group.columns.begin();
+    read_.unknown(node, "column of " + group.name, name, group.columns);
+    return -1;
+  }
+  void linear(const toml::node& table, const GroupInfo& group) {
+    each(table, "linear", [&](const std::string& name, const std::string& key, const auto& node) {
+      const Eigen::Index j = column(node, group, name);
+      const double weight = number(node, key);
+      if (j >= 0) terms_.weight[j] = weight;
     });
-    each("spring", [&](const std::string& name, const toml::node& node) {
-      const Eigen::Index j = column(name, node);
+  }
+  void springs(const toml::node& table, const GroupInfo& group) {
+    each(table, "spring", [&](const std::string& name, const std::string& key, const auto& node) {
+      const Eigen::Index j = column(node, group, name);
       const toml::table* spring = node.as_table();
-      if (spring == nullptr || spring->get("stiffness") == nullptr) {
-        wrong(node, fmt::format("spring.{}: expected {{ stiffness = ..., rest = ... }}", name));
+      if (spring == nullptr || !spring->contains("stiffness")) {
+        read_.wrong(node, key, "{ stiffness = ..., rest = ... }");
         return;
       }
-      out.stiffness[j] = number(*spring->get("stiffness"), "spring." + name + ".stiffness");
-      if (const auto* rest = spring->get("rest")) {
-        out.rest[j] = number(*rest, "spring." + name + ".rest");
+      for (const auto& [word, value] : *spring) {
+        const std::string what(word.str());
+        Eigen::VectorXd* to = what == "stiffness" ? &terms_.stiffness
+                              : what == "rest"    ? &terms_.rest
+                                                  : nullptr;
+        if (to == nullptr) {
+          read_.unknown_key(value, what, {"stiffness", "rest"});
+          continue;
+        }
+        const double x = number(value, key + "." + what);
+        if (j >= 0) (*to)[j] = x;
       }
     });
-    each("damping", [&](const std::string& name, const toml::node& node) {
+  }
+  void damping(const toml::node& table) {
+    each(table, "damping", [&](const std::string& name, const std::string& key, const auto& node) {
       int i = 0;
       const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), i);
-      if (error != std::errc() || end != name.data() + name.size() || i < 1 || i > group.dim) {
-        wrong(node,
-              fmt::format("damping: got '{}', expected a number from 1 to {}", name, group.dim));
+      if (error != std::errc() || end != name.data() + name.size() || i < 1 || i > n_) {
+        read_.wrong(node, "damping",
+                    fmt::format("the number of a velocity, 1 to {}, got '{}'", n_, name));
         return;
       }
-      out.damping[i - 1] = number(node, "damping." + name);
+      terms_.damping[i - 1] = number(node, key);
     });
-    return out;
   }
 
   const Registry& registry_;
-  const std::string& origin_;
-  std::vector<std::string> mistakes_;
+  std::string origin_;
+  TomlReader read_;
+  Eigen::Index n_ = 0;
+  Terms terms_;
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Systems by data alone: a TOML file, no compiler.
 //
-//   name = "pendulum on a skate"
+//   name = "pendulum on a skate"           # left out: the file's
 //   group = "se2*so2"                      # any product of registered groups
 //   inertia = [0.1, 1, 1, 0.2]             # n principal entries, or n rows of n
 //   constraints = [[0, 0, 1, 0]]           # rows of A (left out: none)

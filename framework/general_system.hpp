@@ -3,10 +3,10 @@
 // A system whose inertia, constraint or forces depend on the configuration states, beside Group:
 //   inertia() or inertia(g)                      n x n
 //   constraints(), constraints(g) or (t, g)      k x n rows A
-//   drift(t, g)                                  b, k entries: A xi = b (left out: 0)
+//   drift(), drift(g) or drift(t, g)             b, k entries: A xi = b (left out: 0)
 //   holonomic(g)                                 phi, r entries: phi = 0; its differential joins A
 //   potential(g)                                 V, a number
-//   force(t, g, xi)                              f, n entries in the dual (controls, friction)
+//   force(g, xi) or force(t, g, xi)              f, n entries in the dual (controls, friction)
 // Written as templates on the element (`const auto& g`), potential, holonomic and inertia are differentiated
 // automatically (ceres::Jet, seeded along g tau(eta)). By hand, where speed matters:
 //   potential_differential(g)   n entries, <dV, eta> = d/de V(g tau(e eta))
@@ -79,8 +79,8 @@ class TypedMechanics final : public Mechanics {
   }
 
   bool constant_constraints() const override {
-    return r == 0 && !requires(const S& s, const Element& g) { s.drift(0.0, g); }
-    &&(own == 0 || requires(const S& s) { s.constraints(); });
+    constexpr bool rows = own == 0 || requires(const S& s) { s.constraints(); };
+    return r == 0 && rows && (!has_drift<S>() || has_constant_drift<S>());
   }
 
   void inertia(const double* g, Matrix out) const override {
@@ -103,7 +103,7 @@ class TypedMechanics final : public Mechanics {
         a.template topRows<own>() = system_.constraints();
       }
     }
-    if constexpr (requires { system_.drift(t, g); }) b.template head<own>() = system_.drift(t, g);
+    if constexpr (has_drift<S>()) b.template head<own>() = drift_of(system_, t, g);
     if constexpr (r > 0) a.template bottomRows<r>() = holonomic_differential(g);
     if (to_a.outerStride() == k) Eigen::Map<Mat<k, n>>(to_a.data()) = a;  // sizes known: unrolled
     else to_a = a;
@@ -119,14 +119,14 @@ class TypedMechanics final : public Mechanics {
     const Element g = load(at);
     const Vec<n> xi = Eigen::Map<const Vec<n>>(velocity.data());
     Vec<n> out = Vec<n>::Zero();
-    if constexpr (requires { system_.potential(g); }) out -= potential_differential(g);
-    if constexpr (requires { system_.force(t, g, xi); }) out += system_.force(t, g, xi);
+    if constexpr (has_potential<S>()) out -= potential_differential(g);
+    if constexpr (has_force<S>()) out += force_of(system_, t, g, xi);
     if constexpr (!requires(const S& s) { s.inertia(); }) out += inertia_differential(g, xi);
     Eigen::Map<Vec<n>>(to.data()) = out;
   }
 
   double potential(const double* g) const override {
-    if constexpr (requires { system_.potential(load(g)); }) return system_.potential(load(g));
+    if constexpr (has_potential<S>()) return system_.potential(load(g));
     else return 0;
   }
 
@@ -135,6 +135,8 @@ class TypedMechanics final : public Mechanics {
     if constexpr (requires { system_.potential_differential(g); }) {
       return system_.potential_differential(g);
     } else {
+      static_assert(!named::potential_differential<S>,
+                    "expected a const member potential_differential(g)");
       return automatic([this](const auto& x) { return system_.potential(x); }, g);
     }
   }
@@ -142,6 +144,8 @@ class TypedMechanics final : public Mechanics {
     if constexpr (requires { system_.holonomic_differential(g); }) {
       return system_.holonomic_differential(g);
     } else {
+      static_assert(!named::holonomic_differential<S>,
+                    "expected a const member holonomic_differential(g)");
       return automatic([this](const auto& x) { return system_.holonomic(x); }, g);
     }
   }
@@ -149,6 +153,8 @@ class TypedMechanics final : public Mechanics {
     if constexpr (requires { system_.inertia_differential(g, xi); }) {
       return system_.inertia_differential(g, xi);
     } else {
+      static_assert(!named::inertia_differential<S>,
+                    "expected a const member inertia_differential(g, xi)");
       return automatic(
           [&](const auto& x) {
             const auto inertia = system_.inertia(x);

@@ -26,6 +26,7 @@
 #include <hamel/framework/drawing.hpp>
 #include <hamel/framework/errors.hpp>
 #include <hamel/framework/group_info.hpp>
+#include <hamel/framework/system_members.hpp>
 
 namespace hamel {
 
@@ -117,10 +118,37 @@ struct FieldWriter {
   }
 };
 
+// The members that tell a visitor, where a system has them.
+template <class S, class Visitor>
+void tell_fields(S& system, Visitor& visitor) {
+  if constexpr (requires { system.fields(visitor); }) system.fields(visitor);
+  else
+    static_assert(!named::fields<S>, "fields of this system cannot be called: expected fields(f)");
+}
+template <class S, class Visitor>
+void tell_invariants(const S& system, Visitor& add) {
+  if constexpr (requires { system.invariants(add); }) {
+    system.invariants(add);
+  } else {
+    static_assert(
+        !named::invariants<S>,
+        "invariants of this system cannot be called: expected a const member invariants(add)");
+  }
+}
+template <class S, class Visitor>
+void tell_drawing(const S& system, Visitor& scene) {
+  if constexpr (requires { system.draw(scene); }) {
+    system.draw(scene);
+  } else {
+    static_assert(!named::draw<S>,
+                  "draw of this system cannot be called: expected a const member draw(scene)");
+  }
+}
+
 template <class S>
 std::vector<Field> fields_of(S system) {
   FieldReader reader;
-  if constexpr (requires { system.fields(reader); }) system.fields(reader);
+  tell_fields(system, reader);
   return reader.fields;
 }
 
@@ -129,66 +157,6 @@ void check_parameters(const std::string& system, const std::vector<Field>& field
                       const Parameters& given);
 
 }  // namespace detail
-
-/// The rows of constraints(), constraints(g) or constraints(t, g), from their shape.
-template <class S>
-constexpr int constraint_count() {
-  using Element = typename S::Group::template Element<double>;
-  const auto rows = []<class A>(std::type_identity<A>) {
-    return std::decay_t<A>::RowsAtCompileTime;
-  };
-  if constexpr (requires(const S& s) { s.constraints(); }) {
-    return rows(std::type_identity<decltype(std::declval<const S&>().constraints())>{});
-  } else if constexpr (requires(const S& s, const Element& g) { s.constraints(g); }) {
-    return rows(std::type_identity<decltype(std::declval<const S&>().constraints(
-                    std::declval<const Element&>()))>{});
-  } else if constexpr (requires(const S& s, const Element& g) { s.constraints(0.0, g); }) {
-    return rows(std::type_identity<decltype(std::declval<const S&>().constraints(
-                    0.0, std::declval<const Element&>()))>{});
-  } else {
-    return 0;
-  }
-}
-
-/// The rows of holonomic(g).
-template <class S>
-constexpr int holonomic_count() {
-  using Element = typename S::Group::template Element<double>;
-  if constexpr (requires(const S& s, const Element& g) { s.holonomic(g); }) {
-    return std::decay_t<decltype(std::declval<const S&>().holonomic(
-        std::declval<const Element&>()))>::RowsAtCompileTime;
-  } else {
-    return 0;
-  }
-}
-
-/// Constant inertia and rows, and nothing else: the small fast path.
-template <class S>
-constexpr bool is_left_invariant() {
-  using Element = typename S::Group::template Element<double>;
-  constexpr int n = S::Group::dim;
-  return requires(const S& s) { s.inertia(); }
-  &&(constraint_count<S>() == 0 || requires(const S& s) { s.constraints(); }) &&
-      !requires(const S& s, const Element& g) {
-    s.potential(g);
-  }
-  &&!requires(const S& s, const Element& g) { s.holonomic(g); }
-  &&!requires(const S& s, const Element& g) { s.drift(0.0, g); }
-  &&!requires(const S& s, const Element& g, const Vec<n>& xi) { s.force(0.0, g, xi); };
-}
-
-template <class S>
-concept System = requires(const S& s, const typename S::Group::template Element<double>& g) {
-  requires Group<typename S::Group>;
-  requires requires {
-    { s.inertia() } -> Shape<S::Group::dim, S::Group::dim>;
-  } || requires {
-    { s.inertia(g) } -> Shape<S::Group::dim, S::Group::dim>;
-  };
-  // k rows of n columns, where there are any.
-  requires !requires { s.constraints(); }
-  || Shape<decltype(s.constraints()), constraint_count<S>(), S::Group::dim>;
-};
 
 /// How a system that is not left-invariant becomes Mechanics; defined in general_system.hpp, which its
 /// file includes.
@@ -201,8 +169,12 @@ struct MechanicsOf {
 template <System S>
 SystemModel erase_words(const S& system) {
   SystemModel model;
-  if constexpr (requires { S::name(); }) model.name = S::name();
-  else model.name = "user system";
+  if constexpr (requires { S::name(); }) {
+    model.name = S::name();
+  } else {
+    static_assert(!named::name<S>, "name of this system cannot be called: expected static name()");
+    model.name = "user system";
+  }
   model.group = group_info<typename S::Group>();
   model.fields = detail::fields_of(system);
   return model;
@@ -222,9 +194,19 @@ SystemModel erase(const S& system) {
   } else {
     model.mechanics = MechanicsOf<S>::make(system);
   }
-  if constexpr (requires { system.start(); }) model.start = system.start();
+  if constexpr (requires { system.start(); }) {
+    model.start = system.start();
+  } else {
+    static_assert(!named::start<S>,
+                  "start of this system cannot be called: expected a const member start()");
+  }
   bool exact = true;
-  if constexpr (requires { system.has_exact(); }) exact = system.has_exact();
+  if constexpr (requires { system.has_exact(); }) {
+    exact = system.has_exact();
+  } else {
+    static_assert(!named::has_exact<S>,
+                  "has_exact of this system cannot be called: expected a const member has_exact()");
+  }
   if constexpr (requires(Element g, Vec<n> xi) { system.exact(g, xi); }) {
     if (exact)
       model.exact = [system](const Start& start) -> ExactFlow {
@@ -236,6 +218,9 @@ SystemModel erase(const S& system) {
           return std::pair{G::coordinates(g), std::vector<double>(xi.begin(), xi.end())};
         };
       };
+  } else {
+    static_assert(!named::exact<S>,
+                  "exact of this system cannot be called: expected a const member exact(g0, xi0)");
   }
   auto add = [&model](std::string name, auto value) {
     model.invariants.push_back(
@@ -243,9 +228,9 @@ SystemModel erase(const S& system) {
            return value(G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
          }});
   };
-  if constexpr (requires { system.invariants(add); }) system.invariants(add);
+  detail::tell_invariants(system, add);
   Scene<G> scene(model.drawing);
-  if constexpr (requires { system.draw(scene); }) system.draw(scene);
+  detail::tell_drawing(system, scene);
   return model;
 }
 
@@ -274,8 +259,8 @@ SystemModel erase(const S& system) {
   auto add = [&model](std::string name, auto value) {
     model.invariants.push_back({std::move(name), value});
   };
-  if constexpr (requires { system.invariants(add); }) system.invariants(add);
-  if constexpr (requires { system.draw(model.drawing); }) system.draw(model.drawing);
+  detail::tell_invariants(system, add);
+  detail::tell_drawing(system, model.drawing);
   return model;
 }
 
@@ -287,7 +272,7 @@ std::function<SystemModel(const Parameters&)> maker(const S& system) {
     const SystemModel as_is = erase_words(copy);
     detail::check_parameters(as_is.name, as_is.fields, given);
     detail::FieldWriter writer{given};
-    if constexpr (requires { copy.fields(writer); }) copy.fields(writer);
+    detail::tell_fields(copy, writer);
     return erase(copy);
   };
 }
@@ -298,9 +283,13 @@ SystemInfo system_info() {
   SystemInfo info;
   info.name = S::name();
   if constexpr (requires { S::summary(); }) info.summary = S::summary();
+  else static_assert(!named::summary<S>, "expected static std::string summary()");
   if constexpr (requires { S::formula(); }) info.formula = S::formula();
+  else static_assert(!named::formula<S>, "expected static std::string formula()");
   if constexpr (requires { S::known(); }) info.known = S::known();
+  else static_assert(!named::known<S>, "expected static std::string known()");
   if constexpr (requires { S::source(); }) info.source = S::source();
+  else static_assert(!named::source<S>, "expected static std::string source()");
   info.group = erase_words(S{}).group;
   info.fields = detail::fields_of(S{});
   info.make = maker(S{});

@@ -56,7 +56,12 @@ class TomlReader {
   }
   void unknown_key(const toml::node& node, const std::string& key,
                    const std::vector<std::string>& known) {
-    mistakes.push_back(fmt::format("{}: {}", place(node), unknown_name("key", key, known)));
+    unknown(node, "key", key, known);
+  }
+
+  void unknown(const toml::node& node, const std::string& kind, const std::string& name,
+               const std::vector<std::string>& known) {
+    mistakes.push_back(fmt::format("{}: {}", place(node), unknown_name(kind, name, known)));
   }
 
   /// "file:line:column".

@@ -13,6 +13,7 @@
 #include <string>
 
 #include <hamel/framework/general_system.hpp>
+#include <hamel/groups/dexp.hpp>
 #include <hamel/systems/ball_on_plane.hpp>
 #include <hamel/systems/reconstruction.hpp>
 
@@ -67,9 +68,7 @@ struct BallOnTurntable {
       return {c * v0[0] - s * v0[1], s * v0[0] + c * v0[1]};
     }
     Vec<2> position(double t) const {
-      if (k == 0) return x0 + t * v0;
-      const Vec<2> change = velocity(t) - v0;  // x' = k e_z x (x - x_c)
-      return x0 + Vec<2>(change[1], -change[0]) / k;
+      return x0 + t * sinc(0.25 * k * k * t * t) * velocity(0.5 * t);  // a chord of the circle
     }
     Vec<3> omega(double t) const {
       const Vec<2> x = position(t), v = velocity(t);

@@ -2,10 +2,11 @@
 //
 //   SE(2), x down the slope, xi = (omega, v1, v2) at the blade, l = 1/2 J w^2 + 1/2 m |v|^2 + m g sin(alpha) x,
 //   v2 = 0.   omega is constant, v1' = g sin(alpha) cos(theta).
-// Turning (omega != 0), with a = g sin(alpha), theta = theta_0 + omega t, c = v1(0) - a sin(theta_0)/omega:
-//   v1 = c + a sin(theta)/omega,
-//   x = x0 + [c sin(theta) + a sin^2(theta)/(2 omega)]/omega |,
-//   y = y0 + [-c cos(theta) + a (theta/2 - sin(2 theta)/4)/omega]/omega |   (differences from theta_0).
+// With a = g sin(alpha), d = omega t, theta = theta_0 + d and
+//   P + iQ = int_0^t exp(i theta) = t (sin(d/2)/(d/2)) exp(i (theta_0 + d/2)):
+//   v1 = v1(0) + a P,   x = x0 + v1(0) P + a P^2/2,   y = y0 + v1(0) Q + a int_0^t P Q',
+//   int_0^t P Q' = (P Q + int_0^t (P Q' - Q P'))/2 = (P Q + t^2 (d - sin d)/d^2)/2.
+// Nothing is divided by omega: right for every omega, 0 included.
 // From rest it does not slide down on the mean: x is periodic, y drifts.
 // Source: Neimark and Fufaev 1972; Bloch, Nonholonomic Mechanics and Control (2003), section 1.6.
 #pragma once
@@ -14,6 +15,7 @@
 #include <string>
 
 #include <hamel/framework/general_system.hpp>
+#include <hamel/groups/dexp.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/systems/energy.hpp>
 
@@ -52,24 +54,14 @@ struct KnifeEdgeOnIncline {
   Start start() const { return {.configuration = {}, .velocity = {1, 0, 0}, .momentum = {}}; }
 
   auto exact(const Element& g0, const Vec<3>& xi0) const {
-    const double a = gravity * std::sin(slope), w = xi0[0], theta0 = g0.angle();
+    const double a = gravity * std::sin(slope), w = xi0[0], v0 = xi0[1], theta0 = g0.angle();
     return [=](double t) {
-      const double theta = theta0 + w * t;
-      double v = xi0[1] + a * std::cos(theta0) * t,
-             along = xi0[1] * t + 0.5 * a * std::cos(theta0) * t * t;
-      Vec<2> change = along * Vec<2>(std::cos(theta0), std::sin(theta0));
-      if (w != 0) {
-        const double c = xi0[1] - a * std::sin(theta0) / w;
-        const auto integral = [&](double angle) {
-          const double s = std::sin(angle);
-          return Vec<2>((c * s + a * s * s / (2 * w)) / w,
-                        (-c * std::cos(angle) + a * (angle / 2 - std::sin(2 * angle) / 4) / w) / w);
-        };
-        v = c + a * std::sin(theta) / w;
-        change = integral(theta) - integral(theta0);
-      }
-      Element g{SO2::from_angle(theta), g0.translation + change};
-      return std::pair{g, Vec<3>(w, v, 0)};
+      const double d = w * t, chord = t * sinc(0.25 * d * d), middle = theta0 + 0.5 * d;
+      const double p = chord * std::cos(middle), q = chord * std::sin(middle);
+      const Vec<2> change(v0 * p + 0.5 * a * p * p,
+                          v0 * q + 0.5 * a * (p * q + t * t * (d * sinc3(d * d))));
+      return std::pair{Element{SO2::from_angle(theta0 + d), g0.translation + change},
+                       Vec<3>(w, v0 + a * p, 0)};
     };
   }
   void invariants(auto& add) const {

@@ -2,7 +2,10 @@
 //
 //   R^3, l = 1/2 m (x'^2 + y'^2 + z'^2) - 1/2 k y^2,   z' = y x'.
 // x' sqrt(1 + y^2) = c is kept for every V(y). Without the spring y = y0 + v t and
-//   x = x0 + (c/v) asinh(y) |,  z = z0 + (c/v) sqrt(1 + y^2) |   (differences from y0).
+//   x = x0 + (c/v) asinh(y) |,  z = z0 + (c/v) sqrt(1 + y^2) |   (differences from y0),
+// which with r = sqrt(1 + y^2), r0 = sqrt(1 + y0^2) are
+//   x = x0 + (c/v) asinh(v t q),  q = (1 + r r0 - y y0)/(r + r0),   z = z0 + c t (y + y0)/(r + r0).
+// Nothing cancels as v -> 0, where asinh(v t q)/v = t q.
 // Source: Rosenberg 1977; Bates and Sniatycki, Rep. Math. Phys. 32 (1993).
 #pragma once
 
@@ -41,15 +44,16 @@ struct NonholonomicParticle {
   /// Without the spring only; empty otherwise.
   bool has_exact() const { return spring == 0; }
   auto exact(const Element& g0, const Vec<3>& xi0) const {
-    const double c = xi0[0] * std::hypot(1, g0[1]), v = xi0[1];
+    const double y0 = g0[1], r0 = std::hypot(1, y0), c = xi0[0] * r0, v = xi0[1];
     return [=](double t) {
-      const double y = g0[1] + v * t, slope = c / std::hypot(1, y);
-      Vec<3> g(g0[0] + slope * t, y, g0[2] + y * slope * t);
-      if (v != 0) {
-        g[0] = g0[0] + c / v * (std::asinh(y) - std::asinh(g0[1]));
-        g[2] = g0[2] + c / v * (std::hypot(1, y) - std::hypot(1, g0[1]));
-      }
-      return std::pair{g, Vec<3>(slope, v, y * slope)};
+      const double y = y0 + v * t, r = std::hypot(1, y), sum = r + r0;
+      // cosh of the difference of the two asinh
+      const double cosh = y * y0 > 0 ? (1 + y * y + y0 * y0) / (r * r0 + y * y0) : r * r0 - y * y0;
+      const double s = v * t * ((1 + cosh) / sum);  // sinh of it
+      const double stretch = s == 0 ? 1 : std::asinh(s) / s;
+      const Vec<3> g(g0[0] + c * t * ((1 + cosh) / sum) * stretch, y,
+                     g0[2] + c * t * ((y + y0) / sum));
+      return std::pair{g, Vec<3>(c / r, v, y * (c / r))};
     };
   }
   void invariants(auto& add) const {

@@ -19,62 +19,13 @@
 #include <Eigen/SVD>
 
 #include <hamel/framework/check/group_laws.hpp>
+#include <hamel/framework/check/system_samples.hpp>
 #include <hamel/framework/frame.hpp>
 #include <hamel/framework/general_system.hpp>
 #include <hamel/framework/registry.hpp>
 #include <hamel/framework/simulate.hpp>
 
 namespace hamel {
-namespace check {
-
-/// I, A and b at a configuration; geometry: of any retraction, for systems that are not left-invariant.
-struct Matrices {
-  Eigen::MatrixXd inertia, rows;
-  Eigen::VectorXd drift;
-};
-inline Matrices matrices_at(const SystemModel& model, const Geometry* geometry,
-                            const std::vector<double>& configuration, double t = 0) {
-  if (model.mechanics == nullptr || geometry == nullptr) {
-    return {model.inertia, model.constraints, Eigen::VectorXd::Zero(model.constraints.rows())};
-  }
-  const Mechanics& mechanics = *model.mechanics;
-  const Eigen::Index n = mechanics.dim(), k = mechanics.rows();
-  Matrices out{Eigen::MatrixXd(n, n), Eigen::MatrixXd(k, n), Eigen::VectorXd(k)};
-  Eigen::VectorXd g(geometry->size());
-  geometry->from_coordinates(configuration, g.data());
-  mechanics.inertia(g.data(), out.inertia);
-  mechanics.constraints(t, g.data(), out.rows, out.drift);
-  return out;
-}
-
-/// The start as a run fills it in: configuration and an admissible velocity.
-inline Start admissible_start(const SystemModel& model, const Geometry* geometry = nullptr) {
-  Start start = model.start;
-  if (start.configuration.empty()) start.configuration = model.group.identity;
-  const auto& given = start.velocity.empty() ? start.momentum : start.velocity;
-  if (static_cast<int>(given.size()) != model.group.dim) return start;
-  const Eigen::VectorXd datum = Eigen::Map<const Eigen::VectorXd>(given.data(), model.group.dim);
-  const Matrices at = matrices_at(model, geometry, start.configuration);
-  const Eigen::VectorXd mu = start.velocity.empty() ? datum : Eigen::VectorXd(at.inertia * datum);
-  const Eigen::MatrixXd e = hamel_frame(at.inertia, at.rows);
-  Eigen::VectorXd xi = e * (e.transpose() * mu);
-  if (at.drift.norm() > 0) {
-    const Eigen::MatrixXd reach = at.inertia.inverse() * at.rows.transpose();
-    xi += reach * (at.rows * reach).inverse() * at.drift;
-  }
-  start.velocity.assign(xi.begin(), xi.end());
-  start.momentum.clear();
-  return start;
-}
-
-inline double difference(const std::vector<double>& a, const std::vector<double>& b) {
-  if (a.size() != b.size()) return std::numeric_limits<double>::quiet_NaN();
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
-}  // namespace check
 
 /// Matrices, start, exact motion and invariants of an erased system.
 inline LawReport check_system(const SystemModel& model, double until = 5,
@@ -159,8 +110,8 @@ inline LawReport check_system(const Registry& registry, const std::string& name,
   // Parameters: what describe shows is what a run gets, and a parameter that is set comes back.
   Parameters as_shown, changed;
   for (const Field& field : info->fields) {
-    as_shown[field.name] = changed[field.name] = field.value;
-    for (double& x : changed[field.name]) x *= 2;  // whole numbers stay whole
+    as_shown[field.name] = field.value;
+    changed[field.name] = check::changed_value(*info, field);
   }
   const SystemModel again = info->make(as_shown), other = info->make(changed);
   const auto& g =

@@ -49,8 +49,7 @@ class StudyReader {
     read_.text(node, "mode", word);
     config_.zipped = word == "zipped";
     if (word != "zipped" && word != "factorial" && !word.empty())
-      read_.mistakes.push_back(fmt::format("{}: {}", read_.place(node),
-                                           unknown_name("mode", word, {"factorial", "zipped"})));
+      read_.unknown(node, "mode", word, {"factorial", "zipped"});
   }
 
   bool axis(const std::string& key, const toml::node& node) {

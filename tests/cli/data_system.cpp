@@ -101,7 +101,16 @@ TEST_F(DataSystem, MistakesAreNamed) {
           "unknown column of se2 'z'");
   refused("group = \"se2\"\ninertia = [1, 2, 3]\nvelocity = [1, 0, 0]\n[spring]\nx = 1",
           "spring.x: expected { stiffness");
-  refused("group = \"se2\"\ninertia = [1, 2, 3]\n[damping]\n4 = 1", "from 1 to 3");
+  refused("group = \"se2\"\ninertia = [1, 2, 3]\n[damping]\n4 = 1", "1 to 3, got '4'");
+  refused("group = \"se2\"\ninertia = [1, 2, 3]\n[spring]\nx = { stiffness = 1, rset = 2 }",
+          ":4:28: unknown key 'rset': expected one of stiffness, rest; did you mean 'rest'?");
+  refused("group = \"se2\"\ninertia = [1, 2, 3]\n[spring]\nx = { rest = 2 }",
+          ":4:5: spring.x: expected { stiffness");
+  refused("name = 3\ngroup = \"se2\"\ninertia = [1, 2, 3]", ":1:8: name: expected a string");
+  refused("group = 3\ninertia = [1, 2, 3]", ":1:9: group: expected a string");
+  refused("summary = \"a skate\"\ngroup = \"se2\"\ninertia = [1, 2, 3]",
+          ":1:11: unknown key 'summary'");
+  refused("group = \"se2\"\ninertia = [1, 2, 3]\nlinear = 1", ":3:10: linear: expected a table");
   refused("group = [", ":1:");
   const Outcome o = run({"run", file("none.toml")});
   EXPECT_EQ(o.status, 2);
@@ -123,12 +132,24 @@ TEST_F(DataSystem, AnalysisSeesWhatASystemIs) {
   const json ball = analysis("chaplygin_ball");
   EXPECT_EQ(ball["growth"].back(), 5);
   EXPECT_EQ(analysis("suslov")["growth"], json({2, 3}));
-  // A constraint that can be integrated: y stays where it is.
+  // One direction is always closed; with the drift of its prescribed shape the board goes anywhere, and the
+  // three rows of the shape are functions of time.
+  const json board = analysis("snakeboard");
+  EXPECT_EQ(board["growth"], json({1, 2, 3}));
+  EXPECT_TRUE(board["affine"]);
+  EXPECT_FALSE(board["integrable"]);
+  EXPECT_THAT(board["verdict"].get<std::string>(), HasSubstr("reach only 3 of 6 directions"));
+  // A constraint that can be integrated: y stays where it is, or moves at a constant rate.
   const json rail =
       analysis(write("group = \"r2\"\ninertia = [1, 1]\nconstraints = [[0, 1]]\n"
                      "velocity = [1, 0]"));
   EXPECT_TRUE(rail["integrable"]);
   EXPECT_EQ(rail["growth"], json({1}));
+  const json lift =
+      analysis(write("group = \"r2\"\ninertia = [1, 1]\nconstraints = [[0, 1]]\n"
+                     "drift = [0.3]\nvelocity = [1, 0.3]"));
+  EXPECT_TRUE(lift["integrable"]);
+  EXPECT_THAT(lift["verdict"].get<std::string>(), HasSubstr("with time"));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct Heisenberg : hamel::GroupDefaults<Heisenberg, 3> {  // [e1, e2] = e3, exp
   template <class T>
   using Element = hamel::VecT<T, 3>;
   using Retractions = hamel::TypeList<HeisenbergExp>;
-  static std::string name() { return "heisenberg"; }
+  static std::string name() { return "my_heisenberg"; }
   template <class T = double>
   static Element<T> identity() {
     return Element<T>::Zero();

@@ -10,8 +10,8 @@
 //   F(y) = 2 (y - mu_bar_k) - h E^T (ad_{E y})^T I E y = 0,   mu_bar_{k+1} = 2 y - mu_bar_k.
 // E^T I E = Id makes the energy |mu_bar|^2/2, and y . E^T (ad_{E y})^T I E y = (I E y).[E y, E y] = 0:
 // the energy is kept. (Celledoni and others, Energy-preserving integrators and the structure of B-series.)
-struct EnergyPreserving {
-  static std::string name() { return "energy_preserving"; }
+struct ReducedMidpoint {
+  static std::string name() { return "reduced_midpoint"; }
   static std::string formula() {
     return "mu_{k+1} - mu_k = h E' ad*_W I W, W = E (mu_k + mu_{k+1})/2";
   }
@@ -65,7 +65,7 @@ struct EnergyPreserving {
 };
 
 int main() {
-  hamel::add_scheme<EnergyPreserving, hamel::SO3, hamel::SE2>(hamel::registry());
+  hamel::add_scheme<ReducedMidpoint, hamel::SO3, hamel::SE2>(hamel::registry());
   auto suslov =
       hamel::simulate("suslov")
           .set("inertia", {2, 0.3, 0.5, 3, 0.4, 4})
@@ -74,7 +74,7 @@ int main() {
           .until(20);
   double error[2], energy = 0;
   for (const double step : {0.02, 0.01}) {
-    const auto result = suslov.scheme("energy_preserving").step(step).run();
+    const auto result = suslov.scheme("reduced_midpoint").step(step).run();
     error[step < 0.015] = result.exact_error_final;
     energy = std::max(energy, result.energy_error_max);
     if (step < 0.015) std::cout << result.report();

@@ -13,7 +13,7 @@ using namespace hamel;
 
 // ---- A group and its retraction, as a user writes them (also in groups/README.md). ----
 struct Heisenberg : GroupDefaults<Heisenberg, 3> {
-  static std::string name() { return "heisenberg"; }
+  static std::string name() { return "my_heisenberg"; }
   template <class T>
   using Element = VecT<T, 3>;
   template <class T = double>

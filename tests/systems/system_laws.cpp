@@ -1,6 +1,9 @@
 // Every registered system, and the library's by type, obey the laws of framework/check/system_laws.hpp.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <stdexcept>
+
 #include <hamel/framework/check/system_laws.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product.hpp>
@@ -89,6 +92,37 @@ TEST(SystemLaws, SeePlantedMistakes) {
   EXPECT_GE(failures(check_system<WrongInvariant, Exp<SO3>>(full<WrongInvariant>())), 2);
   EXPECT_GE(failures(check_system<Inadmissible, Exp<SO3>>(full<Inadmissible>())), 1);
   EXPECT_GE(failures(check_system<Asymmetric, Exp<SO3>>(full<Asymmetric>())), 1);
+}
+
+/// A parameter of default 0 that never reaches the struct; and one that cannot be anything but whole.
+struct LostParameter : ChaplyginSleigh {
+  static std::string name() { return "lost_parameter"; }
+  void fields(auto& f) {
+    double nowhere = 0;
+    f("tilt", nowhere, "rad");
+  }
+};
+struct WholeParameter : ChaplyginSleigh {
+  double count = 0;
+  static std::string name() { return "whole_parameter"; }
+  void fields(auto& f) { f("count", count, "1"); }
+  Mat<3, 3> inertia() const {
+    if (count != std::floor(count)) throw std::invalid_argument("count: expected a whole number");
+    return ChaplyginSleigh::inertia();
+  }
+};
+TEST(SystemLaws, SeeAParameterThatGoesNowhere) {
+  Registry mine = registry();
+  mine.add(system_info<LostParameter>());
+  mine.add(system_info<WholeParameter>());
+  const LawReport lost = check_system(mine, "lost_parameter");
+  ASSERT_EQ(failures(lost), 1);
+  for (const LawResult& law : lost) {
+    if (!law.passed()) {
+      EXPECT_EQ(law.law, "fields round trip");
+    }
+  }
+  expect(check_system(mine, "whole_parameter"), "whole_parameter");
 }
 
 }  // namespace

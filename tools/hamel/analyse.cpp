@@ -32,21 +32,36 @@ void print_rows(const Eigen::MatrixXd& m) {
 
 std::string verdict(const Analysis& a) {
   if (a.rows == 0) return "no constraint";
+  if (a.holonomic_rows == a.rows) return "holonomic: every row is the differential of a function";
   std::string growth;
-  for (int d : a.growth) growth += fmt::format("{}{}", growth.empty() ? "" : ", ", d);
-  if (a.integrable()) {
+  for (int d : a.growth.dimensions) growth += fmt::format("{}{}", growth.empty() ? "" : ", ", d);
+  const std::string of = a.growth.with_drift ? "brackets of d and the drift" : "brackets";
+  const int reached = a.growth.dimensions.back(), possible = a.n - a.holonomic_rows;
+  const std::string left = a.holonomic_rows > 0 ? " that the holonomic rows leave" : "";
+  if (!a.growth.decided()) {
+    const std::string nearby =
+        a.growth.nearby < 0 ? "" : fmt::format("; nearby they span {}", a.growth.nearby);
     return fmt::format(
-        "integrable: d is closed under brackets (dimension {}); the constraint is "
-        "holonomic in disguise",
-        a.m);
+        "{}: {} of up to {} fields span {} of {} directions{} (growth {}){}; {}",
+        a.integrable() ? "nonholonomic" : "not decided", of, a.growth.looked_at, reached, possible,
+        left, growth, nearby,
+        a.growth.round_off ? "stopped: deeper ones drown in round-off" : "stopped there");
   }
-  if (a.growth.back() == a.n - a.holonomic_rows) {
-    return fmt::format("nonholonomic: brackets of {} fields span all {} directions{} (growth {})",
-                       a.growth.size(), a.growth.back(),
-                       a.holonomic_rows > 0 ? " that the holonomic rows leave" : "", growth);
+  if (*a.integrable()) {
+    return fmt::format(
+        "integrable: {} is closed under brackets (dimension {}); the constraint is {}",
+        a.growth.with_drift ? "d with the drift" : "d", a.m,
+        a.growth.with_drift ? "holonomic, with time in it, in disguise" : "holonomic in disguise");
   }
-  return fmt::format("nonholonomic, but brackets reach only {} of {} directions (growth {})",
-                     a.growth.back(), a.n, growth);
+  if (reached == possible) {
+    return fmt::format("nonholonomic: {} of {} fields span all {} directions{} (growth {})", of,
+                       a.growth.dimensions.size(), reached, left, growth);
+  }
+  return fmt::format(
+      "nonholonomic, but {} reach only {} of {} directions{} (growth {}): {} of the rows, or of "
+      "their "
+      "combinations, can be integrated",
+      of, reached, possible, left, growth, possible - reached);
 }
 
 }  // namespace
@@ -59,6 +74,7 @@ int analyse(const DescribeOptions& options) {
     for (const auto& c : a.conserved) {
       conserved.push_back({{"expression", c.expression}, {"change", c.change}});
     }
+    const auto integrable = a.integrable();
     const Json json = {{"system", options.name},
                        {"dimension", a.n},
                        {"rows", a.rows},
@@ -66,9 +82,12 @@ int analyse(const DescribeOptions& options) {
                        {"holonomic_rows", a.holonomic_rows},
                        {"directions", a.m},
                        {"left_invariant", a.left_invariant},
-                       {"affine", a.affine},
-                       {"growth", a.growth},
-                       {"integrable", a.integrable()},
+                       {"affine", a.growth.with_drift},
+                       {"growth", a.growth.dimensions},
+                       {"growth_nearby", a.growth.nearby < 0 ? Json() : Json(a.growth.nearby)},
+                       {"growth_decided", a.growth.decided()},
+                       {"bracket_depth", a.growth.looked_at},
+                       {"integrable", integrable ? Json(*integrable) : Json()},
                        {"verdict", verdict(a)},
                        {"frame", rows_of(a.frame)},
                        {"structure_constants", structure},
@@ -81,9 +100,9 @@ int analyse(const DescribeOptions& options) {
              a.rows == 1 ? "" : "s", a.rank,
              a.holonomic_rows > 0 ? fmt::format(" ({} holonomic)", a.holonomic_rows) : "",
              a.rank < a.rows ? ", some redundant" : "", a.m, a.m == 1 ? "" : "s",
-             a.left_invariant ? "left-invariant"
-             : a.affine       ? "affine, not left-invariant"
-                              : "not left-invariant");
+             a.left_invariant      ? "left-invariant"
+             : a.growth.with_drift ? "rows with a drift or with time in them, not left-invariant"
+                                   : "not left-invariant");
   fmt::print("  {}\n", verdict(a));
   fmt::print("  Hamel frame at the start (columns, I-orthonormal)\n");
   print_rows(a.frame);
