@@ -9,8 +9,8 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/types.hpp>
-#include <hamel/groups/coordinates.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/so3.hpp>
 #include <span>
@@ -119,14 +119,13 @@ struct SE3 {
     return names;
   }
   template <class T>
-  static std::vector<T> coordinates(const SE3Element<T>& g) {
-    std::vector<T> values = SO3::coordinates(g.rotation);
-    values.insert(values.end(), {g.translation[0], g.translation[1], g.translation[2]});
-    return values;
+  static Coordinates<T, 12> coordinates(const SE3Element<T>& g) {
+    const auto [a, b, c, d, e, f, u, v, w] = SO3::coordinates(g.rotation);
+    return {a, b, c, d, e, f, u, v, w, g.translation[0], g.translation[1], g.translation[2]};
   }
   /// R row by row, then x, y, z. Throws std::invalid_argument.
   static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates("se3", values, columns());
+    check_coordinates<SE3>(values);
     return {SO3::rotation_from("se3", values), {values[9], values[10], values[11]}};
   }
 
