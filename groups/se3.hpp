@@ -8,6 +8,8 @@
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
 
+#include <algorithm>
+
 #include <Eigen/LU>
 #include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/types.hpp>
@@ -120,8 +122,11 @@ struct SE3 {
   }
   template <class T>
   static Coordinates<T, 12> coordinates(const SE3Element<T>& g) {
-    const auto [a, b, c, d, e, f, u, v, w] = SO3::coordinates(g.rotation);
-    return {a, b, c, d, e, f, u, v, w, g.translation[0], g.translation[1], g.translation[2]};
+    const auto rotation = SO3::coordinates(g.rotation);
+    Coordinates<T, 12> values;
+    std::copy_n(g.translation.data(), 3,
+                std::copy(rotation.begin(), rotation.end(), values.begin()));
+    return values;
   }
   /// R row by row, then x, y, z. Throws std::invalid_argument.
   static Element<double> from_coordinates(std::span<const double> values) {
