@@ -55,6 +55,7 @@ concept Group = requires(const typename G::template Element<double>& g, const Ve
   // CSV columns of an element: names, values, and back (std::invalid_argument when not in the group).
   { G::columns() } -> std::convertible_to<std::vector<std::string>>;
   { G::coordinates(g) } -> std::convertible_to<std::vector<double>>;
+  { G::coordinates(g).count } -> std::convertible_to<std::size_t>;  // Coordinates<double, N>
   { G::from_coordinates(values) } -> std::convertible_to<typename G::template Element<double>>;
 };
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/differences.hpp>
 #include <hamel/framework/mechanics.hpp>
 #include <hamel/framework/toml_reader.hpp>
 
@@ -37,7 +38,8 @@ class DataMechanics final : public Mechanics {
         geometry_(std::move(geometry)),
         columns_(geometry_->columns()),
         moved_(geometry_->size()),
-        step_(dim()) {}
+        step_(dim()),
+        axis_(dim()) {}
   int dim() const override { return static_cast<int>(inertia_.rows()); }
   int rows() const override { return static_cast<int>(a_.rows()); }
   bool constant_constraints() const override { return true; }
@@ -48,39 +50,26 @@ class DataMechanics final : public Mechanics {
   }
   double potential(const double* g) const override {
     geometry_->coordinates(g, columns_.data());
-    return value();
+    const auto off = (columns_ - terms_.rest).array();
+    return terms_.weight.dot(columns_) + 0.5 * (terms_.stiffness.array() * off * off).sum();
   }
-  // dV: sixth-order central differences along g tau(e eta), error about 1e-12.
   void force(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
     out = -terms_.damping.cwiseProduct(xi);
     if (!terms_.potential()) return;
-    constexpr double unit = 2e-3, weights[] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
     for (Eigen::Index i = 0; i < out.size(); ++i) {
-      for (int k = 1; k <= 3; ++k) {
-        out[i] -= weights[k - 1] / unit * (shifted(g, i, k * unit) - shifted(g, i, -k * unit));
-      }
+      axis_ = Eigen::VectorXd::Unit(dim(), i);
+      differentiate_along(*geometry_, g, axis_, step_, moved_, [&](double, double weight) {
+        out[i] -= weight * potential(moved_.data());
+      });
     }
   }
 
  private:
-  double value() const {
-    const auto off = (columns_ - terms_.rest).array();
-    return terms_.weight.dot(columns_) + 0.5 * (terms_.stiffness.array() * off * off).sum();
-  }
-  double shifted(const double* g, Eigen::Index i, double shift) const {
-    step_.setZero();
-    step_[i] = shift;
-    geometry_->tau(step_.data(), moved_.data());
-    geometry_->compose(g, moved_.data(), moved_.data());
-    geometry_->coordinates(moved_.data(), columns_.data());
-    return value();
-  }
-
   Eigen::MatrixXd inertia_, a_;
   Eigen::VectorXd b_;
   Terms terms_;
   std::shared_ptr<const Geometry> geometry_;
-  mutable Eigen::VectorXd columns_, moved_, step_;
+  mutable Eigen::VectorXd columns_, moved_, step_, axis_;
 };
 
 class File {

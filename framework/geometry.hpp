@@ -6,6 +6,7 @@
 // of a general step: erasing the type keeps the build short and costs nothing that can be measured.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include <hamel/framework/concepts.hpp>
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/trivialised.hpp>
 
 namespace hamel {
@@ -133,17 +135,16 @@ class TypedGeometry final : public Geometry {
     put(hamel::base_momentum<Tau>(s, vec(xi), vec(p), vec(nu)), m0);
   }
   bool in_domain(const double* xi) const override { return Tau::in_domain(vec(xi)); }
-  int columns() const override { return static_cast<int>(G::columns().size()); }
+  int columns() const override { return static_cast<int>(coordinate_count<G>); }
   void coordinates(const double* g, double* out) const override {
-    const std::vector<double> values = G::coordinates(Pack::load(g));
+    const auto values = G::coordinates(Pack::load(g));
     std::copy(values.begin(), values.end(), out);
   }
   void from_coordinates(std::span<const double> values, double* out) const override {
     Pack::store(G::from_coordinates(values), out);
   }
   void nearest(std::span<const double> values, double* out) const override {
-    if constexpr (requires { G::nearest(values); }) Pack::store(G::nearest(values), out);
-    else Pack::store(G::from_coordinates(values), out);
+    Pack::store(nearest_element<G>(values), out);
   }
 };
 

@@ -9,14 +9,14 @@
 // The Heisenberg group in full, with a retraction by automatic differentiation: groups/README.md.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/types.hpp>
 
 namespace hamel {
@@ -61,25 +61,15 @@ struct GroupDefaults {
     return names;
   }
   template <class T, int Rows>
-  static std::vector<T> coordinates(const Eigen::Matrix<T, Rows, 1>& g) {
-    return std::vector<T>(g.data(), g.data() + Rows);
+  static auto coordinates(const Eigen::Matrix<T, Rows, 1>& g) {
+    Coordinates<T, static_cast<std::size_t>(Rows)> values;
+    std::copy_n(g.data(), Rows, values.begin());
+    return values;
   }
   /// Throws std::invalid_argument on a wrong length or a value that is not finite.
   static auto from_coordinates(std::span<const double> values) {
-    constexpr int n = rows<Derived>();
-    if (values.size() != static_cast<std::size_t>(n)) {
-      throw std::invalid_argument(std::string(Derived::name()) + ": " +
-                                  std::to_string(values.size()) + " values, expected " +
-                                  std::to_string(n));
-    }
-    for (int i = 0; i < n; ++i) {
-      const double value = values[static_cast<std::size_t>(i)];
-      if (!std::isfinite(value)) {
-        throw std::invalid_argument(std::string(Derived::name()) + ": x" + std::to_string(i + 1) +
-                                    " = " + std::to_string(value) + ", expected a finite number");
-      }
-    }
-    return Vec<n>(values.data());
+    check_coordinates<Derived>(values);
+    return Vec<rows<Derived>()>(values.data());
   }
 
  private:

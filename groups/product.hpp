@@ -6,12 +6,13 @@
 // are in product_retraction.hpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/geometry.hpp>
 #include <hamel/framework/retraction_defaults.hpp>
 #include <hamel/framework/types.hpp>
-#include <hamel/groups/coordinates.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <span>
 #include <string>
@@ -183,23 +184,22 @@ struct Product {
     return names;
   }
   template <class T>
-  static std::vector<T> coordinates(const ProductElement<T, Gs...>& g) {
-    std::vector<T> values;
+  static auto coordinates(const ProductElement<T, Gs...>& g) {
+    Coordinates<T, (coordinate_count<Gs> + ...)> values;
+    auto to = values.begin();
     for_each_factor([&](auto i) {
       const auto own = Factor<i>::coordinates(g.template part<i>());
-      values.insert(values.end(), own.begin(), own.end());
+      to = std::copy(own.begin(), own.end(), to);
     });
     return values;
   }
   /// The factors' values one after another. Throws std::invalid_argument.
   static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates(name(), values, columns());
-    std::size_t begin = 0;
-    return each<double>([&](auto i) {
-      const std::size_t count = Factor<i>::columns().size();
-      begin += count;
-      return Factor<i>::from_coordinates(values.subspan(begin - count, count));
-    });
+    check_coordinates<Product>(values);
+    return each<double>([&](auto i) { return Factor<i>::from_coordinates(take<i>(values)); });
+  }
+  static Element<double> nearest(std::span<const double> values) {
+    return each<double>([&](auto i) { return nearest_element<Factor<i>>(take<i>(values)); });
   }
 
   /// The element whose part I is part(index).
@@ -213,6 +213,14 @@ struct Product {
   }
 
  private:
+  /// The coordinates of factor I, taken off the front.
+  template <std::size_t I>
+  static std::span<const double> take(std::span<const double>& values) {
+    constexpr std::size_t count = coordinate_count<Factor<I>>;
+    const auto own = values.first(count);
+    values = values.subspan(count);
+    return own;
+  }
   template <class T>
   static auto assemble(const std::vector<MatT<T, Eigen::Dynamic, Eigen::Dynamic>>& blocks) {
     Eigen::Index size = 0, at = 0;

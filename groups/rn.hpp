@@ -5,19 +5,16 @@
 // Source: any text; it is the abelian case of everything here.
 #pragma once
 
+#include <hamel/framework/group_defaults.hpp>
 #include <hamel/framework/types.hpp>
-#include <hamel/groups/coordinates.hpp>
 #include <hamel/groups/retractions.hpp>
-#include <span>
 #include <string>
-#include <vector>
 
 namespace hamel {
 
 template <int N>
-struct Rn {
+struct Rn : GroupDefaults<Rn<N>, N> {
   static_assert(N >= 1);
-  static constexpr int dim = N;
   template <class T>
   using Element = VecT<T, N>;
   using Retractions = TypeList<Exp<Rn>, Cayley<Rn>, SecondKind<Rn>, SecondKindSymmetric<Rn>>;
@@ -52,14 +49,6 @@ struct Rn {
   static MatT<T, N, N> coad(const VecT<T, N>&) {
     return MatT<T, N, N>::Zero();
   }
-  template <class T>
-  static VecT<T, N> normalise(const VecT<T, N>& g) {
-    return g;
-  }
-  template <class T>
-  static T defect(const VecT<T, N>&) {
-    return T(0.0);
-  }
 
   /// [[I, x], [0, 1]].
   template <class T>
@@ -78,21 +67,6 @@ struct Rn {
   template <class T>
   static VecT<T, N> vee(const MatT<T, N + 1, N + 1>& m) {
     return m.template topRightCorner<N, 1>();
-  }
-
-  static std::vector<std::string> columns() {
-    std::vector<std::string> names;
-    for (int i = 1; i <= N; ++i) names.push_back("x" + std::to_string(i));
-    return names;
-  }
-  template <class T>
-  static std::vector<T> coordinates(const VecT<T, N>& g) {
-    return std::vector<T>(g.data(), g.data() + N);
-  }
-  /// Throws std::invalid_argument on a wrong length or a value that is not finite.
-  static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates(name(), values, columns());
-    return Element<double>(values.data());
   }
 };
 

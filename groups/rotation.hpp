@@ -10,8 +10,8 @@
 
 #include <cmath>
 #include <hamel/framework/concepts.hpp>
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/types.hpp>
-#include <hamel/groups/coordinates.hpp>
 #include <numbers>
 #include <string>
 

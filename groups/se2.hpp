@@ -9,8 +9,8 @@
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
 
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/types.hpp>
-#include <hamel/groups/coordinates.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/so2.hpp>
 #include <span>
@@ -113,13 +113,16 @@ struct SE2 {
 
   static std::vector<std::string> columns() { return {"theta", "x", "y"}; }
   template <class T>
-  static std::vector<T> coordinates(const SE2Element<T>& g) {
+  static Coordinates<T, 3> coordinates(const SE2Element<T>& g) {
     return {g.angle(), g.translation[0], g.translation[1]};
   }
   /// theta [rad], x, y. Throws std::invalid_argument.
   static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates("se2", values, columns());
+    check_coordinates<SE2>(values);
     return {SO2::from_coordinates(values.first(1)), {values[1], values[2]}};
+  }
+  static Element<double> nearest(std::span<const double> values) {
+    return {SO2::nearest(values), {values[1], values[2]}};
   }
 };
 

@@ -8,9 +8,11 @@
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
 
+#include <algorithm>
+
 #include <Eigen/LU>
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/types.hpp>
-#include <hamel/groups/coordinates.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/so3.hpp>
 #include <span>
@@ -119,14 +121,16 @@ struct SE3 {
     return names;
   }
   template <class T>
-  static std::vector<T> coordinates(const SE3Element<T>& g) {
-    std::vector<T> values = SO3::coordinates(g.rotation);
-    values.insert(values.end(), {g.translation[0], g.translation[1], g.translation[2]});
+  static Coordinates<T, 12> coordinates(const SE3Element<T>& g) {
+    const auto rotation = SO3::coordinates(g.rotation);
+    Coordinates<T, 12> values;
+    std::copy_n(g.translation.data(), 3,
+                std::copy(rotation.begin(), rotation.end(), values.begin()));
     return values;
   }
   /// R row by row, then x, y, z. Throws std::invalid_argument.
   static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates("se3", values, columns());
+    check_coordinates<SE3>(values);
     return {SO3::rotation_from("se3", values), {values[9], values[10], values[11]}};
   }
 

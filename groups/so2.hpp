@@ -10,8 +10,8 @@
 #pragma once
 
 #include <cmath>
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/types.hpp>
-#include <hamel/groups/coordinates.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <numbers>
 #include <span>
@@ -143,18 +143,19 @@ struct SO2 {
 
   static std::vector<std::string> columns() { return {"theta"}; }
   template <class T>
-  static std::vector<T> coordinates(const SO2Element<T>& g) {
+  static Coordinates<T, 1> coordinates(const SO2Element<T>& g) {
     return {g.angle()};
   }
   /// theta [rad], |theta| < 1e9. Throws std::invalid_argument.
   static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates("so2", values, columns());
+    check_coordinates<SO2>(values);
     if (!(std::abs(values[0]) < 1e9)) {
       throw std::invalid_argument("so2: theta = " + to_text(values[0]) +
                                   ", expected an angle in radians below 1e9");
     }
     return from_angle(values[0]);
   }
+  static Element<double> nearest(std::span<const double> values) { return from_angle(values[0]); }
 
  private:
   template <class T>

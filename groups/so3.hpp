@@ -8,8 +8,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <hamel/framework/coordinates.hpp>
 #include <hamel/framework/types.hpp>
-#include <hamel/groups/coordinates.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <span>
 #include <string>
@@ -112,12 +112,12 @@ struct SO3 {
   }
   /// Row by row.
   template <class T>
-  static std::vector<T> coordinates(const MatT<T, 3, 3>& g) {
+  static Coordinates<T, 9> coordinates(const MatT<T, 3, 3>& g) {
     return {g(0, 0), g(0, 1), g(0, 2), g(1, 0), g(1, 1), g(1, 2), g(2, 0), g(2, 1), g(2, 2)};
   }
   /// A rotation to 1e-6, which is then normalised. Throws std::invalid_argument.
   static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates("so3", values, columns());
+    check_coordinates<SO3>(values);
     return rotation_from("so3", values);
   }
 

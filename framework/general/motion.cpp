@@ -1,12 +1,11 @@
 #include <hamel/framework/general/motion.hpp>
 
-#include <algorithm>
-#include <array>
-
 #include <limits>
 #include <utility>
 
 #include <Eigen/LU>
+
+#include <hamel/framework/differences.hpp>
 
 namespace hamel {
 
@@ -25,25 +24,19 @@ void Motion::operator()(double t, const double* g, const Eigen::VectorXd& xi) {
   a_rate_.setZero();
   b_rate_.setZero();
   inertia_rate_.setZero();
-  constexpr std::array weights = {45.0 / 60, -9.0 / 60, 1.0 / 60};
-  const double unit = 2e-3 / std::max(1.0, xi.norm());
   const bool moves = !system_->constant_constraints(), varies = !system_->constant_inertia();
-  for (int i = -3; i <= 3 && (moves || varies); ++i) {
-    if (i == 0) continue;
-    const double shift = i * unit;
-    const double weight = (i > 0 ? 1 : -1) * weights[static_cast<size_t>(std::abs(i) - 1)] / unit;
-    step_ = shift * xi;
-    geometry_->tau(step_.data(), moved_.data());
-    geometry_->compose(g, moved_.data(), moved_.data());
-    if (moves) {
-      system_->constraints(t + shift, moved_.data(), a_, b_);
-      a_rate_ += weight * a_;
-      b_rate_ += weight * b_;
-    }
-    if (varies) {
-      system_->inertia(moved_.data(), inertia_);
-      inertia_rate_ += weight * inertia_;
-    }
+  if (moves || varies) {
+    differentiate_along(*geometry_, g, xi, step_, moved_, [&](double shift, double weight) {
+      if (moves) {
+        system_->constraints(t + shift, moved_.data(), a_, b_);
+        a_rate_ += weight * a_;
+        b_rate_ += weight * b_;
+      }
+      if (varies) {
+        system_->inertia(moved_.data(), inertia_);
+        inertia_rate_ += weight * inertia_;
+      }
+    });
   }
   momentum_.noalias() = place_.inertia * xi;
   system_->force(t, g, xi, change_);

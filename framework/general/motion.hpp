@@ -2,7 +2,7 @@
 //
 // Lagrange-d'Alembert with multipliers (method.md, section 1), d/dt along the motion:
 //   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,   A xi' = db/dt - (dA/dt) xi.
-// dI/dt, dA/dt, db/dt are sixth-order central differences along g tau(e xi), t + e.
+// dI/dt, dA/dt, db/dt are differences along g tau(e xi), t + e (differences.hpp).
 #pragma once
 
 #include <memory>

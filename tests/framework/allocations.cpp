@@ -79,8 +79,6 @@ long counted(Integration& run, long steps, Status& status) {
 template <class S>
 void expect_none(const S& system, const std::string& compose = "none") {
   for (const std::string& scheme : registry().schemes()) {
-    // Not yet: it goes through the coordinates of the trajectory file, which are std::vectors.
-    if (scheme == "rk4_projected") continue;
     for (const std::string& retraction : registry().retractions(S::Group::name())) {
       for (const double s : {0.0, 0.3}) {
         // boxed_literal takes O(1) steps whatever h is: a small start keeps it inside every domain.
@@ -116,7 +114,6 @@ TEST_F(Allocations, NoneOnAProduct) { expect_none(test::Body<Product<SE2, SO2>, 
 TEST_F(Allocations, NoneOnGeneralSystems) {
   for (const std::string& system : registry().systems()) {
     for (const std::string& scheme : registry().schemes()) {
-      if (scheme == "rk4_projected") continue;  // as above
       const SchemeInfo& info = *registry().scheme(scheme);
       if (!info.general ||
           !info.defined(registry().system(system)->make({}).mechanics == nullptr)) {
@@ -130,6 +127,22 @@ TEST_F(Allocations, NoneOnGeneralSystems) {
         EXPECT_TRUE(status.ok) << system << " " << scheme << ": " << status.reason;
       }
     }
+  }
+}
+/// Of every group's elements, and of products put together at run time.
+TEST_F(Allocations, NoneForCoordinates) {
+  std::vector<std::string> groups = registry().groups();
+  groups.push_back("so3*r2^2*so2");
+  for (const std::string& group : groups) {
+    std::vector<double> values = registry().group_or_product(group)->identity;
+    const auto geometry = registry().geometry(group, "exp");
+    std::vector<double> g(static_cast<size_t>(geometry->size()));
+    const long before = allocations;
+    geometry->from_coordinates(values, g.data());
+    geometry->nearest(values, g.data());
+    geometry->coordinates(g.data(), values.data());
+    EXPECT_EQ(geometry->columns(), static_cast<int>(values.size()));
+    EXPECT_EQ(allocations - before, 0) << group;
   }
 }
 TEST_F(Allocations, NoneWhenComposed) {

@@ -67,5 +67,19 @@ TEST(Coordinates, RoundTripIsExact) {
   EXPECT_NEAR(g.angle(), 7.5, 1e-15 * 8);
   EXPECT_EQ(g.translation, Vec<2>(-2, 3));
 }
+/// What a Runge-Kutta stage leaves: a rotation that is off by 0.1, an angle of many turns.
+TEST(Coordinates, NearestTakesWhatIsNoElement) {
+  using G = Product<SO3, SE2>;
+  const auto g = G::compose(G::identity(), {{Exp<SO3>::tau(Vec<3>(0.3, -0.5, 0.9)), {}}});
+  std::vector<double> off = G::coordinates(g);
+  off[0] += 0.1;
+  off[9] = 2e9;
+  off[10] = 7;
+  EXPECT_NE(refusal<G>(off), "accepted");
+  const auto near = nearest_element<G>(off);
+  EXPECT_LT(G::defect(near), 1e-14);
+  EXPECT_LT((near.part<0>() - g.part<0>()).norm(), 0.1);
+  EXPECT_EQ(near.part<1>().translation[0], 7);
+}
 
 }  // namespace
