@@ -97,16 +97,7 @@ TEST_F(StudyCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
   std::string all = "solver = [";
   for (const auto& solver : Json::parse(run({"list", "solvers", "--json"}).out))
     all += solver["name"].dump() + ", ";
-  const std::string bowl =
-      kBowl;  // boxed is not defined in it: on the level, twice, without an exact motion
-  std::ofstream(file("level.toml")) << bowl.substr(0, bowl.find("[linear]"));
-  const std::string name = study(all + "]\n" + kSmall + R"([[system]]
-name = "level.toml"
-[[system]]
-name = "level.toml"
-label = "faster"
-velocity = [1.2, 1.5, 0]
-)");
+  const std::string name = study(all + "]\n" + kSmall);
   ASSERT_EQ(run({"study", name, "-o", "one", "--threads", "1", "--quiet"}).status, 0);
   ASSERT_EQ(run({"study", name, "-o", "two", "--threads", "2", "--quiet"}).status, 0);
   EXPECT_EQ(cells("one"), cells("two"));

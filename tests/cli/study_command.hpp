@@ -9,15 +9,6 @@
 
 namespace hamel::test {
 
-/// A system by data alone, whose motion is not known exactly.
-inline constexpr const char* kBowl = R"(group = "se2"
-inertia = [0.1, 1, 1]
-constraints = [[0, 0, 1]]
-velocity = [1.2, 0.5, 0]
-[linear]
-x = -0.5
-)";
-
 class StudyCommand : public CommandLine {
  protected:
   std::string study(const std::string& text, const std::string& name = "small.toml") const {

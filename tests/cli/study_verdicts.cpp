@@ -10,6 +10,15 @@ using Json = nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
+// A system by data alone, whose motion is not known exactly.
+constexpr const char* kBowl = R"(group = "se2"
+inertia = [0.1, 1, 1]
+constraints = [[0, 0, 1]]
+velocity = [1.2, 0.5, 0]
+[linear]
+x = -0.5
+)";
+
 /// A scheme that solves nothing is compared with no solver, and named without one.
 TEST_F(StudyCommand, ExplicitSchemesStandAlone) {
   const std::string name = study(R"(until = 2
