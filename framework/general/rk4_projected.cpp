@@ -4,7 +4,7 @@
 // The coordinates are the columns q(g) of the element (nine for a rotation), in which
 //   q' = d/de q(g tau(e xi)) at e = 0.
 // Between the stages they leave the group; the element is the one nearest to them. Weakness: no structure but
-// what the projections put back; energy and holonomic rows drift.
+// what the projections put back; energy and holonomic rows drift as those of rkmk4 (rkmk4.cpp).
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4 (projection methods).
 #include <hamel/framework/differences.hpp>
 #include <hamel/framework/general/baselines.hpp>
