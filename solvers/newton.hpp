@@ -182,7 +182,7 @@ struct Newton {
       64 * 64 * std::numeric_limits<double>::epsilon() * std::numeric_limits<double>::epsilon();
 
   // Is a J that has taken |F|^2 from before to after good enough for the next correction? It should cut |F|
-  // by ten; where it is made of differences and costs n + 1 residuals by two, or reach the round-off.
+  // by ten; where it is made of differences and costs 2 n + 1 residuals by two, or reach the round-off.
   template <class Step>
   static bool worth_keeping(double before, double after, double scale) {
     if (Memory<Step>::bounded) return after <= 0.01 * before;
@@ -208,7 +208,7 @@ struct Newton {
     auto& [f, correction, trial, trial_f] = work;
     bool fresh = false;
     const auto finish = [&](Reason reason) {
-      // Without a bound a Jacobian costs n + 1 residuals: it is kept longer.
+      // Without a bound a Jacobian costs 2 n + 1 residuals: it is kept longer.
       memory.valid = memory.valid && report.iterations <= (Memory<Step>::bounded ? 1 : 3);
       report.reason = reason;
       report.residual = std::sqrt(size / scale);

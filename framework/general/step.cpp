@@ -7,13 +7,12 @@ namespace hamel {
 
 void GeneralStep::differentiate(const Unknown& x, Unknown& f, Jacobian& j, bool in_frame) const {
   const double size = x.lpNorm<Eigen::Infinity>();
-  const double step = std::sqrt(std::numeric_limits<double>::epsilon()) * (size > 0 ? size : 1.0);
+  const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * (size > 0 ? size : 1.0);
   direction_.resize(x.size());
   shifted_.resize(x.size());
   shifted_f_.resize(x.size());
   f.resize(x.size());
   j.resize(x.size(), x.size());
-  residual(x, f);
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     direction_.setZero();
     direction_[i] = 1;
@@ -21,8 +20,11 @@ void GeneralStep::differentiate(const Unknown& x, Unknown& f, Jacobian& j, bool 
     const double length = step / direction_.lpNorm<Eigen::Infinity>();
     shifted_ = x + length * direction_;
     residual(shifted_, shifted_f_);
-    j.col(i) = (shifted_f_ - f) / length;
+    shifted_ = x - length * direction_;
+    residual(shifted_, f);
+    j.col(i) = (shifted_f_ - f) / (2 * length);
   }
+  residual(x, f);
 }
 
 }  // namespace hamel

@@ -35,7 +35,7 @@ class GeneralStep {
   virtual double scale_squared() const = 0;
   /// F(x).
   virtual void residual(const Unknown& x, Unknown& f) const = 0;
-  /// F and dF/dx, by differences, error about 1e-8: it only steers the solver.
+  /// F and dF/dx, by central differences, error about 1e-10: it only steers the solver.
   void linearise(const Unknown& x, Unknown& f, Jacobian& j) const { differentiate(x, f, j, false); }
   /// Coordinates of corrections in which the Jacobian changes little along a motion: z -> dx, in place.
   virtual void from_frame(Unknown& /*z*/) const {}
