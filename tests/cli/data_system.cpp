@@ -103,7 +103,7 @@ TEST_F(DataSystem, MistakesAreNamed) {
           "spring.x: expected { stiffness");
   refused("group = \"se2\"\ninertia = [1, 2, 3]\n[damping]\n4 = 1", "1 to 3, got '4'");
   refused("group = \"se2\"\ninertia = [1, 2, 3]\n[spring]\nx = { stiffness = 1, rset = 2 }",
-          ":4:28: unknown key 'rset': expected one of stiffness, rest; did you mean 'rest'?");
+          ":4:29: unknown key 'rset': expected one of stiffness, rest; did you mean 'rest'?");
   refused("group = \"se2\"\ninertia = [1, 2, 3]\n[spring]\nx = { rest = 2 }",
           ":4:5: spring.x: expected { stiffness");
   refused("name = 3\ngroup = \"se2\"\ninertia = [1, 2, 3]", ":1:8: name: expected a string");

@@ -35,16 +35,16 @@ std::string verdict(const Analysis& a) {
   if (a.holonomic_rows == a.rows) return "holonomic: every row is the differential of a function";
   std::string growth;
   for (int d : a.growth.dimensions) growth += fmt::format("{}{}", growth.empty() ? "" : ", ", d);
-  const std::string of = a.growth.with_drift ? "brackets of d and the drift" : "brackets";
+  const std::string drift = a.growth.with_drift ? " (the drift among them)" : "";
   const int reached = a.growth.dimensions.back(), possible = a.n - a.holonomic_rows;
   const std::string left = a.holonomic_rows > 0 ? " that the holonomic rows leave" : "";
   if (!a.growth.decided()) {
     const std::string nearby =
         a.growth.nearby < 0 ? "" : fmt::format("; nearby they span {}", a.growth.nearby);
     return fmt::format(
-        "{}: {} of up to {} fields span {} of {} directions{} (growth {}){}; {}",
-        a.integrable() ? "nonholonomic" : "not decided", of, a.growth.looked_at, reached, possible,
-        left, growth, nearby,
+        "{}: brackets of up to {} fields{} span {} of {} directions{} (growth {}){}; {}",
+        a.integrable() ? "nonholonomic" : "not decided", a.growth.looked_at, drift, reached,
+        possible, left, growth, nearby,
         a.growth.round_off ? "stopped: deeper ones drown in round-off" : "stopped there");
   }
   if (*a.integrable()) {
@@ -54,14 +54,15 @@ std::string verdict(const Analysis& a) {
         a.growth.with_drift ? "holonomic, with time in it, in disguise" : "holonomic in disguise");
   }
   if (reached == possible) {
-    return fmt::format("nonholonomic: {} of {} fields span all {} directions{} (growth {})", of,
-                       a.growth.dimensions.size(), reached, left, growth);
+    return fmt::format("nonholonomic: brackets of {} fields{} span all {} directions{} (growth {})",
+                       a.growth.dimensions.size(), drift, reached, left, growth);
   }
   return fmt::format(
-      "nonholonomic, but {} reach only {} of {} directions{} (growth {}): {} of the rows, or of "
+      "nonholonomic, but brackets of fields{} reach only {} of {} directions{} (growth {}): {} of "
+      "the rows, or of "
       "their "
       "combinations, can be integrated",
-      of, reached, possible, left, growth, possible - reached);
+      drift, reached, possible, left, growth, possible - reached);
 }
 
 }  // namespace
