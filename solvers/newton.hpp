@@ -3,7 +3,7 @@
 //   x <- x - J^-1 F(x),   accepted when |F(x)| <= tolerance * scale, F evaluated at the x returned.
 // Along a trajectory J changes by O(h) a step and the extrapolated guess is good, so that one correction
 // with the last J usually does. J is evaluated anew when a correction does not cut |F| by ten, and for the
-// next step when more than one correction was needed (by two, more than three where J is made of
+// next step when more than one correction was needed (by two, more than 2 + 2 n/5 where J is made of
 // differences); a fresh correction that does not reduce |F| is
 // halved, up to ten times. At least one correction is made: a guess that already meets the tolerance
 // would leave its extrapolation error, always of one sign, in every step. When |F| stops falling it is
@@ -208,8 +208,9 @@ struct Newton {
     auto& [f, correction, trial, trial_f] = work;
     bool fresh = false;
     const auto finish = [&](Reason reason) {
-      // Without a bound a Jacobian costs 2 n + 1 residuals: it is kept longer.
-      memory.valid = memory.valid && report.iterations <= (Memory<Step>::bounded ? 1 : 3);
+      // Made of differences a Jacobian costs 2 n + 1 residuals, a correction one: it is kept longer.
+      const auto most = Memory<Step>::bounded ? 1 : 2 + static_cast<int>(2 * x.size()) / 5;
+      memory.valid = memory.valid && report.iterations <= most;
       report.reason = reason;
       report.residual = std::sqrt(size / scale);
       return report;
