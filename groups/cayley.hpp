@@ -11,7 +11,7 @@
 // Lubich, Wanner, IV.8.3.
 #pragma once
 
-#include <hamel/framework/retraction_defaults.hpp>
+#include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <string>
@@ -64,7 +64,7 @@ struct Cayley<SO2> : CayleyDefaults<SO2> {
 
 template <>
 struct Cayley<SO3> : CayleyDefaults<SO3> {
-  /// dR^-1 is quadratic in xi, so the weight of its even part is one (framework/hamel_form.hpp).
+  /// dR^-1 is quadratic in xi, so the weight of its even part is one (framework/schemes/hamel_form.hpp).
   static double quadratic_weight(double /*x*/) { return 1.0; }
   static double angle_squared(const Vec<3>& xi) { return xi.dot(xi); }
   /// I + (omega^ + omega^2/2)/(1 + |omega|^2/4).
@@ -125,7 +125,7 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
 
 template <>
 struct Cayley<SE2> : CayleyDefaults<SE2> {
-  /// dR^-1 is quadratic in xi, so the weight of its even part is one (framework/hamel_form.hpp).
+  /// dR^-1 is quadratic in xi, so the weight of its even part is one (framework/schemes/hamel_form.hpp).
   static double quadratic_weight(double /*x*/) { return 1.0; }
   static double angle_squared(const Vec<3>& xi) { return xi[0] * xi[0]; }
   /// (cay omega, (I - omega J/2)^-1 v).

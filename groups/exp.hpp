@@ -11,7 +11,7 @@
 #pragma once
 
 #include <cmath>
-#include <hamel/framework/retraction_defaults.hpp>
+#include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/groups/dexp.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/rn.hpp>
@@ -121,7 +121,7 @@ struct Exp<SO2> : CircleExponential<Exp<SO2>> {
 
 template <>
 struct Exp<SO3> : ExpDefaults<SO3> {
-  /// dR^-1 = 1 - ad/2 + cotc(x) ad^2 (framework/hamel_form.hpp).
+  /// dR^-1 = 1 - ad/2 + cotc(x) ad^2 (framework/schemes/hamel_form.hpp).
   static double quadratic_weight(double x) { return cotc(x); }
   static double angle_squared(const Vec<3>& xi) { return xi.dot(xi); }
   template <class T>
@@ -182,7 +182,7 @@ struct Exp<SO3> : ExpDefaults<SO3> {
 
 template <>
 struct Exp<SE2> : ExpDefaults<SE2> {
-  /// dR^-1 = 1 - ad/2 + cotc(x) ad^2 (framework/hamel_form.hpp).
+  /// dR^-1 = 1 - ad/2 + cotc(x) ad^2 (framework/schemes/hamel_form.hpp).
   static double quadratic_weight(double x) { return cotc(x); }
   static double angle_squared(const Vec<3>& xi) { return xi[0] * xi[0]; }
   /// (exp omega, (sinc I + omega cosc J) v).

@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include <hamel/framework/group_defaults.hpp>
+#include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/groups/retractions.hpp>
 
 namespace hamel {

@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <hamel/framework/coordinates.hpp>
-#include <hamel/framework/geometry.hpp>
-#include <hamel/framework/retraction_defaults.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/lie/retraction_defaults.hpp>
+#include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <span>
 #include <string>

@@ -6,7 +6,7 @@
 #pragma once
 
 #include <cstddef>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <string>

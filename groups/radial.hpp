@@ -16,7 +16,7 @@
 #include <numbers>
 #include <string>
 
-#include <hamel/framework/retraction_defaults.hpp>
+#include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/groups/dexp.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/rotation.hpp>

@@ -10,7 +10,7 @@
 // first the default; for a group that cannot be changed specialise RetractionsOf instead.
 #pragma once
 
-#include <hamel/framework/retraction_defaults.hpp>
+#include <hamel/framework/lie/retraction_defaults.hpp>
 
 namespace hamel {
 

@@ -5,8 +5,8 @@
 // Source: any text; it is the abelian case of everything here.
 #pragma once
 
-#include <hamel/framework/group_defaults.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/group_defaults.hpp>
+#include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <string>
 

@@ -9,9 +9,9 @@
 #pragma once
 
 #include <cmath>
-#include <hamel/framework/concepts.hpp>
-#include <hamel/framework/coordinates.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/concepts.hpp>
+#include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/types.hpp>
 #include <numbers>
 #include <string>
 

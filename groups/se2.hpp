@@ -9,8 +9,8 @@
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
 
-#include <hamel/framework/coordinates.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/so2.hpp>
 #include <span>

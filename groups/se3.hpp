@@ -11,8 +11,8 @@
 #include <algorithm>
 
 #include <Eigen/LU>
-#include <hamel/framework/coordinates.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/so3.hpp>
 #include <span>

@@ -22,7 +22,7 @@
 
 #include <Eigen/LU>
 
-#include <hamel/framework/retraction_defaults.hpp>
+#include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/rotation.hpp>

@@ -10,8 +10,8 @@
 #pragma once
 
 #include <cmath>
-#include <hamel/framework/coordinates.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <numbers>
 #include <span>

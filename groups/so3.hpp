@@ -8,8 +8,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <hamel/framework/coordinates.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <span>
 #include <string>

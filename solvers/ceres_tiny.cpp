@@ -4,7 +4,7 @@
 
 #include <ceres/tiny_solver.h>
 
-#include <hamel/framework/scaled_equation.hpp>
+#include <hamel/framework/loop/scaled_equation.hpp>
 
 namespace hamel {
 namespace {

@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-#include <hamel/framework/solver.hpp>
+#include <hamel/framework/loop/solver.hpp>
 
 namespace hamel {
 

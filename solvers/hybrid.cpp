@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <unsupported/Eigen/NonLinearOptimization>
 
-#include <hamel/framework/scaled_equation.hpp>
+#include <hamel/framework/loop/scaled_equation.hpp>
 
 namespace hamel {
 namespace {

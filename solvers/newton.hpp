@@ -21,8 +21,8 @@
 
 #include <Eigen/LU>
 
-#include <hamel/framework/compiled_kernel.hpp>
-#include <hamel/framework/status.hpp>
+#include <hamel/framework/loop/compiled_kernel.hpp>
+#include <hamel/framework/loop/status.hpp>
 
 namespace hamel {
 

@@ -6,7 +6,7 @@
 
 #include <nlopt.h>
 
-#include <hamel/framework/scaled_equation.hpp>
+#include <hamel/framework/loop/scaled_equation.hpp>
 
 namespace hamel {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <hamel/framework/drawing.hpp>
+#include <hamel/framework/mechanics/drawing.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/rn.hpp>
 #include <hamel/groups/so3.hpp>

@@ -9,8 +9,8 @@
 
 #include <cmath>
 
-#include <hamel/framework/drawing.hpp>
-#include <hamel/framework/system.hpp>
+#include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/se3.hpp>
 
 namespace hamel::body_on_plane {

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <string>
 
-#include <hamel/framework/system.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/systems/energy.hpp>
 #include <hamel/systems/reconstruction.hpp>

@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/rn.hpp>
 
 namespace hamel {

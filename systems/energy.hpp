@@ -1,7 +1,7 @@
 // The energy of a system, for its list of invariants: add("energy", energy_of(*this)).
 #pragma once
 
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/types.hpp>
 
 namespace hamel {
 

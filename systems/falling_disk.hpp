@@ -15,7 +15,7 @@
 #include <cmath>
 #include <string>
 
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/systems/body_on_plane.hpp>
 #include <hamel/systems/energy.hpp>
 

@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include <hamel/framework/system.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/heisenberg.hpp>
 #include <hamel/systems/reconstruction.hpp>
 

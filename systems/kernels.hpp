@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include <hamel/framework/compiled_kernel.hpp>
-#include <hamel/framework/registry.hpp>
+#include <hamel/framework/loop/compiled_kernel.hpp>
+#include <hamel/framework/run/registry.hpp>
 #include <hamel/framework/schemes/balance.hpp>
 #include <hamel/framework/schemes/boxed.hpp>
 #include <hamel/framework/schemes/boxed_literal.hpp>

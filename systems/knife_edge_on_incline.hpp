@@ -14,7 +14,7 @@
 #include <cmath>
 #include <string>
 
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/dexp.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/systems/energy.hpp>

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/geometry.hpp>
+#include <hamel/framework/lie/geometry.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
 

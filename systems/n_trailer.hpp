@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/mechanics.hpp>
-#include <hamel/framework/system.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 
 namespace hamel {
 

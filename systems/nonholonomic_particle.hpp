@@ -12,7 +12,7 @@
 #include <cmath>
 #include <string>
 
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/rn.hpp>
 
 namespace hamel {

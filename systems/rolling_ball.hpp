@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/systems/ball_on_plane.hpp>
 #include <hamel/systems/reconstruction.hpp>
 

@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include <hamel/framework/system.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <string>
 
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>

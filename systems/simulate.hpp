@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <hamel/framework/simulate.hpp>
+#include <hamel/framework/run/simulation.hpp>
 #include <hamel/systems/kernels.hpp>
 
 namespace hamel {

@@ -20,7 +20,7 @@
 
 #include <Eigen/LU>
 
-#include <hamel/framework/system.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/so3.hpp>
 #include <hamel/systems/energy.hpp>
 #include <hamel/systems/reconstruction.hpp>

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/so3.hpp>
 #include <hamel/systems/energy.hpp>
 

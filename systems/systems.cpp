@@ -1,5 +1,5 @@
 // The composition root: the one file that links everything by name.
-#include <hamel/framework/general/baselines.hpp>
+#include <hamel/framework/schemes/baselines.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product_retraction.hpp>
 #include <hamel/solvers/ceres.hpp>

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include <hamel/framework/system.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/se3.hpp>
 
 namespace hamel {

@@ -19,9 +19,9 @@
 
 #include <Eigen/Core>
 
-#include <hamel/framework/concepts.hpp>
-#include <hamel/framework/retraction_defaults.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/concepts.hpp>
+#include <hamel/framework/lie/retraction_defaults.hpp>
+#include <hamel/framework/lie/types.hpp>
 
 namespace hamel {
 

@@ -18,8 +18,8 @@
 #include <Eigen/LU>
 
 #include <hamel/framework/check/group_laws.hpp>
-#include <hamel/framework/concepts.hpp>
-#include <hamel/framework/types.hpp>
+#include <hamel/framework/lie/concepts.hpp>
+#include <hamel/framework/lie/types.hpp>
 
 namespace hamel {
 

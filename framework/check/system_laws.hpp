@@ -20,10 +20,10 @@
 
 #include <hamel/framework/check/group_laws.hpp>
 #include <hamel/framework/check/system_samples.hpp>
-#include <hamel/framework/frame.hpp>
-#include <hamel/framework/general_system.hpp>
-#include <hamel/framework/registry.hpp>
-#include <hamel/framework/simulate.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
+#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/simulation.hpp>
 
 namespace hamel {
 

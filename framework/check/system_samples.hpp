@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include <hamel/framework/frame.hpp>
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 
 namespace hamel {
 namespace check {

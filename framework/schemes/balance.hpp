@@ -5,12 +5,12 @@
 //   F1 = E^T ( s dL_{z0}^T mu0 + (1-s) dL_{z1}^T mu1 ) - y,        (1) of method.md, section 2, on d
 //   F2 = E^T ( m1 - m0 ),                                         (2) with nu = 0, on d
 //   g_{k+1} = g_k f0^-1 f1.
-// Derivatives: (c) and (d) of framework/trivialised.hpp.
+// Derivatives: (c) and (d) of framework/lie/trivialised.hpp.
 #pragma once
 
-#include <hamel/framework/problem.hpp>
+#include <hamel/framework/schemes/problem.hpp>
 #include <hamel/framework/schemes/traits.hpp>
-#include <hamel/framework/trivialised.hpp>
+#include <hamel/framework/lie/trivialised.hpp>
 
 namespace hamel {
 

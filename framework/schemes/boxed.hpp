@@ -6,9 +6,9 @@
 // What Ad^T carries out of d* is dropped, and with it the second order: the scheme has order 1.
 #pragma once
 
-#include <hamel/framework/problem.hpp>
+#include <hamel/framework/schemes/problem.hpp>
 #include <hamel/framework/schemes/traits.hpp>
-#include <hamel/framework/trivialised.hpp>
+#include <hamel/framework/lie/trivialised.hpp>
 
 namespace hamel {
 

@@ -9,9 +9,9 @@
 // Not an approximation of anything: its first step is an O(1) jump whatever h is.
 #pragma once
 
-#include <hamel/framework/problem.hpp>
+#include <hamel/framework/schemes/problem.hpp>
 #include <hamel/framework/schemes/traits.hpp>
-#include <hamel/framework/trivialised.hpp>
+#include <hamel/framework/lie/trivialised.hpp>
 
 #include <Eigen/LU>
 

@@ -11,10 +11,10 @@
 // This is the discrete Lagrange-d'Alembert principle for L_d = h l(xi/h) (Cortes, Martinez 2001).
 #pragma once
 
-#include <hamel/framework/hamel_form.hpp>
-#include <hamel/framework/problem.hpp>
+#include <hamel/framework/schemes/hamel_form.hpp>
+#include <hamel/framework/schemes/problem.hpp>
 #include <hamel/framework/schemes/traits.hpp>
-#include <hamel/framework/trivialised.hpp>
+#include <hamel/framework/lie/trivialised.hpp>
 
 #include <Eigen/LU>
 

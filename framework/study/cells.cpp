@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/composition.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/study.hpp>
+#include <hamel/framework/study/study.hpp>
 
 namespace hamel::study {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/measures.hpp>
-#include <hamel/framework/simulate.hpp>
-#include <hamel/framework/study.hpp>
+#include <hamel/framework/run/measures.hpp>
+#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/study/study.hpp>
 
 namespace hamel::study {
 

@@ -1,5 +1,5 @@
 // The one time loop of all general systems.
-#include <hamel/framework/general/kernel.hpp>
+#include <hamel/framework/loop/general_kernel.hpp>
 #include <hamel/solvers/newton.hpp>
 #include <hamel/systems/kernels/groups.hpp>
 

@@ -11,7 +11,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <hamel/framework/frame.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/hamel.hpp>
 
 #include "raw_solvers.hpp"
@@ -37,7 +37,7 @@ void per_step(benchmark::State& state) {
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// The loop by hand: the extrapolation of six solutions, as in framework/compiled_kernel.hpp.
+/// The loop by hand: the extrapolation of six solutions, as in framework/loop/compiled_kernel.hpp.
 template <class Raw>
 void by_hand(benchmark::State& state) {
   const Suslov suslov = body();

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/study.hpp>
+#include <hamel/framework/study/study.hpp>
 
 #include "study_command.hpp"
 

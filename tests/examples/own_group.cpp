@@ -5,7 +5,7 @@
 
 #include <hamel/framework/check/group_laws.hpp>
 #include <hamel/framework/check/retraction_laws.hpp>
-#include <hamel/framework/group_defaults.hpp>
+#include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/hamel.hpp>
 
 using V = hamel::Vec<3>;

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include <hamel/framework/composition.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/se3.hpp>

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include <hamel/framework/system.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 
 namespace hamel::test {
 

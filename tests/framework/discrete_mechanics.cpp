@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 
 #include <hamel/framework/check/group_laws.hpp>
-#include <hamel/framework/frame.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/se2.hpp>

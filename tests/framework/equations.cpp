@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <hamel/framework/check/retraction_laws.hpp>
-#include <hamel/framework/diagnostics.hpp>
-#include <hamel/framework/frame.hpp>
+#include <hamel/framework/lie/recover_step.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/se2.hpp>

@@ -1,10 +1,10 @@
-// How far brackets reach (framework/growth.hpp), where it is known by hand.
+// How far brackets reach (framework/analysis/growth.hpp), where it is known by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include <hamel/framework/analysis.hpp>
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/analysis/analysis.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/rn.hpp>
 #include <hamel/systems/n_trailer.hpp>

@@ -1,5 +1,5 @@
 // The analytic Jacobian of every scheme's equation, for every registered retraction, against
-// differences, at points of large xi. It is read through framework/solver.hpp, by a solver of a user:
+// differences, at points of large xi. It is read through framework/loop/solver.hpp, by a solver of a user:
 // the same test sees that the interface hands over F, dF/dx, size and scale.
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-// The frame of the general schemes (framework/general/place.hpp) against its definition, on random full
+// The frame of the general schemes (framework/mechanics/place.hpp) against its definition, on random full
 // inertias and rows, for sizes known at compile time and at run time.
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include <hamel/framework/general/place.hpp>
+#include <hamel/framework/mechanics/place.hpp>
 
 namespace hamel {
 namespace {

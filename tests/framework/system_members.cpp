@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include <hamel/framework/general_system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/se2.hpp>
 

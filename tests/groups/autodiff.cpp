@@ -2,9 +2,9 @@
 // group (Heisenberg) with a retraction, complete in 30 lines, obeys every law.
 #include <gtest/gtest.h>
 
-#include <hamel/framework/autodiff.hpp>
+#include <hamel/framework/lie/autodiff.hpp>
 #include <hamel/framework/check/retraction_laws.hpp>
-#include <hamel/framework/group_defaults.hpp>
+#include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/groups/second_kind.hpp>
 
 namespace {

@@ -14,7 +14,7 @@ using namespace hamel;
 using test::Made;
 using test::Vector;
 
-/// All that cross framework/solver.hpp; Newton is compiled into the kernels.
+/// All that cross framework/loop/solver.hpp; Newton is compiled into the kernels.
 std::vector<std::string> foreign() {
   std::vector<std::string> out;
   for (const std::string& name : registry().solvers()) {

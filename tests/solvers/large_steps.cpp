@@ -9,7 +9,7 @@
 #include <map>
 #include <random>
 
-#include <hamel/framework/frame.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/hamel.hpp>
 
 #include "made.hpp"

@@ -1,4 +1,4 @@
-// Equations made for the tests of solvers, seen through framework/solver.hpp.
+// Equations made for the tests of solvers, seen through framework/loop/solver.hpp.
 #pragma once
 
 #include <functional>
@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include <hamel/framework/solver.hpp>
+#include <hamel/framework/loop/solver.hpp>
 
 namespace hamel::test {
 

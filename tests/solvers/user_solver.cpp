@@ -1,4 +1,4 @@
-// A user's solver crosses framework/solver.hpp and gives the same trajectory: one function, a class with a
+// A user's solver crosses framework/loop/solver.hpp and gives the same trajectory: one function, a class with a
 // report of its own, and one that fails.
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include <hamel/framework/general/explicit_step.hpp>
+#include <hamel/framework/schemes/explicit_step.hpp>
 #include <hamel/hamel.hpp>
 
 namespace hamel {

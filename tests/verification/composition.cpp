@@ -2,7 +2,7 @@
 // s = 1/2, exp and cayley; its coefficients are symmetric and sum to one.
 #include <gtest/gtest.h>
 
-#include <hamel/framework/composition.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 
 #include "cases.hpp"
 

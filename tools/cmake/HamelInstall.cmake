@@ -2,7 +2,8 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-install(TARGETS hamel_framework hamel_groups hamel_solvers hamel_systems hamel_umbrella
+list(TRANSFORM HAMEL_ROOMS PREPEND hamel_ OUTPUT_VARIABLE rooms)
+install(TARGETS ${rooms} hamel_groups hamel_solvers hamel_systems hamel_umbrella
         EXPORT hamelTargets FILE_SET HEADERS)
 foreach(package ceres nlopt)
   if(TARGET hamel_solvers_${package})

@@ -1,9 +1,9 @@
 # One function per kind of library target.
 
-# A layer is a folder, a library and an include root of its own.
+# A layer is a folder, a library named after its last part and an include root of its own.
 #
 #   hamel_layer(groups
-#     LINK hamel::framework          # seen by the layer's headers and by whoever links it
+#     LINK hamel::lie                # seen by the layer's headers and by whoever links it
 #     LINK_PRIVATE fmt::fmt          # used by the sources only
 #     LINK_HEADERS_PRIVATE x::x      # header-only and used by the sources only: users never need it
 #     HEADERS so3.hpp ...            # public: installed, and each compiled alone
@@ -12,13 +12,18 @@
 #
 # build/include/groups/hamel/groups links to the folder, so that groups/so3.hpp is
 # <hamel/groups/so3.hpp>, and a layer that does not link this one cannot include it.
-function(hamel_layer layer)
+function(hamel_layer path)
+  cmake_path(GET path FILENAME layer)
+  cmake_path(GET path PARENT_PATH parent)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" ""
                         "LINK;LINK_PRIVATE;LINK_HEADERS_PRIVATE;HEADERS;SOURCES;KERNELS")
   set(target hamel_${layer})
   set(root ${PROJECT_BINARY_DIR}/include/${layer})
-  file(MAKE_DIRECTORY ${root}/hamel)
-  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${root}/hamel/${layer} SYMBOLIC)
+  file(MAKE_DIRECTORY ${root}/hamel/${parent})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${path} ${root}/hamel/${path} SYMBOLIC)
+  foreach(list SOURCES KERNELS)
+    list(TRANSFORM arg_${list} PREPEND ${PROJECT_SOURCE_DIR}/${path}/ REGEX "^[^/]")
+  endforeach()
 
   if(arg_SOURCES OR arg_KERNELS)
     add_library(${target} STATIC ${arg_SOURCES} ${arg_KERNELS})
@@ -34,7 +39,7 @@ function(hamel_layer layer)
     set(public INTERFACE)
   endif()
   add_library(hamel::${layer} ALIAS ${target})
-  list(TRANSFORM arg_HEADERS PREPEND ${root}/hamel/${layer}/)
+  list(TRANSFORM arg_HEADERS PREPEND ${root}/hamel/${path}/)
   target_sources(${target} ${public} FILE_SET HEADERS BASE_DIRS ${root} FILES ${arg_HEADERS})
   target_compile_features(${target} ${public} cxx_std_20)
   target_link_libraries(${target} ${public} ${arg_LINK})
@@ -44,15 +49,15 @@ endfunction()
 
 # hamel::hamel links every layer and brings <hamel/hamel.hpp>, the one header outside a layer.
 function(hamel_umbrella header)
+  list(TRANSFORM HAMEL_ROOMS PREPEND hamel:: OUTPUT_VARIABLE rooms)
   set(root ${PROJECT_BINARY_DIR}/include/umbrella)
-  file(MAKE_DIRECTORY ${root}/hamel)
-  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${header} ${root}/hamel/hamel.hpp SYMBOLIC)
+  file(CONFIGURE OUTPUT ${root}/hamel/hamel.hpp CONTENT "// Everything.\n#include <hamel/${header}>\n")
   add_library(hamel_umbrella INTERFACE)
   add_library(hamel::hamel ALIAS hamel_umbrella)
   target_sources(hamel_umbrella INTERFACE
     FILE_SET HEADERS BASE_DIRS ${root} FILES ${root}/hamel/hamel.hpp)
   target_link_libraries(hamel_umbrella
-    INTERFACE hamel::systems hamel::solvers hamel::groups hamel::framework)
+    INTERFACE hamel::systems hamel::solvers hamel::groups ${rooms})
   set_target_properties(hamel_umbrella PROPERTIES
     EXPORT_NAME hamel VERIFY_INTERFACE_HEADER_SETS ON)
 endfunction()

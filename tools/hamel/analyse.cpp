@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/analysis.hpp>
+#include <hamel/framework/analysis/analysis.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/composition.hpp>
-#include <hamel/framework/errors.hpp>
+#include <hamel/framework/schemes/composition.hpp>
+#include <hamel/framework/io/errors.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"

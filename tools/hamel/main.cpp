@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <hamel/framework/errors.hpp>
-#include <hamel/framework/version.hpp>
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/version.hpp>
 
 #include "commands.hpp"
 

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/errors.hpp>
-#include <hamel/framework/result.hpp>
-#include <hamel/framework/version.hpp>
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/io/version.hpp>
 
 namespace hamel::tools {
 namespace {

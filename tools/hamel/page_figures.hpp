@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <hamel/framework/drawing.hpp>
+#include <hamel/framework/mechanics/drawing.hpp>
 
 namespace hamel::tools {
 

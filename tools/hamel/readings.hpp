@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/simulate.hpp>
+#include <hamel/framework/run/simulation.hpp>
 
 #include "page.hpp"
 

@@ -1,0 +1,43 @@
+// What a system is, read off its equations: `hamel describe --analyse`.
+//
+// Frame and brackets at the start. X_a(g) = P(g) e_a, e_a the Hamel frame at g0 and P(g) the projection
+// onto ker A(g) along I^-1 A^T; in left trivialisation
+//   [X, Y](g) = dY(g) X - dX(g) Y + ad_{X(g)} Y(g).
+// The growth of d, d + [d, d], ... tells whether the constraint is integrable (it does not grow), and how
+// many brackets span the tangent space (Chow): growth.hpp, with the drift of affine rows, and its tolerances.
+// Conserved quantities are found, not proved: combinations of energy, spatial momenta Ad*_{g^-1} mu and body
+// velocities that keep their value along several motions (null vectors of their changes).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/analysis/growth.hpp>
+#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/simulation.hpp>
+
+namespace hamel {
+
+struct Analysis {
+  int n = 0, rows = 0, rank = 0, m = 0;  // of A at the start
+  int holonomic_rows = 0;
+  bool left_invariant = false;
+  Eigen::MatrixXd frame;                   // E at the start, n x m
+  std::vector<Eigen::MatrixXd> structure;  // c^d_ab: entry d, at (a, b): [X_a, X_b] along X_d, on d
+  Growth growth;  // dim d, dim (d + [d, d]), ...; affine rows with their drift
+  /// Are the rows differentials in disguise (of functions of g; of g and t with a drift)? Empty: not decided.
+  std::optional<bool> integrable() const;
+  struct Conserved {
+    std::string expression;  // "E", "0.5 J3 - ..."
+    double change;           // largest relative change seen
+  };
+  std::vector<Conserved> conserved;
+  std::vector<std::string> notes;  // how the start was projected
+};
+
+/// Throws ConfigError as Simulation::run does.
+Analysis analyse(const Registry& registry, const std::string& system,
+                 const Parameters& parameters = {});
+
+}  // namespace hamel

@@ -1,0 +1,178 @@
+#include <hamel/framework/analysis/carried_fields.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include <Eigen/QR>
+
+#include <hamel/framework/mechanics/frame.hpp>
+
+namespace hamel::carried {
+
+Fields::Fields(const Geometry& geometry, const Mechanics& mechanics, const Vector& g,
+               bool with_drift)
+    : geometry_(geometry),
+      mechanics_(mechanics),
+      place_(mechanics),
+      g_(g),
+      at_(g.size()),
+      n_(mechanics.dim()),
+      drift_(with_drift ? 1 : 0) {
+  place_.set(mechanics_, 0, g.data());
+  frame_ = hamel_frame(place_.inertia, place_.a);
+  momenta_ = place_.inertia * frame_;
+  for (Eigen::Index a = 0; a < frame_.cols(); ++a) {  // of one size, whatever the units of energy
+    momenta_.col(a) /= frame_.col(a).norm();
+  }
+}
+Matrix Fields::operator()(const Vector& x) {
+  const double t = drift_ == 1 ? x[n_] : 0;
+  geometry_.tau(x.data(), at_.data());
+  geometry_.compose(g_.data(), at_.data(), at_.data());
+  place_.set(mechanics_, t, at_.data());
+  Matrix out = Matrix::Zero(coordinates(), count());
+  const Vector none = Vector::Zero(mechanics_.rows()), rest = Vector::Zero(n_);
+  Vector xi(n_);
+  for (Eigen::Index a = 0; a < count(); ++a) {
+    if (a < drift_) place_.velocity(rest, place_.b, xi);
+    else place_.velocity(momenta_.col(a - drift_), none, xi);
+    geometry_.dtau_left_inverse(x.data(), xi.data(), xi.data());
+    out.col(a).head(n_) = xi;
+  }
+  if (drift_ == 1) out(n_, 0) = 1;
+  return out;
+}
+
+namespace {
+
+// One piece of a path: x' = sum u_a X_a(x) for a while.
+struct Piece {
+  Vector controls;
+  double length;
+};
+using Path = std::vector<Piece>;
+
+// One step of order 8: midpoint rules of 2, 4, 6, 8 substeps, extrapolated (Hairer, Norsett, Wanner, II.9).
+Vector flow(Fields& fields, const Vector& controls, double length, const Vector& start) {
+  constexpr int rules = 4;
+  std::array<Vector, rules> table;
+  const Vector rate = fields(start) * controls;
+  for (int i = 0; i < rules; ++i) {
+    const int substeps = 2 * (i + 1);
+    const double h = length / substeps;
+    Vector before = start, now = start + h * rate;
+    for (int k = 1; k < substeps; ++k) {
+      before += 2 * h * (fields(now) * controls);
+      before.swap(now);
+    }
+    table[static_cast<size_t>(i)] = 0.5 * (now + before + h * (fields(now) * controls));
+  }
+  for (int k = 1; k < rules; ++k) {
+    for (int i = rules - 1; i >= k; --i) {
+      const double ratio = static_cast<double>(i + 1) / (i + 1 - k);
+      auto& entry = table[static_cast<size_t>(i)];
+      entry += (entry - table[static_cast<size_t>(i - 1)]) / (ratio * ratio - 1);
+    }
+  }
+  return table.back();
+}
+
+// V_b(e), column b: the fields at the end of the path scaled with e, carried back along it.
+Matrix carried(Fields& fields, const Path& path, double e, const Vector& from, double unit) {
+  Vector end = from;
+  for (const Piece& piece : path) end = flow(fields, piece.controls, e * piece.length, end);
+  const Matrix there = fields(end);
+  const auto back = [&](Vector x) {
+    for (auto piece = path.rbegin(); piece != path.rend(); ++piece)
+      x = flow(fields, piece->controls, -e * piece->length, x);
+    return x;
+  };
+  Matrix out(there.rows(), there.cols());
+  for (Eigen::Index b = 0; b < there.cols(); ++b) {
+    constexpr double weights[] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
+    const double shift = unit / there.col(b).norm();
+    out.col(b).setZero();
+    for (int k = 1; k <= 3; ++k) {
+      const Vector step = k * shift * there.col(b);
+      out.col(b) += weights[k - 1] / shift * (back(end + step) - back(end - step));
+    }
+  }
+  return out;
+}
+
+// Taylor coefficients of e -> V(e) from Chebyshev nodes in [-r, r]: entry j is the coefficient of (e/r)^j.
+std::vector<Matrix> coefficients(Fields& fields, const Path& path, double r, int degree,
+                                 const Vector& from, double unit) {
+  Matrix powers(degree + 1, degree + 1), values(degree + 1, fields.coordinates() * fields.count());
+  for (int i = 0; i <= degree; ++i) {
+    const double node = std::cos(std::numbers::pi * (i + 0.5) / (degree + 1));
+    for (int j = 0; j <= degree; ++j) powers(i, j) = std::pow(node, j);
+    const Matrix v = carried(fields, path, r * node, from, unit);
+    values.row(i) = Eigen::Map<const Vector>(v.data(), v.size()).transpose();
+  }
+  const Matrix fitted = Eigen::ColPivHouseholderQR<Matrix>(powers).solve(values);
+  std::vector<Matrix> out;
+  for (int j = 0; j <= degree; ++j) {
+    const Vector row = fitted.row(j).transpose();
+    out.push_back(Eigen::Map<const Matrix>(row.data(), fields.coordinates(), fields.count()));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Generation> generations(Fields& fields, const Vector& from, int depth) {
+  const Eigen::Index rows = fields.coordinates(), each = fields.count();
+  const Eigen::Index paths = (rows + each - 1) / each + 1;
+  std::mt19937 random(1);
+  const auto uniform = [&random] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
+  std::vector<Path> words;
+  for (Eigen::Index w = 0; w < paths; ++w) {
+    Path path;
+    double length = 0;
+    for (int i = 0; i < std::max(2, depth - 1); ++i) {
+      Vector u(each);
+      for (double& entry : u) entry = uniform();
+      path.push_back({u.normalized(), 0.25 + std::abs(uniform())});
+      length += path.back().length;
+    }
+    for (Piece& piece : path) piece.length /= length;
+    words.push_back(path);
+  }
+  const int degree = depth > 3 ? 16 : 10;
+  constexpr double never = std::numeric_limits<double>::infinity();
+  std::vector<Generation> out(static_cast<size_t>(depth),
+                              {Matrix::Zero(rows, each * paths), 0, never});
+  std::vector<double> best(out.size(), never);
+  std::vector<Matrix> before(out.size(), Matrix(rows, each * paths)), now = before;
+  double last = 0, unit = 0.02;
+  for (const double radius : {2.0, 1.4, 1.0, 0.7, 0.5, 0.35}) {
+    for (Eigen::Index w = 0; w < paths; ++w) {
+      const auto fitted =
+          coefficients(fields, words[static_cast<size_t>(w)], radius, degree, from, unit);
+      for (size_t j = 0; j < out.size(); ++j) now[j].middleCols(each * w, each) = fitted[j];
+    }
+    bool known = last > 0;
+    for (size_t j = 0; j < out.size() && last > 0; ++j) {
+      const double ratio = std::pow(last / radius, static_cast<double>(j)), size = before[j].norm(),
+                   error = (now[j] * ratio - before[j]).norm();
+      const double relative = error / std::max(size, kNothing * before[0].norm());
+      if (relative < best[j]) {
+        best[j] = relative;
+        out[j] = {before[j], size, error};
+      }
+      known = known && best[j] < 1e-7;
+    }
+    if (known) break;
+    before.swap(now);
+    last = radius;
+    unit = 0.032 - unit;  // 0.02, 0.012: two radii differ by the errors of the differences, too
+  }
+  return out;
+}
+
+}  // namespace hamel::carried

@@ -1,0 +1,54 @@
+// Brackets of many fields without differences of differences: fields carried back along paths. For growth.cpp
+// only, not installed.
+//
+// In the coordinates x of g tau(x), along a path of constant controls u in pieces of random lengths, all scaled
+// with e, the field X_b at the end, carried back to the start, is
+//   V_b(e) = sum_j e^j/j! (sum over the pieces of ad_{u_1} ... ad_{u_j} X_b),
+// so that the Taylor coefficients up to order j of random paths span all brackets of at most j + 1 fields, those
+// with factors that vanish at g among them. Paths are integrated by extrapolated midpoint rules of order 8, tangents
+// carried by sixth-order differences of the flow, coefficients fitted on Chebyshev nodes, each for several radii.
+// Source: Sussmann, Orbits of families of vector fields, Trans. AMS 180 (1973).
+#pragma once
+
+#include <vector>
+
+#include <hamel/framework/mechanics/place.hpp>
+#include <hamel/framework/lie/geometry.hpp>
+
+namespace hamel::carried {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// Of the size of the fields: generations smaller than that are taken for zero.
+constexpr double kNothing = 1e-6;
+
+/// The fields X_0 (where there is one) and X_a at x, t, as columns; the coordinates are x or (x, t).
+class Fields {
+ public:
+  Fields(const Geometry& geometry, const Mechanics& mechanics, const Vector& g, bool with_drift);
+  Eigen::Index coordinates() const { return n_ + drift_; }
+  Eigen::Index count() const { return frame_.cols() + drift_; }
+  bool with_drift() const { return drift_ == 1; }
+
+  Matrix operator()(const Vector& x);
+
+ private:
+  const Geometry& geometry_;
+  const Mechanics& mechanics_;
+  Place<> place_;
+  Vector g_, at_;
+  Eigen::Index n_, drift_;
+  Matrix frame_, momenta_;
+};
+
+/// A generation of brackets, those of j + 1 fields: the coefficients of order j of all paths, |(e/r)^j| = 1 at the radius
+// where they are best known, and how well that is.
+struct Generation {
+  Matrix brackets;
+  double size = 0, error = 0;
+};
+/// From a place `from`, entry j the brackets of j + 1 fields.
+std::vector<Generation> generations(Fields& fields, const Vector& from, int depth);
+
+}  // namespace hamel::carried

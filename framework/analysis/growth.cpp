@@ -1,0 +1,158 @@
+#include <hamel/framework/analysis/growth.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include <hamel/framework/analysis/carried_fields.hpp>
+
+namespace hamel {
+namespace {
+
+using namespace carried;
+
+constexpr double kNew = 1e-6;  // of the size of its generation: what is smaller is no new direction
+constexpr double kDecided = 1e-3;  // ten times the error of a generation, for a rank to be believed
+constexpr int kMostFields = 8;     // in a bracket that is looked at
+
+// The dimensions that the generations reach one after another.
+struct Reach {
+  std::vector<int> dimensions;
+  bool round_off = false;  // what the next one adds is not told from round-off
+};
+Reach reach_of(const std::vector<Generation>& generations) {
+  const Eigen::Index rows = generations.front().brackets.rows();
+  Matrix span(rows, 0);
+  double tilt = 0;  // of the span, by the errors of what is in it
+  Reach out;
+  const double unit = generations.front().size;
+  for (const Generation& generation : generations) {
+    const double size = std::max(generation.size, kNothing * unit);
+    const double error = generation.error + tilt * size;
+    const Matrix outside = generation.brackets - span * (span.transpose() * generation.brackets);
+    const Eigen::JacobiSVD<Matrix> svd(outside, Eigen::ComputeThinU);
+    Eigen::Index fresh = 0;
+    const Vector& sizes = svd.singularValues();
+    while (fresh < sizes.size() && sizes[fresh] > 10 * error + kNew * size) ++fresh;
+    // What is not told from round-off is no answer, unless nothing is left to be found.
+    if (span.cols() + fresh < rows && !(10 * error < kDecided * size)) {
+      out.round_off = true;
+      break;
+    }
+    if (fresh > 0) {
+      tilt = std::max(tilt, error / sizes[fresh - 1]);
+      Matrix wider(rows, span.cols() + fresh);
+      wider << span, svd.matrixU().leftCols(fresh);
+      span =
+          Eigen::HouseholderQR<Matrix>(wider).householderQ() * Matrix::Identity(rows, wider.cols());
+    }
+    out.dimensions.push_back(static_cast<int>(span.cols()));
+    if (span.cols() == rows) break;
+  }
+  return out;
+}
+
+// Where a generation adds nothing, brackets are closed (ranks are generic); -1: they may go on.
+int closed_at(const Reach& reach, int all) {
+  const auto& d = reach.dimensions;
+  const auto same = std::adjacent_find(d.begin(), d.end());
+  return same != d.end() ? *same : d.back() == all ? all : -1;
+}
+
+// [x, y] of constant fields, left-invariant and constant in time: columns of n, or n + 1 with time.
+Vector ad(const Geometry& geometry, const Vector& x, const Vector& y) {
+  const Eigen::Index n = geometry.dim();
+  Vector out = Vector::Zero(x.size()), mu = Vector::Zero(n), row(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    mu[i] = 1;
+    geometry.ad_transpose(x.data(), mu.data(), row.data());
+    out[i] = row.dot(y.head(n));
+    mu[i] = 0;
+  }
+  return out;
+}
+Reach constant_reach(const Geometry& geometry, const Matrix& fields) {
+  Eigen::ColPivHouseholderQR<Matrix> qr(fields);
+  Reach out{{static_cast<int>(fields.cols())}, false};
+  Matrix span = qr.householderQ() * Matrix::Identity(fields.rows(), fields.cols()), last = span;
+  while (true) {
+    Matrix wider(fields.rows(), span.cols() + fields.cols() * last.cols());
+    wider.leftCols(span.cols()) = span;
+    Eigen::Index next = span.cols();
+    for (Eigen::Index i = 0; i < fields.cols(); ++i) {
+      for (Eigen::Index j = 0; j < last.cols(); ++j)
+        wider.col(next++) = ad(geometry, fields.col(i).normalized(), last.col(j));
+    }
+    const Matrix outside = wider - span * (span.transpose() * wider);
+    const Eigen::JacobiSVD<Matrix> svd(outside, Eigen::ComputeThinU);
+    Eigen::Index fresh = 0;
+    while (fresh < svd.singularValues().size() && svd.singularValues()[fresh] > 1e-10) ++fresh;
+    if (fresh == 0) return out;
+    last = svd.matrixU().leftCols(fresh);
+    Matrix both(fields.rows(), span.cols() + fresh);
+    both << span, last;
+    span = both;
+    out.dimensions.push_back(static_cast<int>(span.cols()));
+  }
+}
+
+// Is there an X_0: is b not 0, or do A and b change with time, at a few configurations?
+bool has_drift(const Geometry& geometry, const Mechanics& mechanics, const Vector& g) {
+  const Eigen::Index n = mechanics.dim(), k = mechanics.rows();
+  Matrix a(k, n), later(k, n);
+  Vector b(k), b_later(k), x = Vector::Zero(n), at(g.size());
+  std::mt19937 random(2);
+  for (int i = 0; i < 5; ++i) {
+    geometry.tau(x.data(), at.data());
+    geometry.compose(g.data(), at.data(), at.data());
+    mechanics.constraints(0, at.data(), a, b);
+    for (const double t : {0.0, 0.37, 1.3}) {
+      mechanics.constraints(t, at.data(), later, b_later);
+      if (b_later.norm() > 0 || (later - a).norm() > 1e-12 * a.norm()) return true;
+    }
+    for (double& entry : x) entry = static_cast<double>(random()) / 4294967295.0 - 0.5;
+  }
+  return false;
+}
+
+}  // namespace
+
+Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* at) {
+  const Vector g = Eigen::Map<const Vector>(at, geometry.size());
+  Growth out;
+  out.with_drift = has_drift(geometry, mechanics, g);
+  Fields fields(geometry, mechanics, g, out.with_drift);
+  const auto all = static_cast<int>(fields.coordinates());
+  const Vector here = Vector::Zero(all);
+  const int own = out.with_drift ? 1 : 0;
+  Reach reach{{static_cast<int>(fields.count())}, false};
+  int nearby = -1;
+  if (fields.count() == all || fields.count() == 0) {
+    nearby = static_cast<int>(fields.count());
+  } else if (mechanics.constant_constraints()) {
+    reach = constant_reach(geometry, fields(here));
+    nearby = reach.dimensions.back();
+  } else {
+    const int deepest = std::min(std::max(all, 4), kMostFields);
+    Vector there(all);
+    for (int i = 0; i < all; ++i) there[i] = 0.3 * std::cos(1.0 + 2.0 * i);
+    for (const int depth : {3, std::min(5, deepest), deepest}) {
+      reach = reach_of(generations(fields, here, depth));
+      if (reach.dimensions.back() == all) nearby = all;
+      else if (nearby < 0) nearby = closed_at(reach_of(generations(fields, there, depth)), all);
+      if (reach.dimensions.back() == nearby) break;
+    }
+  }
+  out.looked_at = static_cast<int>(reach.dimensions.size());
+  out.round_off = reach.round_off;
+  auto& d = reach.dimensions;
+  while (d.size() > 1 && d.back() == d[d.size() - 2]) d.pop_back();
+  for (const int dimension : d) out.dimensions.push_back(dimension - own);
+  out.nearby = nearby < 0 ? nearby : nearby - own;
+  return out;
+}
+
+}  // namespace hamel

@@ -1,0 +1,37 @@
+// How far brackets of admissible directions reach: the growth d, d + [d, d], ... at a configuration.
+//
+// Time is a coordinate, t' = 1, where b != 0 or A, b depend on it: then d is spanned by the fields X_a of ker A
+// and by X_0 = d/dt + (the particular velocity, A xi = b), and the rows are integrable, with phi(t, g) = 0 for
+// integrals, exactly when the X_a and X_0 are closed under brackets. Dimensions are counted without X_0.
+//
+// Constant fields of constant rows: linear algebra with the structure constants. Else random combinations of all
+// brackets of 1, 2, ... fields, at g and at a configuration nearby (carried_fields.hpp). Ranks nearby are generic: d stays
+// closed from the first generation on that adds nothing there, and no configuration has more directions than that. At g
+// itself brackets may pause and go on (z' = y^2 x' at y = 0: 2, 2, 3).
+// Tolerances: a direction is new when it is above 1e-6 of its generation and ten times above the generation's
+// error, measured by computing it twice; a generation whose error exceeds 1e-4 of it (from six or seven fields on) is
+// not decided, and nothing is said beyond it. Generations below 1e-6 of the fields are taken for zero.
+#pragma once
+
+#include <vector>
+
+#include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
+
+namespace hamel {
+
+struct Growth {
+  std::vector<int>
+      dimensions;           // with brackets of at most 1, 2, ... fields, to the last that adds any
+  int nearby = -1;          // what brackets span at configurations nearby; -1: not decided
+  bool with_drift = false;  // X_0 is among the fields
+  int looked_at = 0;        // brackets of at most this many fields were looked at
+  bool round_off = false;   // deeper ones could not be told from round-off
+  /// Everything that brackets can reach is known, and reached.
+  bool decided() const { return dimensions.back() == nearby; }
+};
+
+/// geometry: of a retraction with tau(x) for |x| < 3. Brackets of up to n fields are looked at, eight at most.
+Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* g);
+
+}  // namespace hamel

@@ -1,0 +1,32 @@
+// Two kinds of trouble, kept apart.
+//
+//   ConfigError   what was asked for cannot be run: thrown before anything runs, all mistakes at once.
+//   Status        what a step met on the way: a value, never an exception (framework/loop/status.hpp).
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace hamel {
+
+/// Every mistake found in a configuration; what() is one line per mistake.
+class ConfigError : public std::invalid_argument {
+ public:
+  explicit ConfigError(std::vector<std::string> mistakes);
+  const std::vector<std::string>& mistakes() const { return mistakes_; }
+
+ private:
+  std::vector<std::string> mistakes_;
+};
+
+/// "unknown scheme 'lfit': expected one of balance, boxed, lift; did you mean 'lift'?"
+std::string unknown_name(const std::string& kind, const std::string& value,
+                         const std::vector<std::string>& known);
+
+/// Comma-separated, in the shortest form that reads back to the same double.
+std::string join(std::span<const double> values);
+std::string join(const std::vector<std::string>& words);
+
+}  // namespace hamel

@@ -1,0 +1,130 @@
+#include <hamel/framework/lie/geometry.hpp>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace hamel {
+namespace {
+constexpr int kLargestFactor = 16;
+}
+
+ProductGeometry::ProductGeometry(std::vector<std::shared_ptr<const Geometry>> factors) {
+  for (auto& geometry : factors) {
+    if (geometry->dim() > kLargestFactor) {
+      throw std::invalid_argument(fmt::format("a factor of dimension {}, expected at most {}",
+                                              geometry->dim(), kLargestFactor));
+    }
+    factors_.push_back({geometry, dim_, size_, columns_});
+    dim_ += geometry->dim();
+    size_ += geometry->size();
+    columns_ += geometry->columns();
+  }
+}
+
+bool ProductGeometry::symmetric() const {
+  return std::all_of(factors_.begin(), factors_.end(),
+                     [](const Factor& f) { return f.geometry->symmetric(); });
+}
+bool ProductGeometry::one_parameter() const {
+  return std::all_of(factors_.begin(), factors_.end(),
+                     [](const Factor& f) { return f.geometry->one_parameter(); });
+}
+std::string ProductGeometry::domain() const {
+  std::string out;
+  for (size_t i = 0; i < factors_.size(); ++i) {
+    out += fmt::format("{}{}: {}", i == 0 ? "" : "; ", i + 1, factors_[i].geometry->domain());
+  }
+  return out;
+}
+void ProductGeometry::compose(const double* g, const double* h, double* out) const {
+  for (const Factor& f : factors_) {
+    f.geometry->compose(g + f.element, h + f.element, out + f.element);
+  }
+}
+void ProductGeometry::inverse(const double* g, double* out) const {
+  for (const Factor& f : factors_) f.geometry->inverse(g + f.element, out + f.element);
+}
+void ProductGeometry::normalise(double* g) const {
+  for (const Factor& f : factors_) f.geometry->normalise(g + f.element);
+}
+double ProductGeometry::defect(const double* g) const {
+  double largest = 0;
+  for (const Factor& f : factors_) {
+    const double defect = f.geometry->defect(g + f.element);
+    if (!(defect <= largest)) largest = defect;
+  }
+  return largest;
+}
+void ProductGeometry::Ad_transpose(const double* g, const double* mu, double* out) const {
+  for (const Factor& f : factors_) f.geometry->Ad_transpose(g + f.element, mu + f.at, out + f.at);
+}
+void ProductGeometry::ad_transpose(const double* xi, const double* mu, double* out) const {
+  for (const Factor& f : factors_) f.geometry->ad_transpose(xi + f.at, mu + f.at, out + f.at);
+}
+void ProductGeometry::Ad(const double* g, const double* xi, double* out) const {
+  for (const Factor& f : factors_) f.geometry->Ad(g + f.element, xi + f.at, out + f.at);
+}
+void ProductGeometry::tau(const double* xi, double* out) const {
+  for (const Factor& f : factors_) f.geometry->tau(xi + f.at, out + f.element);
+}
+bool ProductGeometry::tau_inverse(const double* g, double* out) const {
+  return std::all_of(factors_.begin(), factors_.end(), [&](const Factor& f) {
+    return f.geometry->tau_inverse(g + f.element, out + f.at);
+  });
+}
+void ProductGeometry::dtau_right(const double* xi, double* matrix) const {
+  std::fill_n(matrix, dim_ * dim_, 0.0);
+  double block[kLargestFactor * kLargestFactor];
+  for (const Factor& f : factors_) {
+    const int n = f.geometry->dim();
+    f.geometry->dtau_right(xi + f.at, block);
+    double* to = matrix + f.at * (dim_ + 1);
+    for (int j = 0; j < n; ++j) std::copy_n(block + j * n, n, to + j * dim_);
+  }
+}
+void ProductGeometry::dtau_right_inverse_transpose(const double* xi, const double* p,
+                                                   double* out) const {
+  for (const Factor& f : factors_) {
+    f.geometry->dtau_right_inverse_transpose(xi + f.at, p + f.at, out + f.at);
+  }
+}
+void ProductGeometry::dtau_left_inverse(const double* xi, const double* eta, double* out) const {
+  for (const Factor& f : factors_) {
+    f.geometry->dtau_left_inverse(xi + f.at, eta + f.at, out + f.at);
+  }
+}
+void ProductGeometry::base_momentum(double s, const double* xi, const double* p, const double* nu,
+                                    double* m0) const {
+  for (const Factor& f : factors_) {
+    f.geometry->base_momentum(s, xi + f.at, p + f.at, nu + f.at, m0 + f.at);
+  }
+}
+bool ProductGeometry::in_domain(const double* xi) const {
+  return std::all_of(factors_.begin(), factors_.end(),
+                     [&](const Factor& f) { return f.geometry->in_domain(xi + f.at); });
+}
+int ProductGeometry::columns() const { return columns_; }
+void ProductGeometry::coordinates(const double* g, double* out) const {
+  for (const Factor& f : factors_) f.geometry->coordinates(g + f.element, out + f.column);
+}
+void ProductGeometry::from_coordinates(std::span<const double> values, double* out) const {
+  if (values.size() != static_cast<size_t>(columns_)) {
+    throw std::invalid_argument(fmt::format("{} values, expected {}", values.size(), columns_));
+  }
+  for (const Factor& f : factors_) {
+    f.geometry->from_coordinates(
+        values.subspan(static_cast<size_t>(f.column), static_cast<size_t>(f.geometry->columns())),
+        out + f.element);
+  }
+}
+
+void ProductGeometry::nearest(std::span<const double> values, double* out) const {
+  for (const Factor& f : factors_) {
+    f.geometry->nearest(
+        values.subspan(static_cast<size_t>(f.column), static_cast<size_t>(f.geometry->columns())),
+        out + f.element);
+  }
+}
+
+}  // namespace hamel

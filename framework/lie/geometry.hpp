@@ -1,0 +1,191 @@
+// A group with a retraction, its type erased: what the general schemes evaluate (general/).
+//
+// An element is a block of numbers as its group lays it out (Packing), vectors are n numbers, matrices
+// n x n column-major. Products are put together from their factors at run time (ProductGeometry), so
+// that "se2*so2^30" needs no kernel of its own. A virtual call costs some 2 ns against the 100 to 1000 ns
+// of a general step: erasing the type keeps the build short and costs nothing that can be measured.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/lie/concepts.hpp>
+#include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/trivialised.hpp>
+
+namespace hamel {
+
+/// How an element is kept as doubles: as its bytes. Products specialise it, factor after factor.
+template <class G>
+struct Packing {
+  using Element = typename G::template Element<double>;
+  static constexpr int size = static_cast<int>((sizeof(Element) + 7) / 8);
+  static Element load(const double* from) {
+    Element g = G::template identity<double>();
+    std::memcpy(static_cast<void*>(&g), from, sizeof(Element));
+    return g;
+  }
+  static void store(const Element& g, double* to) {
+    std::memcpy(to, static_cast<const void*>(&g), sizeof(Element));
+  }
+};
+
+/// Out-parameters may be the in-parameters.
+class Geometry {
+ public:
+  virtual ~Geometry() = default;
+  virtual int dim() const = 0;   // n
+  virtual int size() const = 0;  // doubles in an element
+  virtual bool symmetric() const = 0;
+  virtual bool one_parameter() const = 0;
+  virtual std::string domain() const = 0;
+
+  // g h, g^-1, the nearest element to one with round-off, and how far g is from the group.
+  virtual void compose(const double* g, const double* h, double* out) const = 0;
+  virtual void inverse(const double* g, double* out) const = 0;
+  virtual void normalise(double* g) const = 0;
+  virtual double defect(const double* g) const = 0;
+  // Ad_g^T mu, ad_xi^T mu, Ad_g xi.
+  virtual void Ad_transpose(const double* g, const double* mu, double* out) const = 0;
+  virtual void ad_transpose(const double* xi, const double* mu, double* out) const = 0;
+  virtual void Ad(const double* g, const double* xi, double* out) const = 0;
+  // tau; tau^-1 (false outside its range); the matrix dR; dR^-T p; dL^-1 eta; is xi in the domain?
+  virtual void tau(const double* xi, double* out) const = 0;
+  virtual bool tau_inverse(const double* g, double* out) const = 0;
+  virtual void dtau_right(const double* xi, double* matrix) const = 0;
+  virtual void dtau_right_inverse_transpose(const double* xi, const double* p,
+                                            double* out) const = 0;
+  virtual void dtau_left_inverse(const double* xi, const double* eta, double* out) const = 0;
+  /// base_momentum of trivialised.hpp.
+  virtual void base_momentum(double s, const double* xi, const double* p, const double* nu,
+                             double* m0) const = 0;
+  virtual bool in_domain(const double* xi) const = 0;
+  // CSV columns.
+  virtual int columns() const = 0;
+  virtual void coordinates(const double* g, double* out) const = 0;
+  /// Throws std::invalid_argument when the values are no element.
+  virtual void from_coordinates(std::span<const double> values, double* out) const = 0;
+  /// The element next to values that are no element, as a Runge-Kutta stage leaves them.
+  virtual void nearest(std::span<const double> values, double* out) const = 0;
+};
+
+/// What a step calls is flattened: a kernel's unit is too large for the compiler to inline it by itself.
+template <class Tau>
+class TypedGeometry final : public Geometry {
+  using G = typename Tau::Group;
+  static constexpr int n = G::dim;
+  using Pack = Packing<G>;
+  static Vec<n> vec(const double* p) { return Vec<n>(p); }
+  static void put(const Vec<n>& v, double* out) { Eigen::Map<Vec<n>>{out} = v; }
+
+ public:
+  int dim() const override { return n; }
+  int size() const override { return Pack::size; }
+  bool symmetric() const override { return Tau::symmetric; }
+  bool one_parameter() const override { return Tau::one_parameter; }
+  std::string domain() const override { return Tau::domain(); }
+
+  [[gnu::flatten]] void compose(const double* g, const double* h, double* out) const override {
+    Pack::store(G::compose(Pack::load(g), Pack::load(h)), out);
+  }
+  [[gnu::flatten]] void inverse(const double* g, double* out) const override {
+    Pack::store(G::inverse(Pack::load(g)), out);
+  }
+  [[gnu::flatten]] void normalise(double* g) const override {
+    Pack::store(G::normalise(Pack::load(g)), g);
+  }
+  double defect(const double* g) const override { return G::defect(Pack::load(g)); }
+  [[gnu::flatten]] void Ad_transpose(const double* g, const double* mu,
+                                     double* out) const override {
+    put(G::Ad_transpose(Pack::load(g), vec(mu)), out);
+  }
+  void ad_transpose(const double* xi, const double* mu, double* out) const override {
+    put(G::coad(vec(mu)) * vec(xi), out);
+  }
+  void Ad(const double* g, const double* xi, double* out) const override {
+    put(G::Ad(Pack::load(g)) * vec(xi), out);
+  }
+  [[gnu::flatten]] void tau(const double* xi, double* out) const override {
+    Pack::store(Tau::tau(vec(xi)), out);
+  }
+  bool tau_inverse(const double* g, double* out) const override {
+    try {
+      put(Tau::tau_inverse(Pack::load(g)), out);
+      return true;
+    } catch (const DomainError&) {
+      return false;
+    }
+  }
+  void dtau_right(const double* xi, double* matrix) const override {
+    Eigen::Map<Mat<n, n>>{matrix} = Tau::dtau_right(vec(xi));
+  }
+  void dtau_right_inverse_transpose(const double* xi, const double* p, double* out) const override {
+    put(Tau::dtau_right_inverse_transpose(vec(xi), vec(p)), out);
+  }
+  void dtau_left_inverse(const double* xi, const double* eta, double* out) const override {
+    put(Tau::dtau_left_inverse(vec(xi)) * vec(eta), out);
+  }
+  [[gnu::flatten]] void base_momentum(double s, const double* xi, const double* p, const double* nu,
+                                      double* m0) const override {
+    put(hamel::base_momentum<Tau>(s, vec(xi), vec(p), vec(nu)), m0);
+  }
+  bool in_domain(const double* xi) const override { return Tau::in_domain(vec(xi)); }
+  int columns() const override { return static_cast<int>(coordinate_count<G>); }
+  void coordinates(const double* g, double* out) const override {
+    const auto values = G::coordinates(Pack::load(g));
+    std::copy(values.begin(), values.end(), out);
+  }
+  void from_coordinates(std::span<const double> values, double* out) const override {
+    Pack::store(G::from_coordinates(values), out);
+  }
+  void nearest(std::span<const double> values, double* out) const override {
+    Pack::store(nearest_element<G>(values), out);
+  }
+};
+
+/// The product of its factors' geometries, of any number chosen at run time.
+class ProductGeometry final : public Geometry {
+ public:
+  explicit ProductGeometry(std::vector<std::shared_ptr<const Geometry>> factors);
+  int dim() const override { return dim_; }
+  int size() const override { return size_; }
+  bool symmetric() const override;
+  bool one_parameter() const override;
+  std::string domain() const override;
+  void compose(const double* g, const double* h, double* out) const override;
+  void inverse(const double* g, double* out) const override;
+  void normalise(double* g) const override;
+  double defect(const double* g) const override;
+  void Ad_transpose(const double* g, const double* mu, double* out) const override;
+  void ad_transpose(const double* xi, const double* mu, double* out) const override;
+  void Ad(const double* g, const double* xi, double* out) const override;
+  void tau(const double* xi, double* out) const override;
+  bool tau_inverse(const double* g, double* out) const override;
+  void dtau_right(const double* xi, double* matrix) const override;
+  void dtau_right_inverse_transpose(const double* xi, const double* p, double* out) const override;
+  void dtau_left_inverse(const double* xi, const double* eta, double* out) const override;
+  void base_momentum(double s, const double* xi, const double* p, const double* nu,
+                     double* m0) const override;
+  bool in_domain(const double* xi) const override;
+  int columns() const override;
+  void coordinates(const double* g, double* out) const override;
+  void from_coordinates(std::span<const double> values, double* out) const override;
+  void nearest(std::span<const double> values, double* out) const override;
+
+ private:
+  struct Factor {
+    std::shared_ptr<const Geometry> geometry;
+    int at = 0;       // where its vectors start
+    int element = 0;  // where its element starts
+    int column = 0;   // where its coordinates start
+  };
+  std::vector<Factor> factors_;
+  int dim_ = 0, size_ = 0, columns_ = 0;
+};
+
+}  // namespace hamel

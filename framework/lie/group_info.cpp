@@ -1,0 +1,45 @@
+#include <hamel/framework/lie/group_info.hpp>
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace hamel {
+
+GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors) {
+  GroupInfo info;
+  info.name = name;
+  info.summary = "product of its factors, put together at run time";
+  for (size_t i = 0; i < factors.size(); ++i) {
+    info.dim += factors[i].dim;
+    for (const std::string& column : factors[i].columns) {
+      info.columns.push_back(fmt::format("{}_{}", i + 1, column));
+    }
+    info.identity.insert(info.identity.end(), factors[i].identity.begin(),
+                         factors[i].identity.end());
+  }
+  info.element = [name, factors, count = info.columns.size()](std::span<const double> values) {
+    if (values.size() != count) {
+      throw std::invalid_argument(
+          fmt::format("{}: {} values, expected {}", name, values.size(), count));
+    }
+    std::vector<double> out;
+    for (const GroupInfo& factor : factors) {
+      const auto part = factor.element(values.subspan(out.size(), factor.columns.size()));
+      out.insert(out.end(), part.begin(), part.end());
+    }
+    return out;
+  };
+  info.matrices = [factors](std::span<const double> values) {
+    std::vector<Eigen::MatrixXd> out;
+    size_t at = 0;
+    for (const GroupInfo& factor : factors) {
+      for (auto& m : factor.matrices(values.subspan(at, factor.columns.size()))) out.push_back(m);
+      at += factor.columns.size();
+    }
+    return out;
+  };
+  return info;
+}
+
+}  // namespace hamel

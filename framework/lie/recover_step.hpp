@@ -1,0 +1,46 @@
+// What a step really did, measured from the configurations and never from the solver's unknown.
+//
+// The discrete velocity of a step is recovered as xi/h with tau_s(xi) = g_k^-1 g_{k+1},
+//   tau_s(xi) = tau(-s xi)^-1 tau((1-s) xi),
+// by tau^-1 when tau_s = tau, else by Newton on the group: with delta = tau^-1(tau_s(xi)^-1 Delta),
+//   tau_s^-1 d(tau_s) = Ad_{f1^-1} (s dR_{-s xi} + (1-s) dR_{(1-s) xi}) dxi.
+// The floor of the recovered constraint residual is about eps / h.
+#pragma once
+
+#include <limits>
+
+#include <hamel/framework/lie/trivialised.hpp>
+
+#include <Eigen/LU>
+
+namespace hamel {
+
+/// xi with tau_s(xi) = delta; NaN where tau has no inverse there.
+template <class Tau>
+Vec<Tau::Group::dim> recover_step(const typename Tau::Group::template Element<double>& delta,
+                                  double s) {
+  using G = typename Tau::Group;
+  constexpr int n = G::dim;
+  try {
+    Vec<n> xi = Tau::tau_inverse(delta);
+    if (s == 0 || Tau::one_parameter) return xi;
+    double last = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 20; ++k) {
+      const At<Tau> z0(-s * xi), z1((1 - s) * xi);
+      const auto here = G::compose(G::inverse(z0.f), z1.f);
+      const Vec<n> rest = Tau::tau_inverse(G::compose(G::inverse(here), delta));
+      const double size = rest.norm();
+      if (!(size < last)) break;
+      const Mat<n, n> c = s * z0.right + (1 - s) * z1.right;
+      const Vec<n> carried = G::Ad(z1.f) * rest;
+      const Vec<n> correction = c.inverse() * carried;
+      xi += correction;
+      last = size;
+    }
+    return xi;
+  } catch (const DomainError&) {
+    return Vec<n>::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+}  // namespace hamel

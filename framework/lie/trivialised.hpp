@@ -1,0 +1,76 @@
+// Derivatives of trivialised maps, from the four things a retraction gives.
+//
+// Write R = dR tau_z (n x n), D(z, p) = d/dz [ R^-T p ] with p fixed, K(mu) eta = (ad_eta)^T mu,
+// f = tau(z). Then, with every covector on the right held fixed,
+//   (a)  d/dz [ R^T m ]            = -R^T D(z, R^T m)                  (differentiate R^-T (R^T m) = m)
+//   (b)  d/dz [ Ad_f^T m ]         =  K(Ad_f^T m) dL tau_z             (f varies as f dL dz)
+//   (c)  d/dz [ Ad_{f^-1}^T mu ]   = -K(Ad_{f^-1}^T mu) R              (f varies as (R dz) f)
+//   (d)  d/dz [ dL^T mu ]          = -R^T ( D(z, R^T m) + K(m) R ),  m = Ad_{f^-1}^T mu
+// where (d) is (a) and (c) applied to dL^T mu = R^T Ad_{f^-1}^T mu.
+#pragma once
+
+#include <Eigen/LU>
+
+#include <hamel/framework/lie/concepts.hpp>
+
+namespace hamel {
+
+/// m0 of the cotangent lift (method.md, (1) and (2), both end momenta carried to the base point, m1 = m0 + nu):
+///   s dR_{z0}^T m0 + (1-s) dR_{z1}^T (m0 + nu) = p,   z0 = -s xi, z1 = (1-s) xi.
+/// With A_i = dR_{z_i}^-1 and M = s A_1 + (1-s) A_0:  s dR_{z0} + (1-s) dR_{z1} = A_0^-1 M A_1^-1, so that
+/// m0 = A_0^T M^-T (A_1^T p - (1-s) nu), and no dR is formed. Where A is quadratic, A(xi) = 1 + odd + even
+/// (Cayley), the odd parts cancel: M = 1 + s (1-s) even(xi), which the retraction solves in closed form.
+template <class Tau>
+Vec<Tau::Group::dim> base_momentum(double s, const Vec<Tau::Group::dim>& xi,
+                                   const Vec<Tau::Group::dim>& p, const Vec<Tau::Group::dim>& nu) {
+  using G = typename Tau::Group;
+  constexpr int n = G::dim;
+  if (s == 0) return Tau::dtau_right_inverse_transpose(xi, p) - nu;
+  const Vec<n> z0 = -s * xi, z1 = (1 - s) * xi;
+  Vec<n> m = Tau::dtau_right_inverse_transpose(z1, p) - (1 - s) * nu;
+  if constexpr (requires { Tau::solve_even_transposed(xi, s, m); }) {
+    m = Tau::solve_even_transposed(xi, s * (1 - s), m);
+  } else {
+    const Mat<n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
+    if constexpr (requires { G::solve_transposed(mix, m); }) m = G::solve_transposed(mix, m);
+    else if constexpr (n <= 4) m = (mix.transpose().inverse() * m).eval();
+    else m = mix.transpose().partialPivLu().solve(m).eval();
+  }
+  return Tau::dtau_right_inverse_transpose(z0, m);
+}
+
+/// tau and its right derivative at one point z: what every scheme evaluates there.
+template <class Tau>
+struct At {
+  using G = typename Tau::Group;
+  static constexpr int n = G::dim;
+
+  Vec<n> z;
+  typename G::template Element<double> f;
+  Mat<n, n> right;  // dR tau_z
+
+  explicit At(const Vec<n>& point) : z(point), f(Tau::tau(point)), right(Tau::dtau_right(point)) {}
+
+  /// Ad_f^T m.
+  Vec<n> pull(const Vec<n>& m) const { return G::Ad_transpose(f, m); }
+  /// Ad_{f^-1}^T mu.
+  Vec<n> push(const Vec<n>& mu) const { return G::Ad_transpose(G::inverse(f), mu); }
+
+  /// (a): derivative of dR^T m.
+  Mat<n, n> right_transpose_derivative(const Vec<n>& m) const {
+    const Vec<n> p = right.transpose() * m;
+    return -right.transpose() * Tau::dtau_right_inverse_transpose_derivative(z, p);
+  }
+  /// (b): derivative of Ad_f^T m, given mu = Ad_f^T m.
+  Mat<n, n> pull_derivative(const Vec<n>& mu) const { return G::coad(mu) * Tau::dtau_left(z); }
+  /// (c): derivative of m = Ad_{f^-1}^T mu, given m.
+  Mat<n, n> push_derivative(const Vec<n>& m) const { return -G::coad(m) * right; }
+  /// (d): derivative of dL^T mu, given m = Ad_{f^-1}^T mu.
+  Mat<n, n> left_transpose_derivative(const Vec<n>& m) const {
+    const Vec<n> p = right.transpose() * m;
+    const Mat<n, n> inner = Tau::dtau_right_inverse_transpose_derivative(z, p) + G::coad(m) * right;
+    return -right.transpose() * inner;
+  }
+};
+
+}  // namespace hamel

@@ -1,0 +1,80 @@
+// What the run-time layer holds of a compiled time loop: one virtual call per run or per recorded row, none
+// inside a step. The loop itself is compiled_kernel.hpp.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hamel/framework/loop/solver.hpp>
+
+namespace hamel {
+
+/// What becomes of a step that fails: the run stops there; another solver tries; it is taken as two
+/// halves, each of which may be halved again, up to ten times.
+enum class OnFailure { stop, retry, halve };
+
+/// Everything a kernel needs to know of a run; matrices are erased here and fixed in the kernel.
+struct KernelSetup {
+  Eigen::MatrixXd inertia;      // n x n, symmetric positive definite
+  Eigen::MatrixXd constraints;  // k x n, rank k
+  Eigen::MatrixXd frame;        // n x m, E
+  double s = 0.5;
+  double step = 0.01;  // h, of either sign
+  double tolerance = 1e-13;
+  std::vector<double> composition = {1.0};
+  std::shared_ptr<Solver> solver;  // null: the solver compiled into the kernel
+  OnFailure on_failure = OnFailure::stop;
+  std::shared_ptr<Solver> fallback;  // for retry; null as above
+  std::string fallback_name;
+  std::vector<double> configuration;  // the element's coordinates at t = 0
+  Eigen::VectorXd momentum;           // mu_bar at t = 0, m entries
+  Eigen::VectorXd velocity;           // xi at t = 0, n entries (general kernels)
+};
+
+/// A step that failed and was rescued.
+struct Fallback {
+  long step = 0;
+  double time = 0;  // at its beginning
+  std::string action;
+};
+
+/// Running totals over the steps taken.
+struct SolverStats {
+  long iterations = 0;
+  long evaluations = 0;
+  int iterations_max = 0;  // over one step
+  double residual_max = 0;
+  long fallbacks = 0;
+  std::vector<Fallback> first_fallbacks;  // at most 20
+};
+
+/// A state with its measurements.
+struct Snapshot {
+  long step = 0;
+  double time = 0;
+  std::vector<double> coordinates;  // of g
+  std::vector<double> velocity;     // nodal body velocity, n
+  std::vector<double> momentum;     // nodal body momentum, n
+  double energy = 0;
+  std::vector<double> row_rates;  // A v of the last step, v recovered from the configurations; k
+  double constraint = 0;          // |A v - b|, holonomic rows left out
+  double holonomic = 0;           // max |phi(g)|
+  double group_defect = 0;        // how far g is from the group
+  int iterations = 0;             // of the last step, all substeps
+  double residual = 0;            // relative, the largest of the last step's substeps
+};
+
+class Kernel {
+ public:
+  virtual ~Kernel() = default;
+  /// count steps. On failure the state is that of the last good step.
+  virtual Status advance(long count) = 0;
+  /// Measures the current state into out (its vectors are reused).
+  virtual void measure(Snapshot& out) const = 0;
+  virtual const SolverStats& stats() const = 0;
+};
+
+}  // namespace hamel

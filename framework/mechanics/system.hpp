@@ -1,0 +1,299 @@
+// A system: what physics says, and its erasure to the data that a run needs.
+//
+// A system is any struct with
+//   using Group = ...;                 the configuration group, of dimension n
+//   auto inertia() const;              n x n symmetric positive definite, l(xi) = 1/2 xi^T I xi
+//   auto constraints() const;          k x n rows A of full rank, A xi = 0 (k = 0: leave it out)
+// (inertia(g), constraints(g), holonomic(g), potential(g), ... for those that are not left-invariant:
+// general_system.hpp) and, where it has them,
+//   void fields(auto& f);              f("mass", mass, "kg", "what it is"): parameters, units, words
+//   Start start() const;               the default start
+//   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
+//   bool has_exact() const;            where the exact motion depends on the parameters
+//   void invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
+//   void draw(auto& scene) const;      how the report page shows it (drawing.hpp)
+//   static name(), summary(), formula(), known(), source()   words for `hamel describe`
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/lie/group_info.hpp>
+#include <hamel/framework/mechanics/system_members.hpp>
+
+namespace hamel {
+
+/// Where a run starts. Left empty: the system's own. At most one of velocity and momentum.
+struct Start {
+  std::vector<double> configuration = {};  // the element's CSV columns
+  std::vector<double> velocity = {};       // body velocity xi, n entries
+  std::vector<double> momentum = {};       // body momentum mu, n entries
+};
+
+using Parameters = std::map<std::string, std::vector<double>>;
+
+/// One parameter of a system, as its fields() states it.
+struct Field {
+  std::string name;
+  std::vector<double> value;
+  std::string unit;
+  std::string meaning;
+  bool any_length = false;  // a list whose length the system itself checks
+};
+
+/// The exact motion from a start: t -> (coordinates of g, xi). Call with |t| increasing.
+using ExactFlow = std::function<std::pair<std::vector<double>, std::vector<double>>(double)>;
+
+/// A number that the exact motion keeps.
+struct Invariant {
+  std::string name;
+  std::function<double(std::span<const double> coordinates, std::span<const double> velocity)>
+      value;
+};
+
+class Mechanics;
+
+/// A system with its parameters set and its type erased.
+struct SystemModel {
+  std::string name;
+  GroupInfo group;
+  // Left-invariant systems: the matrices. Others: everything, and no matrices.
+  Eigen::MatrixXd inertia;
+  Eigen::MatrixXd constraints;
+  std::shared_ptr<const Mechanics> mechanics;
+  std::vector<Field> fields;
+  Start start;
+  /// Empty when nothing is known exactly.
+  std::function<ExactFlow(const Start&)> exact;
+  std::vector<Invariant> invariants;
+  Drawing drawing;
+};
+
+/// A registered system: its words, its parameters, and how to make it.
+struct SystemInfo {
+  std::string name, summary, formula, known, source;
+  GroupInfo group;
+  std::vector<Field> fields;
+  /// Throws ConfigError naming every parameter that does not fit.
+  std::function<SystemModel(const Parameters&)> make;
+};
+
+namespace detail {
+
+// The visitors that a system's fields() meets: f(name, member, unit, meaning).
+struct FieldReader {
+  std::vector<Field> fields;
+  void operator()(const char* name, double& value, const char* unit, const char* meaning = "") {
+    fields.push_back({name, {value}, unit, meaning});
+  }
+  void operator()(const char* name, std::vector<double>& value, const char* unit,
+                  const char* meaning = "") {
+    fields.push_back({name, value, unit, meaning, true});
+  }
+  template <int N>
+  void operator()(const char* name, Vec<N>& value, const char* unit, const char* meaning = "") {
+    fields.push_back({name, std::vector<double>(value.begin(), value.end()), unit, meaning});
+  }
+};
+
+struct FieldWriter {
+  const Parameters& given;
+  void operator()(const char* name, double& value, const char*, const char* = "") {
+    if (auto it = given.find(name); it != given.end()) value = it->second.front();
+  }
+  void operator()(const char* name, std::vector<double>& value, const char*, const char* = "") {
+    if (auto it = given.find(name); it != given.end()) value = it->second;
+  }
+  template <int N>
+  void operator()(const char* name, Vec<N>& value, const char*, const char* = "") {
+    if (auto it = given.find(name); it != given.end())
+      value = Eigen::Map<const Vec<N>>(it->second.data());
+  }
+};
+
+// The members that tell a visitor, where a system has them.
+template <class S, class Visitor>
+void tell_fields(S& system, Visitor& visitor) {
+  if constexpr (requires { system.fields(visitor); }) system.fields(visitor);
+  else
+    static_assert(!named::fields<S>, "fields of this system cannot be called: expected fields(f)");
+}
+template <class S, class Visitor>
+void tell_invariants(const S& system, Visitor& add) {
+  if constexpr (requires { system.invariants(add); }) {
+    system.invariants(add);
+  } else {
+    static_assert(
+        !named::invariants<S>,
+        "invariants of this system cannot be called: expected a const member invariants(add)");
+  }
+}
+template <class S, class Visitor>
+void tell_drawing(const S& system, Visitor& scene) {
+  if constexpr (requires { system.draw(scene); }) {
+    system.draw(scene);
+  } else {
+    static_assert(!named::draw<S>,
+                  "draw of this system cannot be called: expected a const member draw(scene)");
+  }
+}
+
+template <class S>
+std::vector<Field> fields_of(S system) {
+  FieldReader reader;
+  tell_fields(system, reader);
+  return reader.fields;
+}
+
+/// Names, lengths and finiteness of given parameters against the fields; throws ConfigError.
+void check_parameters(const std::string& system, const std::vector<Field>& fields,
+                      const Parameters& given);
+
+}  // namespace detail
+
+/// How a system that is not left-invariant becomes Mechanics; defined in general_system.hpp, which its
+/// file includes.
+template <class S>
+struct MechanicsOf {
+  static std::shared_ptr<const Mechanics> make(const S& system);
+};
+
+/// The name, group and fields of a system; nothing that its parameters could break.
+template <System S>
+SystemModel erase_words(const S& system) {
+  SystemModel model;
+  if constexpr (requires { S::name(); }) {
+    model.name = S::name();
+  } else {
+    static_assert(!named::name<S>, "name of this system cannot be called: expected static name()");
+    model.name = "user system";
+  }
+  model.group = group_info<typename S::Group>();
+  model.fields = detail::fields_of(system);
+  return model;
+}
+
+/// Erases a system, parameters as they are. Throws what the system's own members throw.
+template <System S>
+SystemModel erase(const S& system) {
+  using G = typename S::Group;
+  constexpr int n = G::dim;
+  using Element = typename G::template Element<double>;
+  SystemModel model = erase_words(system);
+  if constexpr (is_left_invariant<S>()) {
+    model.inertia = system.inertia();
+    model.constraints.resize(0, n);
+    if constexpr (requires { system.constraints(); }) model.constraints = system.constraints();
+  } else {
+    model.mechanics = MechanicsOf<S>::make(system);
+  }
+  if constexpr (requires { system.start(); }) {
+    model.start = system.start();
+  } else {
+    static_assert(!named::start<S>,
+                  "start of this system cannot be called: expected a const member start()");
+  }
+  bool exact = true;
+  if constexpr (requires { system.has_exact(); }) {
+    exact = system.has_exact();
+  } else {
+    static_assert(!named::has_exact<S>,
+                  "has_exact of this system cannot be called: expected a const member has_exact()");
+  }
+  if constexpr (requires(Element g, Vec<n> xi) { system.exact(g, xi); }) {
+    if (exact)
+      model.exact = [system](const Start& start) -> ExactFlow {
+        auto flow = std::make_shared<decltype(system.exact(std::declval<Element>(), Vec<n>()))>(
+            system.exact(G::from_coordinates(start.configuration),
+                         Eigen::Map<const Vec<n>>(start.velocity.data())));
+        return [flow](double t) {
+          const auto [g, xi] = (*flow)(t);
+          return std::pair{G::coordinates(g), std::vector<double>(xi.begin(), xi.end())};
+        };
+      };
+  } else {
+    static_assert(!named::exact<S>,
+                  "exact of this system cannot be called: expected a const member exact(g0, xi0)");
+  }
+  auto add = [&model](std::string name, auto value) {
+    model.invariants.push_back(
+        {std::move(name), [value](std::span<const double> g, std::span<const double> xi) -> double {
+           return value(G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
+         }});
+  };
+  detail::tell_invariants(system, add);
+  Scene<G> scene(model.drawing);
+  detail::tell_drawing(system, scene);
+  return model;
+}
+
+/// A system whose dimension is one of its parameters: it names its group ("se2*so2^5") and gives its
+/// Mechanics itself. start() as for any system; invariants(add) and draw(scene) see coordinates.
+template <class S>
+concept RunTimeSystem = requires(const S& s) {
+  { s.group() } -> std::convertible_to<std::string>;
+  { s.mechanics() } -> std::convertible_to<std::shared_ptr<const Mechanics>>;
+};
+
+template <RunTimeSystem S>
+SystemModel erase_words(const S& system) {
+  SystemModel model;
+  model.name = S::name();
+  model.group.name = system.group();  // completed by the registry
+  model.fields = detail::fields_of(system);
+  return model;
+}
+
+template <RunTimeSystem S>
+SystemModel erase(const S& system) {
+  SystemModel model = erase_words(system);
+  model.mechanics = system.mechanics();
+  model.start = system.start();
+  auto add = [&model](std::string name, auto value) {
+    model.invariants.push_back({std::move(name), value});
+  };
+  detail::tell_invariants(system, add);
+  detail::tell_drawing(system, model.drawing);
+  return model;
+}
+
+/// From parameters to the erased system; everything not given stays as it is in `system`.
+template <class S>
+std::function<SystemModel(const Parameters&)> maker(const S& system) {
+  return [system](const Parameters& given) {
+    S copy = system;
+    const SystemModel as_is = erase_words(copy);
+    detail::check_parameters(as_is.name, as_is.fields, given);
+    detail::FieldWriter writer{given};
+    detail::tell_fields(copy, writer);
+    return erase(copy);
+  };
+}
+
+/// What the registry keeps of the system type S; S{} holds the defaults.
+template <class S>
+SystemInfo system_info() {
+  SystemInfo info;
+  info.name = S::name();
+  if constexpr (requires { S::summary(); }) info.summary = S::summary();
+  else static_assert(!named::summary<S>, "expected static std::string summary()");
+  if constexpr (requires { S::formula(); }) info.formula = S::formula();
+  else static_assert(!named::formula<S>, "expected static std::string formula()");
+  if constexpr (requires { S::known(); }) info.known = S::known();
+  else static_assert(!named::known<S>, "expected static std::string known()");
+  if constexpr (requires { S::source(); }) info.source = S::source();
+  else static_assert(!named::source<S>, "expected static std::string source()");
+  info.group = erase_words(S{}).group;
+  info.fields = detail::fields_of(S{});
+  info.make = maker(S{});
+  return info;
+}
+
+}  // namespace hamel

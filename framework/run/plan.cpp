@@ -1,0 +1,276 @@
+#include <hamel/framework/run/plan.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+
+#include <hamel/framework/schemes/composition.hpp>
+#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
+
+namespace hamel {
+namespace {
+
+constexpr double kMaxNumbers = 5e8;  // 4 GB of doubles
+
+std::vector<double> to_vector(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
+
+bool finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+// "stop", "halve", "retry:<solver>"; returns what is wrong.
+std::vector<std::string> read_on_failure(const Config& config, const Registry& registry,
+                                         KernelSetup& setup) {
+  const std::string& policy = config.on_failure;
+  if (policy == "stop") return {};
+  if (policy == "halve") {
+    setup.on_failure = OnFailure::halve;
+    return {};
+  }
+  const std::string retry = "retry:";
+  if (!policy.starts_with(retry)) {
+    return {unknown_name("on_failure", policy, {"stop", "halve", "retry:<solver>"})};
+  }
+  const std::string other = policy.substr(retry.size());
+  const SolverInfo* solver = registry.solver(other);
+  if (solver == nullptr) return {"on_failure: " + registry.missing_solver(other)};
+  if (other == config.solver) {
+    return {fmt::format("on_failure: got '{}', expected another solver than '{}'", policy, other)};
+  }
+  setup.on_failure = OnFailure::retry;
+  setup.fallback_name = other;
+  if (solver->make) setup.fallback = solver->make();
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> columns_of(const SystemModel& system) {
+  std::vector<std::string> out = {"t"};
+  out.insert(out.end(), system.group.columns.begin(), system.group.columns.end());
+  for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("xi{}", i));
+  for (const char* name :
+       {"energy", "energy_error", "constraint", "group_defect", "iterations", "residual"}) {
+    out.emplace_back(name);
+  }
+  for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("mu{}", i));
+  return out;
+}
+
+Simulation::Plan Simulation::plan() const {
+  Plan plan;
+  plan.config = config_;
+  plan.add(config_.mistakes());
+
+  const bool compiled = kernel_ && config_.scheme == kernel_scheme_.name &&
+                        config_.retraction == kernel_retraction_.name;
+  const SchemeInfo* scheme = compiled ? &kernel_scheme_ : registry_->scheme(config_.scheme);
+  if (scheme == nullptr) plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
+  else if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
+  const SolverInfo* solver = registry_->solver(config_.solver);
+  if (solver == nullptr) plan.add({registry_->missing_solver(config_.solver)});
+  else if (solver->make) plan.setup.solver = solver->make();
+  plan.add(read_on_failure(config_, *registry_, plan.setup));
+  std::vector<std::string> tables;
+  for (const Composition& c : compositions()) {
+    tables.push_back(c.name);
+    if (c.name == config_.compose) plan.setup.composition = c.coefficients;
+  }
+  if (std::find(tables.begin(), tables.end(), config_.compose) == tables.end()) {
+    plan.add({unknown_name("composition", config_.compose, tables)});
+  }
+
+  // The system with its parameters; nothing below makes sense without it.
+  Maker make = make_;
+  if (!make && config_.system.ends_with(".toml")) {
+    make = data_system_maker(*registry_, config_.system);
+  }
+  if (!make) {
+    const SystemInfo* info = registry_->system(config_.system);
+    if (info == nullptr) {
+      plan.add({unknown_name("system", config_.system, registry_->systems())});
+      return plan;
+    }
+    make = info->make;
+  }
+  try {
+    plan.system = make(config_.parameters);
+  } catch (const ConfigError& error) {
+    plan.add(error.mistakes());
+    return plan;
+  } catch (const std::invalid_argument& error) {
+    plan.add({fmt::format("{}: {}", config_.system, error.what())});
+    return plan;
+  }
+  if (plan.system.group.dim == 0) {  // a product by name alone
+    const std::string name = plan.system.group.name;
+    if (auto group = registry_->group_or_product(name)) plan.system.group = *group;
+    else plan.add({unknown_name("group", name, registry_->groups())});
+  }
+  if (plan.system.group.dim == 0) return plan;
+  plan.fill_start();
+  const SystemModel& system = plan.system;
+  const std::string& group = system.group.name;
+
+  // The kernel: the user's own, the one compiled for this group, or the general one.
+  const auto& geometry = plan.geometry = registry_->geometry(group, config_.retraction);
+  if (!compiled) {
+    const auto offered = registry_->retractions_or_common(group);
+    if (offered.empty()) {
+      plan.add(
+          {fmt::format("group '{}' is not registered: call hamel::add_group<...>() once, or "
+                       "use simulate<Scheme, Retraction>(system)",
+                       group)});
+    } else if (geometry == nullptr) {
+      plan.add({unknown_name("retraction of " + group, config_.retraction, offered)});
+    }
+  }
+  plan.look_at_start();
+  const auto m = plan.inertia.rows() - plan.constraints.rows();
+  const KernelFactory* fast =
+      scheme == nullptr || system.mechanics != nullptr || geometry == nullptr
+          ? nullptr
+          : registry_->kernel(group, scheme->adapted ? static_cast<int>(m) : system.group.dim,
+                              config_.retraction, config_.scheme);
+  if (compiled) {
+    plan.kernel = kernel_;
+  } else if (fast != nullptr) {
+    plan.kernel = *fast;
+  } else if (scheme != nullptr && geometry != nullptr) {
+    if (scheme->general && scheme->defined(system.mechanics == nullptr)) {
+      plan.use_general(*registry_, *scheme);
+    } else {
+      plan.add({fmt::format("scheme: {} is {}; {} here", config_.scheme,
+                            system.mechanics != nullptr
+                                ? "defined for left-invariant systems only"
+                                : "not compiled for " + group + " with " + config_.retraction,
+                            "lift and balance are offered")});
+    }
+  }
+
+  const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
+  const auto width = static_cast<double>(columns_of(system).size());
+  if (rows * width > kMaxNumbers) {
+    plan.add({fmt::format(
+        "every: {:.3g} rows would be recorded, more than memory holds; record "
+        "every {:.0f} steps or more",
+        rows, std::ceil(rows * static_cast<double>(config_.every) * width / kMaxNumbers))});
+  }
+  if (!plan.mistakes.empty()) return plan;
+  plan.project(*scheme);
+  plan.setup.s = plan.config.s;
+  plan.setup.step = config_.step;
+  plan.setup.tolerance = config_.tolerance;
+  for (const Field& field : system.fields) plan.config.parameters[field.name] = field.value;
+  return plan;
+}
+
+// The user's start, else the system's own, else rest at the identity.
+void Simulation::Plan::fill_start() {
+  Start& start = config.start;
+  if (!start.velocity.empty() && !start.momentum.empty()) {
+    add({"start: give velocity or momentum, not both"});
+  }
+  if (start.velocity.empty() && start.momentum.empty()) {
+    start.velocity = system.start.velocity;
+    start.momentum = system.start.momentum;
+    if (start.velocity.empty() && start.momentum.empty()) {
+      add({fmt::format("start: {} has no default start; give velocity or momentum", system.name)});
+    }
+  }
+  if (start.configuration.empty()) start.configuration = system.start.configuration;
+  if (start.configuration.empty()) start.configuration = system.group.identity;
+  try {
+    start.configuration = system.group.element(start.configuration);
+  } catch (const std::invalid_argument& error) {
+    add({fmt::format("configuration: {}", error.what())});
+    start.configuration = system.group.identity;
+  }
+  const auto n = static_cast<size_t>(system.group.dim);
+  for (const auto& [name, values] :
+       {std::pair{"velocity", &start.velocity}, std::pair{"momentum", &start.momentum}}) {
+    if (values->empty()) continue;
+    if (values->size() != n) {
+      add({fmt::format("{}: got {} values, expected {} for {}", name, values->size(), n,
+                       system.group.name)});
+    } else if (!finite(*values)) {
+      add({fmt::format("{}: {} is not finite", name, join(*values))});
+    }
+  }
+}
+
+// I, A and b where the run starts, checked.
+void Simulation::Plan::look_at_start() {
+  const int n = system.group.dim;
+  inertia = system.inertia;
+  constraints = system.constraints;
+  mechanics = system.mechanics;
+  if (mechanics != nullptr) {
+    inertia = Eigen::MatrixXd::Identity(n, n);
+    constraints.resize(0, n);
+    if (geometry == nullptr) return;
+    Eigen::VectorXd g(geometry->size());
+    geometry->from_coordinates(config.start.configuration, g.data());
+    constraints.resize(mechanics->rows(), n);
+    drift.resize(mechanics->rows());
+    mechanics->inertia(g.data(), inertia);
+    mechanics->constraints(0, g.data(), constraints, drift);
+    Eigen::VectorXd phi(mechanics->holonomic_rows());
+    mechanics->holonomic(g.data(), phi);
+    if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-9)) {
+      add({fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {}",
+                       join(config.start.configuration), join(to_vector(phi)))});
+    }
+  } else {
+    drift = Eigen::VectorXd::Zero(constraints.rows());
+    mechanics = std::make_shared<InvariantMechanics>(inertia, constraints);
+  }
+  add(check_system_matrices(inertia, constraints, n));
+}
+
+void Simulation::Plan::use_general(const Registry& registry, const SchemeInfo& scheme) {
+  kernel = [general = GeneralSetup{geometry, mechanics, config.s}, make = scheme.general,
+            loop = registry.general_kernel()](const KernelSetup& run) {
+    return loop(run, general, make(general));
+  };
+}
+
+// The admissible start, mu_bar = E^T mu, and what the projection dropped.
+void Simulation::Plan::project(const SchemeInfo& scheme) {
+  Start& start = config.start;
+  const Eigen::Index n = inertia.rows();
+  const Eigen::MatrixXd frame = hamel_frame(inertia, constraints);
+  const bool by_velocity = !start.velocity.empty();
+  const auto& given = by_velocity ? start.velocity : start.momentum;
+  const Eigen::VectorXd datum = Eigen::Map<const Eigen::VectorXd>(given.data(), n);
+  const Eigen::VectorXd mu = by_velocity ? Eigen::VectorXd(inertia * datum) : datum;
+  const Eigen::VectorXd mu_bar = frame.transpose() * mu;
+  Eigen::VectorXd velocity = frame * mu_bar;
+  if (drift.size() > 0) {  // the shortest xi with A xi = b
+    const Eigen::MatrixXd reach = inertia.ldlt().solve(constraints.transpose());
+    velocity += reach * (constraints * reach).ldlt().solve(drift);
+  }
+  const Eigen::VectorXd dropped =
+      datum - (by_velocity ? velocity : Eigen::VectorXd(inertia * velocity));
+  if (dropped.norm() > 1e-12 * datum.norm()) {
+    notes.push_back(fmt::format("the start's {} was projected onto {}: dropped ({})",
+                                by_velocity ? "velocity" : "momentum", by_velocity ? "d" : "d*",
+                                join(to_vector(dropped))));
+  }
+  start.velocity = to_vector(velocity);
+  start.momentum.clear();
+
+  const Eigen::MatrixXd whole = hamel_frame(inertia, Eigen::MatrixXd(0, n));
+  setup.inertia = inertia;
+  setup.constraints = constraints;
+  setup.frame = scheme.adapted ? frame : whole;
+  setup.momentum =
+      scheme.adapted ? mu_bar : Eigen::VectorXd(whole.transpose() * (inertia * velocity));
+  setup.velocity = velocity;
+  setup.configuration = start.configuration;
+}
+
+}  // namespace hamel

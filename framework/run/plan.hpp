@@ -1,0 +1,35 @@
+// What Simulation checks and gathers before the first step. Not installed: simulate.cpp's own.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <hamel/framework/run/simulation.hpp>
+
+namespace hamel {
+
+// Everything that a run needs, or everything that is wrong.
+struct Simulation::Plan {
+  std::vector<std::string> mistakes, notes;
+  Config config;
+  SystemModel system;
+  Eigen::MatrixXd inertia, constraints;  // at the start
+  Eigen::VectorXd drift;
+  std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
+  std::shared_ptr<const Mechanics> mechanics;
+  KernelSetup setup;
+  KernelFactory kernel;
+
+  void add(const std::vector<std::string>& more) {
+    mistakes.insert(mistakes.end(), more.begin(), more.end());
+  }
+  void fill_start();
+  void look_at_start();
+  void use_general(const Registry& registry, const SchemeInfo& scheme);
+  void project(const SchemeInfo& scheme);
+};
+
+/// The columns of a trajectory of this system, as in contract.md.
+std::vector<std::string> columns_of(const SystemModel& system);
+
+}  // namespace hamel

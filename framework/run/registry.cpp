@@ -1,0 +1,175 @@
+#include <hamel/framework/run/registry.hpp>
+
+#include <charconv>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/schemes/problem.hpp>
+#include <hamel/framework/loop/scaled_equation.hpp>
+
+namespace hamel {
+namespace {
+
+template <class Map>
+auto find(const Map& map, const typename Map::key_type& key) -> const typename Map::mapped_type* {
+  const auto it = map.find(key);
+  return it == map.end() ? nullptr : &it->second;
+}
+
+template <class Map>
+std::vector<std::string> names(const Map& map) {
+  std::vector<std::string> out;
+  for (const auto& entry : map) out.push_back(entry.first);
+  return out;
+}
+
+std::string kernel_key(const std::string& group, int m, const std::string& retraction,
+                       const std::string& scheme) {
+  return fmt::format("{}/{}/{}/{}", group, m, retraction, scheme);
+}
+
+class FunctionSolver final : public Solver {
+ public:
+  explicit FunctionSolver(SolveFunction solve) : solve_(std::move(solve)) {}
+  SolveReport solve(const Equation& equation, std::span<double> x, double tolerance) override {
+    equation_.start(equation, x, tolerance);
+    solve_(equation_, x, equation_.target());
+    const int evaluations = equation_.evaluations();
+    return equation_.finish(x, evaluations);
+  }
+
+ private:
+  ScaledEquation equation_;
+  SolveFunction solve_;
+};
+
+}  // namespace
+
+ClaimedOrder SchemeInfo::claim(double s, bool symmetric_tau, bool left_invariant) const {
+  if (!uses_s) s = 0;
+  if (left_invariant) return claimed_order(s, symmetric_tau);
+  return defined(false) ? general_order(s) : ClaimedOrder{0, false};
+}
+
+void Registry::add(GroupInfo info) { groups_[info.name] = std::move(info); }
+void Registry::add(RetractionInfo info) { retractions_[{info.group, info.name}] = std::move(info); }
+void Registry::add(SchemeInfo info) { schemes_[info.name] = std::move(info); }
+void Registry::add(SolverInfo info) {
+  absent_solvers_.erase(info.name);
+  solvers_[info.name] = std::move(info);
+}
+void Registry::add_solver(const std::string& name, const std::string& summary,
+                          SolveFunction solve) {
+  add(SolverInfo{name, summary, "",
+                 [solve = std::move(solve)] { return std::make_shared<FunctionSolver>(solve); }});
+}
+void Registry::add_absent(SolverInfo info) { absent_solvers_[info.name] = std::move(info); }
+void Registry::add(SystemInfo info) { systems_[info.name] = std::move(info); }
+void Registry::add_kernel(const std::string& group, int m, const std::string& retraction,
+                          const std::string& scheme, KernelFactory factory) {
+  kernels_[kernel_key(group, m, retraction, scheme)] = std::move(factory);
+}
+
+const GroupInfo* Registry::group(const std::string& name) const { return find(groups_, name); }
+const RetractionInfo* Registry::retraction(const std::string& group,
+                                           const std::string& name) const {
+  return find(retractions_, {group, name});
+}
+const SchemeInfo* Registry::scheme(const std::string& name) const { return find(schemes_, name); }
+const SolverInfo* Registry::solver(const std::string& name) const { return find(solvers_, name); }
+const SolverInfo* Registry::absent_solver(const std::string& name) const {
+  return find(absent_solvers_, name);
+}
+const SystemInfo* Registry::system(const std::string& name) const { return find(systems_, name); }
+const KernelFactory* Registry::kernel(const std::string& group, int m,
+                                      const std::string& retraction,
+                                      const std::string& scheme) const {
+  const KernelFactory* exact = find(kernels_, kernel_key(group, m, retraction, scheme));
+  return exact != nullptr ? exact : find(kernels_, kernel_key(group, kRunTime, retraction, scheme));
+}
+
+namespace {
+
+// "se2*so2^3" -> {"se2", "so2", "so2", "so2"}; empty when it cannot be read.
+std::vector<std::string> factors_of(const std::string& name) {
+  std::vector<std::string> out;
+  std::istringstream in(name);
+  for (std::string word; std::getline(in, word, '*');) {
+    long count = 1;
+    if (const size_t hat = word.find('^'); hat != std::string::npos) {
+      const std::string power = word.substr(hat + 1);
+      const auto [end, error] = std::from_chars(power.data(), power.data() + power.size(), count);
+      if (error != std::errc() || end != power.data() + power.size() || count < 0 || count > 1000) {
+        return {};
+      }
+      word.resize(hat);
+    }
+    out.insert(out.end(), static_cast<size_t>(count), word);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<GroupInfo> Registry::group_or_product(const std::string& name) const {
+  if (const GroupInfo* info = group(name)) return *info;
+  std::vector<GroupInfo> factors;
+  for (const std::string& word : factors_of(name)) {
+    const GroupInfo* info = group(word);
+    if (info == nullptr) return {};
+    factors.push_back(*info);
+  }
+  if (factors.empty()) return {};
+  return product_info(name, factors);
+}
+
+std::shared_ptr<const Geometry> Registry::geometry(const std::string& group,
+                                                   const std::string& retraction) const {
+  if (const RetractionInfo* info = this->retraction(group, retraction)) return info->geometry;
+  std::vector<std::shared_ptr<const Geometry>> parts;
+  for (const std::string& word : factors_of(group)) {
+    const RetractionInfo* info = this->retraction(word, retraction);
+    if (info == nullptr) return nullptr;
+    parts.push_back(info->geometry);
+  }
+  if (parts.empty()) return nullptr;
+  return std::make_shared<ProductGeometry>(parts);
+}
+
+std::vector<std::string> Registry::retractions_or_common(const std::string& group) const {
+  std::vector<std::string> out = retractions(group);
+  if (!out.empty()) return out;
+  for (const std::string& name : retractions()) {
+    if (geometry(group, name) != nullptr) out.push_back(name);
+  }
+  return out;
+}
+
+std::vector<std::string> Registry::groups() const { return names(groups_); }
+std::vector<std::string> Registry::retractions() const {
+  std::set<std::string> all;
+  for (const auto& [key, info] : retractions_) all.insert(info.name);
+  return {all.begin(), all.end()};
+}
+std::vector<std::string> Registry::retractions(const std::string& group) const {
+  std::vector<std::string> out;
+  for (const auto& [key, info] : retractions_) {
+    if (key.first == group) out.push_back(key.second);
+  }
+  return out;
+}
+std::vector<std::string> Registry::schemes() const { return names(schemes_); }
+std::vector<std::string> Registry::solvers() const { return names(solvers_); }
+std::vector<std::string> Registry::absent_solvers() const { return names(absent_solvers_); }
+std::string Registry::missing_solver(const std::string& name) const {
+  if (const SolverInfo* info = absent_solver(name)) {
+    return fmt::format("solver '{}' needs the package {}: install it and build again", name,
+                       info->package);
+  }
+  return unknown_name("solver", name, solvers());
+}
+std::vector<std::string> Registry::systems() const { return names(systems_); }
+
+}  // namespace hamel

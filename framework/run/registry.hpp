@@ -1,0 +1,130 @@
+// What exists by name: groups, retractions, schemes, solvers, systems, and the compiled kernels.
+//
+// A registry is a plain value filled explicitly (systems/systems.cpp fills the library's own); a user's
+// program adds to it with the add_... functions of systems/kernels.hpp, without touching the library.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/schemes/general_step.hpp>
+#include <hamel/framework/loop/kernel.hpp>
+#include <hamel/framework/schemes/traits.hpp>
+#include <hamel/framework/mechanics/system.hpp>
+
+namespace hamel {
+
+/// A retraction of one group.
+struct RetractionInfo {
+  std::string name, group, formula, domain;
+  bool symmetric = false;
+  bool one_parameter = false;
+  std::shared_ptr<const Geometry> geometry;  // what the general schemes evaluate
+};
+
+struct SchemeInfo {
+  std::string name, formula, source;
+  bool adapted = true;  // keeps the constraint; otherwise the frame is the whole algebra
+  bool uses_s = true;
+  double fixed_s = 0;  // where it does not: the s that its steps, and their measurement, have
+  bool steps_admissible =
+      true;  // the velocity of a step satisfies A xi = b, not that of its ends only
+  bool invariant_only = false;  // defined for left-invariant systems only
+  /// On left-invariant systems.
+  std::function<ClaimedOrder(double s, bool symmetric_tau)> claimed_order;
+  /// The scheme on general systems, and what it claims there; null when it is not defined.
+  std::function<std::unique_ptr<GeneralStep>(const GeneralSetup&)> general = {};
+  std::function<ClaimedOrder(double s)> general_order = {};
+
+  bool explicit_step = false;  // no equation to solve
+
+  bool defined(bool left_invariant) const {
+    return left_invariant || (general != nullptr && !invariant_only);
+  }
+  /// What it claims for a run; order 0 where it is not defined.
+  ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) const;
+};
+
+struct SolverInfo {
+  std::string name, summary, source;
+  /// Null for the solver that is compiled into the kernels.
+  std::function<std::shared_ptr<Solver>()> make;
+  std::string method = {};   // what an iteration does
+  std::string stops = {};    // what ends a solve
+  std::string package = {};  // the Debian package that brings it, where one is needed
+};
+
+/// A solver as one function: improve x, the guess, until |F(x)| <= tolerance. F comes scaled, and x is
+/// judged by the best residual that was evaluated: no report is asked for.
+using SolveFunction =
+    std::function<void(const Equation& equation, std::span<double> x, double tolerance)>;
+
+using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
+using GeneralKernelFactory = std::function<std::unique_ptr<Kernel>(
+    const KernelSetup&, const GeneralSetup&, std::unique_ptr<GeneralStep>)>;
+
+class Registry {
+ public:
+  // Adding a name again replaces what it stood for.
+  void add(GroupInfo info);
+  void add(RetractionInfo info);
+  void add(SchemeInfo info);
+  void add(SolverInfo info);
+  void add(SystemInfo info);
+  void add_solver(const std::string& name, const std::string& summary, SolveFunction solve);
+  /// A solver that this build has not, for want of info.package: no solver(), but words about it.
+  void add_absent(SolverInfo info);
+  /// m = kRunTime: a kernel for any number of admissible directions.
+  void add_kernel(const std::string& group, int m, const std::string& retraction,
+                  const std::string& scheme, KernelFactory factory);
+  /// The time loop of every general scheme.
+  void set_general_kernel(GeneralKernelFactory factory) { general_kernel_ = std::move(factory); }
+
+  // Null when there is no such name.
+  const GroupInfo* group(const std::string& name) const;
+  const RetractionInfo* retraction(const std::string& group, const std::string& name) const;
+  const SchemeInfo* scheme(const std::string& name) const;
+  const SolverInfo* solver(const std::string& name) const;
+  const SolverInfo* absent_solver(const std::string& name) const;
+  const SystemInfo* system(const std::string& name) const;
+  /// The kernel compiled for m if there is one, else the one for any m.
+  const KernelFactory* kernel(const std::string& group, int m, const std::string& retraction,
+                              const std::string& scheme) const;
+
+  const GeneralKernelFactory& general_kernel() const { return general_kernel_; }
+
+  // Products written "se2*so2^3" that nobody registered are put together from their factors.
+  /// Nothing when a factor is unknown.
+  std::optional<GroupInfo> group_or_product(const std::string& name) const;
+  /// Null when a factor has no such retraction.
+  std::shared_ptr<const Geometry> geometry(const std::string& group,
+                                           const std::string& retraction) const;
+  /// The retractions of a group, or those that all factors of a product offer.
+  std::vector<std::string> retractions_or_common(const std::string& group) const;
+
+  // Sorted names.
+  std::vector<std::string> groups() const;
+  std::vector<std::string> retractions() const;
+  std::vector<std::string> retractions(const std::string& group) const;
+  std::vector<std::string> schemes() const;
+  std::vector<std::string> solvers() const;
+  std::vector<std::string> absent_solvers() const;
+  /// Why there is no solver of this name: a nearest name, or the package to install.
+  std::string missing_solver(const std::string& name) const;
+  std::vector<std::string> systems() const;
+
+ private:
+  std::map<std::string, GroupInfo> groups_;
+  std::map<std::pair<std::string, std::string>, RetractionInfo> retractions_;  // (group, name)
+  std::map<std::string, SchemeInfo> schemes_;
+  std::map<std::string, SolverInfo> solvers_, absent_solvers_;
+  std::map<std::string, SystemInfo> systems_;
+  std::map<std::string, KernelFactory> kernels_;
+  GeneralKernelFactory general_kernel_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,267 @@
+#include <hamel/framework/run/result.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <sstream>
+
+#include <sys/utsname.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hamel/framework/io/version.hpp>
+
+namespace hamel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json numbers(const std::vector<double>& values) {
+  Json out = Json::array();
+  for (double x : values) out.push_back(number(x));
+  return out;
+}
+
+Json matrix(const Eigen::MatrixXd& m) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(number(m(i, j)));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json element(const Result& result) {
+  const auto matrices = result.system.group.matrices(result.last.coordinates);
+  if (matrices.size() == 1) return matrix(matrices.front());
+  Json out = Json::array();
+  for (const auto& m : matrices) out.push_back(matrix(m));
+  return out;
+}
+
+Json fallbacks(const SolverStats& stats) {
+  Json out = Json::array();
+  for (const Fallback& f : stats.first_fallbacks) {
+    out.push_back({{"step", f.step}, {"time", number(f.time)}, {"action", f.action}});
+  }
+  return out;
+}
+
+Json record_of(const Result& r) {
+  Json parameters = Json::object();
+  for (const Field& field : r.system.fields) {
+    parameters[field.name] =
+        field.value.size() == 1 ? number(field.value[0]) : numbers(field.value);
+  }
+  Json invariants = Json::object();
+  for (const InvariantDrift& i : r.invariants) {
+    invariants[i.name] = {{"start", number(i.start)}, {"drift_max", number(i.drift_max)}};
+  }
+  const double steps = static_cast<double>(std::max(r.steps, 1L));
+  return {
+      {"system", r.system.name},
+      {"group", r.system.group.name},
+      {"scheme", r.config.scheme},
+      {"s", r.config.s},
+      {"retraction", r.config.retraction},
+      {"solver", r.config.solver},
+      {"tolerance", r.config.tolerance},
+      {"on_failure", r.config.on_failure},
+      {"compose", r.config.compose},
+      {"step", r.config.step},
+      {"until", r.config.until},
+      {"every", r.config.every},
+      {"parameters", parameters},
+      {"start",
+       {{"configuration", numbers(r.config.start.configuration)},
+        {"velocity", numbers(r.config.start.velocity)}}},
+      {"notes", r.notes},
+      {"status", r.status.ok ? "ok" : "failed"},
+      {"reason", r.status.reason},
+      {"steps", r.steps},
+      {"time", r.last.time},
+      {"failure", r.status.ok ? Json(nullptr)
+                              : Json{{"step", r.status.step},
+                                     {"time", r.status.time},
+                                     {"residual", number(r.status.residual)}}},
+      {"final",
+       {{"element", element(r)},
+        {"velocity", numbers(r.last.velocity)},
+        {"momentum", numbers(r.last.momentum)},
+        {"energy", number(r.last.energy)}}},
+      {"diagnostics",
+       {{"constraint_max", number(r.constraint_max)},
+        {"holonomic_max", number(r.holonomic_max)},
+        {"group_defect_max", number(r.group_defect_max)},
+        {"energy_error_max", number(r.energy_error_max)},
+        {"reaction_work", number(r.reaction_work)},
+        {"exact_error_final", number(r.exact_error_final)},
+        {"exact_error_max", number(r.exact_error_max)},
+        {"exact_velocity_error_max", number(r.exact_velocity_error_max)},
+        {"invariants", invariants}}},
+      {"solver_stats",
+       {{"iterations_mean", static_cast<double>(r.stats.iterations) / steps},
+        {"iterations_max", r.stats.iterations_max},
+        {"evaluations_mean", static_cast<double>(r.stats.evaluations) / steps},
+        {"residual_max", number(r.stats.residual_max)}}},
+      {"fallbacks", {{"count", r.stats.fallbacks}, {"first", fallbacks(r.stats)}}},
+      {"timing", {{"seconds", r.seconds}, {"nanoseconds_per_step", r.seconds * 1e9 / steps}}},
+      {"version", version()},
+      {"git", git_hash()},
+      {"host", host_name()},
+  };
+}
+
+}  // namespace
+
+size_t Trajectory::index(const std::string& column) const {
+  const auto it = std::find(columns_.begin(), columns_.end(), column);
+  if (it == columns_.end()) throw ConfigError({unknown_name("column", column, columns_)});
+  return static_cast<size_t>(it - columns_.begin());
+}
+
+bool Trajectory::has(const std::string& column) const {
+  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+}
+
+std::vector<double> Trajectory::column(const std::string& name) const {
+  const size_t j = index(name);
+  std::vector<double> out(rows());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = at(i, j);
+  return out;
+}
+
+void Trajectory::add_column(const std::string& name, const std::vector<double>& values) {
+  std::vector<double> wider;
+  wider.reserve(values_.size() + values.size());
+  for (size_t i = 0; i < values.size(); ++i) {
+    const auto old = row(i);
+    wider.insert(wider.end(), old.begin(), old.end());
+    wider.push_back(values[i]);
+  }
+  values_ = std::move(wider);
+  columns_.push_back(name);
+}
+
+std::string Result::record(int indent) const { return record_of(*this).dump(indent); }
+
+std::string Result::report() const {
+  std::string out =
+      fmt::format("{} on {}: {} (s = {}), {}, {}{}, h = {}\n", system.name, system.group.name,
+                  config.scheme, config.s, config.retraction, config.solver,
+                  config.compose == "none" ? "" : ", composed by " + config.compose, config.step);
+  const double count = static_cast<double>(std::max(steps, 1L));
+  const auto line = [&](const std::string& name, const std::string& value) {
+    out += fmt::format("  {:<22} {}\n", name, value);
+  };
+  if (status.ok) {
+    line("status",
+         fmt::format("ok{}, {} steps to t = {:.6g}",
+                     status.reason.empty() ? "" : " (" + status.reason + ")", steps, last.time));
+  } else {
+    line("status", fmt::format("FAILED in step {} (t = {:.6g}): {}, residual {:.2e}", status.step,
+                               status.time, status.reason, status.residual));
+    line("kept", fmt::format("{} good steps to t = {:.6g}", steps, last.time));
+  }
+  for (const std::string& note : notes) line("note", note);
+  line("final velocity", join(last.velocity));
+  line("solver", fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
+                             static_cast<double>(stats.iterations) / count, stats.iterations_max,
+                             stats.residual_max));
+  if (stats.fallbacks > 0) {
+    const Fallback& first = stats.first_fallbacks.front();
+    line("fallbacks", fmt::format("{} of {} steps; the first, step {} (t = {:.6g}): {}",
+                                  stats.fallbacks, steps, first.step, first.time, first.action));
+  }
+  line("constraint residual", fmt::format("{:.2e}", constraint_max));
+  line("group defect", fmt::format("{:.2e}", group_defect_max));
+  line("energy error", fmt::format("{:.2e} (relative)", energy_error_max));
+  if (std::isfinite(reaction_work)) {
+    line("work of reactions", fmt::format("{:.2e}", reaction_work));
+  }
+  for (const InvariantDrift& i : invariants) {
+    line(i.name, fmt::format("{:.6g}, drift {:.2e}", i.start, i.drift_max));
+  }
+  if (std::isfinite(exact_error_max)) {
+    line("against the exact",
+         fmt::format("configuration {:.2e} at the end, velocity {:.2e} at most", exact_error_final,
+                     exact_velocity_error_max));
+  }
+  line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
+  return out;
+}
+
+void Result::write_csv(std::ostream& out) const {
+  fmt::memory_buffer text;
+  const auto append = [&](std::string_view piece) { text.append(piece); };
+  for (size_t j = 0; j < trajectory.columns().size(); ++j) {
+    if (j > 0) append(",");
+    append(trajectory.columns()[j]);
+  }
+  append("\n");
+  for (size_t i = 0; i < trajectory.rows(); ++i) {
+    const auto row = trajectory.row(i);
+    for (size_t j = 0; j < row.size(); ++j) {
+      fmt::format_to(std::back_inserter(text), "{}{:.17g}", j > 0 ? "," : "", row[j]);
+    }
+    append("\n");
+  }
+  std::istringstream lines(record());
+  for (std::string line; std::getline(lines, line);) append("# " + line + "\n");
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+}
+
+void Result::write(const std::string& path) const {
+  const std::string extension = std::filesystem::path(path).extension();
+  if (extension == ".csv") {
+    std::ostringstream text;
+    write_csv(text);
+    write_file(path, text.str());
+  } else if (extension == ".json") {
+    write_file(path, record() + "\n");
+  } else {
+    throw ConfigError({unknown_name("output format", extension, output_formats())});
+  }
+}
+
+std::string host_name() {
+  utsname name{};
+  if (uname(&name) != 0) return "unknown";
+  return fmt::format("{} {} {}", name.nodename, name.sysname, name.machine);
+}
+
+const std::vector<std::string>& output_formats() {
+  static const std::vector<std::string> all = {".csv", ".json"};
+  return all;
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  const std::string part = path + ".part";
+  std::ofstream out(part, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out || std::rename(part.c_str(), path.c_str()) != 0) {
+    std::remove(part.c_str());
+    throw ConfigError({fmt::format("output: cannot write '{}'", path)});
+  }
+}
+
+std::string unwritable(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (path.empty()) return "output: an empty path";
+  if (fs::is_directory(path, error)) return fmt::format("output: '{}' is a directory", path);
+  const std::string part = path + ".part";
+  const bool opened = std::ofstream(part).is_open();
+  fs::remove(part, error);
+  return opened ? "" : fmt::format("output: cannot write '{}'", path);
+}
+
+}  // namespace hamel

@@ -1,0 +1,89 @@
+// What a run leaves behind: status, trajectory, record, and the ways to read or write them.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/run/config.hpp>
+#include <hamel/framework/loop/kernel.hpp>
+
+namespace hamel {
+
+/// The recorded rows: named columns, row-major numbers.
+class Trajectory {
+ public:
+  explicit Trajectory(std::vector<std::string> columns = {}) : columns_(std::move(columns)) {}
+  const std::vector<std::string>& columns() const { return columns_; }
+  size_t rows() const { return columns_.empty() ? 0 : values_.size() / columns_.size(); }
+  std::span<const double> row(size_t i) const {
+    return std::span(values_).subspan(i * columns_.size(), columns_.size());
+  }
+  double at(size_t i, size_t j) const { return values_[i * columns_.size() + j]; }
+  /// The index of a column; ConfigError naming the nearest when there is none.
+  size_t index(const std::string& column) const;
+  std::vector<double> column(const std::string& name) const;
+  bool has(const std::string& column) const;
+  void append(std::span<const double> row) {
+    values_.insert(values_.end(), row.begin(), row.end());
+  }
+  void reserve(size_t rows) { values_.reserve(rows * columns_.size()); }
+  /// Adds a column on the right; values has rows() entries.
+  void add_column(const std::string& name, const std::vector<double>& values);
+
+ private:
+  std::vector<std::string> columns_;
+  std::vector<double> values_;
+};
+
+/// How far an invariant of the exact motion moved, measured at the recorded states.
+struct InvariantDrift {
+  std::string name;
+  double start = 0;
+  double drift_max = 0;  // max |value - start|
+};
+
+struct Result {
+  Config config;  // as it was run: start and parameters filled in
+  SystemModel system;
+  std::vector<std::string> notes;  // what the user should know (a start that was projected, ...)
+  Status status;
+  Snapshot last;  // the last good state
+  long steps = 0;
+  Trajectory trajectory;
+  SolverStats stats;
+  std::vector<InvariantDrift> invariants;
+  double constraint_max = 0;
+  double holonomic_max = 0;  // max |phi|, NaN where there are no holonomic rows
+  double group_defect_max = 0;
+  double energy_error_max = 0;   // relative to the start's energy
+  double reaction_work = 0;      // of A^T lambda, by trapezoids over the rows; NaN without rows
+  double exact_error_final = 0;  // |coordinates - exact coordinates|, NaN where nothing is known
+  double exact_error_max = 0;
+  double exact_velocity_error_max = 0;  // |xi - exact xi|
+  double seconds = 0;                   // of the time loop, recording included
+
+  explicit operator bool() const { return status.ok; }
+  /// The record of contract.md as JSON; indent < 0 for one line.
+  std::string record(int indent = 2) const;
+  /// One screen of text: status, iterations, drifts, error against the exact solution.
+  std::string report() const;
+  /// Writes by extension: .csv (rows, then the record in # lines) or .json (the record). The file
+  /// appears whole or not at all. ConfigError when it cannot be written.
+  void write(const std::string& path) const;
+  void write_csv(std::ostream& out) const;
+};
+
+/// The machine this runs on: node name, system, architecture.
+std::string host_name();
+
+/// The extensions that Result::write knows.
+const std::vector<std::string>& output_formats();
+
+/// Writes text to a temporary beside path and renames it into place; ConfigError on failure.
+void write_file(const std::string& path, const std::string& text);
+
+/// "" when a file can be created at path, else what is in the way. Leaves nothing behind.
+std::string unwritable(const std::string& path);
+
+}  // namespace hamel

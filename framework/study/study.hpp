@@ -1,0 +1,179 @@
+// A comparative study: one run ("cell") for each combination of systems, schemes, retractions, s, solvers,
+// compositions, steps, tolerances and what is done on failure, all measured in the same way.
+//
+//   auto config = hamel::read_study("readings.toml", hamel::registry());
+//   auto result = hamel::Study(hamel::registry(), config).threads(2).folder("out").run();
+//   result.write("out");   // cells.csv, cells.h5, record.json
+//
+// Each cell is run once with recording (its errors, counts and drifts: the same whatever the number of
+// threads), then timed in rounds over all cells, so that a slow moment of the machine meets all alike.
+// What is measured and from what: framework/study/README.md.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/run/config.hpp>
+#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/io/table.hpp>
+
+namespace hamel {
+
+/// A registered system with its parameters and start, or a file "my_system.toml" (data_system.hpp); the
+/// label is what tables call it.
+struct StudySystem {
+  std::string label, name;
+  Parameters parameters = {};
+  Start start = {};
+  std::string data = {};  // the file's text: a study reads it once, at its beginning
+};
+
+/// Combinations that are left out: one entry per axis named, any of its values; axes not named match all.
+struct StudyExclusion {
+  std::map<std::string, std::vector<std::string>> values;
+  std::string why;
+};
+
+/// A study as plain data. Every list is an axis.
+struct StudyConfig {
+  std::string title = "Study";
+  bool zipped = false;  // the lists run together instead of in all combinations
+  double until = 20;    // seconds
+  int repeats = 3;      // timing rounds
+  std::vector<StudySystem> systems;
+  std::vector<std::string> schemes = {"lift"}, retractions = {"cayley"}, solvers = {"newton"},
+                           compositions = {"none"}, on_failures = {"stop"};
+  std::vector<double> s = {0.5}, steps = {0.01}, tolerances = {1e-13};
+  std::vector<StudyExclusion> exclude;
+  std::string text;  // the file that it came from, for the record
+
+  /// "file:line:column" by key, "scheme[1]"; empty for a study made in a program.
+  std::map<std::string, std::string> where;
+
+  /// The values of an axis as words, in the order given.
+  std::vector<std::string> values(const std::string& axis) const;
+  /// Everything that is wrong, each mistake with its place.
+  std::vector<std::string> mistakes(const Registry& registry) const;
+  /// What fixes the results, one line per item: a journal belongs to these lines.
+  std::string fingerprint() const;
+};
+
+/// system, scheme, retraction, s, solver, compose, on_failure, tolerance, step: the last runs fastest.
+const std::vector<std::string>& study_axes();
+
+/// Throws ConfigError with all mistakes of the file, each with line and column.
+StudyConfig parse_study(const std::string& text, const std::string& origin,
+                        const Registry& registry);
+StudyConfig read_study(const std::string& path, const Registry& registry);
+
+/// One combination: run, or skipped and why.
+struct StudyCell {
+  size_t system = 0;   // index into the systems
+  Config config = {};  // ready to run
+  /// The value on each axis as a word; of a cell that is run, empty where its scheme makes no use of it.
+  std::map<std::string, std::string> axes;
+  std::string skipped;  // "" (it is run), "excluded", "impossible" or "duplicate"
+  std::string why;
+  int claimed_order = 0;  // with this s, retraction and composition; 0: it claims none
+
+  bool runs() const { return skipped.empty(); }
+};
+
+/// All combinations in order, those that are not run too.
+std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& registry);
+
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// An error above this part of the motion's extent tells nothing of the order.
+constexpr double kAsymptotic = 0.1;
+
+/// What one cell left. NaN: not measured, or nothing finite.
+struct StudyMetrics {
+  bool done = false;  // false: the study was stopped before
+  bool ok = false;
+  std::string reason;  // of a failure
+  long steps = 0;      // good ones
+  double time = 0;     // reached, seconds
+  double failure_residual = kNotMeasured;
+  // Over the common times, distance from the exact motion or the reference.
+  double error = kNotMeasured, error_final = kNotMeasured, velocity_error = kNotMeasured;
+  double energy_error = kNotMeasured, energy_slope = kNotMeasured;  // relative; relative per second
+  double constraint = kNotMeasured, group_defect = kNotMeasured;
+  long iterations = 0, evaluations = 0, iterations_max = 0;
+  long fallbacks = 0;               // steps that failed and were rescued by on_failure
+  double residual = kNotMeasured;   // relative, the largest of the run
+  double floor = kNotMeasured;      // errors below are round-off, residuals and the reference
+  std::vector<double> final;        // the element's columns where the run ended
+  std::vector<double> nanoseconds;  // per step, one for each timing round
+  // From all cells together.
+  double order = kNotMeasured;              // least-squares slope of log error over log step
+  double order_finest = kNotMeasured;       // the same from the two finest of the points used
+  int order_points = 0, order_of = 0;       // the points used, of how many
+  double solver_difference = kNotMeasured;  // of `final`, from the first solver of the same cell
+
+  double nanoseconds_median() const;
+};
+
+/// What the cells of one system are compared with.
+struct StudyReference {
+  std::string kind;   // "exact", "converged: ..." by what, or "none: ..." and why
+  double bound = 0;   // of the reference's own error; 0 for an exact motion
+  double extent = 0;  // how far the motion gets from its start
+  std::vector<double> times;
+  std::vector<std::vector<double>> coordinates, velocities;
+};
+
+struct StudyResult {
+  StudyConfig config;
+  std::vector<StudyCell> cells;
+  std::vector<StudyMetrics> metrics;       // one for each cell; not done where the cell is skipped
+  std::vector<StudyReference> references;  // one for each system
+  bool complete = false;
+  size_t resumed = 0;  // cells taken over from the journal, references not counted
+  int threads = 1;
+  double seconds = 0;  // of this session
+
+  /// One row per cell, axes and metrics as columns.
+  Table table() const;
+  /// Versions, compiler, flags, host, git, counts and the study file, as JSON.
+  std::string record() const;
+  /// cells.csv, record.json and, where the build has HDF5, cells.h5.
+  void write(const std::string& folder) const;
+};
+
+class Study {
+ public:
+  /// Throws ConfigError with everything that is wrong.
+  Study(const Registry& registry, StudyConfig config);
+
+  const StudyConfig& config() const { return config_; }
+  const std::vector<StudyCell>& cells() const { return cells_; }
+  /// How many run at the same time; 0: as many as there are cores.
+  Study& threads(int count);
+  /// Keeps a journal there and goes on from the one that is there.
+  Study& folder(std::string path);
+  /// Forgets the journal that is there.
+  Study& fresh(bool forget = true);
+  /// Called now and then, from one thread at a time, with the fraction of the work done, references too.
+  Study& progress(std::function<void(double)> report);
+  /// Polled every few hundred steps: true abandons what is in flight and returns.
+  Study& stop(const std::atomic<bool>* flag);
+  /// Throws ConfigError before anything runs: a folder that cannot be written, another study's journal.
+  StudyResult run() const;
+
+ private:
+  const Registry* registry_;
+  StudyConfig config_;
+  std::vector<StudyCell> cells_;
+  int threads_ = 0;
+  std::string folder_;
+  bool fresh_ = false;
+  std::function<void(double)> progress_;
+  const std::atomic<bool>* stop_ = nullptr;
+};
+
+}  // namespace hamel

@@ -1,0 +1,50 @@
+// The systems of a study: registered ones, and data files as they were when the study began.
+#include <fstream>
+#include <sstream>
+
+#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/study/parts.hpp>
+
+namespace hamel::study {
+namespace {
+
+// Null for a name that is neither registered nor a file's.
+Simulation::Maker maker(const Registry& registry, const StudySystem& system) {
+  if (system.name.ends_with(".toml"))
+    return system.data.empty() ? data_system_maker(registry, system.name)
+                               : data_system_maker(registry, system.name, system.data);
+  const SystemInfo* info = registry.system(system.name);
+  return info == nullptr ? Simulation::Maker() : info->make;
+}
+
+}  // namespace
+
+void read_data(StudyConfig& config) {
+  for (StudySystem& system : config.systems) {
+    if (!system.name.ends_with(".toml") || !system.data.empty()) continue;
+    std::ifstream in(system.name);
+    std::ostringstream text;
+    if (in && text << in.rdbuf()) system.data = text.str();  // else the checks say so
+  }
+}
+
+Simulation simulation(const Registry& registry, const StudySystem& system, const Config& config) {
+  const Simulation::Maker make = maker(registry, system);
+  Simulation out =
+      make ? Simulation(registry, system.name, make) : Simulation(registry, system.name);
+  return out.config(config);
+}
+
+SystemModel model(const Registry& registry, const StudySystem& system) {
+  return maker(registry, system)(system.parameters);
+}
+
+Status advance(Integration& run, long steps, const std::atomic<bool>* stop) {
+  constexpr long kChunk = 256;
+  Status status;
+  for (; steps > 0 && status.ok && !stopped(stop); steps -= kChunk)
+    status = run.step(std::min(steps, kChunk));
+  return status;
+}
+
+}  // namespace hamel::study

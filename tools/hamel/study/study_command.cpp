@@ -1,0 +1,91 @@
+// hamel study: all cells of a study file, with a journal that an interrupted study goes on from.
+#include <csignal>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/run/result.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "commands.hpp"
+#include "study_page.hpp"
+
+namespace hamel::tools {
+namespace {
+
+std::atomic<bool> stop_asked = false;
+static_assert(std::atomic<bool>::is_always_lock_free);  // may be set by a signal handler
+
+// The first Ctrl-C finishes tidily; a second one ends the program at once.
+extern "C" void ask_to_stop(int signal) {
+  stop_asked = true;
+  std::signal(signal, SIG_DFL);
+}
+
+std::string summary(const StudyResult& result) {
+  std::map<std::string, int> counts;
+  const Table table = result.table();
+  for (size_t i = 0; i < table.rows(); ++i) ++counts[table.column("status").text(i)];
+  std::string out = result.config.title + "\n";
+  std::string words;
+  for (const auto& [status, count] : counts)
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, status);
+  out += fmt::format("  cells                  {}{}\n", words,
+                     result.resumed > 0 ? fmt::format("; {} were there", result.resumed) : "");
+  for (size_t i = 0; i < result.references.size(); ++i) {
+    const StudyReference& reference = result.references[i];
+    if (reference.times.empty()) continue;
+    out += fmt::format("  reference              {}: {}", result.config.systems[i].label,
+                       reference.kind);
+    if (reference.bound >= 0) out += fmt::format(", its error at most {:.1e}", reference.bound);
+    out += '\n';
+  }
+  for (const Verdict& verdict : study_verdicts(result))
+    out += fmt::format("  [{}] {}\n", verdict.status, verdict.text);
+  return out + fmt::format("  time                   {:.1f} s on {} thread{}\n", result.seconds,
+                           result.threads, result.threads == 1 ? "" : "s");
+}
+
+}  // namespace
+
+int study(const StudyOptions& options) {
+  namespace fs = std::filesystem;
+  const std::string folder = options.directory.empty()
+                                 ? fs::path(options.file).stem().string() + "-study"
+                                 : options.directory;
+  Study study(registry(), read_study(options.file, registry()));
+  study.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_asked);
+  std::signal(SIGINT, ask_to_stop);
+  std::signal(SIGTERM, ask_to_stop);
+  StudyResult result;
+  {
+    Progress progress("study", options.quiet);
+    result = study.progress([&](double fraction) { progress(fraction); }).run();
+  }
+  if (!result.complete) {
+    size_t done = 0, all = 0;
+    for (size_t i = 0; i < result.cells.size(); ++i) {
+      all += result.cells[i].runs();
+      done += result.metrics[i].done;
+    }
+    fmt::print(stderr,
+               "hamel: interrupted: {} of {} cells are measured and kept in {}; the same command "
+               "goes on from there\n",
+               done, all, folder);
+    return 1;
+  }
+  result.write(folder);
+  if (report_page().empty()) {
+    fmt::print(stderr, "hamel: no report.html: this program was built without node and npm\n");
+  } else {
+    study_page(result).write((fs::path(folder) / "report.html").string());
+  }
+  if (options.json) fmt::print("{}\n", result.record());
+  else if (!options.quiet)
+    fmt::print("{}  written to             {}/: cells.csv, {}record.json{}\n", summary(result),
+               folder, hdf5_version().empty() ? "" : "cells.h5, ",
+               report_page().empty() ? "" : ", report.html");
+  return 0;
+}
+
+}  // namespace hamel::tools
