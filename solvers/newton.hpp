@@ -21,64 +21,52 @@
 
 #include <Eigen/LU>
 
-#include <hamel/framework/loop/compiled_kernel.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
 #include <hamel/framework/loop/status.hpp>
 
 namespace hamel {
 
-/// LU with partial pivoting up to 12 x 12, compiled once (in newton.cpp) and free of heap.
-class SmallLu {
- public:
-  static constexpr int max_size = 12;
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, max_size, max_size>;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_size, 1>;
-  void compute(const Matrix& matrix);
-  Vector solve(const Vector& f) const;
+/// inverse = matrix^-1, column-major n x n; matrix is overwritten. NaN where it is singular.
+void invert(double* matrix, double* inverse, int n);
 
- private:
-  Eigen::PartialPivLU<Matrix> lu_;
-};
-
-/// J^-1: in closed form up to 4 x 4, by LU beyond; without a bound, up to 16 x 16 as a matrix (it only
-/// steers, and is used many times).
+/// J^-1: in closed form up to 4 x 4, as a matrix up to 16 x 16 (it only steers, and is used many times), by LU
+/// beyond.
 template <class Jacobian>
 class Inverse {
- public:
   static constexpr int size = Jacobian::RowsAtCompileTime;
   static constexpr bool closed_form = size != Eigen::Dynamic && size <= 4;
-  static constexpr int bound = Jacobian::MaxRowsAtCompileTime;  // Dynamic is -1
-  static constexpr bool small = bound != Eigen::Dynamic && bound <= SmallLu::max_size;
+  static constexpr bool may_be_large = size == Eigen::Dynamic || size > 16;
 
+ public:
   void compute(const Jacobian& jacobian) {
-    if constexpr (bound == Eigen::Dynamic) {
-      if (jacobian.rows() <= 16) {  // in loops of our own: Eigen's would take memory
-        inverse_.resize(jacobian.rows(), jacobian.cols());
-        work_ = jacobian;
-        invert(work_.data(), inverse_.data(), static_cast<int>(jacobian.rows()));
-        return;
-      }
+    if constexpr (size == 0) {
+      return;
+    } else if constexpr (closed_form) {
+      inverse_ = jacobian.inverse();
+    } else if (jacobian.rows() <= 16) {  // in loops of our own: Eigen's would take memory
+      inverse_.resize(jacobian.rows(), jacobian.cols());
+      work_ = jacobian;
+      invert(work_.data(), inverse_.data(), static_cast<int>(jacobian.rows()));
+    } else if constexpr (may_be_large) {
+      lu_.compute(jacobian);
     }
-    if constexpr (closed_form) factors_ = jacobian.inverse();
-    else factors_.compute(jacobian);
   }
   template <class Vector>
   void solve(const Vector& f, Vector& out) const {
-    if constexpr (closed_form) {
-      out = factors_ * f;
-    } else if constexpr (bound == Eigen::Dynamic) {
-      if (f.size() <= 16) out = inverse_.lazyProduct(f);
-      else out = factors_.solve(f);
-    } else {
-      out = factors_.solve(f);
+    if constexpr (may_be_large) {
+      if (f.size() > 16) {
+        out = lu_.solve(f);
+        return;
+      }
     }
+    out = inverse_.lazyProduct(f);
   }
 
  private:
-  using Lu = std::conditional_t<small, SmallLu, Eigen::PartialPivLU<Jacobian>>;
   struct Nothing {};
-  std::conditional_t<closed_form, Jacobian, Lu> factors_;
-  [[no_unique_address]] std::conditional_t<bound == Eigen::Dynamic, Jacobian, Nothing> inverse_,
-      work_;
+  Jacobian inverse_;
+  [[no_unique_address]] std::conditional_t<closed_form, Nothing, Jacobian> work_;
+  [[no_unique_address]] std::conditional_t<may_be_large, Eigen::PartialPivLU<Jacobian>, Nothing> lu_;
 };
 
 struct Newton {
@@ -96,67 +84,57 @@ struct Newton {
   }
   static std::string source() { return "Kelley 2003"; }
 
-  /// The work vectors of a solve: locals, but for sizes without bound kept in the memory (no heap).
-  template <class Unknown>
-  struct Work {
-    Unknown f, correction, trial, trial_f;
-    void resize(const Unknown& x) { f = correction = trial = trial_f = x; }
-  };
-
-  /// The factors of the last Jacobian, kept from one step of a run to the next.
+  /// The factors of the last Jacobian, kept from one step of a run to the next, and the work space of a solve.
   template <class Step>
   struct Memory {
     using Unknown = typename Step::Unknown;
-    static constexpr bool bounded = Unknown::MaxRowsAtCompileTime != Eigen::Dynamic;
-    struct Nothing {};
-    Inverse<typename Step::Jacobian> factors;
     typename Step::Jacobian jacobian;
-    [[no_unique_address]] std::conditional_t<bounded, Nothing, Work<Unknown>> work;
+    Inverse<typename Step::Jacobian> factors;
+    Unknown f, correction, trial, trial_f;
+    Differences<Unknown> differences;
     bool valid = false;
+
+    /// sample: an x. After this no solve takes memory.
+    explicit Memory(const Unknown& sample)
+        : f(sample), correction(sample), trial(sample), trial_f(sample) {
+      jacobian.setIdentity(sample.size(), sample.size());
+      if (sample.size() > 0) factors.compute(jacobian);
+      differences = {sample, sample, sample};
+    }
   };
 
-  /// step: scale_squared(), residual(x, f), linearise(x, f, jacobian). x: guess in, best point out.
+  /// step: scale_squared(), residual(x, f), linearise (schemes/scheme.hpp). x: guess in, best point out.
   template <class Step>
   [[gnu::always_inline]] static inline SolveReport solve(const Step& step,
                                                          typename Step::Unknown& x,
                                                          double tolerance, Memory<Step>& memory) {
-    if constexpr (Memory<Step>::bounded) {
-      Work<typename Step::Unknown> work;
-      return solve(step, x, tolerance, memory, work);
-    } else {
-      return solve(step, x, tolerance, memory, memory.work);
-    }
-  }
-
- private:
-  template <class Step>
-  [[gnu::always_inline]] static inline SolveReport solve(const Step& step,
-                                                         typename Step::Unknown& x,
-                                                         double tolerance, Memory<Step>& memory,
-                                                         Work<typename Step::Unknown>& work) {
     const double given = step.scale_squared(), scale = given > 0 ? given : 1.0;
     SolveReport tried;
     if (memory.valid) [[likely]] {  // one correction with the last Jacobian: nearly every step
-      work.f = x;
-      step.residual(x, work.f);
-      [[maybe_unused]] const double before = Memory<Step>::bounded ? 0 : work.f.squaredNorm();
-      correct(step, memory, work.f, work.correction);
-      work.trial = x - work.correction;
-      step.residual(work.trial, work.f);
-      const double size = work.f.squaredNorm(), target = aim(tolerance);
+      step.residual(x, memory.f);
+      [[maybe_unused]] const double before = exact<Step> ? 0 : memory.f.squaredNorm();
+      correct(step, memory, memory.f, memory.correction);
+      memory.trial = x - memory.correction;
+      step.residual(memory.trial, memory.f);
+      const double size = memory.f.squaredNorm(), target = aim(tolerance);
       if (size <= target * target * scale) [[likely]] {
-        x = work.trial;
+        x = memory.trial;
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
       }
       tried.evaluations = 2;
-      memory.valid = !Memory<Step>::bounded && worth_keeping<Step>(before, size, scale);
+      memory.valid = !exact<Step> && worth_keeping<Step>(before, size, scale);
       if (memory.valid) {
-        x = work.trial;
+        x = memory.trial;
         tried.iterations = 1;
       }
     }
     return iterate(step, x, tolerance, scale, memory, tried);
   }
+
+ private:
+  // A Jacobian in closed form costs little more than a residual; one made of differences is kept longer.
+  template <class Step>
+  static constexpr bool exact = HasJacobian<Step>;
 
   // What is aimed at: two digits below the tolerance, at most to the round-off of a residual. A kept
   // Jacobian leaves an error of one sign, which must not add up over the steps.
@@ -164,18 +142,13 @@ struct Newton {
     return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
   }
 
-  // Corrections in coordinates of the step's own choice (general/step.hpp)?
-  template <class Step>
-  static constexpr bool has_frame = requires(const Step& step, typename Step::Unknown& z) {
-    step.from_frame(z);
-  };
   // J^-1 F.
   template <class Step>
   [[gnu::always_inline]] static inline void correct(const Step& step, const Memory<Step>& memory,
                                                     const typename Step::Unknown& f,
                                                     typename Step::Unknown& out) {
     memory.factors.solve(f, out);
-    if constexpr (has_frame<Step>) step.from_frame(out);
+    if constexpr (HasFrame<Step>) step.from_frame(out);
   }
 
   static constexpr double kRoundOff =  // of |F|^2, relative
@@ -185,7 +158,7 @@ struct Newton {
   // by ten; where it is made of differences and costs 2 n + 1 residuals by two, or reach the round-off.
   template <class Step>
   static bool worth_keeping(double before, double after, double scale) {
-    if (Memory<Step>::bounded) return after <= 0.01 * before;
+    if (exact<Step>) return after <= 0.01 * before;
     return after <= 0.25 * before || after <= kRoundOff * scale;
   }
 
@@ -193,23 +166,15 @@ struct Newton {
   [[gnu::noinline]] static SolveReport iterate(const Step& step, typename Step::Unknown& x,
                                                double tolerance, double scale, Memory<Step>& memory,
                                                SolveReport report) {
-    using Unknown = typename Step::Unknown;
     const double accepted = tolerance * tolerance * scale, round_off = kRoundOff * scale;
     const double target = std::min(aim(tolerance), tolerance), aimed = target * target * scale;
 
-    Work<Unknown> own;
-    auto& work = [&]() -> Work<Unknown>& {
-      if constexpr (Memory<Step>::bounded) return own;
-      else return memory.work;
-    }();
-    double size = 0;  // |F|^2
-    if (Memory<Step>::bounded || !memory.valid) work.resize(x);
-    else size = work.f.squaredNorm();  // J is kept, and f is F(x)
-    auto& [f, correction, trial, trial_f] = work;
+    auto& [jacobian, factors, f, correction, trial, trial_f, differences, valid] = memory;
+    double size = valid ? f.squaredNorm() : 0;  // |F|^2; with a Jacobian that is kept, f is F(x)
     bool fresh = false;
     const auto finish = [&](Reason reason) {
       // Made of differences a Jacobian costs 2 n + 1 residuals, a correction one: it is kept longer.
-      const auto most = Memory<Step>::bounded ? 1 : 2 + static_cast<int>(2 * x.size()) / 5;
+      const auto most = exact<Step> ? 1 : 2 + static_cast<int>(2 * x.size()) / 5;
       memory.valid = memory.valid && report.iterations <= most;
       report.reason = reason;
       report.residual = std::sqrt(size / scale);
@@ -217,8 +182,9 @@ struct Newton {
     };
     while (report.iterations < max_iterations) {
       if (!memory.valid) {
-        factor_at(step, x, f, memory);
-        ++report.evaluations;
+        report.evaluations += linearise(step, x, f, jacobian, differences, /*in_frame=*/true);
+        factors.compute(jacobian);
+        valid = true;
         fresh = true;
         size = f.squaredNorm();
       }
@@ -248,15 +214,6 @@ struct Newton {
       if (size <= aimed) return finish(Reason::converged);
     }
     return finish(size <= accepted ? Reason::converged : Reason::max_iterations);
-  }
-
-  template <class Step>
-  [[gnu::noinline]] static void factor_at(const Step& step, const typename Step::Unknown& x,
-                                          typename Step::Unknown& f, Memory<Step>& memory) {
-    if constexpr (has_frame<Step>) step.linearise_in_frame(x, f, memory.jacobian);
-    else step.linearise(x, f, memory.jacobian);
-    memory.factors.compute(memory.jacobian);
-    memory.valid = true;
   }
 };
 

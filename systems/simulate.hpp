@@ -23,17 +23,26 @@ requires(!std::convertible_to<const S&, std::string>) Simulation simulate(const 
   return {registry(), erase_words(system).name, maker(system)};
 }
 
+namespace detail {
+template <class Scheme, class S, class Tau>
+constexpr auto problem_of() {
+  constexpr int m = S::Group::dim - constraint_count<S>();
+  if constexpr (!is_left_invariant<S>()) return std::type_identity<Typed<S, Tau>>{};
+  else if constexpr (Scheme::reduced) return std::type_identity<LeftInvariant<typename S::Group, m, Tau>>{};
+  else return std::type_identity<Erased>{};
+}
+}  // namespace detail
+
 /// A system object with the scheme and the retraction named by type; nothing needs to be registered.
 ///   hamel::simulate<hamel::Lift, hamel::Cayley>(Sleigh{.a = 0.3})
 template <class Scheme, template <class> class Tau, class S>
 Simulation simulate(const S& system) {
   static_assert(System<S>,
                 "this type does not satisfy hamel::System: Group, inertia(), constraints()");
-  static_assert(is_left_invariant<S>(), "a system that is not left-invariant is run by names");
   using R = Tau<typename S::Group>;
-  constexpr int m = S::Group::dim - constraint_count<S>();
+  using P = typename decltype(detail::problem_of<Scheme, S, R>())::type;
   Simulation simulation(registry(), erase_words(system).name, maker(system));
-  simulation.kernel(compile<Scheme, R, m>(), scheme_info<Scheme>(), retraction_info<R>());
+  simulation.kernel(compile<Scheme, P>(), scheme_info<Scheme>(), retraction_info<R>());
   return simulation;
 }
 

@@ -192,10 +192,7 @@ Analysis analyse(const Registry& registry, const std::string& system,
   out.notes = run.notes;
   const auto geometry = registry.geometry(run.system.group.name, "exp");
   std::shared_ptr<const Mechanics> mechanics = run.system.mechanics;
-  out.left_invariant = mechanics == nullptr;
-  if (out.left_invariant) {
-    mechanics = std::make_shared<InvariantMechanics>(run.system.inertia, run.system.constraints);
-  }
+  out.left_invariant = mechanics->left_invariant();
   const Eigen::Index n = mechanics->dim(), k = mechanics->rows();
   Vector g(geometry->size()), b(k);
   geometry->from_coordinates(run.config.start.configuration, g.data());

@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/place.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 

@@ -4,7 +4,7 @@
 //
 //   for (const auto& law : hamel::check_scheme(hamel::registry(), {.system = "my_system", .s = 0.5}))
 //     std::cout << law << "\n";
-// What a scheme claims is SchemeInfo::claimed_order; nothing here knows any scheme by name.
+// What a scheme claims is SchemeInfo::claim; nothing here knows any scheme by name.
 // Bounds: orders 0.05 (order 2 and higher) and 0.1 (order 1), the finest pair of three halvings;
 // reversal 1e-10 (each solve leaves up to 1e-13 of the momentum, some hundred of them, and the motion
 // may amplify them); constraint residual 8 eps (1 + |coordinates|)/|h|, since xi is recovered from
@@ -139,7 +139,7 @@ inline LawReport check_scheme(const Simulation& simulation, ClaimedOrder claim, 
   const Result result = simulated.run();
   if (claim.order > 0) report.push_back({"the run ends", result.status.ok ? 0.0 : 1.0, 0});
   report.push_back({"group defect", result.group_defect_max, 1e-14});
-  const bool constrained = result.system.constraints.rows() > 0;
+  const bool constrained = result.system.mechanics->rows() > 0;
   if (adapted && !steps_admissible) {
     // The nodes are admissible by construction, the steps are not: nothing to measure.
   } else if (adapted) {
@@ -182,7 +182,7 @@ inline LawReport check_scheme(const Registry& registry, const SchemeCase& c) {
   const SchemeInfo& scheme = *registry.scheme(c.scheme);
   const SystemModel model = registry.system(c.system)->make(c.parameters);
   const bool symmetric = registry.geometry(model.group.name, c.retraction)->symmetric();
-  return check_scheme(simulation, scheme.claim(c.s, symmetric, model.mechanics == nullptr),
+  return check_scheme(simulation, scheme.claim(c.s, symmetric, model.mechanics->left_invariant()),
                       scheme.adapted, c.step, c.until, c.generic, scheme.steps_admissible);
 }
 

@@ -23,14 +23,14 @@ struct Matrices {
 };
 inline Matrices matrices_at(const SystemModel& model, const Geometry* geometry,
                             const std::vector<double>& configuration, double t = 0) {
-  if (model.mechanics == nullptr || geometry == nullptr) {
-    return {model.inertia, model.constraints, Eigen::VectorXd::Zero(model.constraints.rows())};
-  }
   const Mechanics& mechanics = *model.mechanics;
   const Eigen::Index n = mechanics.dim(), k = mechanics.rows();
   Matrices out{Eigen::MatrixXd(n, n), Eigen::MatrixXd(k, n), Eigen::VectorXd(k)};
-  Eigen::VectorXd g(geometry->size());
-  geometry->from_coordinates(configuration, g.data());
+  Eigen::VectorXd g;
+  if (geometry != nullptr) {  // else the system is left-invariant
+    g.resize(geometry->size());
+    geometry->from_coordinates(configuration, g.data());
+  }
   mechanics.inertia(g.data(), out.inertia);
   mechanics.constraints(t, g.data(), out.rows, out.drift);
   return out;

@@ -1,8 +1,10 @@
 #include <hamel/framework/lie/geometry.hpp>
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 namespace hamel {
 namespace {
@@ -83,6 +85,11 @@ void ProductGeometry::dtau_right(const double* xi, double* matrix) const {
     for (int j = 0; j < n; ++j) std::copy_n(block + j * n, n, to + j * dim_);
   }
 }
+void ProductGeometry::dtau_right_transpose(const double* xi, const double* m, double* out) const {
+  for (const Factor& f : factors_) {
+    f.geometry->dtau_right_transpose(xi + f.at, m + f.at, out + f.at);
+  }
+}
 void ProductGeometry::dtau_right_inverse_transpose(const double* xi, const double* p,
                                                    double* out) const {
   for (const Factor& f : factors_) {
@@ -125,6 +132,38 @@ void ProductGeometry::nearest(std::span<const double> values, double* out) const
         values.subspan(static_cast<size_t>(f.column), static_cast<size_t>(f.geometry->columns())),
         out + f.element);
   }
+}
+
+bool recover_step(const Geometry& geometry, const double* delta, double s, Eigen::VectorXd& xi) {
+  const int n = geometry.dim(), size = geometry.size();
+  xi.resize(n);
+  if (!geometry.tau_inverse(delta, xi.data())) return false;
+  if (s == 0 || geometry.one_parameter()) return true;
+  Eigen::VectorXd f0(size), f1(size), z(n), rest(n);
+  Eigen::MatrixXd right(n, n), c(n, n);
+  double last = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 20; ++k) {
+    z = -s * xi;
+    geometry.tau(z.data(), f0.data());
+    geometry.dtau_right(z.data(), right.data());
+    c = s * right;
+    z = (1 - s) * xi;
+    geometry.tau(z.data(), f1.data());
+    geometry.dtau_right(z.data(), right.data());
+    c += (1 - s) * right;
+    // rest = tau^-1((f0^-1 f1)^-1 delta) = tau^-1(f1^-1 f0 delta), carried to the base point.
+    geometry.compose(f0.data(), delta, f0.data());
+    Eigen::VectorXd f1_inverse(size);
+    geometry.inverse(f1.data(), f1_inverse.data());
+    geometry.compose(f1_inverse.data(), f0.data(), f0.data());
+    if (!geometry.tau_inverse(f0.data(), rest.data())) return false;
+    const double norm = rest.norm();
+    if (!(norm < last)) break;
+    last = norm;
+    geometry.Ad(f1.data(), rest.data(), z.data());
+    xi += c.partialPivLu().solve(z);
+  }
+  return true;
 }
 
 }  // namespace hamel

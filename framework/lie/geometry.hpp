@@ -1,4 +1,4 @@
-// A group with a retraction, its type erased: what the general schemes evaluate (general/).
+// A group with a retraction, its type erased: what the steps of erased problems evaluate.
 //
 // An element is a block of numbers as its group lays it out (Packing), vectors are n numbers, matrices
 // n x n column-major. Products are put together from their factors at run time (ProductGeometry), so
@@ -54,10 +54,11 @@ class Geometry {
   virtual void Ad_transpose(const double* g, const double* mu, double* out) const = 0;
   virtual void ad_transpose(const double* xi, const double* mu, double* out) const = 0;
   virtual void Ad(const double* g, const double* xi, double* out) const = 0;
-  // tau; tau^-1 (false outside its range); the matrix dR; dR^-T p; dL^-1 eta; is xi in the domain?
+  // tau; tau^-1 (false outside its range); the matrix dR; dR^T m; dR^-T p; dL^-1 eta; is xi in the domain?
   virtual void tau(const double* xi, double* out) const = 0;
   virtual bool tau_inverse(const double* g, double* out) const = 0;
   virtual void dtau_right(const double* xi, double* matrix) const = 0;
+  virtual void dtau_right_transpose(const double* xi, const double* m, double* out) const = 0;
   virtual void dtau_right_inverse_transpose(const double* xi, const double* p,
                                             double* out) const = 0;
   virtual void dtau_left_inverse(const double* xi, const double* eta, double* out) const = 0;
@@ -124,6 +125,9 @@ class TypedGeometry final : public Geometry {
   void dtau_right(const double* xi, double* matrix) const override {
     Eigen::Map<Mat<n, n>>{matrix} = Tau::dtau_right(vec(xi));
   }
+  void dtau_right_transpose(const double* xi, const double* m, double* out) const override {
+    put(Tau::dtau_right(vec(xi)).transpose() * vec(m), out);
+  }
   void dtau_right_inverse_transpose(const double* xi, const double* p, double* out) const override {
     put(Tau::dtau_right_inverse_transpose(vec(xi), vec(p)), out);
   }
@@ -167,6 +171,7 @@ class ProductGeometry final : public Geometry {
   void tau(const double* xi, double* out) const override;
   bool tau_inverse(const double* g, double* out) const override;
   void dtau_right(const double* xi, double* matrix) const override;
+  void dtau_right_transpose(const double* xi, const double* m, double* out) const override;
   void dtau_right_inverse_transpose(const double* xi, const double* p, double* out) const override;
   void dtau_left_inverse(const double* xi, const double* eta, double* out) const override;
   void base_momentum(double s, const double* xi, const double* p, const double* nu,
@@ -187,5 +192,8 @@ class ProductGeometry final : public Geometry {
   std::vector<Factor> factors_;
   int dim_ = 0, size_ = 0, columns_ = 0;
 };
+
+/// xi with tau_s(xi) = delta (recover_step.hpp, for an erased group); false where there is none.
+bool recover_step(const Geometry& geometry, const double* delta, double s, Eigen::VectorXd& xi);
 
 }  // namespace hamel

@@ -1,5 +1,5 @@
 // What the run-time layer holds of a compiled time loop: one virtual call per run or per recorded row, none
-// inside a step. The loop itself is compiled_kernel.hpp.
+// inside a step. The loop itself is loop.hpp.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,9 @@
 
 #include <Eigen/Core>
 
+#include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/loop/solver.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
 
 namespace hamel {
 
@@ -16,11 +18,10 @@ namespace hamel {
 /// halves, each of which may be halved again, up to ten times.
 enum class OnFailure { stop, retry, halve };
 
-/// Everything a kernel needs to know of a run; matrices are erased here and fixed in the kernel.
+/// Everything a kernel needs to know of a run; types are erased here and fixed in the kernel.
 struct KernelSetup {
-  Eigen::MatrixXd inertia;      // n x n, symmetric positive definite
-  Eigen::MatrixXd constraints;  // k x n, rank k
-  Eigen::MatrixXd frame;        // n x m, E
+  std::shared_ptr<const Geometry> geometry;    // null: not registered, and the kernel knows its own
+  std::shared_ptr<const Mechanics> mechanics;  // with its parameters
   double s = 0.5;
   double step = 0.01;  // h, of either sign
   double tolerance = 1e-13;
@@ -30,8 +31,7 @@ struct KernelSetup {
   std::shared_ptr<Solver> fallback;  // for retry; null as above
   std::string fallback_name;
   std::vector<double> configuration;  // the element's coordinates at t = 0
-  Eigen::VectorXd momentum;           // mu_bar at t = 0, m entries
-  Eigen::VectorXd velocity;           // xi at t = 0, n entries (general kernels)
+  Eigen::VectorXd velocity;           // xi at t = 0, n entries, admissible
 };
 
 /// A step that failed and was rescued.
@@ -69,6 +69,9 @@ struct Snapshot {
 
 class Kernel {
  public:
+  Kernel() = default;
+  Kernel(const Kernel&) = delete;
+  Kernel& operator=(const Kernel&) = delete;
   virtual ~Kernel() = default;
   /// count steps. On failure the state is that of the last good step.
   virtual Status advance(long count) = 0;

@@ -19,7 +19,7 @@ void ScaledEquation::start(const Equation& equation, std::span<const double> gue
   guess_.assign(guess.begin(), guess.end());
   best_x_.assign(guess.begin(), guess.end());
   best_ = halved_ = infinity;
-  evaluations_ = halved_at_ = 0;
+  evaluations_ = calls_ = halved_at_ = 0;
   moved_ = false;
   finite_ = true;
 }
@@ -27,7 +27,8 @@ void ScaledEquation::start(const Equation& equation, std::span<const double> gue
 void ScaledEquation::evaluate(std::span<const double> x, std::span<double> f,
                               std::span<double> jacobian) const {
   equation_->evaluate(x, f, jacobian);
-  ++evaluations_;
+  evaluations_ += jacobian.empty() ? 1 : equation_->jacobian_cost();
+  ++calls_;
   double square = 0;
   for (double& value : f) {
     value *= inverse_scale_;
@@ -45,14 +46,14 @@ void ScaledEquation::evaluate(std::span<const double> x, std::span<double> f,
   }
   if (square <= 0.25 * halved_) {
     halved_ = square;
-    halved_at_ = evaluations_;
+    halved_at_ = calls_;
   }
 }
 
 bool ScaledEquation::reached() const {
   if (best_ == 0) return true;
   if (!moved_ || best_ > tolerance_ * tolerance_) return false;
-  return best_ <= target_square_ || evaluations_ - halved_at_ >= patience_;
+  return best_ <= target_square_ || calls_ - halved_at_ >= patience_;
 }
 
 SolveReport ScaledEquation::finish(std::span<double> x, int iterations, Reason otherwise) const {

@@ -51,7 +51,7 @@ class ScaledEquation final : public Equation {
   // What evaluating teaches; residuals as squares.
   mutable std::vector<double> best_x_;
   mutable double best_ = 0, halved_ = 0;
-  mutable int evaluations_ = 0, halved_at_ = 0;
+  mutable int evaluations_ = 0, calls_ = 0, halved_at_ = 0;
   mutable bool moved_ = false, finite_ = true;
 };
 

@@ -12,7 +12,8 @@
 //   potential_differential(g)   n entries, <dV, eta> = d/de V(g tau(e eta))
 //   holonomic_differential(g)   r x n
 //   inertia_differential(g, xi) n entries, 1/2 d(xi^T I(g) xi)
-// check/system_laws.hpp compares the two.
+// check/system_laws.hpp compares the two. constraints(g) and holonomic_differential(g) as templates spare the
+// explicit schemes six evaluations for dA/dt.
 #pragma once
 
 #include <memory>
@@ -61,39 +62,30 @@ auto left_differential(const Function& f, const typename G::template Element<dou
 }
 #endif
 
+/// The formulas of a system's struct on elements of its own type, with out-parameters.
 template <class S>
-class TypedMechanics final : public Mechanics {
+class Formulas {
+ public:
   using G = typename S::Group;
   using Element = typename G::template Element<double>;
   static constexpr int n = G::dim;
   static constexpr int r = holonomic_count<S>();
   static constexpr int own = constraint_count<S>();  // rows of A that are no differential
+  static constexpr int k = own + r;
 
- public:
-  explicit TypedMechanics(const S& system) : system_(system) {}
-  int dim() const override { return n; }
-  int rows() const override { return own + r; }
-  int holonomic_rows() const override { return r; }
-  bool constant_inertia() const override {
+  explicit Formulas(const S& system) : system_(system) {}
+
+  static constexpr bool constant_inertia() {
     return requires(const S& s) { s.inertia(); };
   }
-
-  bool constant_constraints() const override {
+  static constexpr bool constant_constraints() {
     constexpr bool rows = own == 0 || requires(const S& s) { s.constraints(); };
     return r == 0 && rows && (!has_drift<S>() || has_constant_drift<S>());
   }
 
-  void inertia(const double* g, Matrix out) const override {
-    if constexpr (requires(const S& s) { s.inertia(); }) out = system_.inertia();
-    else out = system_.inertia(load(g));
-  }
-
-  [[gnu::flatten]] void constraints(double t, const double* at, Matrix to_a,
-                                    Vector to_b) const override {
-    const Element g = load(at);
-    constexpr int k = own + r;
-    Mat<k, n> a;
-    Vec<k> b = Vec<k>::Zero();
+  void inertia(const Element& g, Mat<n, n>& out) const { out = inertia_at(g); }
+  void constraints(double t, const Element& g, Mat<k, n>& a, Vec<k>& b) const {
+    b.setZero();
     if constexpr (own > 0) {
       if constexpr (requires { system_.constraints(t, g); }) {
         a.template topRows<own>() = system_.constraints(t, g);
@@ -105,28 +97,18 @@ class TypedMechanics final : public Mechanics {
     }
     if constexpr (has_drift<S>()) b.template head<own>() = drift_of(system_, t, g);
     if constexpr (r > 0) a.template bottomRows<r>() = holonomic_differential(g);
-    if (to_a.outerStride() == k) Eigen::Map<Mat<k, n>>(to_a.data()) = a;  // sizes known: unrolled
-    else to_a = a;
-    Eigen::Map<Vec<k>>(to_b.data()) = b;
   }
-
-  [[gnu::flatten]] void holonomic(const double* g, Vector out) const override {
-    if constexpr (r > 0) out = system_.holonomic(load(g));
+  void holonomic(const Element& g, Vec<r>& out) const {
+    if constexpr (r > 0) out = system_.holonomic(g);
   }
-
-  [[gnu::flatten]] void force(double t, const double* at, ConstVector velocity,
-                              Vector to) const override {
-    const Element g = load(at);
-    const Vec<n> xi = Eigen::Map<const Vec<n>>(velocity.data());
-    Vec<n> out = Vec<n>::Zero();
+  void force(double t, const Element& g, const Vec<n>& xi, Vec<n>& out) const {
+    out.setZero();
     if constexpr (has_potential<S>()) out -= potential_differential(g);
     if constexpr (has_force<S>()) out += force_of(system_, t, g, xi);
-    if constexpr (!requires(const S& s) { s.inertia(); }) out += inertia_differential(g, xi);
-    Eigen::Map<Vec<n>>(to.data()) = out;
+    if constexpr (!constant_inertia()) out += inertia_differential(g, xi);
   }
-
-  double potential(const double* g) const override {
-    if constexpr (has_potential<S>()) return system_.potential(load(g));
+  double potential(const Element& g) const {
+    if constexpr (has_potential<S>()) return system_.potential(g);
     else return 0;
   }
 
@@ -169,8 +151,62 @@ class TypedMechanics final : public Mechanics {
     }
   }
 
+#if HAMEL_HAS_JET
+  using Dual = ceres::Jet<double, 1>;
+  using DualElement = typename G::template Element<Dual>;
+  /// Are A and I formulas over any scalar, and b constant? Then one dual number carries their rates.
+  static constexpr bool has_dual_rates() {
+    constexpr bool rows = own == 0 || requires(const S& s) { s.constraints(); }
+    || is_dual([](const auto& s, const auto& g) requires requires {
+         s.constraints(g);
+       } { return s.constraints(g); });
+    constexpr bool held = r == 0 || is_dual([](const auto& s, const auto& g) requires requires {
+                            s.holonomic_differential(g);
+                          } { return s.holonomic_differential(g); });
+    constexpr bool metric = constant_inertia() || is_dual([](const auto& s, const auto& g) requires requires {
+                              s.inertia(g);
+                            } { return s.inertia(g); });
+    return rows && held && metric && (!has_drift<S>() || has_constant_drift<S>());
+  }
+  /// dA/dt and dI/dt along the curve g tau(e xi), of which `moving` is the first-order jet.
+  void dual_rates(const DualElement& moving, Mat<k, n>& a_rate, Mat<n, n>& inertia_rate) const {
+    const auto rates = [](const auto& from, auto&& to) {
+      for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < from.rows(); ++i) to(i, j) = from(i, j).v[0];
+      }
+    };
+    a_rate.setZero();
+    inertia_rate.setZero();
+    if constexpr (own > 0 && !requires(const S& s) { s.constraints(); }) {
+      rates(system_.constraints(moving), a_rate.template topRows<own>());
+    }
+    if constexpr (r > 0) {
+      rates(system_.holonomic_differential(moving), a_rate.template bottomRows<r>());
+    }
+    if constexpr (!constant_inertia()) rates(system_.inertia(moving), inertia_rate);
+  }
+#else
+  static constexpr bool has_dual_rates() { return false; }
+#endif
+
  private:
-  static Element load(const double* g) { return Packing<G>::load(g); }
+  Mat<n, n> inertia_at([[maybe_unused]] const Element& g) const {
+    if constexpr (constant_inertia()) return system_.inertia();
+    else return system_.inertia(g);
+  }
+#if HAMEL_HAS_JET
+  // Can the formula be called with a dual element, and does it answer with dual numbers?
+  template <class Formula>
+  static constexpr bool is_dual(Formula) {
+    if constexpr (std::is_invocable_v<Formula, const S&, const DualElement&>) {
+      return std::is_same_v<
+          typename std::decay_t<std::invoke_result_t<Formula, const S&, const DualElement&>>::Scalar,
+          Dual>;
+    } else {
+      return false;
+    }
+  }
+#endif
   template <class Function>
   static auto automatic(const Function& f, const Element& g) {
 #if HAMEL_HAS_JET
@@ -183,6 +219,63 @@ class TypedMechanics final : public Mechanics {
   }
 
   S system_;
+};
+
+/// A system's formulas as Mechanics.
+template <class S>
+class TypedMechanics final : public Mechanics {
+  using F = Formulas<S>;
+  static constexpr int n = F::n, k = F::k, r = F::r;
+
+ public:
+  explicit TypedMechanics(const S& system) : formulas_(system) {}
+  const F& formulas() const { return formulas_; }
+  int dim() const override { return n; }
+  int rows() const override { return k; }
+  int holonomic_rows() const override { return r; }
+  bool constant_inertia() const override { return F::constant_inertia(); }
+  bool constant_constraints() const override { return F::constant_constraints(); }
+
+  void inertia(const double* g, Matrix out) const override {
+    Mat<n, n> i;
+    formulas_.inertia(load(g), i);
+    out = i;
+  }
+  [[gnu::flatten]] void constraints(double t, const double* g, Matrix to_a,
+                                    Vector to_b) const override {
+    Mat<k, n> a;
+    Vec<k> b;
+    formulas_.constraints(t, load(g), a, b);
+    if (to_a.outerStride() == k) Eigen::Map<Mat<k, n>>(to_a.data()) = a;  // sizes known: unrolled
+    else to_a = a;
+    Eigen::Map<Vec<k>>(to_b.data()) = b;
+  }
+  [[gnu::flatten]] void holonomic(const double* g, Vector out) const override {
+    Vec<r> phi;
+    formulas_.holonomic(load(g), phi);
+    out = phi;
+  }
+  [[gnu::flatten]] void force(double t, const double* g, ConstVector xi, Vector to) const override {
+    Vec<n> out;
+    formulas_.force(t, load(g), Eigen::Map<const Vec<n>>(xi.data()), out);
+    Eigen::Map<Vec<n>>(to.data()) = out;
+  }
+  double potential(const double* g) const override { return formulas_.potential(load(g)); }
+
+  // For the laws that compare differentials.
+  auto potential_differential(const typename F::Element& g) const {
+    return formulas_.potential_differential(g);
+  }
+  auto holonomic_differential(const typename F::Element& g) const {
+    return formulas_.holonomic_differential(g);
+  }
+  auto inertia_differential(const typename F::Element& g, const Vec<n>& xi) const {
+    return formulas_.inertia_differential(g, xi);
+  }
+
+ private:
+  static typename F::Element load(const double* g) { return Packing<typename F::G>::load(g); }
+  F formulas_;
 };
 
 template <class S>

@@ -7,6 +7,9 @@
 // whose dimension is a parameter derives from Mechanics itself (systems/n_trailer.hpp).
 #pragma once
 
+#include <memory>
+#include <utility>
+
 #include <Eigen/Core>
 
 namespace hamel {
@@ -24,6 +27,8 @@ class Mechanics {
   virtual int holonomic_rows() const { return 0; }
   virtual bool constant_inertia() const { return true; }
   virtual bool constant_constraints() const { return false; }
+  /// Constant inertia and rows A xi = 0, and nothing else.
+  virtual bool left_invariant() const { return false; }
 
   /// I(g), n x n.
   virtual void inertia(const double* g, Matrix out) const = 0;
@@ -40,13 +45,14 @@ class Mechanics {
 };
 
 /// The left-invariant case: constant inertia and rows, nothing else.
-class InvariantMechanics final : public Mechanics {
+class LeftInvariantMechanics : public Mechanics {
  public:
-  InvariantMechanics(Eigen::MatrixXd inertia, Eigen::MatrixXd constraints)
+  LeftInvariantMechanics(Eigen::MatrixXd inertia, Eigen::MatrixXd constraints)
       : inertia_(std::move(inertia)), constraints_(std::move(constraints)) {}
   int dim() const override { return static_cast<int>(inertia_.rows()); }
   int rows() const override { return static_cast<int>(constraints_.rows()); }
   bool constant_constraints() const override { return true; }
+  bool left_invariant() const override { return true; }
   void inertia(const double* /*g*/, Matrix out) const override { out = inertia_; }
   void constraints(double /*t*/, const double* /*g*/, Matrix a, Vector b) const override {
     a = constraints_;
@@ -55,6 +61,27 @@ class InvariantMechanics final : public Mechanics {
 
  private:
   Eigen::MatrixXd inertia_, constraints_;
+};
+
+/// A system without its rows: what the free steps of unadapted and gni integrate.
+class UnconstrainedMechanics final : public Mechanics {
+ public:
+  explicit UnconstrainedMechanics(std::shared_ptr<const Mechanics> system)
+      : system_(std::move(system)) {}
+  int dim() const override { return system_->dim(); }
+  int rows() const override { return 0; }
+  bool constant_inertia() const override { return system_->constant_inertia(); }
+  bool constant_constraints() const override { return true; }
+  bool left_invariant() const override { return system_->left_invariant(); }
+  void inertia(const double* g, Matrix out) const override { system_->inertia(g, out); }
+  void constraints(double, const double*, Matrix, Vector) const override {}
+  void force(double t, const double* g, ConstVector xi, Vector out) const override {
+    system_->force(t, g, xi, out);
+  }
+  double potential(const double* g) const override { return system_->potential(g); }
+
+ private:
+  std::shared_ptr<const Mechanics> system_;
 };
 
 }  // namespace hamel

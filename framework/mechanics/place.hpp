@@ -14,7 +14,7 @@
 
 #include <cmath>
 
-#include <hamel/framework/mechanics/mechanics.hpp>
+#include <Eigen/Core>
 
 namespace hamel {
 
@@ -43,7 +43,9 @@ class Place {
   typename Z::Rows a;          // A
   Few b;
 
-  explicit Place(const Mechanics& system)
+  /// Any system with dim() and rows(): Mechanics, or a problem of schemes/problem.hpp.
+  template <class System>
+  explicit Place(const System& system)
       : inertia(system.dim(), system.dim()),
         a(system.rows(), system.dim()),
         b(system.rows()),
@@ -65,7 +67,8 @@ class Place {
         y_(n_ - k_) {}
 
   /// Everything at (t, g). same_frame: the reflections keep their signs, for calls within one step.
-  void set(const Mechanics& system, double t, const double* g, bool same_frame = false) {
+  template <class System, class Element>
+  void set(const System& system, double t, const Element& g, bool same_frame = false) {
     const bool inertia_changes = !known_ || !system.constant_inertia();
     const bool rows_change = k() > 0 && (!known_ || !system.constant_constraints());
     if (inertia_changes) {
@@ -84,17 +87,22 @@ class Place {
     known_ = true;
   }
 
-  /// (*), in place of r.
-  void join(Vector& r, const Few& c) {
+  /// (*), into f, which may be r.
+  void join(const Vector& r, const Few& c, Vector& f) {
     reduce(r);
-    for (int j = 0; j < k(); ++j) r[j] = c[j] * row_weights_[j];
-    for (int j = 0; j < m(); ++j) r[k() + j] = y_[j];
+    for (int j = 0; j < k(); ++j) f[j] = c[j] * row_weights_[j];
+    for (int j = 0; j < m(); ++j) f[k() + j] = y_[j];
   }
+  void join(Vector& r, const Few& c) { join(r, c, r); }
   /// D^-1/2 mu, in place: a momentum in the units of (*).
   void weigh(Vector& mu) const {
     for (int i = 0; i < n(); ++i) mu[i] *= weights_[i];
   }
   /// |D^-1/2 mu|: its size there.
+  template <class State>
+  double size(const State& /*x*/, const Vector& mu) const {
+    return size(mu);
+  }
   double size(const Vector& mu) const {
     double sum = 0;
     for (int i = 0; i < n(); ++i) sum += (weights_[i] * mu[i]) * (weights_[i] * mu[i]);

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/lie/group_info.hpp>
 #include <hamel/framework/mechanics/system_members.hpp>
@@ -58,15 +59,10 @@ struct Invariant {
       value;
 };
 
-class Mechanics;
-
 /// A system with its parameters set and its type erased.
 struct SystemModel {
   std::string name;
   GroupInfo group;
-  // Left-invariant systems: the matrices. Others: everything, and no matrices.
-  Eigen::MatrixXd inertia;
-  Eigen::MatrixXd constraints;
   std::shared_ptr<const Mechanics> mechanics;
   std::vector<Field> fields;
   Start start;
@@ -188,9 +184,9 @@ SystemModel erase(const S& system) {
   using Element = typename G::template Element<double>;
   SystemModel model = erase_words(system);
   if constexpr (is_left_invariant<S>()) {
-    model.inertia = system.inertia();
-    model.constraints.resize(0, n);
-    if constexpr (requires { system.constraints(); }) model.constraints = system.constraints();
+    Eigen::MatrixXd rows(0, n);
+    if constexpr (requires { system.constraints(); }) rows = system.constraints();
+    model.mechanics = std::make_shared<LeftInvariantMechanics>(system.inertia(), rows);
   } else {
     model.mechanics = MechanicsOf<S>::make(system);
   }

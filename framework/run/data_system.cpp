@@ -28,6 +28,16 @@ struct Terms {
 };
 
 class DataMechanics final : public Mechanics {
+  struct Operations {  // for differentiate_along
+    const Geometry& geometry;
+    void tau(const Eigen::VectorXd& xi, Eigen::VectorXd& out) const {
+      geometry.tau(xi.data(), out.data());
+    }
+    void compose(const double* g, const Eigen::VectorXd& h, Eigen::VectorXd& out) const {
+      geometry.compose(g, h.data(), out.data());
+    }
+  };
+
  public:
   DataMechanics(Eigen::MatrixXd inertia, Eigen::MatrixXd a, Eigen::VectorXd b, Terms terms,
                 std::shared_ptr<const Geometry> geometry)
@@ -58,7 +68,7 @@ class DataMechanics final : public Mechanics {
     if (!terms_.potential()) return;
     for (Eigen::Index i = 0; i < out.size(); ++i) {
       axis_ = Eigen::VectorXd::Unit(dim(), i);
-      differentiate_along(*geometry_, g, axis_, step_, moved_, [&](double, double weight) {
+      differentiate_along(Operations{*geometry_}, g, axis_, step_, moved_, [&](double, double weight) {
         out[i] -= weight * potential(moved_.data());
       });
     }
@@ -108,8 +118,7 @@ class File {
     if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
     const bool invariant = !terms_.potential() && b.isZero(0) && terms_.damping.isZero(0);
     if (invariant) {
-      model.inertia = inertia;
-      model.constraints = a;
+      model.mechanics = std::make_shared<LeftInvariantMechanics>(inertia, a);
     } else {
       model.mechanics = std::make_shared<DataMechanics>(
           inertia, a, b, terms_, registry_.geometry(model.group.name, "exp"));

@@ -115,8 +115,9 @@ Simulation::Plan Simulation::plan() const {
   const SystemModel& system = plan.system;
   const std::string& group = system.group.name;
 
-  // The kernel: the user's own, the one compiled for this group, or the general one.
-  const auto& geometry = plan.geometry = registry_->geometry(group, config_.retraction);
+  // The kernel: the user's own, the one compiled for this problem, or the erased one.
+  const auto& geometry = plan.geometry =
+      compiled ? kernel_retraction_.geometry : registry_->geometry(group, config_.retraction);
   if (!compiled) {
     const auto offered = registry_->retractions_or_common(group);
     if (offered.empty()) {
@@ -129,26 +130,17 @@ Simulation::Plan Simulation::plan() const {
     }
   }
   plan.look_at_start();
-  const auto m = plan.inertia.rows() - plan.constraints.rows();
-  const KernelFactory* fast =
-      scheme == nullptr || system.mechanics != nullptr || geometry == nullptr
-          ? nullptr
-          : registry_->kernel(group, scheme->adapted ? static_cast<int>(m) : system.group.dim,
-                              config_.retraction, config_.scheme);
-  if (compiled) {
+  const bool left_invariant = system.mechanics->left_invariant();
+  if (scheme != nullptr && !scheme->defined(left_invariant)) {
+    plan.add({fmt::format("scheme: {} is defined for left-invariant systems only; lift and balance are "
+                          "offered here",
+                          config_.scheme)});
+  } else if (compiled) {
     plan.kernel = kernel_;
-  } else if (fast != nullptr) {
-    plan.kernel = *fast;
   } else if (scheme != nullptr && geometry != nullptr) {
-    if (scheme->general && scheme->defined(system.mechanics == nullptr)) {
-      plan.use_general(*registry_, *scheme);
-    } else {
-      plan.add({fmt::format("scheme: {} is {}; {} here", config_.scheme,
-                            system.mechanics != nullptr
-                                ? "defined for left-invariant systems only"
-                                : "not compiled for " + group + " with " + config_.retraction,
-                            "lift and balance are offered")});
-    }
+    const KernelFactory* own =
+        registry_->kernel(group, *system.mechanics, config_.retraction, config_.scheme);
+    plan.kernel = own != nullptr ? *own : scheme->erased;
   }
 
   const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
@@ -160,7 +152,7 @@ Simulation::Plan Simulation::plan() const {
         rows, std::ceil(rows * static_cast<double>(config_.every) * width / kMaxNumbers))});
   }
   if (!plan.mistakes.empty()) return plan;
-  plan.project(*scheme);
+  plan.project();
   plan.setup.s = plan.config.s;
   plan.setup.step = config_.step;
   plan.setup.tolerance = config_.tolerance;
@@ -205,41 +197,32 @@ void Simulation::Plan::fill_start() {
 // I, A and b where the run starts, checked.
 void Simulation::Plan::look_at_start() {
   const int n = system.group.dim;
-  inertia = system.inertia;
-  constraints = system.constraints;
   mechanics = system.mechanics;
-  if (mechanics != nullptr) {
-    inertia = Eigen::MatrixXd::Identity(n, n);
-    constraints.resize(0, n);
-    if (geometry == nullptr) return;
-    Eigen::VectorXd g(geometry->size());
+  inertia = Eigen::MatrixXd::Identity(n, n);
+  constraints.resize(0, n);
+  Eigen::VectorXd g;
+  if (geometry != nullptr) {
+    g.resize(geometry->size());
     geometry->from_coordinates(config.start.configuration, g.data());
-    constraints.resize(mechanics->rows(), n);
-    drift.resize(mechanics->rows());
-    mechanics->inertia(g.data(), inertia);
-    mechanics->constraints(0, g.data(), constraints, drift);
-    Eigen::VectorXd phi(mechanics->holonomic_rows());
-    mechanics->holonomic(g.data(), phi);
-    if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-9)) {
-      add({fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {}",
-                       join(config.start.configuration), join(to_vector(phi)))});
-    }
-  } else {
-    drift = Eigen::VectorXd::Zero(constraints.rows());
-    mechanics = std::make_shared<InvariantMechanics>(inertia, constraints);
+  } else if (!mechanics->left_invariant()) {
+    return;
+  }
+  constraints.resize(mechanics->rows(), mechanics->dim());
+  inertia.resize(mechanics->dim(), mechanics->dim());
+  drift.resize(mechanics->rows());
+  mechanics->inertia(g.data(), inertia);
+  mechanics->constraints(0, g.data(), constraints, drift);
+  Eigen::VectorXd phi(mechanics->holonomic_rows());
+  mechanics->holonomic(g.data(), phi);
+  if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-9)) {
+    add({fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {}",
+                     join(config.start.configuration), join(to_vector(phi)))});
   }
   add(check_system_matrices(inertia, constraints, n));
 }
 
-void Simulation::Plan::use_general(const Registry& registry, const SchemeInfo& scheme) {
-  kernel = [general = GeneralSetup{geometry, mechanics, config.s}, make = scheme.general,
-            loop = registry.general_kernel()](const KernelSetup& run) {
-    return loop(run, general, make(general));
-  };
-}
-
-// The admissible start, mu_bar = E^T mu, and what the projection dropped.
-void Simulation::Plan::project(const SchemeInfo& scheme) {
+// The admissible start, E^T I xi = E^T mu, and what the projection dropped.
+void Simulation::Plan::project() {
   Start& start = config.start;
   const Eigen::Index n = inertia.rows();
   const Eigen::MatrixXd frame = hamel_frame(inertia, constraints);
@@ -263,12 +246,8 @@ void Simulation::Plan::project(const SchemeInfo& scheme) {
   start.velocity = to_vector(velocity);
   start.momentum.clear();
 
-  const Eigen::MatrixXd whole = hamel_frame(inertia, Eigen::MatrixXd(0, n));
-  setup.inertia = inertia;
-  setup.constraints = constraints;
-  setup.frame = scheme.adapted ? frame : whole;
-  setup.momentum =
-      scheme.adapted ? mu_bar : Eigen::VectorXd(whole.transpose() * (inertia * velocity));
+  setup.geometry = geometry;
+  setup.mechanics = mechanics;
   setup.velocity = velocity;
   setup.configuration = start.configuration;
 }

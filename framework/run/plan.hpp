@@ -25,8 +25,7 @@ struct Simulation::Plan {
   }
   void fill_start();
   void look_at_start();
-  void use_general(const Registry& registry, const SchemeInfo& scheme);
-  void project(const SchemeInfo& scheme);
+  void project();
 };
 
 /// The columns of a trajectory of this system, as in contract.md.

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/schemes/problem.hpp>
 #include <hamel/framework/loop/scaled_equation.hpp>
 
 namespace hamel {
@@ -25,9 +24,9 @@ std::vector<std::string> names(const Map& map) {
   return out;
 }
 
-std::string kernel_key(const std::string& group, int m, const std::string& retraction,
+std::string kernel_key(const std::string& problem, const std::string& retraction,
                        const std::string& scheme) {
-  return fmt::format("{}/{}/{}/{}", group, m, retraction, scheme);
+  return fmt::format("{}/{}/{}", problem, retraction, scheme);
 }
 
 class FunctionSolver final : public Solver {
@@ -48,10 +47,12 @@ class FunctionSolver final : public Solver {
 }  // namespace
 
 ClaimedOrder SchemeInfo::claim(double s, bool symmetric_tau, bool left_invariant) const {
-  if (!uses_s) s = 0;
-  if (left_invariant) return claimed_order(s, symmetric_tau);
-  return defined(false) ? general_order(s) : ClaimedOrder{0, false};
+  if (!defined(left_invariant)) return {0, false};
+  return claims(uses_s ? s : fixed_s, symmetric_tau, left_invariant);
 }
+
+std::string problem_key(const std::string& group, int m) { return fmt::format("{}/{}", group, m); }
+std::string problem_key(const std::type_info& mechanics) { return mechanics.name(); }
 
 void Registry::add(GroupInfo info) { groups_[info.name] = std::move(info); }
 void Registry::add(RetractionInfo info) { retractions_[{info.group, info.name}] = std::move(info); }
@@ -67,9 +68,9 @@ void Registry::add_solver(const std::string& name, const std::string& summary,
 }
 void Registry::add_absent(SolverInfo info) { absent_solvers_[info.name] = std::move(info); }
 void Registry::add(SystemInfo info) { systems_[info.name] = std::move(info); }
-void Registry::add_kernel(const std::string& group, int m, const std::string& retraction,
+void Registry::add_kernel(const std::string& problem, const std::string& retraction,
                           const std::string& scheme, KernelFactory factory) {
-  kernels_[kernel_key(group, m, retraction, scheme)] = std::move(factory);
+  kernels_[kernel_key(problem, retraction, scheme)] = std::move(factory);
 }
 
 const GroupInfo* Registry::group(const std::string& name) const { return find(groups_, name); }
@@ -83,11 +84,13 @@ const SolverInfo* Registry::absent_solver(const std::string& name) const {
   return find(absent_solvers_, name);
 }
 const SystemInfo* Registry::system(const std::string& name) const { return find(systems_, name); }
-const KernelFactory* Registry::kernel(const std::string& group, int m,
+const KernelFactory* Registry::kernel(const std::string& group, const Mechanics& mechanics,
                                       const std::string& retraction,
                                       const std::string& scheme) const {
-  const KernelFactory* exact = find(kernels_, kernel_key(group, m, retraction, scheme));
-  return exact != nullptr ? exact : find(kernels_, kernel_key(group, kRunTime, retraction, scheme));
+  const std::string problem = mechanics.left_invariant()
+                                  ? problem_key(group, mechanics.dim() - mechanics.rows())
+                                  : problem_key(typeid(mechanics));
+  return find(kernels_, kernel_key(problem, retraction, scheme));
 }
 
 namespace {

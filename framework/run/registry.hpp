@@ -9,11 +9,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
-#include <hamel/framework/schemes/general_step.hpp>
 #include <hamel/framework/loop/kernel.hpp>
-#include <hamel/framework/schemes/traits.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 
 namespace hamel {
@@ -23,28 +23,24 @@ struct RetractionInfo {
   std::string name, group, formula, domain;
   bool symmetric = false;
   bool one_parameter = false;
-  std::shared_ptr<const Geometry> geometry;  // what the general schemes evaluate
+  std::shared_ptr<const Geometry> geometry;  // what erased problems evaluate
 };
 
+using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
+
+/// A scheme's descriptor (schemes/scheme.hpp), and its kernel for any problem.
 struct SchemeInfo {
   std::string name, formula, source;
-  bool adapted = true;  // keeps the constraint; otherwise the frame is the whole algebra
+  bool adapted = true;
   bool uses_s = true;
-  double fixed_s = 0;  // where it does not: the s that its steps, and their measurement, have
-  bool steps_admissible =
-      true;  // the velocity of a step satisfies A xi = b, not that of its ends only
-  bool invariant_only = false;  // defined for left-invariant systems only
-  /// On left-invariant systems.
-  std::function<ClaimedOrder(double s, bool symmetric_tau)> claimed_order;
-  /// The scheme on general systems, and what it claims there; null when it is not defined.
-  std::function<std::unique_ptr<GeneralStep>(const GeneralSetup&)> general = {};
-  std::function<ClaimedOrder(double s)> general_order = {};
+  double fixed_s = 0;
+  bool steps_admissible = true;
+  bool left_invariant_only = false;
+  bool explicit_step = false;
+  std::function<ClaimedOrder(double s, bool symmetric_tau, bool left_invariant)> claims;
+  KernelFactory erased = {};
 
-  bool explicit_step = false;  // no equation to solve
-
-  bool defined(bool left_invariant) const {
-    return left_invariant || (general != nullptr && !invariant_only);
-  }
+  bool defined(bool left_invariant) const { return left_invariant || !left_invariant_only; }
   /// What it claims for a run; order 0 where it is not defined.
   ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) const;
 };
@@ -63,9 +59,9 @@ struct SolverInfo {
 using SolveFunction =
     std::function<void(const Equation& equation, std::span<double> x, double tolerance)>;
 
-using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
-using GeneralKernelFactory = std::function<std::unique_ptr<Kernel>(
-    const KernelSetup&, const GeneralSetup&, std::unique_ptr<GeneralStep>)>;
+/// What kernels are compiled for: the type of a system (typeid of its Mechanics), or, left-invariant, group and m.
+std::string problem_key(const std::string& group, int m);
+std::string problem_key(const std::type_info& mechanics);
 
 class Registry {
  public:
@@ -78,11 +74,9 @@ class Registry {
   void add_solver(const std::string& name, const std::string& summary, SolveFunction solve);
   /// A solver that this build has not, for want of info.package: no solver(), but words about it.
   void add_absent(SolverInfo info);
-  /// m = kRunTime: a kernel for any number of admissible directions.
-  void add_kernel(const std::string& group, int m, const std::string& retraction,
+  /// A kernel compiled for one problem: problem_key() with a retraction and a scheme.
+  void add_kernel(const std::string& problem, const std::string& retraction,
                   const std::string& scheme, KernelFactory factory);
-  /// The time loop of every general scheme.
-  void set_general_kernel(GeneralKernelFactory factory) { general_kernel_ = std::move(factory); }
 
   // Null when there is no such name.
   const GroupInfo* group(const std::string& name) const;
@@ -91,11 +85,9 @@ class Registry {
   const SolverInfo* solver(const std::string& name) const;
   const SolverInfo* absent_solver(const std::string& name) const;
   const SystemInfo* system(const std::string& name) const;
-  /// The kernel compiled for m if there is one, else the one for any m.
-  const KernelFactory* kernel(const std::string& group, int m, const std::string& retraction,
-                              const std::string& scheme) const;
-
-  const GeneralKernelFactory& general_kernel() const { return general_kernel_; }
+  /// The kernel compiled for this problem if there is one, else null: the scheme's erased one serves.
+  const KernelFactory* kernel(const std::string& group, const Mechanics& mechanics,
+                              const std::string& retraction, const std::string& scheme) const;
 
   // Products written "se2*so2^3" that nobody registered are put together from their factors.
   /// Nothing when a factor is unknown.
@@ -124,7 +116,6 @@ class Registry {
   std::map<std::string, SolverInfo> solvers_, absent_solvers_;
   std::map<std::string, SystemInfo> systems_;
   std::map<std::string, KernelFactory> kernels_;
-  GeneralKernelFactory general_kernel_;
 };
 
 }  // namespace hamel

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <hamel/framework/mechanics/motion.hpp>
+#include <hamel/framework/schemes/erased.hpp>
 #include <hamel/framework/run/measures.hpp>
 #include <hamel/framework/run/plan.hpp>
 
@@ -77,7 +78,8 @@ void add_reactions(Result& result, const std::shared_ptr<const Geometry>& geomet
   Trajectory& rows = result.trajectory;
   const size_t n = static_cast<size_t>(result.system.group.dim),
                coordinates = result.system.group.columns.size();
-  Motion motion(geometry, mechanics);
+  const Erased problem(geometry, mechanics);
+  Motion<Erased> motion(problem);
   Eigen::VectorXd g(geometry->size());
   const auto k = static_cast<size_t>(mechanics->rows());
   std::vector<std::vector<double>> lambda(k, std::vector<double>(rows.rows()));
@@ -88,10 +90,11 @@ void add_reactions(Result& result, const std::shared_ptr<const Geometry>& geomet
     const Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(
         rows.row(i).subspan(1 + coordinates, n).data(), static_cast<Eigen::Index>(n));
     const double t = rows.at(i, 0);
-    motion(t, g.data(), xi);
+    motion.solve(t, g, xi);
+    const Eigen::VectorXd& reaction = motion.reaction();
     const double part = i == 0 ? 0 : lag / (t - rows.at(i - 1, 0));
     for (size_t j = 0; j < k; ++j) {
-      const double now = lambda[j][i] = motion.reaction()[static_cast<Eigen::Index>(j)];
+      const double now = lambda[j][i] = reaction[static_cast<Eigen::Index>(j)];
       const double there = i == 0 ? now : now - part * (now - lambda[j][i - 1]);
       power[i] += there * rates[i * k + j];
     }

@@ -1,20 +1,208 @@
-// balance: the paper's printed inverse map with barred momenta, balanced on d at the base point.
+// balance: the paper's printed inverse map with barred momenta, both equations balanced on d at the base point.
 //
-// The end momenta are embedded, mu0 = I E mu_bar_k and mu1 = I E mu_bar_{k+1}; unknowns (y, w) with
-// xi = h E y and w = mu_bar_{k+1}. With z0 = -s xi, z1 = (1-s) xi, f_i = tau(z_i), m_i = Ad*_{f_i^-1} mu_i:
-//   F1 = E^T ( s dL_{z0}^T mu0 + (1-s) dL_{z1}^T mu1 ) - y,        (1) of method.md, section 2, on d
-//   F2 = E^T ( m1 - m0 ),                                         (2) with nu = 0, on d
-//   g_{k+1} = g_k f0^-1 f1.
-// Derivatives: (c) and (d) of framework/lie/trivialised.hpp.
+// The nodal momenta are embedded, mu_i = I(g_i) xi_i. Unknowns v = xi/h and w = xi_1. With z0 = -s xi,
+// z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g f1, m_i = Ad*_{f_i^-1} mu_i,
+// nu = h force(t + s h, g, v), both equations of the cotangent lift are balanced on d at g:
+//   E(g)^T ( s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 - I(g) v ) = 0,   A(g) v = b(t + s h, g),
+//   E(g)^T ( m1 - m0 - nu ) = 0,                                   A(g1) w = b(t + h, g1),
+// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one (*) of mechanics/place.hpp, in the frame at g. On a
+// left-invariant problem v = E y and w = E y1: 2 m unknowns, no rows.
+// Derivatives: (c) and (d) of lie/trivialised.hpp.
 #pragma once
 
-#include <hamel/framework/schemes/problem.hpp>
-#include <hamel/framework/schemes/traits.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
 
-struct Balance {
+/// ends_only: (1) in full, the velocity of the step is admissible at the ends only (reversible.hpp).
+template <class P, bool ends_only>
+class BalanceStep {
+  using Vector = typename P::Vector;
+  using Element = typename P::Element;
+  static_assert(!(ends_only && P::left_invariant), "v is not in d: take the erased problem");
+
+ public:
+  using Problem = P;
+  using Unknown = typename P::TwoStates;
+  using Jacobian = typename P::TwoStatesMatrix;
+  using Node = hamel::Node<P>;
+
+  BalanceStep(const P& problem, double s)
+      : problem_(problem),
+        s_(s),
+        mu0_(problem.dim()),
+        place_(problem),
+        f0_(problem.element()),
+        f1_(f0_),
+        base_(f0_),
+        g1_(f0_),
+        v_(problem.dim()),
+        z0_(v_),
+        z1_(v_),
+        nu_(v_),
+        m0_(v_),
+        m1_(v_),
+        mu_(v_),
+        r_(v_),
+        x_(problem.state_size()),
+        w_(x_),
+        f_(x_),
+        inertia_(problem.dim(), problem.dim()),
+        a_(problem.rows(), problem.dim()),
+        b_(problem.rows()),
+        rows_(problem.rows()),
+        end_rows_(problem.rows()),
+        phi_(problem.held()) {}
+
+  int size() const { return 2 * problem_.state_size(); }
+  void begin(const Node& node, double h) {
+    from_ = &node;
+    h_ = h;
+    x_.setConstant(std::numeric_limits<double>::quiet_NaN());  // nothing is evaluated so far
+    place_.set(problem_, node.t, node.g);                      // here the frame of the step gets its signs
+    inertia_ = place_.inertia;
+    problem_.momentum(inertia_, node.x, mu0_);
+    double size = 2 * place_.size(node.x, mu0_);
+    if constexpr (P::left_invariant) {
+      scale_squared_ = size * size;
+    } else {
+      problem_.force(node.t, node.g, node.x, nu_);
+      size += std::abs(h) * place_.size(nu_);
+      scale_squared_ = size > 0 ? size * size : problem_.dim();
+    }
+  }
+  void guess(Unknown& x) const {
+    x.resize(size());
+    x.head(half()) = from_->x;
+    x.tail(half()) = from_->x;
+  }
+  double scale_squared() const { return scale_squared_; }
+  void from_frame(Unknown& z) const requires(!P::left_invariant) {
+    place_.from_frame(z.data());
+    place_.from_frame(z.data() + problem_.dim());
+  }
+
+  void residual(const Unknown& x, Unknown& f) const {
+    evaluate(x);
+    // (1) on the base point.
+    problem_.dtau_right_transpose(z0_, m0_, r_);
+    r_ *= s_;
+    problem_.dtau_right_transpose(z1_, m1_, mu_);
+    r_ += (1 - s_) * mu_;
+    problem_.momentum(place_.inertia, x_, mu_);
+    r_ -= mu_;
+    if constexpr (ends_only) {
+      place_.weigh(r_);
+      f.head(half()) = r_;
+    } else {
+      place_.join(r_, rows_, f_);
+      f.head(half()) = f_;
+    }
+    // (2).
+    r_ = m1_ - m0_;
+    if constexpr (!P::left_invariant) r_ -= h_ * nu_;
+    place_.join(r_, end_rows_, f_);
+    f.tail(half()) = f_;
+  }
+
+  /// F and its derivative in (y, y1).
+  void linearise(const Unknown& x, Unknown& f, Jacobian& j) const requires(P::left_invariant) {
+    using Tau = typename P::Tau;
+    using G = typename P::Group;
+    using Matrix = typename P::Matrix;
+    residual(x, f);
+    constexpr int m = P::m;
+    const At<Tau> z0(z0_), z1(z1_);
+    const Matrix push1 = G::Ad(G::inverse(z1.f)).transpose();
+    j.template topLeftCorner<m, m>() =
+        h_ * problem_.reduce_both((1 - s_) * (1 - s_) * z1.left_transpose_derivative(m1_) -
+                                  s_ * s_ * z0.left_transpose_derivative(m0_));
+    j.template topLeftCorner<m, m>().diagonal().array() -= 1;
+    j.template topRightCorner<m, m>() =
+        (1 - s_) * problem_.reduce_momentum(z1.right.transpose() * push1);
+    j.template bottomLeftCorner<m, m>() = h_ * problem_.reduce_both(
+        (1 - s_) * z1.push_derivative(m1_) + s_ * z0.push_derivative(m0_));
+    j.template bottomRightCorner<m, m>() = problem_.reduce_momentum(push1);
+  }
+
+  bool finish(const Unknown& x, Node& next) const {
+    if ((x_.array() != x.head(half()).array()).any() || (w_.array() != x.tail(half()).array()).any()) {
+      evaluate(x);
+    }
+    r_ = h_ * v_;
+    if (!problem_.in_domain(r_)) return false;
+    next.t = from_->t + h_;
+    if constexpr (P::left_invariant) compose_ends();
+    next.g = g1_;
+    next.x = w_;
+    return true;
+  }
+
+ private:
+  // States, of a size known at compile time where it is.
+  auto half() const {
+    constexpr int size = P::State::RowsAtCompileTime;
+    if constexpr (size == Eigen::Dynamic) return problem_.state_size();
+    else return Eigen::fix<size>;
+  }
+  // The base point and g1; f0 and f1 hold the inverses.
+  void compose_ends() const {
+    problem_.compose(from_->g, f0_, base_);
+    problem_.inverse(f1_, g1_);
+    problem_.compose(base_, g1_, g1_);
+  }
+  // m0, m1, nu and the rows at x.
+  void evaluate(const Unknown& x) const {
+    x_ = x.head(half());
+    w_ = x.tail(half());
+    problem_.velocity(x_, v_);
+    z0_ = (-s_ * h_) * v_;
+    z1_ = ((1 - s_) * h_) * v_;
+    problem_.tau(z0_, f0_);
+    problem_.tau(z1_, f1_);
+    problem_.inverse(f0_, f0_);
+    problem_.inverse(f1_, f1_);
+    if constexpr (!P::left_invariant) {
+      compose_ends();
+      place_.set(problem_, from_->t + s_ * h_, base_, true);
+      if (problem_.constant_inertia()) inertia_ = place_.inertia;
+      else problem_.inertia(g1_, inertia_);
+    }
+    problem_.momentum(inertia_, w_, mu_);
+    problem_.Ad_transpose(f1_, mu_, m1_);
+    problem_.Ad_transpose(f0_, mu0_, m0_);
+    if constexpr (!P::left_invariant) {
+      problem_.force(from_->t + s_ * h_, base_, v_, nu_);
+      if (rows_.size() == 0) return;
+      rows_ = place_.a.lazyProduct(v_);
+      rows_ -= place_.b;
+      if (phi_.size() > 0) {
+        problem_.holonomic(g1_, phi_);
+        rows_.tail(phi_.size()) = phi_;
+      }
+      problem_.constraints(from_->t + h_, g1_, a_, b_);
+      end_rows_ = a_.lazyProduct(w_);
+      end_rows_ -= b_;
+    }
+  }
+
+  P problem_;
+  double s_, h_ = 0, scale_squared_ = 0;
+  const Node* from_ = nullptr;
+  Vector mu0_;
+  // Work: the place at the base point, and what the last x determined. Allocated once.
+  mutable typename P::Place place_;
+  mutable Element f0_, f1_, base_, g1_;
+  mutable Vector v_, z0_, z1_, nu_, m0_, m1_, mu_, r_;
+  mutable typename P::State x_, w_, f_;
+  mutable typename P::Matrix inertia_;
+  mutable typename P::Rows a_;
+  mutable typename P::Few b_, rows_, end_rows_;
+  mutable typename P::Held phi_;
+};
+
+struct Balance : SchemeDefaults {
   static std::string name() { return "balance"; }
   static std::string formula() {
     return "E'(s dL_{-s xi}' mu_k + (1-s) dL_{(1-s)xi}' mu_{k+1} - I xi/h) = 0,  "
@@ -23,96 +211,13 @@ struct Balance {
   static std::string source() {
     return "Vivek, Martin de Diego, Banavar: the printed inverse map, both equations on d";
   }
-  static constexpr bool adapted = true;
   static constexpr bool uses_s = true;
-  static ClaimedOrder claimed_order(double s, bool /*symmetric_tau*/) {
+  static constexpr bool reduced = true;
+  static ClaimedOrder claim(double s, bool /*symmetric_tau*/, bool /*left_invariant*/) {
     return {s == 0.5 ? 2 : 1, s == 0.5};
   }
-
-  /// The scheme on systems that are not left-invariant: general/balance.hpp.
-  static std::unique_ptr<GeneralStep> general(const GeneralSetup& setup);
-  static ClaimedOrder general_order(double s) { return {s == 0.5 ? 2 : 1, s == 0.5}; }
-
-  template <class Problem, class Tau>
-  class Step {
-   public:
-    static constexpr int n = Problem::n;
-    static constexpr int M = Problem::m_at_compile_time;
-    static constexpr int N = M == kRunTime ? kRunTime : 2 * M;
-    using G = typename Problem::Group;
-    using Element = typename G::template Element<double>;
-    using Unknown = Eigen::Matrix<double, N, 1, 0, 2 * Problem::max_m, 1>;
-    using Jacobian = Eigen::Matrix<double, N, N, 0, 2 * Problem::max_m, 2 * Problem::max_m>;
-    using Momentum = typename Problem::Reduced;
-
-    Step(const Problem& problem, double s) : problem_(problem), s_(s) {}
-
-    void begin(const Momentum& mu, double h) {
-      mu_ = mu;
-      h_ = h;
-    }
-    Unknown guess() const {
-      Unknown x(2 * problem_.m());
-      x.head(directions()) = mu_;
-      x.tail(directions()) = mu_;
-      return x;
-    }
-    double scale_squared() const { return 4 * mu_.squaredNorm(); }
-    Vec<n> xi(const Unknown& x) const { return h_ * problem_.velocity(x.head(directions())); }
-
-    void residual(const Unknown& x, Unknown& f) const {
-      const Ends e(*this, x);
-      fill(x, e, f);
-    }
-
-    /// F and its derivative in (y, w).
-    void linearise(const Unknown& x, Unknown& f, Jacobian& j) const {
-      const Ends e(*this, x);
-      fill(x, e, f);
-      const auto m = directions();
-      const Mat<n, n> push1 = G::Ad(G::inverse(e.z1.f)).transpose();
-      j.resize(2 * problem_.m(), 2 * problem_.m());
-      j.topLeftCorner(m, m) =
-          h_ * problem_.reduce_both((1 - s_) * (1 - s_) * e.z1.left_transpose_derivative(e.m1) -
-                                    s_ * s_ * e.z0.left_transpose_derivative(e.m0));
-      j.topLeftCorner(m, m).diagonal().array() -= 1;
-      j.topRightCorner(m, m) = (1 - s_) * problem_.reduce_momentum(e.z1.right.transpose() * push1);
-      j.bottomLeftCorner(m, m) = h_ * problem_.reduce_both((1 - s_) * e.z1.push_derivative(e.m1) +
-                                                           s_ * e.z0.push_derivative(e.m0));
-      j.bottomRightCorner(m, m) = problem_.reduce_momentum(push1);
-    }
-
-    void finish(const Unknown& x, Element& increment, Momentum& mu) const {
-      const Vec<n> step = xi(x);
-      increment =
-          G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), Tau::tau(Vec<n>((1 - s_) * step)));
-      mu = x.tail(directions());
-    }
-
-   private:
-    // The retraction at both ends, and the end momenta carried to the base point.
-    struct Ends {
-      At<Tau> z0, z1;
-      Vec<n> m0, m1;
-      Ends(const Step& step, const Unknown& x)
-          : z0(-step.s_ * step.xi(x)),
-            z1((1 - step.s_) * step.xi(x)),
-            m0(z0.push(step.problem_.momentum(step.mu_))),
-            m1(z1.push(step.problem_.momentum(x.tail(step.directions())))) {}
-    };
-    void fill(const Unknown& x, const Ends& e, Unknown& f) const {
-      const Vec<n> average =
-          s_ * (e.z0.right.transpose() * e.m0) + (1 - s_) * (e.z1.right.transpose() * e.m1);
-      f.head(directions()) = problem_.reduce(average) - x.head(directions());
-      f.tail(directions()) = problem_.reduce(e.m1 - e.m0);
-    }
-    // m, known at compile time where it is.
-    auto directions() const { return Eigen::fix<M>(problem_.m()); }
-
-    Problem problem_;
-    double s_, h_ = 0;
-    Momentum mu_;
-  };
+  template <class P>
+  using Step = BalanceStep<P, false>;
 };
 
 }  // namespace hamel

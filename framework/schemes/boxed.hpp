@@ -1,72 +1,132 @@
-// boxed: the paper's boxed formulas with the slips of method.md, section 6, repaired.
+// boxed: the paper's boxed formulas with their slips repaired; left-invariant systems only.
 //
-// s = 0 and nu = 0 in the cotangent lift, the known momentum barred, mu_k = I E mu_bar_k:
-//   E^T (dR_xi)^T mu_k = E^T I xi / h = y,   xi = h E y,
-//   mu_bar_{k+1} = E^T Ad_{tau(xi)}^T mu_k,   g_{k+1} = g_k tau(xi).
+// s = 0 and nu = 0 in the cotangent lift, the known momentum barred, mu_k = I xi_k; the unknown is v = xi/h:
+//   E^T ( (dR_{hv})^T mu_k - I v ) = 0,   A v = 0,
+//   xi_{k+1} the admissible velocity of Ad_{tau(hv)}^T mu_k,   g_{k+1} = g_k tau(hv).
 // What Ad^T carries out of d* is dropped, and with it the second order: the scheme has order 1.
 #pragma once
 
-#include <hamel/framework/schemes/problem.hpp>
-#include <hamel/framework/schemes/traits.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
 
-struct Boxed {
+/// literal: boxed_literal.hpp, where h cancels.
+template <class P, bool literal>
+class BoxedStep {
+  using Vector = typename P::Vector;
+
+ public:
+  using Problem = P;
+  using Unknown = typename P::State;
+  using Jacobian = typename P::StateMatrix;
+  using Node = hamel::Node<P>;
+
+  BoxedStep(const P& problem, double /*s*/)
+      : problem_(problem),
+        full_mu_(problem.dim()),
+        embedding_(problem.dim(), problem.dim()),
+        place_(problem),
+        v_(problem.dim()),
+        z_(v_),
+        r_(v_),
+        mu_(v_),
+        a_(problem.rows(), problem.dim()),
+        b_(problem.rows()),
+        rows_(problem.rows()),
+        f_(problem.element()) {
+    if constexpr (literal) embed();
+  }
+
+  int size() const { return problem_.state_size(); }
+  void begin(const Node& node, double h) {
+    from_ = &node;
+    h_ = h;
+    place_.set(problem_, node.t, node.g);
+    problem_.momentum(place_.inertia, node.x, mu_);
+    if constexpr (literal) full_mu_ = embedding_.lazyProduct(mu_);
+    else full_mu_ = mu_;
+    if constexpr (!P::left_invariant) problem_.constraints(node.t, node.g, a_, b_);
+    const double size = 2 * place_.size(node.x, mu_);
+    scale_squared_ = size * size;
+  }
+  void guess(Unknown& x) const { x = from_->x; }
+  double scale_squared() const { return scale_squared_; }
+  void from_frame(Unknown& z) const requires(!P::left_invariant) { place_.from_frame(z.data()); }
+
+  void residual(const Unknown& x, Unknown& f) const {
+    set_step(x);
+    problem_.dtau_right_transpose(z_, full_mu_, r_);
+    problem_.momentum(place_.inertia, x, mu_);
+    r_ -= mu_;
+    if constexpr (!P::left_invariant) rows_ = a_.lazyProduct(v_);
+    place_.join(r_, rows_, f);
+  }
+
+  /// F and dF/dy.
+  void linearise(const Unknown& y, Unknown& f, Jacobian& j) const requires(P::left_invariant) {
+    residual(y, f);
+    j = length() * problem_.reduce_both(
+                       At<typename P::Tau>(z_).right_transpose_derivative(full_mu_));
+    j.diagonal().array() -= 1;
+  }
+
+  bool finish(const Unknown& x, Node& next) const {
+    set_step(x);
+    if (!problem_.in_domain(z_)) return false;
+    problem_.tau(z_, f_);
+    next.t = from_->t + h_;
+    problem_.compose(from_->g, f_, next.g);
+    if constexpr (literal) problem_.inverse(f_, f_);  // the sign of the inverse
+    problem_.Ad_transpose(f_, full_mu_, r_);
+    place_.admissible(r_, next.x);
+    return true;
+  }
+
+ private:
+  double length() const { return literal ? 1.0 : h_; }
+  void set_step(const Unknown& x) const {
+    problem_.velocity(x, v_);
+    z_ = length() * v_;
+  }
+  // 1 - A^T (A A^T)^-1 A: the covector without a part along the Euclidean complement of d.
+  void embed() {
+    const Node start(problem_);
+    problem_.constraints(0, start.g, a_, b_);
+    const Eigen::MatrixXd a = a_;
+    const Eigen::MatrixXd gram = a * a.transpose();
+    embedding_.setIdentity();
+    if (a.rows() > 0) embedding_ -= a.transpose() * gram.inverse() * a;
+  }
+
+  P problem_;
+  double h_ = 0, scale_squared_ = 0;
+  const Node* from_ = nullptr;
+  Vector full_mu_;
+  typename P::Matrix embedding_;
+  mutable typename P::Place place_;
+  mutable Vector v_, z_, r_, mu_;
+  typename P::Rows a_;
+  typename P::Few b_;
+  mutable typename P::Few rows_;
+  mutable typename P::Element f_;
+};
+
+struct Boxed : SchemeDefaults {
   static std::string name() { return "boxed"; }
   static std::string formula() {
     return "E'(dR_xi)' mu_k = E' I xi/h,  mu_{k+1} = E' Ad_{tau(xi)}' mu_k";
   }
   static std::string source() {
-    return "Vivek, Martin de Diego, Banavar: the boxes, slips repaired (method.md, section 6)";
+    return "Vivek, Martin de Diego, Banavar: the boxes, slips repaired (schemes/README.md)";
   }
-  static constexpr bool adapted = true;
-  static constexpr bool uses_s = false;
-  static ClaimedOrder claimed_order(double /*s*/, bool /*symmetric_tau*/) { return {1, false}; }
-
-  template <class Problem, class Tau>
-  class Step {
-   public:
-    static constexpr int n = Problem::n;
-    using G = typename Problem::Group;
-    using Element = typename G::template Element<double>;
-    using Unknown = typename Problem::Reduced;
-    using Jacobian = typename Problem::ReducedMatrix;
-    using Momentum = typename Problem::Reduced;
-
-    Step(const Problem& problem, double /*s*/) : problem_(problem) {}
-
-    void begin(const Momentum& mu, double h) {
-      mu_ = mu;
-      full_mu_ = problem_.momentum(mu);
-      h_ = h;
-    }
-    Unknown guess() const { return mu_; }
-    double scale_squared() const { return 4 * mu_.squaredNorm(); }
-    Vec<n> xi(const Unknown& y) const { return h_ * problem_.velocity(y); }
-
-    void residual(const Unknown& y, Unknown& f) const {
-      f = problem_.reduce(Tau::dtau_right(xi(y)).transpose() * full_mu_) - y;
-    }
-
-    /// F and dF/dy.
-    void linearise(const Unknown& y, Unknown& f, Jacobian& j) const {
-      residual(y, f);
-      j = h_ * problem_.reduce_both(At<Tau>(xi(y)).right_transpose_derivative(full_mu_));
-      j.diagonal().array() -= 1;
-    }
-
-    void finish(const Unknown& y, Element& increment, Momentum& mu) const {
-      increment = Tau::tau(xi(y));
-      mu = problem_.reduce(G::Ad_transpose(increment, full_mu_));
-    }
-
-   private:
-    Problem problem_;
-    double h_ = 0;
-    Momentum mu_;
-    Vec<n> full_mu_;
-  };
+  static constexpr bool left_invariant_only = true;
+  static constexpr bool reduced = true;
+  static ClaimedOrder claim(double /*s*/, bool /*symmetric_tau*/, bool /*left_invariant*/) {
+    return {1, false};
+  }
+  template <class P>
+  using Step = BoxedStep<P, false>;
 };
 
 }  // namespace hamel

@@ -1,50 +1,68 @@
-// The one-sided lift equation in the Hamel frame, contracted once: structure constants instead of matrices.
+// lift in the Hamel frame, contracted once: structure constants instead of matrices.
 //
-// For a retraction whose inverse derivative is quadratic up to a scalar weight (exp and Cayley on SO(3) and
-// SE(2)),  (dR_xi^-1)^T p = p + B(xi) p + w(x) Q(xi, xi) p,  x = |omega|^2,  B odd, Q even, and with
-// xi = h E y, p = I E y, y = (u, v) in R^2, E^T I E = Id:
-//   E^T (dR_xi^-1)^T p = y + h b(y, y) + h^2 w(h^2 g(y, y)) t(y, y, y),
-//   E^T (dL_xi^-1)^T p = the same with -h (tau symmetric),
+// Let A(xi) = dR_xi^-1 = 1 + O + w(x) Q, O odd (linear) and Q even (quadratic) in xi, x = |omega|^2, as for exp and
+// Cayley on SO(3) and SE(2), tau symmetric. The end momenta of lift are mu0(xi) and mu1 = mu0(-xi), with
+//   s = 0, 1, or exp:     mu0 = A(xi)^T p
+//   s = 1/2, Cayley:      mu0 = (1 + 2 O + Q + O (1 + Q)^-1 O)^T p at xi/2, where O (1 + Q)^-1 O = O^2
+// (the odd parts of C = (dR_{xi/2} + dR_{-xi/2})^T/2 cancel, and Q is z times a row, O z = -ad_z z/2 = 0).
+// Both are p plus a part linear in xi plus a weight times a quadratic one. With xi = h E y, p = I E y,
+// y = (u, v) in R^2, E^T I E = Id:
+//   E^T mu0 = y + h b(y, y) + h^2 w(h^2 g(y, y)) t(y, y, y),   E^T mu1 = the same with -h,
 // where b (2 x 3, on u^2, uv, v^2), t (2 x 4, on u^3, u^2 v, u v^2, v^3) and g (3) are constants of the body:
-// b holds the structure constants of the frame. They are found from dR^-1 itself by polarisation at
-// |xi| about 1, with an error of a few eps.
+// b holds the structure constants of the frame. They are found from mu0 itself by polarisation at |xi| about
+// 1, with an error of a few eps.
 #pragma once
 
-#include <hamel/framework/schemes/problem.hpp>
+#include <utility>
+
+#include <hamel/framework/lie/types.hpp>
 
 namespace hamel {
 
-/// Does Tau give its weight w(x) and its x = angle_squared(xi), and is m = 2?
-template <class Problem, class Tau>
-inline constexpr bool has_hamel_form = Problem::m_at_compile_time == 2 &&
-                                       Tau::symmetric&& requires(const Vec<Problem::n>& xi,
-                                                                 double x) {
-  Tau::quadratic_weight(x);
-  Tau::angle_squared(xi);
-};
-
-template <class Problem, class Tau>
+template <class Problem>
 class HamelForm {
+  using Tau = typename Problem::Tau;
+
  public:
   static constexpr int n = Problem::n;
   using Reduced = Vec<2>;
 
-  explicit HamelForm(const Problem& problem) {
-    const double scale = 1 / problem.frame.norm();
-    // (odd, even) parts of E^T (dR^-1)^T p at y.
+  /// Does Tau give its weight w(x) and its x = angle_squared(xi), and is m = 2?
+  static constexpr bool exists() {
+    return Problem::m == 2 && Tau::symmetric && requires(const Vec<n>& xi, double x) {
+      Tau::quadratic_weight(x);
+      Tau::angle_squared(xi);
+    };
+  }
+  /// Is there one for this s? One half wants w = 1.
+  static bool exists(double s) {
+    return exists() && (s == 0 || s == 1 || Tau::one_parameter ||
+                        (s == 0.5 && requires { &Tau::solve_even_transposed; }));
+  }
+
+  /// end_momentum(xi, p): mu0.
+  template <class EndMomentum>
+  HamelForm(const Problem& problem, const EndMomentum& end_momentum) {
+    const double scale = 1 / problem.frame().norm();
+    const auto xi_of = [&problem](const Reduced& y) {
+      Vec<n> xi;
+      problem.velocity(y, xi);
+      return xi;
+    };
+    // (odd, even) parts of E^T mu0 at y.
     const auto parts = [&](double u, double v) {
       const Reduced y(u, v);
-      const Vec<n> xi = scale * problem.velocity(y), p = problem.momentum(y);
-      const Reduced plus = problem.reduce(Tau::dtau_right_inverse_transpose(xi, p));
-      const Reduced minus = problem.reduce(Tau::dtau_right_inverse_transpose(Vec<n>(-xi), p));
+      Vec<n> p;
+      problem.momentum({}, y, p);
+      const Vec<n> xi = scale * xi_of(y);
+      const Reduced plus = problem.reduce(end_momentum(xi, p));
+      const Reduced minus = problem.reduce(end_momentum(Vec<n>(-xi), p));
       const double x = Tau::angle_squared(xi);
       const Reduced odd = (plus - minus) / (2 * scale);
       const Reduced even = ((plus + minus) / 2 - y) / (scale * scale * Tau::quadratic_weight(x));
       return std::pair{odd, even};
     };
-    const auto angle = [&](double u, double v) {
-      return Tau::angle_squared(Vec<n>(problem.velocity(Reduced(u, v))));
-    };
+    const auto angle = [&](double u, double v) { return Tau::angle_squared(xi_of({u, v})); };
     const auto [b_u, t_u] = parts(1, 0);
     const auto [b_v, t_v] = parts(0, 1);
     const auto [b_sum, t_sum] = parts(1, 1);
@@ -59,7 +77,7 @@ class HamelForm {
     g_ = Vec<3>(angle(1, 0), (angle(1, 1) - angle(1, -1)) / 2, angle(0, 1));
   }
 
-  /// E^T (dR_xi^-1)^T p for h, E^T (dL_xi^-1)^T p for -h.
+  /// E^T mu0 for h, E^T mu1 for -h.
   Reduced operator()(const Reduced& y, double h) const {
     const double u = y[0], v = y[1], uu = u * u, uv = u * v, vv = v * v, hh = h * h;
     const double w = hh * Tau::quadratic_weight(hh * (g_[0] * uu + g_[1] * uv + g_[2] * vv));

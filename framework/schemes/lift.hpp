@@ -1,146 +1,314 @@
-// lift: the paper's definition D^{D*} = (iota* x iota*) o D^{T*} o T pi*, read literally.
+// lift: the paper's definition D^{D*} = (iota* x iota*) o D^{T*} o T pi*, read literally. It is the discrete
+// Lagrange-d'Alembert scheme of L_d(g0, g1) = h L(g, xi/h).
 //
-// With z0 = -s xi, z1 = (1-s) xi, f_i = tau(z_i), the cotangent lift (method.md, section 2) is
-//   (1)  mu = s dL_{z0}^T mu0 + (1-s) dL_{z1}^T mu1,     (2)  nu = Ad*_{f1^-1} mu1 - Ad*_{f0^-1} mu0.
-// Carry both end momenta to the base point, m_i = Ad*_{f_i^-1} mu_i. Since Ad_f dL = dR, (1) is
-//   mu = s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1,  and nu = 0 gives m0 = m1 = m:
-//   C m = I xi / h,   C = s dR_{z0}^T + (1-s) dR_{z1}^T.
-// Unknown y with xi = h E y. The step solves E^T mu0 = mu_bar_k and returns mu_bar_{k+1} = E^T mu1,
-//   mu0 = Ad_{f0}^T m,   mu1 = Ad_{f1}^T m,   g_{k+1} = g_k f0^-1 f1.
-// At s = 0, and at every s for a one-parameter tau (exp: f0^-1 f1 = exp xi), mu0 = (dR_xi)^-T I xi/h.
-// This is the discrete Lagrange-d'Alembert principle for L_d = h l(xi/h) (Cortes, Martinez 2001).
+// Unknown v = xi/h. With z0 = -s xi, z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g f1,
+//   p = I(g) v,   nu = h force(t + s h, g, v),   C = (s dR_{z0} + (1-s) dR_{z1})^T.
+// Momenta carried to the base point, m_i = Ad*_{f_i^-1} mu_i, satisfy (lie/trivialised.hpp)
+//   (1)  s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 = p,     (2)  m1 - m0 = nu,
+// hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu), m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i. The step solves
+//   E(g0)^T (mu0 - I(g0) xi_0) = 0,    A(g) v = b(t + s h, g),   phi(g1) = 0 in place of its rows,
+// in the frame at g0 ((*) of mechanics/place.hpp), and xi_1 is the admissible velocity of mu1 at g1.
+//
+// On a left-invariant problem v = E y, nu = 0 and m unknowns remain: E^T mu0 = mu_bar_k, mu_bar_{k+1} = E^T mu1. At
+// s = 0, at s = 1 for a symmetric tau, and at every s for a one-parameter tau (exp), mu0 = (dR_xi)^-T I xi/h.
+// Source: Vivek, Martin de Diego, Banavar; Cortes and Martinez 2001; Fedorov and Zenkov 2005; Kobilarov 2010.
 #pragma once
-
-#include <hamel/framework/schemes/hamel_form.hpp>
-#include <hamel/framework/schemes/problem.hpp>
-#include <hamel/framework/schemes/traits.hpp>
-#include <hamel/framework/lie/trivialised.hpp>
 
 #include <Eigen/LU>
 
+#include <hamel/framework/lie/trivialised.hpp>
+#include <hamel/framework/schemes/hamel_form.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
+
 namespace hamel {
 
-struct Lift {
+struct Lift : SchemeDefaults {
   static std::string name() { return "lift"; }
   static std::string formula() {
     return "E'(dR_xi)^-T I xi/h = mu_k,  mu_{k+1} = E'(dL_xi)^-T I xi/h  (s = 0)";
   }
   static std::string source() { return "Vivek, Martin de Diego, Banavar: D^{D*}, read literally"; }
-  static constexpr bool adapted = true;
   static constexpr bool uses_s = true;
-  /// A symmetric tau gives order 2 for every s. The step is reversible at s = 1/2, and at s = 0 and 1 when
-  /// tau is symmetric; between them only when tau(a xi) and tau(b xi) commute (exp, Cayley, polar), which
-  /// is not claimed: tau_s(xi)^-1 = tau((1-s) xi)^-1 tau(-s xi) is tau_s(-xi) only then.
-  static ClaimedOrder claimed_order(double s, bool symmetric_tau) {
-    return {symmetric_tau || s == 0.5 ? 2 : 1, s == 0.5 || (symmetric_tau && (s == 0 || s == 1))};
+  static constexpr bool reduced = true;
+  /// Left-invariant: a symmetric tau gives order 2 for every s. The step is reversible at s = 1/2, and at s = 0 and 1
+  /// when tau is symmetric; between them only when tau(a xi) and tau(b xi) commute (exp, Cayley, polar), which is not
+  /// claimed: tau_s(xi)^-1 = tau((1-s) xi)^-1 tau(-s xi) is tau_s(-xi) only then.
+  static ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) {
+    const bool half = s == 0.5;
+    if (!left_invariant) return {half ? 2 : 1, half};
+    return {half || symmetric_tau ? 2 : 1, half || (symmetric_tau && (s == 0 || s == 1))};
   }
 
-  /// The scheme on systems that are not left-invariant: general/lift.hpp.
-  static std::unique_ptr<GeneralStep> general(const GeneralSetup& setup);
-  static ClaimedOrder general_order(double s) { return {s == 0.5 ? 2 : 1, s == 0.5}; }
+  template <class P>
+  class General;
+  template <class P>
+  class Reduced;
+  template <class P>
+  using Step = std::conditional_t<P::left_invariant, Reduced<P>, General<P>>;
+};
 
-  template <class Problem, class Tau>
-  class Step {
-   public:
-    static constexpr int n = Problem::n;
-    using G = typename Problem::Group;
-    using Element = typename G::template Element<double>;
-    using Unknown = typename Problem::Reduced;
-    using Jacobian = typename Problem::ReducedMatrix;
-    using Momentum = typename Problem::Reduced;
+/// v in R^n.
+template <class P>
+class Lift::General {
+ public:
+  using Problem = P;
+  using Unknown = typename P::State;
+  using Jacobian = typename P::StateMatrix;
+  using Node = hamel::Node<P>;
+  using Vector = typename P::Vector;
 
-    Step(const Problem& problem, double s)
-        : problem_(problem), form_(problem), s_(s), one_sided_(s == 0 || Tau::one_parameter) {}
+  General(const P& problem, double s)
+      : problem_(problem),
+        s_(s),
+        mirrored_(s == 0.5 && problem.symmetric()),
+        target_(problem.dim()),
+        place_(problem),
+        place_g_(problem.element()),
+        f0_(problem.element()),
+        f1_(f0_),
+        base_(f0_),
+        g1_(f0_),
+        v_(problem.dim()),
+        z_(v_),
+        step_(v_),
+        p_(v_),
+        nu_(v_),
+        m_(v_),
+        mu_(v_),
+        inertia_(problem.dim(), problem.dim()),
+        a_(problem.rows(), problem.dim()),
+        b_(problem.rows()),
+        rows_(problem.rows()),
+        phi_(problem.held()) {}
 
-    void begin(const Momentum& mu, double h) {
-      mu_ = mu;
-      h_ = h;
+  int size() const { return problem_.dim(); }
+  void begin(const Node& node, double h) {
+    from_ = &node;
+    h_ = h;
+    v_.setConstant(kNothing);
+    if (!(place_time_ == node.t && problem_.same(place_g_, node.g))) {  // else the last step ended there
+      place_.set(problem_, node.t, node.g);
+      place_time_ = node.t;
+      place_g_ = node.g;
     }
-    Unknown guess() const { return mu_; }
-    /// (|mu_bar| + |I xi/h|)^2, both of one length in the Hamel frame.
-    double scale_squared() const { return 4 * mu_.squaredNorm(); }
-    Vec<n> xi(const Unknown& y) const { return h_ * problem_.velocity(y); }
+    inertia_ = place_.inertia;
+    target_ = inertia_.lazyProduct(node.x);
+    problem_.force(node.t, node.g, node.x, nu_);
+    // |mu0| + |I xi/h| + |h force| in the units of (*); at rest without force those of unit velocities.
+    const double size = 2 * place_.size(target_) + std::abs(h) * place_.size(nu_);
+    scale_squared_ = size > 0 ? size * size : problem_.dim();
+  }
+  void guess(Unknown& x) const { x = from_->x; }
+  double scale_squared() const { return scale_squared_; }
+  void from_frame(Unknown& z) const { place_.from_frame(z.data()); }
 
-    /// F(y) = E^T mu0 - mu_bar.
-    [[gnu::always_inline]] void residual(const Unknown& y, Unknown& f) const {
-      if (one_sided_) [[likely]] {
-        if constexpr (has_form) {
-          f = form_(y, h_) - mu_;
-        } else {
-          f = problem_.reduce(Tau::dtau_right_inverse_transpose(xi(y), problem_.momentum(y))) - mu_;
-        }
-      } else {
-        two_sided_residual(y, f);
+  void residual(const Unknown& x, Unknown& f) const {
+    evaluate(x);
+    place_.join(mu_, rows_, f);
+  }
+
+  bool finish(const Unknown& x, Node& next) const {
+    if ((v_.array() != x.array()).any()) evaluate(x);
+    if (!problem_.in_domain(step_)) return false;
+    m_ += nu_;
+    problem_.Ad_transpose(f1_, m_, mu_);
+    next.t = from_->t + h_;
+    next.g = g1_;
+    place_.set(problem_, next.t, next.g);
+    place_time_ = next.t;
+    place_g_ = next.g;
+    place_.admissible(mu_, next.x);
+    return true;
+  }
+
+ private:
+  static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // evaluated so far
+
+  // mu0 - I(g0) xi_0, m0 (in m_), nu and the rows at v = x.
+  void evaluate(const Unknown& x) const {
+    v_ = x;
+    step_ = h_ * v_;
+    z_ = (1 - s_) * step_;
+    problem_.tau(z_, f1_);
+    if (s_ == 0) {
+      base_ = from_->g;
+    } else if (mirrored_) {  // f0 = f1^-1
+      problem_.inverse(f1_, f0_);
+      problem_.compose(from_->g, f1_, base_);
+    } else {
+      z_ = -s_ * step_;
+      problem_.tau(z_, f0_);
+      problem_.inverse(f0_, base_);
+      problem_.compose(from_->g, base_, base_);
+    }
+    problem_.compose(base_, f1_, g1_);
+
+    const double t = from_->t + s_ * h_;
+    if (!problem_.constant_inertia()) problem_.inertia(base_, inertia_);
+    p_ = inertia_.lazyProduct(v_);
+    problem_.force(t, base_, v_, nu_);
+    nu_ *= h_;
+    problem_.base_momentum(s_, step_, p_, nu_, m_);
+    if (s_ == 0) mu_ = m_;
+    else problem_.Ad_transpose(f0_, m_, mu_);
+    mu_ -= target_;
+    if (rows_.size() > 0) {
+      problem_.constraints(t, base_, a_, b_);
+      rows_ = a_.lazyProduct(v_);
+      rows_ -= b_;
+      if (phi_.size() > 0) {  // in metres: a velocity error would show as h times itself
+        problem_.holonomic(g1_, phi_);
+        rows_.tail(phi_.size()) = phi_;
       }
     }
+  }
 
-    /// F and dF/dy.
-    void linearise(const Unknown& y, Unknown& f, Jacobian& j) const {
-      residual(y, f);
-      const Vec<n> p = problem_.momentum(y), step = xi(y);
-      if (one_sided_) {
-        j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
-            problem_.reduce_momentum_transposed(Tau::dtau_right_inverse(step));
+  P problem_;
+  double s_;
+  bool mirrored_;
+  const Node* from_ = nullptr;
+  double h_ = 0, scale_squared_ = 0;
+  Vector target_;
+  // Work: the place at place_g_ (g0, and g1 once finished), and what the last x determined. Allocated once.
+  mutable typename P::Place place_;
+  mutable typename P::Element place_g_;
+  mutable double place_time_ = kNothing;
+  mutable typename P::Element f0_, f1_, base_, g1_;
+  mutable Vector v_, z_, step_, p_, nu_, m_, mu_;
+  mutable typename P::Matrix inertia_;
+  mutable typename P::Rows a_;
+  mutable typename P::Few b_, rows_;
+  mutable typename P::Held phi_;
+};
+
+/// y in R^m, contracted where the Hamel form exists.
+template <class P>
+class Lift::Reduced {
+  using Form = HamelForm<P>;
+  using Tau = typename P::Tau;
+  using G = typename P::Group;
+  using Element = typename P::Element;
+  static constexpr int n = P::n;
+
+ public:
+  using Problem = P;
+  using Unknown = typename P::State;
+  using Jacobian = typename P::StateMatrix;
+  using Node = hamel::Node<P>;
+
+  Reduced(const P& problem, double s)
+      : problem_(problem),
+        s_(s),
+        one_sided_(s == 0 || Tau::one_parameter || (s == 1 && Tau::symmetric)),
+        mirrored_(s == 0.5 && Tau::symmetric),
+        form_(problem, [this](const Vec<n>& xi, const Vec<n>& p) { return end_momentum(xi, p); }) {
+    if constexpr (Form::exists()) contracted_ = Form::exists(s);
+  }
+
+  static constexpr int size() { return P::m; }
+  void begin(const Node& node, double h) {
+    from_ = &node;
+    h_ = h;
+  }
+  void guess(Unknown& y) const { y = from_->x; }
+  /// (|mu_bar| + |I xi/h|)^2, both of one length in the Hamel frame.
+  double scale_squared() const { return 4 * from_->x.squaredNorm(); }
+
+  /// F(y) = E^T mu0 - mu_bar.
+  [[gnu::always_inline]] void residual(const Unknown& y, Unknown& f) const {
+    if constexpr (Form::exists()) {
+      if (contracted_) [[likely]] {
+        f = form_(y, h_) - from_->x;
         return;
       }
-      // dm = C^-1 (I E dy - dC m),  dmu0 = Ad_{f0}^T dm + K(mu0) dL_{z0} dz0.
-      const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
-      const Mat<n, n> c_inverse = inverse_of_c(z0, z1);
-      const Vec<n> m = c_inverse * p;
-      const Mat<n, n> dc_m = (1 - s_) * (1 - s_) * z1.right_transpose_derivative(m) -
-                             s_ * s_ * z0.right_transpose_derivative(m);
-      const Mat<n, n> pull = G::Ad(z0.f).transpose() * c_inverse;
-      j = problem_.reduce_momentum(pull) -
-          h_ * problem_.reduce_both(pull * dc_m + s_ * z0.pull_derivative(z0.pull(m)));
     }
+    full_residual(y, f);
+  }
 
-    /// g_{k+1} = g_k increment, and mu_bar_{k+1}.
-    [[gnu::always_inline]] void finish(const Unknown& y, Element& increment, Momentum& mu) const {
-      if (one_sided_) [[likely]] {
-        const Vec<n> step = xi(y);
-        increment = Tau::tau(step);
-        if constexpr (has_form) {
-          mu = form_(y, -h_);
-        } else {
-          mu = problem_.reduce(Tau::dtau_left_inverse_transpose(step, problem_.momentum(y)));
-        }
-      } else {
-        two_sided_finish(y, increment, mu);
+  /// F and dF/dy.
+  void linearise(const Unknown& y, Unknown& f, Jacobian& j) const {
+    residual(y, f);
+    const Vec<n> p = momentum(y), step = xi(y);
+    if (one_sided_) {
+      j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
+          problem_.reduce_momentum(Tau::dtau_right_inverse(step).transpose());
+      return;
+    }
+    // dm = C^-1 (I E dy - dC m),  dmu0 = Ad_{f0}^T dm + K(mu0) dL_{z0} dz0.
+    const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
+    const Mat<n, n> c_inverse = (s_ * z0.right + (1 - s_) * z1.right).transpose().inverse();
+    const Vec<n> m = c_inverse * p;
+    const Mat<n, n> dc_m = (1 - s_) * (1 - s_) * z1.right_transpose_derivative(m) -
+                           s_ * s_ * z0.right_transpose_derivative(m);
+    const Mat<n, n> pull = G::Ad(z0.f).transpose() * c_inverse;
+    j = problem_.reduce_momentum(pull) -
+        h_ * problem_.reduce_both(pull * dc_m + s_ * z0.pull_derivative(z0.pull(m)));
+  }
+
+  [[gnu::always_inline]] bool finish(const Unknown& y, Node& next) const {
+    const Vec<n> step = xi(y);
+    if (!Tau::in_domain(step)) return false;
+    Element increment;
+    if (one_sided_) {
+      increment = Tau::tau(step);
+    } else {
+      const Element f1 = Tau::tau(Vec<n>((1 - s_) * step));
+      increment = mirrored_ ? G::compose(f1, f1)
+                            : G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), f1);
+    }
+    next.t = from_->t + h_;
+    next.g = G::compose(from_->g, increment);
+    if constexpr (Form::exists()) {
+      if (contracted_) [[likely]] {
+        next.x = form_(y, -h_);
+        return true;
       }
     }
+    full_finish(y, step, next.x);
+    return true;
+  }
 
-   private:
-    // Out of line, so that the one-sided loop stays small.
-    [[gnu::noinline]] void two_sided_residual(const Unknown& y, Unknown& f) const {
-      const Vec<n> step = xi(y);
-      f = problem_.reduce(G::Ad_transpose(Tau::tau(Vec<n>(-s_ * step)), base(y, step))) - mu_;
+ private:
+  Vec<n> xi(const Unknown& y) const {
+    Vec<n> v;
+    problem_.velocity(y, v);
+    return h_ * v;
+  }
+  Vec<n> momentum(const Unknown& y) const {
+    Vec<n> p;
+    problem_.momentum({}, y, p);
+    return p;
+  }
+  // mu0 = Ad_{f0}^T m, m = C^-1 p.
+  Vec<n> end_momentum(const Vec<n>& step, const Vec<n>& p) const {
+    if (one_sided_) return Tau::dtau_right_inverse_transpose(step, p);
+    return G::Ad_transpose(Tau::tau(Vec<n>(-s_ * step)),
+                           base_momentum<Tau>(s_, step, p, Vec<n>::Zero()));
+  }
+  // Out of line, so that the contracted loop stays small.
+  [[gnu::noinline]] void full_residual(const Unknown& y, Unknown& f) const {
+    f = problem_.reduce(end_momentum(xi(y), momentum(y))) - from_->x;
+  }
+  [[gnu::noinline]] void full_finish(const Unknown& y, const Vec<n>& step, Unknown& next) const {
+    const Vec<n> p = momentum(y);
+    if (one_sided_) {
+      next = problem_.reduce(Tau::dtau_left_inverse_transpose(step, p));
+    } else {
+      next = problem_.reduce(G::Ad_transpose(Tau::tau(Vec<n>((1 - s_) * step)),
+                                             base_momentum<Tau>(s_, step, p, Vec<n>::Zero())));
     }
-    [[gnu::noinline]] void two_sided_finish(const Unknown& y, Element& increment,
-                                            Momentum& mu) const {
-      const Vec<n> step = xi(y);
-      const Element f1 = Tau::tau(Vec<n>((1 - s_) * step));
-      increment = G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), f1);
-      mu = problem_.reduce(G::Ad_transpose(f1, base(y, step)));
-    }
-    Vec<n> base(const Unknown& y, const Vec<n>& step) const {  // m = C^-1 I xi/h
-      return base_momentum<Tau>(s_, step, problem_.momentum(y), Vec<n>::Zero());
-    }
-    Mat<n, n> inverse_of_c(const At<Tau>& z0, const At<Tau>& z1) const {
-      const Mat<n, n> c = (s_ * z0.right + (1 - s_) * z1.right).transpose();
-      return c.inverse();
-    }
+  }
 
-    static constexpr bool has_form = has_hamel_form<Problem, Tau>;
-    struct NoForm {
-      explicit NoForm(const Problem& /*problem*/) {}
-    };
-
-    Problem problem_;
-    [[no_unique_address]] std::conditional_t<has_form, HamelForm<Problem, Tau>, NoForm> form_;
-    double s_, h_ = 0;
-    bool one_sided_;
-    Momentum mu_;
+  struct NoForm {
+    template <class EndMomentum>
+    NoForm(const P& /*problem*/, const EndMomentum& /*mu0*/) {}
   };
+
+  P problem_;
+  double s_, h_ = 0;
+  bool one_sided_, mirrored_, contracted_ = false;
+  const Node* from_ = nullptr;
+  [[no_unique_address]] std::conditional_t<Form::exists(), Form, NoForm> form_;
 };
 
 }  // namespace hamel

@@ -1,54 +1,70 @@
-// A left-invariant nonholonomic system as the schemes see it: an inertia and a Hamel frame.
+// The problem of a step: a nonholonomic system on a group with a retraction, as the schemes see it.
 //
-//   l(xi) = 1/2 xi^T I xi,   d = ker A,   E: n x m, columns an I-orthonormal basis of d.
-// Coordinates on d are y = E^T I xi, and on its dual mu_bar = E^T mu; since E^T I E = Id, y = mu_bar.
+// Three models of one concept:
+//   LeftInvariant<G, M, Tau>   constant inertia and rows, m fixed: the velocity is carried as y, xi = E y
+//   Typed<System, Tau>         whatever C++ type describes the system: fixed sizes, nothing virtual
+//   Erased                     run-time sizes: systems by data, products put together by name
+// A step is a template over the problem; nothing in it knows which of the three it has, but for
+// `if constexpr (Problem::left_invariant)`, where constants have been contracted.
 #pragma once
 
-#include <hamel/framework/lie/concepts.hpp>
+#include <concepts>
+
+#include <Eigen/Core>
 
 namespace hamel {
 
-/// The dimension of a frame that is known only at run time (at most the group's).
-inline constexpr int kRunTime = Eigen::Dynamic;
+/// A node: time, element, and the admissible velocity in the coordinates in which a problem carries it.
+template <class Problem>
+struct Node {
+  double t = 0;
+  typename Problem::Element g;
+  typename Problem::State x;
+  explicit Node(const Problem& problem)
+      : g(problem.element()), x(Problem::State::Zero(problem.state_size())) {}
+};
 
-/// m is fixed at compile time (M >= 1) or chosen at run time (M = kRunTime, still without heap).
-template <class G, int M>
-struct LeftInvariant {
-  using Group = G;
-  static constexpr int n = G::dim;
-  static constexpr int m_at_compile_time = M;
-  static constexpr int max_m = M == kRunTime ? n : M;
-  using Reduced = Eigen::Matrix<double, M, 1, 0, max_m, 1>;  // y, mu_bar
-  using ReducedMatrix = Eigen::Matrix<double, M, M, 0, max_m, max_m>;
-  using Frame = Eigen::Matrix<double, n, M, n == 1 ? Eigen::RowMajor : 0, n, max_m>;
-
-  Frame frame;           // E
-  Frame momentum_frame;  // I E
-
-  LeftInvariant(const Mat<n, n>& inertia, const Frame& e) : frame(e), momentum_frame(inertia * e) {}
-
-  int m() const { return static_cast<int>(frame.cols()); }
-  /// E y: from coordinates on d to the algebra.
-  Vec<n> velocity(const Reduced& y) const { return frame.lazyProduct(y); }
-  /// I E y: pi^* of the paper, from d* into the dual of the algebra.
-  Vec<n> momentum(const Reduced& y) const { return momentum_frame.lazyProduct(y); }
-  /// E^T mu: iota^*, from the dual of the algebra onto d*.
-  Reduced reduce(const Vec<n>& mu) const { return frame.transpose().lazyProduct(mu); }
-  /// E^T B E for an n x n matrix B.
-  ReducedMatrix reduce_both(const Mat<n, n>& b) const {
-    const Frame be = b.lazyProduct(frame);
-    return frame.transpose().lazyProduct(be);
-  }
-  /// E^T B (I E).
-  ReducedMatrix reduce_momentum(const Mat<n, n>& b) const {
-    const Frame be = b.lazyProduct(momentum_frame);
-    return frame.transpose().lazyProduct(be);
-  }
-  /// E^T B^T (I E).
-  ReducedMatrix reduce_momentum_transposed(const Mat<n, n>& b) const {
-    const Frame be = b.lazyProduct(frame);
-    return be.transpose().lazyProduct(momentum_frame);
-  }
+/// What a step may ask. Sizes: n = dim(), k = rows(), the last held() of them differentials of holonomic
+/// rows. Out-parameters have their size before a call. Elements: Problem::Element.
+template <class P>
+concept Problem = requires(const P& problem, typename P::Element& g, typename P::Vector& v,
+                           typename P::State& x, typename P::Matrix& inertia, typename P::Rows& a,
+                           typename P::Few& b, typename P::Held& phi, typename P::Place& place,
+                           double t) {
+  { P::left_invariant } -> std::convertible_to<bool>;
+  { problem.dim() } -> std::convertible_to<int>;
+  { problem.rows() } -> std::convertible_to<int>;
+  { problem.held() } -> std::convertible_to<int>;
+  { problem.state_size() } -> std::convertible_to<int>;
+  { problem.symmetric() } -> std::convertible_to<bool>;
+  { problem.one_parameter() } -> std::convertible_to<bool>;
+  // The group and its retraction (lie/group_operations.hpp).
+  { problem.element() } -> std::convertible_to<typename P::Element>;
+  problem.compose(g, g, g);
+  problem.inverse(g, g);
+  problem.normalise(g);
+  problem.Ad_transpose(g, v, v);
+  problem.ad_transpose(v, v, v);
+  problem.tau(v, g);
+  problem.dtau_right_transpose(v, v, v);
+  problem.dtau_left_inverse(v, v, v);
+  problem.base_momentum(t, v, v, v, v);
+  { problem.in_domain(v) } -> std::convertible_to<bool>;
+  // xi of a carried velocity, and back; its momentum I xi, given I(g).
+  problem.velocity(x, v);
+  problem.carry(v, x);
+  problem.momentum(inertia, x, v);
+  // The system (mechanics/mechanics.hpp): I(g), A(t, g) and b(t, g), phi(g), the force.
+  { problem.constant_inertia() } -> std::convertible_to<bool>;
+  { problem.constant_constraints() } -> std::convertible_to<bool>;
+  problem.inertia(g, inertia);
+  problem.constraints(t, g, a, b);
+  problem.holonomic(g, phi);
+  problem.force(t, g, v, v);
+  // The frame of the admissible velocities at a configuration (mechanics/place.hpp).
+  place.set(problem, t, g);
+  place.join(v, b, x);
+  place.admissible(v, x);
 };
 
 }  // namespace hamel

@@ -1,9 +1,8 @@
 // unadapted: the paper's T*G integrator, run on the constrained system as if nothing bound it.
 //
-// It is lift with d the whole algebra (E an I-orthonormal basis of R^n, the full momentum as state):
-// (1)-(2) of method.md, section 2, with nu = 0. It conserves the spatial momentum Ad*_{g^-1} mu to
-// round-off and leaves the constraint at once: the paper's negative control. For the free body
-// (no constraint rows) it and lift are the same variational integrator.
+// It is lift of the problem without its rows: with nu = 0 it conserves the spatial momentum Ad*_{g^-1} mu to round-off,
+// and it leaves the constraint at once: the paper's negative control. For the free body (no constraint rows) it and
+// lift are the same variational integrator.
 #pragma once
 
 #include <hamel/framework/schemes/lift.hpp>
@@ -17,6 +16,13 @@ struct Unadapted : Lift {
   }
   static std::string source() { return "Vivek, Martin de Diego, Banavar: the T*G integrator"; }
   static constexpr bool adapted = false;
+
+  template <class P>
+  class Step : public Lift::Step<typename P::Unconstrained> {
+   public:
+    Step(const P& problem, double s)
+        : Lift::Step<typename P::Unconstrained>(problem.unconstrained(), s) {}
+  };
 };
 
 }  // namespace hamel

@@ -62,7 +62,7 @@ Json describe_retraction(const std::string& name) {
 
 Json describe_scheme(const SchemeInfo& info) {
   const auto order = [&](double s, bool symmetric) {
-    const ClaimedOrder claimed = info.claimed_order(s, symmetric);
+    const ClaimedOrder claimed = info.claim(s, symmetric, true);
     return Json{{"order", claimed.order}, {"reversible", claimed.reversible}};
   };
   return {{"kind", "scheme"},
@@ -71,15 +71,15 @@ Json describe_scheme(const SchemeInfo& info) {
           {"uses_s", info.uses_s},
           {"keeps_the_constraint", info.adapted},
           {"steps_admissible", info.steps_admissible},
-          {"general_systems", info.general && !info.invariant_only},
+          {"general_systems", !info.left_invariant_only},
           {"claims",
            {{"s = 1/2", order(0.5, true)},
             {"other s, symmetric retraction", order(0, true)},
             {"other s, other retraction", order(0, false)}}},
           {"claims_on_general_systems",
-           info.general_order && !info.invariant_only
-               ? Json{{"s = 1/2", {{"order", info.general_order(0.5).order}}},
-                      {"other s", {{"order", info.general_order(0).order}}}}
+           !info.left_invariant_only
+               ? Json{{"s = 1/2", {{"order", info.claim(0.5, true, false).order}}},
+                      {"other s", {{"order", info.claim(0, true, false).order}}}}
                : Json(nullptr)},
           {"source", info.source}};
 }

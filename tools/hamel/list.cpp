@@ -74,7 +74,7 @@ std::vector<Table> tables() {
   Table schemes{"schemes", {"name", "order", "formula"}, {}};
   for (const std::string& name : all.schemes()) {
     const SchemeInfo& info = *all.scheme(name);
-    const int half = info.claimed_order(0.5, true).order, zero = info.claimed_order(0, true).order;
+    const int half = info.claim(0.5, true, true).order, zero = info.claim(0, true, true).order;
     std::string order = half == 0 ? "-" : std::to_string(half);
     if (!info.adapted) order = "leaves d";
     else if (half != zero) order = fmt::format("{} at s = 1/2, else {}", half, zero);

@@ -87,6 +87,8 @@ std::vector<Outcome> run_all(const Case& problem, const std::vector<Reading>& wh
 
 std::vector<Series> exact_momentum(const Case& problem) {
   const Result start = simulation_of(problem, readings().back(), "exp").until(problem.step).run();
+  Eigen::MatrixXd inertia(start.system.group.dim, start.system.group.dim);
+  start.system.mechanics->inertia(nullptr, inertia);
   const ExactFlow flow = start.system.exact(start.config.start);
   std::vector<Series> out(2, Series{"exact", {}, {}, true});
   constexpr int points = 400;
@@ -94,7 +96,7 @@ std::vector<Series> exact_momentum(const Case& problem) {
     const double t = problem.until * i / points;
     const auto [g, xi] = flow(t);
     const Eigen::VectorXd mu =
-        start.system.inertia *
+        inertia *
         Eigen::Map<const Eigen::VectorXd>(xi.data(), static_cast<Eigen::Index>(xi.size()));
     for (size_t j = 0; j < 2; ++j) {
       out[j].x.push_back(t);

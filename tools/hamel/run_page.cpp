@@ -148,7 +148,7 @@ Page run_page(const Result& r) {
   }
   page.plot("Body momentum", {.x = "time t [s]", .y = "mu"}, momentum);
   page.plot("Body velocity", {.x = "time t [s]", .y = "xi"}, velocity);
-  if (r.system.mechanics != nullptr || r.system.constraints.rows() > 0) {
+  if (r.system.mechanics->rows() > 0) {
     std::vector<Series> reactions;
     for (int i = 1; r.trajectory.has(fmt::format("lambda{}", i)); ++i) {
       reactions.push_back(curve(r, fmt::format("lambda{}", i), fmt::format("lambda{}", i), false));

@@ -1,0 +1,89 @@
+// The operations of a group with a retraction on elements of its own type, with out-parameters: what the
+// steps of schemes call where the types are known. geometry.hpp has the same operations with the type erased.
+#pragma once
+
+#include <cstring>
+#include <type_traits>
+
+#include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/recover_step.hpp>
+#include <hamel/framework/lie/trivialised.hpp>
+
+namespace hamel {
+
+/// Out-parameters may be the in-parameters.
+template <class Tau_>
+struct GroupOperations {
+  using Tau = Tau_;
+  using G = typename Tau::Group;
+  static constexpr int n = G::dim;
+  using Element = typename G::template Element<double>;
+  using Vector = Vec<n>;
+  using Matrix = Mat<n, n>;
+
+  static constexpr int dim() { return n; }
+  static constexpr bool symmetric() { return Tau::symmetric; }
+  static constexpr bool one_parameter() { return Tau::one_parameter; }
+
+  /// An element to write into.
+  static Element element() { return G::template identity<double>(); }
+  static void compose(const Element& g, const Element& h, Element& out) { out = G::compose(g, h); }
+  static void inverse(const Element& g, Element& out) { out = G::inverse(g); }
+  static void normalise(Element& g) { g = G::normalise(g); }
+  static double defect(const Element& g) { return G::defect(g); }
+  /// The same numbers?
+  static bool same(const Element& g, const Element& h) {
+    if constexpr (std::is_trivially_copyable_v<Element>) {
+      return std::memcmp(&g, &h, sizeof(Element)) == 0;
+    } else {
+      return G::coordinates(g) == G::coordinates(h);
+    }
+  }
+  /// Ad_g^T mu and ad_xi^T mu.
+  static void Ad_transpose(const Element& g, const Vector& mu, Vector& out) {
+    out = G::Ad_transpose(g, mu);
+  }
+  static void ad_transpose(const Vector& xi, const Vector& mu, Vector& out) {
+    out = (G::coad(mu) * xi).eval();
+  }
+  static void tau(const Vector& xi, Element& out) { out = Tau::tau(xi); }
+  /// (dR tau_xi)^T m.
+  static void dtau_right_transpose(const Vector& xi, const Vector& m, Vector& out) {
+    out = (Tau::dtau_right(xi).transpose() * m).eval();
+  }
+  /// (dR tau_xi)^-T p.
+  static void dtau_right_inverse_transpose(const Vector& xi, const Vector& p, Vector& out) {
+    out = Tau::dtau_right_inverse_transpose(xi, p);
+  }
+  /// (dL tau_xi)^-1 eta.
+  static void dtau_left_inverse(const Vector& xi, const Vector& eta, Vector& out) {
+    out = (Tau::dtau_left_inverse(xi) * eta).eval();
+  }
+  /// base_momentum of trivialised.hpp.
+  static void base_momentum(double s, const Vector& xi, const Vector& p, const Vector& nu,
+                            Vector& m0) {
+    m0 = hamel::base_momentum<Tau>(s, xi, p, nu);
+  }
+  static bool in_domain(const Vector& xi) { return Tau::in_domain(xi); }
+  /// xi with tau_s(xi) = delta; false where there is none.
+  static bool recover_step(const Element& delta, double s, Vector& xi) {
+    xi = hamel::recover_step<Tau>(delta, s);
+    return xi.allFinite();
+  }
+
+  // CSV columns.
+  static constexpr int columns() { return static_cast<int>(coordinate_count<G>); }
+  static void coordinates(const Element& g, double* out) {
+    const auto values = G::coordinates(g);
+    std::copy(values.begin(), values.end(), out);
+  }
+  static void from_coordinates(std::span<const double> values, Element& out) {
+    out = G::from_coordinates(values);
+  }
+  /// The element next to values that are no element.
+  static void nearest(std::span<const double> values, Element& out) {
+    out = nearest_element<G>(values);
+  }
+};
+
+}  // namespace hamel

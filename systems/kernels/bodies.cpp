@@ -1,0 +1,13 @@
+#include <hamel/groups/product_retraction.hpp>
+#include <hamel/systems/falling_disk.hpp>
+#include <hamel/systems/rattleback.hpp>
+#include <hamel/systems/kernels/units.hpp>
+
+namespace hamel {
+
+void add_disk_and_rattleback(Registry& registry) {
+  add_compiled<FallingDisk>(registry);
+  add_compiled<Rattleback>(registry);
+}
+
+}  // namespace hamel

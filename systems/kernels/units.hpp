@@ -1,0 +1,41 @@
+// The units of systems/kernels/: what is compiled for the types of the registered systems.
+#pragma once
+
+#include <hamel/framework/schemes/balance.hpp>
+#include <hamel/framework/schemes/boxed.hpp>
+#include <hamel/framework/schemes/boxed_literal.hpp>
+#include <hamel/framework/schemes/lift.hpp>
+#include <hamel/framework/schemes/rk4_projected.hpp>
+#include <hamel/framework/schemes/rkmk4.hpp>
+#include <hamel/framework/schemes/unadapted.hpp>
+#include <hamel/groups/cayley.hpp>
+#include <hamel/groups/exp.hpp>
+#include <hamel/systems/kernels.hpp>
+
+namespace hamel {
+
+void add_erased_schemes(Registry& registry);
+void add_left_invariant(Registry& registry);
+void add_particles(Registry& registry);
+void add_balls(Registry& registry);
+void add_disk_and_rattleback(Registry& registry);
+void add_vehicles(Registry& registry);
+
+/// A left-invariant system's problem with every scheme that has a reduced step.
+template <class G, int M>
+void add_left_invariant_on(Registry& registry) {
+  add_left_invariant_kernels<G, M, Exp<G>, Lift, Balance, Boxed, BoxedLiteral, Unadapted, Rkmk4,
+                             Rk4Projected>(registry);
+  add_left_invariant_kernels<G, M, Cayley<G>, Lift, Balance, Boxed, BoxedLiteral, Unadapted, Rkmk4,
+                             Rk4Projected>(registry);
+}
+
+/// A registered system with its kernels.
+template <class S>
+void add_compiled(Registry& registry) {
+  add_system<S>(registry);
+  add_typed_kernels<S, Exp<typename S::Group>, Lift, Balance, Rkmk4, Rk4Projected>(registry);
+  add_typed_kernels<S, Cayley<typename S::Group>, Lift, Balance, Rkmk4, Rk4Projected>(registry);
+}
+
+}  // namespace hamel

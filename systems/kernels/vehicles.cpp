@@ -1,0 +1,15 @@
+#include <hamel/groups/product_retraction.hpp>
+#include <hamel/systems/roller_racer.hpp>
+#include <hamel/systems/segway.hpp>
+#include <hamel/systems/snakeboard.hpp>
+#include <hamel/systems/kernels/units.hpp>
+
+namespace hamel {
+
+void add_vehicles(Registry& registry) {
+  add_compiled<RollerRacer>(registry);
+  add_compiled<Segway>(registry);
+  add_compiled<Snakeboard>(registry);
+}
+
+}  // namespace hamel
