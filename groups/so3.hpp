@@ -1,8 +1,8 @@
 // SO(3): rotations of space.
 //
-// Element: the rotation matrix R, 3 x 3, body to space. Algebra: the body angular velocity omega,
-// 3 numbers, hat(omega) v = omega x v.
-// Formulas: Ad_R = R, ad_omega = hat(omega), (ad_omega)^T mu = mu x omega.
+// Element: the rotation matrix R, 3 x 3, body to space.
+// Algebra: the body angular velocity omega, 3 numbers, hat(omega) v = omega x v.
+//   Ad_R = R,   ad_omega = hat(omega),   (ad_omega)^T mu = mu x omega
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
 
