@@ -78,6 +78,7 @@ Registry make_registry() {
 
   Schemes::for_each(
       [&]<class Scheme>(std::type_identity<Scheme>) { registry.add(scheme_info<Scheme>()); });
+  registry.add_scheme_alias("dla", Lift::name());  // discrete Lagrange-d'Alembert
   add_general_scheme<EnergyPreserving>(registry);
   add_general_scheme<Gni>(registry);
   add_general_scheme<Reversible>(registry);

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 
-#include <hamel/framework/schemes/composition.hpp>
-#include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 
 namespace hamel {
 namespace {
@@ -68,8 +68,12 @@ Simulation::Plan Simulation::plan() const {
   const bool compiled = kernel_ && config_.scheme == kernel_scheme_.name &&
                         config_.retraction == kernel_retraction_.name;
   const SchemeInfo* scheme = compiled ? &kernel_scheme_ : registry_->scheme(config_.scheme);
-  if (scheme == nullptr) plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
-  else if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
+  if (scheme == nullptr) {
+    plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
+  } else {
+    plan.config.scheme = scheme->name;  // config_ may name an alias
+    if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
+  }
   const SolverInfo* solver = registry_->solver(config_.solver);
   if (solver == nullptr) plan.add({registry_->missing_solver(config_.solver)});
   else if (solver->make) plan.setup.solver = solver->make();
@@ -134,7 +138,7 @@ Simulation::Plan Simulation::plan() const {
       scheme == nullptr || system.mechanics != nullptr || geometry == nullptr
           ? nullptr
           : registry_->kernel(group, scheme->adapted ? static_cast<int>(m) : system.group.dim,
-                              config_.retraction, config_.scheme);
+                              config_.retraction, scheme->name);
   if (compiled) {
     plan.kernel = kernel_;
   } else if (fast != nullptr) {
@@ -143,7 +147,7 @@ Simulation::Plan Simulation::plan() const {
     if (scheme->general && scheme->defined(system.mechanics == nullptr)) {
       plan.use_general(*registry_, *scheme);
     } else {
-      plan.add({fmt::format("scheme: {} is {}; {} here", config_.scheme,
+      plan.add({fmt::format("scheme: {} is {}; {} here", scheme->name,
                             system.mechanics != nullptr
                                 ? "defined for left-invariant systems only"
                                 : "not compiled for " + group + " with " + config_.retraction,

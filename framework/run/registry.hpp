@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/schemes/general_step.hpp>
 #include <hamel/framework/loop/kernel.hpp>
-#include <hamel/framework/schemes/traits.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/schemes/general_step.hpp>
+#include <hamel/framework/schemes/traits.hpp>
 
 namespace hamel {
 
@@ -76,7 +76,9 @@ class Registry {
   void add(SolverInfo info);
   void add(SystemInfo info);
   void add_solver(const std::string& name, const std::string& summary, SolveFunction solve);
-  /// A solver that this build has not, for want of info.package: no solver(), but words about it.
+  /// Another name of a scheme, accepted wherever a scheme is named; a scheme of that name goes first.
+  void add_scheme_alias(const std::string& alias, const std::string& scheme);
+  /// A solver that this build lacks, for want of info.package: listed and described, but no solver().
   void add_absent(SolverInfo info);
   /// m = kRunTime: a kernel for any number of admissible directions.
   void add_kernel(const std::string& group, int m, const std::string& retraction,
@@ -87,7 +89,7 @@ class Registry {
   // Null when there is no such name.
   const GroupInfo* group(const std::string& name) const;
   const RetractionInfo* retraction(const std::string& group, const std::string& name) const;
-  const SchemeInfo* scheme(const std::string& name) const;
+  const SchemeInfo* scheme(const std::string& name) const;  // by its name or an alias
   const SolverInfo* solver(const std::string& name) const;
   const SolverInfo* absent_solver(const std::string& name) const;
   const SystemInfo* system(const std::string& name) const;
@@ -110,17 +112,21 @@ class Registry {
   std::vector<std::string> groups() const;
   std::vector<std::string> retractions() const;
   std::vector<std::string> retractions(const std::string& group) const;
-  std::vector<std::string> schemes() const;
+  std::vector<std::string> schemes() const;  // without aliases
   std::vector<std::string> solvers() const;
   std::vector<std::string> absent_solvers() const;
   /// Why there is no solver of this name: a nearest name, or the package to install.
   std::string missing_solver(const std::string& name) const;
   std::vector<std::string> systems() const;
 
+  /// alias -> scheme.
+  const std::map<std::string, std::string>& scheme_aliases() const { return scheme_aliases_; }
+
  private:
   std::map<std::string, GroupInfo> groups_;
   std::map<std::pair<std::string, std::string>, RetractionInfo> retractions_;  // (group, name)
   std::map<std::string, SchemeInfo> schemes_;
+  std::map<std::string, std::string> scheme_aliases_;
   std::map<std::string, SolverInfo> solvers_, absent_solvers_;
   std::map<std::string, SystemInfo> systems_;
   std::map<std::string, KernelFactory> kernels_;
