@@ -164,7 +164,7 @@ struct Newton {
     return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
   }
 
-  // Corrections in coordinates of the step's own choice (general/step.hpp)?
+  // Does the step choose the coordinates of corrections (M39)?
   template <class Step>
   static constexpr bool has_frame = requires(const Step& step, typename Step::Unknown& z) {
     step.from_frame(z);

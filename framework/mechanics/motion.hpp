@@ -1,7 +1,8 @@
 // The continuous equations, for what the schemes do not set themselves: accelerations and reactions.
 //
-// Lagrange-d'Alembert with multipliers (method.md, section 1), d/dt along the motion:
-//   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,   A xi' = db/dt - (dA/dt) xi.
+// Lagrange-d'Alembert with multipliers, (M4) of framework/schemes/README.md, d/dt along the motion:
+//   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda
+//   A xi' = db/dt - (dA/dt) xi
 // dI/dt, dA/dt, db/dt are differences along g tau(e xi), t + e (differences.hpp).
 #pragma once
 
@@ -28,7 +29,7 @@ class Motion {
   Eigen::MatrixXd a_, a_rate_, inertia_, inertia_rate_;
 };
 
-/// xi with tau_s(xi) = delta (diagnostics.hpp, for an erased group); false where there is none.
+/// xi with tau_s(xi) = delta, (M41), for an erased group (recover_step.hpp); false where there is none.
 bool recover_step(const Geometry& geometry, const double* delta, double s, Eigen::VectorXd& xi);
 
 }  // namespace hamel

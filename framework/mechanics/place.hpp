@@ -9,7 +9,8 @@
 // The frame turns with the configuration, smoothly. Corrections of a velocity are made in it too, from_frame:
 // then the Jacobian of a step is 1 + O(h) (h instead of 1 where a row is holonomic), and changes so little
 // from step to step that it can be kept.
-// Source: Golub, Van Loan, Matrix Computations, 5.1 (Householder); method.md, section 1 (E).
+// E is that of (M5), (*) is (M39) of framework/schemes/README.md.
+// Source: Golub, Van Loan, Matrix Computations, 5.1 (Householder).
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What Simulation checks and gathers before the first step. Not installed: simulate.cpp's own.
+// What Simulation checks and gathers before the first step. Part of simulation.cpp, not installed.
 #pragma once
 
 #include <string>
@@ -29,7 +29,7 @@ struct Simulation::Plan {
   void project(const SchemeInfo& scheme);
 };
 
-/// The columns of a trajectory of this system, as in contract.md.
+/// The columns of a trajectory of this system (tools/README.md, CSV).
 std::vector<std::string> columns_of(const SystemModel& system);
 
 }  // namespace hamel

@@ -54,7 +54,7 @@ TEST_F(LongRuns, UnadaptedLeavesTheConstraintWithin18s) {
   EXPECT_LE(r["diagnostics"]["energy_error_max"], 1e-3) << "as a free body it is fine";
 }
 
-/// Boxed drifts away from the true Omega although its energy is good: method.md, section 3.
+/// Boxed drifts away from the true Omega although its energy is good (M24).
 TEST_F(LongRuns, BoxedDriftsWithGoodEnergy) {
   const Json r = record({"--until", "1800", "--scheme", "boxed"});
   EXPECT_GE(r["diagnostics"]["exact_velocity_error_max"], 0.1);

@@ -22,7 +22,7 @@ class Record : public CommandLine {
   }
 };
 
-/// Keys of contract.md and their types: s string, n number, i integer, o object, a array, ? null too.
+/// Keys of the record (tools/README.md) and their types: s string, n number, i integer, o object, a array, ? null too.
 void expect_keys(const Json& object, const std::vector<std::pair<std::string, char>>& keys,
                  const std::string& where) {
   for (const auto& [key, type] : keys) {

@@ -1,5 +1,5 @@
-// One step of balance, boxed and boxed_literal satisfies the equations of method.md, section 3, written
-// here with differences of tau alone: xi recovered from the two configurations, dL and dR by numerical
+// One step of balance, boxed and boxed_literal satisfies (M20), (M21) and (M22), written here with differences
+// of tau alone: xi recovered from the two configurations, dL and dR by numerical
 // differentiation, Ad by conjugation.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-// What the baselines are known for (framework/README.md, method.md section 7), each claim bounded from both
+// The properties of the baselines (framework/README.md; (M25) to (M29)), each claim bounded from both
 // sides: a baseline that behaves better than documented fails here as one that behaves worse. Errors are those of
-// the motion, against the exact one or a converged reference; energy and rows stand beside them.
+// the motion, against the exact one or a converged reference; energy and rows are bounded beside them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -75,7 +75,7 @@ TEST(Composition, ReachesItsOrder) {
 }
 
 /// At every s and with every symmetric retraction that commutes with itself, tau(a xi) tau(b xi) =
-/// tau(b xi) tau(a xi), lift composes too (method.md, section 4).
+/// tau(b xi) tau(a xi), lift composes too (M30).
 TEST(Composition, OfLiftAtEveryS) {
   for (const double s : {0.0, 0.25, 1.0}) {
     SchemeCase base = motions()[0].base;

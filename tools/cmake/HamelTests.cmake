@@ -134,7 +134,7 @@ function(hamel_page_script name)
 endfunction()
 
 # hamel_page(<name> <file> <arguments of hamel>): ctest page/<name>/write runs the program, which writes
-# the file into build/tests/page; page/<name> looks at it in headless Chromium.
+# the file into the folder page of the tests' build; page/<name> looks at it in headless Chromium.
 function(hamel_page name file)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/page)
   file(MAKE_DIRECTORY ${folder})

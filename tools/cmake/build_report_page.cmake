@@ -1,6 +1,6 @@
 # Bundles tools/report into one HTML page with npm and node, and embeds it as a string in a source.
 #
-#   cmake -DSOURCE=tools/report -DWORK=build/tools/report -DOUTPUT=report_page.cpp -DMODE=AUTO|ON|OFF
+#   cmake -DSOURCE=tools/report -DWORK=build/tools/report -DOUTPUT=<source> -DMODE=AUTO|ON|OFF
 #         -DNODE=... -DNPM=... -P this
 #
 # Everything happens in WORK, a copy: the source tree stays clean. Where the page cannot be made, mode

@@ -1,4 +1,4 @@
-# cmake -DSOURCE=<source tree> -DINPUT=version.cpp.in -DOUTPUT=version.cpp -DVERSION=x.y.z -P this
+# cmake -DSOURCE=<source tree> -DINPUT=<template> -DOUTPUT=<source> -DVERSION=x.y.z -P this
 # Runs at every build (some 20 ms); the file changes, and is compiled again, only when the commit does, or what
 # is not committed of the sources that results depend on: a hash of that follows "-dirty".
 set(GIT_HASH unknown)
