@@ -54,7 +54,7 @@ struct Heisenberg : GroupDefaults<Heisenberg, 3> {
 
 namespace detail {
 
-// exp and Cayley alike.
+// The common base of exp and Cayley.
 template <class Derived>
 struct HeisenbergMap : RetractionDefaults<Derived, Heisenberg> {
   static constexpr bool symmetric = true;

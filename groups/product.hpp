@@ -235,7 +235,7 @@ struct Product {
   }
 };
 
-/// Kept factor after factor, as ProductGeometry has it.
+/// Packed factor after factor, as in ProductGeometry.
 template <class... Gs>
 struct Packing<Product<Gs...>> {
   using G = Product<Gs...>;

@@ -148,7 +148,7 @@ struct SE3 {
     return out;
   }
 
-  /// The element next to values whose rotation is off by less than about 0.3.
+  /// The element nearest to values whose rotation is off by less than about 0.3.
   static Element<double> nearest(std::span<const double> values) {
     return {SO3::nearest(values), {values[9], values[10], values[11]}};
   }

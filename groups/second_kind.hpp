@@ -123,7 +123,7 @@ struct SecondKindSymmetric<SO2> : CircleExponential<SecondKindSymmetric<SO2>> {
   static std::string name() { return "second_kind_symmetric"; }
 };
 
-/// The box of R = Rx(xi_1) Ry(xi_2) Rz(xi_3): gimbal lock at |xi_2| = pi/2.
+/// The domain of R = Rx(xi_1) Ry(xi_2) Rz(xi_3): gimbal lock at |xi_2| = pi/2.
 template <>
 struct SecondKind<SO3> : StagedRetraction<SecondKind<SO3>, SO3, false> {
   static std::string domain() { return "|xi_2| < pi/2 (gimbal lock), |xi_1|, |xi_3| < pi"; }

@@ -121,7 +121,7 @@ struct SO3 {
     return rotation_from("so3", values);
   }
 
-  /// The rotation next to the first 9 values, row by row, which are off by less than about 0.3.
+  /// The rotation nearest to the first 9 values, row by row, which are off by less than about 0.3.
   static Element<double> nearest(std::span<const double> values) {
     Element<double> g;
     for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(i)];

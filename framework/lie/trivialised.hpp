@@ -40,7 +40,7 @@ Vec<Tau::Group::dim> base_momentum(double s, const Vec<Tau::Group::dim>& xi,
   return Tau::dtau_right_inverse_transpose(z0, m);
 }
 
-/// tau and its right derivative at one point z: what every scheme evaluates there.
+/// tau and its right derivative at one point z.
 template <class Tau>
 struct At {
   using G = typename Tau::Group;

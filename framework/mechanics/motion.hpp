@@ -1,4 +1,4 @@
-// The continuous equations, for what the schemes do not set themselves: accelerations and reactions.
+// The continuous equations: accelerations and reactions at a state.
 //
 // Lagrange-d'Alembert with multipliers, (M4) of framework/schemes/README.md, d/dt along the motion:
 //   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda
@@ -8,8 +8,8 @@
 
 #include <memory>
 
-#include <hamel/framework/mechanics/place.hpp>
 #include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/mechanics/place.hpp>
 
 namespace hamel {
 

@@ -87,7 +87,7 @@ Simulation::Plan Simulation::plan() const {
     plan.add({unknown_name("composition", config_.compose, tables)});
   }
 
-  // The system with its parameters; nothing below makes sense without it.
+  // The system with its parameters, which everything below needs.
   Maker make = make_;
   if (!make && config_.system.ends_with(".toml")) {
     make = data_system_maker(*registry_, config_.system);
@@ -242,7 +242,7 @@ void Simulation::Plan::use_general(const Registry& registry, const SchemeInfo& s
   };
 }
 
-// The admissible start, mu_bar = E^T mu, and what the projection dropped.
+// The admissible start, mu_bar = E^T mu, and a note of what the projection dropped.
 void Simulation::Plan::project(const SchemeInfo& scheme) {
   Start& start = config.start;
   const Eigen::Index n = inertia.rows();

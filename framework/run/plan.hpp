@@ -1,4 +1,4 @@
-// What Simulation checks and gathers before the first step. Part of simulation.cpp, not installed.
+// The plan of a run, checked before the first step. Part of simulation.cpp, not installed.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace hamel {
 
-// Everything that a run needs, or everything that is wrong.
+// Everything that a run needs, or all its mistakes.
 struct Simulation::Plan {
   std::vector<std::string> mistakes, notes;
   Config config;

@@ -1,4 +1,4 @@
-// What exists by name: groups, retractions, schemes, solvers, systems, and the compiled kernels.
+// The registry: groups, retractions, schemes, solvers, systems by name, and the compiled kernels.
 //
 // A registry is a plain value filled explicitly (systems/systems.cpp fills the library's own); a user's
 // program adds to it with the add_... functions of systems/kernels.hpp, without touching the library.
@@ -30,13 +30,13 @@ struct SchemeInfo {
   std::string name, formula, source;
   bool adapted = true;  // keeps the constraint; otherwise the frame is the whole algebra
   bool uses_s = true;
-  double fixed_s = 0;  // where it does not: the s that its steps, and their measurement, have
+  double fixed_s = 0;  // the s of its steps and their measurement where it does not use one
   bool steps_admissible =
       true;  // the velocity of a step satisfies A xi = b, not that of its ends only
   bool invariant_only = false;  // defined for left-invariant systems only
   /// On left-invariant systems.
   std::function<ClaimedOrder(double s, bool symmetric_tau)> claimed_order;
-  /// The scheme on general systems, and what it claims there; null when it is not defined.
+  /// The scheme on general systems and its claim there; null when it is not defined.
   std::function<std::unique_ptr<GeneralStep>(const GeneralSetup&)> general = {};
   std::function<ClaimedOrder(double s)> general_order = {};
 
@@ -45,7 +45,7 @@ struct SchemeInfo {
   bool defined(bool left_invariant) const {
     return left_invariant || (general != nullptr && !invariant_only);
   }
-  /// What it claims for a run; order 0 where it is not defined.
+  /// Its claim for a run; order 0 where it is not defined.
   ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) const;
 };
 
@@ -58,8 +58,8 @@ struct SolverInfo {
   std::string package = {};  // the Debian package that brings it, where one is needed
 };
 
-/// A solver as one function: improve x, the guess, until |F(x)| <= tolerance. F comes scaled, and x is
-/// judged by the best residual that was evaluated: no report is asked for.
+/// A solver as one function: improves x, the guess, until |F(x)| <= tolerance. F is scaled; the solve is judged
+/// by the best residual evaluated, without a report.
 using SolveFunction =
     std::function<void(const Equation& equation, std::span<double> x, double tolerance)>;
 
@@ -69,7 +69,7 @@ using GeneralKernelFactory = std::function<std::unique_ptr<Kernel>(
 
 class Registry {
  public:
-  // Adding a name again replaces what it stood for.
+  // Adding a name again replaces the earlier entry.
   void add(GroupInfo info);
   void add(RetractionInfo info);
   void add(SchemeInfo info);
@@ -115,7 +115,7 @@ class Registry {
   std::vector<std::string> schemes() const;  // without aliases
   std::vector<std::string> solvers() const;
   std::vector<std::string> absent_solvers() const;
-  /// Why there is no solver of this name: a nearest name, or the package to install.
+  /// The reason why there is no solver of this name: a nearest name, or the package to install.
   std::string missing_solver(const std::string& name) const;
   std::vector<std::string> systems() const;
 

@@ -4,7 +4,7 @@
 namespace hamel {
 namespace {
 
-// On R^n every retraction is the identity map; exp and cayley are the names that users try.
+// On R^n every retraction is the identity map, registered as exp and cayley.
 template <class G, int M>
 void add_line(Registry& registry) {
   registry.add(group_info<G>());
