@@ -149,7 +149,7 @@ TEST_F(Help, OfEveryCommandHasExamples) {
       EXPECT_THAT(o.out, HasSubstr("hamel "));
     }
   }
-  // Every option that the contract names is in the help of run.
+  // Every documented option is in the help of run.
   const std::string help = run({"run", "--help"}).out;
   for (const char* option :
        {"--set", "--configuration", "--velocity", "--momentum", "--scheme", "--s", "--retraction",

@@ -22,8 +22,8 @@ class LongRuns : public CommandLine {
   }
 };
 
-/// Bounds of issue 2: group defect 1e-14, constraint residual at its floor eps/h, 2e-13; Omega constant
-/// to 1e-12 over 1800 s with lift at every s.
+/// Bounds: group defect 1e-14, constraint residual 2e-13 (its floor is eps/h), Omega constant to 1e-12 over
+/// 1800 s with lift at every s.
 TEST_F(LongRuns, KeepGroupAndConstraint) {
   for (const char* scheme : {"lift", "balance"}) {
     for (const char* retraction : {"exp", "cayley"}) {

@@ -1,4 +1,4 @@
-// hamel run --json: the record of the contract, key by key; options reach the run; files are written.
+// hamel run --json: the record, key by key; options reach the run; files are written.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -65,7 +65,7 @@ void expect_contract(const Json& r) {
   expect_keys(r["timing"], {{"seconds", 'n'}, {"nanoseconds_per_step", 'n'}}, "timing.");
 }
 
-/// Adding a key is free, but it is written down: here, so that a script that lists keys is not surprised.
+/// Adding a key is free but deliberate: every key of the record is listed here.
 TEST_F(Record, HasExactlyTheseKeys) {
   const Json r = record({"suslov", "--until", "0.5"});
   expect_contract(r);
@@ -75,7 +75,7 @@ TEST_F(Record, HasExactlyTheseKeys) {
                         "system", "group", "scheme", "s", "retraction", "solver", "compose", "step",
                         "parameters", "status", "reason", "steps", "time", "final", "diagnostics",
                         "solver_stats", "timing", "version", "git", "host",
-                        // added to the contract's:
+                        // later keys:
                         "tolerance", "on_failure", "until", "every", "start", "notes", "failure",
                         "fallbacks"));
 }

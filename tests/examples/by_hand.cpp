@@ -1,4 +1,4 @@
-// Stepping by hand, watching a run, and what is left when a step fails.
+// Stepping by hand, watching a run, and the result of a failed step.
 #include <cmath>
 #include <iostream>
 

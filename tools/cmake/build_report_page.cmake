@@ -71,7 +71,7 @@ execute_process(
   COMMAND ${NODE} build.mjs ${WORK}/page.html
   WORKING_DIRECTORY ${WORK} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(NOT status EQUAL 0)
-  # Not the machine's fault but ours: never passed over in silence.
+  # A mistake of this project, not of the machine: always an error.
   message(FATAL_ERROR "hamel: node build.mjs failed in ${WORK}:\n${output}")
 endif()
 file(READ ${WORK}/page.html page)

@@ -3,7 +3,7 @@
 # is not committed of the sources that results depend on: a hash of that follows "-dirty".
 set(GIT_HASH unknown)
 find_program(GIT git)
-if(GIT AND EXISTS ${SOURCE}/.git)  # not the repository that a copy of us may stand in
+if(GIT AND EXISTS ${SOURCE}/.git)  # not the repository around a copy of this project
   execute_process(COMMAND ${GIT} -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
                   OUTPUT_VARIABLE hash OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET
                   RESULT_VARIABLE status)
