@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # usage: citations.sh ROOT. What comments and READMEs cite exists: files and folders of this repository, links of
-# READMEs, and equations (M...), each defined once in framework/schemes/README.md and listed in its table.
+# READMEs with their headings, and equations (M...), each defined once in framework/schemes/README.md and listed
+# in its table.
 #
 # A path is cited by any of its endings, place.hpp or schemes/README.md, and a program by its path without an
 # extension, also in the build's folder. Names that begin with my_, own_ or mine, and NAMES, are placeholders.
@@ -16,17 +17,26 @@ grep -E '^(framework|groups|solvers|systems|tests|tools)/|^[^/]*$' "$paths" |
   grep -E '\.(hpp|cpp|md|cmake|mjs|sh|toml)$|CMakeLists\.txt$' | xargs awk -v paths="$paths" '
   function report(what) { print FILENAME ":" FNR ": " what; wrong = 1 }
   function parent(path) { return path ~ "/" ? substr(path, 1, match(path, "/[^/]*$") - 1) : "" }
+  function anchor(heading) {
+    heading = tolower(heading)
+    gsub(/[^a-z0-9_ \200-\377-]/, "", heading)
+    gsub(/ /, "-", heading)
+    return heading
+  }
   function exists(path) {
     sub("^(\\.\\./|\\./)+", "", path); sub("^build/", "", path); sub("^hamel/", "", path); sub("[/.]+$", "", path)
     return path in known || path ".cpp" in known || path ".hpp" in known || path ".sh" in known || path ".cmake" in known
   }
   BEGIN {
     while ((getline path < paths) > 0) {
-      sources[path] = 1
       for (rest = path; ; rest = substr(rest, index(rest, "/") + 1)) {  # every ending, of the folders too
         known[rest] = 1
         for (folder = parent(rest); folder != ""; folder = parent(folder)) known[folder] = 1
         if (rest !~ "/") break
+      }
+      if (path ~ /[.]md$/) {
+        while ((getline line < path) > 0) if (sub(/^#+ /, "", line)) known[path "#" anchor(line)] = 1
+        close(path)
       }
     }
   }
@@ -54,10 +64,10 @@ grep -E '^(framework|groups|solvers|systems|tests|tools)/|^[^/]*$' "$paths" |
     }
   }
   FILENAME ~ /\.md$/ {
-    for (rest = text; match(rest, /\]\([^)#]+/); rest = substr(rest, RSTART + RLENGTH)) {
+    for (rest = text; match(rest, /\]\([^)]+/); rest = substr(rest, RSTART + RLENGTH)) {
       link = substr(rest, RSTART + 2, RLENGTH - 2)
-      if (link ~ /^https?:/ || link !~ /^[A-Za-z0-9_.\/-]+$/) continue
-      path = parent(FILENAME) "/" link
+      if (link ~ /^https?:/ || link !~ /^[A-Za-z0-9_.\/#-]+$/) continue
+      path = link ~ /^#/ ? FILENAME link : parent(FILENAME) "/" link
       sub("^/", "", path)
       while (sub("(^|/)[^/.]+/\\.\\./", "/", path)) sub("^/", "", path)
       sub("/$", "", path)
