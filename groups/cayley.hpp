@@ -19,7 +19,7 @@
 
 namespace hamel {
 
-/// What all Cayley maps share. Each has solve_even_transposed(xi, c, m) = (1 + c even)^-T m, where
+/// Common base of the Cayley maps. Each has solve_even_transposed(xi, c, m) = (1 + c even)^-T m, where
 /// dR_xi^-1 = 1 + odd + even in xi (M13).
 template <class G>
 struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {

@@ -31,7 +31,7 @@
 
 namespace hamel {
 
-/// What all exponential maps share.
+/// Common base of the exponential maps.
 template <class G>
 struct ExpDefaults : RetractionDefaults<Exp<G>, G> {
   static constexpr bool symmetric = true;

@@ -183,8 +183,8 @@ TEST_F(Record, QuietAndText) {
   EXPECT_TRUE(Json::accept(run({"run", "suslov", "--until", "0.1", "--quiet", "--json"}).out));
 }
 
-/// Exit status 1: the step leaves the domain of exp. What was computed is written, and the record says
-/// where and why.
+/// Exit status 1: the step leaves the domain of exp. The good steps are written, and the record has the place and
+/// the reason.
 TEST_F(Record, ANumericalFailureKeepsWhatWasComputed) {
   const Outcome o =
       run({"run", "chaplygin_sleigh", "--velocity", "0.02,-3,0", "--retraction", "exp", "--step",

@@ -1,4 +1,4 @@
-// Large steps: no solver hands back a root that has nothing to do with the motion.
+// Large steps: no solver returns a root other than the principal one.
 //
 // One step from random starts, |xi| to 4, h = 0.2 ... 2, compared with the principal root (M40), found here
 // independently by continuation from a small h: small fixed steps of h, plain Newton, no step control. A result of

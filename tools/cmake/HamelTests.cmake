@@ -80,7 +80,7 @@ function(hamel_example stem)
   set_tests_properties(examples/${stem} PROPERTIES LABELS "example;${arg_LABELS}" TIMEOUT 120)
 endfunction()
 
-# tests/benchmarks/<stem>.cpp -> build/tests/benchmarks/<stem>; ctest only sees that it runs.
+# tests/benchmarks/<stem>.cpp -> build/tests/benchmarks/<stem>; ctest only checks that it runs.
 function(hamel_benchmark stem)
   find_package(benchmark 1.7 REQUIRED)
   hamel_test_executable(benchmark_${stem} benchmarks/${stem})

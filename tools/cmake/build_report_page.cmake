@@ -49,7 +49,7 @@ endif()
 
 file(COPY ${SOURCE}/ DESTINATION ${WORK} PATTERN node_modules EXCLUDE PATTERN dist EXCLUDE)
 
-# The packages, again only when the lock file says something else.
+# The packages, again only when the lock file has changed.
 file(SHA256 ${SOURCE}/package-lock.json lock)
 set(stamp ${WORK}/node_modules/.hamel-lock)
 set(installed "")
