@@ -1,14 +1,15 @@
-// The Cayley map (I - xi^/2)^-1 (I + xi^/2) in the defining matrices of SO(2), SO(3), SE(2), SE(3);
-// R^n likewise.
+// The Cayley map (I - xi^/2)^-1 (I + xi^/2) in the defining matrices of SO(2), SO(3), SE(2), SE(3); the
+// identity map on R^n. (M33) of framework/schemes/README.md.
 //
-// Everything is rational: no trigonometry, and (dR^-1) eta = (I - xi^/2) eta^ (I + xi^/2) is a
-// polynomial:
-//   SO(2)  1 + omega^2/4                       SO(3)  I - omega^/2 + omega omega^T/4
-//   SE(2)  I - ad/2 + omega xi e_omega^T/4     SE(3)  I - ad/2 + [[omega omega^T, 0], [omega^ v^,
-//   0]]/4
-// The rotation is by 2 atan(|omega|/2), never by pi, where the inverse is singular.
-// Source: Kobilarov, Marsden, Discrete geometric optimal control on Lie groups (2011); Hairer,
-// Lubich, Wanner, IV.8.3.
+// The map is rational. (dR^-1 eta)^ = (I - xi^/2) eta^ (I + xi^/2) is a polynomial, W = omega^, V = v^:
+//   SO(2)    dR^-1 = 1 + omega^2/4
+//   SO(3)    dR^-1 = I - W/2 + omega omega^T/4                          dR = (I + W/2)/(1 + |omega|^2/4)
+//   SE(2)    dR^-1 = I - ad/2 + omega xi e_omega^T/4                    dR = (I + ad/2)/(1 + omega^2/4)
+//   SE(3)    dR^-1 = I - ad/2 + [[omega omega^T, 0], [W V, 0]]/4        dR = [[P, 0], [V P/2, Q]],
+//                                                                       P = dR of SO(3), Q = (I - W/2)^-1
+// The rotation angle is 2 atan(|omega|/2), less than pi; the inverse is singular at pi.
+// Source: Kobilarov, Marsden, Discrete geometric optimal control on Lie groups (2011);
+// Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.8.3.
 #pragma once
 
 #include <hamel/framework/lie/retraction_defaults.hpp>
@@ -18,8 +19,8 @@
 
 namespace hamel {
 
-/// What all Cayley maps share. Each gives solve_even_transposed(xi, c, m) = (1 + c even)^-T m, where
-/// dR_xi^-1 = 1 + odd + even in xi (trivialised.hpp).
+/// Common base of the Cayley maps. Each has solve_even_transposed(xi, c, m) = (1 + c even)^-T m, where
+/// dR_xi^-1 = 1 + odd + even in xi (M13).
 template <class G>
 struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {
   static constexpr bool symmetric = true;
@@ -197,8 +198,7 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     xi.template tail<3>() = g.translation - t.cross(g.translation);
     return xi;
   }
-  /// [[A, 0], [v^ A/2, C]] with A = cay's dR on SO(3), C = (I - omega^/2)^-1 = I + a (omega^/2 +
-  /// omega^2/4).
+  /// [[P, 0], [v^ P/2, Q]]: P = dR on SO(3), Q = (I - omega^/2)^-1 = I + a (omega^/2 + (omega^)^2/4).
   template <class T>
   static MatT<T, 6, 6> dtau_right(const VecT<T, 6>& xi) {
     const VecT<T, 3> omega = xi.template head<3>(), v = xi.template tail<3>();
@@ -249,8 +249,7 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     out.tail<3>() = force;
     return out;
   }
-  /// Rows of omega: N_cay(omega, m) + (v.f I - f v^T)/4 and -(f + omega x f/2)^/2; rows of v: -f^/2
-  /// and 0.
+  /// [[N(omega, m) + (v.f I - f v^T)/4, -(f + omega x f/2)^/2], [-f^/2, 0]], N the derivative on SO(3).
   template <class T>
   static MatT<T, 6, 6> dtau_right_inverse_transpose_derivative(const VecT<T, 6>& xi,
                                                                const VecT<T, 6>& p) {

@@ -1,16 +1,18 @@
 // The scalar coefficients of exp and dexp, as functions of x = theta^2, without cancellation.
 //
-//   sinc(x)  = sin(theta)/theta                     cosc(x) = (1 - cos(theta))/theta^2
-//   sinc3(x) = (theta - sin(theta))/theta^3         cotc(x) = (1 - (theta/2) cot(theta/2))/theta^2
-// With W = ad_omega on so(3), where W^3 = -x W:
-//   exp(W) = I + sinc W + cosc W^2,  dR exp = I + cosc W + sinc3 W^2,  (dR exp)^-1 = I - W/2 + cotc
-//   W^2.
-// The same serve SE(2); SE(3) is SO(3) over the dual numbers, so that its lower left block is the
-// derivative of these in the direction v, which needs d/dx of each. Below x = 1/4 (theta = 1/2)
-// every function is a Taylor polynomial whose truncation is below one ulp; a typical step needs no
-// trigonometry. The functions whose closed form cancels use a longer polynomial up to x = 8.
-// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, III.4; cotc = sum |B_2k|/(2k)!
-// x^(k-1).
+//   sinc(x)  = sin(theta)/theta
+//   cosc(x)  = (1 - cos(theta))/theta^2
+//   sinc3(x) = (theta - sin(theta))/theta^3
+//   cotc(x)  = (1 - (theta/2) cot(theta/2))/theta^2 = sum_k |B_2k|/(2k)! x^(k-1)
+// With W = ad_omega on so(3), where W^3 = -x W (on se(2) likewise, x = omega^2):
+//   exp(W)      = I + sinc W + cosc W^2
+//   dR exp      = I + cosc W + sinc3 W^2
+//   (dR exp)^-1 = I - W/2 + cotc W^2
+// SE(3) is SO(3) over the dual numbers: its lower left blocks are derivatives of these along v, which need d/dx
+// of each coefficient. Below x = 1/4 (theta = 1/2) every function is a Taylor polynomial whose truncation is
+// below one ulp, so that a typical step needs no trigonometry. The functions whose closed form cancels use a
+// longer polynomial up to x = 8.
+// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, III.4.
 #pragma once
 
 #include <array>

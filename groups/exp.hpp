@@ -1,13 +1,19 @@
-// exp, the exponential map, on R^n, SO(2), SO(3), SE(2) and SE(3).
+// exp, the exponential map, on R^n, SO(2), SO(3), SE(2) and SE(3). (M32) of framework/schemes/README.md.
 //
-// Formulas (coefficients in groups/dexp.hpp, x = |omega|^2, W = omega^):
-//   SO(3)  exp = I + sinc W + cosc W^2,  dR^-1 = I - W/2 + cotc W^2,  log = 2 atan|t| t/|t| with
-//   the Gibbs vector t SE(2), SE(3)  translation (dR exp_omega of the rotations) v; dR^-1 = I -
-//   ad/2 + ... d/domega [(dR^-1)^T p] on SO(3), N(omega, p) = -p^/2 + cotc (omega.p I + omega p^T -
-//   2 p omega^T) + 2 cotc' (W^2 p) omega^T.
-// exp is symmetric, exp(-xi) = exp(xi)^-1, and a one-parameter group, exp(s xi) exp(t xi) = exp((s
-// + t) xi). Source: Iserles, Munthe-Kaas, Nørsett, Zanna, Lie-group methods (2000), appendix B; the
-// SE(3) blocks are the SO(3) formulas over the dual numbers omega + eps v.
+// Coefficients sinc, cosc, sinc3, cotc of groups/dexp.hpp at x = |omega|^2; W = omega^; t the Gibbs vector.
+//   SO(3)    exp omega  = I + sinc W + cosc W^2
+//            log R      = 2 atan|t| t/|t|
+//            dR         = I + cosc W + sinc3 W^2
+//            dR^-1      = I - W/2 + cotc W^2
+//            N(omega, p) = d/domega [(dR^-1)^T p]
+//                        = -p^/2 + cotc (omega.p I + omega p^T - 2 p omega^T) + 2 cotc' (W^2 p) omega^T
+//   SE(2)    exp xi     = (exp omega, (sinc I + omega cosc J) v)
+//            dR^-1      = I - ad/2 + cotc ad^2
+//   SE(3)    exp xi     = (exp omega, dR_omega v)       dR_omega that of SO(3)
+//            dR^-1      = [[P, 0], [dP, P]]             P(omega) that of SO(3), dP its derivative along v
+// The SE(3) blocks are the SO(3) formulas over the dual numbers omega + eps v, eps^2 = 0.
+// exp is symmetric, exp(-xi) = exp(xi)^-1, and one-parameter, exp(s xi) exp(t xi) = exp((s + t) xi).
+// Source: Iserles, Munthe-Kaas, Nørsett, Zanna, Lie-group methods (2000), appendix B.
 #pragma once
 
 #include <cmath>
@@ -25,7 +31,7 @@
 
 namespace hamel {
 
-/// What all exponential maps share.
+/// Common base of the exponential maps.
 template <class G>
 struct ExpDefaults : RetractionDefaults<Exp<G>, G> {
   static constexpr bool symmetric = true;
@@ -153,13 +159,12 @@ struct Exp<SO3> : ExpDefaults<SO3> {
             b * p[1] + h[2] * p[0] - h[0] * p[2] + a * xi[1],
             b * p[2] + h[0] * p[1] - h[1] * p[0] + a * xi[2]};
   }
-  /// N(xi, p) of the file's heading.
+  /// N(xi, p) of the heading of this file.
   template <class T>
   static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,
                                                                const VecT<T, 3>& p) {
     const T x = xi.dot(xi), xp = xi.dot(p), c = cotc(x), d = 2.0 * cotc_derivative(x);
-    // Columns: c (xi.p) I + c xi p^T + [d (W^2 p) - 2 c p] xi^T - p^/2, with W^2 p = xi (xi.p) - x
-    // p.
+    // c (xi.p) I + c xi p^T + [d (W^2 p) - 2 c p] xi^T - p^/2 by columns, W^2 p = xi (xi.p) - x p.
     const VecT<T, 3> left = (d * xp) * xi - (d * x + 2.0 * c) * p;
     const VecT<T, 3> cp = c * p;
     const T diagonal = c * xp;

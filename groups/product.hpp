@@ -1,9 +1,9 @@
 // Products of groups: G1 x G2 x ...
 //
-// Element: the tuple of the factors' elements (part<I>()). Algebra: the factors' coordinates one
-// after another; Ad, ad, dR, dL are block diagonal. Columns carry the number of the factor:
-// 1_theta, 1_x, 1_y, 2_theta. A product offers every retraction that all its factors offer; they
-// are in product_retraction.hpp.
+// Element: the tuple of the factors' elements (part<I>()).
+// Algebra: the factors' coordinates one after another; Ad, ad, dR, dL are block diagonal.
+// Columns carry the number of the factor: 1_theta, 1_x, 1_y, 2_theta.
+// A product offers every retraction that all its factors offer (product_retraction.hpp).
 #pragma once
 
 #include <algorithm>
@@ -235,7 +235,7 @@ struct Product {
   }
 };
 
-/// Kept factor after factor, as ProductGeometry has it.
+/// Packed factor after factor, as in ProductGeometry.
 template <class... Gs>
 struct Packing<Product<Gs...>> {
   using G = Product<Gs...>;

@@ -1,15 +1,19 @@
-// Radial retractions of SO(3): tau(omega) = exp(f(theta) n), omega = theta n; and the polar one.
+// Radial retractions of SO(3): tau(omega) = exp(f(theta) n), omega = theta n.
+// (M34) of framework/schemes/README.md.
 //
-// With f(theta) = theta phi(x), x = theta^2, phi smooth and phi(0) = 1, nothing cancels at 0:
-//   tau = I + phi sinc(f^2) W + phi^2 cosc(f^2) W^2  (W = omega^)
-//   dL = f' n n^T + (sin f/theta)(I - n n^T) - ((1 - cos f)/theta) n^
-//   dR^-1 = alpha I - W/2 + beta omega omega^T,
-//   alpha = (theta/2) cot(f/2) = (1 - f^2 cotc(f^2))/phi,
-//   beta = (1/f' - alpha)/x = phi cotc(f^2) - 2 phi'/(phi f'),  f' = phi + 2 x phi'.
-// Members: exp phi = 1; Cayley (2/theta) atan(theta/2); polar atan(theta)/theta, the orthogonal
-// polar factor of I + W, for which all of this is algebraic in r = sqrt(1 + x):
-//   tau = I + W/r + W^2/(r (r + 1)),  alpha = (r + 1)/2,  beta = (2 r + 1)/(2 (r + 1)).
-// Source: P. Tsiotras, J. Junkins, H. Schaub, Higher-order Cayley transforms (1997); derived above.
+// With f(theta) = theta phi(x), x = theta^2, phi smooth, phi(0) = 1 and W = omega^, nothing cancels at 0:
+//   tau    = I + phi sinc(f^2) W + phi^2 cosc(f^2) W^2
+//   dL     = f' n n^T + (sin f/theta)(I - n n^T) - ((1 - cos f)/theta) n^
+//   dR^-1  = alpha I - W/2 + beta omega omega^T
+//   alpha  = (theta/2) cot(f/2) = (1 - f^2 cotc(f^2))/phi
+//   beta   = (1/f' - alpha)/x = phi cotc(f^2) - 2 phi'/(phi f')
+//   f'     = phi + 2 x phi'                                   phi' by x, f' by theta
+// Members: exp, phi = 1; Cayley, phi = (2/theta) atan(theta/2); polar, phi = atan(theta)/theta.
+// polar is the orthogonal polar factor of I + W and algebraic in r = sqrt(1 + x):
+//   tau    = I + W/r + W^2/(r (r + 1))
+//   alpha  = (r + 1)/2
+//   beta   = (2 r + 1)/(2 (r + 1))
+// Source: P. Tsiotras, J. Junkins, H. Schaub, Higher-order Cayley transforms (1997); the derivatives above.
 #pragma once
 
 #include <cmath>

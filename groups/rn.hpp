@@ -1,8 +1,8 @@
-// R^n: translations, written additively.
+// R^n: translations, written additively; the abelian case.
 //
-// Element and algebra: n numbers. Formulas: g h = g + h, e = 0, Ad = I, ad = 0; every retraction is
-// the identity map. The matrix is homogeneous, (n+1) x (n+1): [[I, x], [0, 1]].
-// Source: any text; it is the abelian case of everything here.
+// Element and algebra: n numbers.
+//   g h = g + h,   e = 0,   Ad = I,   ad = 0;   every retraction is the identity map.
+// Matrix: homogeneous, (n+1) x (n+1), [[I, x], [0, 1]].
 #pragma once
 
 #include <hamel/framework/lie/group_defaults.hpp>

@@ -1,11 +1,11 @@
-// Rotation matrices from and to vectors along the axis: what the retractions of SO(3) and SE(3)
-// share.
+// Rotation matrices from and to vectors along the axis, for the retractions of SO(3) and SE(3).
 //
-//   I + a omega^ + b omega^2           every function of omega^ has this form
-//   t = tan(theta/2) n                 the Gibbs (Rodrigues) vector of R: log R = 2 atan|t| t/|t|,
-//   cay^-1 R = 2 t
-// Source: M. Shuster, A survey of attitude representations (1993); S. Shepperd, Quaternion from
-// rotation matrix (1978).
+//   I + a omega^ + b (omega^)^2      the form of every function of omega^
+//   t         = tan(theta/2) n       the Gibbs (Rodrigues) vector of a rotation R by theta about n
+//   log R     = 2 atan|t| t/|t|
+//   cay^-1 R  = 2 t
+// Source: M. Shuster, A survey of attitude representations (1993);
+// S. Shepperd, Quaternion from rotation matrix (1978).
 #pragma once
 
 #include <cmath>

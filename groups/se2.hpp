@@ -1,10 +1,11 @@
 // SE(2): motions of the plane.
 //
-// Element: rotation (with an unwrapped angle, groups/so2.hpp) and translation p in space
-// coordinates. Algebra: (omega, v1, v2), angular first, in body coordinates. With J = [[0, -1], [1,
-// 0]]:
-//   (R, p)(R', p') = (R R', p + R p'),  Ad_(R,p) (omega, v) = (omega, R v - omega J p),
-//   [(omega, v), (omega', v')] = (0, omega J v' - omega' J v).
+// Element: rotation R (with an unwrapped angle, groups/so2.hpp) and translation p in space coordinates.
+// Algebra: (omega, v1, v2), angular first, in body coordinates. With J = [[0, -1], [1, 0]]:
+//   (R, p)(R', p')              = (R R', p + R p')
+//   (R, p)^-1                   = (R^T, -R^T p)
+//   Ad_(R,p) (omega, v)         = (omega, R v - omega J p)
+//   [(omega, v), (omega', v')]  = (0, omega J v' - omega' J v)
 // Matrix: homogeneous, 3 x 3.
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once

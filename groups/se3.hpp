@@ -1,9 +1,13 @@
 // SE(3): motions of space.
 //
-// Element: rotation R (3 x 3, body to space) and translation p in space coordinates. Algebra:
-// (omega, v), angular first, in body coordinates, 6 numbers. Formulas:
-//   (R, p)(R', p') = (R R', p + R p'),  Ad = [[R, 0], [p^ R, R]],  ad = [[omega^, 0], [v^,
-//   omega^]], (Ad_g)^T (m, f) = (R^T (m - p x f), R^T f),  K(m, f) = [[m^, f^], [f^, 0]].
+// Element: rotation R (3 x 3, body to space) and translation p in space coordinates.
+// Algebra: (omega, v), angular first, in body coordinates, 6 numbers. Dual: (moment m, force f).
+//   (R, p)(R', p')     = (R R', p + R p')
+//   (R, p)^-1          = (R^T, -R^T p)
+//   Ad_(R,p)           = [[R, 0], [p^ R, R]]
+//   ad_(omega,v)       = [[omega^, 0], [v^, omega^]]
+//   Ad_(R,p)^T (m, f)  = (R^T (m - p x f), R^T f)
+//   K(m, f)            = [[m^, f^], [f^, 0]]             K(mu) eta = (ad_eta)^T mu
 // Matrix: homogeneous, 4 x 4.
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
@@ -144,7 +148,7 @@ struct SE3 {
     return out;
   }
 
-  /// The element next to values whose rotation is off by less than about 0.3.
+  /// The element nearest to values whose rotation is off by less than about 0.3.
   static Element<double> nearest(std::span<const double> values) {
     return {SO3::nearest(values), {values[9], values[10], values[11]}};
   }

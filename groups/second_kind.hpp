@@ -1,18 +1,22 @@
-// Canonical coordinates of the second kind, and their symmetric version.
+// Canonical coordinates of the second kind and their symmetric version. (M35) of framework/schemes/README.md.
 //
-//   second_kind            tau(xi) = exp(xi_1 e_1) exp(xi_2 e_2) ... exp(xi_n e_n)
-//   second_kind_symmetric  tau(xi) = exp(xi_1 e_1/2) ... exp(xi_n e_n) ... exp(xi_1 e_1/2)
-// Only the second is symmetric: together they show what symmetry buys. On SO(2) and R^n both are
-// exp. With stages k = 1, 2, ... (coordinate i_k, weight c_k) and a_k = Ad of the product of all
-// earlier stages applied to e_{i_k}:
-//   dR = sum_k c_k a_k e_{i_k}^T,    d a_k/d xi_j = sum_{l < k, i_l = j} c_l [a_l, a_k],
-//   d/dxi_j [dR^-T p] = -dR^-T (d dR/dxi_j)^T y,  y = dR^-T p.
-// All inverses are closed forms. The symmetric version on SO(3) has the quaternion
-//   (cos(xi_3/2) cos(xi_2/2) cos(xi_1/2), cos(xi_3/2) cos(xi_2/2) sin(xi_1/2),
-//    cos(xi_3/2) sin(xi_2/2), sin(xi_3/2)),
-// spherical coordinates: it reaches every rotation but those by pi, and has no gimbal lock before.
-// Source: Owren, Marthinsen, Integration methods based on canonical coordinates of the second kind
-// (2001).
+//   second_kind             tau(xi) = exp(xi_1 e_1) exp(xi_2 e_2) ... exp(xi_n e_n)
+//   second_kind_symmetric   tau(xi) = exp(xi_1 e_1/2) ... exp(xi_n e_n) ... exp(xi_1 e_1/2)
+// Only the second is symmetric. On SO(2) and R^n both are exp.
+//
+// Derivatives. A product of stages k = 1, 2, ... has coordinate i_k and weight c_k in stage k. With
+// a_k = Ad_{product of the stages before k} e_{i_k}:
+//   dR                  = sum_k c_k a_k e_{i_k}^T
+//   d a_k / d xi_j      = sum_{l < k, i_l = j} c_l [a_l, a_k]
+//   d/dxi_j [dR^-T p]   = -dR^-T (d dR/dxi_j)^T y,   y = dR^-T p
+//
+// All inverses are closed forms. On SO(3) the symmetric version has the quaternion (w, x, y, z),
+//   w = cos(xi_3/2) cos(xi_2/2) cos(xi_1/2)
+//   x = cos(xi_3/2) cos(xi_2/2) sin(xi_1/2)
+//   y = cos(xi_3/2) sin(xi_2/2)
+//   z = sin(xi_3/2)
+// which are spherical coordinates: every rotation by less than pi is reached, without gimbal lock.
+// Source: Owren, Marthinsen, Integration methods based on canonical coordinates of the second kind (2001).
 #pragma once
 
 #include <array>
@@ -119,7 +123,7 @@ struct SecondKindSymmetric<SO2> : CircleExponential<SecondKindSymmetric<SO2>> {
   static std::string name() { return "second_kind_symmetric"; }
 };
 
-/// The box of R = Rx(xi_1) Ry(xi_2) Rz(xi_3): gimbal lock at |xi_2| = pi/2.
+/// The domain of R = Rx(xi_1) Ry(xi_2) Rz(xi_3): gimbal lock at |xi_2| = pi/2.
 template <>
 struct SecondKind<SO3> : StagedRetraction<SecondKind<SO3>, SO3, false> {
   static std::string domain() { return "|xi_2| < pi/2 (gimbal lock), |xi_1|, |xi_3| < pi"; }
@@ -129,8 +133,7 @@ struct SecondKind<SO3> : StagedRetraction<SecondKind<SO3>, SO3, false> {
     return abs(xi[0]) < std::numbers::pi && abs(xi[1]) < std::numbers::pi / 2 &&
            abs(xi[2]) < std::numbers::pi;
   }
-  /// xi_2 = asin R13, xi_1 = atan2(-R23, R33), xi_3 = atan2(-R12, R11). DomainError at |xi_2| =
-  /// pi/2.
+  /// xi_2 = asin R13, xi_1 = atan2(-R23, R33), xi_3 = atan2(-R12, R11). DomainError at |xi_2| = pi/2.
   template <class T>
   static VecT<T, 3> tau_inverse(const MatT<T, 3, 3>& g) {
     using std::atan2;
@@ -155,8 +158,8 @@ struct SecondKindSymmetric<SO3> : StagedRetraction<SecondKindSymmetric<SO3>, SO3
     return abs(xi[0]) < std::numbers::pi && abs(xi[1]) < std::numbers::pi &&
            abs(xi[2]) < std::numbers::pi;
   }
-  /// From the Gibbs vector t: xi_i = 2 atan(t_i/sqrt(1 + t_1^2 + ... + t_{i-1}^2)). DomainError at
-  /// pi.
+  /// From the Gibbs vector t: xi_i = 2 atan(t_i/sqrt(1 + t_1^2 + ... + t_{i-1}^2)).
+  /// DomainError at a rotation by pi.
   template <class T>
   static VecT<T, 3> tau_inverse(const MatT<T, 3, 3>& g) {
     using std::atan;

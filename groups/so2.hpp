@@ -2,10 +2,10 @@
 //
 // Element: the unit complex number c + i s = exp(i theta) and a count of full turns, so that
 //   angle = atan2(s, c) + 2 pi turns
-// stays continuous through composition and inverse; the turns are found from signs, without
-// trigonometry. They are bookkeeping: inverse retractions see the rotation, not the turns.
+// is continuous through composition and inverse. The turns are found from signs, without trigonometry;
+// inverse retractions ignore them.
 // Algebra: the angular velocity, 1 number.
-// Formulas: (c, s)(c', s') = (c c' - s s', s c' + c s'); Ad = 1, ad = 0.
+//   (c, s)(c', s') = (c c' - s s', s c' + c s'),   Ad = 1,   ad = 0
 // Source: Solà, Deray, Atchuthan, A micro Lie theory (arXiv:1812.01537), appendix A.
 #pragma once
 

@@ -1,8 +1,8 @@
 // SO(3): rotations of space.
 //
-// Element: the rotation matrix R, 3 x 3, body to space. Algebra: the body angular velocity omega,
-// 3 numbers, hat(omega) v = omega x v.
-// Formulas: Ad_R = R, ad_omega = hat(omega), (ad_omega)^T mu = mu x omega.
+// Element: the rotation matrix R, 3 x 3, body to space.
+// Algebra: the body angular velocity omega, 3 numbers, hat(omega) v = omega x v.
+//   Ad_R = R,   ad_omega = hat(omega),   (ad_omega)^T mu = mu x omega
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
 
@@ -121,7 +121,7 @@ struct SO3 {
     return rotation_from("so3", values);
   }
 
-  /// The rotation next to the first 9 values, row by row, which are off by less than about 0.3.
+  /// The rotation nearest to the first 9 values, row by row, which are off by less than about 0.3.
   static Element<double> nearest(std::span<const double> values) {
     Element<double> g;
     for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(i)];

@@ -15,7 +15,7 @@ std::span<const double> span_of(const Vector& v) {
   return {v.data(), static_cast<size_t>(v.size())};
 }
 
-// What Eigen calls; a negative return value ends the solve.
+// The functor that Eigen calls; a negative return value ends the solve.
 struct Functor {
   const ScaledEquation& equation;
   mutable Vector f;

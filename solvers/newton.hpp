@@ -2,13 +2,13 @@
 //
 //   x <- x - J^-1 F(x),   accepted when |F(x)| <= tolerance * scale, F evaluated at the x returned.
 // Along a trajectory J changes by O(h) a step and the extrapolated guess is good, so that one correction
-// with the last J usually does. J is evaluated anew when a correction does not cut |F| by ten, and for the
-// next step when more than one correction was needed (by two, more than 2 + 2 n/5 where J is made of
-// differences); a fresh correction that does not reduce |F| is
-// halved, up to ten times. At least one correction is made: a guess that already meets the tolerance
-// would leave its extrapolation error, always of one sign, in every step. When |F| stops falling it is
-// accepted at the round-off floor (64 eps), else it is stagnated. The iteration aims two digits below the
-// tolerance, so that what a kept Jacobian leaves does not add up over the steps.
+// with the last J usually suffices. J is evaluated anew when a correction does not cut |F| by ten, and for the
+// next step when more than one correction was needed (by two, more than 2 + 2 n/5, where J is made of
+// differences). A fresh correction that does not reduce |F| is halved, up to ten times.
+// At least one correction is made: a guess that already meets the tolerance would leave its extrapolation
+// error, always of one sign, in every step. A residual that stops falling is accepted at the round-off floor
+// (64 eps), else the solve has stagnated. The iteration aims two digits below the tolerance, so that the error
+// left by a kept Jacobian does not add up over the steps.
 // Compiled into the kernels: fixed sizes, no heap, no virtual call.
 // Source: Kelley, Solving Nonlinear Equations with Newton's Method, SIAM 2003, ch. 1-2.
 #pragma once

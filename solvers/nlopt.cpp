@@ -70,7 +70,7 @@ class NloptSolver final : public Solver {
     if (!derivatives_) nlopt_set_initial_step1(opt_, 1);
   }
 
-  // |dF|/|dx| along the diagonal at the guess: what turns the size of F into one of x.
+  // |dF|/|dx| along the diagonal at the guess: the factor from the size of x to that of F.
   double slope_at(std::span<const double> x) {
     const size_t n = x.size();
     const double root = std::sqrt(static_cast<double>(n));

@@ -1,4 +1,4 @@
-// What balls that roll on the plane z = 0 without slipping have in common.
+// Shared by the balls that roll on the plane z = 0 without slipping.
 //
 //   SO(3) x R^2: the rotation R and the position (x, y) of the centre, which stays at the height rho;
 //   xi = (omega in the body, x', y'). With w = R omega the contact moves at

@@ -1,4 +1,4 @@
-// What heavy bodies that roll on the plane z = 0 without slipping have in common.
+// Shared by the heavy bodies that roll on the plane z = 0 without slipping.
 //
 //   SE(3), body frame at the mass centre, z up; xi = (omega, v), l = 1/2 omega^T I omega + 1/2 m |v|^2 - m g z.
 //   The contact at r from the mass centre rests, v + omega x r = 0; along a direction u, all in body axes:

@@ -2,7 +2,7 @@
 //
 //   Heisenberg group, xi = (x', y', z' - (x y' - y x')/2), l = 1/2 m |xi|^2, xi_3 = 0.
 // xi is constant: the paths are one-parameter subgroups, straight lines in the (x, y) plane. (The
-// vakonomic equations, which are not mechanics, give helices.)
+// vakonomic equations have helices instead.)
 // Source: Bloch, Nonholonomic Mechanics and Control (2003), section 1.8.
 #pragma once
 

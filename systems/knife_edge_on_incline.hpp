@@ -6,8 +6,8 @@
 //   P + iQ = int_0^t exp(i theta) = t (sin(d/2)/(d/2)) exp(i (theta_0 + d/2)):
 //   v1 = v1(0) + a P,   x = x0 + v1(0) P + a P^2/2,   y = y0 + v1(0) Q + a int_0^t P Q',
 //   int_0^t P Q' = (P Q + int_0^t (P Q' - Q P'))/2 = (P Q + t^2 (d - sin d)/d^2)/2.
-// Nothing is divided by omega: right for every omega, 0 included.
-// From rest it does not slide down on the mean: x is periodic, y drifts.
+// No division by omega occurs: the formulas hold for every omega, 0 included.
+// From rest there is no mean motion downhill: x is periodic, y drifts.
 // Source: Neimark and Fufaev 1972; Bloch, Nonholonomic Mechanics and Control (2003), section 1.6.
 #pragma once
 

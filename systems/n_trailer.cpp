@@ -166,7 +166,7 @@ Start NTrailer::start() const {
   Start start{.configuration = std::vector<double>(static_cast<size_t>(3 + count()), 0.0),
               .velocity = {0.3, 1, 0},
               .momentum = {}};
-  // The rates that the rows ask for, axle after axle.
+  // The rates that satisfy the rows, axle after axle.
   start.configuration[3] = 0.4;
   Plane u(1, 0);
   int i = 1;

@@ -11,8 +11,8 @@
 //              delta_jk between w_j and w_k,
 //   gradient:  dl/dalpha_j = L_j w_j n_j . P_j,
 // and w_j = omega + alpha_j' adds the columns of the w_j to that of omega. O(n^2), or O(n) for the gradient.
-// Each of the circles R_i^2 = R_{i-1}^2 - L_i^2 about one centre is run at constant speed: there every axle
-// pulls along itself, and no hitch does.
+// Steady motions: the circles R_i^2 = R_{i-1}^2 - L_i^2 about one centre at constant speed, where the reactions act
+// along the axles and the hitches carry no force.
 // Source: Laumond 1993; Altafini, Some properties of the general n-trailer, Int. J. Control 74 (2001).
 #pragma once
 

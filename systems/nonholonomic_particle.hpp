@@ -1,7 +1,7 @@
 // nonholonomic_particle: the smallest nonholonomic system.
 //
 //   R^3, l = 1/2 m (x'^2 + y'^2 + z'^2) - 1/2 k y^2,   z' = y x'.
-// x' sqrt(1 + y^2) = c is kept for every V(y). Without the spring y = y0 + v t and
+// x' sqrt(1 + y^2) = c is conserved for every V(y). Without the spring y = y0 + v t and
 //   x = x0 + (c/v) asinh(y) |,  z = z0 + (c/v) sqrt(1 + y^2) |   (differences from y0),
 // which with r = sqrt(1 + y^2), r0 = sqrt(1 + y0^2) are
 //   x = x0 + (c/v) asinh(v t q),  q = (1 + r r0 - y y0)/(r + r0),   z = z0 + c t (y + y0)/(r + r0).

@@ -8,9 +8,9 @@
 // from the mass centre, and rests: v + omega x r = 0. Its horizontal parts are rows of A (along the axes x
 // and y of space: R (v + omega x r)); the vertical one is the differential of the height of the contact,
 //   phi = z + gamma . r = z + d gamma_3 - sqrt(gamma^T D^2 gamma) = 0.
-// Spun one way the rattleback keeps spinning for long, spun the other way it starts to rattle and reverses.
-// The energy is kept. The default is large and slow: it rocks at some 10 rad/s and reverses within 20 s. The
-// stone of Kane and Levinson (semi_axes 0.2, 0.03, 0.02; depth 0.01; inertia 2e-4, 1.6e-3, 1.7e-3; skew
+// Spun in one sense the rattleback keeps spinning for long; spun in the other it starts to rattle and reverses.
+// The energy is conserved. The default body is large and slow: it rocks at about 10 rad/s and reverses within
+// 20 s. The stone of Kane and Levinson (semi_axes 0.2, 0.03, 0.02; depth 0.01; inertia 2e-4, 1.6e-3, 1.7e-3; skew
 // 0.0143) rocks at 100 rad/s.
 // Source: Walker 1896; Kane and Levinson, Int. J. Non-Linear Mech. 17 (1982); Garcia and Hubbard 1988.
 #pragma once
@@ -94,7 +94,7 @@ struct Rattleback {
     g.translation[2] = -holonomic(g)[0];
     return body_on_plane::rolling(g, spin * g.rotation.row(2).transpose(), contact(g));
   }
-  /// The way that reverses.
+  /// The sense of spin that reverses.
   Start start() const { return spinning(-1.5, 0.02); }
 
   void invariants(auto& add) const { add("energy", energy_of(*this)); }

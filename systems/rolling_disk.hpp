@@ -1,4 +1,4 @@
-// rolling_disk: a disk that stands upright and rolls on a plane without slipping.
+// rolling_disk: an upright disk that rolls on a plane without slipping.
 //
 //   SE(2) x SO(2), xi = (omega, v1, v2, phi'), e1 along the rolling direction:
 //   l = 1/2 J_yaw omega^2 + 1/2 m (v1^2 + v2^2) + 1/2 J_spin phi'^2,   v1 = R phi',  v2 = 0.

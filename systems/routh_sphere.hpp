@@ -4,7 +4,7 @@
 //   l = 1/2 omega^T I omega + 1/2 m |(x', y', 0) + R (omega x a e3)|^2 - m g a gamma_3,  I1 = I2,
 //   with w = R omega, gamma = R^T e_z:  x' = rho w_y,  y' = -rho w_x.
 // The metric depends on R: it couples the rotation with the translation in space.
-// With r = -rho gamma - a e3 from the mass centre to the contact three functions are kept: the energy,
+// With r = -rho gamma - a e3 from the mass centre to the contact three functions are conserved: the energy,
 //   Jellett's omega^T I r   and   Routh's omega_3 sqrt(I1 I3 + m r^T I r).
 // Source: Routh, Advanced Rigid Dynamics (1884), art. 243; Cushman, Routh's sphere, Rep. Math. Phys. 42 (1998).
 #pragma once

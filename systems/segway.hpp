@@ -85,7 +85,7 @@ struct Segway {
             .momentum = {}};
   }
   Start start() const { return rolling(0.02, 0.6, 1); }
-  /// The rate at which upright rolling straight on is left.
+  /// The rate lambda of the instability of straight upright rolling.
   double growth_rate() const {
     const double total = mass + 2 * wheel_mass + 2 * wheel_inertia / (wheel_radius * wheel_radius);
     const double first = mass * height;

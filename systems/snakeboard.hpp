@@ -78,7 +78,7 @@ struct Snakeboard {
     return {0, 0, rates[0], rates[1], rates[2]};
   }
 
-  /// What the rider does: psi, front, back since t = 0, and their rates; q'.
+  /// The rider's motion: psi, front, back since t = 0, and their rates; q'.
   struct Rider {
     Vec<3> turned, rates;
     double momentum_rate;

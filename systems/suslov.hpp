@@ -91,7 +91,7 @@ struct Suslov {
       const Vec<2> pq = {root_det_ * a_ / std::cosh(x), -a_ * std::tanh(x)};
       return frame_ * (solve_ * pq);
     }
-    /// A bound on how fast things change: |Omega| is bounded through the energy and the moments.
+    /// A bound on the rates of the motion: |Omega| is bounded through the energy and the moments.
     double rate() const { return a_ + spread_ * w0_.norm(); }
     bool constant() const { return a_ == 0; }
 

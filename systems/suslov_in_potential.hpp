@@ -1,7 +1,7 @@
 // suslov_in_potential: the Suslov body in a uniform field.
 //
 //   SO(3), l = 1/2 Omega^T I Omega - w.gamma, gamma = R^T e_z, n.Omega = 0, n = e3.
-// w = m g (body vector from the fixed point to the mass centre). The energy is kept.
+// w = m g (body vector from the fixed point to the mass centre). The energy is conserved.
 // Source: Kozlov 1988; Borisov and Mamaev, The dynamics of the Suslov problem (2011).
 #pragma once
 

@@ -56,6 +56,7 @@ Registry make_registry() {
   add_group<Heisenberg>(registry);
 
   add_erased_schemes(registry);
+  registry.add_scheme_alias("dla", Lift::name());  // discrete Lagrange-d'Alembert
   add_solvers(registry);
 
   add_left_invariant(registry);

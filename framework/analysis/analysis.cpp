@@ -9,9 +9,9 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/mechanics/place.hpp>
-#include <hamel/framework/lie/geometry.hpp>
 
 namespace hamel {
 namespace {
@@ -86,7 +86,7 @@ std::string combination(const Vector& weights, const std::vector<std::string>& n
   return out;
 }
 
-// Reduced row echelon form of the rows, so that each quantity shows with as few terms as can be.
+// Reduced row echelon form of the rows, so that each quantity has as few terms as possible.
 Matrix simplest(Matrix rows) {
   Eigen::Index lead = 0;
   for (Eigen::Index j = 0; j < rows.cols() && lead < rows.rows(); ++j) {
@@ -143,7 +143,7 @@ void find_conserved(const Registry& registry, const std::string& system,
     changes.bottomRows(rows.rows()) = change;
   }
   if (values.rows() == 0) return;
-  // Combinations that are zero on every motion say nothing; orthogonal to them, those that do not change.
+  // The combinations that do not change, orthogonal to those that are zero on every motion.
   const Eigen::JacobiSVD<Matrix> all(values, Eigen::ComputeThinV);
   const double scale = all.singularValues()[0];
   Eigen::Index meaningful = 0;

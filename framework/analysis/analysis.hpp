@@ -1,12 +1,12 @@
-// What a system is, read off its equations: `hamel describe --analyse`.
+// Analysis of a system: frame, brackets, conserved quantities (`hamel describe --analyse`).
 //
 // Frame and brackets at the start. X_a(g) = P(g) e_a, e_a the Hamel frame at g0 and P(g) the projection
 // onto ker A(g) along I^-1 A^T; in left trivialisation
 //   [X, Y](g) = dY(g) X - dX(g) Y + ad_{X(g)} Y(g).
-// The growth of d, d + [d, d], ... tells whether the constraint is integrable (it does not grow), and how
-// many brackets span the tangent space (Chow): growth.hpp, with the drift of affine rows, and its tolerances.
-// Conserved quantities are found, not proved: combinations of energy, spatial momenta Ad*_{g^-1} mu and body
-// velocities that keep their value along several motions (null vectors of their changes).
+// The growth of d, d + [d, d], ... decides whether the constraint is integrable (no growth) and how many brackets
+// span the tangent space (Chow). growth.hpp has it, the drift of affine rows and the tolerances.
+// Conserved quantities are found numerically, not proved: combinations of energy, spatial momenta Ad*_{g^-1} mu
+// and body velocities that are constant along several motions (null vectors of their changes).
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ struct Analysis {
   Eigen::MatrixXd frame;                   // E at the start, n x m
   std::vector<Eigen::MatrixXd> structure;  // c^d_ab: entry d, at (a, b): [X_a, X_b] along X_d, on d
   Growth growth;  // dim d, dim (d + [d, d]), ...; affine rows with their drift
-  /// Are the rows differentials in disguise (of functions of g; of g and t with a drift)? Empty: not decided.
+  /// Are the rows integrable, spanned by differentials of functions of g (of g and t with a drift)? Empty: not decided.
   std::optional<bool> integrable() const;
   struct Conserved {
     std::string expression;  // "E", "0.5 J3 - ..."

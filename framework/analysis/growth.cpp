@@ -37,7 +37,7 @@ Reach reach_of(const std::vector<Generation>& generations) {
     Eigen::Index fresh = 0;
     const Vector& sizes = svd.singularValues();
     while (fresh < sizes.size() && sizes[fresh] > 10 * error + kNew * size) ++fresh;
-    // What is not told from round-off is no answer, unless nothing is left to be found.
+    // A generation at round-off decides nothing, unless no direction is left.
     if (span.cols() + fresh < rows && !(10 * error < kDecided * size)) {
       out.round_off = true;
       break;

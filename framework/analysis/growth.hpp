@@ -1,4 +1,4 @@
-// How far brackets of admissible directions reach: the growth d, d + [d, d], ... at a configuration.
+// The growth d, d + [d, d], ... of brackets of admissible directions at a configuration.
 //
 // Time is a coordinate, t' = 1, where b != 0 or A, b depend on it: then d is spanned by the fields X_a of ker A
 // and by X_0 = d/dt + (the particular velocity, A xi = b), and the rows are integrable, with phi(t, g) = 0 for
@@ -9,8 +9,8 @@
 // closed from the first generation on that adds nothing there, and no configuration has more directions than that. At g
 // itself brackets may pause and go on (z' = y^2 x' at y = 0: 2, 2, 3).
 // Tolerances: a direction is new when it is above 1e-6 of its generation and ten times above the generation's
-// error, measured by computing it twice; a generation whose error exceeds 1e-4 of it (from six or seven fields on) is
-// not decided, and nothing is said beyond it. Generations below 1e-6 of the fields are taken for zero.
+// error, measured by computing it twice. A generation whose error exceeds 1e-4 of it (from six or seven fields on) is
+// not decided, nor is any beyond it. Generations below 1e-6 of the fields are taken for zero.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,7 @@ struct Growth {
   bool with_drift = false;  // X_0 is among the fields
   int looked_at = 0;        // brackets of at most this many fields were looked at
   bool round_off = false;   // deeper ones could not be told from round-off
-  /// Everything that brackets can reach is known, and reached.
+  /// The span of all brackets is known and reached.
   bool decided() const { return dimensions.back() == nearby; }
 };
 

@@ -1,7 +1,7 @@
-// Two kinds of trouble, kept apart.
+// Mistakes of a configuration. Failures of a step are values instead (framework/loop/status.hpp).
 //
-//   ConfigError   what was asked for cannot be run: thrown before anything runs, all mistakes at once.
-//   Status        what a step met on the way: a value, never an exception (framework/loop/status.hpp).
+//   ConfigError   the run asked for is impossible: thrown before anything runs, all mistakes at once.
+//   Status        a numerical failure of a step: a value, never an exception.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// Reads nodes of a TOML table into fields and gathers what does not fit, each with its place. For our own
-// sources only: needs toml++, and is not installed.
+// Reads nodes of a TOML table into fields and gathers the mistakes, each with its place. Not installed, since it
+// needs toml++.
 #pragma once
 
 #include <string>

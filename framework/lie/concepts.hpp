@@ -1,7 +1,7 @@
-// What a group and a retraction map must answer; a comment per requirement.
+// The concepts Group and Retraction: a comment per requirement.
 //
-// Conventions (framework/README.md): left trivialisation, xi = g^-1 g' in the algebra, mu in its dual,
-// coadjoint maps are plain transposes: Ad*_g = (Ad_g)^T, ad*_xi = (ad_xi)^T.
+// Conventions (framework/README.md): left trivialisation, xi = g^-1 g' in the algebra, mu in its dual;
+// coadjoint maps are plain transposes, Ad*_g = (Ad_g)^T, ad*_xi = (ad_xi)^T.
 #pragma once
 
 #include <concepts>
@@ -21,7 +21,7 @@ struct DomainError : std::domain_error {
   using std::domain_error::domain_error;
 };
 
-/// A fixed-size matrix or vector (or expression) of R rows and C columns. convertible_to would not do:
+/// A fixed-size matrix or vector (or expression) of R rows and C columns. convertible_to does not suffice:
 /// Eigen declares conversions that then fail to compile.
 template <class X, int R, int C>
 concept Shape =
@@ -79,14 +79,14 @@ concept Retraction = requires(const Vec<R::Group::dim>& xi, const Vec<R::Group::
   { R::dtau_right_inverse(xi) } -> Shape<R::Group::dim, R::Group::dim>;
   { R::dtau_left(xi) } -> Shape<R::Group::dim, R::Group::dim>;
   { R::dtau_left_inverse(xi) } -> Shape<R::Group::dim, R::Group::dim>;
-  // (dR^-1)^T p and (dL^-1)^T p: what a step evaluates.
+  // (dR^-1)^T p and (dL^-1)^T p, evaluated in each step.
   { R::dtau_right_inverse_transpose(xi, p) } -> Shape<R::Group::dim, 1>;
   { R::dtau_left_inverse_transpose(xi, p) } -> Shape<R::Group::dim, 1>;
-  // What Newton needs: the n x n matrix of d/dxi [ (dR tau_xi)^-T p ] with the covector p held fixed.
+  // For Newton's Jacobian: the n x n matrix of d/dxi [ (dR tau_xi)^-T p ] with the covector p held fixed.
   { R::dtau_right_inverse_transpose_derivative(xi, p) } -> Shape<R::Group::dim, R::Group::dim>;
   // Is xi inside the ball (or box) on which tau is a diffeomorphism with inverse tau_inverse?
   { R::in_domain(xi) } -> std::convertible_to<bool>;
-  // That domain in words, for `hamel describe` and errors: "|omega| < pi".
+  // That domain as text, for `hamel describe` and errors: "|omega| < pi".
   { R::domain() } -> std::convertible_to<std::string>;
   // One-line formula for `hamel describe`.
   { R::formula() } -> std::convertible_to<std::string>;

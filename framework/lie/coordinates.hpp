@@ -1,4 +1,4 @@
-// An element as the numbers of a trajectory file, and what every from_coordinates checks first.
+// An element as the numbers of a trajectory file, and the checks common to every from_coordinates.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace hamel {
 
-/// The coordinates of an element: their number is fixed, so that a step that reads them takes no memory.
+/// The coordinates of an element. Their number is fixed, so that a step that reads them allocates nothing.
 template <class T, std::size_t N>
 struct Coordinates : std::array<T, N> {
   static constexpr std::size_t count = N;
@@ -52,8 +52,8 @@ void check_coordinates(std::span<const double> values) {
                               to_text(*bad) + ", expected a finite number");
 }
 
-/// The element next to values that are no element, as a Runge-Kutta stage leaves them (finite values): a
-/// group whose from_coordinates is stricter than that says so with nearest(values).
+/// The element nearest to finite values that are not one, as after a Runge-Kutta stage. A group whose
+/// from_coordinates refuses such values defines nearest(values).
 template <class G>
 typename G::template Element<double> nearest_element(std::span<const double> values) {
   if constexpr (requires { G::nearest(values); }) return G::nearest(values);

@@ -1,5 +1,5 @@
-// Derivatives along g tau(e eta) at e = 0, by central differences of order 6 (error about 1e-12): for what a
-// system states as values only.
+// Derivatives along g tau(e eta) at e = 0 by central differences of order 6, error about 1e-12: for functions
+// that a system states by their values only.
 #pragma once
 
 #include <algorithm>

@@ -2,8 +2,7 @@
 //
 // An element is a block of numbers as its group lays it out (Packing), vectors are n numbers, matrices
 // n x n column-major. Products are put together from their factors at run time (ProductGeometry), so
-// that "se2*so2^30" needs no kernel of its own. A virtual call costs some 2 ns against the 100 to 1000 ns
-// of a general step: erasing the type keeps the build short and costs nothing that can be measured.
+// that "se2*so2^30" needs no kernel of its own. A virtual call costs about 2 ns.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +19,7 @@
 
 namespace hamel {
 
-/// How an element is kept as doubles: as its bytes. Products specialise it, factor after factor.
+/// An element as doubles: its bytes. Products specialise it, factor after factor.
 template <class G>
 struct Packing {
   using Element = typename G::template Element<double>;
@@ -71,11 +70,11 @@ class Geometry {
   virtual void coordinates(const double* g, double* out) const = 0;
   /// Throws std::invalid_argument when the values are no element.
   virtual void from_coordinates(std::span<const double> values, double* out) const = 0;
-  /// The element next to values that are no element, as a Runge-Kutta stage leaves them.
+  /// The element nearest to values that are not one, as after a Runge-Kutta stage.
   virtual void nearest(std::span<const double> values, double* out) const = 0;
 };
 
-/// What a step calls is flattened: a kernel's unit is too large for the compiler to inline it by itself.
+/// Functions called in a step are flattened: a kernel's unit is too large for the compiler to inline them itself.
 template <class Tau>
 class TypedGeometry final : public Geometry {
   using G = typename Tau::Group;

@@ -1,10 +1,10 @@
-// What follows for any group from identity, compose, inverse, Ad and ad.
+// Defaults of a group, from its identity, compose, inverse, Ad and ad.
 //
-// A group of your own derives from GroupDefaults<YourGroup, n> and gives name, Element, identity,
-// compose, inverse, Ad, ad. It receives, where it does not define them itself:
+// A group of a user's own derives from GroupDefaults<YourGroup, n> and defines name, Element, identity,
+// compose, inverse, Ad, ad. It inherits, where it does not define them itself:
 //   Ad_transpose(g, mu) = Ad(g)^T mu,  coad(mu) = [(ad_{e_1})^T mu, ..., (ad_{e_n})^T mu],
 //   normalise(g) = g and defect = 0 (no redundant numbers in the element),
-//   matrix(g) = Ad(g) (the adjoint representation; it does not see the centre),
+//   matrix(g) = Ad(g) (the adjoint representation, trivial on the centre),
 //   columns x1 ... xN, coordinates and from_coordinates when Element is a column vector.
 // The Heisenberg group in full, with a retraction by automatic differentiation: groups/README.md.
 #pragma once

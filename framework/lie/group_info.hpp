@@ -1,4 +1,4 @@
-// A group with its type erased: what the run-time layer needs to read, print and describe elements.
+// A group with its type erased, for reading, printing and describing elements.
 #pragma once
 
 #include <functional>

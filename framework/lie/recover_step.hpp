@@ -1,10 +1,10 @@
-// What a step really did, measured from the configurations and never from the solver's unknown.
+// The discrete velocity xi/h of a step, recovered from its two configurations: (M14), (M41) of
+// framework/schemes/README.md. The solver's unknown does not enter.
 //
-// The discrete velocity of a step is recovered as xi/h with tau_s(xi) = g_k^-1 g_{k+1},
-//   tau_s(xi) = tau(-s xi)^-1 tau((1-s) xi),
-// by tau^-1 when tau_s = tau, else by Newton on the group: with delta = tau^-1(tau_s(xi)^-1 Delta),
-//   tau_s^-1 d(tau_s) = Ad_{f1^-1} (s dR_{-s xi} + (1-s) dR_{(1-s) xi}) dxi.
-// The floor of the recovered constraint residual is about eps / h.
+//   tau_s(xi)          = tau(-s xi)^-1 tau((1-s) xi) = Delta,   Delta = g_k^-1 g_{k+1}
+//   tau_s^-1 d(tau_s)  = Ad_{f1^-1} (s dR_{-s xi} + (1-s) dR_{(1-s) xi}) dxi
+// By tau^-1 when tau_s = tau, else by Newton's method on the group with the rest tau^-1(tau_s(xi)^-1 Delta).
+// The floor of a constraint residual so recovered is about eps / h.
 #pragma once
 
 #include <limits>

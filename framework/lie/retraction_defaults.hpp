@@ -1,8 +1,8 @@
-// What follows for any retraction from tau, tau^-1, dR^-1 and its Newton derivative.
+// Defaults of a retraction, from tau, tau^-1, dR^-1 and its Newton derivative.
 //
-// Formulas: dR = (dR^-1)^-1; dL_xi = Ad_{tau(xi)}^-1 dR_xi, and dL_xi = dR_{-xi} if tau is
-// symmetric. All functions are templates on the scalar. Also TypeList, in which a group lists its
-// retractions.
+//   dR     = (dR^-1)^-1
+//   dL_xi  = Ad_{tau(xi)}^-1 dR_xi,   dL_xi = dR_{-xi} if tau is symmetric
+// All functions are templates on the scalar. Also TypeList, in which a group lists its retractions.
 #pragma once
 
 #include <Eigen/Core>
@@ -60,9 +60,9 @@ bool all_finite(const Eigen::Matrix<T, N, 1>& xi) {
   return true;
 }
 
-/// CRTP base: `struct MyMap : RetractionDefaults<MyMap, SO3>` gives name, symmetric, tau,
-/// tau_inverse, dtau_right_inverse, dtau_right_inverse_transpose_derivative and receives the rest.
-/// Whatever Derived defines itself hides the default.
+/// CRTP base: `struct MyMap : RetractionDefaults<MyMap, SO3>` defines name, symmetric, tau,
+/// tau_inverse, dtau_right_inverse, dtau_right_inverse_transpose_derivative and inherits the rest.
+/// A member that Derived defines itself hides the default.
 template <class Derived, class G>
 struct RetractionDefaults {
   using Group = G;

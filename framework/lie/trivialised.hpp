@@ -1,7 +1,7 @@
-// Derivatives of trivialised maps, from the four things a retraction gives.
+// Derivatives of trivialised maps: (M36) of framework/schemes/README.md.
 //
-// Write R = dR tau_z (n x n), D(z, p) = d/dz [ R^-T p ] with p fixed, K(mu) eta = (ad_eta)^T mu,
-// f = tau(z). Then, with every covector on the right held fixed,
+// R = dR tau_z (n x n), D(z, p) = d/dz [ R^-T p ] with p fixed, K(mu) eta = (ad_eta)^T mu, f = tau(z). With every
+// covector on the right held fixed:
 //   (a)  d/dz [ R^T m ]            = -R^T D(z, R^T m)                  (differentiate R^-T (R^T m) = m)
 //   (b)  d/dz [ Ad_f^T m ]         =  K(Ad_f^T m) dL tau_z             (f varies as f dL dz)
 //   (c)  d/dz [ Ad_{f^-1}^T mu ]   = -K(Ad_{f^-1}^T mu) R              (f varies as (R dz) f)
@@ -15,11 +15,12 @@
 
 namespace hamel {
 
-/// m0 of the cotangent lift (method.md, (1) and (2), both end momenta carried to the base point, m1 = m0 + nu):
-///   s dR_{z0}^T m0 + (1-s) dR_{z1}^T (m0 + nu) = p,   z0 = -s xi, z1 = (1-s) xi.
-/// With A_i = dR_{z_i}^-1 and M = s A_1 + (1-s) A_0:  s dR_{z0} + (1-s) dR_{z1} = A_0^-1 M A_1^-1, so that
-/// m0 = A_0^T M^-T (A_1^T p - (1-s) nu), and no dR is formed. Where A is quadratic, A(xi) = 1 + odd + even
-/// (Cayley), the odd parts cancel: M = 1 + s (1-s) even(xi), which the retraction solves in closed form.
+/// m0 of the cotangent lift at the base point, m1 = m0 + nu, by (M13) of framework/schemes/README.md:
+///   s dR_{z0}^T m0 + (1-s) dR_{z1}^T (m0 + nu) = p,            z0 = -s xi, z1 = (1-s) xi
+///   m0 = A_0^T M^-T (A_1^T p - (1-s) nu),                      A_i = dR_{z_i}^-1, M = s A_1 + (1-s) A_0
+/// No dR is formed. Where A is quadratic, A(xi) = 1 + odd + even (Cayley), the odd parts cancel:
+///   M = 1 + s (1-s) even(xi),
+/// which the retraction solves in closed form.
 template <class Tau>
 Vec<Tau::Group::dim> base_momentum(double s, const Vec<Tau::Group::dim>& xi,
                                    const Vec<Tau::Group::dim>& p, const Vec<Tau::Group::dim>& nu) {
@@ -39,7 +40,7 @@ Vec<Tau::Group::dim> base_momentum(double s, const Vec<Tau::Group::dim>& xi,
   return Tau::dtau_right_inverse_transpose(z0, m);
 }
 
-/// tau and its right derivative at one point z: what every scheme evaluates there.
+/// tau and its right derivative at one point z.
 template <class Tau>
 struct At {
   using G = typename Tau::Group;

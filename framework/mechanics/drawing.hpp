@@ -1,4 +1,4 @@
-// How a system draws itself: bodies made of a few shapes, and where each is for a configuration.
+// Drawing of a system: bodies made of a few shapes, and the place of each as a function of the configuration.
 //
 //   void draw(auto& scene) const {
 //     scene.floor();
@@ -22,8 +22,8 @@ namespace hamel {
 
 using Point = std::array<double, 3>;
 
-/// Where a shape stands in the body's frame, where its own z axis points, and its colour: "body",
-/// "accent", "dark", "light" or "#rrggbb".
+/// Origin of a shape in the body's frame, direction of its own z axis, and colour: "body", "accent", "dark",
+/// "light" or "#rrggbb".
 struct Look {
   Point at = {0, 0, 0};
   Point axis = {0, 0, 1};
@@ -60,7 +60,7 @@ inline BodyShape line(std::vector<Point> points, Look look = {}) {
 inline BodyShape arrow(Point to, Look look = {}) { return {"arrow", {}, {to}, std::move(look)}; }
 }  // namespace shapes
 
-/// Where a body is: its origin, and its rotation (body to space).
+/// The place of a body: its origin, and its rotation (body to space).
 struct Placement {
   Vec<3> position = Vec<3>::Zero();
   Mat<3, 3> rotation = Mat<3, 3>::Identity();
@@ -84,7 +84,7 @@ struct DrawnBody {
   bool has_trail = false;
   Point trail_point = {0, 0, 0};
 
-  /// Draws the way of a point of the body.
+  /// Draws the path of a point of the body.
   DrawnBody& trail(Point point = {0, 0, 0}) {
     has_trail = true;
     trail_point = point;
@@ -98,7 +98,7 @@ struct Drawing {
   std::vector<DrawnBody> bodies;
 };
 
-/// What a system's draw() meets; place: element of G -> Placement.
+/// The argument of a system's draw(); place: element of G -> Placement.
 template <class G>
 class Scene {
  public:

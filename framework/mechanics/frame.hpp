@@ -1,4 +1,4 @@
-// The Hamel frame: an I-orthonormal basis of d = ker A.
+// The Hamel frame, an I-orthonormal basis of d = ker A: (M5) of framework/schemes/README.md.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace hamel {
 /// constraints: k x n of rank k.
 Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints);
 
-/// What is wrong with an inertia and constraint rows for a group of dimension n: shape, NaN, symmetry,
-/// definiteness, rank. Empty when nothing is.
+/// The mistakes in an inertia and constraint rows for a group of dimension n: shape, NaN, symmetry, definiteness,
+/// rank. Empty when there are none.
 std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
                                                const Eigen::MatrixXd& constraints, int n);
 

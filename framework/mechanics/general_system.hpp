@@ -1,4 +1,4 @@
-// From a system's struct to Mechanics: what it states by formulas, and what follows by differentiation.
+// From a system's struct to Mechanics: formulas as stated, their differentials by automatic differentiation.
 //
 // A system whose inertia, constraint or forces depend on the configuration states, beside Group:
 //   inertia() or inertia(g)                      n x n
@@ -8,7 +8,7 @@
 //   potential(g)                                 V, a number
 //   force(g, xi) or force(t, g, xi)              f, n entries in the dual (controls, friction)
 // Written as templates on the element (`const auto& g`), potential, holonomic and inertia are differentiated
-// automatically (ceres::Jet, seeded along g tau(eta)). By hand, where speed matters:
+// automatically (ceres::Jet, seeded along g tau(eta)). By hand, where speed counts:
 //   potential_differential(g)   n entries, <dV, eta> = d/de V(g tau(e eta))
 //   holonomic_differential(g)   r x n
 //   inertia_differential(g, xi) n entries, 1/2 d(xi^T I(g) xi)
@@ -27,8 +27,8 @@
 #endif
 
 #include <hamel/framework/lie/geometry.hpp>
-#include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 
 namespace hamel {

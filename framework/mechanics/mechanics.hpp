@@ -1,10 +1,10 @@
-// A nonholonomic system as the general schemes see it: everything may depend on the configuration.
+// A nonholonomic system, its type erased; everything may depend on the configuration.
 //
-//   L(g, xi) = 1/2 xi^T I(g) xi - V(g),  forces f(t, g, xi) in the dual of the algebra,
-//   A(t, g) xi = b(t, g)  (k rows; the last of them are the differentials of the holonomic rows),
-//   phi(g) = 0            (holonomic rows, kept at the ends of each step).
-// A system's struct says what it has; the rest follows (general_system.hpp). Run-time sizes: a system
-// whose dimension is a parameter derives from Mechanics itself (systems/n_trailer.hpp).
+//   L(g, xi) = 1/2 xi^T I(g) xi - V(g),   force f(t, g, xi) in the dual of the algebra
+//   A(t, g) xi = b(t, g)                  k rows; the last of them are the differentials of the holonomic rows
+//   phi(g) = 0                            holonomic rows, imposed at the ends of each step, (M19)
+// general_system.hpp derives a Mechanics from a system's struct. A system whose dimension is a parameter derives
+// from Mechanics itself (systems/n_trailer.hpp).
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace hamel {
 
-/// Sizes never change in the life of an object; out-parameters have these sizes. Elements as Packing.
+/// Sizes are fixed in the life of an object; out-parameters have these sizes. Elements as Packing.
 class Mechanics {
  public:
   using Vector = Eigen::Ref<Eigen::VectorXd>;
@@ -36,7 +36,7 @@ class Mechanics {
   virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
   /// phi(g).
   virtual void holonomic(const double* /*g*/, Vector /*out*/) const {}
-  /// f - dV + 1/2 d(xi^T I(g) xi): everything in the dual that drives the momentum, per unit of time.
+  /// F = f - dV + 1/2 d(xi^T I(g) xi) of (M3): the force on the momentum in the dual.
   virtual void force(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector out) const {
     out.setZero();
   }

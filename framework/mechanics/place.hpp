@@ -4,12 +4,13 @@
 // columns of D^-1/2 O are E, a basis of ker A with E^T D E = 1. The equations of a step, E^T r = 0 (r a
 // momentum) and c = 0 (k rows of velocities), are the n numbers
 //   (c_i / |D^-1/2 a_i|, E^T r) = 0,   a_i row i of A,                                       (*)
-// all of them square roots of an energy, and the admissible velocity that a momentum mu belongs to is
+// all of them square roots of an energy. The admissible velocity of a momentum mu is
 //   xi = D^-1/2 O (L^-1 b, 0) + E y,   E^T I xi = E^T mu   (A xi = b; I xi - mu is a reaction A^T lambda).
-// The frame turns with the configuration, smoothly. Corrections of a velocity are made in it too, from_frame:
-// then the Jacobian of a step is 1 + O(h) (h instead of 1 where a row is holonomic), and changes so little
-// from step to step that it can be kept.
-// Source: Golub, Van Loan, Matrix Computations, 5.1 (Householder); method.md, section 1 (E).
+// The frame turns smoothly with the configuration. Corrections of a velocity are made in it too (from_frame):
+// the Jacobian of a step is then 1 + O(h) (h instead of 1 for a holonomic row) and changes so little from step to
+// step that it can be kept.
+// E is that of (M5), (*) is (M39) of framework/schemes/README.md.
+// Source: Golub, Van Loan, Matrix Computations, 5.1 (Householder).
 #pragma once
 
 #include <cmath>
@@ -139,7 +140,7 @@ class Place {
   int k() const { return K == Eigen::Dynamic ? k_ : K; }
   int m() const { return n() - k(); }
 
-  // Sizes known at compile time: loops that unroll; else Eigen's, with packets.
+  // Loops that unroll where sizes are known at compile time; else Eigen's, with packets.
   static double dot(const double* x, const double* y, int count) {
     if constexpr (N == Eigen::Dynamic) {
       using Map = Eigen::Map<const Eigen::VectorXd>;
@@ -183,7 +184,7 @@ class Place {
     const double* v = &reflections_(from(j), j);
     add(-factors_[j] * dot(v, y + from(j), left(j)), v, y + from(j), left(j));
   }
-  // Where reflection j starts: with sizes known at compile time all loops have n rounds, and unroll.
+  // The first index of reflection j. With sizes known at compile time all loops have n rounds and unroll.
   int from(int j) const { return N == Eigen::Dynamic ? j : 0; }
   int left(int j) const { return N == Eigen::Dynamic ? n_ - j : N; }
   // L^-1 c, to the first k entries.

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/io/toml_reader.hpp>
 #include <hamel/framework/lie/differences.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
-#include <hamel/framework/io/toml_reader.hpp>
 
 namespace hamel {
 namespace {
@@ -134,7 +134,7 @@ class File {
     return all;
   }
 
-  // Nothing else can be read without it.
+  // All else depends on the group.
   GroupInfo group_of(const toml::table& table) {
     std::string name;
     const toml::node* node = table.get("group");

@@ -12,7 +12,7 @@
 //   2_theta = { stiffness = 0.5, rest = 0.1 }
 //   [damping]                              # the force -damping xi_i on body velocities 1 to n
 //   4 = 0.02
-// What the run uses (scheme, step, ...) stays on the command line or in --config.
+// The options of the run (scheme, step, ...) belong to the command line or --config.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ namespace hamel {
 SystemModel data_system(const Registry& registry, const std::string& text,
                         const std::string& origin);
 
-/// What makes the system of a file; reads it when called. It has no parameters to set.
+/// A maker of a file's system; it reads the file when called. The system has no parameters to set.
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path);
 

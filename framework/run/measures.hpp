@@ -1,4 +1,4 @@
-// How a run is measured, alike in one run (simulate.cpp) and in a study's cells (study/measure.cpp); not installed.
+// Measures of a run, the same in one run (simulation.cpp) and in a study's cells (study/measure.cpp). Not installed.
 #pragma once
 
 #include <algorithm>

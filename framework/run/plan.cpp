@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 
-#include <hamel/framework/schemes/composition.hpp>
-#include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 
 namespace hamel {
 namespace {
@@ -68,8 +68,12 @@ Simulation::Plan Simulation::plan() const {
   const bool compiled = kernel_ && config_.scheme == kernel_scheme_.name &&
                         config_.retraction == kernel_retraction_.name;
   const SchemeInfo* scheme = compiled ? &kernel_scheme_ : registry_->scheme(config_.scheme);
-  if (scheme == nullptr) plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
-  else if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
+  if (scheme == nullptr) {
+    plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
+  } else {
+    plan.config.scheme = scheme->name;  // config_ may name an alias
+    if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
+  }
   const SolverInfo* solver = registry_->solver(config_.solver);
   if (solver == nullptr) plan.add({registry_->missing_solver(config_.solver)});
   else if (solver->make) plan.setup.solver = solver->make();
@@ -83,7 +87,7 @@ Simulation::Plan Simulation::plan() const {
     plan.add({unknown_name("composition", config_.compose, tables)});
   }
 
-  // The system with its parameters; nothing below makes sense without it.
+  // The system with its parameters, which everything below needs.
   Maker make = make_;
   if (!make && config_.system.ends_with(".toml")) {
     make = data_system_maker(*registry_, config_.system);
@@ -134,12 +138,12 @@ Simulation::Plan Simulation::plan() const {
   if (scheme != nullptr && !scheme->defined(left_invariant)) {
     plan.add({fmt::format("scheme: {} is defined for left-invariant systems only; lift and balance are "
                           "offered here",
-                          config_.scheme)});
+                          scheme->name)});
   } else if (compiled) {
     plan.kernel = kernel_;
   } else if (scheme != nullptr && geometry != nullptr) {
     const KernelFactory* own =
-        registry_->kernel(group, *system.mechanics, config_.retraction, config_.scheme);
+        registry_->kernel(group, *system.mechanics, config_.retraction, scheme->name);
     plan.kernel = own != nullptr ? *own : scheme->erased;
   }
 

@@ -1,4 +1,4 @@
-// What Simulation checks and gathers before the first step. Not installed: simulate.cpp's own.
+// The plan of a run, checked before the first step. Part of simulation.cpp, not installed.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace hamel {
 
-// Everything that a run needs, or everything that is wrong.
+// Everything that a run needs, or all its mistakes.
 struct Simulation::Plan {
   std::vector<std::string> mistakes, notes;
   Config config;
@@ -28,7 +28,7 @@ struct Simulation::Plan {
   void project();
 };
 
-/// The columns of a trajectory of this system, as in contract.md.
+/// The columns of a trajectory of this system (tools/README.md, CSV).
 std::vector<std::string> columns_of(const SystemModel& system);
 
 }  // namespace hamel

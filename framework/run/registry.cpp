@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/loop/scaled_equation.hpp>
+#include <hamel/framework/schemes/problem.hpp>
 
 namespace hamel {
 namespace {
@@ -67,6 +68,9 @@ void Registry::add_solver(const std::string& name, const std::string& summary,
                  [solve = std::move(solve)] { return std::make_shared<FunctionSolver>(solve); }});
 }
 void Registry::add_absent(SolverInfo info) { absent_solvers_[info.name] = std::move(info); }
+void Registry::add_scheme_alias(const std::string& alias, const std::string& scheme) {
+  scheme_aliases_[alias] = scheme;
+}
 void Registry::add(SystemInfo info) { systems_[info.name] = std::move(info); }
 void Registry::add_kernel(const std::string& problem, const std::string& retraction,
                           const std::string& scheme, KernelFactory factory) {
@@ -78,7 +82,11 @@ const RetractionInfo* Registry::retraction(const std::string& group,
                                            const std::string& name) const {
   return find(retractions_, {group, name});
 }
-const SchemeInfo* Registry::scheme(const std::string& name) const { return find(schemes_, name); }
+const SchemeInfo* Registry::scheme(const std::string& name) const {
+  if (const SchemeInfo* info = find(schemes_, name)) return info;
+  const std::string* target = find(scheme_aliases_, name);
+  return target == nullptr ? nullptr : find(schemes_, *target);
+}
 const SolverInfo* Registry::solver(const std::string& name) const { return find(solvers_, name); }
 const SolverInfo* Registry::absent_solver(const std::string& name) const {
   return find(absent_solvers_, name);

@@ -1,4 +1,4 @@
-// What exists by name: groups, retractions, schemes, solvers, systems, and the compiled kernels.
+// The registry: groups, retractions, schemes, solvers, systems by name, and the compiled kernels.
 //
 // A registry is a plain value filled explicitly (systems/systems.cpp fills the library's own); a user's
 // program adds to it with the add_... functions of systems/kernels.hpp, without touching the library.
@@ -54,8 +54,8 @@ struct SolverInfo {
   std::string package = {};  // the Debian package that brings it, where one is needed
 };
 
-/// A solver as one function: improve x, the guess, until |F(x)| <= tolerance. F comes scaled, and x is
-/// judged by the best residual that was evaluated: no report is asked for.
+/// A solver as one function: improves x, the guess, until |F(x)| <= tolerance. F is scaled; the solve is judged
+/// by the best residual evaluated, without a report.
 using SolveFunction =
     std::function<void(const Equation& equation, std::span<double> x, double tolerance)>;
 
@@ -65,14 +65,16 @@ std::string problem_key(const std::type_info& mechanics);
 
 class Registry {
  public:
-  // Adding a name again replaces what it stood for.
+  // Adding a name again replaces the earlier entry.
   void add(GroupInfo info);
   void add(RetractionInfo info);
   void add(SchemeInfo info);
   void add(SolverInfo info);
   void add(SystemInfo info);
   void add_solver(const std::string& name, const std::string& summary, SolveFunction solve);
-  /// A solver that this build has not, for want of info.package: no solver(), but words about it.
+  /// Another name of a scheme, accepted wherever a scheme is named; a scheme of that name goes first.
+  void add_scheme_alias(const std::string& alias, const std::string& scheme);
+  /// A solver that this build lacks, for want of info.package: listed and described, but no solver().
   void add_absent(SolverInfo info);
   /// A kernel compiled for one problem: problem_key() with a retraction and a scheme.
   void add_kernel(const std::string& problem, const std::string& retraction,
@@ -81,7 +83,7 @@ class Registry {
   // Null when there is no such name.
   const GroupInfo* group(const std::string& name) const;
   const RetractionInfo* retraction(const std::string& group, const std::string& name) const;
-  const SchemeInfo* scheme(const std::string& name) const;
+  const SchemeInfo* scheme(const std::string& name) const;  // by its name or an alias
   const SolverInfo* solver(const std::string& name) const;
   const SolverInfo* absent_solver(const std::string& name) const;
   const SystemInfo* system(const std::string& name) const;
@@ -102,17 +104,21 @@ class Registry {
   std::vector<std::string> groups() const;
   std::vector<std::string> retractions() const;
   std::vector<std::string> retractions(const std::string& group) const;
-  std::vector<std::string> schemes() const;
+  std::vector<std::string> schemes() const;  // without aliases
   std::vector<std::string> solvers() const;
   std::vector<std::string> absent_solvers() const;
-  /// Why there is no solver of this name: a nearest name, or the package to install.
+  /// The reason why there is no solver of this name: a nearest name, or the package to install.
   std::string missing_solver(const std::string& name) const;
   std::vector<std::string> systems() const;
+
+  /// alias -> scheme.
+  const std::map<std::string, std::string>& scheme_aliases() const { return scheme_aliases_; }
 
  private:
   std::map<std::string, GroupInfo> groups_;
   std::map<std::pair<std::string, std::string>, RetractionInfo> retractions_;  // (group, name)
   std::map<std::string, SchemeInfo> schemes_;
+  std::map<std::string, std::string> scheme_aliases_;
   std::map<std::string, SolverInfo> solvers_, absent_solvers_;
   std::map<std::string, SystemInfo> systems_;
   std::map<std::string, KernelFactory> kernels_;

@@ -1,9 +1,8 @@
-// Time per step of general systems, named: the erased loop of general/, no kernel compiled for them.
+// Time per step of general systems, by name.
 //
 //   build/tests/benchmarks/general --benchmark_counters_tabular=true
 // The counter "per_step" is the time of one step, "evaluations" how often the equation was evaluated in it.
-// Beside lift and balance stands the explicit Runge-Kutta-Munthe-Kaas method, four accelerations a step: what
-// an implicit step costs in comparison.
+// The explicit Runge-Kutta-Munthe-Kaas method, four accelerations a step, is measured beside lift and balance.
 #include <benchmark/benchmark.h>
 
 #include <hamel/hamel.hpp>

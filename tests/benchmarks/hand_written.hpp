@@ -1,5 +1,5 @@
-// What a user would write by hand for one system, one retraction and s = 0: plain doubles, the zeros
-// of the problem used, the same Newton policy, guess, tolerance and re-normalisation as the library's.
+// Loops written by hand for one system, one retraction and s = 0: plain doubles, the zeros of the problem used,
+// the same Newton policy, guess, tolerance and re-normalisation as the library's.
 //
 // Unknown: the two admissible velocities (a, b); equation E^T (dR_xi)^-T I xi/h = mu on those two rows.
 #pragma once

@@ -1,5 +1,5 @@
-// Each library as one calls it by hand on the 2 x 2 equation of a step: what benchmarks/solvers.cpp
-// compares hamel with. The residual |F|/scale is driven to the target that hamel aims for, no further.
+// Each library called by hand on the 2 x 2 equation of a step, for comparison in benchmarks/solvers.cpp. The
+// residual |F|/scale is driven to the target that hamel aims for, no further.
 #pragma once
 
 #include <array>
@@ -226,7 +226,7 @@ class RawSlsqp {
   bool done_ = false;
 };
 
-/// 1/2|F|^2, begun again where it stalls, in coordinates of the size of what is left.
+/// 1/2|F|^2, restarted where it stalls, in coordinates of the size of the residual left.
 template <nlopt_algorithm algorithm>
 class RawMinimiser {
  public:

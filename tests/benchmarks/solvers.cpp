@@ -2,9 +2,9 @@
 //
 //   build/tests/benchmarks/solvers --benchmark_enable_random_interleaving=true --benchmark_repetitions=9
 // The table at the end holds medians and their ratio. The equation: lift with Cayley at s = 0, Suslov with
-// full inertia, h = 0.1, two unknowns, tolerance 1e-13. By hand means: the same step class and the same
-// extrapolated guess, the library's own interface with the equation inlined, stopped at the same residual,
-// driven as it must be to get there (solvers/README.md); nothing counted, kept or certified.
+// full inertia, h = 0.1, two unknowns, tolerance 1e-13. By hand is: the same step class and the same
+// extrapolated guess, the library's own interface with the equation inlined, stopped at the same residual with the
+// options that it needs for that (solvers/README.md); nothing counted, kept or certified.
 #include <algorithm>
 #include <cstdio>
 #include <map>

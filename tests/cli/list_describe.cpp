@@ -40,7 +40,7 @@ TEST_F(List, AllAtOnce) {
   for (const std::string& kind : kinds) EXPECT_THAT(text.out, HasSubstr(kind));
 }
 
-/// The names that contract.md promises.
+/// The names that scripts rely on (tools/README.md).
 TEST_F(List, HasThePromisedNames) {
   const Json all = Json::parse(run({"list", "--json"}).out);
   const auto expect = [&](const char* kind, const std::vector<std::string>& names) {
@@ -52,7 +52,7 @@ TEST_F(List, HasThePromisedNames) {
   };
   expect("groups", {"so2", "so3", "se2", "se3", "r2", "se2*so2"});
   expect("retractions", {"exp", "cayley"});
-  expect("schemes", {"lift", "balance", "boxed", "boxed_literal", "unadapted"});
+  expect("schemes", {"lift", "dla", "balance", "boxed", "boxed_literal", "unadapted"});
   expect("solvers", {"newton", "hybrid", "ceres", "ceres_tiny", "nlopt", "nlopt:lbfgs"});
   expect("systems", {"suslov", "chaplygin_sleigh", "rolling_disk"});
 }
@@ -103,6 +103,32 @@ TEST_F(Describe, ASystemSaysEverything) {
   EXPECT_THAT(names, testing::ElementsAre("mass", "inertia", "offset"));
 }
 
+/// dla, discrete Lagrange-d'Alembert, is lift: described as such, run as such, and the record says lift.
+TEST_F(Describe, AnAliasOfAScheme) {
+  Json dla = Json::parse(run({"describe", "dla", "--json"}).out);
+  const Json lift = Json::parse(run({"describe", "lift", "--json"}).out);
+  EXPECT_EQ(dla["name"], "dla");
+  EXPECT_EQ(dla["alias_of"], "lift");
+  EXPECT_FALSE(lift.contains("alias_of"));
+  dla["name"] = "lift";
+  dla.erase("alias_of");
+  EXPECT_EQ(dla, lift);
+  EXPECT_THAT(run({"list", "schemes"}).out, HasSubstr("another name of lift"));
+
+  // On a left-invariant system and on a general one.
+  for (const std::string system : {"suslov", "falling_disk"}) {
+    const auto record = [&](const std::string& scheme) {
+      const Outcome o = run({"run", system, "--scheme", scheme, "--until", "1", "--json"});
+      EXPECT_EQ(o.status, 0) << o.err;
+      return Json::parse(o.out);
+    };
+    const Json by_alias = record("dla"), by_name = record("lift"), other = record("balance");
+    EXPECT_EQ(by_alias["scheme"], "lift");
+    EXPECT_EQ(by_alias["final"], by_name["final"]);
+    EXPECT_NE(by_alias["final"], other["final"]);
+  }
+}
+
 TEST_F(Describe, AnUnknownName) {
   const Outcome o = run({"describe", "suslof"});
   EXPECT_EQ(o.status, 2);
@@ -123,7 +149,7 @@ TEST_F(Help, OfEveryCommandHasExamples) {
       EXPECT_THAT(o.out, HasSubstr("hamel "));
     }
   }
-  // Every option that the contract names is in the help of run.
+  // Every documented option is in the help of run.
   const std::string help = run({"run", "--help"}).out;
   for (const char* option :
        {"--set", "--configuration", "--velocity", "--momentum", "--scheme", "--s", "--retraction",

@@ -22,8 +22,8 @@ class LongRuns : public CommandLine {
   }
 };
 
-/// Bounds of issue 2: group defect 1e-14, constraint residual at its floor eps/h, 2e-13; Omega constant
-/// to 1e-12 over 1800 s with lift at every s.
+/// Bounds: group defect 1e-14, constraint residual 2e-13 (its floor is eps/h), Omega constant to 1e-12 over
+/// 1800 s with lift at every s.
 TEST_F(LongRuns, KeepGroupAndConstraint) {
   for (const char* scheme : {"lift", "balance"}) {
     for (const char* retraction : {"exp", "cayley"}) {
@@ -54,7 +54,7 @@ TEST_F(LongRuns, UnadaptedLeavesTheConstraintWithin18s) {
   EXPECT_LE(r["diagnostics"]["energy_error_max"], 1e-3) << "as a free body it is fine";
 }
 
-/// Boxed drifts away from the true Omega although its energy is good: method.md, section 3.
+/// Boxed drifts away from the true Omega although its energy is good (M24).
 TEST_F(LongRuns, BoxedDriftsWithGoodEnergy) {
   const Json r = record({"--until", "1800", "--scheme", "boxed"});
   EXPECT_GE(r["diagnostics"]["exact_velocity_error_max"], 0.1);

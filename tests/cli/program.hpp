@@ -42,7 +42,7 @@ inline std::vector<std::string> split(const std::string& text, char separator = 
   return out;
 }
 
-/// A folder of its own for each test, gone afterwards.
+/// A temporary folder for each test.
 class CommandLine : public testing::Test {
  protected:
   void SetUp() override {

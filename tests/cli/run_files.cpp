@@ -1,4 +1,4 @@
-// What hamel run writes and reads: CSV, JSON files, --every, --config.
+// Files of hamel run: CSV, JSON, --every, --config.
 #include <cmath>
 #include <fstream>
 
@@ -32,7 +32,7 @@ Table read_csv(const std::string& text) {
 const std::vector<std::string> measured = {"energy",       "energy_error", "constraint",
                                            "group_defect", "iterations",   "residual"};
 
-/// t, the element, xi, the measurements, in the contract's order; what was added comes after.
+/// t, the element, xi, the measurements, in the order of tools/README.md; later columns come after.
 void expect_columns(const Table& table, const std::vector<std::string>& element, int n) {
   std::vector<std::string> expected = {"t"};
   expected.insert(expected.end(), element.begin(), element.end());

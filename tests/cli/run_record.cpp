@@ -1,4 +1,4 @@
-// hamel run --json: the record of the contract, key by key; options reach the run; files are written.
+// hamel run --json: the record, key by key; options reach the run; files are written.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -22,7 +22,7 @@ class Record : public CommandLine {
   }
 };
 
-/// Keys of contract.md and their types: s string, n number, i integer, o object, a array, ? null too.
+/// Keys of the record (tools/README.md) and their types: s string, n number, i integer, o object, a array, ? null too.
 void expect_keys(const Json& object, const std::vector<std::pair<std::string, char>>& keys,
                  const std::string& where) {
   for (const auto& [key, type] : keys) {
@@ -65,7 +65,7 @@ void expect_contract(const Json& r) {
   expect_keys(r["timing"], {{"seconds", 'n'}, {"nanoseconds_per_step", 'n'}}, "timing.");
 }
 
-/// Adding a key is free, but it is written down: here, so that a script that lists keys is not surprised.
+/// Adding a key is free but deliberate: every key of the record is listed here.
 TEST_F(Record, HasExactlyTheseKeys) {
   const Json r = record({"suslov", "--until", "0.5"});
   expect_contract(r);
@@ -75,7 +75,7 @@ TEST_F(Record, HasExactlyTheseKeys) {
                         "system", "group", "scheme", "s", "retraction", "solver", "compose", "step",
                         "parameters", "status", "reason", "steps", "time", "final", "diagnostics",
                         "solver_stats", "timing", "version", "git", "host",
-                        // added to the contract's:
+                        // later keys:
                         "tolerance", "on_failure", "until", "every", "start", "notes", "failure",
                         "fallbacks"));
 }
@@ -183,8 +183,8 @@ TEST_F(Record, QuietAndText) {
   EXPECT_TRUE(Json::accept(run({"run", "suslov", "--until", "0.1", "--quiet", "--json"}).out));
 }
 
-/// Exit status 1: the step leaves the domain of exp. What was computed is written, and the record says
-/// where and why.
+/// Exit status 1: the step leaves the domain of exp. The good steps are written, and the record has the place and
+/// the reason.
 TEST_F(Record, ANumericalFailureKeepsWhatWasComputed) {
   const Outcome o =
       run({"run", "chaplygin_sleigh", "--velocity", "0.02,-3,0", "--retraction", "exp", "--step",

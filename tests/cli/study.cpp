@@ -1,4 +1,4 @@
-// hamel study: its files, its mistakes, and that neither threads nor a kill change what it finds.
+// hamel study: its files, its mistakes; neither threads nor a kill change its results.
 #include <fcntl.h>
 #include <signal.h>
 
@@ -103,7 +103,7 @@ TEST_F(StudyCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
   EXPECT_EQ(cells("one"), cells("two"));
 }
 
-/// A study killed outright and continued has the cells of one that was left alone, and did not begin anew.
+/// A study killed and continued has the cells of an undisturbed one, and did not begin anew.
 TEST_F(StudyCommand, GoesOnAfterAKill) {
   std::string longer = kSmall;
   longer.replace(longer.find("repeats = 2"), 11, "repeats = 40");

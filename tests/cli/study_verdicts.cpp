@@ -1,4 +1,4 @@
-// hamel study: what it says of schemes that solve nothing, of failures alone, and of systems from files.
+// Verdicts of hamel study: on explicit schemes, on failures alone, and on systems from files.
 #include <nlohmann/json.hpp>
 
 #include "study_command.hpp"
@@ -19,7 +19,7 @@ velocity = [1.2, 0.5, 0]
 x = -0.5
 )";
 
-/// A scheme that solves nothing is compared with no solver, and named without one.
+/// An explicit scheme is compared with no solver, and named without one.
 TEST_F(StudyCommand, ExplicitSchemesStandAlone) {
   const std::string name = study(R"(until = 2
 scheme = ["lift", "rkmk4"]
@@ -50,8 +50,8 @@ name = "chaplygin_sleigh"
                            Not(HasSubstr("**solver**"))));
 }
 
-/// Verdicts have a name and a number for what they say, also when all that is left of a scheme has failed
-/// and when there is nothing to compare with.
+/// Verdicts state a name and a number, also when all cells of a scheme have failed and when there is nothing to
+/// compare with.
 TEST_F(StudyCommand, VerdictsNameWhatTheyCompare) {
   Outcome o = run({"study", study(R"(until = 12
 retraction = "exp"

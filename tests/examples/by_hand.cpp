@@ -1,4 +1,4 @@
-// Stepping by hand, watching a run, and what is left when a step fails.
+// Stepping by hand, watching a run, and the result of a failed step.
 #include <cmath>
 #include <iostream>
 
@@ -35,7 +35,7 @@ int main() {
                           .run();
   std::cout << failed.report();
 
-  // What cannot be run at all is one exception, before anything runs, with every mistake in it.
+  // A run that cannot start is one exception, before anything runs, with every mistake in it.
   size_t mistakes = 0;
   try {
     hamel::simulate("suslof").scheme("lfit").s(1.5).step(0).run();

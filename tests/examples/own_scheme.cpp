@@ -9,7 +9,7 @@
 // rule; the configuration follows by g_{k+1} = g_k tau(h Omega) with the mean velocity.
 //   F(y) = 2 (y - mu_bar_k) - h E^T (ad_{E y})^T I E y = 0,   mu_bar_{k+1} = 2 y - mu_bar_k.
 // E^T I E = Id makes the energy |mu_bar|^2/2, and y . E^T (ad_{E y})^T I E y = (I E y).[E y, E y] = 0:
-// the energy is kept. (Celledoni and others, Energy-preserving integrators and the structure of B-series.)
+// the energy is conserved. (Celledoni and others, Energy-preserving integrators and the structure of B-series.)
 struct ReducedMidpoint {
   static std::string name() { return "reduced_midpoint"; }
   static std::string formula() {
@@ -70,7 +70,7 @@ int main() {
       hamel::simulate("suslov")
           .set("inertia", {2, 0.3, 0.5, 3, 0.4, 4})
           .start({.velocity = {1, 0.5, 0}})
-          .solver("newton", {.tolerance = 1e-15})  // energy is kept as far as F = 0 is solved
+          .solver("newton", {.tolerance = 1e-15})  // energy is conserved as far as F = 0 is solved
           .until(20);
   double error[2], energy = 0;
   for (const double step : {0.02, 0.01}) {

@@ -7,7 +7,7 @@
 #include <hamel/hamel.hpp>
 
 // Broyden's method: the Jacobian once, at the guess; then its inverse follows by rank-one updates.
-// F comes scaled: |F(x)| <= tolerance is the goal. The library keeps the best x that was evaluated and
+// F is scaled: |F(x)| <= tolerance is the goal. The library keeps the best x that was evaluated and
 // judges the solve by its residual.
 static void broyden(const hamel::Equation& equation, std::span<double> x, double tolerance) {
   const int n = equation.size();

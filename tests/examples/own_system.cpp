@@ -1,4 +1,4 @@
-// A system of your own: what physics says, nothing else. Run by object, by name, and compiled whole.
+// A system of your own states its physics, nothing else. Run by object, by name, and compiled whole.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -36,7 +36,7 @@ int main() {
     apart = std::max({apart, std::abs(by_object.last.velocity[i] - by_name.last.velocity[i]),
                       std::abs(compiled.last.velocity[i] - by_name.last.velocity[i])});
   }
-  // The flight does not feel the turning: v1 is constant (and the turning is that of a free body).
+  // v1 is constant, and the rotation is that of a free body.
   for (double v1 : compiled.trajectory.column("xi4")) drift = std::max(drift, std::abs(v1 - 0.5));
   std::cout << "three ways apart by " << apart << ", v1 moves by " << drift << "\n";
   const bool good = by_object && by_name && compiled && apart < 1e-11 && drift < 1e-11;

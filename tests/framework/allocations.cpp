@@ -1,4 +1,4 @@
-// A step takes no memory from the heap: malloc and its family are counted while the loop runs, for
+// A step allocates nothing on the heap: malloc and its family are counted while the loop runs, for
 // every scheme, retraction and composition, m fixed and m chosen at run time.
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ void* __libc_malloc(size_t);
 void* __libc_calloc(size_t, size_t);
 void* __libc_realloc(void*, size_t);
 void* __libc_memalign(size_t, size_t);
-// operator new and Eigen's allocator come through these too.
+// operator new and Eigen's allocator call these too.
 void* malloc(size_t size) {
   ++allocations;
   return __libc_malloc(size);

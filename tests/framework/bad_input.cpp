@@ -1,5 +1,5 @@
-// Whatever is wrong is said before anything runs: one ConfigError with every mistake, each with what was
-// got and what was expected, and the nearest name.
+// Mistakes are reported before anything runs: one ConfigError with every mistake, each with the value given, the
+// values expected and the nearest name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -126,7 +126,7 @@ TEST(BadInput, Start) {
       HasSubstr("configuration"));
 }
 
-/// A start off d is no mistake: it is projected, and a note says what was lost.
+/// A start off d is no mistake: it is projected, and a note has the part that was dropped.
 TEST(BadInput, AnInadmissibleStartIsProjectedWithANote) {
   const Result r = simulate("suslov")
                        .start({.configuration = {}, .velocity = {1, 0, 0.25}, .momentum = {}})
@@ -236,7 +236,7 @@ TEST(BadInput, FilesThatCannotBeWritten) {
   std::vector<std::string> left;
   for (const auto& entry : fs::directory_iterator(folder)) left.push_back(entry.path().filename());
   EXPECT_THAT(left, testing::UnorderedElementsAre("is_a_folder.csv", "fine.csv"));
-  // A check does not touch a file that is there.
+  // A check leaves an existing file unchanged.
   std::ofstream(folder / "kept.csv") << "precious";
   EXPECT_EQ(unwritable((folder / "kept.csv").string()), "");
   EXPECT_EQ(fs::file_size(folder / "kept.csv"), 8u);

@@ -1,4 +1,4 @@
-// lift is the discrete Lagrange-d'Alembert principle: an independent implementation, by numerical
+// lift is the discrete Lagrange-d'Alembert scheme (M15): an independent implementation, by numerical
 // differentiation of L_d(g0, g1) = h l(tau_s^-1(g0^-1 g1)/h), takes the same steps.
 //
 //   < mu_k, eta > = -d/de L_d(g_k tau(e eta), g_{k+1}),   < mu_{k+1}, eta > = d/de L_d(g_k, g_{k+1} tau(e eta)),

@@ -1,6 +1,6 @@
-// One step of balance, boxed and boxed_literal satisfies the equations of method.md, section 3, written
-// here with differences of tau alone: xi recovered from the two configurations, dL and dR by numerical
-// differentiation, Ad by conjugation.
+// One step of balance, boxed and boxed_literal satisfies (M20), (M21) and (M22), written here with differences
+// of tau alone: xi recovered from the two configurations, dL and dR by numerical differentiation, Ad by
+// conjugation.
 #include <gtest/gtest.h>
 
 #include <hamel/framework/check/retraction_laws.hpp>
@@ -79,7 +79,7 @@ void expect_equations() {
   }
   {
     const OneStep<Tau> o("boxed_literal", 0);
-    // mu_k without a part along the Euclidean complement of d, with the same values on d.
+    // mu_k has no part along the Euclidean complement of d and the same values on d.
     const auto embedded = [&](const V& mu) -> V {
       return o.e * (o.e.transpose() * o.e).inverse() * (o.e.transpose() * mu);
     };

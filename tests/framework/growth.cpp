@@ -1,4 +1,4 @@
-// How far brackets reach (framework/analysis/growth.hpp), where it is known by hand.
+// The growth of brackets (framework/analysis/growth.hpp) where it is known by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>

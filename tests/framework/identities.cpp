@@ -49,7 +49,7 @@ TEST(Identities, PolarAtOneHalfIsCayleyAtZero) {
   EXPECT_GE(apart(polar, simulate(full()).start(start).retraction("cayley").s(0.5)), 1e-5);
 }
 
-/// Exp that does not say it is a one-parameter group: lift takes the general path.
+/// Exp without the flag one_parameter: lift takes the general path.
 template <class G>
 struct GeneralExp : Exp<G> {
   static constexpr bool one_parameter = false;
@@ -97,7 +97,7 @@ TEST(Identities, UnadaptedIsLiftOnTheFreeBody) {
   }
 }
 
-/// Turning the frame: the motion does not depend on where the body starts.
+/// The motion does not depend on the configuration at the start.
 TEST(Identities, LeftInvariance) {
   const Mat<3, 3> r = Exp<SO3>::tau(Vec<3>(0.3, -1.1, 0.7));
   Start turned;

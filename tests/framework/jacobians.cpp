@@ -1,6 +1,6 @@
 // The analytic Jacobian of every scheme's equation, for every registered retraction, against
-// differences, at points of large xi. It is read through framework/loop/solver.hpp, by a solver of a user:
-// the same test sees that the interface hands over F, dF/dx, size and scale.
+// differences, at points of large xi. It is read through framework/loop/solver.hpp by a user's solver, so that the
+// test covers the interface too: F, dF/dx, size and scale.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -30,7 +30,7 @@ Vector value(const Equation& equation, const Vector& x) {
   return f;
 }
 
-/// Compares the Jacobian with differences at random points, then says the step is solved.
+/// Compares the Jacobian with differences at random points, then reports the step as solved.
 class Inspector final : public Solver {
  public:
   explicit Inspector(double& worst, int& points) : worst_(worst), points_(points) {}
@@ -68,8 +68,8 @@ class Inspector final : public Solver {
 };
 
 /// Differences of order 6 with step 2e-3: round-off 2e-13, truncation (2e-3)^6/140 times the seventh
-/// derivative, which for |xi| up to 2 stays below 1e5: 1e-13 to 1e-10. The derivative that
-/// differentiated maps give Newton is itself good to 1e-12. A missing term is of order |xi|.
+/// derivative, which for |xi| up to 2 stays below 1e5: 1e-13 to 1e-10. The Newton derivative of
+/// differentiated maps is itself accurate to 1e-12. A missing term is of order |xi|.
 constexpr double bound = 1e-8;
 
 template <class S>
@@ -92,7 +92,7 @@ void expect_jacobians(const S& system) {
                                 .solver("inspector")
                                 .step(h)
                                 .build();
-          (void)run.step();  // the guess stands in for the solution, perhaps outside the domain
+          (void)run.step();  // with the guess for the solution, perhaps outside the domain
           EXPECT_EQ(points, 4);
           EXPECT_LE(worst, bound) << G::name() << " " << scheme << " " << retraction << " s = " << s
                                   << " h = " << h;

@@ -12,7 +12,7 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-// Whatever the test says.
+// The same system at every (t, g).
 struct Given final : Mechanics {
   Eigen::MatrixXd i, a;
   Eigen::VectorXd b;
@@ -52,7 +52,7 @@ void expect_definition(const Given& system, std::mt19937& random) {
   typename Place<N, K>::Vector mu(n), xi(n);
   for (double& x : mu) x = normal(random);
 
-  // A xi = b, and what is missing to I xi = mu is a reaction, whose multipliers are found.
+  // A xi = b, and I xi - mu is a reaction, whose multipliers are found.
   place.admissible(mu, xi);
   EXPECT_LT((system.a * xi - system.b).norm(), 1e-13 * (1 + system.a.norm() * xi.norm()));
   typename Place<N, K>::Few lambda(k);
@@ -82,7 +82,7 @@ void expect_definition(const Given& system, std::mt19937& random) {
                 .norm(),
             1e-11);
 
-  // from_frame: A dxi and E^T I dxi are what was asked for.
+  // from_frame: A dxi and E^T I dxi have the values given.
   typename Place<N, K>::Vector z(n);
   for (double& x : z) x = normal(random);
   typename Place<N, K>::Vector moved = z;

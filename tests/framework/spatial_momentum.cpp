@@ -1,5 +1,5 @@
-// Free motion keeps the spatial momentum Ad*_{g^-1} mu to round-off; so does unadapted on any system,
-// for it ignores the constraint. The same law sees a wrong sign in the momentum update at once.
+// Free motion conserves the spatial momentum Ad*_{g^-1} mu to round-off; so does unadapted on any system, since it
+// ignores the constraint (M23). A wrong sign in the momentum update breaks this law at once.
 #include <gtest/gtest.h>
 
 #include <hamel/groups/exp.hpp>
@@ -77,7 +77,7 @@ TEST(SpatialMomentum, UnadaptedOnConstrainedBodies) {
   expect_conserved(test::Body<SE3, 2>{}, {"unadapted"});
   expect_conserved(Suslov{}, {"unadapted"});
 }
-/// A constraint takes momentum away: lift must not keep it on a constrained body.
+/// Reactions change the momentum: lift must not conserve it on a constrained body.
 TEST(SpatialMomentum, IsNotKeptUnderAConstraint) {
   EXPECT_GT(momentum_drift<SO3>(simulate(test::Body<SO3, 1>{}).scheme("lift").step(0.05)), 1e-3);
 }

@@ -29,7 +29,7 @@ inline StudyResult run(const StudyConfig& config) {
   return Study(registry(), config).threads(2).run();
 }
 
-/// What a study refuses to begin with.
+/// The mistakes for which a study is refused.
 inline std::vector<std::string> mistakes_of(const StudyConfig& config) {
   try {
     Study(registry(), config);
@@ -39,7 +39,7 @@ inline std::vector<std::string> mistakes_of(const StudyConfig& config) {
   return {};
 }
 
-/// Suslov's body that does not know its motion.
+/// Suslov's body without its exact motion.
 struct Forgetful {
   using Group = SO3;
   std::vector<double> moments = {2, 0.3, 0.5, 3, 0.4, 4};
@@ -48,7 +48,7 @@ struct Forgetful {
   Mat<1, 3> constraints() const { return {0, 0, 1}; }
 };
 
-/// `small()` of a body that does not know its motion, in a registry that has it.
+/// `small()` of a body without an exact motion, in a registry that has it.
 inline Registry with_forgetful() {
   Registry all = registry();
   add_system<Forgetful>(all);
@@ -60,7 +60,7 @@ inline StudyConfig forgetful() {
   return config;
 }
 
-/// A folder that is gone afterwards.
+/// A temporary folder.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

@@ -1,4 +1,4 @@
-// Studies from C++: combinations, what cells are compared with, orders, stopping and going on.
+// Studies from C++: combinations, references of the cells, orders, stopping and continuing.
 #include <atomic>
 
 #include <gmock/gmock.h>
@@ -131,7 +131,7 @@ TEST(Study, SaysWhatIsWrong) {
   EXPECT_THAT(mistakes_of(config), ElementsAre("nothing is left to run"));
 }
 
-/// What is done on failure is an axis: steps beyond the domain of exp fail, or are rescued in parts.
+/// on_failure is an axis: steps beyond the domain of exp fail, or are rescued in parts.
 TEST(Study, RescuesWhatFails) {
   StudyConfig config;
   config.until = 12;
@@ -169,7 +169,7 @@ TEST(Study, SolversAgree) {
   EXPECT_EQ(compared, (config.solvers.size() - 1) * 2 * 3);
 }
 
-/// A stopped study returns what it has; the same folder then holds it, and the rest is the same.
+/// A stopped study returns its finished cells; continued in the same folder it equals one that was not stopped.
 TEST(Study, StopsAndGoesOn) {
   const TemporaryFolder folder;
   StudyConfig config = small();

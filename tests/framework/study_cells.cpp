@@ -1,4 +1,4 @@
-// What the cells of a study are: systems from data files, and schemes that make no use of an axis.
+// The cells of a study: systems from data files, and schemes that do not use an axis.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -113,7 +113,7 @@ TEST(StudyCells, ExplicitSchemesUseNoSolver) {
   EXPECT_THAT(policies, ElementsAre("stop", "halve"));
 }
 
-/// boxed measures the same wherever the s of others stands in the list.
+/// boxed measures the same at every place of its s in the list.
 TEST(StudyCells, AnUnusedValueIsTheDefault) {
   StudyConfig config = small();
   config.schemes = {"boxed"};

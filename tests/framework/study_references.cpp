@@ -1,4 +1,4 @@
-// What the cells of a study are compared with: how it is found, kept, and stopped on the way.
+// References of a study: how they are found, kept in the journal, and stopped.
 #include <atomic>
 #include <cmath>
 #include <fstream>
@@ -36,7 +36,7 @@ TEST(StudyReferences, NeedNoFinerStepThanTheCells) {
   EXPECT_EQ(reference.coordinates.size(), reference.times.size());
 }
 
-/// A motion too fast for every step: the reason is that of the runs, and no number is invented.
+/// A motion too fast for every step: the reason is that of the runs, and there is no number.
 TEST(StudyReferences, SayWhyThereIsNone) {
   StudyConfig config = forgetful();
   config.systems[0].start.velocity = {1e9, 1e9, 0};
@@ -46,7 +46,7 @@ TEST(StudyReferences, SayWhyThereIsNone) {
   EXPECT_TRUE(std::isnan(reference.bound));
 }
 
-/// They are made by Newton whatever the cells do on failure.
+/// They are computed by Newton, independently of on_failure of the cells.
 TEST(StudyReferences, DoNotDependOnTheCells) {
   StudyConfig config = forgetful();
   config.solvers = {"hybrid"};
@@ -62,7 +62,7 @@ struct Lost : Forgetful {
   }
 };
 
-/// A motion that is not finite has no extent: the largest of the finite ones would be a lie.
+/// A motion that is not finite has no extent; the largest of its finite values would be misleading.
 TEST(StudyReferences, DropNoNaN) {
   Registry all = registry();
   add_system<Lost>(all);
@@ -73,7 +73,7 @@ TEST(StudyReferences, DropNoNaN) {
   EXPECT_TRUE(std::isnan(study.metrics[0].error));
 }
 
-/// Work on a reference is shown, and ends when it is asked to.
+/// Work on a reference is shown in the progress and ends when stopped.
 TEST(StudyReferences, AreStoppedOnTheWay) {
   StudyConfig config = forgetful();
   config.until = 2000;

@@ -1,4 +1,4 @@
-// The shorter forms of a system's members mean what the long ones mean.
+// The shorter forms of a system's members are equivalent to the long ones.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What a solve is judged by does not depend on the unit of length: |F|/scale of every general scheme is the same
+// The certificate of a solve does not depend on the unit of length: |F|/scale of every general scheme is the same
 // for a body in metres and in millimetres, where momenta mix N m s with N s.
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // group (Heisenberg) with a retraction, complete in 30 lines, obeys every law.
 #include <gtest/gtest.h>
 
-#include <hamel/framework/lie/autodiff.hpp>
 #include <hamel/framework/check/retraction_laws.hpp>
+#include <hamel/framework/lie/autodiff.hpp>
 #include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/groups/second_kind.hpp>
 
@@ -91,7 +91,7 @@ TEST(AutoRetraction, EqualsTheClosedForms) {
   }
 }
 
-/// tau reaches rotations by less than about 1 rad only: Newton must say so, not return something.
+/// tau reaches rotations by less than about 1 rad only: Newton must report it instead of returning a value.
 struct Bounded : AutoRetraction<Bounded, SO2> {
   static std::string name() { return "bounded"; }
   static constexpr bool symmetric = true;

@@ -1,5 +1,4 @@
-// from_coordinates refuses what is not in the group, and says what it was given and what it
-// expected.
+// from_coordinates refuses values that are not in the group and names the values given and expected.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +66,7 @@ TEST(Coordinates, RoundTripIsExact) {
   EXPECT_NEAR(g.angle(), 7.5, 1e-15 * 8);
   EXPECT_EQ(g.translation, Vec<2>(-2, 3));
 }
-/// What a Runge-Kutta stage leaves: a rotation that is off by 0.1, an angle of many turns.
+/// Values as after a Runge-Kutta stage: a rotation that is off by 0.1, an angle of many turns.
 TEST(Coordinates, NearestTakesWhatIsNoElement) {
   using G = Product<SO3, SE2>;
   const auto g = G::compose(G::identity(), {{Exp<SO3>::tau(Vec<3>(0.3, -0.5, 0.9)), {}}});

@@ -1,4 +1,4 @@
-// What holds for every registered solver: the certificate, the floor, the same trajectory.
+// Laws of every registered solver: the certificate, the floor, the same trajectory.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -67,7 +67,7 @@ TEST(EverySolver, ReachesTheFloorAndCertifiesIt) {
   }
 }
 
-/// A guess that already meets the tolerance is improved all the same: its error is of one sign.
+/// A guess that already meets the tolerance is improved too: its error is of one sign.
 TEST(EverySolver, CorrectsAGoodGuess) {
   for (const std::string& name : foreign()) {
     const auto solver = registry().solver(name)->make();
@@ -99,7 +99,7 @@ TEST(EverySolver, SaysWhyItCannot) {
     EXPECT_GE(report.residual, 0.99) << name;
     x[0] = 0;
     EXPECT_EQ(solver->solve(undefined, test::span_of(x), 1e-13).reason, Reason::not_finite) << name;
-    // And afterwards it still works.
+    // A later solve succeeds.
     const Made good = test::like_a_step(1, 0.1);
     x[0] = 1;
     EXPECT_TRUE(solver->solve(good, test::span_of(x), 1e-13).ok()) << name;
@@ -120,8 +120,8 @@ Simulation moderate(const std::string& system, const std::string& scheme,
   return simulate(system).scheme(scheme).s(0.3).retraction(retraction).solver(solver).step(0.02);
 }
 
-/// Registered means solved: every system, scheme and retraction. Only a minimiser may refuse, and then
-/// says so. boxed_literal takes O(1) steps whatever h is: it may leave the domain.
+/// Registered means solved: every system, scheme and retraction. Only a minimiser may refuse, with a
+/// reason. boxed_literal takes O(1) steps whatever h is: it may leave the domain.
 TEST(EverySolver, SolvesEveryStep) {
   long refused = 0, all = 0;
   std::map<std::string, long> refusals;

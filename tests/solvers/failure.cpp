@@ -1,4 +1,4 @@
-// What becomes of a step that fails: stop, retry with another solver, halve; and what the record says.
+// A step that fails: stop, retry with another solver, halve; and the record of it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 using namespace hamel;
 using testing::HasSubstr;
 
-/// A Newton that refuses its calls number first..last: the steps that need rescue are known.
+/// A Newton that refuses its calls number first..last, so that the steps to be rescued are known.
 class Moody final : public Solver {
  public:
   Moody(int first, int last) : first_(first), last_(last) {}

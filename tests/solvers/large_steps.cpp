@@ -1,9 +1,9 @@
-// Large steps: no solver hands back a root that has nothing to do with the motion.
+// Large steps: no solver returns a root other than the principal one.
 //
-// One step from random starts, |xi| to 4, h = 0.2 ... 2, compared with the root that continuation from a
-// small h leads to, done here by itself: small fixed steps of h, plain Newton, no step control. A result of
-// the library must be that root or be refused. The solver "wild" leaves the guess for a random point before
-// it solves: it finds roots that no other finds.
+// One step from random starts, |xi| to 4, h = 0.2 ... 2, compared with the principal root (M40), found here
+// independently by continuation from a small h: small fixed steps of h, plain Newton, no step control. A result of
+// the library must be that root or be refused. The solver "wild" starts from a random point instead of the guess
+// and finds roots that no other finds.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -48,7 +48,7 @@ struct Count {
   int right = 0, refused = 0, wrong = 0, refused_though_there = 0;
 };
 
-/// A Newton that starts somewhere else.
+/// A Newton that starts from a random point.
 void add_wild(Registry& registry) {
   auto random = std::make_shared<std::mt19937>(5);
   registry.add_solver(
@@ -69,7 +69,7 @@ void add_wild(Registry& registry) {
       });
 }
 
-/// Where the step is solved: the loop compiled for the system, or that of all general systems.
+/// The loop that solves the step: compiled for the system, or the erased one.
 enum class On { compiled, general };
 
 template <class S>

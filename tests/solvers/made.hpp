@@ -39,7 +39,7 @@ struct Made final : Equation {
   double residual(const Vector& x) const { return f(x).norm() / size_of_terms; }
 };
 
-/// x + h (x_i x_{i+1})_i = b, everything multiplied by `unit`: what a step looks like, in other units.
+/// x + h (x_i x_{i+1})_i = b, multiplied by `unit`: of the form of a step, in other units.
 inline Made like_a_step(int n, double h, double unit = 1) {
   Vector b(n);
   for (int i = 0; i < n; ++i) b[i] = 1 + 0.3 * i;

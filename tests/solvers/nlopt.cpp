@@ -1,4 +1,4 @@
-// NLopt's word is not asked: ROUNDOFF_LIMITED at the solution counts as solved, a stall does not.
+// NLopt's return value is ignored: ROUNDOFF_LIMITED at the solution counts as solved, a stall does not.
 #include <gtest/gtest.h>
 
 #include <nlopt.h>

@@ -1,4 +1,4 @@
-// The reactions: what they do along the motion, measured on the configurations.
+// The work of the reactions along the motion, measured on the configurations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace hamel {
 namespace {
 
-// Do the rows A xi = b move, b != 0 somewhere along the default motion?
+// Is b != 0 somewhere along the default motion?
 bool moves(const SystemModel& model, const Result& run) {
   if (model.mechanics == nullptr) return false;
   const Mechanics& mechanics = *model.mechanics;
@@ -32,7 +32,7 @@ TEST(Reactions, DoNoWorkWhereTheConstraintRests) {
     ASSERT_TRUE(run.status.ok) << system << ": " << run.status.reason;
     if (std::isnan(run.reaction_work) || moves(registry().system(system)->make({}), run)) continue;
     ++seen;
-    double effort = 0;  // what they could do in that time
+    double effort = 0;  // an upper bound in that time
     for (int j = 1; run.trajectory.has("lambda" + std::to_string(j)); ++j) {
       for (const double lambda : run.trajectory.column("lambda" + std::to_string(j))) {
         effort = std::max(effort, std::abs(lambda));
@@ -43,7 +43,7 @@ TEST(Reactions, DoNoWorkWhereTheConstraintRests) {
   EXPECT_GE(seen, 15);
 }
 
-/// A step that violates the constraint is seen to work: the column does not report what the code has set.
+/// Steps that violate the constraint have a measured work: the column is not set by the code.
 TEST(Reactions, WorkWhereTheStepsLeaveTheConstraint) {
   const Result run =
       simulate("knife_edge_on_incline").scheme("reversible").step(0.1).until(4).run();

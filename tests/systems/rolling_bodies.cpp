@@ -1,5 +1,4 @@
-// Bodies that roll on a plane: the invariants, the steady motions and the thresholds that are known, found
-// by simulation.
+// Bodies that roll on a plane: their known invariants, steady motions and thresholds, found by simulation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,12 +66,12 @@ TEST(Rattleback, ReversesOneWayOnly) {
   EXPECT_LT(wrong.least, -1.49);
   EXPECT_GT(wrong.last, 1);
   EXPECT_GT(right.least, 1.4);
-  // The mirror image prefers the other way.
+  // The mirror image prefers the other sense.
   Rattleback mirrored;
   mirrored.skew = -stone.skew;
   EXPECT_LT(spins(mirrored, 1.5, 0.01, 20).last, -1);
   EXPECT_LT(spins(mirrored, -1.5, 0.01, 20).largest, -1.4);
-  // With the axes of inertia along those of the surface neither way is preferred.
+  // With the axes of inertia along those of the surface neither sense is preferred.
   Rattleback plain;
   plain.skew = 0;
   EXPECT_GT(spins(plain, 1.5, 0.01, 20).least, 1.49);

@@ -1,6 +1,6 @@
-// What the baselines are known for (framework/README.md, method.md section 7), each claim bounded from both
+// The properties of the baselines (framework/README.md; (M25) to (M29)), each claim bounded from both
 // sides: a baseline that behaves better than documented fails here as one that behaves worse. Errors are those of
-// the motion, against the exact one or a converged reference; energy and rows stand beside them.
+// the motion, against the exact one or a converged reference; energy and rows are bounded beside them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ TEST(Suslov, ContractsAtTheRateUsedHere) {
 }
 
 /// gni: the momentum across the constraint, of size O(h), is multiplied by -e^{A h} in a step; the velocity at the
-/// nodes has its square. lift, with the same step, stays where it is.
+/// nodes has its square. The error of lift with the same step does not grow.
 TEST(Gni, IsEndedByAModeThatAlternatesAndGrows) {
   const double h = 0.0125;
   Integration run = suslov("gni", h, 20).build();
@@ -134,8 +134,8 @@ class WithoutDtau final : public ExplicitStep {
   Eigen::VectorXd g0_;
 };
 
-/// On a motion that comes to rest in a steady rotation the explicit ones look perfect; the correction by dL tau^-1
-/// is what makes them so.
+/// On a motion that settles in a steady rotation the explicit schemes have their full order, by the correction with
+/// dL tau^-1.
 TEST(RungeKutta, HasOrderFourAndTwoWithoutTheCorrection) {
   Registry mine = registry();
   SchemeInfo info = *registry().scheme("rkmk4");
@@ -157,9 +157,9 @@ Simulation disk(const std::string& scheme, double h, double until) {
   return simulate("falling_disk").scheme(scheme).step(h).until(until).every(5);
 }
 
-/// A disk that rolls and wobbles for ever, on which energy and the height of the contact are to be kept: lift and
-/// reversible are off by O(h^2) and stay there; the explicit ones drift. Their error of order 4 averages out over
-/// such a motion (it is reversible), what adds up is h^5 t.
+/// A disk that rolls and wobbles for ever, with constant energy and height of the contact: the errors of lift and
+/// reversible are bounded by O(h^2), those of the explicit schemes drift. Their error of order 4 averages out over such
+/// a reversible motion; the term that adds up is h^5 t (framework/schemes/README.md, section 4).
 TEST(FallingDisk, ExplicitSchemesDrift) {
   for (const std::string scheme : {"rkmk4", "rk4_projected"}) {
     const Result half = disk(scheme, 0.02, 80).run(), whole = disk(scheme, 0.02, 160).run(),

@@ -31,7 +31,7 @@ TEST(Composition, CoefficientsAreSymmetricAndSumToOne) {
   }
 }
 
-/// The finest pair must stand above the floor of the accumulated solves (1e-12) and in the asymptotic
+/// The finest pair must lie above the floor of the accumulated solves (1e-12) and in the asymptotic
 /// regime: steps 0.2/0.1 for order 4, larger for 6 and 8. 0.05 for order 4, and 0.15 and 0.3 of the
 /// order for 6 and 8, whose asymptotic window is one halving wide.
 struct Window {
@@ -75,7 +75,7 @@ TEST(Composition, ReachesItsOrder) {
 }
 
 /// At every s and with every symmetric retraction that commutes with itself, tau(a xi) tau(b xi) =
-/// tau(b xi) tau(a xi), lift composes too (method.md, section 4).
+/// tau(b xi) tau(a xi), lift composes too (M30).
 TEST(Composition, OfLiftAtEveryS) {
   for (const double s : {0.0, 0.25, 1.0}) {
     SchemeCase base = motions()[0].base;

@@ -50,7 +50,7 @@ TEST(Reference, IntegratorIsAccurate) {
 }
 
 /// Steps of 0.05 with rates up to 3: local error (0.15/16)^16, so round-off, 1e-15 a step, grown by the
-/// motion; 1e-9 is what the brief of exact() promises, 1e-12 is what is seen.
+/// motion. exact() promises 1e-9; 1e-12 is measured.
 constexpr double bound = 1e-9;
 constexpr int steps = 100;
 constexpr double h = 0.05;

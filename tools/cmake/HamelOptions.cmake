@@ -1,5 +1,5 @@
-# Options of the build, and what our own targets are compiled with. Nothing here is seen by a user of
-# the library: flags travel through the private interface target hamel_build_options.
+# Options of the build, and the flags of our own targets. A user of the library sees none of them: they travel
+# through the private interface target hamel_build_options.
 
 option(HAMEL_BUILD_TOOLS "Build the program `hamel`" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_BUILD_TESTS "Build the tests and examples" ${PROJECT_IS_TOP_LEVEL})
@@ -15,7 +15,7 @@ set(HAMEL_HDF5 AUTO CACHE STRING
 set_property(CACHE HAMEL_HDF5 PROPERTY STRINGS AUTO ON OFF)
 if(HAMEL_HDF5 STREQUAL "OFF")
   unset(HAMEL_HDF5_LIBRARY CACHE)
-else()  # CMake's FindHDF5 wants a C compiler, which this project does not ask for
+else()  # CMake's FindHDF5 needs a C compiler, which this project does not
   find_path(HAMEL_HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
   find_library(HAMEL_HDF5_LIBRARY NAMES hdf5 hdf5_serial)
   if(NOT HAMEL_HDF5_INCLUDE OR NOT HAMEL_HDF5_LIBRARY)
@@ -56,8 +56,8 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
   set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-  # A second build of the same sources, in whatever folder, takes seconds. The sloppiness is what
-  # ccache asks for with precompiled headers.
+  # A second build of the same sources, in any folder, takes seconds. The sloppiness is needed by ccache with
+  # precompiled headers.
   find_program(CCACHE_PROGRAM ccache)
   if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_CXX_COMPILER_LAUNCHER

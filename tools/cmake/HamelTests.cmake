@@ -1,6 +1,6 @@
-# What tests/CMakeLists.txt adds its lines with.
+# The functions of tests/CMakeLists.txt.
 
-# What single tests NEED beyond the library, headers of installed packages:
+# Headers of installed packages that single tests NEED beyond the library:
 #   hamel_jet      ceres::Jet                         hamel_mpreal   mpfr::mpreal, any number of digits
 #   hamel_page     the program's report page in C++; the test brings its own report_page()
 find_path(HAMEL_CERES_INCLUDE ceres/jet.h REQUIRED)
@@ -17,7 +17,7 @@ target_sources(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel/page.cpp)
 target_include_directories(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel)
 target_link_libraries(hamel_page INTERFACE fmt::fmt nlohmann_json::nlohmann_json)
 
-# What every test, example and benchmark has in common: build/tests/<name>, the library, our warnings.
+# Common to every test, example and benchmark: build/tests/<name>, the library, our warnings.
 function(hamel_test_executable target name)
   cmake_path(GET name PARENT_PATH folder)
   cmake_path(GET name FILENAME stem)
@@ -80,7 +80,7 @@ function(hamel_example stem)
   set_tests_properties(examples/${stem} PROPERTIES LABELS "example;${arg_LABELS}" TIMEOUT 120)
 endfunction()
 
-# tests/benchmarks/<stem>.cpp -> build/tests/benchmarks/<stem>; ctest only sees that it runs.
+# tests/benchmarks/<stem>.cpp -> build/tests/benchmarks/<stem>; ctest only checks that it runs.
 function(hamel_benchmark stem)
   find_package(benchmark 1.7 REQUIRED)
   hamel_test_executable(benchmark_${stem} benchmarks/${stem})
@@ -92,7 +92,7 @@ endfunction()
 # tests/compile_errors/<stem>.cpp must fail to compile with a message that matches its first line,
 #   // expect: regular expression
 # seeing <hamel/hamel.hpp> and all layers, or only one layer and those it links: `// layer: framework`.
-# The mistake stands inside `#ifdef MISTAKE`: without that macro the file must compile.
+# The mistake is inside `#ifdef MISTAKE`: without that macro the file must compile.
 function(hamel_compile_error stem)
   set(source ${CMAKE_CURRENT_SOURCE_DIR}/compile_errors/${stem}.cpp)
   set(target hamel_umbrella)
@@ -134,7 +134,7 @@ function(hamel_page_script name)
 endfunction()
 
 # hamel_page(<name> <file> <arguments of hamel>): ctest page/<name>/write runs the program, which writes
-# the file into build/tests/page; page/<name> looks at it in headless Chromium.
+# the file into the folder page of the tests' build; page/<name> looks at it in headless Chromium.
 function(hamel_page name file)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/page)
   file(MAKE_DIRECTORY ${folder})

@@ -1,6 +1,6 @@
 # Bundles tools/report into one HTML page with npm and node, and embeds it as a string in a source.
 #
-#   cmake -DSOURCE=tools/report -DWORK=build/tools/report -DOUTPUT=report_page.cpp -DMODE=AUTO|ON|OFF
+#   cmake -DSOURCE=tools/report -DWORK=build/tools/report -DOUTPUT=<source> -DMODE=AUTO|ON|OFF
 #         -DNODE=... -DNPM=... -P this
 #
 # Everything happens in WORK, a copy: the source tree stays clean. Where the page cannot be made, mode
@@ -49,7 +49,7 @@ endif()
 
 file(COPY ${SOURCE}/ DESTINATION ${WORK} PATTERN node_modules EXCLUDE PATTERN dist EXCLUDE)
 
-# The packages, again only when the lock file says something else.
+# The packages, again only when the lock file has changed.
 file(SHA256 ${SOURCE}/package-lock.json lock)
 set(stamp ${WORK}/node_modules/.hamel-lock)
 set(installed "")
@@ -71,7 +71,7 @@ execute_process(
   COMMAND ${NODE} build.mjs ${WORK}/page.html
   WORKING_DIRECTORY ${WORK} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(NOT status EQUAL 0)
-  # Not the machine's fault but ours: never passed over in silence.
+  # A mistake of this project, not of the machine: always an error.
   message(FATAL_ERROR "hamel: node build.mjs failed in ${WORK}:\n${output}")
 endif()
 file(READ ${WORK}/page.html page)

@@ -1,4 +1,4 @@
-# cmake -DCOMPILER=c++ -DSOURCE=x.cpp -DINCLUDES=a;b -P this
+# cmake -DCOMPILER=c++ -DSOURCE=<file> -DINCLUDES=a;b -P this
 # Passes when SOURCE does not compile and the compiler's first error matches `// expect: <regex>`.
 cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${SOURCE} expected REGEX "^// expect: " LIMIT_COUNT 1)

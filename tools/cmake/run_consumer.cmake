@@ -12,7 +12,7 @@ if(KIND STREQUAL "installed")
 else()
   file(REMOVE ${build}/CMakeCache.txt)
   set(how -DHAMEL_SOURCE=${HAMEL_SOURCE} -DCMAKE_CXX_COMPILER_LAUNCHER=${CCACHE})
-  set(CMAKE_BUILD_TYPE Debug)  # compiles fastest, and is a build type that nothing else here tries
+  set(CMAKE_BUILD_TYPE Debug)  # compiles fastest; nothing else here tries this build type
 endif()
 execute_process(
   COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${build} -G ${GENERATOR} ${how}

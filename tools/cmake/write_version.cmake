@@ -1,9 +1,9 @@
-# cmake -DSOURCE=<source tree> -DINPUT=version.cpp.in -DOUTPUT=version.cpp -DVERSION=x.y.z -P this
+# cmake -DSOURCE=<source tree> -DINPUT=<template> -DOUTPUT=<source> -DVERSION=x.y.z -P this
 # Runs at every build (some 20 ms); the file changes, and is compiled again, only when the commit does, or what
 # is not committed of the sources that results depend on: a hash of that follows "-dirty".
 set(GIT_HASH unknown)
 find_program(GIT git)
-if(GIT AND EXISTS ${SOURCE}/.git)  # not the repository that a copy of us may stand in
+if(GIT AND EXISTS ${SOURCE}/.git)  # not the repository around a copy of this project
   execute_process(COMMAND ${GIT} -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
                   OUTPUT_VARIABLE hash OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET
                   RESULT_VARIABLE status)

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"
@@ -100,7 +100,14 @@ Json describe_solver(const SolverInfo& info, bool built) {
 Json description_of(const std::string& name) {
   const Registry& all = registry();
   if (const SystemInfo* info = all.system(name)) return describe_system(*info);
-  if (const SchemeInfo* info = all.scheme(name)) return describe_scheme(*info);
+  if (const SchemeInfo* info = all.scheme(name)) {
+    Json out = describe_scheme(*info);
+    if (name != info->name) {
+      out["name"] = name;
+      out["alias_of"] = info->name;
+    }
+    return out;
+  }
   if (const SolverInfo* info = all.solver(name)) return describe_solver(*info, true);
   if (const SolverInfo* info = all.absent_solver(name)) return describe_solver(*info, false);
   if (const auto info = all.group_or_product(name)) return describe_group(*info);

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"
@@ -79,6 +79,9 @@ std::vector<Table> tables() {
     if (!info.adapted) order = "leaves d";
     else if (half != zero) order = fmt::format("{} at s = 1/2, else {}", half, zero);
     schemes.rows.push_back({name, order, info.formula});
+    for (const auto& [alias, scheme] : all.scheme_aliases()) {
+      if (scheme == name) schemes.rows.push_back({alias, order, "another name of " + name});
+    }
   }
   Table solvers{"solvers", {"name", "summary"}, {}};
   for (const std::string& name : all.solvers()) {
