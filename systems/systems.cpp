@@ -3,7 +3,6 @@
 #include <hamel/solvers/ceres_tiny.hpp>
 #include <hamel/solvers/hybrid.hpp>
 #include <hamel/solvers/nlopt.hpp>
-#include <hamel/groups/all.hpp>
 #include <hamel/systems/kernels/units.hpp>
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/simulate.hpp>
@@ -45,15 +44,10 @@ void add_solvers(Registry& registry) {
 
 Registry make_registry() {
   Registry registry;
-  add_group<SO2>(registry);
-  add_group<SO3>(registry);
-  add_group<SE2>(registry);
-  add_group<SE3>(registry);
-  add_group<Rn<1>>(registry);
-  add_group<Rn<2>>(registry);
-  add_group<Rn<3>>(registry);
-  add_group<Product<SE2, SO2>>(registry);
-  add_group<Heisenberg>(registry);
+  add_rotations(registry);
+  add_motions_of_the_plane(registry);
+  add_motions_of_space(registry);
+  add_nilpotent(registry);
 
   add_erased_schemes(registry);
   registry.add_scheme_alias("dla", Lift::name());  // discrete Lagrange-d'Alembert

@@ -154,19 +154,13 @@ class Formulas {
 #if HAMEL_HAS_JET
   using Dual = ceres::Jet<double, 1>;
   using DualElement = typename G::template Element<Dual>;
-  /// Are A and I formulas over any scalar, and b constant? Then one dual number carries their rates.
+  /// Are A and I formulas over any scalar (templates on the element), and b constant? Then one dual number
+  /// carries their rates.
   static constexpr bool has_dual_rates() {
     constexpr bool rows = own == 0 || requires(const S& s) { s.constraints(); }
-    || is_dual([](const auto& s, const auto& g) requires requires {
-         s.constraints(g);
-       } { return s.constraints(g); });
-    constexpr bool held = r == 0 || is_dual([](const auto& s, const auto& g) requires requires {
-                            s.holonomic_differential(g);
-                          } { return s.holonomic_differential(g); });
-    constexpr bool metric = constant_inertia() || is_dual([](const auto& s, const auto& g) requires requires {
-                              s.inertia(g);
-                            } { return s.inertia(g); });
-    return rows && held && metric && (!has_drift<S>() || has_constant_drift<S>());
+    || dual_constraints();
+    return rows && (r == 0 || dual_differential()) && (constant_inertia() || dual_inertia()) &&
+           (!has_drift<S>() || has_constant_drift<S>());
   }
   /// dA/dt and dI/dt along the curve g tau(e xi), of which `moving` is the first-order jet.
   void dual_rates(const DualElement& moving, Mat<k, n>& a_rate, Mat<n, n>& inertia_rate) const {
@@ -195,16 +189,27 @@ class Formulas {
     else return system_.inertia(g);
   }
 #if HAMEL_HAS_JET
-  // Can the formula be called with a dual element, and does it answer with dual numbers?
-  template <class Formula>
-  static constexpr bool is_dual(Formula) {
-    if constexpr (std::is_invocable_v<Formula, const S&, const DualElement&>) {
-      return std::is_same_v<
-          typename std::decay_t<std::invoke_result_t<Formula, const S&, const DualElement&>>::Scalar,
-          Dual>;
-    } else {
-      return false;
-    }
+  // A member whose address can be taken is no template; a template may still answer with doubles.
+  template <class Answer>
+  static constexpr bool is_dual = std::is_same_v<typename std::decay_t<Answer>::Scalar, Dual>;
+  static constexpr bool dual_constraints() {
+    if constexpr (requires { &S::constraints; }) return false;
+    else if constexpr (requires(const S& s, const DualElement& g) { s.constraints(g); })
+      return is_dual<decltype(std::declval<const S&>().constraints(std::declval<DualElement>()))>;
+    else return false;
+  }
+  static constexpr bool dual_differential() {
+    if constexpr (requires { &S::holonomic_differential; }) return false;
+    else if constexpr (requires(const S& s, const DualElement& g) { s.holonomic_differential(g); })
+      return is_dual<decltype(
+          std::declval<const S&>().holonomic_differential(std::declval<DualElement>()))>;
+    else return false;
+  }
+  static constexpr bool dual_inertia() {
+    if constexpr (requires { &S::inertia; }) return false;
+    else if constexpr (requires(const S& s, const DualElement& g) { s.inertia(g); })
+      return is_dual<decltype(std::declval<const S&>().inertia(std::declval<DualElement>()))>;
+    else return false;
   }
 #endif
   template <class Function>

@@ -14,6 +14,12 @@
 
 namespace hamel {
 
+// Groups.
+void add_rotations(Registry& registry);             // so2, so3
+void add_motions_of_the_plane(Registry& registry);  // se2, se2*so2
+void add_motions_of_space(Registry& registry);      // se3
+void add_nilpotent(Registry& registry);             // r1, r2, r3, heisenberg
+// Schemes, and systems.
 void add_erased_schemes(Registry& registry);
 void add_left_invariant(Registry& registry);
 void add_particles(Registry& registry);
