@@ -8,6 +8,7 @@
 
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/meter.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 
 namespace hamel {
@@ -47,18 +48,6 @@ std::vector<std::string> read_on_failure(const Config& config, const Registry& r
 }
 
 }  // namespace
-
-std::vector<std::string> columns_of(const SystemModel& system) {
-  std::vector<std::string> out = {"t"};
-  out.insert(out.end(), system.group.columns.begin(), system.group.columns.end());
-  for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("xi{}", i));
-  for (const char* name :
-       {"energy", "energy_error", "constraint", "group_defect", "iterations", "residual"}) {
-    out.emplace_back(name);
-  }
-  for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("mu{}", i));
-  return out;
-}
 
 Simulation::Plan Simulation::plan() const {
   Plan plan;

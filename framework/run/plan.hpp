@@ -29,7 +29,4 @@ struct Simulation::Plan {
   void project(const SchemeInfo& scheme);
 };
 
-/// The columns of a trajectory of this system, as in contract.md.
-std::vector<std::string> columns_of(const SystemModel& system);
-
 }  // namespace hamel
