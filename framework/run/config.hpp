@@ -51,7 +51,7 @@ struct Config {
       &Config::compose);
     f(Option{"on_failure", "",
              "a failed step: stop, halve (two of half the size, each halved again where it fails), "
-             "or retry:<solver>",
+             "or retry:SOLVER",
              true},
       &Config::on_failure);
     f(Option{"tolerance", "1", "residual of each step, relative to the scale of its equation", true,
@@ -71,9 +71,9 @@ struct Config {
   template <class F>
   static void start_fields(F&& f) {
     f(Option{"configuration", "", "start, in the element's CSV columns"}, &Start::configuration);
-    f(Option{"velocity", "", "start, body components, projected onto the constraint"},
+    f(Option{"velocity", "", "start, body components; projected onto the constraint, with a note"},
       &Start::velocity);
-    f(Option{"momentum", "", "the same as momentum"}, &Start::momentum);
+    f(Option{"momentum", "", "the same as body momentum"}, &Start::momentum);
   }
 
   /// An option by name, as text; set throws ConfigError for no such option, or text that does not fit.

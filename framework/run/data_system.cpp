@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/io/toml_reader.hpp>
 #include <hamel/framework/lie/differences.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
-#include <hamel/framework/io/toml_reader.hpp>
 
 namespace hamel {
 namespace {

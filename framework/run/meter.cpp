@@ -1,93 +1,50 @@
 #include <hamel/framework/run/meter.hpp>
 
 namespace hamel {
-namespace {
-
-// Either the names or the values of what it is called with.
-struct Names {
-  std::vector<std::string>& out;
-  void operator()(const char* name, double) { out.emplace_back(name); }
-  void operator()(const std::vector<std::string>& names, const std::vector<double>&) {
-    out.insert(out.end(), names.begin(), names.end());
-  }
-  template <class List>
-  void operator()(const std::string& name, long count, const List&) {
-    for (long i = 1; i <= count; ++i) out.push_back(name + std::to_string(i));
-  }
-};
-struct Values {
-  std::vector<double>& out;
-  void operator()(const char*, double value) { out.push_back(value); }
-  void operator()(const std::vector<std::string>&, const std::vector<double>& values) {
-    out.insert(out.end(), values.begin(), values.end());
-  }
-  template <class List>
-  void operator()(const char*, long, const List& values) {
-    out.insert(out.end(), values.begin(), values.end());
-  }
-};
-
-// The columns of a state, in order.
-template <class Row>
-void state_columns(const SystemModel& system, const Snapshot& state, double energy_error, Row row) {
-  row("t", state.time);
-  row(system.group.columns, state.coordinates);
-  row("xi", system.group.dim, state.velocity);
-  row("energy", state.energy);
-  row(kEnergyError.name, energy_error);
-  row(kConstraint.name, state.constraint);
-  row(kGroupDefect.name, state.group_defect);
-  row("iterations", static_cast<double>(state.iterations));
-  row(kResidual.name, state.residual);
-  row("mu", system.group.dim, state.momentum);
-}
-
-// Those of the constraint's reactions, and of the exact motion.
-template <class Row>
-void reaction_columns(const Eigen::VectorXd& lambda, double power, Row row) {
-  row("lambda", lambda.size(), lambda);
-  row(kReactionPower.name, power);
-}
-template <class Row>
-void exact_columns(double error, double velocity_error, Row row) {
-  row(kExactError.name, error);
-  row(kExactVelocityError.name, velocity_error);
-}
-
-}  // namespace
-
-std::vector<std::string> columns_of(const SystemModel& system) {
-  std::vector<std::string> out;
-  state_columns(system, {}, 0, Names{out});
-  return out;
-}
 
 Meter::Meter(const SystemModel& system, const Start& start,
              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
              double lag)
-    : system_(system),
-      start_(start),
-      columns_(columns_of(system)),
-      geometry_(std::move(geometry)),
-      lag_(lag) {
+    : system_(system), start_(start), geometry_(std::move(geometry)), lag_(lag) {
   if (mechanics->holonomic_rows() > 0) all_.holonomic_max = 0;
   if (geometry_ != nullptr && mechanics->rows() > 0) {
     motion_ = std::make_unique<Motion>(geometry_, mechanics);
     all_.reaction_work = 0;
     g_.resize(geometry_->size());
     lambda_.resize(mechanics->rows());
-    reaction_columns(lambda_, 0, Names{columns_});
   }
-  if (system.exact) {
+  if (system.exact)
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
-    exact_columns(0, 0, Names{columns_});
-  }
+}
+
+void Meter::add(const char* name, double value) {
+  if (first_) columns_.push_back(name);
+  row_.push_back(value);
+}
+void Meter::add(const std::vector<std::string>& names, std::span<const double> values) {
+  if (first_) columns_.insert(columns_.end(), names.begin(), names.end());
+  row_.insert(row_.end(), values.begin(), values.end());
+}
+void Meter::add_numbered(const char* name, std::span<const double> values) {
+  for (size_t i = 1; first_ && i <= values.size(); ++i)
+    columns_.push_back(name + std::to_string(i));
+  row_.insert(row_.end(), values.begin(), values.end());
 }
 
 void Meter::take(const Snapshot& state) {
   if (first_) energy_start_ = state.energy;
+  const double error = all_.take(state, energy_start_);
   row_.clear();
-  state_columns(system_, state, all_.take(state, energy_start_), Values{row_});
+  add("t", state.time);
+  add(system_.group.columns, state.coordinates);
+  add_numbered("xi", state.velocity);
+  add("energy", state.energy);
+  add(kEnergyError.name, error);
+  add(kConstraint.name, state.constraint);
+  add(kGroupDefect.name, state.group_defect);
+  add("iterations", static_cast<double>(state.iterations));
+  add(kResidual.name, state.residual);
+  add_numbered("mu", state.momentum);
 }
 
 void Meter::compare(const Snapshot& state) {
@@ -99,10 +56,12 @@ void Meter::compare(const Snapshot& state) {
     else raise(all_.invariants[i].drift_max, value - all_.invariants[i].start);
   }
   if (system_.exact) {
-    if (first_) exact_ = system_.exact({.configuration = state.coordinates, .velocity = start_.velocity});
+    if (first_)
+      exact_ = system_.exact({.configuration = state.coordinates, .velocity = start_.velocity});
     const auto [element, velocity] = exact_(state.time);
     const auto [error, velocity_error] = all_.compare(state, element, velocity);
-    exact_columns(error, velocity_error, Values{row_});
+    add(kExactError.name, error);
+    add(kExactVelocityError.name, velocity_error);
   }
   first_ = false;
 }
@@ -125,7 +84,8 @@ void Meter::react(const Snapshot& state) {
   time_ = state.time;
   power_ = power;
   power_time_ = at;
-  reaction_columns(lambda_, power, Values{row_});
+  add_numbered("lambda", {lambda_.data(), static_cast<size_t>(lambda_.size())});
+  add(kReactionPower.name, power);
 }
 
 Measurements Meter::finish() {

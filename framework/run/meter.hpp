@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,26 +13,27 @@
 
 namespace hamel {
 
-/// The columns of contract.md, which every run has.
-std::vector<std::string> columns_of(const SystemModel& system);
-
 class Meter {
  public:
   /// lag: from a step's velocity to its end. geometry: null for a group that is not registered.
   Meter(const SystemModel& system, const Start& start, std::shared_ptr<const Geometry> geometry,
         std::shared_ptr<const Mechanics> mechanics, double lag);
 
-  /// Those, and what `compare` adds.
-  const std::vector<std::string>& columns() const { return columns_; }
-  /// Begins the row of a state with what the kernel measured of it.
+  /// Begins the row of a state with what the kernel measured of it (the columns of contract.md).
   void take(const Snapshot& state);
   /// Ends it with what the equations of motion, the invariants and the exact motion say.
   void compare(const Snapshot& state);
+  /// The names of the row's columns, after the first.
+  const std::vector<std::string>& columns() const { return columns_; }
   const std::vector<double>& row() const { return row_; }
   /// After the last state.
   Measurements finish();
 
  private:
+  // Adds to the row, and to the names of its columns while it is the first.
+  void add(const char* name, double value);
+  void add(const std::vector<std::string>& names, std::span<const double> values);
+  void add_numbered(const char* name, std::span<const double> values);
   void react(const Snapshot& state);
 
   const SystemModel& system_;

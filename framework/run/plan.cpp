@@ -8,7 +8,6 @@
 
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/run/data_system.hpp>
-#include <hamel/framework/run/meter.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 
 namespace hamel {
@@ -141,7 +140,7 @@ Simulation::Plan Simulation::plan() const {
   }
 
   const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
-  const auto width = static_cast<double>(columns_of(system).size());
+  const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
   if (rows * width > kMaxNumbers) {
     plan.add({fmt::format(
         "every: {:.3g} rows would be recorded, more than memory holds; record "

@@ -162,8 +162,8 @@ std::string Result::report() const {
   fields([&](const Quantity& quantity, const char*, auto member) {
     const double value = this->*member;
     if (*quantity.title == 0 || (member == &Result::reaction_work && !std::isfinite(value))) return;
-    line(quantity.title, fmt::format("{:.2e}{}", value,
-                                     member == &Result::energy_error_max ? " (relative)" : ""));
+    line(quantity.title,
+         fmt::format("{:.2e}{}", value, member == &Result::energy_error_max ? " (relative)" : ""));
   });
   for (const InvariantDrift& i : invariants) {
     line(i.name, fmt::format("{:.6g}, drift {:.2e}", i.start, i.drift_max));

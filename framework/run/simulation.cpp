@@ -56,9 +56,6 @@ Result Simulation::run() const {
   const long steps = config_.steps(), every = config_.every;
   const double lag = (1 - plan.setup.s) * plan.setup.composition.back() * plan.setup.step;
   Meter meter(result.system, result.config.start, plan.geometry, plan.mechanics, lag);
-  result.trajectory = Trajectory(meter.columns());
-  result.trajectory.reserve(static_cast<size_t>(steps / every + 2));
-
   using Clock = std::chrono::steady_clock;
   Clock::duration comparing{};  // is no part of the time of a run
   Snapshot& state = result.last;
@@ -70,6 +67,10 @@ Result Simulation::run() const {
     const auto begin = Clock::now();
     meter.compare(state);
     comparing += Clock::now() - begin;
+    if (recorded < 0) {
+      result.trajectory = Trajectory(meter.columns());
+      result.trajectory.reserve(static_cast<size_t>(steps / every + 2));
+    }
     result.trajectory.append(meter.row());
     return !observer_ || observer_(state);
   };

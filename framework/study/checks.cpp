@@ -121,7 +121,8 @@ class Checks {
       config.set(axis, study_.values(axis)[i]);
       return true;
     } catch (const ConfigError& error) {
-      for (const std::string& mistake : error.mistakes()) add(fmt::format("{}[{}]", axis, i), mistake);
+      for (const std::string& mistake : error.mistakes())
+        add(fmt::format("{}[{}]", axis, i), mistake);
       return false;
     }
   }

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/result.hpp>
 #include <hamel/framework/study/parts.hpp>
-#include <hamel/framework/io/version.hpp>
 
 namespace hamel::study {
 namespace {

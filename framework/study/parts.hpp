@@ -99,11 +99,13 @@ void measured_columns(F&& f) {
   f(Quantity{"evaluations_mean", "1", "of the equation, per step"},
     [&](C, M m, R) { return per_step(m.evaluations, m.steps); });
   f(Quantity{"evaluations", "1", "of the equation, whole run"}, &Metrics::evaluations);
-  f(Quantity{"fallbacks", "1", "steps that failed and were rescued by on_failure"}, &Metrics::fallbacks);
+  f(Quantity{"fallbacks", "1", "steps that failed and were rescued by on_failure"},
+    &Metrics::fallbacks);
   f(kResidual, &Metrics::residual);
-  f(Quantity{"failure_residual", "1", "|F| / scale of the step that failed"}, &Metrics::failure_residual);
+  f(Quantity{"failure_residual", "1", "|F| / scale of the step that failed"},
+    &Metrics::failure_residual);
   f(Quantity{"solver_difference", "columns of g",
-     "at the end, from the first solver in the same cell that did not fail"},
+             "at the end, from the first solver in the same cell that did not fail"},
     [](C, M m, R) { return m.solver_difference; });
   f(Quantity{"ns_per_step", "ns", "processor time, median of the timing rounds, nothing recorded"},
     [](C, M m, R) { return m.nanoseconds_median(); });

@@ -139,7 +139,8 @@ std::vector<double> step_sizes(const StudyConfig& config) {
 
 long common_intervals(const StudyConfig& config) {
   long common = 0;
-  for (const double h : step_sizes(config)) common = std::gcd(common, std::lround(config.until / h));
+  for (const double h : step_sizes(config))
+    common = std::gcd(common, std::lround(config.until / h));
   for (long parts = std::min(common, kMaxIntervals); parts > 1; --parts)
     if (common % parts == 0) return parts;
   return 1;

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/config.hpp>
 #include <hamel/framework/run/registry.hpp>
-#include <hamel/framework/io/table.hpp>
 
 namespace hamel {
 
@@ -56,9 +56,9 @@ struct StudyValues : std::vector<std::string> {
 /// A study as plain data: systems, and for each option that it varies (Config::fields) its values.
 struct StudyConfig {
   std::string title = "Study";
-  bool zipped = false;  // the lists run together instead of in all combinations
+  bool zipped = false;            // the lists run together instead of in all combinations
   double until = Config().until;  // seconds
-  int repeats = 3;      // timing rounds
+  int repeats = 3;                // timing rounds
   std::vector<StudySystem> systems;
   std::map<std::string, StudyValues> axes;  // those not named have the default of a run
   std::vector<StudyExclusion> exclude;

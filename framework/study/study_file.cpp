@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/study/parts.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/study/parts.hpp>
 
 namespace hamel {
 namespace {
@@ -111,7 +111,8 @@ class StudyReader {
   void set(const toml::node& node, const std::string& prefix, Parameters& out) {
     read_.lists(node, "set", out);
     if (const toml::table* table = node.as_table())
-      for (const auto& [name, value] : *table) at(prefix + ".set." + std::string(name.str()), value);
+      for (const auto& [name, value] : *table)
+        at(prefix + ".set." + std::string(name.str()), value);
   }
 
   void exclusions(const toml::node& node) {

@@ -8,9 +8,9 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/result.hpp>
 #include <hamel/framework/study/parts.hpp>
-#include <hamel/framework/io/version.hpp>
 
 namespace hamel {
 namespace {

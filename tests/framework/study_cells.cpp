@@ -123,4 +123,28 @@ TEST(StudyCells, AnUnusedValueIsTheDefault) {
   EXPECT_EQ(cells.front().config.s, Config{}.s);
 }
 
+/// The axes are the options that Config::fields lets a study vary; a program may misname one.
+TEST(StudyCells, AxesGoByName) {
+  EXPECT_THAT(study_axes(), ElementsAre("system", "scheme", "retraction", "s", "solver", "compose",
+                                        "on_failure", "tolerance", "step"));
+  StudyConfig config = small();
+  EXPECT_THAT(config.values("tolerance"), ElementsAre(Config().text("tolerance")));
+  config.axes["schme"] = {"lift"};
+  config.axes["s"] = {"half"};
+  EXPECT_THAT(mistakes_of(config), AllOf(Contains(HasSubstr("unknown axis 'schme'")),
+                                         Contains(HasSubstr("did you mean 'scheme'?")),
+                                         Contains(HasSubstr("s: 'half' is not a number"))));
+}
+
+/// A cell that is not run keeps the values that were asked for, in the table too.
+TEST(StudyCells, ADuplicateKeepsItsValues) {
+  StudyConfig config = small();
+  config.axes["scheme"] = {"boxed"};
+  config.axes["s"] = {0.5, 0};
+  config.axes["step"] = {0.1};
+  const StudyResult study = run(config);
+  ASSERT_EQ(study.cells[1].skipped, "duplicate");
+  EXPECT_EQ(study.table().column("s").text(1), "0");
+}
+
 }  // namespace

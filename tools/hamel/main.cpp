@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <map>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -22,8 +21,7 @@ constexpr int kBadInput = 2;
 struct RunLine {
   std::string system, config_file;
   std::vector<std::string> sets;
-  std::map<std::string, std::string> texts;  // as given, by flag
-  std::vector<std::function<void(Config&)>> overrides;
+  std::vector<std::function<void(Config&)>> overrides;  // of what is given, in its order
   RunOptions options;
 
   // The flag of an option, and what it does to a run when it is given.
@@ -34,21 +32,20 @@ struct RunLine {
     std::replace(flag.begin(), flag.end(), '_', '-');
     if (const std::string text = text_of(usual); !text.empty())
       help += fmt::format(" [{}{}]", text, std::string(option.unit) == "s" ? " s" : "");
-    CLI::Option* given;
-    if constexpr (std::is_same_v<Value, bool>)
-      given = app.add_flag(flag, help)->default_str("true");
-    else
-      given = app.add_option(flag, texts[flag], help)->type_name(type<Value>());
-    overrides.emplace_back([=, this](Config& config) {
-      if (given->count() > 0)
-        read_text(flag, std::is_same_v<Value, bool> ? "true" : texts[flag], member(config));
-    });
-  }
-  template <class Value>
-  static const char* type() {
-    if constexpr (std::is_same_v<Value, double>) return "FLOAT";
-    if constexpr (std::is_same_v<Value, long>) return "INT";
-    return std::is_same_v<Value, std::string> ? "TEXT" : "A,B,...";
+    const auto give = [this, member](const Value& value) {
+      overrides.emplace_back([member, value](Config& config) { member(config) = value; });
+    };
+    if constexpr (std::is_same_v<Value, bool>) {
+      app.add_flag_callback(
+          flag, [give] { give(true); }, option.meaning);
+    } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+      app.add_option_function<Value>(flag, give, help);
+    } else {
+      const auto read = [this, flag, member](const std::string& text) {
+        overrides.emplace_back([=](Config& config) { read_text(flag, text, member(config)); });
+      };
+      app.add_option_function<std::string>(flag, read, help)->type_name("A,B,...");
+    }
   }
 
   void define(CLI::App& app) {
