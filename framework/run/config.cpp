@@ -185,15 +185,15 @@ std::vector<std::string> Config::mistakes() const {
   const auto refuse = [&](const char* name, double value, const char* expected) {
     out.push_back(fmt::format("{}: got {}, expected {}", name, value, expected));
   };
-  const auto check = [&](const Option& option, double value) {
+  const auto look_at = [&](const Option& option, double value) {
     if (option.allows != nullptr && !option.allows(value))
       refuse(option.name, value, option.expected);
   };
   fields([&](const Option& option, auto member) {
     using Value = std::remove_cvref_t<decltype(this->*member)>;
-    if constexpr (std::is_arithmetic_v<Value>) check(option, static_cast<double>(this->*member));
+    if constexpr (std::is_arithmetic_v<Value>) look_at(option, static_cast<double>(this->*member));
     if constexpr (std::is_same_v<Value, std::vector<double>>)
-      for (const double x : this->*member) check(option, x);
+      for (const double x : this->*member) look_at(option, x);
   });
   if (std::isfinite(until) && std::isfinite(step) && step != 0) {
     if (until / step < 0) refuse("until", until, "the sign of step");
