@@ -2,6 +2,8 @@
 // needs toml++.
 #pragma once
 
+#include <concepts>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,30 +27,34 @@ class TomlReader {
     }
   }
 
-  void text(const toml::node& node, const std::string& key, std::string& out) {
-    if (auto value = node.value<std::string>()) out = *value;
-    else wrong(node, key, "a string");
+  /// The node as the type of `out`, else a mistake; one entry is a list too.
+  void value(const toml::node& node, const std::string& key, std::string& out) {
+    scalar(node, key, out, "a string");
   }
-  void number(const toml::node& node, const std::string& key, double& out) {
-    if (auto value = node.value<double>()) out = *value;
-    else wrong(node, key, "a number");
+  void value(const toml::node& node, const std::string& key, double& out) {
+    scalar(node, key, out, "a number");
   }
-  template <class Integer>
-  void whole(const toml::node& node, const std::string& key, Integer& out) {
-    if (auto value = node.value<Integer>(); value && node.is_integer()) out = *value;
-    else wrong(node, key, "a whole number");
+  void value(const toml::node& node, const std::string& key, bool& out) {
+    scalar(node, key, out, "true or false", node.is_boolean());
   }
-  void list(const toml::node& node, const std::string& key, std::vector<double>& out) {
-    out.clear();
-    if (const toml::array* array = node.as_array()) {
-      for (const toml::node& entry : *array) {
-        if (auto value = entry.value<double>()) out.push_back(*value);
-        else wrong(entry, key, "a list of numbers");
-      }
-    } else if (auto value = node.value<double>()) {
-      out.push_back(*value);
-    } else {
-      wrong(node, key, "a number or a list of numbers");
+  template <std::integral Integer>
+  void value(const toml::node& node, const std::string& key, Integer& out) {
+    scalar(node, key, out, "a whole number", node.is_integer());
+  }
+  void value(const toml::node& node, const std::string& key, std::vector<double>& out) {
+    entries(node, key, out, "numbers", "a number or a list of numbers");
+  }
+  void value(const toml::node& node, const std::string& key, std::vector<std::string>& out) {
+    entries(node, key, out, "strings", "a string or a list of strings");
+  }
+  /// A table of lists of numbers.
+  void lists(const toml::node& node, const std::string& key,
+             std::map<std::string, std::vector<double>>& out) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return wrong(node, key, "a table of parameters");
+    for (const auto& [name, entry] : *table) {
+      const std::string field(name.str());
+      value(entry, key + "." + field, out[field]);
     }
   }
   void wrong(const toml::node& node, const std::string& key, const std::string& expected) {
@@ -73,6 +79,28 @@ class TomlReader {
   std::vector<std::string> mistakes;
 
  private:
+  template <class T>
+  void scalar(const toml::node& node, const std::string& key, T& out, const char* expected,
+              bool fits = true) {
+    if (const auto value = node.value<T>(); value && fits) out = *value;
+    else wrong(node, key, expected);
+  }
+  template <class T>
+  void entries(const toml::node& node, const std::string& key, std::vector<T>& out,
+               const std::string& kind, const char* expected) {
+    out.clear();
+    if (const toml::array* array = node.as_array()) {
+      for (const toml::node& entry : *array) {
+        if (const auto value = entry.value<T>()) out.push_back(*value);
+        else wrong(entry, key, "a list of " + kind);
+      }
+    } else if (const auto value = node.value<T>()) {
+      out.push_back(*value);
+    } else {
+      wrong(node, key, expected);
+    }
+  }
+
   std::string origin_;
 };
 

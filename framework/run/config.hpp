@@ -1,6 +1,11 @@
 // A run as plain data: what the builder fills, the command line overrides, and a file keeps.
+//
+// Config::fields is the one list of a run's options. Files, the command line and its help, the record, the axes
+// of a study and the table of tools/README.md follow from it: one more option is a member here, a line there,
+// and the place that uses it.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -8,20 +13,72 @@
 
 namespace hamel {
 
+/// What is said of one option: a double, long, bool or string, or a list of doubles or strings.
+struct Option {
+  const char* name;  // in files and records; on the command line with dashes, --on-failure
+  const char* unit;  // "" for words, "1" for plain numbers
+  const char* meaning;
+  bool axis = false;                 // whether a study may vary it
+  bool (*allows)(double) = nullptr;  // for numbers, each entry of a list
+  const char* expected = "";         // in words
+};
+
 struct Config {
   std::string system;
   Parameters parameters;
   Start start;
   std::string scheme = "lift";
-  double s = 0.5;  // in [0, 1]
   std::string retraction = "cayley";
+  double s = 0.5;
   std::string solver = "newton";
-  double tolerance = 1e-13;         // on |F| / scale
-  std::string on_failure = "stop";  // a failed step: stop, halve, or retry:<solver>
   std::string compose = "none";
-  double step = 0.01;  // h, seconds, of either sign
-  double until = 20;   // seconds, of the sign of step
-  long every = 1;      // record every this many steps
+  std::string on_failure = "stop";
+  double tolerance = 1e-13;
+  double step = 0.01;
+  double until = 20;
+  long every = 1;
+
+  /// Calls f(Option, member pointer) for each option; axes in the order in which a study runs through them.
+  template <class F>
+  static void fields(F&& f) {
+    f(Option{"scheme", "", "reading of the method", true}, &Config::scheme);
+    f(Option{"retraction", "", "retraction map", true}, &Config::retraction);
+    f(Option{"s", "1", "discretisation parameter, in [0, 1]", true,
+             [](double x) { return x >= 0 && x <= 1; }, "a number in [0, 1]"},
+      &Config::s);
+    f(Option{"solver", "", "solver of the implicit equation", true}, &Config::solver);
+    f(Option{"compose", "", "composition: yoshida4 suzuki4 yoshida6 kahan_li6 suzuki_umeno8", true},
+      &Config::compose);
+    f(Option{"on_failure", "",
+             "a failed step: stop, halve (two of half the size, each halved again where it fails), "
+             "or retry:SOLVER",
+             true},
+      &Config::on_failure);
+    f(Option{"tolerance", "1", "residual of each step, relative to the scale of its equation", true,
+             [](double x) { return x > 0 && x < 1; }, "a number in (0, 1)"},
+      &Config::tolerance);
+    f(Option{"step", "s", "step, of either sign", true,
+             [](double x) { return std::isfinite(x) && x != 0; }, "a finite number other than 0"},
+      &Config::step);
+    f(Option{"until", "s", "end time, of the sign of the step; whole steps only", false,
+             [](double x) { return std::isfinite(x); }, "a finite number"},
+      &Config::until);
+    f(Option{"every", "1", "record every this many steps, first and last always", false,
+             [](double x) { return x >= 1; }, "at least 1"},
+      &Config::every);
+  }
+  /// The same for the members of a Start.
+  template <class F>
+  static void start_fields(F&& f) {
+    f(Option{"configuration", "", "start, in the element's CSV columns"}, &Start::configuration);
+    f(Option{"velocity", "", "start, body components; projected onto the constraint, with a note"},
+      &Start::velocity);
+    f(Option{"momentum", "", "the same as body momentum"}, &Start::momentum);
+  }
+
+  /// An option by name, as text; set throws ConfigError for no such option, or text that does not fit.
+  std::string text(const std::string& option) const;
+  void set(const std::string& option, const std::string& text);
 
   /// The number of whole steps: until / step rounded down, up to round-off.
   long steps() const;
@@ -35,5 +92,20 @@ struct Config {
 
 /// Reads a file with from_toml; ConfigError when it cannot be read.
 Config read_config(const std::string& path);
+
+/// The value of an option as text, lists separated by commas, and back: exact for numbers. ConfigError that
+/// begins with `option` for text that does not fit.
+std::string text_of(double value);
+std::string text_of(long value);
+std::string text_of(bool value);
+std::string text_of(const std::string& value);
+std::string text_of(const std::vector<double>& value);
+std::string text_of(const std::vector<std::string>& value);
+void read_text(const std::string& option, const std::string& text, double& out);
+void read_text(const std::string& option, const std::string& text, long& out);
+void read_text(const std::string& option, const std::string& text, bool& out);
+void read_text(const std::string& option, const std::string& text, std::string& out);
+void read_text(const std::string& option, const std::string& text, std::vector<double>& out);
+void read_text(const std::string& option, const std::string& text, std::vector<std::string>& out);
 
 }  // namespace hamel

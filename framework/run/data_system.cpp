@@ -103,7 +103,7 @@ class File {
     }
     for (const auto& [name, node] : table) {
       const std::string key(name.str());
-      if (key == "name") read_.text(node, key, model.name);
+      if (key == "name") read_.value(node, key, model.name);
       else if (key == "inertia") square(node, key, inertia);
       else if (key == "drift") b = numbers(node, key, a.rows());
       else if (key == "configuration")
@@ -142,7 +142,7 @@ class File {
       read_.mistakes.push_back(
           fmt::format("{}: group: missing, expected the name of a group", origin_));
     } else {
-      read_.text(*node, "group", name);
+      read_.value(*node, "group", name);
     }
     const auto info = registry_.group_or_product(name);
     if (info) return *info;

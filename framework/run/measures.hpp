@@ -1,4 +1,5 @@
-// Measures of a run, the same in one run (simulation.cpp) and in a study's cells (study/measure.cpp). Not installed.
+// What a run measures: one list of quantities by name, and the largest values over the recorded states. The
+// columns of a run, its record and its report, and the tables of a study take names and meanings from here.
 #pragma once
 
 #include <algorithm>
@@ -6,8 +7,43 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/loop/kernel.hpp>
 
 namespace hamel {
+
+/// A number that is measured, as files call it.
+struct Quantity {
+  const char *name, *unit, *meaning;
+  const char* title = "";  // in reports; "" where they leave it out
+};
+
+// At each state.
+inline constexpr Quantity kEnergyError = {"energy_error", "1", "(E - E0) / |E0|", "energy error"};
+inline constexpr Quantity kConstraint = {
+    "constraint", "columns of xi", "|A xi/h - b|, from the configurations", "constraint residual"};
+inline constexpr Quantity kHolonomic = {"holonomic", "columns of g", "|phi(g)|"};
+inline constexpr Quantity kGroupDefect = {"group_defect", "1", "distance from the group",
+                                          "group defect"};
+inline constexpr Quantity kResidual = {"residual", "1", "|F| / scale"};
+inline constexpr Quantity kReactionPower = {"reaction_power", "W", "lambda . A v"};
+inline constexpr Quantity kExactError = {"exact_error", "columns of g",
+                                         "distance from the exact motion"};
+inline constexpr Quantity kExactVelocityError = {"exact_velocity_error", "columns of xi",
+                                                 "distance from the exact velocity"};
+// Over a run.
+inline constexpr Quantity kReactionWork = {
+    "reaction_work", "J", "of A^T lambda, by trapezoids over the rows", "work of reactions"};
+
+/// How far an invariant of the exact motion moved.
+struct InvariantDrift {
+  std::string name;
+  double start = 0;
+  double drift_max = 0;  // max |value - start|
+};
 
 /// (E - E0) / |E0|; E where E0 = 0.
 inline double energy_error(double energy, double start) {
@@ -27,5 +63,49 @@ inline void raise(double& largest, double value) {
   largest = std::isfinite(value) ? std::max(largest, std::abs(value))
                                  : std::numeric_limits<double>::quiet_NaN();
 }
+
+/// Over the recorded states of one run. NaN: there is no such thing, or it was not finite.
+struct Measurements {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  double constraint_max = 0;
+  double holonomic_max = kNone;
+  double group_defect_max = 0;
+  double energy_error_max = 0;
+  double reaction_work = kNone;
+  double exact_error_final = kNone, exact_error_max = kNone, exact_velocity_error_max = kNone;
+  std::vector<InvariantDrift> invariants;
+
+  /// Calls f(Quantity, suffix of its name, member pointer), in the order of the record.
+  template <class F>
+  static void fields(F&& f) {
+    f(kConstraint, "_max", &Measurements::constraint_max);
+    f(kHolonomic, "_max", &Measurements::holonomic_max);
+    f(kGroupDefect, "_max", &Measurements::group_defect_max);
+    f(kEnergyError, "_max", &Measurements::energy_error_max);
+    f(kReactionWork, "", &Measurements::reaction_work);
+    f(kExactError, "_final", &Measurements::exact_error_final);
+    f(kExactError, "_max", &Measurements::exact_error_max);
+    f(kExactVelocityError, "_max", &Measurements::exact_velocity_error_max);
+  }
+
+  /// Takes in a state; returns its energy error.
+  double take(const Snapshot& state, double energy_start) {
+    const double error = energy_error(state.energy, energy_start);
+    raise(energy_error_max, error);
+    raise(constraint_max, state.constraint);
+    raise(holonomic_max, state.holonomic);
+    raise(group_defect_max, state.group_defect);
+    return error;
+  }
+  /// The distances of the element's columns and of the velocity.
+  std::pair<double, double> compare(const Snapshot& state, std::span<const double> element,
+                                    std::span<const double> velocity) {
+    exact_error_final = euclidean_distance(state.coordinates, element);
+    const double velocity_error = euclidean_distance(state.velocity, velocity);
+    raise(exact_error_max, exact_error_final);
+    raise(exact_velocity_error_max, velocity_error);
+    return {exact_error_final, velocity_error};
+  }
+};
 
 }  // namespace hamel

@@ -48,18 +48,6 @@ std::vector<std::string> read_on_failure(const Config& config, const Registry& r
 
 }  // namespace
 
-std::vector<std::string> columns_of(const SystemModel& system) {
-  std::vector<std::string> out = {"t"};
-  out.insert(out.end(), system.group.columns.begin(), system.group.columns.end());
-  for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("xi{}", i));
-  for (const char* name :
-       {"energy", "energy_error", "constraint", "group_defect", "iterations", "residual"}) {
-    out.emplace_back(name);
-  }
-  for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("mu{}", i));
-  return out;
-}
-
 Simulation::Plan Simulation::plan() const {
   Plan plan;
   plan.config = config_;
@@ -148,7 +136,7 @@ Simulation::Plan Simulation::plan() const {
   }
 
   const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
-  const auto width = static_cast<double>(columns_of(system).size());
+  const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
   if (rows * width > kMaxNumbers) {
     plan.add({fmt::format(
         "every: {:.3g} rows would be recorded, more than memory holds; record "

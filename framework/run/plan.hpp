@@ -28,7 +28,4 @@ struct Simulation::Plan {
   void project();
 };
 
-/// The columns of a trajectory of this system (tools/README.md, CSV).
-std::vector<std::string> columns_of(const SystemModel& system);
-
 }  // namespace hamel

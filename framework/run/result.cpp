@@ -20,11 +20,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-Json numbers(const std::vector<double>& values) {
+Json json_of(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+template <class Value>
+Json json_of(const Value& value) {
+  return value;
+}
+Json json_of(const std::vector<double>& values) {
   Json out = Json::array();
-  for (double x : values) out.push_back(number(x));
+  for (double x : values) out.push_back(json_of(x));
   return out;
 }
 
@@ -32,7 +35,7 @@ Json matrix(const Eigen::MatrixXd& m) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
     Json row = Json::array();
-    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(number(m(i, j)));
+    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(json_of(m(i, j)));
     rows.push_back(row);
   }
   return rows;
@@ -49,7 +52,7 @@ Json element(const Result& result) {
 Json fallbacks(const SolverStats& stats) {
   Json out = Json::array();
   for (const Fallback& f : stats.first_fallbacks) {
-    out.push_back({{"step", f.step}, {"time", number(f.time)}, {"action", f.action}});
+    out.push_back({{"step", f.step}, {"time", json_of(f.time)}, {"action", f.action}});
   }
   return out;
 }
@@ -58,30 +61,26 @@ Json record_of(const Result& r) {
   Json parameters = Json::object();
   for (const Field& field : r.system.fields) {
     parameters[field.name] =
-        field.value.size() == 1 ? number(field.value[0]) : numbers(field.value);
+        field.value.size() == 1 ? json_of(field.value[0]) : json_of(field.value);
   }
   Json invariants = Json::object();
   for (const InvariantDrift& i : r.invariants) {
-    invariants[i.name] = {{"start", number(i.start)}, {"drift_max", number(i.drift_max)}};
+    invariants[i.name] = {{"start", json_of(i.start)}, {"drift_max", json_of(i.drift_max)}};
   }
   const double steps = static_cast<double>(std::max(r.steps, 1L));
-  return {
-      {"system", r.system.name},
-      {"group", r.system.group.name},
-      {"scheme", r.config.scheme},
-      {"s", r.config.s},
-      {"retraction", r.config.retraction},
-      {"solver", r.config.solver},
-      {"tolerance", r.config.tolerance},
-      {"on_failure", r.config.on_failure},
-      {"compose", r.config.compose},
-      {"step", r.config.step},
-      {"until", r.config.until},
-      {"every", r.config.every},
+  Json diagnostics;
+  Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
+    diagnostics[std::string(quantity.name) + suffix] = json_of(r.*member);
+  });
+  diagnostics["invariants"] = invariants;
+  Json out = {{"system", r.system.name}, {"group", r.system.group.name}};
+  Config::fields(
+      [&](const Option& option, auto member) { out[option.name] = json_of(r.config.*member); });
+  out.update(Json{
       {"parameters", parameters},
       {"start",
-       {{"configuration", numbers(r.config.start.configuration)},
-        {"velocity", numbers(r.config.start.velocity)}}},
+       {{"configuration", json_of(r.config.start.configuration)},
+        {"velocity", json_of(r.config.start.velocity)}}},
       {"notes", r.notes},
       {"status", r.status.ok ? "ok" : "failed"},
       {"reason", r.status.reason},
@@ -90,33 +89,25 @@ Json record_of(const Result& r) {
       {"failure", r.status.ok ? Json(nullptr)
                               : Json{{"step", r.status.step},
                                      {"time", r.status.time},
-                                     {"residual", number(r.status.residual)}}},
+                                     {"residual", json_of(r.status.residual)}}},
       {"final",
        {{"element", element(r)},
-        {"velocity", numbers(r.last.velocity)},
-        {"momentum", numbers(r.last.momentum)},
-        {"energy", number(r.last.energy)}}},
-      {"diagnostics",
-       {{"constraint_max", number(r.constraint_max)},
-        {"holonomic_max", number(r.holonomic_max)},
-        {"group_defect_max", number(r.group_defect_max)},
-        {"energy_error_max", number(r.energy_error_max)},
-        {"reaction_work", number(r.reaction_work)},
-        {"exact_error_final", number(r.exact_error_final)},
-        {"exact_error_max", number(r.exact_error_max)},
-        {"exact_velocity_error_max", number(r.exact_velocity_error_max)},
-        {"invariants", invariants}}},
+        {"velocity", json_of(r.last.velocity)},
+        {"momentum", json_of(r.last.momentum)},
+        {"energy", json_of(r.last.energy)}}},
+      {"diagnostics", diagnostics},
       {"solver_stats",
        {{"iterations_mean", static_cast<double>(r.stats.iterations) / steps},
         {"iterations_max", r.stats.iterations_max},
         {"evaluations_mean", static_cast<double>(r.stats.evaluations) / steps},
-        {"residual_max", number(r.stats.residual_max)}}},
+        {"residual_max", json_of(r.stats.residual_max)}}},
       {"fallbacks", {{"count", r.stats.fallbacks}, {"first", fallbacks(r.stats)}}},
       {"timing", {{"seconds", r.seconds}, {"nanoseconds_per_step", r.seconds * 1e9 / steps}}},
       {"version", version()},
       {"git", git_hash()},
       {"host", host_name()},
-  };
+  });
+  return out;
 }
 
 }  // namespace
@@ -136,18 +127,6 @@ std::vector<double> Trajectory::column(const std::string& name) const {
   std::vector<double> out(rows());
   for (size_t i = 0; i < out.size(); ++i) out[i] = at(i, j);
   return out;
-}
-
-void Trajectory::add_column(const std::string& name, const std::vector<double>& values) {
-  std::vector<double> wider;
-  wider.reserve(values_.size() + values.size());
-  for (size_t i = 0; i < values.size(); ++i) {
-    const auto old = row(i);
-    wider.insert(wider.end(), old.begin(), old.end());
-    wider.push_back(values[i]);
-  }
-  values_ = std::move(wider);
-  columns_.push_back(name);
 }
 
 std::string Result::record(int indent) const { return record_of(*this).dump(indent); }
@@ -180,12 +159,12 @@ std::string Result::report() const {
     line("fallbacks", fmt::format("{} of {} steps; the first, step {} (t = {:.6g}): {}",
                                   stats.fallbacks, steps, first.step, first.time, first.action));
   }
-  line("constraint residual", fmt::format("{:.2e}", constraint_max));
-  line("group defect", fmt::format("{:.2e}", group_defect_max));
-  line("energy error", fmt::format("{:.2e} (relative)", energy_error_max));
-  if (std::isfinite(reaction_work)) {
-    line("work of reactions", fmt::format("{:.2e}", reaction_work));
-  }
+  fields([&](const Quantity& quantity, const char*, auto member) {
+    const double value = this->*member;
+    if (*quantity.title == 0 || (member == &Result::reaction_work && !std::isfinite(value))) return;
+    line(quantity.title,
+         fmt::format("{:.2e}{}", value, member == &Result::energy_error_max ? " (relative)" : ""));
+  });
   for (const InvariantDrift& i : invariants) {
     line(i.name, fmt::format("{:.6g}, drift {:.2e}", i.start, i.drift_max));
   }

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/config.hpp>
 #include <hamel/framework/loop/kernel.hpp>
+#include <hamel/framework/run/config.hpp>
+#include <hamel/framework/run/measures.hpp>
 
 namespace hamel {
 
@@ -28,22 +29,13 @@ class Trajectory {
     values_.insert(values_.end(), row.begin(), row.end());
   }
   void reserve(size_t rows) { values_.reserve(rows * columns_.size()); }
-  /// Adds a column on the right; values has rows() entries.
-  void add_column(const std::string& name, const std::vector<double>& values);
 
  private:
   std::vector<std::string> columns_;
   std::vector<double> values_;
 };
 
-/// How far an invariant of the exact motion moved, measured at the recorded states.
-struct InvariantDrift {
-  std::string name;
-  double start = 0;
-  double drift_max = 0;  // max |value - start|
-};
-
-struct Result {
+struct Result : Measurements {
   Config config;  // as it was run: start and parameters filled in
   SystemModel system;
   std::vector<std::string> notes;  // what the user should know (a start that was projected, ...)
@@ -52,16 +44,7 @@ struct Result {
   long steps = 0;
   Trajectory trajectory;
   SolverStats stats;
-  std::vector<InvariantDrift> invariants;
-  double constraint_max = 0;
-  double holonomic_max = 0;  // max |phi|, NaN where there are no holonomic rows
-  double group_defect_max = 0;
-  double energy_error_max = 0;   // relative to the start's energy
-  double reaction_work = 0;      // of A^T lambda, by trapezoids over the rows; NaN without rows
-  double exact_error_final = 0;  // |coordinates - exact coordinates|, NaN where nothing is known
-  double exact_error_max = 0;
-  double exact_velocity_error_max = 0;  // |xi - exact xi|
-  double seconds = 0;                   // of the time loop, recording included
+  double seconds = 0;  // of the time loop, recording included
 
   explicit operator bool() const { return status.ok; }
   /// The record of contract.md as JSON; indent < 0 for one line.

@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,7 @@
 namespace hamel {
 
 struct SolverOptions {
-  double tolerance = 1e-13;  // on |F| / scale
+  double tolerance = Config().tolerance;  // on |F| / scale
 };
 
 /// A run that is stepped by hand.
@@ -55,33 +56,57 @@ class Simulation {
   Simulation(const Registry& registry, std::string name, Maker make);
 
   /// A parameter by its field name. Units as the field states them.
-  Simulation& set(const std::string& name, std::vector<double> value);
-  Simulation& set(const std::string& name, std::initializer_list<double> value);
-  Simulation& set(const std::string& name, double value);
+  Simulation& set(const std::string& name, std::vector<double> value) {
+    config_.parameters[name] = std::move(value);
+    return *this;
+  }
+  Simulation& set(const std::string& name, std::initializer_list<double> value) {
+    return set(name, std::vector<double>(value));
+  }
+  Simulation& set(const std::string& name, double value) { return set(name, {value}); }
   /// Where to start. Velocity and momentum are projected onto d and d*, and a note says what was lost.
-  Simulation& start(Start start);
-  Simulation& scheme(std::string name);
+  Simulation& start(Start start) { return with(&Config::start, std::move(start)); }
+  /// Any option (Config::fields); below those that have a name of their own.
+  template <class Value>
+  Simulation& with(Value Config::*option, std::type_identity_t<Value> value) {
+    config_.*option = std::move(value);
+    return *this;
+  }
+  Simulation& scheme(std::string name) { return with(&Config::scheme, std::move(name)); }
   /// The discretisation parameter, in [0, 1].
-  Simulation& s(double value);
-  Simulation& retraction(std::string name);
-  Simulation& solver(std::string name, SolverOptions options = {});
+  Simulation& s(double value) { return with(&Config::s, value); }
+  Simulation& retraction(std::string name) { return with(&Config::retraction, std::move(name)); }
+  Simulation& solver(std::string name, SolverOptions options = {}) {
+    return with(&Config::solver, std::move(name)).with(&Config::tolerance, options.tolerance);
+  }
   /// What becomes of a step that fails: "stop" (default), "retry:<solver>" (solved again by another),
   /// "halve" (taken as two halves, each of which may be halved again).
-  Simulation& on_failure(std::string policy);
+  Simulation& on_failure(std::string policy) {
+    return with(&Config::on_failure, std::move(policy));
+  }
   /// A composition table by name: none, yoshida4, suzuki4, ...
-  Simulation& compose(std::string name);
+  Simulation& compose(std::string name) { return with(&Config::compose, std::move(name)); }
   /// The step h in seconds, of either sign.
-  Simulation& step(double h);
+  Simulation& step(double h) { return with(&Config::step, h); }
   /// The end time in seconds, of the sign of h.
-  Simulation& until(double t);
+  Simulation& until(double t) { return with(&Config::until, t); }
   /// Record every this many steps (the first and the last state always).
-  Simulation& every(long steps);
+  Simulation& every(long steps) { return with(&Config::every, steps); }
   /// Everything at once; system and parameters too.
-  Simulation& config(Config config);
+  Simulation& config(Config config) {
+    config_ = std::move(config);
+    return *this;
+  }
   /// Called with each recorded state; returning false stops the run there.
-  Simulation& observe(std::function<bool(const Snapshot&)> observer);
+  Simulation& observe(std::function<bool(const Snapshot&)> observer) {
+    observer_ = std::move(observer);
+    return *this;
+  }
   /// Called now and then with the fraction done, in [0, 1].
-  Simulation& progress(std::function<void(double)> report);
+  Simulation& progress(std::function<void(double)> report) {
+    progress_ = std::move(report);
+    return *this;
+  }
   /// A kernel compiled for the user's own types, in place of the registered one.
   Simulation& kernel(KernelFactory factory, SchemeInfo scheme, RetractionInfo retraction);
 

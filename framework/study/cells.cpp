@@ -10,12 +10,6 @@
 namespace hamel {
 namespace {
 
-std::vector<std::string> words(const std::vector<double>& numbers) {
-  std::vector<std::string> out;
-  for (const double x : numbers) out.push_back(fmt::format("{}", x));
-  return out;
-}
-
 // The order that the scheme claims here. A composition reaches its own over a reversible step of order 2.
 int claim(const Registry& registry, const StudyCell& cell, const SystemModel& system) {
   const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
@@ -33,18 +27,17 @@ int claim(const Registry& registry, const StudyCell& cell, const SystemModel& sy
 // values. An explicit step that fails is not solved by another solver, but halves of it may well succeed.
 void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, std::string>& axes,
                   Config& run) {
-  const Config plain;
-  if (!scheme.uses_s) {
-    axes["s"] = "";
-    run.s = plain.s;
-  }
+  const auto leave = [&](const char* axis) {
+    axes[axis] = "";
+    run.set(axis, Config().text(axis));
+  };
+  if (!scheme.uses_s) leave("s");
   if (!scheme.explicit_step) return;
-  axes["solver"] = axes["tolerance"] = "";
-  run.solver = plain.solver;
-  run.tolerance = plain.tolerance;
+  leave("solver");
+  leave("tolerance");
   if (run.on_failure == "halve") return;
-  run.on_failure = "stop";
-  axes["on_failure"] = halving ? "stop" : "";
+  leave("on_failure");
+  if (halving) axes["on_failure"] = run.on_failure;
 }
 
 // Why a cell is another one's duplicate: "boxed does not use s: one cell stands for all".
@@ -90,60 +83,54 @@ std::vector<size_t> indices(const StudyConfig& config, const std::vector<size_t>
 }  // namespace
 
 const std::vector<std::string>& study_axes() {
-  static const std::vector<std::string> all = {"system",     "scheme",    "retraction",
-                                               "s",          "solver",    "compose",
-                                               "on_failure", "tolerance", "step"};
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> out = {"system"};
+    Config::fields([&](const Option& option, auto) {
+      if (option.axis) out.emplace_back(option.name);
+    });
+    return out;
+  }();
   return all;
 }
 
-std::vector<std::string> StudyConfig::values(const std::string& axis) const {
-  if (axis == "system") {
-    std::vector<std::string> labels;
-    for (const StudySystem& system : systems) labels.push_back(system.label);
-    return labels;
-  }
-  if (axis == "scheme") return schemes;
-  if (axis == "retraction") return retractions;
-  if (axis == "s") return words(s);
-  if (axis == "solver") return solvers;
-  if (axis == "compose") return compositions;
-  if (axis == "on_failure") return on_failures;
-  if (axis == "tolerance") return words(tolerances);
-  return words(steps);
+StudyValues StudyConfig::values(const std::string& axis) const {
+  StudyValues out;
+  if (axis == "system")
+    for (const StudySystem& system : systems) out.push_back(system.label);
+  else if (const auto given = axes.find(axis); given != axes.end()) out = given->second;
+  else out.push_back(Config().text(axis));
+  return out;
 }
 
 std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& registry) {
+  std::vector<StudyValues> values;
   std::vector<size_t> sizes;
   size_t count = 1;
   for (const std::string& axis : study_axes()) {
-    sizes.push_back(config.values(axis).size());
+    values.push_back(config.values(axis));
+    sizes.push_back(values.back().size());
     count = config.zipped ? std::max(count, sizes.back()) : count * sizes.back();
   }
   std::vector<SystemModel> models;
   for (const StudySystem& system : config.systems) models.push_back(study::model(registry, system));
-  const bool halving = std::find(config.on_failures.begin(), config.on_failures.end(), "halve") !=
-                       config.on_failures.end();
+  const StudyValues policies = config.values("on_failure");
+  const bool halving = std::find(policies.begin(), policies.end(), "halve") != policies.end();
   std::vector<StudyCell> cells;
   std::set<std::map<std::string, std::string>> seen;
   for (size_t i = 0; i < count; ++i) {
     const std::vector<size_t> at = indices(config, sizes, i);
     StudyCell cell;
-    for (size_t k = 0; k < at.size(); ++k)
-      cell.axes[study_axes()[k]] = config.values(study_axes()[k])[at[k]];
     cell.system = at[0];
     const StudySystem& system = config.systems[at[0]];
     cell.config.system = system.name;
     cell.config.parameters = system.parameters;
     cell.config.start = system.start;
-    cell.config.scheme = config.schemes[at[1]];
-    cell.config.retraction = config.retractions[at[2]];
-    cell.config.s = config.s[at[3]];
-    cell.config.solver = config.solvers[at[4]];
-    cell.config.compose = config.compositions[at[5]];
-    cell.config.on_failure = config.on_failures[at[6]];
-    cell.config.tolerance = config.tolerances[at[7]];
-    cell.config.step = config.steps[at[8]];
     cell.config.until = config.until;
+    for (size_t k = 0; k < at.size(); ++k) {
+      const std::string& axis = study_axes()[k];
+      cell.axes[axis] = values[k][at[k]];
+      if (axis != "system") cell.config.set(axis, cell.axes[axis]);
+    }
 
     const std::string& group = models[at[0]].group.name;
     std::map<std::string, std::string> same = cell.axes;

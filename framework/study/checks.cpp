@@ -22,7 +22,10 @@ class Checks {
     for (const std::string& axis : study_axes()) repeated(axis);
     for (size_t i = 0; i < study_.systems.size(); ++i) system(i);
     if (study_.systems.empty()) add("", "system: give at least one, headed [[system]]");
-    names_and_numbers();
+    for (const auto& [name, values] : study_.axes)
+      if (std::count(study_axes().begin() + 1, study_axes().end(), name) == 0)
+        add(name, unknown_name("axis", name, study_axes()));
+    values();
     lengths();
     for (size_t i = 0; i < study_.exclude.size(); ++i) exclusion(i);
     if (out_.empty()) combinations();
@@ -49,7 +52,7 @@ class Checks {
   }
 
   void repeated(const std::string& axis) {
-    const std::vector<std::string> values = study_.values(axis);
+    const StudyValues values = study_.values(axis);
     if (study_.zipped) return;
     for (size_t i = 0; i < values.size(); ++i) {
       if (std::find(values.begin(), values.begin() + static_cast<long>(i), values[i]) ==
@@ -112,66 +115,63 @@ class Checks {
     return study_.systems.empty() ? StudySystem{} : study_.systems.front();
   }
 
-  // What a run with this value has to say that one without it has not.
-  template <class Value>
-  void axis(const char* name, const std::vector<Value>& values, Value Config::*member) {
-    const StudySystem system = some_system();
-    const Config base = sound(system);
-    const std::vector<std::string> known = mistakes_of(system, base);
-    for (size_t i = 0; i < values.size(); ++i) {
-      Config config = base;
-      config.*member = values[i];
-      for (const std::string& mistake : mistakes_of(system, config)) {
-        if (std::find(known.begin(), known.end(), mistake) == known.end())
-          add(fmt::format("{}[{}]", name, i), mistake);
+  // The run with this value on this axis; false, and said, for text that is none.
+  bool take(Config& config, const std::string& axis, size_t i) {
+    try {
+      config.set(axis, study_.values(axis)[i]);
+      return true;
+    } catch (const ConfigError& error) {
+      for (const std::string& mistake : error.mistakes())
+        add(fmt::format("{}[{}]", axis, i), mistake);
+      return false;
+    }
+  }
+
+  void values() {
+    for (const std::string& axis : study_axes()) {
+      for (size_t i = 0; i < study_.values(axis).size(); ++i) {
+        Config config = sound(some_system());
+        if (axis == "system" || !take(config, axis, i)) continue;
+        if (axis == "retraction") retraction(i, config.retraction);
+        else if (axis == "step") step(i, config.step);
+        else value(axis, i, config);
       }
     }
   }
 
-  void names_and_numbers() {
-    axis("scheme", study_.schemes, &Config::scheme);
-    axis("s", study_.s, &Config::s);
-    axis("solver", study_.solvers, &Config::solver);
-    axis("compose", study_.compositions, &Config::compose);
-    axis("tolerance", study_.tolerances, &Config::tolerance);
-    on_failures();
-    const std::vector<std::string> retractions = registry_.retractions();
-    for (size_t i = 0; i < study_.retractions.size(); ++i) {  // some group must have it
-      const std::string& name = study_.retractions[i];
-      if (std::find(retractions.begin(), retractions.end(), name) == retractions.end())
-        add(fmt::format("retraction[{}]", i), unknown_name("retraction", name, retractions));
-    }
-    for (size_t i = 0; i < study_.steps.size(); ++i) {
-      const double h = study_.steps[i];
-      const std::string key = fmt::format("step[{}]", i);
-      if (!(h > 0) || !std::isfinite(h)) {
-        add(key, fmt::format("step: got {}, expected a positive number", h));
-        continue;
-      }
-      // Errors are compared at times that all steps reach.
-      const double count = study_.until / h;
-      if (std::abs(count - std::round(count)) > 1e-9 * count || count < 0.5)
-        add(key, fmt::format("step: {} does not divide until = {} into whole steps; {} does", h,
-                             study_.until, study_.until / std::max(1.0, std::round(count))));
-      else if (count > 1e9)
-        add(key, fmt::format("step: {} takes {:.2g} steps, more than 1e9", h, count));
-    }
-  }
-
-  // Beside a solver that is not the one to retry with: the two meet in the cells.
-  void on_failures() {
+  // What a run with this value has to say that one without it has not. What is to be done on failure beside
+  // a solver that is not the one to retry with: the two meet in the cells.
+  void value(const std::string& axis, size_t i, Config config) {
     const StudySystem system = some_system();
-    Config config = sound(system);
-    for (size_t i = 0; i < study_.on_failures.size(); ++i) {
-      config.on_failure = "stop";
+    Config base = sound(system);
+    if (axis == "on_failure") {
       for (const std::string& solver : registry_.solvers())
-        if (study_.on_failures[i] != "retry:" + solver) config.solver = solver;
-      const std::vector<std::string> known = mistakes_of(system, config);
-      config.on_failure = study_.on_failures[i];
-      for (const std::string& mistake : mistakes_of(system, config))
-        if (std::find(known.begin(), known.end(), mistake) == known.end())
-          add(fmt::format("on_failure[{}]", i), mistake);
+        if (config.on_failure != "retry:" + solver) config.solver = base.solver = solver;
     }
+    const std::vector<std::string> known = mistakes_of(system, base);
+    for (const std::string& mistake : mistakes_of(system, config))
+      if (std::find(known.begin(), known.end(), mistake) == known.end())
+        add(fmt::format("{}[{}]", axis, i), mistake);
+  }
+
+  // Some group must have it.
+  void retraction(size_t i, const std::string& name) {
+    const std::vector<std::string> retractions = registry_.retractions();
+    if (std::find(retractions.begin(), retractions.end(), name) == retractions.end())
+      add(fmt::format("retraction[{}]", i), unknown_name("retraction", name, retractions));
+  }
+
+  // Errors are compared at times that all steps reach.
+  void step(size_t i, double h) {
+    const std::string key = fmt::format("step[{}]", i);
+    if (!(h > 0) || !std::isfinite(h))
+      return add(key, fmt::format("step: got {}, expected a positive number", h));
+    const double count = study_.until / h;
+    if (std::abs(count - std::round(count)) > 1e-9 * count || count < 0.5)
+      add(key, fmt::format("step: {} does not divide until = {} into whole steps; {} does", h,
+                           study_.until, study_.until / std::max(1.0, std::round(count))));
+    else if (count > 1e9)
+      add(key, fmt::format("step: {} takes {:.2g} steps, more than 1e9", h, count));
   }
 
   void lengths() {

@@ -48,7 +48,7 @@ void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
       metrics[i].order_of = static_cast<int>(group.size());
     }
   }
-  if (config.solvers.size() < 2) return;
+  if (config.values("solver").size() < 2) return;
   for (const auto& group : groups(cells, "solver")) {
     const auto first =
         std::find_if(group.begin(), group.end(), [&](size_t i) { return metrics[i].ok; });

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/result.hpp>
 #include <hamel/framework/study/parts.hpp>
-#include <hamel/framework/io/version.hpp>
 
 namespace hamel::study {
 namespace {
@@ -49,25 +49,13 @@ std::string difference(const Json& there, const Json& here) {
   return out;
 }
 
-// The numbers of StudyMetrics by name, for writing and reading alike.
+// The numbers that a run leaves, by name, for writing and reading alike.
 template <class Metrics, class Visit>
 void numbers(Metrics& m, Visit visit) {
-  visit("steps", m.steps);
-  visit("time", m.time);
-  visit("failure_residual", m.failure_residual);
-  visit("error", m.error);
-  visit("error_final", m.error_final);
-  visit("velocity_error", m.velocity_error);
-  visit("energy_error", m.energy_error);
-  visit("energy_slope", m.energy_slope);
-  visit("constraint", m.constraint);
-  visit("group_defect", m.group_defect);
   visit("iterations", m.iterations);
-  visit("evaluations", m.evaluations);
-  visit("iterations_max", m.iterations_max);
-  visit("fallbacks", m.fallbacks);
-  visit("residual", m.residual);
-  visit("floor", m.floor);
+  measured_columns([&](const Quantity& quantity, auto of) {
+    if constexpr (std::is_member_object_pointer_v<decltype(of)>) visit(quantity.name, m.*of);
+  });
 }
 
 Json json_of(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }

@@ -33,24 +33,19 @@ double processor_time() {
 class Meter {
  public:
   Meter(const StudyReference& reference, StudyMetrics& out) : reference_(reference), out_(out) {
-    out_.energy_error = out_.constraint = out_.group_defect = 0;
-    out_.error = out_.error_final = out_.velocity_error = 0;
+    if (reference.coordinates.empty()) return;
+    all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
   }
 
   void row(const Snapshot& state) {
     if (times_.empty()) energy_start_ = state.energy;
     times_.push_back(state.time);
-    energy_.push_back(energy_error(state.energy, energy_start_));
-    raise(out_.energy_error, energy_.back());
-    raise(out_.constraint, state.constraint);
-    raise(out_.group_defect, state.group_defect);
+    energy_.push_back(all_.take(state, energy_start_));
     raise(size_, norm(state.coordinates));
   }
   void compare(const Snapshot& state, size_t k) {
     if (reference_.coordinates.empty()) return;
-    out_.error_final = euclidean_distance(state.coordinates, reference_.coordinates[k]);
-    raise(out_.error, out_.error_final);
-    raise(out_.velocity_error, euclidean_distance(state.velocity, reference_.velocities[k]));
+    all_.compare(state, reference_.coordinates[k], reference_.velocities[k]);
   }
   void finish(Integration& run) {
     const SolverStats& stats = run.stats();
@@ -68,13 +63,19 @@ class Meter {
     out_.floor =
         10 * (reference_.bound + (stats.residual_max + 2.2e-16) * (1 + size_) *
                                      std::sqrt(static_cast<double>(std::max(state.step, 1L))));
-    if (!out_.ok || reference_.coordinates.empty())
-      out_.error = out_.error_final = out_.velocity_error = kNotMeasured;
+    out_.energy_error = all_.energy_error_max;
+    out_.constraint = all_.constraint_max;
+    out_.group_defect = all_.group_defect_max;
+    if (!out_.ok) return;
+    out_.error = all_.exact_error_max;
+    out_.error_final = all_.exact_error_final;
+    out_.velocity_error = all_.exact_velocity_error_max;
   }
 
  private:
   const StudyReference& reference_;
   StudyMetrics& out_;
+  Measurements all_;
   double energy_start_ = 0, size_ = 0;
   std::vector<double> times_, energy_;
 };

@@ -37,7 +37,8 @@ double apart(const Motion& a, const Motion& b) {
 // step can be halved three times.
 long first_steps_each(const StudyConfig& config) {
   const long intervals = common_intervals(config);
-  const double finest = *std::min_element(config.steps.begin(), config.steps.end());
+  const std::vector<double> steps = step_sizes(config);
+  const double finest = *std::min_element(steps.begin(), steps.end());
   return std::clamp(std::lround(config.until / finest / static_cast<double>(intervals)), 1L,
                     kMaxReferenceSteps / (8 * intervals));
 }
@@ -130,9 +131,16 @@ class Convergence {
 
 }  // namespace
 
+std::vector<double> step_sizes(const StudyConfig& config) {
+  std::vector<double> out;
+  for (const std::string& h : config.values("step")) read_text("step", h, out.emplace_back());
+  return out;
+}
+
 long common_intervals(const StudyConfig& config) {
   long common = 0;
-  for (const double h : config.steps) common = std::gcd(common, std::lround(config.until / h));
+  for (const double h : step_sizes(config))
+    common = std::gcd(common, std::lround(config.until / h));
   for (long parts = std::min(common, kMaxIntervals); parts > 1; --parts)
     if (common % parts == 0) return parts;
   return 1;

@@ -1,5 +1,5 @@
-// A comparative study: one run ("cell") for each combination of systems, schemes, retractions, s, solvers,
-// compositions, steps, tolerances and what is done on failure, all measured in the same way.
+// A comparative study: one run ("cell") for each combination of systems and of the values of those options
+// that the study varies, all measured in the same way.
 //
 //   auto config = hamel::read_study("readings.toml", hamel::registry());
 //   auto result = hamel::Study(hamel::registry(), config).threads(2).folder("out").run();
@@ -12,14 +12,15 @@
 
 #include <atomic>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/config.hpp>
 #include <hamel/framework/run/registry.hpp>
-#include <hamel/framework/io/table.hpp>
 
 namespace hamel {
 
@@ -38,31 +39,43 @@ struct StudyExclusion {
   std::string why;
 };
 
-/// A study as plain data. Every list is an axis.
+/// The values of an axis, as text: {"lift", "boxed"} or {0, 0.5}.
+struct StudyValues : std::vector<std::string> {
+  struct Value {
+    Value(const char* name) : text(name) {}
+    Value(int number) : text(text_of(static_cast<double>(number))) {}
+    Value(double number) : text(text_of(number)) {}
+    std::string text;
+  };
+  StudyValues() = default;
+  StudyValues(std::initializer_list<Value> values) {
+    for (const Value& value : values) push_back(value.text);
+  }
+};
+
+/// A study as plain data: systems, and for each option that it varies (Config::fields) its values.
 struct StudyConfig {
   std::string title = "Study";
-  bool zipped = false;  // the lists run together instead of in all combinations
-  double until = 20;    // seconds
-  int repeats = 3;      // timing rounds
+  bool zipped = false;            // the lists run together instead of in all combinations
+  double until = Config().until;  // seconds
+  int repeats = 3;                // timing rounds
   std::vector<StudySystem> systems;
-  std::vector<std::string> schemes = {"lift"}, retractions = {"cayley"}, solvers = {"newton"},
-                           compositions = {"none"}, on_failures = {"stop"};
-  std::vector<double> s = {0.5}, steps = {0.01}, tolerances = {1e-13};
+  std::map<std::string, StudyValues> axes;  // those not named have the default of a run
   std::vector<StudyExclusion> exclude;
   std::string text;  // the file that it came from, for the record
 
   /// "file:line:column" by key, "scheme[1]"; empty for a study made in a program.
   std::map<std::string, std::string> where;
 
-  /// The values of an axis as words, in the order given.
-  std::vector<std::string> values(const std::string& axis) const;
+  /// The values of an axis, in the order given; of "system" the labels.
+  StudyValues values(const std::string& axis) const;
   /// Everything that is wrong, each mistake with its place.
   std::vector<std::string> mistakes(const Registry& registry) const;
   /// What fixes the results, one line per item: a journal belongs to these lines.
   std::string fingerprint() const;
 };
 
-/// system, scheme, retraction, s, solver, compose, on_failure, tolerance, step: the last runs fastest.
+/// system, then the options that Config::fields lets a study vary: the last, step, runs fastest.
 const std::vector<std::string>& study_axes();
 
 /// Throws ConfigError with all mistakes of the file, each with line and column.

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/study/parts.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/study/parts.hpp>
 
 namespace hamel {
 namespace {
@@ -20,10 +20,10 @@ class StudyReader {
     for (const auto& [name, node] : table) {
       const std::string key(name.str());
       at(key, node);
-      if (key == "title") read_.text(node, key, config_.title);
+      if (key == "title") read_.value(node, key, config_.title);
       else if (key == "mode") mode(node);
-      else if (key == "until") read_.number(node, key, config_.until);
-      else if (key == "repeats") read_.whole(node, key, config_.repeats);
+      else if (key == "until") read_.value(node, key, config_.until);
+      else if (key == "repeats") read_.value(node, key, config_.repeats);
       else if (key == "system") systems(node);
       else if (key == "exclude") exclusions(node);
       else if (!axis(key, node)) read_.unknown_key(node, key, keys());
@@ -33,10 +33,9 @@ class StudyReader {
   std::vector<std::string>& mistakes() { return read_.mistakes; }
 
  private:
-  static const std::vector<std::string>& keys() {
-    static const std::vector<std::string> all = {
-        "title",      "mode", "until",  "repeats", "system",     "exclude",   "scheme",
-        "retraction", "s",    "solver", "compose", "on_failure", "tolerance", "step"};
+  static std::vector<std::string> keys() {
+    std::vector<std::string> all = {"title", "mode", "until", "repeats", "system", "exclude"};
+    all.insert(all.end(), study_axes().begin() + 1, study_axes().end());
     return all;
   }
 
@@ -46,42 +45,33 @@ class StudyReader {
 
   void mode(const toml::node& node) {
     std::string word;
-    read_.text(node, "mode", word);
+    read_.value(node, "mode", word);
     config_.zipped = word == "zipped";
     if (word != "zipped" && word != "factorial" && !word.empty())
       read_.unknown(node, "mode", word, {"factorial", "zipped"});
   }
 
-  bool axis(const std::string& key, const toml::node& node) {
-    if (key == "scheme") each(node, key, config_.schemes, "a string");
-    else if (key == "retraction") each(node, key, config_.retractions, "a string");
-    else if (key == "s") each(node, key, config_.s, "a number");
-    else if (key == "solver") each(node, key, config_.solvers, "a string");
-    else if (key == "compose") each(node, key, config_.compositions, "a string");
-    else if (key == "on_failure") each(node, key, config_.on_failures, "a string");
-    else if (key == "tolerance") each(node, key, config_.tolerances, "a number");
-    else if (key == "step") each(node, key, config_.steps, "a number");
-    else return false;
-    return true;
-  }
-
   // One value or a list of them, each with its place.
-  template <class Value>
-  void each(const toml::node& node, const std::string& key, std::vector<Value>& out,
-            const char* expected) {
-    out.clear();
-    const auto take = [&](const toml::node& entry) {
-      if (auto value = entry.value<Value>()) {
+  bool axis(const std::string& key, const toml::node& node) {
+    bool found = false;
+    Config::fields([&](const Option& option, auto member) {
+      if (option.name != key || !option.axis) return;
+      found = true;
+      StudyValues& out = config_.axes[key];
+      const auto take = [&](const toml::node& entry) {
+        auto value = Config().*member;
+        const size_t before = read_.mistakes.size();
+        read_.value(entry, key, value);
+        if (read_.mistakes.size() > before) return;
         at(fmt::format("{}[{}]", key, out.size()), entry);
-        out.push_back(*value);
-      } else {
-        read_.wrong(entry, key, expected);
-      }
-    };
-    const toml::array* array = node.as_array();
-    if (array == nullptr) return take(node);
-    if (array->empty()) read_.wrong(node, key, "at least one value");
-    for (const toml::node& entry : *array) take(entry);
+        out.push_back(text_of(value));
+      };
+      const toml::array* array = node.as_array();
+      if (array == nullptr) return take(node);
+      if (array->empty()) read_.wrong(node, key, "at least one value");
+      for (const toml::node& entry : *array) take(entry);
+    });
+    return found;
   }
 
   void systems(const toml::node& node) {
@@ -100,26 +90,29 @@ class StudyReader {
     for (const auto& [name, node] : table) {
       const std::string key(name.str());
       at(prefix + "." + key, node);
-      if (key == "name") read_.text(node, key, out.name);
-      else if (key == "label") read_.text(node, key, out.label);
-      else if (key == "configuration") read_.list(node, key, out.start.configuration);
-      else if (key == "velocity") read_.list(node, key, out.start.velocity);
-      else if (key == "momentum") read_.list(node, key, out.start.momentum);
-      else if (key != "set") {
-        read_.unknown_key(node, key,
-                          {"name", "label", "set", "configuration", "velocity", "momentum"});
-      } else if (const toml::table* set = node.as_table()) {
-        for (const auto& [parameter, value] : *set) {
-          const std::string field(parameter.str());
-          at(prefix + ".set." + field, value);
-          read_.list(value, "set." + field, out.parameters[field]);
-        }
-      } else {
-        read_.wrong(node, key, "a table of parameters");
-      }
+      std::vector<std::string> known = {"name", "label", "set"};
+      bool found = true;
+      if (key == "name") read_.value(node, key, out.name);
+      else if (key == "label") read_.value(node, key, out.label);
+      else if (key == "set") set(node, prefix, out.parameters);
+      else found = false;
+      Config::start_fields([&, &entry = node](const Option& option, auto member) {
+        known.emplace_back(option.name);
+        if (option.name != key) return;
+        found = true;
+        read_.value(entry, key, out.start.*member);
+      });
+      if (!found) read_.unknown_key(node, key, known);
     }
     if (out.label.empty()) out.label = out.name;
     return out;
+  }
+
+  void set(const toml::node& node, const std::string& prefix, Parameters& out) {
+    read_.lists(node, "set", out);
+    if (const toml::table* table = node.as_table())
+      for (const auto& [name, value] : *table)
+        at(prefix + ".set." + std::string(name.str()), value);
   }
 
   void exclusions(const toml::node& node) {
@@ -133,7 +126,7 @@ class StudyReader {
       for (const auto& [name, value] : *entry.as_table()) {
         const std::string key(name.str());
         at(prefix + "." + key, value);
-        if (key == "why") read_.text(value, key, out.why);
+        if (key == "why") read_.value(value, key, out.why);
         else matched(value, key, out);
       }
       config_.exclude.push_back(std::move(out));
@@ -151,7 +144,7 @@ class StudyReader {
       if (auto word = entry.value<std::string>(); word && entry.is_string())
         out.values[key].push_back(*word);
       else if (auto number = entry.value<double>(); number && entry.is_number())
-        out.values[key].push_back(fmt::format("{}", *number));
+        out.values[key].push_back(text_of(*number));
       else read_.wrong(entry, "exclude." + key, "a value of that axis, or a list of them");
     };
     if (const toml::array* array = node.as_array())

@@ -8,9 +8,9 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/run/result.hpp>
-#include <hamel/framework/study/study.hpp>
 #include <hamel/framework/io/version.hpp>
+#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/study/parts.hpp>
 
 namespace hamel {
 namespace {
@@ -29,24 +29,19 @@ class Columns {
   explicit Columns(const StudyResult& result) : result_(result) {}
 
   using Word = std::function<std::string(const StudyCell&, const StudyMetrics&)>;
-  void words(const char* name, const char* meaning, const Word& word) {
+  void words(const std::string& name, const std::string& meaning, const Word& word) {
     std::vector<std::string> out;
     for (size_t i = 0; i < result_.cells.size(); ++i)
       out.push_back(word(result_.cells[i], result_.metrics[i]));
     table.columns.push_back({name, "", meaning, std::move(out)});
   }
-  using Number = std::function<double(const StudyCell&, const StudyMetrics&)>;
-  void setting(const char* name, const char* unit, const char* meaning, const Number& number) {
+  // A number of each cell; NaN where it has none.
+  using Number = std::function<double(size_t cell)>;
+  void numbers(const std::string& name, const std::string& unit, const std::string& meaning,
+               const Number& number) {
     std::vector<double> out;
-    for (size_t i = 0; i < result_.cells.size(); ++i)
-      out.push_back(number(result_.cells[i], result_.metrics[i]));
+    for (size_t i = 0; i < result_.cells.size(); ++i) out.push_back(number(i));
     table.columns.push_back({name, unit, meaning, std::move(out)});
-  }
-  // A number that only a cell that was run has.
-  void measured(const char* name, const char* unit, const char* meaning, const Number& number) {
-    setting(name, unit, meaning, [&](const StudyCell& cell, const StudyMetrics& m) {
-      return cell.runs() && m.done ? number(cell, m) : kNotMeasured;
-    });
   }
   Table table;
 
@@ -72,73 +67,33 @@ Table StudyResult::table() const {
   using Cell = const StudyCell&;
   using Metrics = const StudyMetrics&;
   Columns c(*this);
-  for (const char* axis : {"system", "scheme", "retraction"})
-    c.words(axis, "axis", [axis](Cell cell, Metrics) { return cell.axes.at(axis); });
-  c.setting("s", "1", "axis; empty where the scheme does not use it", [](Cell cell, Metrics) {
-    return cell.axes.at("s").empty() ? kNotMeasured : cell.config.s;
+  c.words("system", "axis", [](Cell cell, Metrics) { return cell.axes.at("system"); });
+  Config::fields([&]<class Value>(const Option& option, Value Config::*) {
+    if (!option.axis) return;
+    const std::string name = option.name,
+                      meaning = fmt::format("axis, {}; empty where it is not used", option.meaning);
+    if constexpr (std::is_arithmetic_v<Value>) {
+      c.numbers(name, option.unit, meaning, [this, name](size_t i) {
+        Value value{};
+        if (cells[i].axes.at(name).empty()) return kNotMeasured;
+        read_text(name, cells[i].axes.at(name), value);
+        return static_cast<double>(value);
+      });
+    } else {
+      c.words(name, meaning, [name](Cell cell, Metrics) { return cell.axes.at(name); });
+    }
   });
-  for (const char* axis : {"solver", "compose", "on_failure"})
-    c.words(axis, "axis", [axis](Cell cell, Metrics) { return cell.axes.at(axis); });
-  c.setting("tolerance", "1", "axis; empty where nothing is solved", [](Cell cell, Metrics) {
-    return cell.axes.at("tolerance").empty() ? kNotMeasured : cell.config.tolerance;
-  });
-  c.setting("step", "s", "axis", [](Cell cell, Metrics) { return cell.config.step; });
   c.words("status", "ok, failed, excluded, impossible or duplicate", status_of);
   c.words("reason", "of a failure, or why it was not run",
           [](Cell cell, Metrics m) { return cell.runs() ? m.reason : cell.why; });
-  c.measured("steps", "1", "good steps",
-             [](Cell, Metrics m) { return static_cast<double>(m.steps); });
-  c.measured("time", "s", "reached", [](Cell, Metrics m) { return m.time; });
-  c.measured("error", "columns of g", "largest distance from the reference at the common times",
-             [](Cell, Metrics m) { return m.error; });
-  c.measured("error_final", "columns of g", "the same at the end",
-             [](Cell, Metrics m) { return m.error_final; });
-  c.measured("velocity_error", "columns of xi", "largest distance of the body velocity",
-             [](Cell, Metrics m) { return m.velocity_error; });
-  c.measured("reference_bound", "columns of g and xi", "of the reference's own error; 0: exact",
-             [&](Cell cell, Metrics) { return references[cell.system].bound; });
-  c.measured("floor", "columns of g", "errors below are round-off, residuals and the reference",
-             [](Cell, Metrics m) { return m.floor; });
-  c.measured("order", "1", "slope of log error over log step, least squares",
-             [](Cell, Metrics m) { return m.order; });
-  c.measured("order_finest", "1", "the same from the two finest steps used",
-             [](Cell, Metrics m) { return m.order_finest; });
-  c.measured("order_points", "1", "steps used for it: above the floor, below 0.1 of the motion",
-             [](Cell, Metrics m) { return m.order_points; });
-  c.measured("order_of", "1", "steps there are", [](Cell, Metrics m) { return m.order_of; });
-  c.measured("claimed_order", "1", "with this s, retraction and composition; 0: none",
-             [](Cell cell, Metrics) { return cell.claimed_order; });
-  c.measured("energy_error", "1", "largest |E - E0| / |E0|",
-             [](Cell, Metrics m) { return m.energy_error; });
-  c.measured("energy_slope", "1/s", "of (E - E0) / |E0| over time, least squares",
-             [](Cell, Metrics m) { return m.energy_slope; });
-  c.measured("constraint", "columns of xi", "largest |A xi/h|, from the configurations",
-             [](Cell, Metrics m) { return m.constraint; });
-  c.measured("group_defect", "1", "largest distance from the group",
-             [](Cell, Metrics m) { return m.group_defect; });
-  const auto per_step = [](long total, long steps) {
-    return steps > 0 ? static_cast<double>(total) / static_cast<double>(steps) : kNotMeasured;
-  };
-  c.measured("iterations_mean", "1", "per step",
-             [&](Cell, Metrics m) { return per_step(m.iterations, m.steps); });
-  c.measured("iterations_max", "1", "in one step",
-             [](Cell, Metrics m) { return static_cast<double>(m.iterations_max); });
-  c.measured("evaluations_mean", "1", "of the equation, per step",
-             [&](Cell, Metrics m) { return per_step(m.evaluations, m.steps); });
-  c.measured("evaluations", "1", "of the equation, whole run",
-             [](Cell, Metrics m) { return static_cast<double>(m.evaluations); });
-  c.measured("fallbacks", "1", "steps that failed and were rescued by on_failure",
-             [](Cell, Metrics m) { return static_cast<double>(m.fallbacks); });
-  c.measured("residual", "1", "largest |F| / scale", [](Cell, Metrics m) { return m.residual; });
-  c.measured("failure_residual", "1", "|F| / scale of the step that failed",
-             [](Cell, Metrics m) { return m.failure_residual; });
-  c.measured("solver_difference", "columns of g",
-             "at the end, from the first solver in the same cell that did not fail",
-             [](Cell, Metrics m) { return m.solver_difference; });
-  c.measured("ns_per_step", "ns", "processor time, median of the timing rounds, nothing recorded",
-             [](Cell, Metrics m) { return m.nanoseconds_median(); });
-  c.measured("seconds", "s", "steps times ns_per_step", [](Cell, Metrics m) {
-    return 1e-9 * m.nanoseconds_median() * static_cast<double>(m.steps);
+  study::measured_columns([&](const Quantity& quantity, auto of) {
+    c.numbers(quantity.name, quantity.unit, quantity.meaning, [this, of](size_t i) {
+      const StudyMetrics& m = metrics[i];
+      if (!cells[i].runs() || !m.done) return kNotMeasured;
+      if constexpr (std::is_member_object_pointer_v<decltype(of)>)
+        return static_cast<double>(m.*of);
+      else return static_cast<double>(of(cells[i], m, references[cells[i].system]));
+    });
   });
   return c.table;
 }

@@ -16,19 +16,11 @@ using testing::HasSubstr;
 void expect_equal(const Config& a, const Config& b) {
   EXPECT_EQ(a.system, b.system);
   EXPECT_EQ(a.parameters, b.parameters);
-  EXPECT_EQ(a.start.configuration, b.start.configuration);
-  EXPECT_EQ(a.start.velocity, b.start.velocity);
-  EXPECT_EQ(a.start.momentum, b.start.momentum);
-  EXPECT_EQ(a.scheme, b.scheme);
-  EXPECT_EQ(a.s, b.s);
-  EXPECT_EQ(a.retraction, b.retraction);
-  EXPECT_EQ(a.solver, b.solver);
-  EXPECT_EQ(a.tolerance, b.tolerance);
-  EXPECT_EQ(a.on_failure, b.on_failure);
-  EXPECT_EQ(a.compose, b.compose);
-  EXPECT_EQ(a.step, b.step);
-  EXPECT_EQ(a.until, b.until);
-  EXPECT_EQ(a.every, b.every);
+  Config::start_fields([&](const Option& option, auto member) {
+    EXPECT_EQ(a.start.*member, b.start.*member) << option.name;
+  });
+  Config::fields(
+      [&](const Option& option, auto member) { EXPECT_EQ(a.*member, b.*member) << option.name; });
 }
 
 Config unusual() {
@@ -64,6 +56,44 @@ TEST(Config, RoundTripOfOddNames) {
   c.system = R"(a "quoted" \ name)";
   c.parameters["odd key"] = {1};
   expect_equal(Config::from_toml(c.to_toml()), c);
+}
+
+/// The list is whole: the unusual run differs from the default in every option but the solver.
+TEST(Config, EveryOptionIsInTheListAndGoesByName) {
+  Config copy;
+  std::vector<std::string> names;
+  Config::fields([&](const Option& option, auto member) {
+    names.emplace_back(option.name);
+    EXPECT_EQ(copy.*member != unusual().*member, names.back() != "solver") << option.name;
+    copy.set(option.name, unusual().text(option.name));
+    EXPECT_EQ(copy.*member, unusual().*member) << option.name;
+    EXPECT_THAT(unusual().to_toml(), HasSubstr("\n" + names.back() + " = "));
+  });
+  EXPECT_THAT(names, testing::ElementsAre("scheme", "retraction", "s", "solver", "compose",
+                                          "on_failure", "tolerance", "step", "until", "every"));
+  EXPECT_THROW(copy.set("tolerence", "1"), ConfigError);
+  EXPECT_THROW(copy.set("every", "1.5"), ConfigError);
+  EXPECT_THROW(copy.set("step", "0.1x"), ConfigError);
+}
+
+template <class Value>
+void expect_read_back(const Value& value, const std::string& text) {
+  EXPECT_EQ(text_of(value), text);
+  Value again{};
+  read_text("option", text, again);
+  EXPECT_EQ(again, value);
+}
+
+TEST(Config, ValuesOfEveryTypeAreReadBack) {
+  expect_read_back(0.1 + 0.2, "0.30000000000000004");
+  expect_read_back(123456789012L, "123456789012");
+  expect_read_back(true, "true");
+  expect_read_back(false, "false");
+  expect_read_back(std::string("a, b"), "a, b");
+  expect_read_back(std::vector<double>{1, -2.5, 1e-300}, "1,-2.5,1e-300");
+  expect_read_back(std::vector<std::string>{"lift", "balance"}, "lift,balance");
+  bool flag = false;
+  EXPECT_THROW(read_text("check", "yes", flag), ConfigError);
 }
 
 TEST(Config, OfAResultRunsAgain) {

@@ -21,7 +21,7 @@ inline StudyConfig small() {
   config.until = 2;
   config.repeats = 1;
   config.systems = {kFull};
-  config.steps = {0.1, 0.05, 0.025};
+  config.axes["step"] = {0.1, 0.05, 0.025};
   return config;
 }
 

@@ -19,8 +19,8 @@ using testing::HasSubstr;
 /// With one step size every state is compared: the error is that of a run with every step recorded.
 TEST(Study, MeasuresWhatARunMeasures) {
   StudyConfig config = small();
-  config.steps = {0.05};
-  config.schemes = {"boxed"};
+  config.axes["step"] = {0.05};
+  config.axes["scheme"] = {"boxed"};
   const StudyResult study = run(config);
   const Result one = simulate("suslov")
                          .set("inertia", kFull.parameters.at("inertia"))
@@ -48,8 +48,8 @@ TEST(Study, MeasuresWhatARunMeasures) {
 /// The claims of the schemes on a system without special symmetry; within 0.15 on these steps.
 TEST(Study, MeasuresOrders) {
   StudyConfig config = small();
-  config.schemes = {"lift", "balance", "boxed", "unadapted"};
-  config.s = {0, 0.5};
+  config.axes["scheme"] = {"lift", "balance", "boxed", "unadapted"};
+  config.axes["s"] = {0, 0.5};
   for (const StudyResult study = run(config); const StudyCell& cell : study.cells) {
     if (!cell.runs()) continue;
     const StudyMetrics& m = study.metrics[static_cast<size_t>(&cell - study.cells.data())];
@@ -68,8 +68,8 @@ TEST(Study, MeasuresOrders) {
 /// Order 6 and 8 reach round-off within these steps: points on the floor must not enter the slope.
 TEST(Study, OrdersAreFittedAboveTheFloor) {
   StudyConfig config = small();
-  config.compositions = {"kahan_li6", "suzuki_umeno8"};
-  config.steps = {0.2, 0.1, 0.05, 0.025, 0.0125, 0.00625};
+  config.axes["compose"] = {"kahan_li6", "suzuki_umeno8"};
+  config.axes["step"] = {0.2, 0.1, 0.05, 0.025, 0.0125, 0.00625};
   const StudyResult study = run(config);
   for (const size_t i : {size_t{0}, size_t{6}}) {
     const StudyMetrics& m = study.metrics[i];
@@ -85,7 +85,7 @@ TEST(Study, OrdersAreFittedAboveTheFloor) {
 TEST(Study, ConvergedReferenceAgreesWithTheExact) {
   const Registry all = with_forgetful();
   StudyConfig config = small();
-  config.schemes = {"lift", "boxed"};
+  config.axes["scheme"] = {"lift", "boxed"};
   config.systems.push_back({.label = "forgetful", .name = "forgetful", .start = kFull.start});
   const StudyResult study = Study(all, config).run();
   EXPECT_EQ(study.references[0].kind, "exact");
@@ -104,20 +104,20 @@ TEST(Study, ConvergedReferenceAgreesWithTheExact) {
 TEST(Study, ZippedListsRunTogether) {
   StudyConfig config = small();
   config.zipped = true;
-  config.schemes = {"lift", "boxed", "balance"};
+  config.axes["scheme"] = {"lift", "boxed", "balance"};
   std::vector<std::string> names;
   const Study study(registry(), config);
   for (const StudyCell& cell : study.cells())
     names.push_back(cell.config.scheme + " " + cell.axes.at("step"));
   EXPECT_THAT(names, ElementsAre("lift 0.1", "boxed 0.05", "balance 0.025"));
-  config.schemes.pop_back();
+  config.axes["scheme"].pop_back();
   EXPECT_THAT(mistakes_of(config), ElementsAre(HasSubstr("scheme: 2 values, but step has 3")));
 }
 
 TEST(Study, SaysWhatIsWrong) {
   StudyConfig config = small();
-  config.schemes = {"lfit"};
-  config.steps = {0.1, -1, 0.1};
+  config.axes["scheme"] = {"lfit"};
+  config.axes["step"] = {0.1, -1, 0.1};
   config.systems.push_back(kFull);
   config.until = 2;
   config.repeats = 0;
@@ -138,25 +138,25 @@ TEST(Study, RescuesWhatFails) {
   config.repeats = 1;
   config.systems = {
       {.label = "sleigh", .name = "chaplygin_sleigh", .start = {.velocity = {3, 1, 0}}}};
-  config.retractions = {"exp"};
-  config.steps = {6};
-  config.on_failures = {"stop", "halve", "retry:newton"};
+  config.axes["retraction"] = {"exp"};
+  config.axes["step"] = {6};
+  config.axes["on_failure"] = {"stop", "halve", "retry:newton"};
   const StudyResult study = run(config);
   EXPECT_FALSE(study.metrics[0].ok);
   EXPECT_TRUE(study.metrics[1].ok) << study.metrics[1].reason;
   EXPECT_GT(study.metrics[1].fallbacks, 0);
   EXPECT_EQ(study.cells[2].skipped, "impossible");
-  config.on_failures = {"hlave"};
+  config.axes["on_failure"] = {"hlave"};
   EXPECT_THAT(mistakes_of(config), ElementsAre(HasSubstr("did you mean 'halve'")));
 }
 
 /// At the same residual every solver gives the same trajectory, to 1e-10.
 TEST(Study, SolversAgree) {
   StudyConfig config = small();
-  config.solvers = {"newton", "hybrid"};
+  config.axes["solver"] = {"newton", "hybrid"};
   for (const char* more : {"ceres", "ceres_tiny", "nlopt"})
-    if (registry().solver(more) != nullptr) config.solvers.push_back(more);
-  config.s = {0, 0.5};
+    if (registry().solver(more) != nullptr) config.axes["solver"].push_back(more);
+  config.axes["s"] = {0, 0.5};
   const StudyResult study = run(config);
   size_t compared = 0;
   for (const StudyMetrics& m : study.metrics) {
@@ -166,14 +166,14 @@ TEST(Study, SolversAgree) {
     ++compared;
     EXPECT_LE(m.solver_difference, 1e-10);
   }
-  EXPECT_EQ(compared, (config.solvers.size() - 1) * 2 * 3);
+  EXPECT_EQ(compared, (config.axes["solver"].size() - 1) * 2 * 3);
 }
 
 /// A stopped study returns its finished cells; continued in the same folder it equals one that was not stopped.
 TEST(Study, StopsAndGoesOn) {
   const TemporaryFolder folder;
   StudyConfig config = small();
-  config.retractions = {"cayley", "exp", "polar"};
+  config.axes["retraction"] = {"cayley", "exp", "polar"};
   config.repeats = 3;
   std::atomic<bool> stop = false;
   Study study(registry(), config);

@@ -38,8 +38,8 @@ class DataFile : public testing::Test {
 TEST_F(DataFile, IsASystem) {
   write(kSkate);
   StudyConfig config = small();
-  config.schemes = {"lift", "rkmk4"};
-  config.s = {0};
+  config.axes["scheme"] = {"lift", "rkmk4"};
+  config.axes["s"] = {0};
   config.systems.push_back({.label = "skate", .name = path});
   const StudyResult study = run(config);
   EXPECT_TRUE(study.complete);
@@ -77,12 +77,12 @@ TEST_F(DataFile, BelongsToTheStudy) {
 /// about a failure matters where halves are tried, as they may succeed.
 TEST(StudyCells, ExplicitSchemesUseNoSolver) {
   StudyConfig config = small();
-  config.schemes = {"lift", "rkmk4"};
-  config.s = {0, 0.5};
-  config.solvers = {"hybrid", "newton"};
-  config.tolerances = {1e-13, 1e-10};
-  config.on_failures = {"retry:newton", "stop"};
-  config.steps = {0.1};
+  config.axes["scheme"] = {"lift", "rkmk4"};
+  config.axes["s"] = {0, 0.5};
+  config.axes["solver"] = {"hybrid", "newton"};
+  config.axes["tolerance"] = {1e-13, 1e-10};
+  config.axes["on_failure"] = {"retry:newton", "stop"};
+  config.axes["step"] = {0.1};
   const StudyResult study = run(config);
   std::vector<size_t> of_rkmk4;
   size_t duplicates = 0;
@@ -105,7 +105,7 @@ TEST(StudyCells, ExplicitSchemesUseNoSolver) {
   EXPECT_EQ(study.cells.back().why,
             "rkmk4 does not use s, solver, on_failure, tolerance: one cell stands for all");
 
-  config.on_failures = {"retry:newton", "stop", "halve"};
+  config.axes["on_failure"] = {"retry:newton", "stop", "halve"};
   std::vector<std::string> policies;
   for (const StudyCell& cell : study_cells(config, registry()))
     if (cell.runs() && cell.config.scheme == "rkmk4")
@@ -116,11 +116,35 @@ TEST(StudyCells, ExplicitSchemesUseNoSolver) {
 /// boxed measures the same at every place of its s in the list.
 TEST(StudyCells, AnUnusedValueIsTheDefault) {
   StudyConfig config = small();
-  config.schemes = {"boxed"};
-  config.s = {0, 0.5};
+  config.axes["scheme"] = {"boxed"};
+  config.axes["s"] = {0, 0.5};
   const std::vector<StudyCell> cells = study_cells(config, registry());
   EXPECT_TRUE(cells.front().runs());
   EXPECT_EQ(cells.front().config.s, Config{}.s);
+}
+
+/// The axes are the options that Config::fields lets a study vary; a program may misname one.
+TEST(StudyCells, AxesGoByName) {
+  EXPECT_THAT(study_axes(), ElementsAre("system", "scheme", "retraction", "s", "solver", "compose",
+                                        "on_failure", "tolerance", "step"));
+  StudyConfig config = small();
+  EXPECT_THAT(config.values("tolerance"), ElementsAre(Config().text("tolerance")));
+  config.axes["schme"] = {"lift"};
+  config.axes["s"] = {"half"};
+  EXPECT_THAT(mistakes_of(config), AllOf(Contains(HasSubstr("unknown axis 'schme'")),
+                                         Contains(HasSubstr("did you mean 'scheme'?")),
+                                         Contains(HasSubstr("s: 'half' is not a number"))));
+}
+
+/// A cell that is not run keeps the values that were asked for, in the table too.
+TEST(StudyCells, ADuplicateKeepsItsValues) {
+  StudyConfig config = small();
+  config.axes["scheme"] = {"boxed"};
+  config.axes["s"] = {0.5, 0};
+  config.axes["step"] = {0.1};
+  const StudyResult study = run(config);
+  ASSERT_EQ(study.cells[1].skipped, "duplicate");
+  EXPECT_EQ(study.table().column("s").text(1), "0");
 }
 
 }  // namespace

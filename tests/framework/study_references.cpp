@@ -29,7 +29,7 @@ StudyReference reference_of(const Registry& all, const StudyConfig& config) {
 TEST(StudyReferences, NeedNoFinerStepThanTheCells) {
   StudyConfig config = forgetful();
   config.until = 50;
-  config.steps = {1e-4};
+  config.axes["step"] = {1e-4};
   const StudyReference reference = reference_of(with_forgetful(), config);
   EXPECT_THAT(reference.kind, HasSubstr("converged"));
   EXPECT_LT(reference.bound, 1e-9);
@@ -49,8 +49,8 @@ TEST(StudyReferences, SayWhyThereIsNone) {
 /// They are computed by Newton, independently of on_failure of the cells.
 TEST(StudyReferences, DoNotDependOnTheCells) {
   StudyConfig config = forgetful();
-  config.solvers = {"hybrid"};
-  config.on_failures = {"retry:newton"};
+  config.axes["solver"] = {"hybrid"};
+  config.axes["on_failure"] = {"retry:newton"};
   EXPECT_THAT(reference_of(with_forgetful(), config).kind, HasSubstr("converged"));
 }
 
@@ -118,7 +118,7 @@ TEST(StudyReferences, AreKept) {
 /// Neither the number of threads nor which of the references is ready first changes anything.
 TEST(StudyReferences, AreTheSameOnEveryNumberOfThreads) {
   StudyConfig config = forgetful();
-  config.retractions = {"exp", "cayley"};
+  config.axes["retraction"] = {"exp", "cayley"};
   config.systems.push_back(kFull);
   config.systems.push_back(
       {.label = "slower", .name = "forgetful", .start = {.velocity = {0.3, 0, 0}}});

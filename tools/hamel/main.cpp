@@ -1,10 +1,8 @@
 // hamel: the command line. Names and formats are those of the contract (README, "Command line").
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <map>
-#include <optional>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -19,39 +17,36 @@ namespace {
 
 constexpr int kBadInput = 2;
 
-// "1,10,100" -> {1, 10, 100}.
-std::vector<double> read_numbers(const std::string& option, const std::string& text) {
-  if (text.empty() || text.back() == ',') {
-    throw ConfigError(
-        {fmt::format("{}: got '{}', expected numbers separated by commas", option, text)});
-  }
-  std::vector<double> out;
-  std::istringstream in(text);
-  for (std::string word; std::getline(in, word, ',');) {
-    size_t used = 0;
-    double value = 0;
-    try {
-      value = std::stod(word, &used);
-    } catch (const std::exception&) {
-      used = 0;
-    }
-    if (used == 0 || used != word.size()) {
-      throw ConfigError({fmt::format("{}: '{}' in '{}' is not a number", option, word, text)});
-    }
-    out.push_back(value);
-  }
-  return out;
-}
-
 // The options of `hamel run` as given; the file first, then what the command line says.
 struct RunLine {
   std::string system, config_file;
-  std::optional<std::string> configuration, velocity, momentum;
   std::vector<std::string> sets;
-  std::optional<std::string> scheme, retraction, solver, on_failure, compose;
-  std::optional<double> s, tolerance, step, until;
-  std::optional<long> every;
+  std::vector<std::function<void(Config&)>> overrides;  // of what is given, in its order
   RunOptions options;
+
+  // The flag of an option, and what it does to a run when it is given.
+  template <class Value>
+  void option(CLI::App& app, const Option& option, const Value& usual,
+              const std::function<Value&(Config&)>& member) {
+    std::string flag = fmt::format("--{}", option.name), help = option.meaning;
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    if (const std::string text = text_of(usual); !text.empty())
+      help += fmt::format(" [{}{}]", text, std::string(option.unit) == "s" ? " s" : "");
+    const auto give = [this, member](const Value& value) {
+      overrides.emplace_back([member, value](Config& config) { member(config) = value; });
+    };
+    if constexpr (std::is_same_v<Value, bool>) {
+      app.add_flag_callback(
+          flag, [give] { give(true); }, option.meaning);
+    } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+      app.add_option_function<Value>(flag, give, help);
+    } else {
+      const auto read = [this, flag, member](const std::string& text) {
+        overrides.emplace_back([=](Config& config) { read_text(flag, text, member(config)); });
+      };
+      app.add_option_function<std::string>(flag, read, help)->type_name("A,B,...");
+    }
+  }
 
   void define(CLI::App& app) {
     app.add_option("SYSTEM", system,
@@ -60,21 +55,13 @@ struct RunLine {
                    "a TOML file with the same names; the command line wins");
     app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
         ->allow_extra_args(false);
-    app.add_option("--configuration", configuration, "start: the element's CSV columns, a,b,...");
-    app.add_option("--velocity", velocity, "start: body velocity, a,b,...");
-    app.add_option("--momentum", momentum, "start: body momentum, a,b,...");
-    app.add_option("--scheme", scheme, "reading of the method [lift]");
-    app.add_option("--s", s, "discretisation parameter in [0, 1] [0.5]");
-    app.add_option("--retraction", retraction, "retraction map [cayley]");
-    app.add_option("--solver", solver, "implicit-equation solver [newton]");
-    app.add_option("--tolerance", tolerance, "relative residual of each step [1e-13]");
-    app.add_option("--on-failure", on_failure,
-                   "a step that fails: stop, halve, or retry:<solver> [stop]");
-    app.add_option("--compose", compose,
-                   "none, yoshida4, suzuki4, yoshida6, kahan_li6 or suzuki_umeno8 [none]");
-    app.add_option("--step", step, "step in seconds, of either sign [0.01]");
-    app.add_option("--until", until, "end time in seconds [20]");
-    app.add_option("--every", every, "record every this many steps [1]");
+    Config::start_fields([&]<class Value>(const Option& field, Value Start::*member) {
+      option<Value>(app, field, {}, [member](Config& c) -> Value& { return c.start.*member; });
+    });
+    Config::fields([&]<class Value>(const Option& field, Value Config::*member) {
+      option<Value>(app, field, Config().*member,
+                    [member](Config& c) -> Value& { return c.*member; });
+    });
     app.add_option("-o,--output", options.outputs, "write .csv or .json (repeatable)")
         ->allow_extra_args(false);
     app.add_option("--report", options.report, "write a self-contained HTML page");
@@ -89,25 +76,14 @@ struct RunLine {
         "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv");
   }
 
-  RunOptions resolve() {
+  RunOptions resolve(const CLI::App& app) {
     Config& config = options.config;
     std::vector<std::string> mistakes;
     if (!config_file.empty()) config = read_config(config_file);
     if (!system.empty()) config.system = system;
     if (config.system.empty()) mistakes.push_back("system: name one, or give --config with one");
-    const auto take = [](const auto& given, auto& value) {
-      if (given) value = *given;
-    };
-    take(scheme, config.scheme);
-    take(retraction, config.retraction);
-    take(solver, config.solver);
-    take(on_failure, config.on_failure);
-    take(compose, config.compose);
-    take(s, config.s);
-    take(tolerance, config.tolerance);
-    take(step, config.step);
-    take(until, config.until);
-    take(every, config.every);
+    if (app.count("--velocity") + app.count("--momentum") > 0)
+      config.start.velocity = config.start.momentum = {};
     const auto collect = [&](const std::function<void()>& read) {
       try {
         read();
@@ -115,14 +91,7 @@ struct RunLine {
         mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
       }
     };
-    const auto list = [&](const char* option, const std::optional<std::string>& text,
-                          std::vector<double>& out) {
-      if (text) collect([&] { out = read_numbers(option, *text); });
-    };
-    if (velocity || momentum) config.start.velocity = config.start.momentum = {};
-    list("--configuration", configuration, config.start.configuration);
-    list("--velocity", velocity, config.start.velocity);
-    list("--momentum", momentum, config.start.momentum);
+    for (const auto& override : overrides) collect([&] { override(config); });
     for (const std::string& set : sets) {
       collect([&] {
         const size_t equal = set.find('=');
@@ -130,7 +99,7 @@ struct RunLine {
           throw ConfigError({fmt::format("--set: '{}' is not name=value[,value...]", set)});
         }
         const std::string name = set.substr(0, equal);
-        config.parameters[name] = read_numbers("--set " + name, set.substr(equal + 1));
+        read_text("--set " + name, set.substr(equal + 1), config.parameters[name]);
       });
     }
     if (!mistakes.empty()) throw ConfigError(mistakes);
@@ -176,7 +145,7 @@ int program(int argc, char** argv) {
   RunLine line;
   CLI::App* run_command = app.add_subcommand("run", "One trajectory");
   line.define(*run_command);
-  run_command->callback([&] { command = [&] { return run(line.resolve()); }; });
+  run_command->callback([&] { command = [&] { return run(line.resolve(*run_command)); }; });
 
   StudyOptions studying;
   CLI::App* study_command = app.add_subcommand(

@@ -1,23 +1,23 @@
 #include "readings.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <future>
+#include <iterator>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include <hamel/systems/simulate.hpp>
 
+#include "paper_studies.hpp"
 #include "run_page.hpp"
 
 namespace hamel::tools {
 
-const std::vector<Reading>& readings() {
-  static const std::vector<Reading> all = {
-      {"boxed_literal", "boxed_literal", 0}, {"boxed", "boxed", 0},   {"balance s=0", "balance", 0},
-      {"balance s=1/2", "balance", 0.5},     {"lift s=0", "lift", 0}, {"lift s=1/2", "lift", 0.5},
-      {"unadapted", "unadapted", 0.5},
-  };
-  return all;
+StudyConfig paper_study(const std::string& stem) {
+  for (const auto& [name, text] : paper_studies)
+    if (name == stem) return parse_study(text, stem, registry());
+  throw std::logic_error("no study " + stem);
 }
 
 const std::vector<Figure>& figures() {
@@ -37,63 +37,53 @@ const std::vector<Figure>& figures() {
 
 namespace {
 
-Simulation simulation_of(const Case& problem, const Reading& reading,
-                         const std::string& retraction) {
-  Simulation out = simulate(problem.system);
-  for (const auto& [name, value] : problem.parameters) out.set(name, value);
-  return out.start(problem.start)
-      .scheme(reading.scheme)
-      .s(reading.s)
-      .retraction(retraction)
-      .step(problem.step)
-      .until(problem.until);
+Outcome run_reading(const StudyCell& cell) {
+  const Result result = simulate(cell.config.system).config(cell.config).run();
+  Outcome out;
+  const bool adapted = registry().scheme(cell.config.scheme)->adapted;
+  const std::string s = adapted ? cell.axes.at("s") : "";
+  out.name = cell.config.scheme + (s.empty() ? "" : s == "0.5" ? " s=1/2" : " s=" + s);
+  out.cell = cell;
+  out.status = result.status;
+  out.measured = result;
+  out.nanoseconds = result.seconds * 1e9 / static_cast<double>(std::max(result.steps, 1L));
+  for (const Figure& figure : figures())
+    out.curves.push_back(curve(result, out.name, figure.column, figure.magnitude));
+  return out;
 }
 
 }  // namespace
 
-Outcome run_reading(const Case& problem, const Reading& reading, const std::string& retraction) {
-  const Result result = simulation_of(problem, reading, retraction).run();
-  Outcome out;
-  out.name = reading.name;
-  out.status = result.status;
-  out.energy_error = result.energy_error_max;
-  out.constraint = result.constraint_max;
-  out.group_defect = result.group_defect_max;
-  out.configuration_error = result.exact_error_max;
-  out.final_configuration_error = result.exact_error_final;
-  out.velocity_error = result.exact_velocity_error_max;
-  out.nanoseconds = result.seconds * 1e9 / static_cast<double>(std::max(result.steps, 1L));
-  out.final_velocity = result.last.velocity;
-  for (const Figure& figure : figures()) {
-    out.curves.push_back(curve(result, reading.name, figure.column, figure.magnitude));
-  }
-  return out;
-}
-
-std::vector<Outcome> run_all(const Case& problem, const std::vector<Reading>& which,
-                             const std::string& retraction) {
-  std::vector<Outcome> out(which.size());
+std::vector<Outcome> run_all(const StudyConfig& study) {
+  std::vector<StudyCell> cells = study_cells(study, registry());
+  std::erase_if(cells, [](const StudyCell& cell) { return !cell.runs(); });
+  std::vector<Outcome> out(cells.size());
   const auto part = [&](size_t first) {
-    for (size_t i = first; i < which.size(); i += 2) {
-      out[i] = run_reading(problem, which[i], retraction);
-    }
+    for (size_t i = first; i < cells.size(); i += 2) out[i] = run_reading(cells[i]);
   };
-  registry();  // filled before the threads share it
   auto other = std::async(std::launch::async, part, size_t{1});
   part(0);
   other.get();
   return out;
 }
 
-std::vector<Series> exact_momentum(const Case& problem) {
-  const Result start = simulation_of(problem, readings().back(), "exp").until(problem.step).run();
-  Eigen::MatrixXd inertia(start.system.group.dim, start.system.group.dim);
-  start.system.mechanics->inertia(nullptr, inertia);
-  const ExactFlow flow = start.system.exact(start.config.start);
+std::vector<Outcome> with(const std::vector<Outcome>& all, const std::string& axis,
+                          const std::string& value) {
+  std::vector<Outcome> out;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(out),
+               [&](const Outcome& outcome) { return outcome.cell.axes.at(axis) == value; });
+  return out;
+}
+
+std::vector<Series> exact_momentum(const Config& run) {
+  const Integration start = simulate(run.system).config(run).build();
+  Eigen::MatrixXd inertia(start.system().group.dim, start.system().group.dim);
+  start.system().mechanics->inertia(nullptr, inertia);
+  const ExactFlow flow = start.system().exact(start.config().start);
   std::vector<Series> out(2, Series{"exact", {}, {}, true});
   constexpr int points = 400;
   for (int i = 0; i <= points; ++i) {
-    const double t = problem.until * i / points;
+    const double t = run.until * i / points;
     const auto [g, xi] = flow(t);
     const Eigen::VectorXd mu =
         inertia *
@@ -125,8 +115,10 @@ void add_figures(Page& page, const std::vector<Outcome>& outcomes,
 void add_table(Page& page, const std::string& title, const std::vector<Outcome>& outcomes) {
   std::vector<std::vector<Cell>> rows;
   for (const Outcome& o : outcomes) {
-    rows.push_back({o.name, o.status.ok ? "ok" : "failed", o.energy_error, o.configuration_error,
-                    o.velocity_error, o.constraint, o.group_defect, o.nanoseconds});
+    const Measurements& m = o.measured;
+    rows.push_back({o.name, o.status.ok ? "ok" : "failed", m.energy_error_max, m.exact_error_max,
+                    m.exact_velocity_error_max, m.constraint_max, m.group_defect_max,
+                    o.nanoseconds});
   }
   page.table(title,
              {"reading", "status", "energy error", "configuration error", "velocity error",

@@ -1,41 +1,28 @@
 // The readings of the paper's method, and what one run of each leaves for figures and tables.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/measures.hpp>
+#include <hamel/framework/study/study.hpp>
 
 #include "page.hpp"
 
 namespace hamel::tools {
 
-/// One way to read the paper: a scheme and its s.
-struct Reading {
-  std::string name, scheme;
-  double s;
-};
-/// boxed_literal, boxed, balance and lift at s = 0 and 1/2, unadapted.
-const std::vector<Reading>& readings();
-
-/// A system with its start, step and time span.
-struct Case {
-  std::string title, system;
-  Parameters parameters;
-  Start start;
-  double step, until;
-};
+/// A study of tools/studies/paper by its stem, as the program carries it; its cells are the readings of the
+/// paper's method.
+StudyConfig paper_study(const std::string& stem);
 
 /// What one run of one reading leaves: its largest errors and its thinned curves.
 struct Outcome {
-  std::string name;
+  std::string name;  // "boxed", "lift s=1/2"
+  StudyCell cell;
   Status status;
-  double energy_error = 0, constraint = 0, group_defect = 0;
-  double configuration_error = 0, velocity_error = 0, nanoseconds = 0;
-  double final_configuration_error = 0;
-  std::vector<Series> curves;  // in the order of figure_columns()
-  std::vector<double> final_velocity;
+  Measurements measured;
+  double nanoseconds = 0;
+  std::vector<Series> curves;  // in the order of figures()
 };
 
 /// A column of the trajectory and how a figure shows it.
@@ -46,15 +33,15 @@ struct Figure {
 };
 const std::vector<Figure>& figures();
 
-/// Runs one reading of a case.
-Outcome run_reading(const Case& problem, const Reading& reading, const std::string& retraction);
+/// Runs all cells of a study, on both cores; the outcomes are in their order.
+std::vector<Outcome> run_all(const StudyConfig& study);
 
-/// Runs them all, on both cores; the order of the answers is that of the readings.
-std::vector<Outcome> run_all(const Case& problem, const std::vector<Reading>& which,
-                             const std::string& retraction);
+/// Those with this value on this axis.
+std::vector<Outcome> with(const std::vector<Outcome>& all, const std::string& axis,
+                          const std::string& value);
 
-/// The exact body momentum components over the span, as a dashed curve for the momentum figures.
-std::vector<Series> exact_momentum(const Case& problem);
+/// The exact body momentum components over the span of a run, as dashed curves for the momentum figures.
+std::vector<Series> exact_momentum(const Config& run);
 
 /// The figures of these runs, then their table.
 void add_figures(Page& page, const std::vector<Outcome>& outcomes,

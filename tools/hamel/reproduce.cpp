@@ -1,5 +1,6 @@
-// hamel reproduce: the paper's two figures with every reading of its method against the exact motion,
-// then three systems on which the readings separate, and what the paper's boxes needed.
+// hamel reproduce: the story told by the studies of tools/studies/paper: the paper's two figures with every
+// reading of its method against the exact motion, then three systems on which the readings separate, and what
+// the paper's boxes needed.
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -16,19 +17,6 @@
 namespace hamel::tools {
 namespace {
 
-const Case kFigure1 = {"Figure 1", "suslov", {}, {.momentum = {1, 1, 0}}, 0.01, 1800};
-const Case kFigure2 = {"Figure 2", "suslov", {}, {.momentum = {1, 1, 0}}, 0.01, 18};
-const std::vector<Case> kSeparating = {
-    {"Suslov with a full inertia",
-     "suslov",
-     {{"inertia", {2, 0.3, 0.5, 3, 0.4, 4}}},
-     {.velocity = {1, 0.5, 0}},
-     0.05,
-     20},
-    {"Chaplygin sleigh", "chaplygin_sleigh", {}, {.velocity = {0.9, -1, 0}}, 0.05, 20},
-    {"Rolling disk", "rolling_disk", {}, {.velocity = {0.7, 1, 0, 2}}, 0.05, 20},
-};
-
 const Outcome& find(const std::vector<Outcome>& outcomes, const std::string& name) {
   for (const Outcome& o : outcomes) {
     if (o.name == name) return o;
@@ -38,12 +26,13 @@ const Outcome& find(const std::vector<Outcome>& outcomes, const std::string& nam
 
 // The angle by which the first step of a reading turns the body of figure 1.
 double first_step_angle(const std::string& scheme) {
-  Integration one = simulate("suslov")
-                        .start(kFigure1.start)
+  const StudyConfig figure = paper_study("figure_1");
+  Integration one = simulate(figure.systems[0].name)
+                        .start(figure.systems[0].start)
                         .scheme(scheme)
                         .s(0)
                         .retraction("exp")
-                        .step(kFigure1.step)
+                        .step(0.01)
                         .build();
   one.step();
   return Exp<SO3>::tau_inverse(SO3::from_coordinates(one.state().coordinates)).norm();
@@ -92,26 +81,29 @@ class Report {
         progress_("reproduce", options.quiet) {}
 
   void figure_1() {
-    std::vector<std::vector<Outcome>> by_retraction;
-    for (const std::string retraction : {"exp", "cayley"}) {
-      by_retraction.push_back(run_all(kFigure1, readings(), retraction));
-      keep(kFigure1, retraction, by_retraction.back());
-      step();
-    }
-    const auto& exp = by_retraction[0];
-    const auto& cayley = by_retraction[1];
-    const Outcome& lift = find(exp, "lift s=1/2");
-    const Outcome& boxed = find(exp, "boxed");
-    const Outcome& literal = find(exp, "boxed_literal");
-    story_.section("Figure 1: 30 minutes of the diagonal Suslov body");
+    const StudyConfig study = paper_study("figure_1");
+    const std::vector<Outcome> outcomes = run_all(study);
+    const auto exp = with(outcomes, "retraction", "exp");
+    const auto cayley = with(outcomes, "retraction", "cayley");
+    keep(exp);
+    keep(cayley);
+    step();
+    const auto velocity_error = [](const std::vector<Outcome>& some, const char* name) {
+      return find(some, name).measured.exact_velocity_error_max;
+    };
+    const auto configuration_error = [](const std::vector<Outcome>& some, const char* name) {
+      return find(some, name).measured.exact_error_max;
+    };
+    const auto energy_error = [&](const char* name) {
+      return find(exp, name).measured.energy_error_max;
+    };
+    story_.section(study.title);
     double defect = 0, constraint = 0;
     bool ok = true;
-    for (const auto& outcomes : by_retraction) {
-      for (const Outcome& o : outcomes) {
-        ok = ok && o.status.ok;
-        defect = std::max(defect, o.group_defect);
-        if (o.name != "unadapted") constraint = std::max(constraint, o.constraint);
-      }
+    for (const Outcome& o : outcomes) {
+      ok = ok && o.status.ok;
+      defect = std::max(defect, o.measured.group_defect_max);
+      if (o.name != "unadapted") constraint = std::max(constraint, o.measured.constraint_max);
     }
     story_.verdict(
         ok ? "ok" : "failed",
@@ -124,49 +116,52 @@ class Report {
             "I = diag(1, 10, 100), momentum (1, 1, 0), R = Id. The exact angular velocity is "
             "constant. `lift` keeps it to {:.1e} (s = 0) and {:.1e} (s = ½) over 1800 s with exp, "
             "{:.1e} and {:.1e} with Cayley; `balance` at s = ½ to {:.1e}.",
-            find(exp, "lift s=0").velocity_error, lift.velocity_error,
-            find(cayley, "lift s=0").velocity_error, find(cayley, "lift s=1/2").velocity_error,
-            find(exp, "balance s=1/2").velocity_error),
+            velocity_error(exp, "lift s=0"), velocity_error(exp, "lift s=1/2"),
+            velocity_error(cayley, "lift s=0"), velocity_error(cayley, "lift s=1/2"),
+            velocity_error(exp, "balance s=1/2")),
         fmt::format(
             "`boxed`, the printed boxes with their slips repaired, ends {:.2f} rad/s away from the "
             "true angular velocity of 1.005 rad/s although its energy error is only {:.1e}: it "
             "drifts to a principal axis of the inertia. `balance` at s = 0 drifts the other way "
             "({:.2f} rad/s, energy error {:.1e}). **Energy alone proves nothing.**",
-            boxed.velocity_error, boxed.energy_error, find(exp, "balance s=0").velocity_error,
-            find(exp, "balance s=0").energy_error),
+            velocity_error(exp, "boxed"), energy_error("boxed"), velocity_error(exp, "balance s=0"),
+            energy_error("balance s=0")),
         fmt::format(
             "`boxed_literal`, the boxes as typeset, jumps by O(1) in its first step and then stays "
             "on a plateau: energy error {:.2f} whatever the step, because the step size cancels.",
-            literal.energy_error),
+            energy_error("boxed_literal")),
         fmt::format(
             "The orientation error of `lift` grows slowly, to {:.1e} with exp, {:.1e} with Cayley "
             "at "
             "s = 0 and {:.1e} at s = ½: second order, since the velocity of a step differs from "
             "the "
             "one at its nodes by O(h²) and a Cayley step turns by 2 atan(|hΩ|/2) instead of |hΩ|.",
-            lift.configuration_error, find(cayley, "lift s=0").configuration_error,
-            find(cayley, "lift s=1/2").configuration_error),
+            configuration_error(exp, "lift s=1/2"), configuration_error(cayley, "lift s=0"),
+            configuration_error(cayley, "lift s=1/2")),
     });
-    const std::vector<Series> exact = exact_momentum(kFigure1);
+    const std::vector<Series> exact = exact_momentum(exp.front().cell.config);
     for (size_t i = 0; i < 2; ++i) {
       page_.section(i == 0 ? "Figure 1 with exp" : "Figure 1 with Cayley");
-      add_figures(page_, by_retraction[i], exact);
-      add_table(page_, i == 0 ? "Figure 1, exp" : "Figure 1, Cayley", by_retraction[i]);
+      add_figures(page_, i == 0 ? exp : cayley, exact);
+      add_table(page_, i == 0 ? "Figure 1, exp" : "Figure 1, Cayley", i == 0 ? exp : cayley);
     }
   }
 
   void figure_2() {
-    story_.section("Figure 2: the unadapted integrator leaves the constraint");
-    for (const std::string retraction : {"exp", "cayley"}) {
-      const auto outcomes = run_all(kFigure2, {readings()[5], readings()[6]}, retraction);
-      keep(kFigure2, retraction, outcomes);
+    const StudyConfig study = paper_study("figure_2");
+    story_.section(study.title);
+    const std::vector<Outcome> all = run_all(study);
+    for (const std::string& retraction : study.values("retraction")) {
+      const auto outcomes = with(all, "retraction", retraction);
+      keep(outcomes);
       const Outcome& unadapted = find(outcomes, "unadapted");
+      const double constraint = unadapted.measured.constraint_max;
       story_.verdict(
-          unadapted.constraint > 1e-3 && unadapted.status.ok ? "ok" : "failed",
+          constraint > 1e-3 && unadapted.status.ok ? "ok" : "failed",
           fmt::format("{}: within 18 s the unadapted integrator reaches |Ω₃| = {:.3f} rad/s; lift "
                       "stays at {:.1e}. Its energy error is {:.1e}: as a free body it is fine.",
-                      retraction, unadapted.constraint, find(outcomes, "lift s=1/2").constraint,
-                      unadapted.energy_error));
+                      retraction, constraint, find(outcomes, "lift s=1/2").measured.constraint_max,
+                      unadapted.measured.energy_error_max));
       add_figures(page_, outcomes, {});
       add_table(page_, "Figure 2, " + retraction, outcomes);
     }
@@ -174,41 +169,41 @@ class Report {
   }
 
   void separating() {
-    for (const Case& problem : kSeparating) {
-      story_.section(problem.title + ": where the readings separate");
-      const std::string retraction = "cayley";
+    const StudyConfig study = paper_study("separating");
+    const StudyValues steps = study.values("step");
+    const std::vector<Outcome> all = run_all(study);
+    for (const StudySystem& system : study.systems) {
+      story_.section(system.label + ": where the readings separate");
       std::vector<std::vector<Outcome>> runs;
-      for (double factor : {1.0, 0.5, 0.25}) {
-        Case finer = problem;
-        finer.step *= factor;
-        runs.push_back(run_all(finer, readings(), retraction));
-      }
-      keep(problem, retraction, runs.front());
+      for (const std::string& h : steps)
+        runs.push_back(with(with(all, "system", system.label), "step", h));
+      keep(runs.front());
       std::vector<std::vector<Cell>> rows;
       std::string orders;
-      for (size_t i = 0; i < readings().size(); ++i) {
-        const double e0 = runs[0][i].final_configuration_error,
-                     e1 = runs[1][i].final_configuration_error,
-                     e2 = runs[2][i].final_configuration_error;
-        rows.push_back({readings()[i].name, e0, e1, e2, std::log2(e0 / e1), std::log2(e1 / e2),
-                        runs[2][i].velocity_error, runs[2][i].energy_error});
-        orders += fmt::format("{}`{}` {:.2e} ({:.2f})", i == 0 ? "" : ", ", readings()[i].name, e2,
+      for (size_t i = 0; i < runs[0].size(); ++i) {
+        const double e0 = runs[0][i].measured.exact_error_final,
+                     e1 = runs[1][i].measured.exact_error_final,
+                     e2 = runs[2][i].measured.exact_error_final;
+        const Outcome& finest = runs[2][i];
+        rows.push_back({finest.name, e0, e1, e2, std::log2(e0 / e1), std::log2(e1 / e2),
+                        finest.measured.exact_velocity_error_max,
+                        finest.measured.energy_error_max});
+        orders += fmt::format("{}`{}` {:.2e} ({:.2f})", i == 0 ? "" : ", ", finest.name, e2,
                               std::log2(e1 / e2));
       }
       story_.say(
-          {fmt::format("{} s with Cayley at h = {}, {}, {}. Configuration error at the end for the "
+          {fmt::format("{} s with Cayley at h = {}. Configuration error at the end for the "
                        "finest step, and the order measured: {}.",
-                       problem.until, problem.step, problem.step / 2, problem.step / 4, orders)});
-      add_figures(page_, runs.front(), exact_momentum(problem));
-      page_.table(problem.title + ", errors and measured order",
-                  {"reading", fmt::format("error, h = {}", problem.step),
-                   fmt::format("error, h = {}", problem.step / 2),
-                   fmt::format("error, h = {}", problem.step / 4), "order", "order (finer)",
-                   "velocity error", "energy error"},
-                  rows, "Configuration error at the final time against the exact motion.");
-      add_table(page_, problem.title + fmt::format(", h = {}", problem.step), runs.front());
-      step();
+                       study.until, join(steps), orders)});
+      add_figures(page_, runs.front(), exact_momentum(runs.front().front().cell.config));
+      page_.table(
+          system.label + ", errors and measured order",
+          {"reading", "error, h = " + steps[0], "error, h = " + steps[1], "error, h = " + steps[2],
+           "order", "order (finer)", "velocity error", "energy error"},
+          rows, "Configuration error at the final time against the exact motion.");
+      add_table(page_, system.label + ", h = " + steps[0], runs.front());
     }
+    step();
   }
 
   void boxes() {
@@ -263,17 +258,18 @@ class Report {
   bool ok() const { return ok_; }
 
  private:
-  void keep(const Case& problem, const std::string& retraction,
-            const std::vector<Outcome>& outcomes) {
+  void keep(const std::vector<Outcome>& outcomes) {
     for (const Outcome& o : outcomes) {
-      csv_ +=
-          fmt::format("{},{},{},{},{},{:.6e},{:.6e},{:.6e},{:.6e},{:.6e}\n", problem.title, o.name,
-                      retraction, problem.step, o.status.ok ? "ok" : "failed", o.energy_error,
-                      o.configuration_error, o.velocity_error, o.constraint, o.group_defect);
+      const Measurements& m = o.measured;
+      csv_ += fmt::format("{},{},{},{},{},{:.6e},{:.6e},{:.6e},{:.6e},{:.6e}\n",
+                          o.cell.axes.at("system"), o.name, o.cell.config.retraction,
+                          o.cell.config.step, o.status.ok ? "ok" : "failed", m.energy_error_max,
+                          m.exact_error_max, m.exact_velocity_error_max, m.constraint_max,
+                          m.group_defect_max);
       ok_ = ok_ && o.status.ok;
     }
   }
-  void step() { progress_(++done_ / 6.0); }
+  void step() { progress_(++done_ / 3.0); }
 
   Page page_;
   Story story_;

@@ -121,7 +121,7 @@ class Comparison {
 
   void orders() {
     std::vector<std::string> axes = study_axes(), short_of, late;
-    axes.pop_back();  // the step
+    std::erase(axes, "step");
     size_t measured = 0, reach = 0;
     std::vector<std::string> unknown;
     double worst = std::numeric_limits<double>::infinity();

@@ -46,9 +46,11 @@ class StudyPage {
   void divide_axes() {
     filters_ =
         view_.varies("system") ? std::vector<std::string>{"system"} : std::vector<std::string>{};
-    for (const char* axis :
-         {"solver", "scheme", "s", "retraction", "compose", "on_failure", "tolerance"}) {
-      if (!view_.varies(axis)) continue;
+    std::vector<std::string> axes = {"solver", "scheme", "s"};
+    for (const std::string& axis : study_axes())
+      if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
+    for (const std::string& axis : axes) {
+      if (!view_.varies(axis) || axis == "system" || axis == "step") continue;
       std::vector<std::string> longer = names_;
       longer.emplace_back(axis);
       if (names_.empty() || view_.groups(longer).size() <= kMostNames) names_ = longer;

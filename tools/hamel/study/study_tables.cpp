@@ -29,7 +29,7 @@ void add_references(Page& page, const StudyResult& result) {
 
 void add_orders(Page& page, const StudyView& view) {
   std::vector<std::string> axes = study_axes();
-  axes.pop_back();  // the step
+  std::erase(axes, "step");
   std::vector<std::string> columns = view.varying_without({"step"});
   const std::vector<std::string> shown = columns;
   for (const char* more : {"order", "finest", "claimed", "verdict", "points", "of", "least error"})
@@ -112,8 +112,8 @@ void add_skipped(Page& page, const StudyResult& result) {
   }
   if (kinds.empty()) return;
   std::vector<std::string> columns = study_axes();
-  columns.back() = "kind";
-  columns.insert(columns.end(), {"why", "steps"});
+  std::erase(columns, "step");
+  columns.insert(columns.end(), {"kind", "why", "steps"});
   std::vector<std::vector<Cell>> rows;
   for (size_t i = 0; i < kinds.size(); ++i) {
     rows.emplace_back(kinds[i].begin(), kinds[i].end());

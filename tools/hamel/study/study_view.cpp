@@ -11,10 +11,13 @@ std::string axis_words(const std::string& axis, const std::string& value) {
   if (value.empty()) return "";
   if (axis == "s") return "s = " + value;
   if (axis == "step") return "h = " + value;
-  if (axis == "tolerance") return "tolerance " + value;
   if (axis == "compose" && value == "none") return "not composed";
   if (axis == "on_failure") return "on failure " + value;
-  return value;
+  std::string out = value;
+  Config::fields([&]<class Value>(const Option& option, Value Config::*) {
+    if (option.name == axis && !std::is_same_v<Value, std::string>) out = axis + " " + value;
+  });
+  return out;
 }
 
 StudyView::StudyView(const StudyResult& result) : result_(result) {

@@ -1,0 +1,58 @@
+// Measures a run as it goes: the row of each recorded state, by column name, and the Measurements over all.
+// Not installed: the builder's own.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/mechanics/motion.hpp>
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/measures.hpp>
+#include <hamel/framework/schemes/erased.hpp>
+
+namespace hamel {
+
+class Meter {
+ public:
+  /// lag: from a step's velocity to its end. geometry: null for a group that is not registered.
+  Meter(const SystemModel& system, const Start& start, std::shared_ptr<const Geometry> geometry,
+        std::shared_ptr<const Mechanics> mechanics, double lag);
+
+  /// Begins the row of a state with what the kernel measured of it (the columns of tools/README.md).
+  void take(const Snapshot& state);
+  /// Ends it with what the equations of motion, the invariants and the exact motion say.
+  void compare(const Snapshot& state);
+  /// The names of the row's columns, after the first.
+  const std::vector<std::string>& columns() const { return columns_; }
+  const std::vector<double>& row() const { return row_; }
+  /// After the last state.
+  Measurements finish();
+
+ private:
+  // Adds to the row, and to the names of its columns while it is the first.
+  void add(const char* name, double value);
+  void add(const std::vector<std::string>& names, std::span<const double> values);
+  void add_numbered(const char* name, std::span<const double> values);
+  void react(const Snapshot& state);
+
+  const SystemModel& system_;
+  Start start_;
+  std::vector<std::string> columns_;
+  std::vector<double> row_;
+  Measurements all_;
+  bool first_ = true;
+  double energy_start_ = 0;
+  ExactFlow exact_;
+  // The multipliers lambda of A xi = b, from the continuous equations at each state, and their power
+  // lambda . A v in the last step before it, A v recovered from the configurations (Snapshot::row_rates) and
+  // lambda interpolated to the same time, `lag` before the state: round-off where b = 0, the power that a
+  // moving constraint feeds in where it is not.
+  std::shared_ptr<const Geometry> geometry_;
+  std::unique_ptr<Motion<Erased>> motion_;  // null without rows
+  double lag_, time_ = 0, power_ = 0, power_time_ = 0;
+  Eigen::VectorXd g_, xi_, lambda_;
+};
+
+}  // namespace hamel
