@@ -5,8 +5,6 @@
 // 1. Two ways to evaluate one step differ by some units of round-off, 2e-16 each, and 500 steps add up to less.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -43,15 +41,10 @@ double difference(const Json& measured, const Json& stored) {
   return largest / size;
 }
 
-Json stored_runs() {
-  std::ifstream in(std::filesystem::path(__FILE__).parent_path() / "stored_runs.json");
-  return Json::parse(in);
-}
-
 class StoredRuns : public CommandLine {};
 
 TEST_F(StoredRuns, AreRepeated) {
-  const Json all = stored_runs();
+  const Json all = Json::parse(source_file("tests/verification/stored_runs.json"));
   ASSERT_GE(all.size(), 28u);
   for (const Json& stored : all) {
     const std::string what = stored.at("run");

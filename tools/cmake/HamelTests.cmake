@@ -43,7 +43,8 @@ if(HAMEL_BUILD_TESTS)
 endif()
 
 # tests/<name>.cpp -> build/tests/<name>, ctest <name>.
-#   LABELS slow ...   PROGRAM   runs build/tools/hamel, whose path is in the environment: HAMEL_PROGRAM
+#   LABELS slow ...   PROGRAM   runs build/tools/hamel; the environment has its path, HAMEL_PROGRAM, and that
+#                               of the source tree, HAMEL_SOURCE
 #   HOT               compiled with full optimisation, and without the precompiled header
 #   NEEDS target ...  further libraries to link
 function(hamel_test name)
@@ -66,7 +67,8 @@ function(hamel_test name)
   set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
   if(arg_PROGRAM)
     add_dependencies(${target} hamel_program)
-    set_tests_properties(${name} PROPERTIES ENVIRONMENT HAMEL_PROGRAM=$<TARGET_FILE:hamel_program>)
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT
+      "HAMEL_PROGRAM=$<TARGET_FILE:hamel_program>;HAMEL_SOURCE=${PROJECT_SOURCE_DIR}")
   endif()
 endfunction()
 
