@@ -113,6 +113,25 @@ function(hamel_compile_error stem)
   set_tests_properties(compile_errors/${stem} PROPERTIES LABELS compile_error TIMEOUT 120)
 endfunction()
 
+# tests/framework/rooms.cmake, with the include directories that the sources of each layer are compiled with.
+function(hamel_rooms_test)
+  set(content "")
+  foreach(layer ${HAMEL_ROOMS} groups solvers systems)
+    set(property INCLUDE_DIRECTORIES)
+    get_target_property(type hamel_${layer} TYPE)
+    if(type STREQUAL "INTERFACE_LIBRARY")
+      set(property INTERFACE_INCLUDE_DIRECTORIES)
+    endif()
+    string(APPEND content "set(includes_${layer} \"$<TARGET_PROPERTY:hamel_${layer},${property}>\")\n")
+  endforeach()
+  set(includes ${CMAKE_CURRENT_BINARY_DIR}/framework/rooms_$<CONFIG>.cmake)
+  file(GENERATE OUTPUT ${includes} CONTENT "${content}")
+  add_test(NAME framework/rooms
+    COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DCOMPILER=${CMAKE_CXX_COMPILER}
+            -DINCLUDES=${includes} -P ${CMAKE_CURRENT_SOURCE_DIR}/framework/rooms.cmake)
+  set_tests_properties(framework/rooms PROPERTIES LABELS compile_error)
+endfunction()
+
 # tests/consumers/<kind>: configured, built and run as a user would.
 function(hamel_consumer kind)
   add_test(NAME consumers/${kind}
