@@ -180,7 +180,8 @@ std::string Result::report() const {
     line("fallbacks", fmt::format("{} of {} steps; the first, step {} (t = {:.6g}): {}",
                                   stats.fallbacks, steps, first.step, first.time, first.action));
   }
-  line("constraint residual", fmt::format("{:.2e}", constraint_max));
+  line("constraint residual",
+       fmt::format("{:.2e}, {}", constraint_max, constraints_in_words(system)));
   line("group defect", fmt::format("{:.2e}", group_defect_max));
   line("energy error", fmt::format("{:.2e} (relative)", energy_error_max));
   if (std::isfinite(reaction_work)) {

@@ -2,8 +2,8 @@
 // group (Heisenberg) with a retraction, complete in 30 lines, obeys every law.
 #include <gtest/gtest.h>
 
-#include <hamel/framework/lie/autodiff.hpp>
 #include <hamel/framework/check/retraction_laws.hpp>
+#include <hamel/framework/lie/autodiff.hpp>
 #include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/groups/second_kind.hpp>
 
