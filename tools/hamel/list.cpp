@@ -109,9 +109,12 @@ std::string code(const std::vector<std::string>& names) {
   return out;
 }
 
-/// Names in the order of their first key.
+/// Names under keys: those given first, others in the order of their first name.
 class Grouped {
  public:
+  Grouped(const std::vector<std::string>& keys = {}) {
+    for (const std::string& key : keys) rows_.push_back({key, {}});
+  }
   void add(const std::string& key, const std::string& name) {
     for (auto& [known, names] : rows_) {
       if (known == key) return names.push_back(name);
@@ -164,7 +167,7 @@ std::string kind_in_words(const SystemInfo& info) {
 
 std::vector<Table> markdown_tables() {
   const Registry& all = registry();
-  Grouped of_groups, of_systems, of_solvers;
+  Grouped of_groups, of_systems({"left-invariant"}), of_solvers({"always"});
   for (const std::string& name : all.groups()) of_groups.add(code(all.retractions(name)), name);
   for (const std::string& name : all.systems()) {
     of_systems.add(kind_in_words(*all.system(name)), name);
