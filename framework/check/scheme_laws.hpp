@@ -19,9 +19,9 @@
 #include <vector>
 
 #include <hamel/framework/check/group_laws.hpp>
-#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/run/registry.hpp>
 #include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 
 namespace hamel {
 

@@ -5,7 +5,18 @@
 
 #include <fmt/format.h>
 
-namespace hamel::detail {
+#include <hamel/framework/mechanics/mechanics.hpp>
+
+namespace hamel {
+
+std::string constraints_in_words(const SystemModel& model) {
+  const int rows = model.mechanics->rows(), holonomic = model.mechanics->holonomic_rows();
+  if (rows == 0) return "no constraint";
+  return fmt::format("{} constraint row{}{}", rows, rows == 1 ? "" : "s",
+                     holonomic > 0 ? fmt::format(", {} holonomic", holonomic) : "");
+}
+
+namespace detail {
 
 void check_parameters(const std::string& system, const std::vector<Field>& fields,
                       const Parameters& given) {
@@ -33,4 +44,5 @@ void check_parameters(const std::string& system, const std::vector<Field>& field
   if (!mistakes.empty()) throw ConfigError(mistakes);
 }
 
-}  // namespace hamel::detail
+}  // namespace detail
+}  // namespace hamel

@@ -23,10 +23,11 @@
 #include <utility>
 #include <vector>
 
-#include <hamel/framework/mechanics/drawing.hpp>
-#include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/lie/group_info.hpp>
+#include <hamel/framework/mechanics/close_names.hpp>
+#include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/system_members.hpp>
 
 namespace hamel {
@@ -164,6 +165,7 @@ struct MechanicsOf {
 /// The name, group and fields of a system; nothing that its parameters could break.
 template <System S>
 SystemModel erase_words(const S& system) {
+  refuse_misspelt<S>();
   SystemModel model;
   if constexpr (requires { S::name(); }) {
     model.name = S::name();
@@ -175,6 +177,9 @@ SystemModel erase_words(const S& system) {
   model.fields = detail::fields_of(system);
   return model;
 }
+
+/// "no constraint", "1 constraint row", "3 constraint rows, 1 holonomic".
+std::string constraints_in_words(const SystemModel& model);
 
 /// Erases a system, parameters as they are. Throws what the system's own members throw.
 template <System S>
@@ -240,6 +245,7 @@ concept RunTimeSystem = requires(const S& s) {
 
 template <RunTimeSystem S>
 SystemModel erase_words(const S& system) {
+  refuse_misspelt<S>();
   SystemModel model;
   model.name = S::name();
   model.group.name = system.group();  // completed by the registry

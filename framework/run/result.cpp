@@ -163,7 +163,8 @@ std::string Result::report() const {
     const double value = this->*member;
     if (*quantity.title == 0 || (member == &Result::reaction_work && !std::isfinite(value))) return;
     line(quantity.title,
-         fmt::format("{:.2e}{}", value, member == &Result::energy_error_max ? " (relative)" : ""));
+         fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
+                     member == &Result::constraint_max ? ", " + constraints_in_words(system) : ""));
   });
   for (const InvariantDrift& i : invariants) {
     line(i.name, fmt::format("{:.6g}, drift {:.2e}", i.start, i.drift_max));

@@ -42,7 +42,14 @@ inline std::vector<std::string> split(const std::string& text, char separator = 
   return out;
 }
 
-/// A temporary folder for each test.
+/// A file of the source tree.
+inline std::string source_file(const std::string& path) {
+  const char* root = std::getenv("HAMEL_SOURCE");
+  EXPECT_NE(root, nullptr) << "set HAMEL_SOURCE to the source tree (ctest does)";
+  return contents(std::filesystem::path(root != nullptr ? root : "") / path);
+}
+
+/// A folder of its own for each test, gone afterwards.
 class CommandLine : public testing::Test {
  protected:
   void SetUp() override {

@@ -31,7 +31,8 @@ struct OneStep {
   using M = Mat<n, n>;
   const test::Body<G, 1> body{};
   const Eigen::MatrixXd e = hamel_frame(body.inertia(), Eigen::MatrixXd(body.constraints()));
-  const check::NumericalDerivative<Tau> numerical{};
+  const TypedGeometry<Tau> geometry{};
+  const check::NumericalDerivative numerical{geometry};
   double s, h = 0.2;
   V mu0, mu1, xi;
 

@@ -1,24 +1,96 @@
-// Every single group obeys the group axioms (framework/check/group_laws.hpp, where the bounds are).
+// Every registered group obeys the group axioms (framework/check/group_laws.hpp, where the bounds are): by type, and
+// by name as a run sees it, products put together at run time included.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <hamel/framework/check/group_laws.hpp>
-#include <hamel/groups/exp.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "all_groups.hpp"
 
 namespace {
 
 using namespace hamel;
 
 template <class G>
-class GroupLaws : public testing::Test {};
-using Groups = testing::Types<SO2, Rn<2>, SO3, SE2, SE3>;
-TYPED_TEST_SUITE(GroupLaws, Groups);
-
-TYPED_TEST(GroupLaws, Hold) {
+void expect_laws() {
   for (const unsigned seed : {1u, 2u, 3u}) {
-    for (const LawResult& law : check_group<TypeParam, Exp<TypeParam>>(seed)) {
-      EXPECT_TRUE(law.passed()) << TypeParam::name() << ": " << law;
+    for (const LawResult& law : check_group<G>(seed)) {
+      EXPECT_TRUE(law.passed()) << G::name() << ": " << law;
     }
   }
+}
+
+TEST(GroupLaws, HoldByType) {
+  test::AllGroups::for_each([]<class G>(std::type_identity<G>) { expect_laws<G>(); });
+  expect_laws<Product<SO3, Rn<2>>>();
+  expect_laws<Product<SE2, SO2, SO2>>();
+}
+
+TEST(GroupLaws, HoldByName) {
+  std::vector<std::string> names = registry().groups();
+  names.insert(names.end(), {"so3*r2", "se2*so2^3", "heisenberg*se3"});
+  for (const std::string& name : names) {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+      for (const LawResult& law : check_group(registry(), name, seed)) {
+        EXPECT_TRUE(law.passed()) << name << ": " << law;
+      }
+    }
+  }
+}
+
+/// What is registered is in the list of types, with the retractions of the type.
+TEST(Groups, AreThoseOfTheRegistry) {
+  using Pair = std::pair<std::string, std::string>;
+  std::set<Pair> typed, named;
+  test::AllGroups::for_each([&]<class G>(std::type_identity<G>) {
+    RetractionsOf<G>::type::for_each([&]<class R>(std::type_identity<R>) {
+      typed.insert({G::name(), R::name()});
+    });
+  });
+  for (const std::string& group : registry().groups()) {
+    for (const std::string& retraction : registry().retractions(group)) {
+      named.insert({group, retraction});
+      EXPECT_TRUE(typed.contains({group, retraction}))
+          << group << ", " << retraction << ": add the group to tests/groups/all_groups.hpp";
+    }
+  }
+  EXPECT_GE(named.size(), 29u);
+}
+
+TEST(Groups, HaveTheNamesOfTheRegistry) {
+  EXPECT_EQ(SO2::name(), "so2");
+  EXPECT_EQ(Rn<2>::name(), "r2");
+  EXPECT_EQ((Product<SE2, SO2, Rn<1>>::name()), "se2*so2*r1");
+  EXPECT_EQ((Product<SE2, SO2>::columns()),
+            (std::vector<std::string>{"1_theta", "1_x", "1_y", "2_theta"}));
+}
+
+/// The laws must be able to fail: each group has one mistake.
+struct WrongAd : SE2 {
+  static Mat<3, 3> Ad(const SE2::Element<double>& g) { return SE2::Ad(SE2::inverse(g)); }
+};
+struct WrongCoad : SO3 {
+  static Mat<3, 3> coad(const Vec<3>& mu) { return -SO3::coad(mu); }
+};
+struct WrongInverse : SO2 {
+  static auto inverse(const SO2::Element<double>& g) { return SO2::compose(g, g); }
+};
+template <class G, class R>
+struct OnGroup : R {  // R, as a retraction of G
+  using Group = G;
+};
+int failures(const LawReport& report) {
+  int out = 0;
+  for (const LawResult& law : report) out += law.passed() ? 0 : 1;
+  return out;
+}
+TEST(GroupLaws, SeePlantedMistakes) {
+  EXPECT_GE((failures(check_group<WrongAd, OnGroup<WrongAd, Exp<SE2>>>())), 3);
+  EXPECT_GE((failures(check_group<WrongCoad, OnGroup<WrongCoad, Exp<SO3>>>())), 2);
+  EXPECT_GE((failures(check_group<WrongInverse, OnGroup<WrongInverse, Exp<SO2>>>())), 2);
+  EXPECT_THROW(check_group(registry(), "so4"), ConfigError);
 }
 
 }  // namespace

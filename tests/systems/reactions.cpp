@@ -10,7 +10,7 @@ namespace {
 
 // Is b != 0 somewhere along the default motion?
 bool moves(const SystemModel& model, const Result& run) {
-  if (model.mechanics == nullptr) return false;
+  if (model.mechanics->left_invariant()) return false;
   const Mechanics& mechanics = *model.mechanics;
   const auto geometry = registry().geometry(run.system.group.name, "cayley");
   Eigen::VectorXd g(geometry->size()), b(mechanics.rows());

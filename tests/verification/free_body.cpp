@@ -43,7 +43,7 @@ TEST(FreeBody, EveryAdaptedOrUnadaptedSchemeHasItsOrder) {
     for (const std::string& retraction : registry().retractions("so3")) {
       const bool symmetric = registry().retraction("so3", retraction)->symmetric;
       for (const double s : {0.0, 0.25, 0.5, 1.0}) {
-        const ClaimedOrder claim = info.claimed_order(s, symmetric);
+        const ClaimedOrder claim = info.claim(s, symmetric, true);
         // A symmetric top is a special motion: orders are checked from below only.
         const Simulation run = simulate(SymmetricTop{}).scheme(scheme).s(s).retraction(retraction);
         const double step = claim.order == 1 ? 0.01 : 0.05;

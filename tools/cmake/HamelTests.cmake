@@ -43,7 +43,8 @@ if(HAMEL_BUILD_TESTS)
 endif()
 
 # tests/<name>.cpp -> build/tests/<name>, ctest <name>.
-#   LABELS slow ...   PROGRAM   runs build/tools/hamel, whose path is in the environment: HAMEL_PROGRAM
+#   LABELS slow ...   PROGRAM   runs build/tools/hamel; the environment has its path, HAMEL_PROGRAM, and that
+#                               of the source tree, HAMEL_SOURCE
 #   HOT               compiled with full optimisation, and without the precompiled header
 #   NEEDS target ...  further libraries to link
 function(hamel_test name)
@@ -66,7 +67,8 @@ function(hamel_test name)
   set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
   if(arg_PROGRAM)
     add_dependencies(${target} hamel_program)
-    set_tests_properties(${name} PROPERTIES ENVIRONMENT HAMEL_PROGRAM=$<TARGET_FILE:hamel_program>)
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT
+      "HAMEL_PROGRAM=$<TARGET_FILE:hamel_program>;HAMEL_SOURCE=${PROJECT_SOURCE_DIR}")
   endif()
 endfunction()
 
@@ -109,6 +111,25 @@ function(hamel_compile_error stem)
             "-DINCLUDES=$<TARGET_PROPERTY:compile_error_${stem},INCLUDE_DIRECTORIES>"
             -P ${PROJECT_SOURCE_DIR}/tools/cmake/expect_compile_error.cmake)
   set_tests_properties(compile_errors/${stem} PROPERTIES LABELS compile_error TIMEOUT 120)
+endfunction()
+
+# tests/framework/rooms.cmake, with the include directories that the sources of each layer are compiled with.
+function(hamel_rooms_test)
+  set(content "")
+  foreach(layer ${HAMEL_ROOMS} groups solvers systems)
+    set(property INCLUDE_DIRECTORIES)
+    get_target_property(type hamel_${layer} TYPE)
+    if(type STREQUAL "INTERFACE_LIBRARY")
+      set(property INTERFACE_INCLUDE_DIRECTORIES)
+    endif()
+    string(APPEND content "set(includes_${layer} \"$<TARGET_PROPERTY:hamel_${layer},${property}>\")\n")
+  endforeach()
+  set(includes ${CMAKE_CURRENT_BINARY_DIR}/framework/rooms_$<CONFIG>.cmake)
+  file(GENERATE OUTPUT ${includes} CONTENT "${content}")
+  add_test(NAME framework/rooms
+    COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DCOMPILER=${CMAKE_CXX_COMPILER}
+            -DINCLUDES=${includes} -P ${CMAKE_CURRENT_SOURCE_DIR}/framework/rooms.cmake)
+  set_tests_properties(framework/rooms PROPERTIES LABELS compile_error)
 endfunction()
 
 # tests/consumers/<kind>: configured, built and run as a user would.

@@ -12,6 +12,7 @@ namespace hamel::tools {
 struct ListOptions {
   std::string kind;  // groups, retractions, schemes, solvers, systems; empty for all
   bool json = false;
+  bool markdown = false;
 };
 int list(const ListOptions& options);
 

@@ -1,10 +1,12 @@
-// hamel list: tables of what exists by name.
+// hamel list: tables of what exists by name, as text, JSON or Markdown. The tables of the README are the last
+// (tools/docs/tables).
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 
@@ -102,17 +104,137 @@ std::vector<Table> tables() {
   return {groups, retractions, schemes, solvers, systems};
 }
 
+// ---- Markdown: short tables, names of one kind in one row ------------------------------------------
+
+std::string code(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += fmt::format("{}`{}`", out.empty() ? "" : " ", name);
+  return out;
+}
+
+/// Names under keys: those given first, others in the order of their first name.
+class Grouped {
+ public:
+  Grouped(const std::vector<std::string>& keys = {}) {
+    for (const std::string& key : keys) rows_.push_back({key, {}});
+  }
+  void add(const std::string& key, const std::string& name) {
+    for (auto& [known, names] : rows_) {
+      if (known == key) return names.push_back(name);
+    }
+    rows_.push_back({key, {name}});
+  }
+  const auto& rows() const { return rows_; }
+
+ private:
+  std::vector<std::pair<std::string, std::vector<std::string>>> rows_;
+};
+
+std::string order_in_words(const SchemeInfo& info) {
+  const auto order = [&](double s, bool symmetric) {
+    return info.claim(s, symmetric, true).order;
+  };
+  const int half = order(0.5, true), other = order(0.25, true), skewed = order(0.25, false);
+  if (!info.adapted) return "leaves the constraint";
+  if (half == 0) return "none";
+  if (other != half) return fmt::format("{} at s = ½, else {}", half, other);
+  if (skewed == half) return std::to_string(half);
+  return fmt::format("{}; {} if τ is not symmetric{}", half, skewed,
+                     info.uses_s ? " and s ≠ ½" : "");
+}
+std::string general_order_in_words(const SchemeInfo& info) {
+  if (!info.defined(false)) return "not defined";
+  const int half = info.claim(0.5, true, false).order, other = info.claim(0.25, true, false).order;
+  if (!info.adapted) return "leaves the constraint";
+  return half == other ? std::to_string(half) : fmt::format("{} at s = ½, else {}", half, other);
+}
+
+std::string kind_in_words(const SystemInfo& info) {
+  const Registry& all = registry();
+  const SystemModel model = info.make({});
+  if (model.mechanics->left_invariant()) return "left-invariant";
+  const Mechanics& mechanics = *model.mechanics;
+  if (mechanics.holonomic_rows() > 0) return "holonomic rows";
+  const std::string& group = model.group.name;
+  const auto geometry = all.geometry(group, all.retractions_or_common(group).front());
+  Eigen::VectorXd g(geometry->size()), b(mechanics.rows());
+  Eigen::MatrixXd a(mechanics.rows(), mechanics.dim());
+  geometry->from_coordinates(model.start.configuration.empty()
+                                 ? all.group_or_product(group)->identity
+                                 : model.start.configuration,
+                             g.data());
+  constexpr double some_time = 0.1;  // s, where nothing that is prescribed rests
+  mechanics.constraints(some_time, g.data(), a, b);
+  return b.norm() > 0 ? "affine rows" : "rows, metric or forces that depend on the configuration";
+}
+
+std::vector<Table> markdown_tables() {
+  const Registry& all = registry();
+  Grouped of_groups, of_systems({"left-invariant"}), of_solvers({"always"});
+  for (const std::string& name : all.groups()) of_groups.add(code(all.retractions(name)), name);
+  for (const std::string& name : all.systems()) {
+    of_systems.add(kind_in_words(*all.system(name)), name);
+  }
+  const auto package = [](const SolverInfo& info) {
+    return info.package.empty() ? "always" : "with " + info.package;
+  };
+  for (const std::string& name : all.solvers()) of_solvers.add(package(*all.solver(name)), name);
+  for (const std::string& name : all.absent_solvers()) {
+    of_solvers.add(package(*all.absent_solver(name)), name);
+  }
+  Table groups{"groups", {"groups", "retractions there"}, {}};
+  for (const auto& [key, names] : of_groups.rows()) groups.rows.push_back({code(names), key});
+  Table systems{"systems", {"systems", ""}, {}};
+  for (const auto& [key, names] : of_systems.rows()) systems.rows.push_back({key, code(names)});
+  Table solvers{"solvers", {"solvers", ""}, {}};
+  for (const auto& [key, names] : of_solvers.rows()) solvers.rows.push_back({key, code(names)});
+  Table retractions{"retractions", {"retraction", "symmetric", "one-parameter"}, {}};
+  for (const std::string& name : all.retractions()) {
+    bool symmetric = true, one_parameter = true;
+    for (const std::string& group : all.groups()) {
+      if (const RetractionInfo* info = all.retraction(group, name)) {
+        symmetric = symmetric && info->symmetric;
+        one_parameter = one_parameter && info->one_parameter;
+      }
+    }
+    retractions.rows.push_back(
+        {code({name}), symmetric ? "yes" : "no", one_parameter ? "yes" : "no"});
+  }
+  Table schemes{
+      "schemes", {"scheme", "order on left-invariant systems", "on general systems", "source"}, {}};
+  for (const std::string& name : all.schemes()) {
+    const SchemeInfo& info = *all.scheme(name);
+    schemes.rows.push_back(
+        {code({name}), order_in_words(info), general_order_in_words(info), info.source});
+  }
+  return {groups, retractions, schemes, solvers, systems};
+}
+
+void print_markdown(const Table& table) {
+  const auto line = [](const std::vector<std::string>& cells) {
+    std::string text = "|";
+    for (const std::string& cell : cells) text += cell.empty() ? " |" : fmt::format(" {} |", cell);
+    fmt::print("{}\n", text);
+  };
+  line(table.columns);
+  std::string rule = "|";
+  for (size_t j = 0; j < table.columns.size(); ++j) rule += "---|";
+  fmt::print("{}\n", rule);
+  for (const auto& row : table.rows) line(row);
+}
+
 }  // namespace
 
 int list(const ListOptions& options) {
   std::vector<std::string> kinds;
   Json json = Json::object();
   bool found = options.kind.empty();
-  for (const Table& table : tables()) {
+  for (const Table& table : options.markdown ? markdown_tables() : tables()) {
     kinds.push_back(table.kind);
     if (!options.kind.empty() && table.kind != options.kind) continue;
     found = true;
-    if (!options.json) print(table);
+    if (options.markdown) print_markdown(table);
+    else if (!options.json) print(table);
     else if (options.kind.empty()) json[table.kind] = to_json(table);
     else json = to_json(table);
   }

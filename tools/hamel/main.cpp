@@ -125,7 +125,9 @@ int program(int argc, char** argv) {
   CLI::App* list_command = app.add_subcommand("list", "Tables of what exists by name");
   list_command->add_option("KIND", listing.kind,
                            "groups, retractions, schemes, solvers or systems");
-  list_command->add_flag("--json", listing.json, "as JSON");
+  CLI::Option* as_json = list_command->add_flag("--json", listing.json, "as JSON");
+  list_command->add_flag("--markdown", listing.markdown, "as the tables of README.md")
+      ->excludes(as_json);
   list_command->footer("Examples:\n  hamel list\n  hamel list retractions --json");
   list_command->callback([&] { command = [&] { return list(listing); }; });
 

@@ -1,0 +1,65 @@
+// What every suite of laws is made of: a law with its largest violation, and how violations are measured.
+//
+// Bounds: algebraic laws 1e-12 (elements have entries of order 1 to 10 and a law chains some tens of operations: a
+// few 1e-15 are seen, a wrong sign gives order 1); laws with a derivative 1e-9, by central differences of order 6
+// with step 4e-3 (round-off about 1e-13, truncation below 1e-10).
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace hamel {
+
+/// One law: the largest violation that was seen, and the largest that round-off explains.
+struct LawResult {
+  std::string law;
+  double measured = 0;
+  double bound = 0;
+  /// NaN does not pass.
+  bool passed() const { return measured <= bound; }
+};
+using LawReport = std::vector<LawResult>;
+
+inline std::ostream& operator<<(std::ostream& out, const LawResult& law) {
+  return out << (law.passed() ? "holds  " : "FAILS  ") << law.law << ": " << law.measured
+             << " (bound " << law.bound << ")";
+}
+
+namespace check {
+
+inline constexpr double algebraic = 1e-12;
+inline constexpr double differentiated = 1e-9;
+
+/// The largest of measured values; NaN is kept.
+struct Largest {
+  double value = 0;
+  void operator()(double x) {
+    if (!(x <= value)) value = x;
+  }
+};
+
+inline void append(LawReport& report, const LawReport& more) {
+  report.insert(report.end(), more.begin(), more.end());
+}
+
+/// f'(0) by central differences of order 6; f returns a number, an Eigen vector or an Eigen matrix.
+template <class Function>
+auto derivative(Function&& f, double step = 4e-3) {
+  const auto slope = [&](double weight, int k) {
+    const auto forwards = f(k * step), backwards = f(-k * step);
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(forwards)>>) {
+      return weight / (60 * step) * (forwards - backwards);
+    } else {
+      return ((weight / (60 * step)) * (forwards - backwards)).eval();
+    }
+  };
+  auto d = slope(45, 1);
+  d += slope(-9, 2);
+  d += slope(1, 3);
+  return d;
+}
+
+}  // namespace check
+}  // namespace hamel

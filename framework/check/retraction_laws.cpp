@@ -1,0 +1,156 @@
+#include <hamel/framework/check/retraction_laws.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include <hamel/framework/check/algebra.hpp>
+#include <hamel/framework/io/errors.hpp>
+
+namespace hamel {
+
+using check::Matrix;
+using check::Vector;
+
+namespace check {
+
+std::vector<Point> points(const Geometry& geometry, unsigned long long seed) {
+  const Algebra on{geometry};
+  std::mt19937_64 random(seed);
+  std::vector<Point> out;
+  for (int sample = 0; sample < 12; ++sample) {
+    const Vector direction = random_vector(random, on.n).normalized();
+    const Vector p = random_vector(random, on.n);
+    double edge = on.reach(direction, [&](const Vector& xi) { return on.in_domain(xi); });
+    const bool reached = on.reaches(0.999 * edge * direction);
+    if (!reached) edge = on.reach(direction, [&](const Vector& xi) { return on.reaches(xi); });
+    for (const double length : {1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.1 * edge, 0.3 * edge, 0.45 * edge,
+                                0.55 * edge, 0.7 * edge, 0.9 * edge, 0.999 * edge}) {
+      out.push_back({length * direction, p, length, edge, reached});
+    }
+  }
+  return out;
+}
+
+NumericalDerivative::NumericalDerivative(const Geometry& geometry) : geometry_(geometry) {
+  const Algebra on{geometry_};
+  chart_ = on.slopes([&](const Vector& d) { return on.tau(d); });
+}
+Matrix NumericalDerivative::right(const Vector& xi) const {
+  const Algebra on{geometry_};
+  const Vector back = on.inverse(on.tau(xi));
+  return in_algebra(on.slopes([&](const Vector& d) { return on.compose(on.tau(xi + d), back); }));
+}
+Matrix NumericalDerivative::left(const Vector& xi) const {
+  const Algebra on{geometry_};
+  const Vector back = on.inverse(on.tau(xi));
+  return in_algebra(on.slopes([&](const Vector& d) { return on.compose(back, on.tau(xi + d)); }));
+}
+Matrix NumericalDerivative::in_algebra(const Matrix& slopes) const {
+  const Matrix normal = chart_.transpose() * chart_;
+  return normal.inverse() * (chart_.transpose() * slopes);
+}
+
+double flag(bool claimed, double violation, bool abelian) {
+  if (claimed) return violation;
+  return violation <= differentiated && !abelian ? 1 : 0;
+}
+
+}  // namespace check
+
+LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
+                           unsigned long long seed) {
+  using check::algebraic;
+  using check::differentiated;
+  using check::Largest;
+  const check::Algebra on{geometry};
+  const int n = on.n;
+  constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+  const Matrix one = Matrix::Identity(n, n);
+  const Vector zero = Vector::Zero(n), e = on.from_coordinates(info.identity);
+  const check::NumericalDerivative numerical(geometry);
+  Largest origin, tangent, right, left, adjoint, inverses, base, round_trip, domain, nan, symmetry,
+      one_parameter;
+
+  origin(on.distance(on.tau(zero), e));
+  origin(on.tau_inverse(e).norm());
+  tangent((on.dtau_right(zero) - one).norm());
+  tangent((on.dtau_left_inverse(zero) - one).norm());
+  domain(on.in_domain(zero) ? 0 : 1);
+  for (int i = 0; i < n; ++i) {
+    nan(on.in_domain(nan_value * Vector::Unit(n, i)) ? 1 : 0);
+    Vector bad = zero;
+    bad[i] = nan_value;
+    nan(on.in_domain(bad) ? 1 : 0);
+  }
+
+  for (const auto& [xi, p, length, edge, reached] : check::points(geometry, seed)) {
+    const Vector g = on.tau(xi);
+    const Matrix dR = on.dtau_right(xi), dL_inverse = on.dtau_left_inverse(xi);
+    const double condition = std::max(1.0, dL_inverse.norm() * dL_inverse.inverse().norm());
+    domain(reached && on.in_domain(xi) ? 0 : 1);
+    // dR may come from dR^-1 by elimination: its relative round-off is that of the condition.
+    adjoint((dR * dL_inverse - on.Ad(g)).norm() /
+            (condition * std::max(1.0, dR.norm() * dL_inverse.norm())));
+    Vector q(n);
+    geometry.dtau_right_inverse_transpose(xi.data(), p.data(), q.data());
+    inverses((dR.transpose() * q - p).norm() / (condition * p.norm()));
+    const Vector nu = 0.3 * p.reverse();
+    for (const double s : {0.0, 0.3, 0.5}) {  // m0 of the cotangent lift (trivialised.hpp)
+      Vector m0(n);
+      geometry.base_momentum(s, xi.data(), p.data(), nu.data(), m0.data());
+      const Matrix d0 = on.dtau_right(-s * xi), d1 = on.dtau_right((1 - s) * xi);
+      const Vector sum = s * d0.transpose() * m0 + (1 - s) * d1.transpose() * (m0 + nu) - p;
+      base(sum.norm() / (condition * condition * (p.norm() + m0.norm())));
+    }
+    const double resolved = length < 0.1 * edge ? std::max(length, on.resolution(xi)) : length;
+    round_trip((on.tau_inverse(g) - xi).norm() / (resolved * condition));
+    if (length > 0.7 * edge) continue;
+    const Vector direction = xi / length;
+    tangent(1e-3 * (check::derivative([&](double t) { return on.Ad(on.tau(t * direction)); }) -
+                    on.ad(direction))
+                       .norm());
+    right((numerical.right(xi) - dR).norm() / condition);
+    left((numerical.left(xi) * dL_inverse - one).norm() / condition);
+    if (length < 0.1 * edge) continue;
+    symmetry(on.distance(on.compose(on.tau(-xi), g), e));
+    for (const double s : {-0.3, 0.2, 0.5}) {
+      const Vector one_way = on.compose(on.inverse(on.tau(-s * xi)), on.tau((1 - s) * xi));
+      one_parameter(on.distance(one_way, g));
+    }
+  }
+
+  const bool abelian = on.abelian();
+  return {
+      {"tau(0) = e, tau^-1(e) = 0", origin.value, algebraic},
+      {"tau'(0) = id (differences weighted by 1e-3)", tangent.value, algebraic},
+      {"dR tau against differences of tau", right.value, differentiated},
+      {"dL tau against differences of tau", left.value, differentiated},
+      {"dR tau = Ad(tau) dL tau", adjoint.value, algebraic},
+      {"dR^T dR^-T = id", inverses.value, algebraic},
+      {"s dR_z0^T m0 + (1-s) dR_z1^T (m0 + nu) = p for base_momentum", base.value, algebraic},
+      {"tau^-1(tau(xi)) = xi from |xi| = 1e-12 to the edge", round_trip.value, algebraic},
+      {"0 and everything up to the edge is in the domain, and tau^-1 is defined there",
+       domain.value, 0},
+      {"NaN is not in the domain", nan.value, 0},
+      {"flag symmetric is right: tau(-xi) = tau(xi)^-1",
+       check::flag(geometry.symmetric(), symmetry.value, abelian), algebraic},
+      {"flag one_parameter is right: tau(-s xi)^-1 tau((1-s) xi) = tau(xi)",
+       check::flag(geometry.one_parameter(), one_parameter.value, abelian), algebraic},
+  };
+}
+
+LawReport check_retraction(const Registry& registry, const std::string& group,
+                           const std::string& retraction, unsigned long long seed) {
+  const auto info = registry.group_or_product(group);
+  if (!info) throw ConfigError({unknown_name("group", group, registry.groups())});
+  const auto geometry = registry.geometry(group, retraction);
+  if (geometry == nullptr) {
+    throw ConfigError({unknown_name("retraction of " + group, retraction,
+                                    registry.retractions_or_common(group))});
+  }
+  return check_retraction(*info, *geometry, seed);
+}
+
+}  // namespace hamel

@@ -1,0 +1,133 @@
+#include <hamel/framework/check/system_laws.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/run/simulation.hpp>
+
+namespace hamel {
+
+LawReport check_system(const SystemModel& model, double until, const Geometry* geometry) {
+  LawReport report;
+  const auto initial = check::matrices_at(
+      model, geometry,
+      model.start.configuration.empty() ? model.group.identity : model.start.configuration);
+  const Eigen::MatrixXd& inertia = initial.inertia;
+  const Eigen::MatrixXd& rows = initial.rows;
+  report.push_back({"inertia symmetric", (inertia - inertia.transpose()).norm() / inertia.norm(),
+                    check::algebraic});
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(inertia).eigenvalues();
+  report.push_back(
+      {"inertia positive definite", values.minCoeff() > 1e-14 * values.maxCoeff() ? 0.0 : 1.0, 0});
+  if (rows.rows() > 0) {
+    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
+    report.push_back({"constraint rows independent",
+                      singular.minCoeff() > 1e-12 * singular.maxCoeff() ? 0.0 : 1.0, 0});
+  }
+  const Start start = check::admissible_start(model, geometry);
+  if (start.velocity.empty()) return report;
+  const auto& given = model.start.velocity;
+  if (!given.empty()) {
+    report.push_back({"the default start is admissible", check::difference(given, start.velocity),
+                      check::algebraic});
+  }
+  report.push_back(
+      {"the default configuration is an element",
+       check::difference(model.group.element(start.configuration), start.configuration),
+       check::algebraic});
+  if (!model.exact) return report;
+
+  for (const double sign : {1.0, -1.0}) {
+    const std::string direction = sign > 0 ? "forwards" : "backwards";
+    const ExactFlow flow = model.exact(start);
+    const auto [g0, xi0] = flow(0);
+    report.push_back(
+        {"exact motion starts at the start, " + direction,
+         check::difference(g0, start.configuration) + check::difference(xi0, start.velocity),
+         check::algebraic});
+    check::Largest residual, element;
+    std::vector<check::Largest> drift(model.invariants.size());
+    for (int i = 1; i <= 50; ++i) {
+      const auto [g, xi] = flow(sign * until * i / 50);
+      const Eigen::VectorXd velocity =
+          Eigen::Map<const Eigen::VectorXd>(xi.data(), static_cast<Eigen::Index>(xi.size()));
+      if (rows.rows() > 0) {
+        const auto here = check::matrices_at(model, geometry, g, sign * until * i / 50);
+        residual((here.rows * velocity - here.drift).norm() / (1 + velocity.norm()));
+      }
+      element(check::difference(model.group.element(g), g));
+      for (size_t j = 0; j < drift.size(); ++j) {
+        const double at_start = model.invariants[j].value(start.configuration, start.velocity);
+        drift[j](std::abs(model.invariants[j].value(g, xi) - at_start) / (1 + std::abs(at_start)));
+      }
+    }
+    report.push_back(
+        {"A xi = b along the exact motion, " + direction, residual.value, check::algebraic});
+    report.push_back(
+        {"the exact motion stays in the group, " + direction, element.value, check::algebraic});
+    for (size_t j = 0; j < drift.size(); ++j) {
+      report.push_back({"exact motion keeps '" + model.invariants[j].name + "', " + direction,
+                        drift[j].value, check::algebraic});
+    }
+  }
+  return report;
+}
+
+LawReport check_system(const Registry& registry, const std::string& name, double until) {
+  const SystemInfo* info = registry.system(name);
+  if (info == nullptr) throw ConfigError({unknown_name("system", name, registry.systems())});
+  SystemModel model = info->make({});
+  if (model.group.dim == 0) model.group = *registry.group_or_product(model.group.name);
+  const std::string retraction = registry.retractions_or_common(model.group.name).front();
+  const auto geometry = registry.geometry(model.group.name, retraction);
+  LawReport report = check_system(model, until, geometry.get());
+
+  // Parameters: what describe shows is what a run gets, and a parameter that is set comes back.
+  Parameters as_shown, changed;
+  for (const Field& field : info->fields) {
+    as_shown[field.name] = field.value;
+    changed[field.name] = check::changed_value(*info, field);
+  }
+  const SystemModel again = info->make(as_shown), other = info->make(changed);
+  const auto& g =
+      model.start.configuration.empty() ? model.group.identity : model.start.configuration;
+  const auto before = check::matrices_at(model, geometry.get(), g),
+             after = check::matrices_at(again, geometry.get(), g);
+  double lost = (after.inertia - before.inertia).norm() + (after.rows - before.rows).norm() +
+                (after.drift - before.drift).norm();
+  for (const Field& field : other.fields) {
+    lost += check::difference(field.value, changed[field.name]);
+  }
+  report.push_back({"fields round trip", lost, 0});
+  double accepted = 0;
+  try {
+    info->make({{"no_such_parameter", {1.0}}});
+    accepted = 1;
+  } catch (const ConfigError&) {
+  }
+  report.push_back({"an unknown parameter is refused", accepted, 0});
+
+  if (model.exact) {
+    Simulation run(registry, name);
+    const Result result = run.scheme("lift")
+                              .s(0.5)
+                              .retraction("exp")
+                              .compose("suzuki_umeno8")
+                              .step(0.01)
+                              .until(until)
+                              .every(1000000)
+                              .run();
+    report.push_back({"exact motion against lift composed to order 8",
+                      result.status.ok ? result.exact_error_final + result.exact_velocity_error_max
+                                       : std::numeric_limits<double>::quiet_NaN(),
+                      1e-9});
+  }
+  return report;
+}
+
+}  // namespace hamel

@@ -1,0 +1,84 @@
+// Every registered retraction of every registered group obeys the laws (framework/check/retraction_laws.hpp, where the
+// bounds are): by type, Newton's derivative included, and by name as a run sees it.
+#include <gtest/gtest.h>
+
+#include <hamel/framework/check/retraction_laws.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "all_groups.hpp"
+
+namespace {
+
+using namespace hamel;
+
+template <class R>
+void expect_laws() {
+  for (const LawResult& law : check_retraction<R>(1)) {
+    EXPECT_TRUE(law.passed()) << R::Group::name() << " " << R::name() << ": " << law;
+  }
+}
+
+TEST(RetractionLaws, HoldByType) {
+  test::AllGroups::for_each([]<class G>(std::type_identity<G>) {
+    RetractionsOf<G>::type::for_each([]<class R>(std::type_identity<R>) { expect_laws<R>(); });
+  });
+  expect_laws<Cayley<Product<SO3, Rn<2>>>>();
+  expect_laws<ProductRetraction<Exp<SE2>, Cayley<SO2>>>();
+}
+
+TEST(RetractionLaws, HoldByName) {
+  std::vector<std::string> groups = registry().groups();
+  groups.insert(groups.end(), {"so3*r2", "se2*so2^3", "heisenberg*se3"});
+  for (const std::string& group : groups) {
+    for (const std::string& retraction : registry().retractions_or_common(group)) {
+      for (const LawResult& law : check_retraction(registry(), group, retraction)) {
+        EXPECT_TRUE(law.passed()) << group << " " << retraction << ": " << law;
+      }
+    }
+  }
+}
+
+TEST(ProductRetractions, AreThoseOfAllFactors) {
+  using Disk = Product<SE2, SO2>;
+  static_assert(has_retraction<Disk, Exp<Disk>> && has_retraction<Disk, Cayley<Disk>>);
+  static_assert(has_retraction<Disk, SecondKind<Disk>> && !has_retraction<Disk, Polar<Disk>>);
+  using Pair = Product<SO3, SO3>;
+  static_assert(has_retraction<Pair, Polar<Pair>>);
+  EXPECT_EQ(Exp<Disk>::name(), "exp");
+  EXPECT_EQ((ProductRetraction<Exp<SE2>, Cayley<SO2>>::name()), "exp*cayley");
+  EXPECT_EQ(Exp<Disk>::domain(), "1: |omega| < pi; 2: |omega| < pi");
+}
+
+/// The laws must be able to fail: each retraction has one mistake.
+struct LeftForRight : Exp<SE2> {
+  static Mat<3, 3> dtau_right(const Vec<3>& xi) { return Exp<SE2>::dtau_left(xi); }
+};
+struct WrongSlope : Cayley<SO3> {
+  static Mat<3, 3> dtau_right_inverse_transpose_derivative(const Vec<3>& xi, const Vec<3>& p) {
+    return 1.01 * Cayley<SO3>::dtau_right_inverse_transpose_derivative(xi, p);
+  }
+};
+struct WrongInverse : Exp<SO3> {
+  static Vec<3> tau_inverse(const Mat<3, 3>& g) { return (1 + 1e-10) * Exp<SO3>::tau_inverse(g); }
+};
+struct WrongFlag : SecondKind<SO3> {
+  static constexpr bool symmetric = true;
+};
+struct TooLarge : SecondKind<SO3> {  // its inverse has |xi_2| < pi/2
+  static bool in_domain(const Vec<3>& xi) { return xi.norm() < 3; }
+};
+int failures(const LawReport& report) {
+  int out = 0;
+  for (const LawResult& law : report) out += law.passed() ? 0 : 1;
+  return out;
+}
+TEST(RetractionLaws, SeePlantedMistakes) {
+  EXPECT_GE(failures(check_retraction<LeftForRight>()), 2);
+  EXPECT_EQ(failures(check_retraction<WrongSlope>()), 1);
+  EXPECT_EQ(failures(check_retraction<WrongInverse>()), 1);
+  EXPECT_EQ(failures(check_retraction<WrongFlag>()), 1);
+  EXPECT_GE(failures(check_retraction<TooLarge>()), 1);
+  EXPECT_THROW(check_retraction(registry(), "se3", "polar"), ConfigError);
+}
+
+}  // namespace
