@@ -1,4 +1,5 @@
 // The composition root: the one file that links everything by name.
+#include <hamel/groups/heisenberg.hpp>
 #include <hamel/solvers/ceres.hpp>
 #include <hamel/solvers/ceres_tiny.hpp>
 #include <hamel/solvers/hybrid.hpp>
@@ -47,7 +48,8 @@ Registry make_registry() {
   add_rotations(registry);
   add_motions_of_the_plane(registry);
   add_motions_of_space(registry);
-  add_nilpotent(registry);
+  add_vector_groups(registry);
+  add_group<Heisenberg>(registry);
 
   add_erased_schemes(registry);
   registry.add_scheme_alias("dla", Lift::name());  // discrete Lagrange-d'Alembert

@@ -86,9 +86,9 @@ LawReport check_system(const S& system, double until = 5) {
     return report;  // the equations of motion: tests/verification/lagrange_dalembert.cpp
   }
   if (!model.exact) return report;
-  const check::Matrices at = check::matrices_at(model, &geometry, start.configuration);
-  const Mat<n, n> inertia = at.inertia;
-  const Eigen::MatrixXd e = hamel_frame(at.inertia, at.rows);
+  const check::Matrices given = check::matrices_at(model, &geometry, start.configuration);
+  const Mat<n, n> inertia = given.inertia;
+  const Eigen::MatrixXd e = hamel_frame(given.inertia, given.rows);
   constexpr double d = 4e-3;
   for (const double sign : {1.0, -1.0}) {
     const std::string direction = sign > 0 ? "forwards" : "backwards";

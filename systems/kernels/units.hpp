@@ -18,7 +18,7 @@ namespace hamel {
 void add_rotations(Registry& registry);             // so2, so3
 void add_motions_of_the_plane(Registry& registry);  // se2, se2*so2
 void add_motions_of_space(Registry& registry);      // se3
-void add_nilpotent(Registry& registry);             // r1, r2, r3, heisenberg
+void add_vector_groups(Registry& registry);         // r1, r2, r3
 // Schemes, and systems.
 void add_erased_schemes(Registry& registry);
 void add_left_invariant(Registry& registry);

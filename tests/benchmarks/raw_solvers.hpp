@@ -17,14 +17,15 @@
 #include <nlopt.h>
 #endif
 
+#include <hamel/framework/schemes/left_invariant.hpp>
 #include <hamel/framework/schemes/lift.hpp>
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/so3.hpp>
 
 namespace hamel::benchmarks {
 
-using Problem = LeftInvariant<SO3, 2>;
-using Step = Lift::Step<Problem, Cayley<SO3>>;
+using Problem = LeftInvariant<SO3, 2, Cayley<SO3>>;
+using Step = Lift::Step<Problem>;
 using Unknown = Step::Unknown;
 inline constexpr double kTarget = 8 * 2.220446049250313e-16;
 

@@ -37,21 +37,21 @@ void per_step(benchmark::State& state) {
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// The loop by hand: the extrapolation of six solutions, as in framework/loop/compiled_kernel.hpp.
+/// The loop by hand: the extrapolation of six solutions, as in framework/loop/extrapolation.hpp.
 template <class Raw>
 void by_hand(benchmark::State& state) {
   const Suslov suslov = body();
-  const Eigen::MatrixXd frame = hamel_frame(suslov.inertia(), suslov.constraints());
-  const benchmarks::Problem problem(suslov.inertia(), benchmarks::Problem::Frame(frame));
+  const benchmarks::Problem problem(suslov.inertia(), suslov.constraints());
   Raw raw;
   for (auto _ : state) {
     Step step(problem, 0);
-    Step::Momentum mu = problem.reduce(suslov.inertia() * Vec<3>(1, 0.5, 0));
-    SO3::Element<double> g = SO3::identity();
+    Node<benchmarks::Problem> node(problem), next(problem);
+    problem.carry(Vec<3>(1, 0.5, 0), node.x);
     std::array<Unknown, 6> x;
     for (long k = 0; k < kSteps; ++k) {
-      step.begin(mu, kStep);
-      Unknown y = step.guess();
+      step.begin(node, kStep);
+      Unknown y;
+      step.guess(y);
       if (k >= 6) {
         y = 6 * (x[0] + x[4]) - 15 * (x[1] + x[3]) + 20 * x[2] - x[5];
       } else if (k > 0) {
@@ -60,11 +60,11 @@ void by_hand(benchmark::State& state) {
       if (!raw.solve(step, y)) state.SkipWithError("no convergence");
       for (size_t i = 5; i > 0; --i) x[i] = x[i - 1];
       x[0] = y;
-      SO3::Element<double> increment;
-      step.finish(y, increment, mu);
-      g = SO3::normalise(SO3::compose(g, increment));
+      if (!step.finish(y, next)) state.SkipWithError("outside the domain");
+      next.g = SO3::normalise(next.g);
+      node = next;
     }
-    benchmark::DoNotOptimize(g);
+    benchmark::DoNotOptimize(node);
   }
   per_step(state);
 }

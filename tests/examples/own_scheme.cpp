@@ -1,71 +1,84 @@
-// A scheme of your own, compiled for groups of your choice and used by name beside the library's.
+// A scheme of your own, used by name beside the library's on every left-invariant system.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
 
 #include <hamel/hamel.hpp>
 
-// The reduced equations mu_bar' = E^T ad*_Omega I Omega, Omega = E mu_bar, by the implicit midpoint
-// rule; the configuration follows by g_{k+1} = g_k tau(h Omega) with the mean velocity.
-//   F(y) = 2 (y - mu_bar_k) - h E^T (ad_{E y})^T I E y = 0,   mu_bar_{k+1} = 2 y - mu_bar_k.
-// E^T I E = Id makes the energy |mu_bar|^2/2, and y . E^T (ad_{E y})^T I E y = (I E y).[E y, E y] = 0:
-// the energy is conserved. (Celledoni and others, Energy-preserving integrators and the structure of B-series.)
-struct ReducedMidpoint {
+// The equations of motion I xi' = ad*_xi I xi + A^T lambda by the implicit midpoint rule; the configuration follows
+// by g_{k+1} = g_k tau(h w) with the mean velocity w = (xi_k + xi_{k+1})/2, which is the unknown:
+//   E^T ( 2 I (w - xi_k) - h ad*_w I w ) = 0,   A w = 0,   xi_{k+1} = 2 w - xi_k.
+// (ad*_w I w).w = I w.[w, w] = 0: the energy is kept. (Celledoni and others, Energy-preserving integrators and the
+// structure of B-series.)
+struct ReducedMidpoint : hamel::SchemeDefaults {
   static std::string name() { return "reduced_midpoint"; }
-  static std::string formula() {
-    return "mu_{k+1} - mu_k = h E' ad*_W I W, W = E (mu_k + mu_{k+1})/2";
-  }
+  static std::string formula() { return "I (xi_1 - xi_0) = h ad*_w I w + A' lambda, w the mean"; }
   static std::string source() { return "implicit midpoint rule on the reduced equations"; }
-  static constexpr bool adapted = true;  // stays in d: the kernels get E with columns in d
-  static constexpr bool uses_s = false;
-  static hamel::ClaimedOrder claimed_order(double /*s*/, bool symmetric_tau) {
+  static constexpr bool left_invariant_only = true;
+  static hamel::ClaimedOrder claim(double /*s*/, bool symmetric_tau, bool /*left_invariant*/) {
     return {symmetric_tau ? 2 : 1, symmetric_tau};
   }
 
-  template <class Problem, class Tau>
+  template <class P>
   class Step {
    public:
-    using G = typename Problem::Group;
-    using Element = typename G::template Element<double>;
-    using Velocity = hamel::Vec<Problem::n>;
-    using Unknown = typename Problem::Reduced;
-    using Jacobian = typename Problem::ReducedMatrix;
-    using Momentum = typename Problem::Reduced;
+    using Problem = P;
+    using Unknown = typename P::State;
+    using Jacobian = typename P::StateMatrix;
+    using Node = hamel::Node<P>;
 
-    Step(const Problem& problem, double /*s*/) : problem_(problem) {}
-    void begin(const Momentum& mu, double h) {
-      mu_ = mu;
+    Step(const P& problem, double /*s*/)
+        : problem_(problem),
+          place_(problem),
+          w_(problem.dim()),
+          mu_(w_),
+          r_(w_),
+          mu0_(w_),
+          rows_(problem.rows()),
+          f_(problem.element()) {}
+    int size() const { return problem_.state_size(); }
+    void begin(const Node& node, double h) {
+      from_ = &node;
       h_ = h;
+      place_.set(problem_, node.t, node.g);  // I and A there
+      problem_.momentum(place_.inertia, node.x, mu0_);
     }
-    Unknown guess() const { return mu_; }
-    double scale_squared() const { return 4 * mu_.squaredNorm(); }
-    Velocity xi(const Unknown& y) const { return h_ * problem_.velocity(y); }
-
-    void residual(const Unknown& y, Unknown& f) const {
-      const Velocity w = problem_.velocity(y), p = problem_.momentum(y);
-      f = 2 * (y - mu_) - h_ * problem_.reduce(G::ad(w).transpose() * p);
+    void guess(Unknown& x) const { x = from_->x; }
+    double scale_squared() const { return 4 * std::pow(place_.size(mu0_), 2); }
+    void from_frame(Unknown& z) const { place_.from_frame(z.data()); }
+    void residual(const Unknown& x, Unknown& f) const {
+      problem_.velocity(x, w_);
+      problem_.momentum(place_.inertia, x, mu_);
+      problem_.ad_transpose(w_, mu_, r_);
+      r_ = 2 * (mu_ - mu0_) - h_ * r_;
+      rows_ = place_.a * w_;
+      place_.join(r_, rows_, f);  // (A w, E^T r)
     }
-    void linearise(const Unknown& y, Unknown& f, Jacobian& j) const {
-      residual(y, f);
-      const Velocity w = problem_.velocity(y), p = problem_.momentum(y);
-      // d (ad_w)^T p = coad(p) dw + (ad_w)^T dp
-      j = -h_ * (problem_.reduce_both(G::coad(p)) + problem_.reduce_momentum(G::ad(w).transpose()));
-      j.diagonal().array() += 2;
-    }
-    void finish(const Unknown& y, Element& increment, Momentum& mu) const {
-      increment = Tau::tau(xi(y));
-      mu = 2 * y - mu_;
+    bool finish(const Unknown& x, Node& next) const {
+      problem_.velocity(x, w_);
+      w_ *= h_;
+      if (!problem_.in_domain(w_)) return false;
+      problem_.tau(w_, f_);
+      next.t = from_->t + h_;
+      problem_.compose(from_->g, f_, next.g);
+      next.x = 2 * x - from_->x;
+      return true;
     }
 
    private:
-    Problem problem_;
+    P problem_;
+    mutable typename P::Place place_;
+    const Node* from_ = nullptr;
     double h_ = 0;
-    Momentum mu_;
+    mutable typename P::Vector w_, mu_, r_;
+    typename P::Vector mu0_;
+    mutable typename P::Few rows_;
+    mutable typename P::Element f_;
   };
 };
 
 int main() {
-  hamel::add_scheme<ReducedMidpoint, hamel::SO3, hamel::SE2>(hamel::registry());
+  hamel::add_scheme<ReducedMidpoint>(hamel::registry());
   auto suslov =
       hamel::simulate("suslov")
           .set("inertia", {2, 0.3, 0.5, 3, 0.4, 4})

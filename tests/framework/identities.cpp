@@ -74,16 +74,16 @@ TEST(Identities, TypedAndNamedPathsAgree) {
             1e-14);
 }
 
-/// The same kernel with m chosen at run time.
-TEST(Identities, FixedAndRunTimeDirectionsAgree) {
-  for (const char* scheme : {"lift", "balance"}) {
-    Simulation run_time = simulate(full()).retraction("cayley").scheme(scheme);
-    const bool lift = std::string(scheme) == "lift";
-    run_time.kernel(
-        lift ? compile<Lift, Cayley<SO3>, kRunTime>() : compile<Balance, Cayley<SO3>, kRunTime>(),
-        *registry().scheme(scheme), *registry().retraction("so3", "cayley"));
-    EXPECT_LE(apart(run_time, simulate(full()).retraction("cayley").scheme(scheme)), bound)
-        << scheme;
+/// What is compiled for a problem's types and the erased kernel of the same scheme.
+TEST(Identities, CompiledAndErasedProblemsAgree) {
+  for (const char* scheme : {"lift", "balance", "boxed", "boxed_literal", "unadapted", "rkmk4"}) {
+    for (const char* retraction : {"cayley", "exp"}) {
+      Simulation erased = simulate(full()).retraction(retraction).scheme(scheme);
+      erased.kernel(registry().scheme(scheme)->erased, *registry().scheme(scheme),
+                    *registry().retraction("so3", retraction));
+      EXPECT_LE(apart(erased, simulate(full()).retraction(retraction).scheme(scheme)), bound)
+          << scheme << ", " << retraction;
+    }
   }
 }
 

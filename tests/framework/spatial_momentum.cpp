@@ -85,26 +85,29 @@ TEST(SpatialMomentum, IsNotKeptUnderAConstraint) {
 /// Lift with the momentum carried by the inverse of the step: the sign of the paper's last line.
 struct WrongSign : Lift {
   static std::string name() { return "wrong_sign"; }
-  template <class Problem, class Tau>
-  class Step : public Lift::Step<Problem, Tau> {
-    using Base = Lift::Step<Problem, Tau>;
+  template <class P>
+  class Step : public Lift::Step<P> {
+    using Base = Lift::Step<P>;
 
    public:
-    Step(const Problem& problem, double s) : Base(problem, s), problem_(problem) {}
-    void begin(const typename Base::Momentum& mu, double h) {
-      Base::begin(mu, h);
-      mu_ = mu;
+    Step(const P& problem, double s) : Base(problem, s), problem_(problem) {}
+    void begin(const Node<P>& node, double h) {
+      Base::begin(node, h);
+      from_ = &node;
     }
-    void finish(const typename Base::Unknown& y, typename Base::Element& increment,
-                typename Base::Momentum& mu) const {
-      Base::finish(y, increment, mu);
-      mu = problem_.reduce(
-          Problem::Group::Ad_transpose(Problem::Group::inverse(increment), problem_.momentum(mu_)));
+    bool finish(const typename Base::Unknown& y, Node<P>& next) const {
+      if (!Base::finish(y, next)) return false;
+      using G = typename P::Group;
+      typename P::Vector mu;
+      problem_.momentum({}, from_->x, mu);
+      const auto increment = G::compose(G::inverse(from_->g), next.g);
+      next.x = problem_.reduce(G::Ad_transpose(G::inverse(increment), mu));
+      return true;
     }
 
    private:
-    Problem problem_;
-    typename Base::Momentum mu_;
+    P problem_;
+    const Node<P>* from_ = nullptr;
   };
 };
 

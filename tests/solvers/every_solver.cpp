@@ -26,16 +26,12 @@ std::vector<std::string> foreign() {
 bool minimises(const std::string& name) {
   return name.starts_with("nlopt:") && name != "nlopt:slsqp";
 }
-// Runs on a loop compiled for it; else on the general one, if the scheme is defined there.
+// Left-invariant systems run whole, others a few steps.
 bool compiled(const std::string& system) {
-  const SystemModel model = registry().system(system)->make({});
-  return model.mechanics == nullptr &&
-         registry().kernel(model.group.name, kRunTime, "exp", "lift") != nullptr;
+  return registry().system(system)->make({}).mechanics->left_invariant();
 }
 bool defined(const std::string& scheme, const std::string& system) {
-  const SchemeInfo& info = *registry().scheme(scheme);
-  const bool left_invariant = registry().system(system)->make({}).mechanics == nullptr;
-  return compiled(system) || (info.general && info.defined(left_invariant));
+  return registry().scheme(scheme)->defined(compiled(system));
 }
 
 TEST(EverySolver, IsDescribed) {

@@ -10,8 +10,12 @@
 #include <random>
 
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/schemes/balance.hpp>
+#include <hamel/framework/schemes/boxed.hpp>
+#include <hamel/framework/schemes/unadapted.hpp>
 #include <hamel/hamel.hpp>
 
+#include "../framework/erased.hpp"
 #include "made.hpp"
 
 namespace {
@@ -20,15 +24,17 @@ using namespace hamel;
 
 /// The momentum after one step along the branch that begins at h = 0; empty when the branch ends, or the
 /// root leaves the domain, or passes so close to a fold that the two cannot be told apart.
-template <class Step, class Tau>
-std::vector<double> by_continuation(Step& step, const typename Step::Momentum& mu, double h) {
-  step.begin(mu, 0);
-  typename Step::Unknown y = step.guess(), f = y;
+template <class Step>
+std::vector<double> by_continuation(Step& step, const Node<typename Step::Problem>& node,
+                                    double h) {
+  step.begin(node, 0);
+  typename Step::Unknown y, f;
+  step.guess(y);
   typename Step::Jacobian j;
   const double size = y.norm();
   constexpr int parts = 1000;
   for (int i = 1; i <= parts; ++i) {
-    step.begin(mu, h * i / parts);
+    step.begin(node, h * i / parts);
     const typename Step::Unknown before = y;
     for (int k = 0; k < 6; ++k) {
       step.linearise(y, f, j);
@@ -37,11 +43,9 @@ std::vector<double> by_continuation(Step& step, const typename Step::Momentum& m
     step.residual(y, f);
     if (!(f.norm() <= 1e-12 * size) || (y - before).norm() > 0.02 * size) return {};
   }
-  if (!Tau::in_domain(step.xi(y))) return {};
-  typename Step::Element increment;
-  typename Step::Momentum next = mu;
-  step.finish(y, increment, next);
-  return {next.begin(), next.end()};
+  Node<typename Step::Problem> next = node;
+  if (!step.finish(y, next)) return {};  // outside the domain
+  return {next.x.begin(), next.x.end()};
 }
 
 struct Count {
@@ -76,9 +80,7 @@ template <class S>
 Simulation::Maker maker_on(On loop, const S& system) {
   if (loop == On::compiled) return maker(system);
   return [make = maker(system)](const Parameters& given) {
-    SystemModel model = make(given);
-    model.mechanics = std::make_shared<InvariantMechanics>(model.inertia, model.constraints);
-    return model;
+    return test::erased(make(given));
   };
 }
 
@@ -87,14 +89,17 @@ void expect_no_spurious_root(const S& system, double s, std::map<std::string, Co
                              On loop = On::compiled) {
   using G = typename S::Group;
   using Tau = T<G>;
-  constexpr int n = G::dim, m = Scheme::adapted ? n - constraint_count<S>() : n;
-  using Problem = LeftInvariant<G, m>;
-  using Step = typename Scheme::template Step<Problem, Tau>;
+  constexpr int n = G::dim, m = n - constraint_count<S>();
+  using Whole = LeftInvariant<G, m, Tau>;
+  using Step = typename Scheme::template Step<Whole>;
   const Mat<n, n> inertia = system.inertia();
-  const Eigen::MatrixXd rows = system.constraints(), admissible = hamel_frame(inertia, rows),
-                        whole = hamel_frame(inertia, Eigen::MatrixXd(0, n));
-  const Problem problem(inertia, typename Problem::Frame(Scheme::adapted ? admissible : whole));
-  Step step(problem, s);
+  const Eigen::MatrixXd admissible = hamel_frame(inertia, Eigen::MatrixXd(system.constraints()));
+  const Whole whole(inertia, system.constraints());
+  Step step(whole, s);
+  const auto problem = [&] {  // the step's own: without rows for unadapted
+    if constexpr (Scheme::adapted) return whole;
+    else return whole.unconstrained();
+  }();
   Registry mine = registry();
   add_wild(mine);
 
@@ -107,8 +112,10 @@ void expect_no_spurious_root(const S& system, double s, std::map<std::string, Co
       for (double& value : y) value = normal(random);
       Eigen::VectorXd xi = admissible * y;
       xi *= size(random) / xi.norm();
-      const typename Step::Momentum mu = problem.reduce(inertia * Vec<n>(xi));
-      const std::vector<double> expected = by_continuation<Step, Tau>(step, mu, h);
+      Node<typename Step::Problem> node(problem);
+      problem.carry(xi, node.x);
+      const typename Step::Problem::State mu = node.x;
+      const std::vector<double> expected = by_continuation(step, node, h);
       const auto solvers = loop == On::compiled
                                ? mine.solvers()
                                : std::vector<std::string>{"newton", "hybrid", "wild"};

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include <hamel/framework/schemes/explicit_step.hpp>
+#include <hamel/framework/schemes/rkmk4.hpp>
 #include <hamel/hamel.hpp>
 
 namespace hamel {
@@ -113,35 +113,36 @@ TEST(EnergyPreserving, KeepsTheEnergyAndNothingElse) {
 }
 
 /// rkmk4 without dL tau^-1.
-class WithoutDtau final : public ExplicitStep {
- public:
-  explicit WithoutDtau(const GeneralSetup& setup) : ExplicitStep(setup, setup.geometry->dim()) {}
+struct WithoutDtau : Rkmk4 {
+  static std::string name() { return "without_dtau"; }
+  template <class P>
+  class Step : public RungeKutta4<Step<P>, P, typename P::Vector> {
+    using Base = RungeKutta4<Step<P>, P, typename P::Vector>;
+    using typename Base::Element, typename Base::Vector;
 
- private:
-  void start(const Eigen::VectorXd& g, Eigen::VectorXd& eta) override {
-    g0_ = g;
-    eta.setZero();
-  }
-  bool element(const Eigen::VectorXd& eta, Eigen::VectorXd& g) const override {
-    geometry_->tau(eta.data(), g.data());
-    geometry_->compose(g0_.data(), g.data(), g.data());
-    return true;
-  }
-  void rate(const Eigen::VectorXd&, const Eigen::VectorXd&, const Eigen::VectorXd& xi,
-            Eigen::VectorXd& out) const override {
-    out = xi;
-  }
-  Eigen::VectorXd g0_;
+   public:
+    Step(const P& problem, double /*s*/) : Base(problem, problem.dim()), g0_(problem.element()) {}
+    void start(const Element& g, Vector& eta) {
+      g0_ = g;
+      eta.setZero();
+    }
+    bool element(const Vector& eta, Element& g) const {
+      this->problem_.tau(eta, g);
+      this->problem_.compose(g0_, g, g);
+      return true;
+    }
+    void rate(const Vector&, const Element&, const Vector& xi, Vector& out) const { out = xi; }
+
+   private:
+    Element g0_;
+  };
 };
 
 /// On a motion that settles in a steady rotation the explicit schemes have their full order, by the correction with
 /// dL tau^-1.
 TEST(RungeKutta, HasOrderFourAndTwoWithoutTheCorrection) {
   Registry mine = registry();
-  SchemeInfo info = *registry().scheme("rkmk4");
-  info.name = "without_dtau";
-  info.general = [](const GeneralSetup& setup) { return std::make_unique<WithoutDtau>(setup); };
-  mine.add(info);
+  add_scheme<WithoutDtau>(mine);
   for (const std::string retraction : {"exp", "cayley"}) {
     for (const auto& [scheme, claim] :
          {std::pair{"rkmk4", 4.0}, {"rk4_projected", 4.0}, {"without_dtau", 2.0}}) {

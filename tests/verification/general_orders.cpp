@@ -9,6 +9,8 @@
 
 #include <hamel/hamel.hpp>
 
+#include "../framework/erased.hpp"
+
 namespace hamel {
 namespace {
 
@@ -37,8 +39,7 @@ std::vector<std::string> general_systems() {
   std::vector<std::string> out;
   for (const std::string& name : registry().systems()) {
     const SystemModel model = registry().system(name)->make({});
-    const bool compiled = registry().kernel(model.group.name, kRunTime, "exp", "lift") != nullptr;
-    if (model.mechanics != nullptr || !compiled || !model.exact) out.push_back(name);
+    if (!model.mechanics->left_invariant() || !model.exact) out.push_back(name);
   }
   return out;
 }
@@ -56,14 +57,14 @@ TEST_P(GeneralOrders, AreAsClaimed) {
           system);
   for (const std::string& scheme : registry().schemes()) {
     const SchemeInfo& info = *registry().scheme(scheme);
-    if (!info.adapted || !info.general || !info.defined(reference.system.mechanics == nullptr))
-      continue;
+    const bool left_invariant = reference.system.mechanics->left_invariant();
+    if (!info.adapted || !info.defined(left_invariant)) continue;
     for (const std::string retraction : {"exp", "cayley"}) {
       // Where s is not used, one that would show if it were.
       for (const double s :
            info.uses_s ? std::vector<double>{0, 0.5, 1} : std::vector<double>{0.25}) {
         const ClaimedOrder claim =
-            info.claim(s, true, reference.system.mechanics == nullptr);  // exp, cayley: symmetric
+            info.claim(s, true, left_invariant);  // exp, cayley: symmetric
         // First-order errors show their order late.
         const long coarse = claim.order == 1 ? 800 : claim.order == 2 ? 160 : 24;
         const Result a = run_of(system, scheme, s, retraction, coarse).run();
@@ -106,9 +107,7 @@ TEST(GeneralSchemes, AreTheCompiledOnesOnLeftInvariantSystems) {
     const SystemInfo& info = *registry().system(system);
     SystemInfo erased = info;
     erased.make = [make = info.make](const Parameters& given) {
-      SystemModel model = make(given);
-      model.mechanics = std::make_shared<InvariantMechanics>(model.inertia, model.constraints);
-      return model;
+      return test::erased(make(given));
     };
     general.add(erased);
     for (const std::string scheme : {"lift", "balance"}) {

@@ -80,11 +80,7 @@ class Equations {
         columns_(system.group.columns.size()),
         n_(system.group.dim),
         geometry_(registry().geometry(system.group.name, "exp")),
-        mechanics_(system.mechanics) {
-    if (mechanics_ == nullptr) {
-      mechanics_ = std::make_shared<InvariantMechanics>(system.inertia, system.constraints);
-    }
-  }
+        mechanics_(system.mechanics) {}
 
   void rate(const double* x, const double* xi, double* out) const {
     for (const std::string& factor : factors_) factor_rate(factor, x, xi, out);
