@@ -21,8 +21,8 @@
 
 #include <Eigen/LU>
 
-#include <hamel/framework/schemes/scheme.hpp>
 #include <hamel/framework/loop/status.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
 
@@ -66,7 +66,8 @@ class Inverse {
   struct Nothing {};
   Jacobian inverse_;
   [[no_unique_address]] std::conditional_t<closed_form, Nothing, Jacobian> work_;
-  [[no_unique_address]] std::conditional_t<may_be_large, Eigen::PartialPivLU<Jacobian>, Nothing> lu_;
+  [[no_unique_address]] std::conditional_t<may_be_large, Eigen::PartialPivLU<Jacobian>, Nothing>
+      lu_;
 };
 
 struct Newton {

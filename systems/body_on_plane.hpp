@@ -8,6 +8,8 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include <hamel/framework/mechanics/drawing.hpp>
 #include <hamel/framework/mechanics/system.hpp>
@@ -19,12 +21,16 @@ using Group = SE3;
 using Element = SE3::Element<double>;
 
 /// Row of the velocity of the contact at r along u.
-inline Mat<1, 6> contact_velocity(const Vec<3>& r, const Vec<3>& u) {
-  Mat<1, 6> row;
-  row.head<3>() = r.cross(u);
-  row.tail<3>() = u;
+template <class T>
+MatT<T, 1, 6> contact_velocity(const VecT<T, 3>& r, const VecT<T, 3>& u) {
+  MatT<T, 1, 6> row;
+  row.template head<3>() = r.cross(u);
+  row.template tail<3>() = u;
   return row;
 }
+/// The scalar of an element, a double or a dual number.
+template <class Element>
+using ScalarOf = typename std::decay_t<decltype(std::declval<Element>().rotation)>::Scalar;
 
 /// <dz, xi> = gamma . v.
 inline Vec<6> height_differential(const Element& g) {

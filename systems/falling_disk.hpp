@@ -55,19 +55,23 @@ struct FallingDisk {
   }
 
   // The vertical and the contact, seen from the body.
+  template <class T>
   struct Contact {
-    Vec<3> gamma, along, across, r;
-    Contact(const Element& g, double radius) {
+    VecT<T, 3> gamma, along, across, r;
+    Contact(const SE3::Element<T>& g, double radius) {
+      using std::sqrt;
+      const T zero(0.0);
       gamma = g.rotation.row(2).transpose();
-      const double lean = 1 / std::sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]);
-      along = lean * Vec<3>(-gamma[1], gamma[0], 0);  // e3 x gamma: where it rolls
+      const T lean = 1.0 / sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]);
+      along = lean * VecT<T, 3>(-gamma[1], gamma[0], zero);  // e3 x gamma: where it rolls
       across = gamma.cross(along);
-      r = (-radius * lean) * Vec<3>(gamma[0], gamma[1], 0);
+      r = T(-radius * lean) * VecT<T, 3>(gamma[0], gamma[1], zero);
     }
   };
-  Mat<2, 6> constraints(const Element& g) const {
-    const Contact c(g, radius);
-    Mat<2, 6> a;
+  auto constraints(const auto& g) const {
+    using T = body_on_plane::ScalarOf<decltype(g)>;
+    const Contact<T> c(g, radius);
+    MatT<T, 2, 6> a;
     a.row(0) = body_on_plane::contact_velocity(c.r, c.along);
     a.row(1) = body_on_plane::contact_velocity(c.r, c.across);
     return a;
@@ -78,8 +82,8 @@ struct FallingDisk {
     using T = std::decay_t<decltype(r31)>;
     return VecT<T, 1>(g.translation[2] - radius * sqrt(r31 * r31 + r32 * r32));
   }
-  Mat<1, 6> holonomic_differential(const Element& g) const {
-    const Contact c(g, radius);
+  auto holonomic_differential(const auto& g) const {
+    const Contact<body_on_plane::ScalarOf<decltype(g)>> c(g, radius);
     return body_on_plane::contact_velocity(c.r, c.gamma);
   }
   auto potential(const auto& g) const { return mass * gravity * g.translation[2]; }
@@ -90,7 +94,7 @@ struct FallingDisk {
   /// At x = y = 0 with the axis at theta from the vertical and rolling without slip with body rates omega.
   Start rolling(double theta, const Vec<3>& omega) const {
     const Element g = body_on_plane::leaning(theta, radius * std::sin(theta));
-    return body_on_plane::rolling(g, omega, Contact(g, radius).r);
+    return body_on_plane::rolling(g, omega, Contact<double>(g, radius).r);
   }
   Start start() const { return rolling(1.3, {0.1, 0.4, 5}); }
 

@@ -1,11 +1,11 @@
 // hamel: geometric integrators for nonholonomic systems on Lie groups. The one header a user needs.
 #pragma once
 
-#include <hamel/framework/schemes/composition.hpp>
-#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/study/study.hpp>
 #include <hamel/groups/all.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>

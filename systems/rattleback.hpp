@@ -60,15 +60,22 @@ struct Rattleback {
     return i;
   }
   /// From the mass centre to the contact.
-  Vec<3> contact(const Element& g) const {
-    const Vec<3> gamma = g.rotation.row(2).transpose(), d = semi_axes.cwiseProduct(gamma);
-    return Vec<3>(0, 0, depth) - semi_axes.cwiseProduct(d) / d.norm();
+  auto contact(const auto& g) const {
+    using std::sqrt;
+    using T = body_on_plane::ScalarOf<decltype(g)>;
+    VecT<T, 3> d, r;
+    for (int i = 0; i < 3; ++i) d[i] = semi_axes[i] * g.rotation(2, i);
+    const T scale = -1.0 / sqrt(d.dot(d));
+    for (int i = 0; i < 3; ++i) r[i] = semi_axes[i] * d[i] * scale;
+    r[2] += depth;
+    return r;
   }
-  Mat<2, 6> constraints(const Element& g) const {
-    const Vec<3> r = contact(g);
-    Mat<2, 6> a;
+  auto constraints(const auto& g) const {
+    using T = body_on_plane::ScalarOf<decltype(g)>;
+    const VecT<T, 3> r = contact(g);
+    MatT<T, 2, 6> a;
     for (int i = 0; i < 2; ++i) {
-      a.row(i) = body_on_plane::contact_velocity(r, g.rotation.row(i).transpose());
+      a.row(i) = body_on_plane::contact_velocity(r, VecT<T, 3>(g.rotation.row(i).transpose()));
     }
     return a;
   }
@@ -80,8 +87,9 @@ struct Rattleback {
     for (int i = 0; i < 3; ++i) square += (semi_axes[i] * semi_axes[i]) * (r(2, i) * r(2, i));
     return VecT<T, 1>(g.translation[2] + depth * r(2, 2) - sqrt(square));
   }
-  Mat<1, 6> holonomic_differential(const Element& g) const {
-    return body_on_plane::contact_velocity(contact(g), g.rotation.row(2).transpose());
+  auto holonomic_differential(const auto& g) const {
+    using T = body_on_plane::ScalarOf<decltype(g)>;
+    return body_on_plane::contact_velocity(contact(g), VecT<T, 3>(g.rotation.row(2).transpose()));
   }
   auto potential(const auto& g) const { return mass * gravity * g.translation[2]; }
   Vec<6> potential_differential(const Element& g) const {

@@ -4,6 +4,16 @@
 #include <string>
 
 #include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/schemes/balance.hpp>
+#include <hamel/framework/schemes/boxed.hpp>
+#include <hamel/framework/schemes/boxed_literal.hpp>
+#include <hamel/framework/schemes/energy_preserving.hpp>
+#include <hamel/framework/schemes/gni.hpp>
+#include <hamel/framework/schemes/lift.hpp>
+#include <hamel/framework/schemes/reversible.hpp>
+#include <hamel/framework/schemes/rk4_projected.hpp>
+#include <hamel/framework/schemes/rkmk4.hpp>
+#include <hamel/framework/schemes/unadapted.hpp>
 #include <hamel/systems/kernels.hpp>
 
 namespace hamel {
@@ -28,7 +38,8 @@ template <class Scheme, class S, class Tau>
 constexpr auto problem_of() {
   constexpr int m = S::Group::dim - constraint_count<S>();
   if constexpr (!is_left_invariant<S>()) return std::type_identity<Typed<S, Tau>>{};
-  else if constexpr (Scheme::reduced) return std::type_identity<LeftInvariant<typename S::Group, m, Tau>>{};
+  else if constexpr (Scheme::reduced)
+    return std::type_identity<LeftInvariant<typename S::Group, m, Tau>>{};
   else return std::type_identity<Erased>{};
 }
 }  // namespace detail

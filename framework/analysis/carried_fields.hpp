@@ -12,9 +12,9 @@
 
 #include <vector>
 
+#include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/place.hpp>
-#include <hamel/framework/lie/geometry.hpp>
 
 namespace hamel::carried {
 

@@ -90,18 +90,17 @@ class TypedGeometry final : public Geometry {
   bool one_parameter() const override { return Tau::one_parameter; }
   std::string domain() const override { return Tau::domain(); }
 
-  [[gnu::flatten]] void compose(const double* g, const double* h, double* out) const override {
+  HAMEL_FLATTEN void compose(const double* g, const double* h, double* out) const override {
     Pack::store(G::compose(Pack::load(g), Pack::load(h)), out);
   }
-  [[gnu::flatten]] void inverse(const double* g, double* out) const override {
+  HAMEL_FLATTEN void inverse(const double* g, double* out) const override {
     Pack::store(G::inverse(Pack::load(g)), out);
   }
-  [[gnu::flatten]] void normalise(double* g) const override {
+  HAMEL_FLATTEN void normalise(double* g) const override {
     Pack::store(G::normalise(Pack::load(g)), g);
   }
   double defect(const double* g) const override { return G::defect(Pack::load(g)); }
-  [[gnu::flatten]] void Ad_transpose(const double* g, const double* mu,
-                                     double* out) const override {
+  HAMEL_FLATTEN void Ad_transpose(const double* g, const double* mu, double* out) const override {
     put(G::Ad_transpose(Pack::load(g), vec(mu)), out);
   }
   void ad_transpose(const double* xi, const double* mu, double* out) const override {
@@ -110,7 +109,7 @@ class TypedGeometry final : public Geometry {
   void Ad(const double* g, const double* xi, double* out) const override {
     put(G::Ad(Pack::load(g)) * vec(xi), out);
   }
-  [[gnu::flatten]] void tau(const double* xi, double* out) const override {
+  HAMEL_FLATTEN void tau(const double* xi, double* out) const override {
     Pack::store(Tau::tau(vec(xi)), out);
   }
   bool tau_inverse(const double* g, double* out) const override {
@@ -133,8 +132,8 @@ class TypedGeometry final : public Geometry {
   void dtau_left_inverse(const double* xi, const double* eta, double* out) const override {
     put(Tau::dtau_left_inverse(vec(xi)) * vec(eta), out);
   }
-  [[gnu::flatten]] void base_momentum(double s, const double* xi, const double* p, const double* nu,
-                                      double* m0) const override {
+  HAMEL_FLATTEN void base_momentum(double s, const double* xi, const double* p, const double* nu,
+                                   double* m0) const override {
     put(hamel::base_momentum<Tau>(s, vec(xi), vec(p), vec(nu)), m0);
   }
   bool in_domain(const double* xi) const override { return Tau::in_domain(vec(xi)); }

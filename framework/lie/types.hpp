@@ -5,6 +5,14 @@
 
 #include <Eigen/Core>
 
+/// Before a function on the hot path: everything it calls is inlined into it. Not under the sanitizers, where that
+/// costs minutes of compilation.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define HAMEL_FLATTEN
+#else
+#define HAMEL_FLATTEN [[gnu::flatten]]
+#endif
+
 namespace hamel {
 
 /// Matrix and column vector over any scalar T (double, an automatic-differentiation number, ...).

@@ -52,7 +52,8 @@ class Loop final : public Kernel {
     typename P::Vector velocity = setup.velocity;
     problem_.carry(velocity, now_->x);
     *previous_ = *now_;
-    for (const double c : setup.composition) stages_.push_back({c, Extrapolation<Unknown>(x_), Memory(x_)});
+    for (const double c : setup.composition)
+      stages_.push_back({c, Extrapolation<Unknown>(x_), Memory(x_)});
   }
 
   Status advance(long count) override {
@@ -154,14 +155,14 @@ class Loop final : public Kernel {
 
   [[gnu::always_inline]] SolveReport one_step() {
     if (stages_.size() == 1) [[likely]]
-      return substep(stages_.front());  // one that fails leaves the state alone
+      return flat_substep(stages_.front());  // one that fails leaves the state alone
     return composed_step();
   }
   SolveReport composed_step() {
     const State start = save();
     SolveReport total;
     for (Stage& stage : stages_) {
-      const SolveReport report = substep(stage);
+      const SolveReport report = flat_substep(stage);
       total.iterations += report.iterations;
       total.evaluations += report.evaluations;
       total.residual = std::max(total.residual, report.residual);
@@ -174,6 +175,12 @@ class Loop final : public Kernel {
     return total;
   }
 
+  // Small products of fixed sizes, inlined: half the time of a step.
+  SolveReport flat_substep(Stage& stage) {
+    if constexpr (P::left_invariant) return inlined_substep(stage);
+    else return substep(stage);
+  }
+  HAMEL_FLATTEN SolveReport inlined_substep(Stage& stage) { return substep(stage); }
   SolveReport substep(Stage& stage) {
     const double h = stage.coefficient * h_;
     step_.begin(*now_, h);

@@ -201,8 +201,8 @@ class Formulas {
   static constexpr bool dual_differential() {
     if constexpr (requires { &S::holonomic_differential; }) return false;
     else if constexpr (requires(const S& s, const DualElement& g) { s.holonomic_differential(g); })
-      return is_dual<decltype(
-          std::declval<const S&>().holonomic_differential(std::declval<DualElement>()))>;
+      return is_dual<decltype(std::declval<const S&>().holonomic_differential(
+          std::declval<DualElement>()))>;
     else return false;
   }
   static constexpr bool dual_inertia() {
@@ -246,8 +246,8 @@ class TypedMechanics final : public Mechanics {
     formulas_.inertia(load(g), i);
     out = i;
   }
-  [[gnu::flatten]] void constraints(double t, const double* g, Matrix to_a,
-                                    Vector to_b) const override {
+  HAMEL_FLATTEN void constraints(double t, const double* g, Matrix to_a,
+                                 Vector to_b) const override {
     Mat<k, n> a;
     Vec<k> b;
     formulas_.constraints(t, load(g), a, b);
@@ -255,12 +255,12 @@ class TypedMechanics final : public Mechanics {
     else to_a = a;
     Eigen::Map<Vec<k>>(to_b.data()) = b;
   }
-  [[gnu::flatten]] void holonomic(const double* g, Vector out) const override {
+  HAMEL_FLATTEN void holonomic(const double* g, Vector out) const override {
     Vec<r> phi;
     formulas_.holonomic(load(g), phi);
     out = phi;
   }
-  [[gnu::flatten]] void force(double t, const double* g, ConstVector xi, Vector to) const override {
+  HAMEL_FLATTEN void force(double t, const double* g, ConstVector xi, Vector to) const override {
     Vec<n> out;
     formulas_.force(t, load(g), Eigen::Map<const Vec<n>>(xi.data()), out);
     Eigen::Map<Vec<n>>(to.data()) = out;

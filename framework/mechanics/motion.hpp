@@ -6,6 +6,10 @@
 // differences along g tau(e xi), t + e (lie/differences.hpp). A left-invariant problem has y' in closed form.
 #pragma once
 
+#include <cmath>
+
+#include <Eigen/Core>
+
 #include <hamel/framework/lie/differences.hpp>
 
 namespace hamel {
@@ -20,7 +24,6 @@ class Motion {
 
   explicit Motion(const Problem& problem)
       : problem_(problem),
-        place_(problem),
         acceleration_(problem.dim()),
         momentum_(problem.dim()),
         change_(problem.dim()),
@@ -32,6 +35,9 @@ class Motion {
         a_rate_(problem.rows(), problem.dim()),
         inertia_(problem.dim(), problem.dim()),
         inertia_rate_(problem.dim(), problem.dim()),
+        root_(problem.dim(), problem.dim()),
+        y_(problem.dim(), problem.rows()),
+        gram_(problem.rows(), problem.rows()),
         moved_(problem.element()) {}
 
   /// The rate of the carried velocity at an admissible (t, g, x).
@@ -43,31 +49,43 @@ class Motion {
       rate = acceleration_;
     }
   }
-  /// xi' and lambda (k entries, N or N m as the rows have it).
+  /// xi' and lambda (k entries, N or N m as the rows have it). With W^T W = I^-1 (W lower triangular),
+  /// Y = W A^T and c = W change:  Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
   void solve(double t, const Element& g, const Vector& xi) {
-    place_.set(problem_, t, g);
+    if (!known_ || !problem_.constant_inertia()) {
+      problem_.inertia(g, inertia_);
+      find_root();
+    }
     find_rates(t, g, xi);
-    momentum_.noalias() = place_.inertia * xi;
+    momentum_ = inertia_.lazyProduct(xi);
     problem_.force(t, g, xi, change_);
-    if (!problem_.constant_inertia()) change_.noalias() -= inertia_rate_ * xi;
+    if (!problem_.constant_inertia()) change_ -= inertia_rate_.lazyProduct(xi);
     problem_.ad_transpose(xi, momentum_, work_);
     change_ += work_;
-    // I xi' = change + A^T lambda, A xi' = db/dt - dA/dt xi.
-    b_rate_.noalias() -= a_rate_ * xi;
-    place_.velocity(change_, b_rate_, acceleration_);
+    apply_root(change_, work_);
+    if (problem_.rows() > 0) {
+      problem_.constraints(t, g, a_, b_);
+      for (int j = 0; j < problem_.rows(); ++j) {
+        momentum_ = a_.row(j).transpose();
+        apply_root(momentum_, acceleration_);
+        y_.col(j) = acceleration_;
+      }
+      b_rate_ -= a_rate_.lazyProduct(xi);
+      reaction_ = b_rate_ - y_.transpose().lazyProduct(work_);
+      solve_gram();
+      work_ += y_.lazyProduct(reaction_);
+    }
+    if (diagonal_) acceleration_ = root_.diagonal().cwiseProduct(work_);
+    else acceleration_ = root_.transpose().lazyProduct(work_);
   }
   const Vector& acceleration() const { return acceleration_; }
-  const Few& reaction() {
-    momentum_.noalias() = place_.inertia * acceleration_;
-    momentum_ -= change_;
-    place_.multipliers(momentum_, reaction_);
-    return reaction_;
-  }
+  const Few& reaction() const { return reaction_; }
 
  private:
   void find_rates(double t, const Element& g, const Vector& xi) {
     b_rate_.setZero();
     a_rate_.setZero();
+    if (problem_.rows() == 0 && problem_.constant_inertia()) return;
     const bool moves = !problem_.constant_constraints(), varies = !problem_.constant_inertia();
     if (!moves && !varies) return;
     if constexpr (requires { problem_.dual_rates(g, xi, a_rate_, inertia_rate_); }) {
@@ -90,12 +108,65 @@ class Motion {
     });
   }
 
+  // root_ = W = L^-1, I = L L^T: rows of W from those above.
+  void find_root() {
+    known_ = true;
+    const int n = problem_.dim();
+    diagonal_ = true;
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) diagonal_ = diagonal_ && (i == j || inertia_(i, j) == 0);
+    }
+    root_.setZero();
+    if (diagonal_) {
+      for (int i = 0; i < n; ++i) root_(i, i) = 1 / std::sqrt(inertia_(i, i));
+      return;
+    }
+    // w_i = (e_i - sum_{j<i} (w_j I e_i) w_j) / its length: Gram-Schmidt on e_i in the metric I, row by row.
+    for (int i = 0; i < n; ++i) {
+      for (int l = 0; l <= i; ++l) work_[l] = l == i ? 1 : 0;
+      for (int j = 0; j < i; ++j) {
+        double product = 0;
+        for (int l = 0; l <= j; ++l) product += root_(j, l) * inertia_(l, i);
+        for (int l = 0; l <= j; ++l) work_[l] -= product * root_(j, l);
+      }
+      double square = 0;
+      for (int l = 0; l <= i; ++l) square += work_[l] * inertia_(l, i);  // orthogonal to e_j, j < i
+      const double scale = 1 / std::sqrt(square);
+      for (int l = 0; l <= i; ++l) root_(i, l) = scale * work_[l];
+    }
+  }
+  void apply_root(const Vector& mu, Vector& out) const {
+    if (diagonal_) out = root_.diagonal().cwiseProduct(mu);
+    else out = root_.lazyProduct(mu);
+  }
+  // reaction_ <- (Y^T Y)^-1 reaction_, by Cholesky.
+  void solve_gram() {
+    const int k = problem_.rows();
+    for (int j = 0; j < k; ++j) {
+      for (int i = j; i < k; ++i) {
+        double sum = y_.col(i).dot(y_.col(j));
+        for (int l = 0; l < j; ++l) sum -= gram_(i, l) * gram_(j, l);
+        gram_(i, j) = i == j ? std::sqrt(sum) : sum / gram_(j, j);
+      }
+    }
+    for (int i = 0; i < k; ++i) {
+      for (int l = 0; l < i; ++l) reaction_[i] -= gram_(i, l) * reaction_[l];
+      reaction_[i] /= gram_(i, i);
+    }
+    for (int i = k - 1; i >= 0; --i) {
+      for (int l = i + 1; l < k; ++l) reaction_[i] -= gram_(l, i) * reaction_[l];
+      reaction_[i] /= gram_(i, i);
+    }
+  }
+
   Problem problem_;
-  typename Problem::Place place_;
+  bool known_ = false, diagonal_ = false;
   Vector acceleration_, momentum_, change_, work_;
   Few reaction_, b_, b_rate_;
   typename Problem::Rows a_, a_rate_;
-  typename Problem::Matrix inertia_, inertia_rate_;
+  typename Problem::Matrix inertia_, inertia_rate_, root_;
+  Eigen::Matrix<double, Vector::RowsAtCompileTime, Few::RowsAtCompileTime> y_;
+  Eigen::Matrix<double, Few::RowsAtCompileTime, Few::RowsAtCompileTime> gram_;
   Element moved_;
 };
 

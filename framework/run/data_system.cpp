@@ -68,9 +68,9 @@ class DataMechanics final : public Mechanics {
     if (!terms_.potential()) return;
     for (Eigen::Index i = 0; i < out.size(); ++i) {
       axis_ = Eigen::VectorXd::Unit(dim(), i);
-      differentiate_along(Operations{*geometry_}, g, axis_, step_, moved_, [&](double, double weight) {
-        out[i] -= weight * potential(moved_.data());
-      });
+      differentiate_along(
+          Operations{*geometry_}, g, axis_, step_, moved_,
+          [&](double, double weight) { out[i] -= weight * potential(moved_.data()); });
     }
   }
 

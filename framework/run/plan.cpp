@@ -124,9 +124,10 @@ Simulation::Plan Simulation::plan() const {
   plan.look_at_start();
   const bool left_invariant = system.mechanics->left_invariant();
   if (scheme != nullptr && !scheme->defined(left_invariant)) {
-    plan.add({fmt::format("scheme: {} is defined for left-invariant systems only; lift and balance are "
-                          "offered here",
-                          scheme->name)});
+    plan.add(
+        {fmt::format("scheme: {} is defined for left-invariant systems only; lift and balance are "
+                     "offered here",
+                     scheme->name)});
   } else if (compiled) {
     plan.kernel = kernel_;
   } else if (scheme != nullptr && geometry != nullptr) {

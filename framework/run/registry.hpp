@@ -13,8 +13,8 @@
 #include <vector>
 
 #include <hamel/framework/loop/kernel.hpp>
-#include <hamel/framework/schemes/scheme.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
 

@@ -56,11 +56,11 @@ class BalanceStep {
         phi_(problem.held()) {}
 
   int size() const { return 2 * problem_.state_size(); }
-  void begin(const Node& node, double h) {
+  HAMEL_FLATTEN void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
     x_.setConstant(std::numeric_limits<double>::quiet_NaN());  // nothing is evaluated so far
-    place_.set(problem_, node.t, node.g);                      // here the frame of the step gets its signs
+    place_.set(problem_, node.t, node.g);  // here the frame of the step gets its signs
     inertia_ = place_.inertia;
     problem_.momentum(inertia_, node.x, mu0_);
     double size = 2 * place_.size(node.x, mu0_);
@@ -83,7 +83,7 @@ class BalanceStep {
     place_.from_frame(z.data() + problem_.dim());
   }
 
-  void residual(const Unknown& x, Unknown& f) const {
+  HAMEL_FLATTEN void residual(const Unknown& x, Unknown& f) const {
     evaluate(x);
     // (1) on the base point.
     problem_.dtau_right_transpose(z0_, m0_, r_);
@@ -121,13 +121,15 @@ class BalanceStep {
     j.template topLeftCorner<m, m>().diagonal().array() -= 1;
     j.template topRightCorner<m, m>() =
         (1 - s_) * problem_.reduce_momentum(z1.right.transpose() * push1);
-    j.template bottomLeftCorner<m, m>() = h_ * problem_.reduce_both(
-        (1 - s_) * z1.push_derivative(m1_) + s_ * z0.push_derivative(m0_));
+    j.template bottomLeftCorner<m, m>() =
+        h_ *
+        problem_.reduce_both((1 - s_) * z1.push_derivative(m1_) + s_ * z0.push_derivative(m0_));
     j.template bottomRightCorner<m, m>() = problem_.reduce_momentum(push1);
   }
 
-  bool finish(const Unknown& x, Node& next) const {
-    if ((x_.array() != x.head(half()).array()).any() || (w_.array() != x.tail(half()).array()).any()) {
+  HAMEL_FLATTEN bool finish(const Unknown& x, Node& next) const {
+    if ((x_.array() != x.head(half()).array()).any() ||
+        (w_.array() != x.tail(half()).array()).any()) {
       evaluate(x);
     }
     r_ = h_ * v_;

@@ -66,8 +66,8 @@ class BoxedStep {
   /// F and dF/dy.
   void linearise(const Unknown& y, Unknown& f, Jacobian& j) const requires(P::left_invariant) {
     residual(y, f);
-    j = length() * problem_.reduce_both(
-                       At<typename P::Tau>(z_).right_transpose_derivative(full_mu_));
+    j = length() *
+        problem_.reduce_both(At<typename P::Tau>(z_).right_transpose_derivative(full_mu_));
     j.diagonal().array() -= 1;
   }
 

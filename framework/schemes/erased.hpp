@@ -74,9 +74,7 @@ class Erased {
     return hamel::recover_step(*geometry_, delta.data(), s, xi);
   }
   int columns() const { return geometry_->columns(); }
-  void coordinates(const Element& g, double* out) const {
-    geometry_->coordinates(g.data(), out);
-  }
+  void coordinates(const Element& g, double* out) const { geometry_->coordinates(g.data(), out); }
   void from_coordinates(std::span<const double> values, Element& out) const {
     geometry_->from_coordinates(values, out.data());
   }

@@ -60,9 +60,7 @@ class Gni::Step {
   double scale_squared() const { return free_.scale_squared(); }
   void residual(const Unknown& x, Unknown& f) const { free_.residual(x, f); }
   void from_frame(Unknown& z) const { free_.from_frame(z); }
-  bool finish(const Unknown& x, Node& next) const {
-    return free_.finish(x, next);
-  }
+  bool finish(const Unknown& x, Node& next) const { return free_.finish(x, next); }
   /// The nodal velocity: the admissible part of v-.
   void velocity(const Node& node, typename P::Vector& xi) const {
     place_.set(problem_, node.t, node.g);

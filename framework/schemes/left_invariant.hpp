@@ -59,9 +59,7 @@ class LeftInvariant : public GroupOperations<Tau> {
   const Frame& frame() const { return frame_; }
   /// xi = E y; y = (I E)^T xi; I xi = I E y.
   void velocity(const State& y, Vector& xi) const { xi = frame_.lazyProduct(y); }
-  void carry(const Vector& xi, State& y) const {
-    y = momentum_frame_.transpose().lazyProduct(xi);
-  }
+  void carry(const Vector& xi, State& y) const { y = momentum_frame_.transpose().lazyProduct(xi); }
   void momentum(const Matrix& /*inertia*/, const State& y, Vector& mu) const {
     mu = momentum_frame_.lazyProduct(y);
   }
@@ -96,7 +94,8 @@ class LeftInvariant : public GroupOperations<Tau> {
   /// The frame, the same everywhere.
   class Place {
    public:
-    explicit Place(const LeftInvariant& problem) : inertia(problem.inertia_), frame_(problem.frame_) {}
+    explicit Place(const LeftInvariant& problem)
+        : inertia(problem.inertia_), frame_(problem.frame_) {}
     Matrix inertia;
     void set(const LeftInvariant&, double, const Element&, bool /*same_frame*/ = false) {}
     void join(const Vector& r, const Few& /*c*/, State& f) const {

@@ -82,11 +82,12 @@ class Lift::General {
         phi_(problem.held()) {}
 
   int size() const { return problem_.dim(); }
-  void begin(const Node& node, double h) {
+  HAMEL_FLATTEN void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
     v_.setConstant(kNothing);
-    if (!(place_time_ == node.t && problem_.same(place_g_, node.g))) {  // else the last step ended there
+    if (!(place_time_ == node.t &&
+          problem_.same(place_g_, node.g))) {  // else the last step ended there
       place_.set(problem_, node.t, node.g);
       place_time_ = node.t;
       place_g_ = node.g;
@@ -102,12 +103,12 @@ class Lift::General {
   double scale_squared() const { return scale_squared_; }
   void from_frame(Unknown& z) const { place_.from_frame(z.data()); }
 
-  void residual(const Unknown& x, Unknown& f) const {
+  HAMEL_FLATTEN void residual(const Unknown& x, Unknown& f) const {
     evaluate(x);
     place_.join(mu_, rows_, f);
   }
 
-  bool finish(const Unknown& x, Node& next) const {
+  HAMEL_FLATTEN bool finish(const Unknown& x, Node& next) const {
     if ((v_.array() != x.array()).any()) evaluate(x);
     if (!problem_.in_domain(step_)) return false;
     m_ += nu_;
@@ -253,8 +254,8 @@ class Lift::Reduced {
       increment = Tau::tau(step);
     } else {
       const Element f1 = Tau::tau(Vec<n>((1 - s_) * step));
-      increment = mirrored_ ? G::compose(f1, f1)
-                            : G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), f1);
+      increment =
+          mirrored_ ? G::compose(f1, f1) : G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), f1);
     }
     next.t = from_->t + h_;
     next.g = G::compose(from_->g, increment);

@@ -29,13 +29,13 @@ class RungeKutta4 {
   static double scale_squared() { return 1; }
   void residual(const Unknown& /*x*/, Unknown& /*f*/) const {}
 
-  void begin(const Node& node, double h) {
+  HAMEL_FLATTEN void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
     self().start(node.g, q0_);
   }
 
-  bool finish(const Unknown& /*x*/, Node& next) const {
+  HAMEL_FLATTEN bool finish(const Unknown& /*x*/, Node& next) const {
     constexpr double at[] = {0, 0.5, 0.5, 1}, weight[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     q_sum_.setZero();
     x_sum_.setZero();

@@ -30,21 +30,23 @@ struct ClaimedOrder {
 struct SchemeDefaults {
   static constexpr bool adapted = true;  // keeps the constraint
   static constexpr bool uses_s = false;
-  static constexpr double fixed_s = 0;  // where it does not: the s of its steps, and of their measurement
+  static constexpr double fixed_s =
+      0;  // where it does not: the s of its steps, and of their measurement
   static constexpr bool left_invariant_only = false;
   static constexpr bool reduced = false;  // has a step for LeftInvariant problems
   /// The velocity of a step, not of its ends only, satisfies A xi = b.
   static constexpr bool steps_admissible = true;
   static constexpr bool explicit_step = false;
-  static constexpr int stages = 0;  // of an explicit step: how often it evaluates the equations of motion
+  static constexpr int stages =
+      0;  // of an explicit step: how often it evaluates the equations of motion
 };
 
 /// The step of a scheme for one problem.
 template <class Step>
 concept SchemeStep = Problem<typename Step::Problem> &&
-                     requires(Step& step, const Step& done, const Node<typename Step::Problem>& node,
-                              Node<typename Step::Problem>& next, double h,
-                              typename Step::Unknown& x, typename Step::Unknown& f) {
+    requires(Step& step, const Step& done, const Node<typename Step::Problem>& node,
+             Node<typename Step::Problem>& next, double h, typename Step::Unknown& x,
+             typename Step::Unknown& f) {
   // How many unknowns.
   { done.size() } -> std::convertible_to<int>;
   // Starts a step of size h (of either sign) from a node, which outlives it.

@@ -21,7 +21,8 @@ class WithoutRows : public P {
   static constexpr int rows() { return 0; }
   static constexpr int held() { return 0; }
   static constexpr bool constant_constraints() { return true; }
-  static void constraints(double /*t*/, const typename P::Element& /*g*/, Rows& /*a*/, Few& /*b*/) {}
+  static void constraints(double /*t*/, const typename P::Element& /*g*/, Rows& /*a*/, Few& /*b*/) {
+  }
   static void holonomic(const typename P::Element& /*g*/, Held& /*phi*/) {}
 };
 

@@ -1,9 +1,9 @@
 #include <hamel/groups/product_retraction.hpp>
 #include <hamel/systems/ball_on_turntable.hpp>
 #include <hamel/systems/chaplygin_ball.hpp>
+#include <hamel/systems/kernels/units.hpp>
 #include <hamel/systems/rolling_ball.hpp>
 #include <hamel/systems/routh_sphere.hpp>
-#include <hamel/systems/kernels/units.hpp>
 
 namespace hamel {
 

@@ -1,7 +1,7 @@
 #include <hamel/groups/product_retraction.hpp>
 #include <hamel/systems/falling_disk.hpp>
-#include <hamel/systems/rattleback.hpp>
 #include <hamel/systems/kernels/units.hpp>
+#include <hamel/systems/rattleback.hpp>
 
 namespace hamel {
 

@@ -4,8 +4,6 @@
 
 namespace hamel {
 
-void add_motions_of_space(Registry& registry) {
-  add_group<SE3>(registry);
-}
+void add_motions_of_space(Registry& registry) { add_group<SE3>(registry); }
 
 }  // namespace hamel

@@ -1,10 +1,10 @@
 #include <hamel/groups/product_retraction.hpp>
 #include <hamel/systems/contact_oscillator.hpp>
+#include <hamel/systems/kernels/units.hpp>
 #include <hamel/systems/knife_edge_on_incline.hpp>
 #include <hamel/systems/nonholonomic_particle.hpp>
 #include <hamel/systems/suslov_in_potential.hpp>
 #include <hamel/systems/veselova.hpp>
-#include <hamel/systems/kernels/units.hpp>
 
 namespace hamel {
 

@@ -1,8 +1,8 @@
 #include <hamel/groups/product_retraction.hpp>
+#include <hamel/systems/kernels/units.hpp>
 #include <hamel/systems/roller_racer.hpp>
 #include <hamel/systems/segway.hpp>
 #include <hamel/systems/snakeboard.hpp>
-#include <hamel/systems/kernels/units.hpp>
 
 namespace hamel {
 

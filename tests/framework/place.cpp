@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/place.hpp>
 
 namespace hamel {

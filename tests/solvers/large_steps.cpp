@@ -79,9 +79,7 @@ enum class On { compiled, general };
 template <class S>
 Simulation::Maker maker_on(On loop, const S& system) {
   if (loop == On::compiled) return maker(system);
-  return [make = maker(system)](const Parameters& given) {
-    return test::erased(make(given));
-  };
+  return [make = maker(system)](const Parameters& given) { return test::erased(make(given)); };
 }
 
 template <class Scheme, template <class> class T, class S>

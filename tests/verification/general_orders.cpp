@@ -63,8 +63,7 @@ TEST_P(GeneralOrders, AreAsClaimed) {
       // Where s is not used, one that would show if it were.
       for (const double s :
            info.uses_s ? std::vector<double>{0, 0.5, 1} : std::vector<double>{0.25}) {
-        const ClaimedOrder claim =
-            info.claim(s, true, left_invariant);  // exp, cayley: symmetric
+        const ClaimedOrder claim = info.claim(s, true, left_invariant);  // exp, cayley: symmetric
         // First-order errors show their order late.
         const long coarse = claim.order == 1 ? 800 : claim.order == 2 ? 160 : 24;
         const Result a = run_of(system, scheme, s, retraction, coarse).run();
@@ -106,9 +105,7 @@ TEST(GeneralSchemes, AreTheCompiledOnesOnLeftInvariantSystems) {
   for (const std::string system : {"suslov", "chaplygin_sleigh", "rolling_disk"}) {
     const SystemInfo& info = *registry().system(system);
     SystemInfo erased = info;
-    erased.make = [make = info.make](const Parameters& given) {
-      return test::erased(make(given));
-    };
+    erased.make = [make = info.make](const Parameters& given) { return test::erased(make(given)); };
     general.add(erased);
     for (const std::string scheme : {"lift", "balance"}) {
       for (const std::string retraction : {"exp", "cayley", "second_kind"}) {

@@ -131,9 +131,7 @@ class Grouped {
 };
 
 std::string order_in_words(const SchemeInfo& info) {
-  const auto order = [&](double s, bool symmetric) {
-    return info.claim(s, symmetric, true).order;
-  };
+  const auto order = [&](double s, bool symmetric) { return info.claim(s, symmetric, true).order; };
   const int half = order(0.5, true), other = order(0.25, true), skewed = order(0.25, false);
   if (!info.adapted) return "leaves the constraint";
   if (half == 0) return "none";

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/run/result.hpp>
 #include <hamel/framework/io/version.hpp>
+#include <hamel/framework/run/result.hpp>
 
 namespace hamel::tools {
 namespace {

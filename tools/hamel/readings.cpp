@@ -85,9 +85,8 @@ std::vector<Series> exact_momentum(const Config& run) {
   for (int i = 0; i <= points; ++i) {
     const double t = run.until * i / points;
     const auto [g, xi] = flow(t);
-    const Eigen::VectorXd mu =
-        inertia *
-        Eigen::Map<const Eigen::VectorXd>(xi.data(), static_cast<Eigen::Index>(xi.size()));
+    const Eigen::VectorXd mu = inertia * Eigen::Map<const Eigen::VectorXd>(
+                                             xi.data(), static_cast<Eigen::Index>(xi.size()));
     for (size_t j = 0; j < 2; ++j) {
       out[j].x.push_back(t);
       out[j].y.push_back(mu[static_cast<Eigen::Index>(j)]);
