@@ -36,7 +36,7 @@ class Loop final : public Kernel {
   using Node = hamel::Node<P>;
   static_assert(SchemeStep<Step>, "the scheme's Step does not satisfy hamel::SchemeStep");
 
-  explicit Loop(const KernelSetup& setup)
+  [[gnu::cold]] explicit Loop(const KernelSetup& setup)
       : whole_(setup.geometry, setup.mechanics),
         step_(whole_, setup.s),
         problem_(problem_of(whole_)),
@@ -75,7 +75,7 @@ class Loop final : public Kernel {
   }
   const SolverStats& stats() const override { return stats_; }
 
-  void measure(Snapshot& out) const override {
+  [[gnu::cold]] void measure(Snapshot& out) const override {
     out.step = steps_;
     out.time = static_cast<double>(steps_) * h_;
     out.coordinates.resize(static_cast<size_t>(problem_.columns()));
@@ -120,7 +120,7 @@ class Loop final : public Kernel {
 
   // A v of the last substep, v recovered from its two configurations (xi at the start); for holonomic rows the
   // change of phi. Returns |A v - b| over the other rows.
-  double recover_rates(const typename P::Vector& xi, std::vector<double>& rates) const {
+  [[gnu::cold]] double recover_rates(const typename P::Vector& xi, std::vector<double>& rates) const {
     const int k = whole_.rows(), held = whole_.held();
     rates.assign(static_cast<size_t>(k), kNaN);
     if (k == 0) return 0;
@@ -177,7 +177,7 @@ class Loop final : public Kernel {
 
   // Small products of fixed sizes, inlined: half the time of a step.
   SolveReport flat_substep(Stage& stage) {
-    if constexpr (P::left_invariant) return inlined_substep(stage);
+    if constexpr (requires { requires Step::inlined; }) return inlined_substep(stage);
     else return substep(stage);
   }
   HAMEL_FLATTEN SolveReport inlined_substep(Stage& stage) { return substep(stage); }
@@ -218,7 +218,7 @@ class Loop final : public Kernel {
   static constexpr int kSure = HasJacobian<Step> ? 1 : 2;
 
   // Whether x_ is the principal root (top of this file).
-  [[gnu::noinline]] bool is_principal(Stage& stage, double h) {
+  [[gnu::noinline, gnu::cold]] bool is_principal(Stage& stage, double h) {
     if (Scheme::claim(setup_.s, symmetric_, setup_.mechanics->left_invariant()).order == 0) {
       return true;  // no limit, no principal root
     }
@@ -233,7 +233,7 @@ class Loop final : public Kernel {
   }
   // The solution for lambda h from lambda = 0 to 1, with steps that move it by 3 percent at most; NaN where the
   // path ends. It starts where there is one root, which is not always next to the scheme's guess.
-  void follow_path(double size, double h) {
+  [[gnu::noinline, gnu::cold]] void follow_path(double size, double h) {
     constexpr double start = 1e-3;
     step_.begin(*now_, start * h);
     step_.guess(path_x_);
@@ -342,7 +342,7 @@ class Loop final : public Kernel {
     return report;
   }
   // h_ as two steps of half its size, each halved again where it fails.
-  SolveReport halve(int level, int& parts) {
+  [[gnu::noinline, gnu::cold]] SolveReport halve(int level, int& parts) {
     SolveReport total;
     const double half = h_ / 2;
     for (int i = 0; i < 2 && total.ok(); ++i) {
@@ -360,7 +360,7 @@ class Loop final : public Kernel {
     }
     return total;
   }
-  Status failure(const SolveReport& report) const {
+  [[gnu::noinline, gnu::cold]] Status failure(const SolveReport& report) const {
     std::string reason = to_string(report.reason);
     if (setup_.on_failure == OnFailure::halve) reason += ", in halved steps too";
     if (setup_.on_failure == OnFailure::retry) {

@@ -56,7 +56,7 @@ class BalanceStep {
         phi_(problem.held()) {}
 
   int size() const { return 2 * problem_.state_size(); }
-  HAMEL_FLATTEN void begin(const Node& node, double h) {
+  void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
     x_.setConstant(std::numeric_limits<double>::quiet_NaN());  // nothing is evaluated so far
@@ -83,7 +83,7 @@ class BalanceStep {
     place_.from_frame(z.data() + problem_.dim());
   }
 
-  HAMEL_FLATTEN void residual(const Unknown& x, Unknown& f) const {
+  void residual(const Unknown& x, Unknown& f) const {
     evaluate(x);
     // (1) on the base point.
     problem_.dtau_right_transpose(z0_, m0_, r_);
@@ -107,7 +107,7 @@ class BalanceStep {
   }
 
   /// F and its derivative in (y, y1).
-  void linearise(const Unknown& x, Unknown& f, Jacobian& j) const requires(P::left_invariant) {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& x, Unknown& f, Jacobian& j) const requires(P::has_jacobians) {
     using Tau = typename P::Tau;
     using G = typename P::Group;
     using Matrix = typename P::Matrix;
@@ -127,7 +127,7 @@ class BalanceStep {
     j.template bottomRightCorner<m, m>() = problem_.reduce_momentum(push1);
   }
 
-  HAMEL_FLATTEN bool finish(const Unknown& x, Node& next) const {
+  bool finish(const Unknown& x, Node& next) const {
     if ((x_.array() != x.head(half()).array()).any() ||
         (w_.array() != x.tail(half()).array()).any()) {
       evaluate(x);

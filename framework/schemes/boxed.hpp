@@ -64,7 +64,7 @@ class BoxedStep {
   }
 
   /// F and dF/dy.
-  void linearise(const Unknown& y, Unknown& f, Jacobian& j) const requires(P::left_invariant) {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f, Jacobian& j) const requires(P::has_jacobians) {
     residual(y, f);
     j = length() *
         problem_.reduce_both(At<typename P::Tau>(z_).right_transpose_derivative(full_mu_));

@@ -18,6 +18,8 @@ class LeftInvariant : public GroupOperations<Tau> {
  public:
   using Group = Group_;
   static constexpr bool left_invariant = true;
+  /// Steps state their Jacobians in closed form; on larger groups differences spare a minute of compilation.
+  static constexpr bool has_jacobians = Group::dim <= 3;
   static constexpr int n = Group::dim, m = M, k = n - M;
   using typename GroupOperations<Tau>::Element;
   using Vector = Vec<n>;

@@ -82,7 +82,7 @@ class Lift::General {
         phi_(problem.held()) {}
 
   int size() const { return problem_.dim(); }
-  HAMEL_FLATTEN void begin(const Node& node, double h) {
+  void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
     v_.setConstant(kNothing);
@@ -206,6 +206,8 @@ class Lift::Reduced {
     if constexpr (Form::exists()) contracted_ = Form::exists(s);
   }
 
+  /// Small enough to be inlined whole?
+  static constexpr bool inlined = Form::exists();
   static constexpr int size() { return P::m; }
   void begin(const Node& node, double h) {
     from_ = &node;
@@ -227,7 +229,7 @@ class Lift::Reduced {
   }
 
   /// F and dF/dy.
-  void linearise(const Unknown& y, Unknown& f, Jacobian& j) const {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f, Jacobian& j) const requires(P::has_jacobians) {
     residual(y, f);
     const Vec<n> p = momentum(y), step = xi(y);
     if (one_sided_) {

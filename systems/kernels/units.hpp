@@ -27,21 +27,19 @@ void add_balls(Registry& registry);
 void add_disk_and_rattleback(Registry& registry);
 void add_vehicles(Registry& registry);
 
-/// A left-invariant system's problem with every scheme that has a reduced step.
+/// The problem of left-invariant systems on G with m = M.
 template <class G, int M>
 void add_left_invariant_on(Registry& registry) {
-  add_left_invariant_kernels<G, M, Exp<G>, Lift, Balance, Boxed, BoxedLiteral, Unadapted, Rkmk4,
-                             Rk4Projected>(registry);
-  add_left_invariant_kernels<G, M, Cayley<G>, Lift, Balance, Boxed, BoxedLiteral, Unadapted, Rkmk4,
-                             Rk4Projected>(registry);
+  add_left_invariant_kernels<G, M, Exp<G>, Lift, Balance>(registry);
+  add_left_invariant_kernels<G, M, Cayley<G>, Lift, Balance, Rkmk4>(registry);
 }
 
 /// A registered system with its kernels.
 template <class S>
 void add_compiled(Registry& registry) {
   add_system<S>(registry);
-  add_typed_kernels<S, Exp<typename S::Group>, Lift, Balance, Rkmk4, Rk4Projected>(registry);
-  add_typed_kernels<S, Cayley<typename S::Group>, Lift, Balance, Rkmk4, Rk4Projected>(registry);
+  add_typed_kernels<S, Exp<typename S::Group>, Lift, Balance>(registry);
+  add_typed_kernels<S, Cayley<typename S::Group>, Lift, Balance, Rkmk4>(registry);
 }
 
 }  // namespace hamel
