@@ -95,6 +95,7 @@ struct Newton {
     Differences<Unknown> differences;
     bool valid = false;
 
+    Memory() requires(Unknown::RowsAtCompileTime >= 0) : Memory(Unknown(Unknown::Zero())) {}
     /// sample: an x. After this no solve takes memory.
     explicit Memory(const Unknown& sample)
         : f(sample), correction(sample), trial(sample), trial_f(sample) {

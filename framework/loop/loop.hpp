@@ -120,10 +120,19 @@ class Loop final : public Kernel {
 
   // A v of the last substep, v recovered from its two configurations (xi at the start); for holonomic rows the
   // change of phi. Returns |A v - b| over the other rows.
-  [[gnu::cold]] double recover_rates(const typename P::Vector& xi, std::vector<double>& rates) const {
-    const int k = whole_.rows(), held = whole_.held();
+  [[gnu::cold]] double recover_rates(const typename P::Vector& xi,
+                                     std::vector<double>& rates) const {
+    const int k = whole_.rows();
     rates.assign(static_cast<size_t>(k), kNaN);
-    if (k == 0) return 0;
+    if constexpr (Whole::Few::RowsAtCompileTime == 0) {
+      return 0;
+    } else {
+      return k == 0 ? 0.0 : recover_rates_of_rows(xi, rates);
+    }
+  }
+  [[gnu::cold]] double recover_rates_of_rows(const typename P::Vector& xi,
+                                             std::vector<double>& rates) const {
+    const int k = whole_.rows(), held = whole_.held();
     typename P::Vector v = xi;
     typename P::Element base = now_->g;
     double t = now_->t;

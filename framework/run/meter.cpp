@@ -8,7 +8,7 @@ Meter::Meter(const SystemModel& system, const Start& start,
     : system_(system), start_(start), geometry_(std::move(geometry)), lag_(lag) {
   if (mechanics->holonomic_rows() > 0) all_.holonomic_max = 0;
   if (geometry_ != nullptr && mechanics->rows() > 0) {
-    motion_ = std::make_unique<Motion<Erased>>(Erased(geometry_, mechanics));
+    motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, mechanics));
     all_.reaction_work = 0;
     g_.resize(geometry_->size());
     lambda_.resize(mechanics->rows());

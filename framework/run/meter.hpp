@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/mechanics/motion.hpp>
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/measures.hpp>
 #include <hamel/framework/schemes/erased.hpp>
@@ -50,7 +50,7 @@ class Meter {
   // lambda interpolated to the same time, `lag` before the state: round-off where b = 0, the power that a
   // moving constraint feeds in where it is not.
   std::shared_ptr<const Geometry> geometry_;
-  std::unique_ptr<Motion<Erased>> motion_;  // null without rows
+  std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without rows
   double lag_, time_ = 0, power_ = 0, power_time_ = 0;
   Eigen::VectorXd g_, xi_, lambda_;
 };

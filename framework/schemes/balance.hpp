@@ -31,13 +31,13 @@ class BalanceStep {
   BalanceStep(const P& problem, double s)
       : problem_(problem),
         s_(s),
-        mu0_(problem.dim()),
+        mu0_(P::Vector::Zero(problem.dim())),
         place_(problem),
         f0_(problem.element()),
         f1_(f0_),
         base_(f0_),
         g1_(f0_),
-        v_(problem.dim()),
+        v_(P::Vector::Zero(problem.dim())),
         z0_(v_),
         z1_(v_),
         nu_(v_),
@@ -45,7 +45,7 @@ class BalanceStep {
         m1_(v_),
         mu_(v_),
         r_(v_),
-        x_(problem.state_size()),
+        x_(P::State::Zero(problem.state_size())),
         w_(x_),
         f_(x_),
         inertia_(problem.dim(), problem.dim()),
@@ -107,7 +107,8 @@ class BalanceStep {
   }
 
   /// F and its derivative in (y, y1).
-  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& x, Unknown& f, Jacobian& j) const requires(P::has_jacobians) {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& x, Unknown& f, Jacobian& j) const
+      requires(P::has_jacobians) {
     using Tau = typename P::Tau;
     using G = typename P::Group;
     using Matrix = typename P::Matrix;

@@ -24,10 +24,10 @@ class BoxedStep {
 
   BoxedStep(const P& problem, double /*s*/)
       : problem_(problem),
-        full_mu_(problem.dim()),
+        full_mu_(P::Vector::Zero(problem.dim())),
         embedding_(problem.dim(), problem.dim()),
         place_(problem),
-        v_(problem.dim()),
+        v_(P::Vector::Zero(problem.dim())),
         z_(v_),
         r_(v_),
         mu_(v_),
@@ -64,7 +64,8 @@ class BoxedStep {
   }
 
   /// F and dF/dy.
-  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f, Jacobian& j) const requires(P::has_jacobians) {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f, Jacobian& j) const
+      requires(P::has_jacobians) {
     residual(y, f);
     j = length() *
         problem_.reduce_both(At<typename P::Tau>(z_).right_transpose_derivative(full_mu_));

@@ -40,8 +40,8 @@ class EnergyPreserving::Step {
   Step(const P& problem, double /*s*/)
       : problem_(problem),
         place_(problem),
-        mean_(problem.state_size()),
-        w_(problem.dim()),
+        mean_(P::State::Zero(problem.state_size())),
+        w_(P::Vector::Zero(problem.dim())),
         mu_(w_),
         r_(w_),
         a_(problem.rows(), problem.dim()),

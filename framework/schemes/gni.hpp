@@ -45,8 +45,8 @@ class Gni::Step {
         free_(problem.unconstrained(), s),
         place_(problem),
         leaving_(problem),
-        momentum_(problem.dim()),
-        velocity_(problem.dim()) {}
+        momentum_(P::Vector::Zero(problem.dim())),
+        velocity_(P::Vector::Zero(problem.dim())) {}
 
   int size() const { return free_.size(); }
   void begin(const Node& node, double h) {

@@ -61,14 +61,14 @@ class Lift::General {
       : problem_(problem),
         s_(s),
         mirrored_(s == 0.5 && problem.symmetric()),
-        target_(problem.dim()),
+        target_(P::Vector::Zero(problem.dim())),
         place_(problem),
         place_g_(problem.element()),
         f0_(problem.element()),
         f1_(f0_),
         base_(f0_),
         g1_(f0_),
-        v_(problem.dim()),
+        v_(P::Vector::Zero(problem.dim())),
         z_(v_),
         step_(v_),
         p_(v_),
@@ -229,7 +229,8 @@ class Lift::Reduced {
   }
 
   /// F and dF/dy.
-  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f, Jacobian& j) const requires(P::has_jacobians) {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f, Jacobian& j) const
+      requires(P::has_jacobians) {
     residual(y, f);
     const Vec<n> p = momentum(y), step = xi(y);
     if (one_sided_) {

@@ -30,7 +30,7 @@ struct Rk4Projected : RungeKutta4Defaults {
    public:
     Step(const P& problem, double /*s*/)
         : Base(problem, problem.columns()),
-          shift_(problem.dim()),
+          shift_(P::Vector::Zero(problem.dim())),
           moved_(problem.element()),
           q_(problem.columns()) {}
     void start(const Element& g, Coordinates& q) { this->problem_.coordinates(g, q.data()); }

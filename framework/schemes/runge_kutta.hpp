@@ -1,13 +1,14 @@
 // What explicit schemes on the equations of motion share: the classical Runge-Kutta method of order 4.
 //
 // In coordinates q of the element of its own choice, a scheme integrates
-//   q' = rate(q, xi),   x' = a(t, g, x)   (mechanics/motion.hpp),   g = element(q),
+//   q' = rate(q, xi),   x' = a(t, g, x)   (mechanics/equations_of_motion.hpp),   g = element(q),
 // with the stages at 0, 1/2, 1/2, 1 and the weights 1/6, 1/3, 1/3, 1/6. Then g goes to the group and xi onto
 // A xi = b, orthogonally in the metric I: that is all that is kept.
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.
 #pragma once
 
-#include <hamel/framework/mechanics/motion.hpp>
+#include <hamel/framework/lie/types.hpp>
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
@@ -76,10 +77,10 @@ class RungeKutta4 {
         q_(q0_),
         q_rate_(q0_),
         q_sum_(q0_),
-        x_(problem.state_size()),
+        x_(P::State::Zero(problem.state_size())),
         x_rate_(x_),
         x_sum_(x_),
-        xi_(problem.dim()) {}
+        xi_(P::Vector::Zero(problem.dim())) {}
 
   P problem_;
 
@@ -87,7 +88,7 @@ class RungeKutta4 {
   Derived& self() { return static_cast<Derived&>(*this); }
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 
-  mutable Motion<P> motion_;
+  mutable EquationsOfMotion<P> motion_;
   mutable typename P::Place place_;
   const Node* from_ = nullptr;
   double h_ = 0;

@@ -97,11 +97,11 @@ struct WrongSign : Lift {
     }
     bool finish(const typename Base::Unknown& y, Node<P>& next) const {
       if (!Base::finish(y, next)) return false;
-      using G = typename P::Group;
+      using Group = typename P::Group;
       typename P::Vector mu;
       problem_.momentum({}, from_->x, mu);
-      const auto increment = G::compose(G::inverse(from_->g), next.g);
-      next.x = problem_.reduce(G::Ad_transpose(G::inverse(increment), mu));
+      const auto increment = Group::compose(Group::inverse(from_->g), next.g);
+      next.x = problem_.reduce(Group::Ad_transpose(Group::inverse(increment), mu));
       return true;
     }
 

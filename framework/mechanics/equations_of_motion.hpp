@@ -15,14 +15,14 @@
 namespace hamel {
 
 template <class Problem>
-class Motion {
+class EquationsOfMotion {
  public:
   using Element = typename Problem::Element;
   using Vector = typename Problem::Vector;
   using State = typename Problem::State;
   using Few = typename Problem::Few;
 
-  explicit Motion(const Problem& problem)
+  explicit EquationsOfMotion(const Problem& problem)
       : problem_(problem),
         acceleration_(problem.dim()),
         momentum_(problem.dim()),
