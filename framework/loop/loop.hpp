@@ -44,6 +44,7 @@ class Loop final : public Kernel {
         h_(setup.step),
         symmetric_(whole_.symmetric()),
         nodes_{Node(problem_), Node(problem_), Node(problem_)},
+        start_of_step_(save()),
         x_(Unknown::Zero(step_.size())),
         guess_(x_),
         path_x_(x_),
@@ -168,7 +169,9 @@ class Loop final : public Kernel {
     return composed_step();
   }
   SolveReport composed_step() {
-    const State start = save();
+    start_of_step_.now = *now_;  // takes no memory
+    start_of_step_.previous = *previous_;
+    start_of_step_.last_h = last_h_;
     SolveReport total;
     for (Stage& stage : stages_) {
       const SolveReport report = flat_substep(stage);
@@ -177,7 +180,7 @@ class Loop final : public Kernel {
       total.residual = std::max(total.residual, report.residual);
       total.reason = report.reason;
       if (!total.ok()) {
-        restore(start);
+        restore(start_of_step_);
         break;
       }
     }
@@ -387,6 +390,7 @@ class Loop final : public Kernel {
   int products_ = 0;
   Node nodes_[3];
   Node *now_ = &nodes_[0], *previous_ = &nodes_[1], *next_ = &nodes_[2];
+  State start_of_step_;
   Unknown x_, guess_, path_x_;
   Memory path_memory_;
   std::vector<Stage> stages_;

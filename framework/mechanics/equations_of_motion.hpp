@@ -52,11 +52,11 @@ class EquationsOfMotion {
   /// xi' and lambda (k entries, N or N m as the rows have it). With W^T W = I^-1 (W lower triangular),
   /// Y = W A^T and c = W change:  Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
   void solve(double t, const Element& g, const Vector& xi) {
+    find_rates(t, g, xi);  // uses inertia_ and the rows as work space
     if (!known_ || !problem_.constant_inertia()) {
       problem_.inertia(g, inertia_);
       find_root();
     }
-    find_rates(t, g, xi);
     momentum_ = inertia_.lazyProduct(xi);
     problem_.force(t, g, xi, change_);
     if (!problem_.constant_inertia()) change_ -= inertia_rate_.lazyProduct(xi);

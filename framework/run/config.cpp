@@ -198,6 +198,8 @@ std::vector<std::string> Config::mistakes() const {
   if (std::isfinite(until) && std::isfinite(step) && step != 0) {
     if (until / step < 0) refuse("until", until, "the sign of step");
     else if (until / step > 9e15) refuse("until", until, "fewer than 9e15 steps");
+    else if (until != 0 && steps() == 0)
+      refuse("step", step, fmt::format("at most until, {}: no whole step fits", until).c_str());
   }
   return out;
 }

@@ -47,7 +47,7 @@ struct Result : Measurements {
   double seconds = 0;  // of the time loop, recording included
 
   explicit operator bool() const { return status.ok; }
-  /// The record of contract.md as JSON; indent < 0 for one line.
+  /// The record of tools/README.md as JSON; indent < 0 for one line.
   std::string record(int indent = 2) const;
   /// One screen of text: status, iterations, drifts, error against the exact solution.
   std::string report() const;

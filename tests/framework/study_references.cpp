@@ -46,6 +46,33 @@ TEST(StudyReferences, SayWhyThereIsNone) {
   EXPECT_TRUE(std::isnan(reference.bound));
 }
 
+// A heavy asymmetric top: chaotic, and no step that a reference may have follows it for 200 s.
+struct HeavyTop {
+  using Group = SO3;
+  static std::string name() { return "heavy_top"; }
+  Mat<3, 3> inertia() const { return Vec<3>(1, 2, 2.6).asDiagonal(); }
+  auto potential(const auto& g) const {
+    return 6.0 * g(2, 0) + 3.0 * g(2, 1) + 4.0 * g(2, 2);
+  }
+  Start start() const {
+    return {.configuration = {}, .velocity = {0.5, 1, 0.7}, .momentum = {}};
+  }
+};
+
+/// Two runs that differ by the size of the motion are no reference: no number is derived from them.
+TEST(StudyReferences, ThatDoNotConvergeSaySo) {
+  Registry all = registry();
+  add_system<HeavyTop>(all);
+  StudyConfig config;
+  config.systems = {{"top", "heavy_top"}};
+  config.until = 200;
+  config.axes["step"] = {0.02, 0.01};
+  const StudyReference reference = reference_of(all, config);
+  EXPECT_THAT(reference.kind, AllOf(HasSubstr("not converged: lift"), HasSubstr("differs by")));
+  EXPECT_TRUE(std::isnan(reference.bound));
+  EXPECT_TRUE(reference.coordinates.empty());
+}
+
 /// They are computed by Newton, independently of on_failure of the cells.
 TEST(StudyReferences, DoNotDependOnTheCells) {
   StudyConfig config = forgetful();

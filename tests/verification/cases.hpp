@@ -1,6 +1,7 @@
 // The motions on which the verification tests measure: full inertia, a tilted axis, sleigh, disk.
 #pragma once
 
+#include <algorithm>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -40,6 +41,11 @@ inline const std::vector<Motion>& motions() {
        {.system = "rolling_disk", .start = {.velocity = {0.7, 1, 0, 2}}, .step = 0.05, .until = 2}},
   };
   return all;
+}
+
+inline bool has_motion(const std::string& system) {
+  return std::any_of(motions().begin(), motions().end(),
+                     [&](const Motion& m) { return m.base.system == system; });
 }
 
 /// Each s that a scheme is run with: four where it uses s, else one.

@@ -49,17 +49,6 @@ INSTANTIATE_TEST_SUITE_P(Motions, SchemeLaws, testing::ValuesIn(motions()), [](c
   return "Motion" + std::to_string(motion.index);
 });
 
-/// Every registered system appears above.
-TEST(Motions, CoverTheRegistry) {
-  for (const std::string& system : registry().systems()) {
-    const SystemModel model = registry().system(system)->make({});
-    if (!model.mechanics->left_invariant() || !model.exact) continue;  // general_orders.cpp
-    EXPECT_TRUE(std::any_of(motions().begin(), motions().end(),
-                            [&](const Motion& m) { return m.base.system == system; }))
-        << system << " has no motion in tests/verification/cases.hpp";
-  }
-}
-
 /// The laws must be able to fail: a wrong claim is seen.
 TEST(SchemeLaws, SeeAWrongClaim) {
   const SchemeCase c = motions()[0].base;

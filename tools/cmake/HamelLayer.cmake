@@ -7,8 +7,8 @@
 #     LINK_PRIVATE fmt::fmt          # used by the sources only
 #     LINK_HEADERS_PRIVATE x::x      # header-only and used by the sources only: users never need it
 #     HEADERS so3.hpp ...            # public: installed, and each compiled alone
-#     SOURCES so3.cpp ...            # neither SOURCES nor KERNELS: a header-only layer
-#     KERNELS kernels/so3.cpp ...)   # sources with the time loops, compiled with -O3
+#     SOURCES ...                    # neither SOURCES nor KERNELS: a header-only layer
+#     KERNELS ...)                   # sources with the time loops, compiled with -O3
 #
 # build/include/groups/hamel/groups links to the folder, so that groups/so3.hpp is
 # <hamel/groups/so3.hpp>, and a layer that does not link this one cannot include it.

@@ -138,7 +138,7 @@ class Judge {
     for (size_t i = 0; i < view_.result().references.size(); ++i) {
       const StudyReference& reference = view_.result().references[i];
       const std::string& label = view_.result().config.systems[i].label;
-      if (reference.kind.starts_with("none"))
+      if (reference.kind.starts_with("none") || reference.kind.starts_with("not converged"))
         say("failed", fmt::format("{} has nothing to compare with: {}.", label, reference.kind));
       else if (reference.kind.starts_with("converged"))
         say("note", fmt::format("{}: errors are distances from a {} whose own error is at most "
