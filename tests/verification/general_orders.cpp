@@ -40,7 +40,7 @@ std::vector<std::string> general_systems() {
   std::vector<std::string> out;
   for (const std::string& name : registry().systems()) {
     const SystemModel model = registry().system(name)->make({});
-    const bool there = model.mechanics->left_invariant() && model.exact && has_motion(name);
+    const bool there = model.mechanics->left_invariant() && model.exact && verification::has_motion(name);
     if (!there) out.push_back(name);  // else scheme_laws.cpp holds it to more
   }
   return out;
