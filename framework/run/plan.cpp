@@ -148,8 +148,9 @@ Simulation::Plan Simulation::plan() const {
   plan.project();
   if (const double end = static_cast<double>(config_.steps()) * config_.step;
       std::abs(end - config_.until) > 1e-9 * std::abs(config_.until)) {
-    plan.notes.push_back(fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}",
-                                     end, config_.step, config_.until));
+    plan.notes.push_back(
+        fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}", end,
+                    config_.step, config_.until));
   }
   plan.setup.s = plan.config.s;
   plan.setup.step = config_.step;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr long kMaxIntervals = 400;
 constexpr long kMaxReferenceSteps = 400'000;
-constexpr double kRoundOff = 1e-8;  // two runs that differ more are not at round-off yet
+constexpr double kRoundOff = 1e-8;   // two runs that differ more are not at round-off yet
 constexpr double kConverged = 1e-3;  // of the motion's extent
 constexpr const char* kTable = "kahan_li6";
 constexpr long kStages = 9;
@@ -181,7 +181,8 @@ StudyReference reference(const Registry& registry, const StudyConfig& config,
     raise(out.extent, euclidean_distance(there, out.coordinates.front()));
   // A pair of runs that differ by more than that does not converge, and nothing is derived from it.
   if (out.bound > kConverged * out.extent) {
-    out.kind = fmt::format("not {}, which differs by {:.1e} from half as many", out.kind, out.bound);
+    out.kind =
+        fmt::format("not {}, which differs by {:.1e} from half as many", out.kind, out.bound);
     out.bound = kNotMeasured;
     out.coordinates.clear();
     out.velocities.clear();

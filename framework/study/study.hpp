@@ -133,7 +133,8 @@ struct StudyMetrics {
 
 /// What the cells of one system are compared with.
 struct StudyReference {
-  std::string kind;   // "exact", "converged: ..." by what, "not converged: ...", or "none: ..." and why
+  std::string
+      kind;  // "exact", "converged: ..." by what, "not converged: ...", or "none: ..." and why
   double bound = 0;   // of the reference's own error; 0 for an exact motion
   double extent = 0;  // how far the motion gets from its start
   std::vector<double> times;

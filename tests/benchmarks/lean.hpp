@@ -28,8 +28,7 @@ struct LeanSuslov {
   double mu1, mu2;
   Cubic guess;
 
-  LeanSuslov(double a, double b)
-      : mu1(i11 * a + i12 * b), mu2(i12 * a + i22 * b), guess(a, b) {}
+  LeanSuslov(double a, double b) : mu1(i11 * a + i12 * b), mu2(i12 * a + i22 * b), guess(a, b) {}
 
   bool step_cayley() {
     double a = guess.next_a(), b = guess.next_b(), x, y, p1, p2, p3, d;

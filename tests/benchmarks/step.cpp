@@ -71,9 +71,8 @@ int main(int argc, char** argv) {
   using benchmarks::HandSuslov;
   add_hand("suslov/cayley/hand_written",
            [](benchmark::State& s) { hand(s, &HandSuslov::step_cayley, 1, 0.5); });
-  add_hand("suslov/cayley/lean", [](benchmark::State& s) {
-    hand(s, &benchmarks::LeanSuslov::step_cayley, 1, 0.5);
-  });
+  add_hand("suslov/cayley/lean",
+           [](benchmark::State& s) { hand(s, &benchmarks::LeanSuslov::step_cayley, 1, 0.5); });
   add("suslov/cayley/typed", simulate<Lift, Cayley>(body()).start(kSuslovStart).s(0));
   add("suslov/cayley/named",
       simulate("suslov").set("inertia", kFullInertia).start(kSuslovStart).s(0));

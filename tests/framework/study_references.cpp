@@ -51,12 +51,8 @@ struct HeavyTop {
   using Group = SO3;
   static std::string name() { return "heavy_top"; }
   Mat<3, 3> inertia() const { return Vec<3>(1, 2, 2.6).asDiagonal(); }
-  auto potential(const auto& g) const {
-    return 6.0 * g(2, 0) + 3.0 * g(2, 1) + 4.0 * g(2, 2);
-  }
-  Start start() const {
-    return {.configuration = {}, .velocity = {0.5, 1, 0.7}, .momentum = {}};
-  }
+  auto potential(const auto& g) const { return 6.0 * g(2, 0) + 3.0 * g(2, 1) + 4.0 * g(2, 2); }
+  Start start() const { return {.configuration = {}, .velocity = {0.5, 1, 0.7}, .momentum = {}}; }
 };
 
 /// Two runs that differ by the size of the motion are no reference: no number is derived from them.

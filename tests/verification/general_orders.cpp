@@ -40,7 +40,8 @@ std::vector<std::string> general_systems() {
   std::vector<std::string> out;
   for (const std::string& name : registry().systems()) {
     const SystemModel model = registry().system(name)->make({});
-    const bool there = model.mechanics->left_invariant() && model.exact && verification::has_motion(name);
+    const bool there =
+        model.mechanics->left_invariant() && model.exact && verification::has_motion(name);
     if (!there) out.push_back(name);  // else scheme_laws.cpp holds it to more
   }
   return out;
@@ -66,6 +67,7 @@ TEST_P(GeneralOrders, AreAsClaimed) {
       for (const double s :
            info.uses_s ? std::vector<double>{0, 0.5, 1} : std::vector<double>{0.25}) {
         const ClaimedOrder claim = info.claim(s, true, left_invariant);  // exp, cayley: symmetric
+        if (claim.order == 0) continue;                                  // approximates nothing
         // First-order errors show their order late.
         const long coarse = claim.order == 1 ? 800 : claim.order == 2 ? 160 : 24;
         const Result a = run_of(system, scheme, s, retraction, coarse).run();
