@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace hamel {
 
@@ -22,13 +23,13 @@ class Extrapolation {
   /// The value at the next step; count() > 0.
   void operator()(Unknown& out) const {
     out = differences_[0];
-    for (int j = 1; j < count_; ++j) out += differences_[static_cast<size_t>(j)];
+    for (int j = 1; j < count_; ++j) out += differences_[static_cast<std::size_t>(j)];
   }
   void push(const Unknown& latest) {
     if (count_ < most) ++count_;
     work_ = latest;
     for (int j = 0; j < count_; ++j) {
-      Unknown& difference = differences_[static_cast<size_t>(j)];
+      Unknown& difference = differences_[static_cast<std::size_t>(j)];
       next_ = work_ - difference;
       difference = work_;
       work_ = next_;

@@ -206,7 +206,7 @@ class Loop final : public Kernel {
       if (!report.ok()) [[unlikely]]
         return report;
       if (!(stage.trusted && setup_.solver == nullptr && report.iterations <= kSure)) [[unlikely]] {
-        if (!is_principal(stage, h)) report.reason = Reason::outside_domain;
+        if (!is_principal(stage, h)) report.reason = Reason::not_principal;
       }
     }
     if (report.ok() && !step_.finish(x_, *next_)) report.reason = Reason::outside_domain;
@@ -240,22 +240,31 @@ class Loop final : public Kernel {
       if ((x_ - guess_).squaredNorm() <= 1e-4 * size) return true;
     }
     follow_path(size + small, h);
-    stage.trusted = (x_ - path_x_).squaredNorm() <= 1e-10 * size + small;
+    stage.trusted = (x_ - path_x_).squaredNorm() <= 1e-10 * size + small || are_one_root();
     return stage.trusted;
+  }
+  // Where the equation is ill-conditioned (masses of 1 and 1e6, the row of a height at h = 1e-6) one root has many
+  // solutions to within round-off: between two of them F stays small, between two roots it does not.
+  bool are_one_root() {
+    guess_ = 0.5 * (x_ + path_x_);
+    Unknown& f = path_memory_.f;
+    step_.residual(guess_, f);
+    return f.squaredNorm() <= 1e-16 * step_.scale_squared();
   }
   // The solution for lambda h from lambda = 0 to 1, with steps that move it by 3 percent at most; NaN where the
   // path ends. It starts where there is one root, which is not always next to the scheme's guess.
   [[gnu::noinline, gnu::cold]] void follow_path(double size, double h) {
     constexpr double start = 1e-3;
+    const double tolerance = std::min(1e-9, setup_.tolerance);
     step_.begin(*now_, start * h);
     step_.guess(path_x_);
     path_memory_.valid = false;
-    if (!Newton::solve(step_, path_x_, 1e-9, path_memory_).ok()) path_x_.setConstant(kNaN);
+    if (!Newton::solve(step_, path_x_, tolerance, path_memory_).ok()) path_x_.setConstant(kNaN);
     for (double at = start, length = 0.1; at < 1 && path_x_.allFinite();) {
       const double next = std::min(at + length, 1.0);
       step_.begin(*now_, next * h);
       guess_ = path_x_;
-      const SolveReport report = Newton::solve(step_, guess_, 1e-9, path_memory_);
+      const SolveReport report = Newton::solve(step_, guess_, tolerance, path_memory_);
       if (report.ok() && (guess_ - path_x_).squaredNorm() <= 1e-3 * size) {
         path_x_ = guess_;
         at = next;

@@ -14,6 +14,7 @@ enum class Reason {
   singular,        // the Jacobian could not be solved with
   not_finite,      // NaN or infinity in the equation
   outside_domain,  // the solution lies where the retraction is no diffeomorphism
+  not_principal,   // the solution is a root that the path from h = 0 does not lead to
   stopped,         // the user's observer asked to stop
 };
 
@@ -27,6 +28,8 @@ constexpr const char* to_string(Reason reason) {
     case Reason::singular: return "the Jacobian is singular";
     case Reason::not_finite: return "the equation gave a value that is not finite";
     case Reason::outside_domain: return "the step left the domain of the retraction";
+    case Reason::not_principal:
+      return "the solution is not the principal root of the step: take a smaller one";
     case Reason::stopped: return "stopped by the observer";
   }
   return "";
