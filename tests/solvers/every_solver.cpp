@@ -26,12 +26,16 @@ std::vector<std::string> foreign() {
 bool minimises(const std::string& name) {
   return name.starts_with("nlopt:") && name != "nlopt:slsqp";
 }
-// Left-invariant systems run whole, others a few steps.
-bool compiled(const std::string& system) {
+// Left-invariant systems on a registered group run whole, others a few steps.
+bool left_invariant(const std::string& system) {
   return registry().system(system)->make({}).mechanics->left_invariant();
 }
+bool compiled(const std::string& system) {  // on a registered group: at most six unknowns
+  return left_invariant(system) &&
+         registry().group(registry().system(system)->group.name) != nullptr;
+}
 bool defined(const std::string& scheme, const std::string& system) {
-  return registry().scheme(scheme)->defined(compiled(system));
+  return registry().scheme(scheme)->defined(left_invariant(system));
 }
 
 TEST(EverySolver, IsDescribed) {
