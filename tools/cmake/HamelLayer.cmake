@@ -51,7 +51,7 @@ endfunction()
 function(hamel_umbrella header)
   list(TRANSFORM HAMEL_ROOMS PREPEND hamel:: OUTPUT_VARIABLE rooms)
   set(root ${PROJECT_BINARY_DIR}/include/umbrella)
-  file(CONFIGURE OUTPUT ${root}/hamel/hamel.hpp CONTENT "// Everything.\n#include <hamel/${header}>\n")
+  configure_file(${PROJECT_SOURCE_DIR}/${header} ${root}/hamel/hamel.hpp COPYONLY)  # no link: it is installed
   add_library(hamel_umbrella INTERFACE)
   add_library(hamel::hamel ALIAS hamel_umbrella)
   target_sources(hamel_umbrella INTERFACE
