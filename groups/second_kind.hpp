@@ -24,7 +24,7 @@
 #include <numbers>
 #include <string>
 
-#include <Eigen/LU>
+#include <hamel/framework/lie/linear_solve.hpp>
 
 #include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/groups/exp.hpp>
@@ -59,14 +59,14 @@ struct StagedRetraction : RetractionDefaults<Derived, G> {
   template <class T>
   static MatT<T, N, N> dtau_right_inverse(const VecT<T, N>& xi) {
     const MatT<T, N, N> forward = sum(directions(xi));
-    return forward.inverse();
+    return inverse_of(forward);
   }
   template <class T>
   static MatT<T, N, N> dtau_right_inverse_transpose_derivative(const VecT<T, N>& xi,
                                                                const VecT<T, N>& p) {
     const auto a = directions(xi);
     const MatT<T, N, N> forward = sum(a);
-    const MatT<T, N, N> back = forward.inverse().transpose();
+    const MatT<T, N, N> back = inverse_of(forward).transpose();
     const MatT<T, N, N> bracket = G::coad(VecT<T, N>(back * p));  // [b, a].y = (K(y) b).a
     MatT<T, N, N> s = MatT<T, N, N>::Zero();
     for (int k = 0; k < stages; ++k) {

@@ -19,15 +19,10 @@
 #include <string>
 #include <type_traits>
 
-#include <Eigen/LU>
-
-#include <hamel/framework/loop/status.hpp>
-#include <hamel/framework/schemes/scheme.hpp>
+#include <hamel/framework/lie/linear_solve.hpp>
+#include <hamel/framework/loop/step_equation.hpp>
 
 namespace hamel {
-
-/// inverse = matrix^-1, column-major n x n; matrix is overwritten. NaN where it is singular.
-void invert(double* matrix, double* inverse, int n);
 
 /// J^-1: in closed form up to 4 x 4, as a matrix up to 16 x 16 (it only steers, and is used many times), by LU
 /// beyond.
@@ -43,10 +38,10 @@ class Inverse {
       return;
     } else if constexpr (closed_form) {
       inverse_ = jacobian.inverse();
-    } else if (jacobian.rows() <= 16) {  // in loops of our own: Eigen's would take memory
-      inverse_.resize(jacobian.rows(), jacobian.cols());
+    } else if (const int n = static_cast<int>(jacobian.rows()); n <= 16) {
+      inverse_.setIdentity(n, n);
       work_ = jacobian;
-      invert(work_.data(), inverse_.data(), static_cast<int>(jacobian.rows()));
+      solve_linear(work_.data(), inverse_.data(), n, n);
     } else if constexpr (may_be_large) {
       lu_.compute(jacobian);
     }
@@ -86,11 +81,11 @@ struct Newton {
   static std::string source() { return "Kelley 2003"; }
 
   /// The factors of the last Jacobian, kept from one step of a run to the next, and the work space of a solve.
-  template <class Step>
+  template <class Unknown>
   struct Memory {
-    using Unknown = typename Step::Unknown;
-    typename Step::Jacobian jacobian;
-    Inverse<typename Step::Jacobian> factors;
+    using Jacobian = typename StepEquation<Unknown>::Jacobian;
+    Jacobian jacobian;
+    Inverse<Jacobian> factors;
     Unknown f, correction, trial, trial_f;
     Differences<Unknown> differences;
     bool valid = false;
@@ -105,17 +100,19 @@ struct Newton {
     }
   };
 
-  /// step: scale_squared(), residual(x, f), linearise (schemes/scheme.hpp). x: guess in, best point out.
+  /// step: schemes/scheme.hpp. x: guess in, best point out.
   template <class Step>
   [[gnu::always_inline]] static inline SolveReport solve(const Step& step,
                                                          typename Step::Unknown& x,
-                                                         double tolerance, Memory<Step>& memory) {
+                                                         double tolerance,
+                                                         Memory<typename Step::Unknown>& memory) {
     const double given = step.scale_squared(), scale = given > 0 ? given : 1.0;
     SolveReport tried;
     if (memory.valid) [[likely]] {  // one correction with the last Jacobian: nearly every step
       step.residual(x, memory.f);
-      [[maybe_unused]] const double before = exact<Step> ? 0 : memory.f.squaredNorm();
-      correct(step, memory, memory.f, memory.correction);
+      [[maybe_unused]] const double before = HasJacobian<Step> ? 0 : memory.f.squaredNorm();
+      memory.factors.solve(memory.f, memory.correction);
+      if constexpr (HasFrame<Step>) step.from_frame(memory.correction);
       memory.trial = x - memory.correction;
       step.residual(memory.trial, memory.f);
       const double size = memory.f.squaredNorm(), target = aim(tolerance);
@@ -124,33 +121,28 @@ struct Newton {
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
       }
       tried.evaluations = 2;
-      memory.valid = !exact<Step> && worth_keeping<Step>(before, size, scale);
+      memory.valid = !HasJacobian<Step> && worth_keeping(false, before, size, scale);
       if (memory.valid) {
         x = memory.trial;
         tried.iterations = 1;
       }
     }
-    return iterate(step, x, tolerance, scale, memory, tried);
+    return iterate(ErasedStep<Step>(step), x, tolerance, scale, memory, tried);
+  }
+  /// The same with every call virtual.
+  template <class Unknown>
+  static SolveReport solve(const StepEquation<Unknown>& step, Unknown& x, double tolerance,
+                           Memory<Unknown>& memory) {
+    const double given = step.scale_squared();
+    if (memory.valid) step.residual(x, memory.f);
+    return iterate(step, x, tolerance, given > 0 ? given : 1.0, memory, {});
   }
 
  private:
-  // A Jacobian in closed form costs little more than a residual; one made of differences is kept longer.
-  template <class Step>
-  static constexpr bool exact = HasJacobian<Step>;
-
   // What is aimed at: two digits below the tolerance, at most to the round-off of a residual. A kept
   // Jacobian leaves an error of one sign, which must not add up over the steps.
   static constexpr double aim(double tolerance) {
     return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
-  }
-
-  // J^-1 F.
-  template <class Step>
-  [[gnu::always_inline]] static inline void correct(const Step& step, const Memory<Step>& memory,
-                                                    const typename Step::Unknown& f,
-                                                    typename Step::Unknown& out) {
-    memory.factors.solve(f, out);
-    if constexpr (HasFrame<Step>) step.from_frame(out);
   }
 
   static constexpr double kRoundOff =  // of |F|^2, relative
@@ -158,16 +150,18 @@ struct Newton {
 
   // Is a J that has taken |F|^2 from before to after good enough for the next correction? It should cut |F|
   // by ten; where it is made of differences and costs 2 n + 1 residuals by two, or reach the round-off.
-  template <class Step>
-  static bool worth_keeping(double before, double after, double scale) {
-    if (exact<Step>) return after <= 0.01 * before;
+  static bool worth_keeping(bool exact, double before, double after, double scale) {
+    if (exact) return after <= 0.01 * before;
     return after <= 0.25 * before || after <= kRoundOff * scale;
   }
 
-  template <class Step>
-  [[gnu::noinline]] static SolveReport iterate(const Step& step, typename Step::Unknown& x,
-                                               double tolerance, double scale, Memory<Step>& memory,
-                                               SolveReport report) {
+  // memory.valid: memory.f is F(x), to be corrected with the Jacobian kept.
+  template <class Unknown>
+  [[gnu::noinline]] static SolveReport iterate(const StepEquation<Unknown>& step, Unknown& x,
+                                               double tolerance, double scale,
+                                               Memory<Unknown>& memory, SolveReport report) {
+    // A Jacobian in closed form costs little more than a residual, one of differences 2 n + 1: it is kept longer.
+    const bool exact = step.exact();
     const double accepted = tolerance * tolerance * scale, round_off = kRoundOff * scale;
     const double target = std::min(aim(tolerance), tolerance), aimed = target * target * scale;
 
@@ -175,8 +169,7 @@ struct Newton {
     double size = valid ? f.squaredNorm() : 0;  // |F|^2; with a Jacobian that is kept, f is F(x)
     bool fresh = false;
     const auto finish = [&](Reason reason) {
-      // Made of differences a Jacobian costs 2 n + 1 residuals, a correction one: it is kept longer.
-      const auto most = exact<Step> ? 1 : 2 + static_cast<int>(2 * x.size()) / 5;
+      const auto most = exact ? 1 : 2 + static_cast<int>(2 * x.size()) / 5;
       memory.valid = memory.valid && report.iterations <= most;
       report.reason = reason;
       report.residual = std::sqrt(size / scale);
@@ -184,7 +177,7 @@ struct Newton {
     };
     while (report.iterations < max_iterations) {
       if (!memory.valid) {
-        report.evaluations += linearise(step, x, f, jacobian, differences, /*in_frame=*/true);
+        report.evaluations += step.linearise(x, f, jacobian, differences, /*in_frame=*/true);
         factors.compute(jacobian);
         valid = true;
         fresh = true;
@@ -192,7 +185,8 @@ struct Newton {
       }
       if (!std::isfinite(size)) return finish(Reason::not_finite);
       ++report.iterations;
-      correct(step, memory, f, correction);
+      factors.solve(f, correction);
+      step.from_frame(correction);
       double length = 1, trial_size = 0;
       do {
         trial = x - length * correction;
@@ -208,7 +202,7 @@ struct Newton {
         memory.valid = false;
         continue;
       }
-      memory.valid = worth_keeping<Step>(size, trial_size, scale);
+      memory.valid = worth_keeping(exact, size, trial_size, scale);
       fresh = false;
       x = trial;
       f = trial_f;

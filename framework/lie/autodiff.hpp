@@ -18,7 +18,7 @@
 #include <vector>
 
 #include <ceres/jet.h>
-#include <Eigen/LU>
+#include <hamel/framework/lie/linear_solve.hpp>
 
 #include <hamel/framework/lie/concepts.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
@@ -42,8 +42,8 @@ struct AutoRetraction : RetractionDefaults<Derived, G> {
     const auto fixed = Derived::tau(constant(xi));
     return in_algebra(G::coordinates(G::compose(G::inverse(fixed), Derived::tau(seed(xi)))));
   }
-  static Mat<dim, dim> dtau_right_inverse(const Vec<dim>& xi) { return dtau_right(xi).inverse(); }
-  static Mat<dim, dim> dtau_left_inverse(const Vec<dim>& xi) { return dtau_left(xi).inverse(); }
+  static Mat<dim, dim> dtau_right_inverse(const Vec<dim>& xi) { return inverse_of(dtau_right(xi)); }
+  static Mat<dim, dim> dtau_left_inverse(const Vec<dim>& xi) { return inverse_of(dtau_left(xi)); }
   /// d/dxi[dR^-T p]: central differences of order 6 of the exact dR^-1, step 1e-3, error about 1e-12.
   static Mat<dim, dim> dtau_right_inverse_transpose_derivative(const Vec<dim>& xi,
                                                                const Vec<dim>& p) {

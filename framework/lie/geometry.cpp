@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <Eigen/LU>
+#include <hamel/framework/lie/linear_solve.hpp>
 
 namespace hamel {
 namespace {
@@ -161,7 +161,8 @@ bool recover_step(const Geometry& geometry, const double* delta, double s, Eigen
     if (!(norm < last)) break;
     last = norm;
     geometry.Ad(f1.data(), rest.data(), z.data());
-    xi += c.partialPivLu().solve(z);
+    solve_linear(c.data(), z.data(), static_cast<int>(n), 1);
+    xi += z;
   }
   return true;
 }

@@ -9,9 +9,8 @@
 
 #include <limits>
 
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
-
-#include <Eigen/LU>
 
 namespace hamel {
 
@@ -33,7 +32,7 @@ Vec<Tau::Group::dim> recover_step(const typename Tau::Group::template Element<do
       if (!(size < last)) break;
       const Mat<n, n> c = s * z0.right + (1 - s) * z1.right;
       const Vec<n> carried = G::Ad(z1.f) * rest;
-      const Vec<n> correction = c.inverse() * carried;
+      const Vec<n> correction = inverse_of(c) * carried;
       xi += correction;
       last = size;
     }

@@ -6,8 +6,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <cmath>
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/lie/types.hpp>
 #include <string>
 #include <type_traits>
@@ -73,7 +73,7 @@ struct RetractionDefaults {
   template <class T>
   static MatT<T, dim, dim> dtau_right(const VecT<T, dim>& xi) {
     const MatT<T, dim, dim> inverse = Derived::dtau_right_inverse(xi);
-    return inverse.inverse();
+    return inverse_of(inverse);
   }
   /// dL_xi = dR_{-xi} (symmetric) or Ad_{tau(xi)^-1} dR_xi.
   template <class T>

@@ -9,9 +9,8 @@
 // where (d) is (a) and (c) applied to dL^T mu = R^T Ad_{f^-1}^T mu.
 #pragma once
 
-#include <Eigen/LU>
-
 #include <hamel/framework/lie/concepts.hpp>
+#include <hamel/framework/lie/linear_solve.hpp>
 
 namespace hamel {
 
@@ -32,10 +31,13 @@ Vec<Tau::Group::dim> base_momentum(double s, const Vec<Tau::Group::dim>& xi,
   if constexpr (requires { Tau::solve_even_transposed(xi, s, m); }) {
     m = Tau::solve_even_transposed(xi, s * (1 - s), m);
   } else {
-    const Mat<n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
+    Mat<n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
     if constexpr (requires { G::solve_transposed(mix, m); }) m = G::solve_transposed(mix, m);
     else if constexpr (n <= 4) m = (mix.transpose().inverse() * m).eval();
-    else m = mix.transpose().partialPivLu().solve(m).eval();
+    else {
+      mix.transposeInPlace();
+      solve_linear(mix.data(), m.data(), n, 1);
+    }
   }
   return Tau::dtau_right_inverse_transpose(z0, m);
 }

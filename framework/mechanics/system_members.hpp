@@ -147,16 +147,24 @@ auto force_of(const S& system, [[maybe_unused]] double t, const ElementOf<S>& g,
   else return system.force(g, xi);
 }
 
+template <class S>
+concept HasConstantRows = requires(const S& s) {
+  s.constraints();
+};
+
 /// Constant inertia and rows, and nothing else: the small fast path.
 template <class S>
 constexpr bool is_left_invariant() {
   constexpr bool constant = requires(const S& s) { s.inertia(); };
-  constexpr bool constant_rows = constraint_count<S>() == 0 || requires(const S& s) {
-    s.constraints();
-  };
+  constexpr bool constant_rows = constraint_count<S>() == 0 || HasConstantRows<S>;
   return constant && constant_rows && holonomic_count<S>() == 0 && !has_potential<S>() &&
          !has_drift<S>() && !has_force<S>();
 }
+
+template <class S>
+concept RowsFit =
+    !HasConstantRows<S> ||
+    Shape<decltype(std::declval<const S&>().constraints()), constraint_count<S>(), S::Group::dim>;
 
 template <class S>
 concept System = requires(const S& s, const typename S::Group::template Element<double>& g) {
@@ -166,9 +174,7 @@ concept System = requires(const S& s, const typename S::Group::template Element<
   } || requires {
     { s.inertia(g) } -> Shape<S::Group::dim, S::Group::dim>;
   };
-  // k rows of n columns, where there are any.
-  requires !requires { s.constraints(); }
-  || Shape<decltype(s.constraints()), constraint_count<S>(), S::Group::dim>;
+  requires RowsFit<S>;  // k rows of n columns, where there are any
 };
 
 }  // namespace hamel

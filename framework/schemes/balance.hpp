@@ -107,8 +107,8 @@ class BalanceStep {
   }
 
   /// F and its derivative in (y, y1).
-  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& x, Unknown& f, Jacobian& j) const
-      requires(P::has_jacobians) {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& x, Unknown& f,
+                                              Jacobian& j) const requires HasJacobians<P> {
     using Tau = typename P::Tau;
     using G = typename P::Group;
     using Matrix = typename P::Matrix;

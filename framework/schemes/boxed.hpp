@@ -64,8 +64,8 @@ class BoxedStep {
   }
 
   /// F and dF/dy.
-  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f, Jacobian& j) const
-      requires(P::has_jacobians) {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f,
+                                              Jacobian& j) const requires HasJacobians<P> {
     residual(y, f);
     j = length() *
         problem_.reduce_both(At<typename P::Tau>(z_).right_transpose_derivative(full_mu_));

@@ -14,8 +14,6 @@
 // Source: Vivek, Martin de Diego, Banavar; Cortes and Martinez 2001; Fedorov and Zenkov 2005; Kobilarov 2010.
 #pragma once
 
-#include <Eigen/LU>
-
 #include <hamel/framework/lie/trivialised.hpp>
 #include <hamel/framework/schemes/hamel_form.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
@@ -109,7 +107,7 @@ class Lift::General {
   }
 
   HAMEL_FLATTEN bool finish(const Unknown& x, Node& next) const {
-    if ((v_.array() != x.array()).any()) evaluate(x);
+    if ((v_.array() != x.array()).any()) evaluate_again(x);
     if (!problem_.in_domain(step_)) return false;
     m_ += nu_;
     problem_.Ad_transpose(f1_, m_, mu_);
@@ -125,6 +123,8 @@ class Lift::General {
  private:
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // evaluated so far
 
+  // Out of line: finish stays half as long.
+  [[gnu::noinline, gnu::cold]] void evaluate_again(const Unknown& x) const { evaluate(x); }
   // mu0 - I(g0) xi_0, m0 (in m_), nu and the rows at v = x.
   void evaluate(const Unknown& x) const {
     v_ = x;
@@ -229,8 +229,8 @@ class Lift::Reduced {
   }
 
   /// F and dF/dy.
-  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f, Jacobian& j) const
-      requires(P::has_jacobians) {
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f,
+                                              Jacobian& j) const requires HasJacobians<P> {
     residual(y, f);
     const Vec<n> p = momentum(y), step = xi(y);
     if (one_sided_) {
@@ -240,7 +240,8 @@ class Lift::Reduced {
     }
     // dm = C^-1 (I E dy - dC m),  dmu0 = Ad_{f0}^T dm + K(mu0) dL_{z0} dz0.
     const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
-    const Mat<n, n> c_inverse = (s_ * z0.right + (1 - s_) * z1.right).transpose().inverse();
+    const Mat<n, n> c = (s_ * z0.right + (1 - s_) * z1.right).transpose();
+    const Mat<n, n> c_inverse = inverse_of(c);
     const Vec<n> m = c_inverse * p;
     const Mat<n, n> dc_m = (1 - s_) * (1 - s_) * z1.right_transpose_derivative(m) -
                            s_ * s_ * z0.right_transpose_derivative(m);

@@ -67,4 +67,10 @@ concept Problem = requires(const P& problem, typename P::Element& g, typename P:
   place.admissible(v, x);
 };
 
+/// Do the steps over this problem state their Jacobians in closed form?
+template <class P>
+concept HasJacobians = requires {
+  requires P::has_jacobians;
+};
+
 }  // namespace hamel

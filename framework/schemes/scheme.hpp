@@ -11,9 +11,7 @@
 // An explicit step has size() = 0 and no residual.
 #pragma once
 
-#include <cmath>
 #include <concepts>
-#include <limits>
 #include <string>
 
 #include <hamel/framework/schemes/problem.hpp>
@@ -59,59 +57,17 @@ concept SchemeStep = Problem<typename Step::Problem> &&
   done.residual(x, f);
 };
 
-/// Work space of differentiate.
-template <class Unknown>
-struct Differences {
-  Unknown direction, shifted, shifted_f;
-};
-
 /// Corrections in coordinates of the step's own choice, in which its Jacobian changes little along a motion:
 /// from_frame(z), z -> dx in place?
 template <class Step>
 concept HasFrame = requires(const Step& step, typename Step::Unknown& z) {
   step.from_frame(z);
 };
+/// F and dF/dx in closed form, linearise(x, f, j)?
 template <class Step>
 concept HasJacobian = requires(const Step& step, const typename Step::Unknown& x,
                                typename Step::Unknown& f, typename Step::Jacobian& j) {
   step.linearise(x, f, j);
 };
-
-/// F and dF/dx, or dF/dz with x + from_frame(z) (in_frame). The step's own linearise(x, f, j), else central
-/// differences, error about 1e-10: a Jacobian only steers the solver. Returns how often F was evaluated.
-template <class Step>
-int linearise(const Step& step, const typename Step::Unknown& x, typename Step::Unknown& f,
-              typename Step::Jacobian& j, Differences<typename Step::Unknown>& work,
-              [[maybe_unused]] bool in_frame) {
-  if constexpr (HasJacobian<Step>) {
-    step.linearise(x, f, j);
-    return 1;
-  } else {
-    const double size = x.template lpNorm<Eigen::Infinity>();
-    const double shift =
-        std::cbrt(std::numeric_limits<double>::epsilon()) * (size > 0 ? size : 1.0);
-    const Eigen::Index n = x.size();
-    work.direction.resize(n);
-    work.shifted.resize(n);
-    work.shifted_f.resize(n);
-    f.resize(n);
-    j.resize(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      work.direction.setZero();
-      work.direction[i] = 1;
-      if constexpr (HasFrame<Step>) {
-        if (in_frame) step.from_frame(work.direction);
-      }
-      const double length = shift / work.direction.template lpNorm<Eigen::Infinity>();
-      work.shifted = x + length * work.direction;
-      step.residual(work.shifted, work.shifted_f);
-      work.shifted = x - length * work.direction;
-      step.residual(work.shifted, f);
-      j.col(i) = (work.shifted_f - f) / (2 * length);
-    }
-    step.residual(x, f);
-    return 2 * static_cast<int>(n) + 1;
-  }
-}
 
 }  // namespace hamel

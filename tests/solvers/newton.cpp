@@ -31,7 +31,7 @@ struct Made {
 /// A first solve, nothing remembered.
 template <int N>
 SolveReport solve(const Made<N>& step, Vec<N>& x, double tolerance) {
-  Newton::Memory<Made<N>> memory;
+  Newton::Memory<Vec<N>> memory;
   return Newton::solve(step, x, tolerance, memory);
 }
 
@@ -126,7 +126,7 @@ TEST(Newton, RestIsAccepted) {
 
 /// The Jacobian of an earlier step serves while it contracts; a useless one is replaced.
 TEST(Newton, ARememberedJacobianServesOrIsReplaced) {
-  Newton::Memory<Made<1>> memory;
+  Newton::Memory<Vec<1>> memory;
   Vec<1> x(1.4142);
   EXPECT_TRUE(Newton::solve(square_root(2), x, 1e-13, memory).ok());
   memory.factors.compute(Mat<1, 1>(2 * x[0]));

@@ -1,0 +1,89 @@
+// The measurements of a state, from the configurations: nothing that a step has just set is measured by itself.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hamel/framework/loop/kernel.hpp>
+
+namespace hamel {
+
+/// The two ends of the last step; before the first one both are the start.
+template <class Element>
+struct LastStep {
+  const Element& before;
+  double time_before;
+  const Element& after;
+  double time_after;
+  double h;  // of the last substep; 0 before the first
+};
+
+/// A v of the last substep, v recovered from its two configurations (xi at the start); for holonomic rows the change of
+/// phi. Returns |A v - b| over the other rows.
+template <class P>
+[[gnu::cold]] double recover_rates(const P& problem, const LastStep<typename P::Element>& last,
+                                   double s, const typename P::Vector& xi,
+                                   std::vector<double>& rates) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const int k = problem.rows(), held = problem.held();
+  rates.assign(static_cast<size_t>(k), unknown);
+  if constexpr (P::Few::RowsAtCompileTime == 0) return 0;
+  if (k == 0) return 0;
+  typename P::Vector v = xi;
+  typename P::Element base = last.after;
+  double t = last.time_after;
+  const bool moved = last.h != 0;
+  if (moved) {
+    typename P::Element delta = problem.element();
+    problem.inverse(last.before, delta);
+    problem.compose(delta, last.after, delta);
+    if (!problem.recover_step(delta, s, v)) return unknown;
+    const typename P::Vector z = -s * v;
+    problem.tau(z, delta);
+    problem.inverse(delta, delta);
+    problem.compose(last.before, delta, base);
+    t = last.time_before + s * last.h;
+    v /= last.h;
+  }
+  typename P::Rows a(k, problem.dim());
+  typename P::Few b(k);
+  problem.constraints(t, base, a, b);
+  Eigen::Map<Eigen::VectorXd> found(rates.data(), k);
+  for (int i = 0; i < k; ++i) found[i] = a.row(i).dot(v);
+  if (moved && held > 0) {
+    typename P::Held before(held), after(held);
+    problem.holonomic(last.before, before);
+    problem.holonomic(last.after, after);
+    for (int i = 0; i < held; ++i) found[k - held + i] = (after[i] - before[i]) / last.h;
+  }
+  double squared = 0;
+  for (int i = 0; i < k - held; ++i) squared += (found[i] - b[i]) * (found[i] - b[i]);
+  return std::sqrt(squared);
+}
+
+/// All of a Snapshot but its step and time and what the solver knows. xi: the nodal velocity.
+template <class P>
+[[gnu::cold]] void measure(const P& problem, const LastStep<typename P::Element>& last, double s,
+                           const typename P::Vector& xi, Snapshot& out) {
+  const typename P::Element& g = last.after;
+  out.coordinates.resize(static_cast<size_t>(problem.columns()));
+  problem.coordinates(g, out.coordinates.data());
+  typename P::Matrix inertia(problem.dim(), problem.dim());
+  problem.inertia(g, inertia);
+  const typename P::Vector mu = inertia.lazyProduct(xi);
+  out.velocity.assign(xi.data(), xi.data() + xi.size());
+  out.momentum.assign(mu.data(), mu.data() + mu.size());
+  out.energy = 0.5 * mu.dot(xi) + problem.potential(g);
+  out.constraint = recover_rates(problem, last, s, xi, out.row_rates);
+  typename P::Held phi(problem.held());
+  problem.holonomic(g, phi);
+  out.holonomic = 0;
+  for (int i = 0; i < phi.size(); ++i) out.holonomic = std::max(out.holonomic, std::abs(phi[i]));
+  out.group_defect = problem.defect(g);
+}
+
+}  // namespace hamel

@@ -1,0 +1,73 @@
+// The principal root of a step's equation.
+//
+// Far from the identity the equation of a step can have roots that have nothing to do with the motion, inside the
+// domain of tau too. The principal root is where the solution y of F(y; lambda h) = 0 arrives that begins at
+// lambda = 0. Following the path costs some thirty solves.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include <hamel/framework/loop/step_equation.hpp>
+
+namespace hamel {
+
+/// A step that can be begun anew with another size.
+template <class Unknown>
+struct StepOnPath {
+  const StepEquation<Unknown>& equation;
+  std::function<void(double h)> begin;
+  std::function<void(Unknown& x)> guess;
+};
+
+template <class Unknown, class Newton>
+class PrincipalRoot {
+ public:
+  /// sample: of the size of all unknowns.
+  explicit PrincipalRoot(const Unknown& sample) : end_(sample), trial_(sample), memory_(sample) {}
+
+  /// Is x, a solution for h, where the path from lambda = 0 arrives? Leaves the step begun with h.
+  [[gnu::noinline, gnu::cold]] bool leads_to(const Unknown& x, const StepOnPath<Unknown>& step,
+                                             double h, double tolerance) {
+    const double size = x.squaredNorm(), small = 1e-20 * step.equation.scale_squared();
+    follow(step, h, size + small, std::min(1e-9, tolerance));
+    step.begin(h);
+    if ((x - end_).squaredNorm() <= 1e-10 * size + small) return true;
+    // Where the equation is ill-conditioned (masses of 1 and 1e6, the row of a height at h = 1e-6) one root has many
+    // solutions to within round-off: between two of them F stays small, between two roots it does not.
+    trial_ = 0.5 * (x + end_);
+    step.equation.residual(trial_, memory_.f);
+    return memory_.f.squaredNorm() <= 1e-16 * step.equation.scale_squared();
+  }
+
+ private:
+  // To end_: the solution for lambda h at lambda = 1, by steps that move it by 3 percent at most; NaN where the path
+  // ends before. It starts where there is one root, which is not always next to the scheme's guess.
+  void follow(const StepOnPath<Unknown>& step, double h, double size, double tolerance) {
+    constexpr double start = 1e-3, lost = std::numeric_limits<double>::quiet_NaN();
+    step.begin(start * h);
+    step.guess(end_);
+    memory_.valid = false;
+    if (!Newton::solve(step.equation, end_, tolerance, memory_).ok()) end_.setConstant(lost);
+    for (double at = start, length = 0.1; at < 1 && end_.allFinite();) {
+      const double next = std::min(at + length, 1.0);
+      step.begin(next * h);
+      trial_ = end_;
+      const SolveReport report = Newton::solve(step.equation, trial_, tolerance, memory_);
+      if (report.ok() && (trial_ - end_).squaredNorm() <= 1e-3 * size) {
+        end_ = trial_;
+        at = next;
+        length *= 1.5;
+      } else {
+        length /= 2;
+        if (length < 1e-4) end_.setConstant(lost);
+      }
+    }
+  }
+
+  Unknown end_, trial_;
+  typename Newton::template Memory<Unknown> memory_;
+};
+
+}  // namespace hamel
