@@ -24,6 +24,7 @@ namespace hamel {
 template <class G>
 struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {
   static constexpr bool symmetric = true;
+  static constexpr bool commuting = true;  // rational functions of one matrix
   static std::string name() { return "cayley"; }
   static std::string formula() { return "tau(xi) = (I - xi^/2)^-1 (I + xi^/2)"; }
 };

@@ -8,12 +8,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <hamel/framework/lie/coordinates.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
+#include <limits>
 #include <span>
 #include <string>
 #include <tuple>
@@ -151,6 +153,16 @@ struct Product {
     for_each_factor([&](auto i) {
       const T d = Factor<i>::defect(g.template part<i>());
       if (!(d <= largest)) largest = d;
+    });
+    return largest;
+  }
+  /// The largest of the factors' rotations; NaN where no factor rotates.
+  static double rotation_angle(const ProductElement<double, Gs...>& g) {
+    double largest = std::numeric_limits<double>::quiet_NaN();
+    for_each_factor([&](auto i) {
+      if constexpr (requires { Factor<i>::rotation_angle(g.template part<i>()); }) {
+        largest = std::fmax(largest, Factor<i>::rotation_angle(g.template part<i>()));
+      }
     });
     return largest;
   }

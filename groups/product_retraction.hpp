@@ -23,6 +23,7 @@ struct ProductRetraction {
   static constexpr int dim = Group::dim;
   static constexpr bool symmetric = (Rs::symmetric && ...);
   static constexpr bool one_parameter = (Rs::one_parameter && ...);
+  static constexpr bool commuting = (GroupOperations<Rs>::commuting() && ...);
   template <std::size_t I>
   using Part = std::tuple_element_t<I, std::tuple<Rs...>>;
 

@@ -53,6 +53,7 @@ struct RadialInverse {
 template <class Derived>
 struct RadialSO3 : RetractionDefaults<Derived, SO3> {
   static constexpr bool symmetric = true;
+  static constexpr bool commuting = true;  // rotations about one axis
 
   static std::string formula() { return "tau(omega) = exp(f(|omega|) omega/|omega|)"; }
 

@@ -90,6 +90,9 @@ struct SE2 {
   static T defect(const SE2Element<T>& g) {
     return SO2::defect(g.rotation);
   }
+  static double rotation_angle(const SE2Element<double>& g) {
+    return SO2::rotation_angle(g.rotation);
+  }
 
   /// [[R, p], [0, 1]].
   template <class T>

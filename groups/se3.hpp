@@ -94,6 +94,9 @@ struct SE3 {
   static T defect(const SE3Element<T>& g) {
     return SO3::defect(g.rotation);
   }
+  static double rotation_angle(const SE3Element<double>& g) {
+    return SO3::rotation_angle(g.rotation);
+  }
 
   /// [[R, p], [0, 1]].
   template <class T>

@@ -114,6 +114,8 @@ struct SO2 {
     using std::abs;
     return abs(g.c * g.c + g.s * g.s - 1.0);
   }
+  /// How far g turns, in radians.
+  static double rotation_angle(const SO2Element<double>& g) { return std::abs(g.angle()); }
 
   template <class T>
   static MatT<T, 2, 2> matrix(const SO2Element<T>& g) {

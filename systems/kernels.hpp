@@ -48,6 +48,7 @@ SchemeInfo scheme_info() {
           .steps_admissible = Scheme::steps_admissible,
           .left_invariant_only = Scheme::left_invariant_only,
           .explicit_step = Scheme::explicit_step,
+          .places_forces = Scheme::places_forces,
           .claims = &Scheme::claim};
 }
 

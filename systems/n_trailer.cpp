@@ -93,8 +93,12 @@ class Train final : public Mechanics {
     }
   }
 
-  /// dl/dalpha_j = L_j w_j n_j . P_j.
   void force(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
+    inertial_force(g, xi, out);
+  }
+  bool force_depends_on_velocity() const override { return false; }  // f = 0
+  /// dl/dalpha_j = L_j w_j n_j . P_j.
+  void inertial_force(const double* g, ConstVector xi, Vector out) const override {
     const Headings h(g, n_);
     std::array<Plane, kMost + 1> u;
     u[0] = {xi[kV], xi[kV + 1]};

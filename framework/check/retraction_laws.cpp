@@ -71,7 +71,7 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
   const Vector zero = Vector::Zero(n), e = on.from_coordinates(info.identity);
   const check::NumericalDerivative numerical(geometry);
   Largest origin, tangent, right, left, adjoint, inverses, base, round_trip, domain, nan, symmetry,
-      one_parameter;
+      one_parameter, commuting;
 
   origin(on.distance(on.tau(zero), e));
   origin(on.tau_inverse(e).norm());
@@ -115,6 +115,8 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
     left((numerical.left(xi) * dL_inverse - one).norm() / condition);
     if (length < 0.1 * edge) continue;
     symmetry(on.distance(on.compose(on.tau(-xi), g), e));
+    const Vector part = on.tau(0.3 * xi);
+    commuting(on.distance(on.compose(part, g), on.compose(g, part)));
     for (const double s : {-0.3, 0.2, 0.5}) {
       const Vector one_way = on.compose(on.inverse(on.tau(-s * xi)), on.tau((1 - s) * xi));
       one_parameter(on.distance(one_way, g));
@@ -138,6 +140,8 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
        check::flag(geometry.symmetric(), symmetry.value, abelian), algebraic},
       {"flag one_parameter is right: tau(-s xi)^-1 tau((1-s) xi) = tau(xi)",
        check::flag(geometry.one_parameter(), one_parameter.value, abelian), algebraic},
+      {"flag commuting is right: tau(a xi) tau(b xi) = tau(b xi) tau(a xi)",
+       check::flag(geometry.commuting(), commuting.value, abelian), algebraic},
   };
 }
 

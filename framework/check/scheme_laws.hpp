@@ -181,8 +181,8 @@ inline LawReport check_scheme(const Registry& registry, const SchemeCase& c) {
   if (const auto mistakes = simulation.mistakes(); !mistakes.empty()) throw ConfigError(mistakes);
   const SchemeInfo& scheme = *registry.scheme(c.scheme);
   const SystemModel model = registry.system(c.system)->make(c.parameters);
-  const bool symmetric = registry.geometry(model.group.name, c.retraction)->symmetric();
-  return check_scheme(simulation, scheme.claim(c.s, symmetric, model.mechanics->left_invariant()),
+  const TauTraits tau = registry.geometry(model.group.name, c.retraction)->traits();
+  return check_scheme(simulation, scheme.claim(c.s, tau, model.mechanics->left_invariant()),
                       scheme.adapted, c.step, c.until, c.generic, scheme.steps_admissible);
 }
 

@@ -59,6 +59,14 @@ concept Group = requires(const typename G::template Element<double>& g, const Ve
   { G::from_coordinates(values) } -> std::convertible_to<typename G::template Element<double>>;
 };
 
+/// What a scheme's claims depend on.
+struct TauTraits {
+  bool symmetric;  // tau(-xi) = tau(xi)^-1
+  bool commuting;  // tau(a xi) tau(b xi) = tau(b xi) tau(a xi)
+  constexpr TauTraits(bool symmetric_, bool commuting_ = false)
+      : symmetric(symmetric_), commuting(commuting_) {}
+};
+
 /// A retraction map tau: algebra -> G with tau(0) = e and tau'(0) = id.
 /// dR tau_xi eta = (d/de tau(xi + e eta)) tau(xi)^-1, dL tau_xi eta = tau(xi)^-1 d/de tau(xi + e eta).
 template <class R>

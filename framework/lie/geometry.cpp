@@ -1,6 +1,7 @@
 #include <hamel/framework/lie/geometry.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -32,6 +33,10 @@ bool ProductGeometry::one_parameter() const {
   return std::all_of(factors_.begin(), factors_.end(),
                      [](const Factor& f) { return f.geometry->one_parameter(); });
 }
+bool ProductGeometry::commuting() const {
+  return std::all_of(factors_.begin(), factors_.end(),
+                     [](const Factor& f) { return f.geometry->commuting(); });
+}
 std::string ProductGeometry::domain() const {
   std::string out;
   for (size_t i = 0; i < factors_.size(); ++i) {
@@ -58,6 +63,14 @@ double ProductGeometry::defect(const double* g) const {
   }
   return largest;
 }
+double ProductGeometry::rotation_angle(const double* g) const {
+  double largest = std::numeric_limits<double>::quiet_NaN();
+  for (const Factor& f : factors_) {
+    largest = std::fmax(largest, f.geometry->rotation_angle(g + f.element));
+  }
+  return largest;
+}
+
 void ProductGeometry::Ad_transpose(const double* g, const double* mu, double* out) const {
   for (const Factor& f : factors_) f.geometry->Ad_transpose(g + f.element, mu + f.at, out + f.at);
 }

@@ -15,6 +15,7 @@
 
 #include <hamel/framework/lie/concepts.hpp>
 #include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/group_operations.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
 
 namespace hamel {
@@ -42,6 +43,8 @@ class Geometry {
   virtual int size() const = 0;  // doubles in an element
   virtual bool symmetric() const = 0;
   virtual bool one_parameter() const = 0;
+  virtual bool commuting() const = 0;
+  TauTraits traits() const { return {symmetric(), commuting()}; }
   virtual std::string domain() const = 0;
 
   // g h, g^-1, the nearest element to one with round-off, and how far g is from the group.
@@ -49,6 +52,8 @@ class Geometry {
   virtual void inverse(const double* g, double* out) const = 0;
   virtual void normalise(double* g) const = 0;
   virtual double defect(const double* g) const = 0;
+  /// How far g turns, in radians; NaN where there is no such thing.
+  virtual double rotation_angle(const double* g) const = 0;
   // Ad_g^T mu, ad_xi^T mu, Ad_g xi.
   virtual void Ad_transpose(const double* g, const double* mu, double* out) const = 0;
   virtual void ad_transpose(const double* xi, const double* mu, double* out) const = 0;
@@ -88,6 +93,7 @@ class TypedGeometry final : public Geometry {
   int size() const override { return Pack::size; }
   bool symmetric() const override { return Tau::symmetric; }
   bool one_parameter() const override { return Tau::one_parameter; }
+  bool commuting() const override { return GroupOperations<Tau>::commuting(); }
   std::string domain() const override { return Tau::domain(); }
 
   HAMEL_FLATTEN void compose(const double* g, const double* h, double* out) const override {
@@ -100,6 +106,9 @@ class TypedGeometry final : public Geometry {
     Pack::store(G::normalise(Pack::load(g)), g);
   }
   double defect(const double* g) const override { return G::defect(Pack::load(g)); }
+  double rotation_angle(const double* g) const override {
+    return GroupOperations<Tau>::rotation_angle(Pack::load(g));
+  }
   HAMEL_FLATTEN void Ad_transpose(const double* g, const double* mu, double* out) const override {
     put(G::Ad_transpose(Pack::load(g), vec(mu)), out);
   }
@@ -158,11 +167,13 @@ class ProductGeometry final : public Geometry {
   int size() const override { return size_; }
   bool symmetric() const override;
   bool one_parameter() const override;
+  bool commuting() const override;
   std::string domain() const override;
   void compose(const double* g, const double* h, double* out) const override;
   void inverse(const double* g, double* out) const override;
   void normalise(double* g) const override;
   double defect(const double* g) const override;
+  double rotation_angle(const double* g) const override;
   void Ad_transpose(const double* g, const double* mu, double* out) const override;
   void ad_transpose(const double* xi, const double* mu, double* out) const override;
   void Ad(const double* g, const double* xi, double* out) const override;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 #include <hamel/framework/lie/coordinates.hpp>
@@ -24,6 +25,10 @@ struct GroupOperations {
   static constexpr int dim() { return n; }
   static constexpr bool symmetric() { return Tau::symmetric; }
   static constexpr bool one_parameter() { return Tau::one_parameter; }
+  static constexpr bool commuting() {
+    if constexpr (requires { Tau::commuting; }) return Tau::commuting || Tau::one_parameter;
+    else return Tau::one_parameter;
+  }
 
   /// An element to write into.
   static Element element() { return G::template identity<double>(); }
@@ -31,6 +36,11 @@ struct GroupOperations {
   static void inverse(const Element& g, Element& out) { out = G::inverse(g); }
   static void normalise(Element& g) { g = G::normalise(g); }
   static double defect(const Element& g) { return G::defect(g); }
+  /// How far g turns, in radians; NaN where the group has no rotation_angle(g).
+  static double rotation_angle([[maybe_unused]] const Element& g) {
+    if constexpr (requires { G::rotation_angle(g); }) return G::rotation_angle(g);
+    else return std::numeric_limits<double>::quiet_NaN();
+  }
   /// The same numbers?
   static bool same(const Element& g, const Element& h) {
     if constexpr (std::is_trivially_copyable_v<Element>) {

@@ -68,6 +68,8 @@ struct RetractionDefaults {
   using Group = G;
   static constexpr int dim = G::dim;
   static constexpr bool one_parameter = false;
+  /// tau(a xi) tau(b xi) = tau(b xi) tau(a xi)?
+  static constexpr bool commuting = false;
 
   /// dR_xi = (dR_xi^-1)^-1 by elimination.
   template <class T>

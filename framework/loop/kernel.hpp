@@ -30,6 +30,7 @@ struct KernelSetup {
   OnFailure on_failure = OnFailure::stop;
   std::shared_ptr<Solver> fallback;  // for retry; null as above
   std::string fallback_name;
+  bool forces_at_base = false;        // lift: f - dV at the base point instead of the nodes
   std::vector<double> configuration;  // the element's coordinates at t = 0
   Eigen::VectorXd velocity;           // xi at t = 0, n entries, admissible
 };
@@ -63,6 +64,7 @@ struct Snapshot {
   double constraint = 0;          // |A v - b|, holonomic rows left out
   double holonomic = 0;           // max |phi(g)|
   double group_defect = 0;        // how far g is from the group
+  double rotation = 0;            // of the last substep, radians; NaN: the group has none
   int iterations = 0;             // of the last step, all substeps
   double residual = 0;            // relative, the largest of the last step's substeps
 };

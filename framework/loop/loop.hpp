@@ -46,6 +46,9 @@ class Loop final : public TimeLoop {
         guess_(x_),
         root_(x_),
         stages_(setup.composition.size(), {1, Extrapolation<Unknown>(x_), Memory(x_)}) {
+    if constexpr (requires { step_.take_forces_at_base(); }) {
+      if (setup.forces_at_base) step_.take_forces_at_base();
+    }
     problem_.from_coordinates(setup.configuration, now_->g);
     typename P::Vector velocity = setup.velocity;
     problem_.carry(velocity, now_->x);
@@ -138,7 +141,7 @@ class Loop final : public TimeLoop {
         if (!is_principal(stage, h)) report.reason = Reason::not_principal;
       }
     }
-    if (report.ok() && !step_.finish(x_, *next_)) report.reason = Reason::outside_domain;
+    if (report.ok() && !step_.finish(x_, *next_)) report.reason = why_not_finished();
     if (!report.ok()) [[unlikely]]
       return report;
     last_h_ = h;
@@ -153,6 +156,13 @@ class Loop final : public TimeLoop {
     now_ = next_;
     next_ = free;
     return report;
+  }
+
+  [[gnu::cold]] Reason why_not_finished() const {
+    if constexpr (requires { step_.lost_constraints(); }) {
+      if (step_.lost_constraints()) return Reason::lost_constraints;
+    }
+    return Reason::outside_domain;
   }
 
   // So many corrections with a kept Jacobian do not change the root; those by differences are kept longer.

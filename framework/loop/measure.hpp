@@ -84,6 +84,10 @@ template <class P>
   out.holonomic = 0;
   for (int i = 0; i < phi.size(); ++i) out.holonomic = std::max(out.holonomic, std::abs(phi[i]));
   out.group_defect = problem.defect(g);
+  typename P::Element delta = problem.element();
+  problem.inverse(last.before, delta);
+  problem.compose(delta, g, delta);
+  out.rotation = problem.rotation_angle(delta);
 }
 
 }  // namespace hamel

@@ -7,15 +7,16 @@ namespace hamel {
 
 /// Why an implicit equation was, or was not, solved.
 enum class Reason {
-  converged,       // residual <= tolerance * scale
-  round_off,       // no further decrease, and the residual is at the round-off floor: accepted
-  stagnated,       // no further decrease above the floor
-  max_iterations,  // the budget ran out
-  singular,        // the Jacobian could not be solved with
-  not_finite,      // NaN or infinity in the equation
-  outside_domain,  // the solution lies where the retraction is no diffeomorphism
-  not_principal,   // the solution is a root that the path from h = 0 does not lead to
-  stopped,         // the user's observer asked to stop
+  converged,         // residual <= tolerance * scale
+  round_off,         // no further decrease, and the residual is at the round-off floor: accepted
+  stagnated,         // no further decrease above the floor
+  max_iterations,    // the budget ran out
+  singular,          // the Jacobian could not be solved with
+  not_finite,        // NaN or infinity in the equation
+  outside_domain,    // the solution lies where the retraction is no diffeomorphism
+  not_principal,     // the solution is a root that the path from h = 0 does not lead to
+  lost_constraints,  // an explicit step ends off the constraints
+  stopped,           // the user's observer asked to stop
 };
 
 /// The reason in words.
@@ -30,6 +31,10 @@ constexpr const char* to_string(Reason reason) {
     case Reason::outside_domain: return "the step left the domain of the retraction";
     case Reason::not_principal:
       return "the solution is not the principal root of the step: take a smaller one";
+    case Reason::lost_constraints:
+      return "the constraints do not hold at the end of the step: the equations of motion are "
+             "nearly "
+             "singular there, or the step is too long";
     case Reason::stopped: return "stopped by the observer";
   }
   return "";

@@ -107,6 +107,11 @@ class Formulas {
     if constexpr (has_force<S>()) out += force_of(system_, t, g, xi);
     if constexpr (!constant_inertia()) out += inertia_differential(g, xi);
   }
+  void inertial_force([[maybe_unused]] const Element& g, [[maybe_unused]] const Vec<n>& xi,
+                      Vec<n>& out) const {
+    if constexpr (constant_inertia()) out.setZero();
+    else out = inertia_differential(g, xi);
+  }
   double potential(const Element& g) const {
     if constexpr (has_potential<S>()) return system_.potential(g);
     else return 0;
@@ -265,6 +270,12 @@ class TypedMechanics final : public Mechanics {
     formulas_.force(t, load(g), Eigen::Map<const Vec<n>>(xi.data()), out);
     Eigen::Map<Vec<n>>(to.data()) = out;
   }
+  void inertial_force(const double* g, ConstVector xi, Vector to) const override {
+    Vec<n> out;
+    formulas_.inertial_force(load(g), Eigen::Map<const Vec<n>>(xi.data()), out);
+    to = out;
+  }
+  bool force_depends_on_velocity() const override { return has_force<S>(); }
   double potential(const double* g) const override { return formulas_.potential(load(g)); }
 
   // For the laws that compare differentials.

@@ -40,6 +40,12 @@ class Mechanics {
   virtual void force(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector out) const {
     out.setZero();
   }
+  /// Its last part, 1/2 d(xi^T I(g) xi); zero where I is constant.
+  virtual void inertial_force(const double* /*g*/, ConstVector /*xi*/, Vector out) const {
+    out.setZero();
+  }
+  /// Does f of (M3) depend on xi?
+  virtual bool force_depends_on_velocity() const { return true; }
   /// V(g).
   virtual double potential(const double* /*g*/) const { return 0; }
 };
@@ -78,6 +84,10 @@ class UnconstrainedMechanics final : public Mechanics {
   void force(double t, const double* g, ConstVector xi, Vector out) const override {
     system_->force(t, g, xi, out);
   }
+  void inertial_force(const double* g, ConstVector xi, Vector out) const override {
+    system_->inertial_force(g, xi, out);
+  }
+  bool force_depends_on_velocity() const override { return system_->force_depends_on_velocity(); }
   double potential(const double* g) const override { return system_->potential(g); }
 
  private:

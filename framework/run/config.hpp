@@ -31,12 +31,15 @@ struct Config {
   std::string retraction = "cayley";
   double s = 0.5;
   std::string solver = "newton";
+  std::string force_at = "nodes";
   std::string compose = "none";
   std::string on_failure = "stop";
   double tolerance = 1e-13;
   double step = 0.01;
   double until = 20;
   long every = 1;
+  bool check = false;
+  bool force = false;
 
   /// Calls f(Option, member pointer) for each option; axes in the order in which a study runs through them.
   template <class F>
@@ -47,6 +50,9 @@ struct Config {
              [](double x) { return x >= 0 && x <= 1; }, "a number in [0, 1]"},
       &Config::s);
     f(Option{"solver", "", "solver of the implicit equation", true}, &Config::solver);
+    f(Option{"force_at", "", "where a step of lift takes the forces: nodes (half at each) or base",
+             true},
+      &Config::force_at);
     f(Option{"compose", "", "composition: yoshida4 suzuki4 yoshida6 kahan_li6 suzuki_umeno8", true},
       &Config::compose);
     f(Option{"on_failure", "",
@@ -66,6 +72,9 @@ struct Config {
     f(Option{"every", "1", "record every this many steps, first and last always", false,
              [](double x) { return x >= 1; }, "at least 1"},
       &Config::every);
+    f(Option{"check", "", "estimate the error: the run again with half the step, and a quarter"},
+      &Config::check);
+    f(Option{"force", "", "compose a step that is not reversible all the same"}, &Config::force);
   }
   /// The same for the members of a Start.
   template <class F>

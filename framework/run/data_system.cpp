@@ -63,6 +63,7 @@ class DataMechanics final : public Mechanics {
     const auto off = (columns_ - terms_.rest).array();
     return terms_.weight.dot(columns_) + 0.5 * (terms_.stiffness.array() * off * off).sum();
   }
+  bool force_depends_on_velocity() const override { return !terms_.damping.isZero(0); }
   void force(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
     out = -terms_.damping.cwiseProduct(xi);
     if (!terms_.potential()) return;

@@ -25,7 +25,11 @@ struct Quantity {
 inline constexpr Quantity kEnergyError = {"energy_error", "1", "(E - E0) / |E0|", "energy error"};
 inline constexpr Quantity kConstraint = {
     "constraint", "columns of xi", "|A xi/h - b|, from the configurations", "constraint residual"};
-inline constexpr Quantity kHolonomic = {"holonomic", "columns of g", "|phi(g)|"};
+inline constexpr Quantity kHolonomic = {"holonomic", "columns of g", "|phi(g)|",
+                                        "holonomic residual"};
+inline constexpr Quantity kRotation = {"rotation_per_step", "rad",
+                                       "how far a substep turns, from the configurations",
+                                       "rotation per step"};
 inline constexpr Quantity kGroupDefect = {"group_defect", "1", "distance from the group",
                                           "group defect"};
 inline constexpr Quantity kResidual = {"residual", "1", "|F| / scale"};
@@ -37,6 +41,11 @@ inline constexpr Quantity kExactVelocityError = {"exact_velocity_error", "column
 // Over a run.
 inline constexpr Quantity kReactionWork = {
     "reaction_work", "J", "of A^T lambda, by trapezoids over the rows", "work of reactions"};
+
+inline constexpr Quantity kEstimatedError = {"estimated_error", "columns of g",
+                                             "distance of the end from the motion, by Richardson "
+                                             "from half and a quarter of the step (check)"};
+inline constexpr Quantity kObservedOrder = {"observed_order", "1", "that of these three runs"};
 
 /// How far an invariant of the exact motion moved.
 struct InvariantDrift {
@@ -71,8 +80,10 @@ struct Measurements {
   double holonomic_max = kNone;
   double group_defect_max = 0;
   double energy_error_max = 0;
+  double rotation_per_step_max = kNone;
   double reaction_work = kNone;
   double exact_error_final = kNone, exact_error_max = kNone, exact_velocity_error_max = kNone;
+  double estimated_error = kNone, observed_order = kNone;
   std::vector<InvariantDrift> invariants;
 
   /// Calls f(Quantity, suffix of its name, member pointer), in the order of the record.
@@ -82,10 +93,13 @@ struct Measurements {
     f(kHolonomic, "_max", &Measurements::holonomic_max);
     f(kGroupDefect, "_max", &Measurements::group_defect_max);
     f(kEnergyError, "_max", &Measurements::energy_error_max);
+    f(kRotation, "_max", &Measurements::rotation_per_step_max);
     f(kReactionWork, "", &Measurements::reaction_work);
     f(kExactError, "_final", &Measurements::exact_error_final);
     f(kExactError, "_max", &Measurements::exact_error_max);
     f(kExactVelocityError, "_max", &Measurements::exact_velocity_error_max);
+    f(kEstimatedError, "", &Measurements::estimated_error);
+    f(kObservedOrder, "", &Measurements::observed_order);
   }
 
   /// Takes in a state; returns its energy error.
@@ -95,6 +109,9 @@ struct Measurements {
     raise(constraint_max, state.constraint);
     raise(holonomic_max, state.holonomic);
     raise(group_defect_max, state.group_defect);
+    if (std::isfinite(state.rotation)) {
+      rotation_per_step_max = std::fmax(rotation_per_step_max, state.rotation);
+    }
     return error;
   }
   /// The distances of the element's columns and of the velocity.

@@ -6,7 +6,8 @@ Meter::Meter(const SystemModel& system, const Start& start,
              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
              double lag)
     : system_(system), start_(start), geometry_(std::move(geometry)), lag_(lag) {
-  if (mechanics->holonomic_rows() > 0) all_.holonomic_max = 0;
+  holonomic_ = mechanics->holonomic_rows() > 0;
+  if (holonomic_) all_.holonomic_max = 0;
   if (geometry_ != nullptr && mechanics->rows() > 0) {
     motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, mechanics));
     all_.reaction_work = 0;
@@ -44,6 +45,7 @@ void Meter::take(const Snapshot& state) {
   add(kGroupDefect.name, state.group_defect);
   add("iterations", static_cast<double>(state.iterations));
   add(kResidual.name, state.residual);
+  if (holonomic_) add(kHolonomic.name, state.holonomic);
   add_numbered("mu", state.momentum);
 }
 

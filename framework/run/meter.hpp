@@ -42,7 +42,7 @@ class Meter {
   std::vector<std::string> columns_;
   std::vector<double> row_;
   Measurements all_;
-  bool first_ = true;
+  bool first_ = true, holonomic_ = false;
   double energy_start_ = 0;
   ExactFlow exact_;
   // The multipliers lambda of A xi = b, from the continuous equations at each state, and their power

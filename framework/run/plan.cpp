@@ -74,6 +74,14 @@ Simulation::Plan Simulation::plan() const {
   if (std::find(tables.begin(), tables.end(), config_.compose) == tables.end()) {
     plan.add({unknown_name("composition", config_.compose, tables)});
   }
+  const std::string& place = config_.force_at;
+  if (place != "nodes" && place != "base") {
+    plan.add({unknown_name("force_at", place, {"nodes", "base"})});
+  } else if (scheme != nullptr && !scheme->places_forces && place != Config().force_at) {
+    plan.add({fmt::format("force_at: {} has one place for the forces; an option of lift",
+                          scheme->name)});
+  }
+  plan.setup.forces_at_base = place == "base";
 
   // The system with its parameters, which everything below needs.
   Maker make = make_;
@@ -136,6 +144,8 @@ Simulation::Plan Simulation::plan() const {
     plan.kernel = own != nullptr ? *own : scheme->erased;
   }
 
+  if (scheme != nullptr && geometry != nullptr) plan.check_composition(*scheme, left_invariant);
+
   const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
   const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
   if (rows * width > kMaxNumbers) {
@@ -157,6 +167,18 @@ Simulation::Plan Simulation::plan() const {
   plan.setup.tolerance = config_.tolerance;
   for (const Field& field : system.fields) plan.config.parameters[field.name] = field.value;
   return plan;
+}
+
+// A composition has its order only over a reversible step.
+void Simulation::Plan::check_composition(const SchemeInfo& scheme, bool left_invariant) {
+  if (config.compose == "none" || config.force || !scheme.defined(left_invariant)) return;
+  const ClaimedOrder claim = scheme.claim(config.s, geometry->traits(), left_invariant);
+  if (claim.reversible) return;
+  add(
+      {fmt::format("compose: {} raises the order of a reversible step, and {} with s = {} and {} "
+                   "claims none here: "
+                   "take s = 0.5 where the scheme has it, or force it",
+                   config.compose, scheme.name, config.s, config.retraction)});
 }
 
 // The user's start, else the system's own, else rest at the identity.
@@ -213,11 +235,37 @@ void Simulation::Plan::look_at_start() {
   mechanics->constraints(0, g.data(), constraints, drift);
   Eigen::VectorXd phi(mechanics->holonomic_rows());
   mechanics->holonomic(g.data(), phi);
-  if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-9)) {
-    add({fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {}",
-                     join(config.start.configuration), join(to_vector(phi)))});
-  }
+  if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
   add(check_system_matrices(inertia, constraints, n));
+}
+
+// Onto phi(g) = 0 by Newton's method, g <- g tau(-I^-1 A^T (A I^-1 A^T)^-1 phi), A the rows of phi: the start may be the
+// last state of a run whose scheme keeps phi only to its order.
+void Simulation::Plan::satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g) {
+  constexpr double most = 0.01;
+  const Eigen::Index held = phi.size();
+  const double off = phi.lpNorm<Eigen::Infinity>();
+  for (int k = 0; k < 10 && off <= most && !(phi.lpNorm<Eigen::Infinity>() < 1e-15); ++k) {
+    const Eigen::MatrixXd a = constraints.bottomRows(held);
+    const Eigen::MatrixXd reach = inertia.ldlt().solve(a.transpose());
+    const Eigen::VectorXd move = -reach * (a * reach).ldlt().solve(phi);
+    Eigen::VectorXd turn(g.size());
+    geometry->tau(move.data(), turn.data());
+    geometry->compose(g.data(), turn.data(), g.data());
+    mechanics->inertia(g.data(), inertia);
+    mechanics->constraints(0, g.data(), constraints, drift);
+    mechanics->holonomic(g.data(), phi);
+  }
+  if (!(phi.lpNorm<Eigen::Infinity>() < 1e-12)) {
+    add({fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {:.3g}",
+                     join(config.start.configuration), off)});
+    return;
+  }
+  geometry->coordinates(g.data(), config.start.configuration.data());
+  if (off > 1e-9) {
+    notes.push_back(fmt::format(
+        "the start's configuration was moved onto the holonomic constraint: phi was {:.3g}", off));
+  }
 }
 
 // The admissible start, E^T I xi = E^T mu, and what the projection dropped.

@@ -24,7 +24,9 @@ struct Simulation::Plan {
     mistakes.insert(mistakes.end(), more.begin(), more.end());
   }
   void fill_start();
+  void check_composition(const SchemeInfo& scheme, bool left_invariant);
   void look_at_start();
+  void satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g);
   void project();
 };
 

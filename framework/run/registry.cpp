@@ -47,9 +47,9 @@ class FunctionSolver final : public Solver {
 
 }  // namespace
 
-ClaimedOrder SchemeInfo::claim(double s, bool symmetric_tau, bool left_invariant) const {
+ClaimedOrder SchemeInfo::claim(double s, TauTraits tau, bool left_invariant) const {
   if (!defined(left_invariant)) return {0, false};
-  return claims(uses_s ? s : fixed_s, symmetric_tau, left_invariant);
+  return claims(uses_s ? s : fixed_s, tau, left_invariant);
 }
 
 std::string problem_key(const std::string& group, int m) { return fmt::format("{}/{}", group, m); }

@@ -37,12 +37,13 @@ struct SchemeInfo {
   bool steps_admissible = true;
   bool left_invariant_only = false;
   bool explicit_step = false;
-  std::function<ClaimedOrder(double s, bool symmetric_tau, bool left_invariant)> claims;
+  bool places_forces = false;
+  std::function<ClaimedOrder(double s, TauTraits tau, bool left_invariant)> claims;
   KernelFactory erased = {};
 
   bool defined(bool left_invariant) const { return left_invariant || !left_invariant_only; }
   /// What it claims for a run; order 0 where it is not defined.
-  ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) const;
+  ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) const;
 };
 
 struct SolverInfo {

@@ -161,7 +161,9 @@ std::string Result::report() const {
   }
   fields([&](const Quantity& quantity, const char*, auto member) {
     const double value = this->*member;
-    if (*quantity.title == 0 || (member == &Result::reaction_work && !std::isfinite(value))) return;
+    // NaN: there is no such thing here; of an energy or a constraint, something went wrong.
+    const bool always = member == &Result::energy_error_max || member == &Result::constraint_max;
+    if (*quantity.title == 0 || (!always && std::isnan(value))) return;
     line(quantity.title,
          fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
                      member == &Result::constraint_max ? ", " + constraints_in_words(system) : ""));
@@ -173,6 +175,13 @@ std::string Result::report() const {
     line("against the exact",
          fmt::format("configuration {:.2e} at the end, velocity {:.2e} at most", exact_error_final,
                      exact_velocity_error_max));
+  }
+  if (config.check) {
+    line("estimated error",
+         std::isnan(estimated_error)
+             ? "unknown: half and a quarter of the step do not agree on an order"
+             : fmt::format("{:.2e} of the configuration at the end, observed order {:.2f}",
+                           estimated_error, observed_order));
   }
   line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
   return out;

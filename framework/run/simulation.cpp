@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
 
 #include <hamel/framework/run/meter.hpp>
 #include <hamel/framework/run/plan.hpp>
@@ -44,6 +47,20 @@ Integration Simulation::build() const {
   if (!plan.mistakes.empty()) throw ConfigError(plan.mistakes);
   return {plan.kernel(plan.setup), plan.config, plan.system, plan.notes};
 }
+
+namespace {
+
+void add_notes(Result& result) {
+  constexpr double far = 0.3;
+  if (result.rotation_per_step_max > far) {
+    result.notes.push_back(fmt::format(
+        "a step turns by up to {:.2g} rad: more than {} rarely follows the motion, whatever "
+        "the diagnostics say; take a smaller step, or check",
+        result.rotation_per_step_max, far));
+  }
+}
+
+}  // namespace
 
 Result Simulation::run() const {
   Plan plan = this->plan();
@@ -94,7 +111,33 @@ Result Simulation::run() const {
   result.steps = state.step;
   result.stats = kernel->stats();
   static_cast<Measurements&>(result) = meter.finish();
+  add_notes(result);
+  if (config_.check && result.status.ok) estimate_error(result);
   return result;
+}
+
+// Richardson: with the ends x(h), x(h/2), x(h/4) the order is p = log2(|x(h) - x(h/2)| / |x(h/2) - x(h/4)|), the error of
+// x(h) is |x(h) - x(h/2)| 2^p / (2^p - 1). Nothing is said where p is no order (below 0.5), unless the ends agree to
+// round-off.
+void Simulation::estimate_error(Result& result) const {
+  std::vector<double> ends[3] = {result.last.coordinates, {}, {}};
+  for (const int parts : {2, 4}) {
+    Simulation finer = *this;
+    finer.step(config_.step / parts);
+    Integration run = finer.build();
+    if (!run.step(parts * result.steps)) return;
+    ends[parts / 2] = run.state().coordinates;
+  }
+  const double half = euclidean_distance(ends[0], ends[1]);
+  const double quarter = euclidean_distance(ends[1], ends[2]);
+  const double size = euclidean_distance(ends[2], std::vector<double>(ends[2].size(), 0.0));
+  const double order = std::log2(half / quarter);
+  if (half <= 1e-12 * (1 + size)) {
+    result.estimated_error = half;
+  } else if (order > 0.5) {
+    result.estimated_error = half / (1 - std::exp2(-order));
+    result.observed_order = order;
+  }
 }
 
 }  // namespace hamel

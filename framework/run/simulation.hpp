@@ -121,6 +121,7 @@ class Simulation {
  private:
   struct Plan;
   Plan plan() const;
+  void estimate_error(Result& result) const;
 
   const Registry* registry_;
   Maker make_;

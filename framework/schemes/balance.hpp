@@ -216,7 +216,7 @@ struct Balance : SchemeDefaults {
   }
   static constexpr bool uses_s = true;
   static constexpr bool reduced = true;
-  static ClaimedOrder claim(double s, bool /*symmetric_tau*/, bool /*left_invariant*/) {
+  static ClaimedOrder claim(double s, TauTraits /*tau*/, bool /*left_invariant*/) {
     return {s == 0.5 ? 2 : 1, s == 0.5};
   }
   template <class P>

@@ -123,7 +123,7 @@ struct Boxed : SchemeDefaults {
   }
   static constexpr bool left_invariant_only = true;
   static constexpr bool reduced = true;
-  static ClaimedOrder claim(double /*s*/, bool /*symmetric_tau*/, bool /*left_invariant*/) {
+  static ClaimedOrder claim(double /*s*/, TauTraits /*tau*/, bool /*left_invariant*/) {
     return {1, false};
   }
   template <class P>

@@ -21,7 +21,7 @@ struct BoxedLiteral : Boxed {
     return "E'(dR_xi)' mu_k = E' I xi,  mu_{k+1} = E' Ad_{tau(xi)^-1}' mu_k  (h cancels)";
   }
   static std::string source() { return "Vivek, Martin de Diego, Banavar: the boxes as typeset"; }
-  static ClaimedOrder claim(double /*s*/, bool /*symmetric_tau*/, bool /*left_invariant*/) {
+  static ClaimedOrder claim(double /*s*/, TauTraits /*tau*/, bool /*left_invariant*/) {
     return {0, false};
   }
   template <class P>

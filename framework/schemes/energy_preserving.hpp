@@ -19,8 +19,8 @@ struct EnergyPreserving : SchemeDefaults {
   static std::string source() { return "Celledoni, Farre Puiggali, Hoiseth, Martin de Diego 2019"; }
   static constexpr bool left_invariant_only = true;
   static constexpr bool reduced = true;
-  static ClaimedOrder claim(double /*s*/, bool symmetric_tau, bool /*left_invariant*/) {
-    return {symmetric_tau ? 2 : 1, symmetric_tau};
+  static ClaimedOrder claim(double /*s*/, TauTraits tau, bool /*left_invariant*/) {
+    return {tau.symmetric ? 2 : 1, tau.symmetric};
   }
 
   template <class P>

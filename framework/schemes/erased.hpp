@@ -48,6 +48,7 @@ class Erased {
   void inverse(const Element& g, Element& out) const { geometry_->inverse(g.data(), out.data()); }
   void normalise(Element& g) const { geometry_->normalise(g.data()); }
   double defect(const Element& g) const { return geometry_->defect(g.data()); }
+  double rotation_angle(const Element& g) const { return geometry_->rotation_angle(g.data()); }
   static bool same(const Element& g, const Element& h) { return g == h; }
   void Ad_transpose(const Element& g, const Vector& mu, Vector& out) const {
     geometry_->Ad_transpose(g.data(), mu.data(), out.data());
@@ -98,6 +99,10 @@ class Erased {
   void force(double t, const Element& g, const Vector& xi, Vector& out) const {
     mechanics_->force(t, g.data(), xi, out);
   }
+  void inertial_force(const Element& g, const Vector& xi, Vector& out) const {
+    mechanics_->inertial_force(g.data(), xi, out);
+  }
+  bool force_depends_on_velocity() const { return mechanics_->force_depends_on_velocity(); }
   double potential(const Element& g) const { return mechanics_->potential(g.data()); }
 
  private:

@@ -22,8 +22,8 @@ struct Gni : SchemeDefaults {
   static std::string source() { return "Ferraro, Iglesias, Martin de Diego 2008"; }
   static constexpr bool uses_s = true;
   static constexpr bool steps_admissible = false;
-  static ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) {
-    return {s == 0.5 || (symmetric_tau && left_invariant) ? 2 : 1, false};
+  static ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) {
+    return {s == 0.5 || (tau.symmetric && left_invariant) ? 2 : 1, false};
   }
 
   template <class P>

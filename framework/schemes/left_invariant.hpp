@@ -86,6 +86,10 @@ class LeftInvariant : public GroupOperations<Tau> {
   static void force(double /*t*/, const Element& /*g*/, const Vector& /*xi*/, Vector& out) {
     out.setZero();
   }
+  static void inertial_force(const Element& /*g*/, const Vector& /*xi*/, Vector& out) {
+    out.setZero();
+  }
+  static constexpr bool force_depends_on_velocity() { return false; }
   static double potential(const Element& /*g*/) { return 0; }
   /// y' = E^T ad*_xi I xi.
   void acceleration(const State& y, State& rate) const {

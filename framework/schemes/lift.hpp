@@ -2,12 +2,15 @@
 // Lagrange-d'Alembert scheme of L_d(g0, g1) = h L(g, xi/h).
 //
 // Unknown v = xi/h. With z0 = -s xi, z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g f1,
-//   p = I(g) v,   nu = h force(t + s h, g, v),   C = (s dR_{z0} + (1-s) dR_{z1})^T.
+//   p = I(g) v,   nu = h F(t + s h, g, v),   C = (s dR_{z0} + (1-s) dR_{z1})^T.
 // Momenta carried to the base point, m_i = Ad*_{f_i^-1} mu_i, satisfy (lie/trivialised.hpp)
 //   (1)  s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 = p,     (2)  m1 - m0 = nu,
 // hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu), m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i. The step solves
 //   E(g0)^T (mu0 - I(g0) xi_0) = 0,    A(g) v = b(t + s h, g),   phi(g1) = 0 in place of its rows,
 // in the frame at g0 ((*) of mechanics/place.hpp), and xi_1 is the admissible velocity of mu1 at g1.
+//
+// Forces at the nodes, (M43): nu = h d(v^T I(g) v)/2 only, and f - dV is taken at both ends with half of h,
+//   E(g0)^T (mu0 - I(g0) xi_0 - h/2 F0) = 0,   mu1 + h/2 F1 in place of mu1,   F_i = (f - dV)(t_i, g_i, v).
 //
 // On a left-invariant problem v = E y, nu = 0 and m unknowns remain: E^T mu0 = mu_bar_k, mu_bar_{k+1} = E^T mu1. At
 // s = 0, at s = 1 for a symmetric tau, and at every s for a one-parameter tau (exp), mu0 = (dR_xi)^-T I xi/h.
@@ -27,14 +30,16 @@ struct Lift : SchemeDefaults {
   }
   static std::string source() { return "Vivek, Martin de Diego, Banavar: D^{D*}, read literally"; }
   static constexpr bool uses_s = true;
+  static constexpr bool places_forces = true;
   static constexpr bool reduced = true;
   /// Left-invariant: a symmetric tau gives order 2 for every s. The step is reversible at s = 1/2, and at s = 0 and 1
-  /// when tau is symmetric; between them only when tau(a xi) and tau(b xi) commute (exp, Cayley, polar), which is not
-  /// claimed: tau_s(xi)^-1 = tau((1-s) xi)^-1 tau(-s xi) is tau_s(-xi) only then.
-  static ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant) {
+  /// when tau is symmetric; between them only when tau(a xi) and tau(b xi) commute too (exp, Cayley, polar):
+  /// tau_s(xi)^-1 = tau((1-s) xi)^-1 tau(-s xi) is tau_s(-xi) only then.
+  static ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) {
     const bool half = s == 0.5;
     if (!left_invariant) return {half ? 2 : 1, half};
-    return {half || symmetric_tau ? 2 : 1, half || (symmetric_tau && (s == 0 || s == 1))};
+    return {half || tau.symmetric ? 2 : 1,
+            half || (tau.symmetric && (s == 0 || s == 1 || tau.commuting))};
   }
 
   template <class P>
@@ -73,6 +78,7 @@ class Lift::General {
         nu_(v_),
         m_(v_),
         mu_(v_),
+        force_(v_),
         inertia_(problem.dim(), problem.dim()),
         a_(problem.rows(), problem.dim()),
         b_(problem.rows()),
@@ -80,6 +86,8 @@ class Lift::General {
         phi_(problem.held()) {}
 
   int size() const { return problem_.dim(); }
+  /// f - dV at the base point instead of the nodes.
+  void take_forces_at_base() { nodal_ = false; }
   void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
@@ -89,13 +97,17 @@ class Lift::General {
       place_.set(problem_, node.t, node.g);
       place_time_ = node.t;
       place_g_ = node.g;
+      apply(node.t, node.g, node.x);
     }
     inertia_ = place_.inertia;
     target_ = inertia_.lazyProduct(node.x);
-    problem_.force(node.t, node.g, node.x, nu_);
     // |mu0| + |I xi/h| + |h force| in the units of (*); at rest without force those of unit velocities.
-    const double size = 2 * place_.size(target_) + std::abs(h) * place_.size(nu_);
+    const double size = 2 * place_.size(target_) + std::abs(h) * place_.size(force_);
     scale_squared_ = size > 0 ? size * size : problem_.dim();
+    if (nodal_) {
+      nu_.setZero();
+      if (!problem_.force_depends_on_velocity()) target_ += (h / 2) * force_;
+    }
   }
   void guess(Unknown& x) const { x = from_->x; }
   double scale_squared() const { return scale_squared_; }
@@ -113,6 +125,8 @@ class Lift::General {
     problem_.Ad_transpose(f1_, m_, mu_);
     next.t = from_->t + h_;
     next.g = g1_;
+    apply(next.t, next.g, v_);
+    if (nodal_) mu_ += (h_ / 2) * force_;
     place_.set(problem_, next.t, next.g);
     place_time_ = next.t;
     place_g_ = next.g;
@@ -147,12 +161,21 @@ class Lift::General {
     const double t = from_->t + s_ * h_;
     if (!problem_.constant_inertia()) problem_.inertia(base_, inertia_);
     p_ = inertia_.lazyProduct(v_);
-    problem_.force(t, base_, v_, nu_);
-    nu_ *= h_;
+    if (!nodal_) {
+      problem_.force(t, base_, v_, nu_);
+      nu_ *= h_;
+    } else if (!problem_.constant_inertia()) {
+      problem_.inertial_force(base_, v_, nu_);
+      nu_ *= h_;
+    }
     problem_.base_momentum(s_, step_, p_, nu_, m_);
     if (s_ == 0) mu_ = m_;
     else problem_.Ad_transpose(f0_, m_, mu_);
     mu_ -= target_;
+    if (nodal_ && problem_.force_depends_on_velocity()) {
+      apply(from_->t, from_->g, v_);
+      mu_ -= (h_ / 2) * force_;
+    }
     if (rows_.size() > 0) {
       problem_.constraints(t, base_, a_, b_);
       rows_ = a_.lazyProduct(v_);
@@ -164,9 +187,18 @@ class Lift::General {
     }
   }
 
+  // force_: f - dV with the velocity v; at the base point the whole F serves as its size.
+  void apply(double t, const typename P::Element& g, const Vector& v) const {
+    problem_.force(t, g, v, force_);
+    if (nodal_ && !problem_.constant_inertia()) {
+      problem_.inertial_force(g, v, p_);
+      force_ -= p_;
+    }
+  }
+
   P problem_;
   double s_;
-  bool mirrored_;
+  bool mirrored_, nodal_ = true;
   const Node* from_ = nullptr;
   double h_ = 0, scale_squared_ = 0;
   Vector target_;
@@ -175,7 +207,7 @@ class Lift::General {
   mutable typename P::Element place_g_;
   mutable double place_time_ = kNothing;
   mutable typename P::Element f0_, f1_, base_, g1_;
-  mutable Vector v_, z_, step_, p_, nu_, m_, mu_;
+  mutable Vector v_, z_, step_, p_, nu_, m_, mu_, force_;
   mutable typename P::Matrix inertia_;
   mutable typename P::Rows a_;
   mutable typename P::Few b_, rows_;

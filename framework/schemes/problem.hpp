@@ -61,6 +61,8 @@ concept Problem = requires(const P& problem, typename P::Element& g, typename P:
   problem.constraints(t, g, a, b);
   problem.holonomic(g, phi);
   problem.force(t, g, v, v);
+  problem.inertial_force(g, v, v);
+  { problem.force_depends_on_velocity() } -> std::convertible_to<bool>;
   // The frame of the admissible velocities at a configuration (mechanics/place.hpp).
   place.set(problem, t, g);
   place.join(v, b, x);

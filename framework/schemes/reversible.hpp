@@ -4,7 +4,9 @@
 // It is balance with (1) in full: the velocity v of the step is not admissible at the midpoint. Symmetric, order 2.
 // Weakness: the configurations satisfy the rows of the step, and holonomic rows, to O(h^2) only; on reversible motions
 // these errors and that of the energy stay bounded. Measured: tests/verification/baselines.cpp.
-// Source: McLachlan and Perlmutter, Integrators for nonholonomic mechanical systems, J. Nonlinear Sci. 16 (2006).
+// Source: after McLachlan and Perlmutter, Integrators for nonholonomic mechanical systems, J. Nonlinear Sci. 16 (2006). Their
+// (4.18) takes force and multiplier at q0 + h v0/2, where the old velocity leads in half a step; here both are taken at
+// the base point of the step, q0 + h v/2 with the velocity v of the step. Both are reversible and of order 2.
 #pragma once
 
 #include <hamel/framework/schemes/balance.hpp>
@@ -17,10 +19,10 @@ struct Reversible : SchemeDefaults {
     return "(1) and (2) of the cotangent lift at s = 1/2 with nu = h (f + A(g)' lambda), "
            "A(g_1) xi_1 = b";
   }
-  static std::string source() { return "McLachlan and Perlmutter 2006"; }
+  static std::string source() { return "after McLachlan and Perlmutter 2006, (4.18), with the forces at the step's own midpoint"; }
   static constexpr double fixed_s = 0.5;
   static constexpr bool steps_admissible = false;
-  static ClaimedOrder claim(double /*s*/, bool /*symmetric_tau*/, bool /*left_invariant*/) {
+  static ClaimedOrder claim(double /*s*/, TauTraits /*tau*/, bool /*left_invariant*/) {
     return {2, true};
   }
   template <class P>

@@ -7,6 +7,9 @@
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include <hamel/framework/lie/types.hpp>
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
@@ -60,11 +63,14 @@ class RungeKutta4 {
     next.x = from_->x + h_ * x_sum_;
     if constexpr (!P::left_invariant) {
       place_.set(problem_, next.t, next.g);
+      if (!holds(next)) return false;
       problem_.momentum(place_.inertia, next.x, xi_);
       place_.admissible(xi_, next.x);
     }
     return next.x.allFinite();
   }
+  /// Was the last step refused because the constraints do not hold at its end?
+  bool lost_constraints() const { return lost_; }
 
  protected:
   /// coordinates: how many numbers q has.
@@ -80,13 +86,39 @@ class RungeKutta4 {
         x_(P::State::Zero(problem.state_size())),
         x_rate_(x_),
         x_sum_(x_),
-        xi_(P::Vector::Zero(problem.dim())) {}
+        xi_(P::Vector::Zero(problem.dim())),
+        phi_(problem.held()),
+        phi_before_(problem.held()) {}
 
   P problem_;
 
  private:
   Derived& self() { return static_cast<Derived&>(*this); }
   const Derived& self() const { return static_cast<const Derived&>(*this); }
+
+  // A x = b and phi = const to a percent of their terms, before they are imposed again: the error of a sound step is a small
+  // part of that. It is not where the equations of motion are nearly singular.
+  bool holds(const Node& next) const {
+    constexpr double most = 0.01;
+    lost_ = false;
+    double off = 0, size = 0;
+    for (int i = 0; i < problem_.rows(); ++i) {
+      double sum = -place_.b[i], terms = std::abs(place_.b[i]);
+      for (int j = 0; j < problem_.dim(); ++j) {
+        sum += place_.a(i, j) * next.x[j];
+        terms += std::abs(place_.a(i, j) * next.x[j]);
+      }
+      off = std::max(off, std::abs(sum));
+      size = std::max(size, terms);
+    }
+    problem_.holonomic(from_->g, phi_before_);
+    problem_.holonomic(next.g, phi_);
+    for (int i = 0; i < problem_.held(); ++i) {
+      off = std::max(off, std::abs((phi_[i] - phi_before_[i]) / h_));
+    }
+    lost_ = !(off <= most * size);
+    return !lost_;
+  }
 
   mutable EquationsOfMotion<P> motion_;
   mutable typename P::Place place_;
@@ -97,6 +129,8 @@ class RungeKutta4 {
   mutable Q q_, q_rate_, q_sum_;
   mutable typename P::State x_, x_rate_, x_sum_;
   mutable Vector xi_;
+  mutable typename P::Held phi_, phi_before_;
+  mutable bool lost_ = false;
 };
 
 /// What they say of themselves.
@@ -106,7 +140,7 @@ struct RungeKutta4Defaults : SchemeDefaults {
   static constexpr bool explicit_step = true;
   static constexpr bool reduced = true;
   static constexpr int stages = 4;
-  static ClaimedOrder claim(double /*s*/, bool /*symmetric_tau*/, bool /*left_invariant*/) {
+  static ClaimedOrder claim(double /*s*/, TauTraits /*tau*/, bool /*left_invariant*/) {
     return {4, false};
   }
 };

@@ -3,7 +3,7 @@
 //
 //   struct MyScheme : hamel::SchemeDefaults {
 //     static std::string name(), formula(), source();
-//     static hamel::ClaimedOrder claim(double s, bool symmetric_tau, bool left_invariant);
+//     static hamel::ClaimedOrder claim(double s, hamel::TauTraits tau, bool left_invariant);
 //     template <class Problem> class Step;      // problem.hpp says what a step may ask
 //   };
 // A Step takes the node it starts from to the next one. In between it is an equation F(x) = 0:
@@ -14,6 +14,7 @@
 #include <concepts>
 #include <string>
 
+#include <hamel/framework/lie/concepts.hpp>
 #include <hamel/framework/schemes/problem.hpp>
 
 namespace hamel {
@@ -31,7 +32,8 @@ struct SchemeDefaults {
   static constexpr double fixed_s =
       0;  // where it does not: the s of its steps, and of their measurement
   static constexpr bool left_invariant_only = false;
-  static constexpr bool reduced = false;  // has a step for LeftInvariant problems
+  static constexpr bool places_forces = false;  // at the nodes or at the base point
+  static constexpr bool reduced = false;        // has a step for LeftInvariant problems
   /// The velocity of a step, not of its ends only, satisfies A xi = b.
   static constexpr bool steps_admissible = true;
   static constexpr bool explicit_step = false;

@@ -77,6 +77,10 @@ class Typed : public GroupOperations<Tau> {
   void force(double t, const Element& g, const Vector& xi, Vector& out) const {
     formulas_->force(t, g, xi, out);
   }
+  void inertial_force(const Element& g, const Vector& xi, Vector& out) const {
+    formulas_->inertial_force(g, xi, out);
+  }
+  static constexpr bool force_depends_on_velocity() { return has_force<System>(); }
   double potential(const Element& g) const { return formulas_->potential(g); }
   /// dA/dt and dI/dt along g tau(e xi), by one dual number (where has_dual_rates()).
   void dual_rates(const Element& g, const Vector& xi, Rows& a_rate, Matrix& inertia_rate) const {

@@ -15,8 +15,8 @@ struct ReducedMidpoint : hamel::SchemeDefaults {
   static std::string formula() { return "I (xi_1 - xi_0) = h ad*_w I w + A' lambda, w the mean"; }
   static std::string source() { return "implicit midpoint rule on the reduced equations"; }
   static constexpr bool left_invariant_only = true;
-  static hamel::ClaimedOrder claim(double /*s*/, bool symmetric_tau, bool /*left_invariant*/) {
-    return {symmetric_tau ? 2 : 1, symmetric_tau};
+  static hamel::ClaimedOrder claim(double /*s*/, hamel::TauTraits tau, bool /*left_invariant*/) {
+    return {tau.symmetric ? 2 : 1, tau.symmetric};
   }
 
   template <class P>

@@ -12,7 +12,7 @@ struct MyScheme : SchemeDefaults {
   static constexpr bool explicit_step = true;
   static constexpr bool steps_admissible = false;
   static constexpr int stages = 1;
-  static ClaimedOrder claim(double, bool, bool) { return {1, false}; }
+  static ClaimedOrder claim(double, TauTraits, bool) { return {1, false}; }
 
   template <class P>
   class Step {

@@ -54,7 +54,7 @@ TEST(SchemeLaws, SeeAWrongClaim) {
   const SchemeCase c = motions()[0].base;
   Registry boastful = registry();
   SchemeInfo info = *boastful.scheme("boxed");
-  info.claims = [](double, bool, bool) { return ClaimedOrder{2, true}; };
+  info.claims = [](double, TauTraits, bool) { return ClaimedOrder{2, true}; };
   boastful.add(info);
   SchemeCase boxed = c;
   boxed.scheme = "boxed";

@@ -1,0 +1,143 @@
+// What a run says of itself where the other diagnostics are silent.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <hamel/hamel.hpp>
+
+namespace {
+
+using namespace hamel;
+using testing::Contains;
+using testing::HasSubstr;
+
+// Rolls at 1000 rad/s: 10 rad a step of 0.01 s, which Cayley takes as 2 atan 5.
+Simulation racing_disk() {
+  return simulate("falling_disk")
+      .start({.configuration = {1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0.5},
+              .velocity = {0, 0, 1000, -500, 0, 0}});
+}
+
+TEST(Diagnostics, ATurnByRadiansIsMeasuredAndNoted) {
+  const Result fast = racing_disk().step(0.01).until(1).run();
+  ASSERT_TRUE(fast.status.ok);
+  EXPECT_NEAR(fast.rotation_per_step_max, 2 * std::atan(5.0), 1e-9);
+  EXPECT_THAT(fast.notes, Contains(HasSubstr("a step turns by up to 2.7 rad")));
+  const Result slow = racing_disk().step(1e-4).until(0.01).run();
+  EXPECT_NEAR(slow.rotation_per_step_max, 0.1, 1e-4);
+  EXPECT_THAT(slow.notes, Not(Contains(HasSubstr("rad"))));
+}
+
+TEST(Diagnostics, RotationOfEveryKindOfGroup) {
+  const auto rotation = [](const char* system) {
+    return simulate(system).step(0.01).until(0.1).run().rotation_per_step_max;
+  };
+  const Result sleigh = simulate("chaplygin_sleigh").step(0.01).until(0.01).run();
+  EXPECT_NEAR(rotation("suslov"), 0.01 * std::hypot(1.0, 1.0), 0.01);
+  EXPECT_NEAR(sleigh.rotation_per_step_max, std::abs(sleigh.last.coordinates[0]), 1e-15);  // se2
+  EXPECT_GT(rotation("rolling_disk"), 0);  // se2*so2
+  EXPECT_TRUE(std::isnan(rotation("heisenberg_particle")));
+  EXPECT_TRUE(std::isnan(rotation("nonholonomic_particle")));  // r3
+}
+
+TEST(Diagnostics, TheRotationIsThatOfASubstep) {
+  const auto run = [](const char* compose) {
+    return simulate("suslov").compose(compose).step(0.05).until(1).run().rotation_per_step_max;
+  };
+  EXPECT_NEAR(run("suzuki4") / run("none"), 0.4145, 0.01);  // the last substep's coefficient
+}
+
+TEST(Diagnostics, TheHolonomicResidualIsAColumn) {
+  const Result run = simulate("falling_disk").step(0.01).until(1).scheme("rkmk4").run();
+  const std::vector<double> phi = run.trajectory.column("holonomic");
+  EXPECT_EQ(*std::max_element(phi.begin(), phi.end()), run.holonomic_max);
+  EXPECT_GT(run.holonomic_max, 0);
+  EXPECT_THAT(run.report(), HasSubstr("holonomic residual"));
+  EXPECT_FALSE(simulate("suslov").until(1).run().trajectory.has("holonomic"));
+}
+
+TEST(Diagnostics, CheckEstimatesTheErrorAndTheOrder) {
+  const auto run = [](const char* scheme) {
+    return simulate("chaplygin_sleigh")
+        .scheme(scheme)
+        .step(0.02)
+        .until(2)
+        .with(&Config::check, true)
+        .run();
+  };
+  const Result second = run("lift"), fourth = run("rkmk4");
+  EXPECT_NEAR(second.estimated_error / second.exact_error_final, 1, 0.02);
+  EXPECT_NEAR(second.observed_order, 2, 0.05);
+  EXPECT_NEAR(fourth.estimated_error / fourth.exact_error_final, 1, 0.05);
+  EXPECT_NEAR(fourth.observed_order, 4, 0.2);
+  EXPECT_THAT(second.report(), HasSubstr("estimated error"));
+  EXPECT_TRUE(std::isnan(simulate("suslov").until(1).run().estimated_error));  // not asked for
+}
+
+/// Three ends that agree on nothing give no number.
+TEST(Diagnostics, CheckSaysWhenItKnowsNothing) {
+  const Result run = racing_disk().step(0.01).until(1).with(&Config::check, true).run();
+  EXPECT_TRUE(std::isnan(run.estimated_error) || run.estimated_error > 1);
+  EXPECT_TRUE(std::isnan(run.observed_order) || run.observed_order > 0.5);
+}
+
+TEST(Diagnostics, AnExplicitStepThroughASingularityFails) {
+  // From rest the disk falls flat at about 0.63 s, where the contact is no point any more.
+  const auto fall = [](const char* scheme) {
+    return simulate("falling_disk")
+        .start({.velocity = {0, 0, 0, 0, 0, 0}})
+        .scheme(scheme)
+        .step(0.01)
+        .until(1)
+        .run();
+  };
+  for (const char* scheme : {"rkmk4", "rk4_projected"}) {
+    const Result run = fall(scheme);
+    EXPECT_FALSE(run.status.ok) << scheme;
+    EXPECT_NEAR(run.status.time, 0.63, 0.011) << scheme;
+    EXPECT_THAT(run.status.reason, HasSubstr("constraints do not hold at the end of the step"))
+        << scheme;
+    EXPECT_LT(run.holonomic_max, 1e-6) << scheme;  // of the good steps
+    EXPECT_LT(run.energy_error_max, 1e-4) << scheme;
+  }
+}
+
+TEST(Diagnostics, TheLastStateOfARunIsAStart) {
+  for (const char* scheme : {"rkmk4", "reversible", "lift"}) {
+    const Result first = simulate("falling_disk").scheme(scheme).step(0.02).until(5).run();
+    ASSERT_TRUE(first.status.ok) << scheme;
+    const Start end = {.configuration = first.last.coordinates, .velocity = first.last.velocity};
+    const Result second = simulate("falling_disk").start(end).step(0.02).until(1).run();
+    EXPECT_TRUE(second.status.ok) << scheme;
+    const bool off = first.last.holonomic > 1e-9;
+    EXPECT_EQ(off, !second.notes.empty() &&
+                       second.notes[0].find("moved onto the holonomic") != std::string::npos)
+        << scheme << " " << first.last.holonomic;
+    EXPECT_LT(second.holonomic_max, 1e-12) << scheme;
+  }
+  const Start far = {.configuration = {1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0.6},
+                     .velocity = {0, 0, 1, 0, 0, 0}};
+  EXPECT_THROW(simulate("falling_disk").start(far).run(), ConfigError);
+}
+
+TEST(Diagnostics, ACompositionWantsAReversibleStep) {
+  const auto mistakes = [](const char* scheme, double s, const char* tau) {
+    return simulate("suslov").scheme(scheme).s(s).retraction(tau).compose("yoshida4").mistakes();
+  };
+  EXPECT_THAT(mistakes("lift", 0, "second_kind"), Contains(HasSubstr("reversible")));
+  EXPECT_THAT(mistakes("balance", 0.3, "cayley"), Contains(HasSubstr("reversible")));
+  EXPECT_THAT(mistakes("gni", 0.5, "cayley"), Contains(HasSubstr("reversible")));
+  EXPECT_THAT(mistakes("boxed", 0, "cayley"), Contains(HasSubstr("reversible")));
+  EXPECT_TRUE(mistakes("lift", 0, "cayley").empty());
+  EXPECT_TRUE(mistakes("balance", 0.5, "second_kind").empty());
+  EXPECT_TRUE(simulate("suslov")
+                  .scheme("boxed")
+                  .compose("yoshida4")
+                  .with(&Config::force, true)
+                  .mistakes()
+                  .empty());
+}
+
+}  // namespace
