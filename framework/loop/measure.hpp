@@ -31,37 +31,38 @@ template <class P>
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const int k = problem.rows(), held = problem.held();
   rates.assign(static_cast<size_t>(k), unknown);
-  if constexpr (P::Few::RowsAtCompileTime == 0) return 0;
-  if (k == 0) return 0;
-  typename P::Vector v = xi;
-  typename P::Element base = last.after;
-  double t = last.time_after;
-  const bool moved = last.h != 0;
-  if (moved) {
-    typename P::Element delta = problem.element();
-    problem.inverse(last.before, delta);
-    problem.compose(delta, last.after, delta);
-    if (!problem.recover_step(delta, s, v)) return unknown;
-    const typename P::Vector z = -s * v;
-    problem.tau(z, delta);
-    problem.inverse(delta, delta);
-    problem.compose(last.before, delta, base);
-    t = last.time_before + s * last.h;
-    v /= last.h;
-  }
-  typename P::Rows a(k, problem.dim());
-  typename P::Few b(k);
-  problem.constraints(t, base, a, b);
-  Eigen::Map<Eigen::VectorXd> found(rates.data(), k);
-  for (int i = 0; i < k; ++i) found[i] = a.row(i).dot(v);
-  if (moved && held > 0) {
-    typename P::Held before(held), after(held);
-    problem.holonomic(last.before, before);
-    problem.holonomic(last.after, after);
-    for (int i = 0; i < held; ++i) found[k - held + i] = (after[i] - before[i]) / last.h;
-  }
   double squared = 0;
-  for (int i = 0; i < k - held; ++i) squared += (found[i] - b[i]) * (found[i] - b[i]);
+  if constexpr (P::Few::RowsAtCompileTime != 0) {
+    if (k == 0) return 0;
+    typename P::Vector v = xi;
+    typename P::Element base = last.after;
+    double t = last.time_after;
+    const bool moved = last.h != 0;
+    if (moved) {
+      typename P::Element delta = problem.element();
+      problem.inverse(last.before, delta);
+      problem.compose(delta, last.after, delta);
+      if (!problem.recover_step(delta, s, v)) return unknown;
+      const typename P::Vector z = -s * v;
+      problem.tau(z, delta);
+      problem.inverse(delta, delta);
+      problem.compose(last.before, delta, base);
+      t = last.time_before + s * last.h;
+      v /= last.h;
+    }
+    typename P::Rows a(k, problem.dim());
+    typename P::Few b(k);
+    problem.constraints(t, base, a, b);
+    Eigen::Map<Eigen::VectorXd> found(rates.data(), k);
+    for (int i = 0; i < k; ++i) found[i] = a.row(i).dot(v);
+    if (moved && held > 0) {
+      typename P::Held before(held), after(held);
+      problem.holonomic(last.before, before);
+      problem.holonomic(last.after, after);
+      for (int i = 0; i < held; ++i) found[k - held + i] = (after[i] - before[i]) / last.h;
+    }
+    for (int i = 0; i < k - held; ++i) squared += (found[i] - b[i]) * (found[i] - b[i]);
+  }
   return std::sqrt(squared);
 }
 

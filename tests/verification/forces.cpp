@@ -1,0 +1,87 @@
+// Where lift takes the forces (M43): half of them at each node, or all at the base point.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <hamel/hamel.hpp>
+
+namespace {
+
+using namespace hamel;
+
+const char* const kPlaces[] = {"nodes", "base"};
+/// Those with a potential or a force.
+const char* const kForced[] = {"contact_oscillator",    "falling_disk", "knife_edge_on_incline",
+                               "nonholonomic_particle", "rattleback",   "roller_racer",
+                               "routh_sphere",          "segway",       "suslov_in_potential"};
+
+Result run(const std::string& system, const Start& start, const char* place, double step,
+           double until) {
+  Simulation simulation = simulate(system);
+  if (!start.velocity.empty()) simulation.start(start);
+  return simulation.with(&Config::force_at, std::string(place)).step(step).until(until).run();
+}
+
+double distance(const Result& a, const Result& b) {
+  return euclidean_distance(a.last.coordinates, b.last.coordinates) +
+         euclidean_distance(a.last.velocity, b.last.velocity);
+}
+
+/// A blade that slides straight down the slope: at the base point the force across it leaves a moment of O(h^2) in
+/// every step, and it turns. The stored angles are those of the program before the nodes.
+TEST(Forces, ABladeSlidesStraightWithForcesAtTheNodes) {
+  const Start down = {.configuration = {0.3, 0, 0}, .velocity = {0, 1, 0}};
+  const double turned[] = {-0.049, -0.0148, -0.0039};
+  double step = 0.02;
+  for (const double angle : turned) {
+    EXPECT_NEAR(run("knife_edge_on_incline", down, "nodes", step, 10).last.coordinates[0], 0.3,
+                1e-14);
+    EXPECT_NEAR(run("knife_edge_on_incline", down, "base", step, 10).last.coordinates[0] - 0.3,
+                angle, 6e-4);
+    step /= 2;
+  }
+}
+
+TEST(Forces, OrderTwoAtEitherPlace) {
+  for (const char* system : kForced) {
+    for (const char* place : kPlaces) {
+      // The reference: composed to order 6 with an eighth of the step.
+      const double h = 0.01, until = 0.4;
+      const Result reference = simulate(system).compose("kahan_li6").step(h / 8).until(until).run();
+      const double coarse = distance(run(system, {}, place, h, until), reference);
+      const double fine = distance(run(system, {}, place, h / 2, until), reference);
+      EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1)
+          << system << ", " << place << ": " << coarse << ", " << fine;
+    }
+  }
+}
+
+TEST(Forces, ReversibleAtEitherPlace) {
+  for (const char* system : kForced) {
+    for (const char* place : kPlaces) {
+      const Result there = run(system, {}, place, 0.01, 0.2);
+      const Result back =
+          run(system, {.configuration = there.last.coordinates, .velocity = there.last.velocity},
+              place, -0.01, -0.2);
+      const auto start = there.trajectory.row(0);
+      const size_t columns = there.last.coordinates.size();
+      for (size_t i = 0; i < columns; ++i) {
+        EXPECT_NEAR(back.last.coordinates[i], start[1 + i], 1e-11) << system << ", " << place;
+      }
+    }
+  }
+}
+
+TEST(Forces, AnOptionOfLiftOnly) {
+  EXPECT_TRUE(simulate("falling_disk").scheme("balance").mistakes().empty());
+  const auto mistakes = simulate("falling_disk")
+                            .scheme("balance")
+                            .with(&Config::force_at, std::string("base"))
+                            .mistakes();
+  ASSERT_EQ(mistakes.size(), 1u);
+  EXPECT_NE(mistakes[0].find("force_at"), std::string::npos);
+  EXPECT_EQ(
+      simulate("falling_disk").with(&Config::force_at, std::string("noods")).mistakes().size(), 1u);
+}
+
+}  // namespace
