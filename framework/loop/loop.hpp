@@ -52,6 +52,7 @@ class Loop final : public Kernel {
     problem_.from_coordinates(setup.configuration, now_->g);
     typename P::Vector velocity = setup.velocity;
     problem_.carry(velocity, now_->x);
+    now_->t = setup.from;
     *previous_ = *now_;
     for (const double c : setup.composition)
       stages_.push_back({c, Extrapolation<Unknown>(x_), Memory(x_)});
@@ -76,19 +77,13 @@ class Loop final : public Kernel {
   }
   const SolverStats& stats() const override { return stats_; }
 
+  [[gnu::cold]] void state(Snapshot& out) const override {
+    typename P::Vector xi(problem_.dim());
+    state(out, xi);
+  }
   [[gnu::cold]] void measure(Snapshot& out) const override {
-    out.step = steps_;
-    out.time = static_cast<double>(steps_) * h_;
-    out.coordinates.resize(static_cast<size_t>(problem_.columns()));
-    problem_.coordinates(now_->g, out.coordinates.data());
-    typename P::Vector xi(problem_.dim()), mu(problem_.dim());
-    typename P::Matrix inertia(problem_.dim(), problem_.dim());
-    nodal_velocity(*now_, xi);
-    problem_.inertia(now_->g, inertia);
-    mu = inertia.lazyProduct(xi);
-    out.velocity.assign(xi.begin(), xi.end());
-    out.momentum.assign(mu.begin(), mu.end());
-    out.energy = 0.5 * mu.dot(xi) + problem_.potential(now_->g);
+    typename P::Vector xi(problem_.dim());
+    state(out, xi);
     out.constraint = recover_rates(xi, out.row_rates);
     typename Whole::Held phi(whole_.held());
     whole_.holonomic(now_->g, phi);
@@ -101,6 +96,22 @@ class Loop final : public Kernel {
  private:
   using Memory = typename Newton::template Memory<Step>;
   static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+  double time() const { return setup_.from + static_cast<double>(steps_) * h_; }
+  [[gnu::cold]] void state(Snapshot& out, typename P::Vector& xi) const {
+    out.step = steps_;
+    out.time = time();
+    out.coordinates.resize(static_cast<size_t>(problem_.columns()));
+    problem_.coordinates(now_->g, out.coordinates.data());
+    typename P::Vector mu(problem_.dim());
+    typename P::Matrix inertia(problem_.dim(), problem_.dim());
+    nodal_velocity(*now_, xi);
+    problem_.inertia(now_->g, inertia);
+    mu = inertia.lazyProduct(xi);
+    out.velocity.assign(xi.begin(), xi.end());
+    out.momentum.assign(mu.begin(), mu.end());
+    out.energy = 0.5 * mu.dot(xi) + problem_.potential(now_->g);
+  }
 
   // One substep of the composition, with what it remembers of its own last solves.
   struct Stage {
@@ -354,7 +365,7 @@ class Loop final : public Kernel {
     }
     if (!rescued.ok()) restore(start);
     else if (++stats_.fallbacks <= 20) {
-      stats_.first_fallbacks.push_back({steps_ + 1, static_cast<double>(steps_) * h_, action});
+      stats_.first_fallbacks.push_back({steps_ + 1, time(), action});
     }
     SolveReport& report = rescued.ok() ? rescued : failed;
     const SolveReport& other = rescued.ok() ? failed : rescued;
@@ -387,7 +398,7 @@ class Loop final : public Kernel {
     if (setup_.on_failure == OnFailure::retry) {
       reason += ", and " + setup_.fallback_name + " failed too";
     }
-    return {false, steps_ + 1, static_cast<double>(steps_) * h_, report.residual, reason};
+    return {false, steps_ + 1, time(), report.residual, reason};
   }
 
   Whole whole_;

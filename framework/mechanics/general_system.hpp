@@ -107,6 +107,10 @@ class Formulas {
     if constexpr (has_force<S>()) out += force_of(system_, t, g, xi);
     if constexpr (!constant_inertia()) out += inertia_differential(g, xi);
   }
+  double power(double t, const Element& g, const Vec<n>& xi) const {
+    if constexpr (has_force<S>()) return Vec<n>(force_of(system_, t, g, xi)).dot(xi);
+    else return 0;
+  }
   double potential(const Element& g) const {
     if constexpr (has_potential<S>()) return system_.potential(g);
     else return 0;
@@ -240,6 +244,9 @@ class TypedMechanics final : public Mechanics {
   int holonomic_rows() const override { return r; }
   bool constant_inertia() const override { return F::constant_inertia(); }
   bool constant_constraints() const override { return F::constant_constraints(); }
+  bool autonomous() const override { return is_autonomous<S>(); }
+  bool has_force() const override { return hamel::has_force<S>(); }
+  bool has_drift() const override { return hamel::has_drift<S>(); }
 
   void inertia(const double* g, Matrix out) const override {
     Mat<n, n> i;
@@ -264,6 +271,9 @@ class TypedMechanics final : public Mechanics {
     Vec<n> out;
     formulas_.force(t, load(g), Eigen::Map<const Vec<n>>(xi.data()), out);
     Eigen::Map<Vec<n>>(to.data()) = out;
+  }
+  double power(double t, const double* g, ConstVector xi) const override {
+    return formulas_.power(t, load(g), Eigen::Map<const Vec<n>>(xi.data()));
   }
   double potential(const double* g) const override { return formulas_.potential(load(g)); }
 

@@ -53,6 +53,8 @@ class DataMechanics final : public Mechanics {
   int dim() const override { return static_cast<int>(inertia_.rows()); }
   int rows() const override { return static_cast<int>(a_.rows()); }
   bool constant_constraints() const override { return true; }
+  bool has_force() const override { return !terms_.damping.isZero(0); }
+  bool has_drift() const override { return !b_.isZero(0); }
   void inertia(const double* /*g*/, Matrix out) const override { out = inertia_; }
   void constraints(double /*t*/, const double* /*g*/, Matrix a, Vector b) const override {
     a = a_;
@@ -62,6 +64,9 @@ class DataMechanics final : public Mechanics {
     geometry_->coordinates(g, columns_.data());
     const auto off = (columns_ - terms_.rest).array();
     return terms_.weight.dot(columns_) + 0.5 * (terms_.stiffness.array() * off * off).sum();
+  }
+  double power(double /*t*/, const double* /*g*/, ConstVector xi) const override {
+    return -terms_.damping.dot(xi.cwiseAbs2());
   }
   void force(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
     out = -terms_.damping.cwiseProduct(xi);

@@ -60,6 +60,7 @@ Simulation::Plan Simulation::plan() const {
     plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
   } else {
     plan.config.scheme = scheme->name;  // config_ may name an alias
+    plan.keeps_rows = scheme->adapted;
     if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
   }
   const SolverInfo* solver = registry_->solver(config_.solver);

@@ -17,6 +17,7 @@ struct Simulation::Plan {
   Eigen::VectorXd drift;
   std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
   std::shared_ptr<const Mechanics> mechanics;
+  bool keeps_rows = true;  // the scheme does
   KernelSetup setup;
   KernelFactory kernel;
 

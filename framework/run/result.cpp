@@ -161,8 +161,10 @@ std::string Result::report() const {
   }
   fields([&](const Quantity& quantity, const char*, auto member) {
     const double value = this->*member;
-    if (*quantity.title == 0 || (member == &Result::reaction_work && !std::isfinite(value))) return;
-    line(quantity.title,
+    const bool optional = member == &Result::reaction_work || member == &Result::work;
+    if (*quantity.title == 0 || (optional && !std::isfinite(value))) return;
+    const bool balance = member == &Result::energy_error_max && std::isfinite(work);
+    line(balance ? "energy balance" : quantity.title,
          fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
                      member == &Result::constraint_max ? ", " + constraints_in_words(system) : ""));
   });

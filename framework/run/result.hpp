@@ -21,6 +21,7 @@ class Trajectory {
     return std::span(values_).subspan(i * columns_.size(), columns_.size());
   }
   double at(size_t i, size_t j) const { return values_[i * columns_.size() + j]; }
+  double& at(size_t i, size_t j) { return values_[i * columns_.size() + j]; }
   /// The index of a column; ConfigError naming the nearest when there is none.
   size_t index(const std::string& column) const;
   std::vector<double> column(const std::string& name) const;

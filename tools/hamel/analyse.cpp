@@ -45,7 +45,9 @@ std::string verdict(const Analysis& a) {
         "{}: brackets of up to {} fields{} span {} of {} directions{} (growth {}){}; {}",
         a.integrable() ? "nonholonomic" : "not decided", a.growth.looked_at, drift, reached,
         possible, left, growth, nearby,
-        a.growth.round_off ? "stopped: deeper ones drown in round-off" : "stopped there");
+        a.growth.near_zero   ? "others are too small to tell from zero"
+        : a.growth.round_off ? "stopped: deeper ones drown in round-off"
+                             : "stopped there");
   }
   if (*a.integrable()) {
     return fmt::format(
