@@ -16,7 +16,7 @@ using namespace carried;
 
 constexpr double kNew = 1e-6;  // of the size of its generation: what is smaller is no new direction
 constexpr double kSure =
-    100;  // times its error, for a bracket that is too small to be a direction not to be zero
+    10;  // times its error, for a bracket that is too small to be a direction not to be zero
 constexpr double kDecided = 1e-3;  // ten times the error of a generation, for a rank to be believed
 constexpr int kMostFields = 8;     // in a bracket that is looked at
 

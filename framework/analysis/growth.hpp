@@ -11,7 +11,7 @@
 // Tolerances: a direction is new when it is above 1e-6 of its generation and ten times above the generation's
 // error, measured by computing it twice. A generation whose error exceeds 1e-4 of it (from six or seven fields on) is
 // not decided, nor is any beyond it. Generations below 1e-6 of the fields are taken for zero. Where such a small
-// bracket is a hundred times above the errors of its own coordinates, nothing is decided: z' = 1e-12 y x' is not
+// bracket is ten times above the errors of its own coordinates, nothing is decided: z' = 1e-12 y x' is not
 // integrable, and no more than that distinguishes it.
 #pragma once
 

@@ -94,6 +94,13 @@ class File {
 
   SystemModel read(const std::string& text) {
     const toml::table table = read_.parse(text);
+    if (const toml::node* other = table.get("system")) {
+      throw ConfigError({fmt::format(
+          "{}: this file is {}, no system by data", origin_,
+          other->is_array()
+              ? fmt::format("a study (hamel study {})", origin_)
+              : fmt::format("the configuration of a run (hamel run --config {})", origin_))});
+    }
     SystemModel model;
     model.name = origin_;
     model.group = group_of(table);

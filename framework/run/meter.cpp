@@ -1,5 +1,7 @@
 #include <hamel/framework/run/meter.hpp>
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace hamel {
@@ -44,7 +46,10 @@ void Meter::add_numbered(const char* name, std::span<const double> values) {
 }
 
 void Meter::take(const Snapshot& state) {
-  if (first_) energy_start_ = state.energy;
+  if (first_) {
+    energy_start_ = state.energy;
+    time_start_ = state.time;
+  }
   const double error = all_.take(state, energy_start_);
   row_.clear();
   add("t", state.time);
@@ -74,10 +79,15 @@ void Meter::compare(const Snapshot& state) {
   if (system_.exact) {
     if (first_)
       exact_ = system_.exact({.configuration = state.coordinates, .velocity = start_.velocity});
-    const auto [element, velocity] = exact_(state.time);
+    const auto [element, velocity] = exact_(state.time - time_start_);
     const auto [error, velocity_error] = all_.compare(state, element, velocity);
     add(kExactError.name, error);
     add(kExactVelocityError.name, velocity_error);
+    if (!exact_lost_ && !std::isfinite(error) && std::isfinite(state.energy)) {
+      exact_lost_ = true;
+      notes_.push_back(fmt::format(
+          "the exact motion was not followed to t = {:.6g}: it turns too fast", state.time));
+    }
   }
   first_ = false;
 }

@@ -52,9 +52,10 @@ class Meter {
   std::vector<double> row_;
   Measurements all_;
   bool first_ = true;
-  double energy_start_ = 0;
+  double energy_start_ = 0, time_start_ = 0;
   EnergyBalance balance_;
   ExactFlow exact_;
+  bool exact_lost_ = false;  // said already
   std::vector<std::string> notes_;
   std::vector<bool> pulls_;  // of the contacts, said already
   // The multipliers lambda of A xi = b, from the continuous equations at each state, and their power

@@ -39,7 +39,8 @@ class Trajectory {
 struct Result : Measurements {
   Config config;  // as it was run: start and parameters filled in
   SystemModel system;
-  std::vector<std::string> notes;  // what the user should know (a start that was projected, ...)
+  std::vector<std::string> unused;  // options that the scheme makes no use of
+  std::vector<std::string> notes;   // what the user should know (a start that was projected, ...)
   Status status;
   Snapshot last;  // the last good state
   long steps = 0;
@@ -48,6 +49,8 @@ struct Result : Measurements {
   double seconds = 0;  // of the time loop, recording included
 
   explicit operator bool() const { return status.ok; }
+  /// "lift (s = 0.5), cayley, newton": the method, without what the scheme makes no use of.
+  std::string method() const;
   /// The record of tools/README.md as JSON; indent < 0 for one line.
   std::string record(int indent = 2) const;
   /// One screen of text: status, iterations, drifts, error against the exact solution.

@@ -51,6 +51,7 @@ Result Simulation::run() const {
   Result result;
   result.config = plan.config;
   result.system = plan.system;
+  result.unused = plan.unused;
   result.notes = plan.notes;
   const std::unique_ptr<Kernel> kernel = plan.kernel(plan.setup);
   const long steps = config_.steps(), every = config_.every;

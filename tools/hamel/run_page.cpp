@@ -121,9 +121,7 @@ std::optional<Animation> animation_of(const Result& result) {
 
 Page run_page(const Result& r) {
   Page page(fmt::format("{}: {} with {}", r.system.name, r.config.scheme, r.config.retraction),
-            fmt::format("{}, s = {}, h = {}, solver {}{}", r.system.group.name, r.config.s,
-                        r.config.step, r.config.solver,
-                        r.config.compose == "none" ? "" : ", composed by " + r.config.compose));
+            fmt::format("{}: {}, h = {}", r.system.group.name, r.method(), r.config.step));
   page.section("Result");
   page.verdict(r.status.ok ? "ok" : "failed", headline(r));
   if (!r.notes.empty()) page.text(r.notes);

@@ -49,16 +49,16 @@ class Judge {
     say(ok == view_.run().size() ? "ok" : "note", text);
   }
 
-  // One sentence for each reason and solver, if one was used.
+  // One sentence for each reason and solver, if one was used. A cell that fails is a result, and nothing wrong with the study.
   void failures() {
     std::map<std::pair<std::string, std::string>, std::vector<size_t>> by_reason;
     for (const size_t i : view_.run())
       if (!view_.metrics(i).ok)
         by_reason[{view_.metrics(i).reason, view_.cell(i).axes.at("solver")}].push_back(i);
     for (const auto& [key, cells] : by_reason)
-      say("failed", fmt::format("{} failed{}: {}. Where: {}.", plural(cells.size(), "cell"),
-                                key.second.empty() ? "" : ", `" + key.second + "`", key.first,
-                                view_.where(cells)));
+      say("note", fmt::format("{} failed{}: {}. Where: {}.", plural(cells.size(), "cell"),
+                              key.second.empty() ? "" : ", `" + key.second + "`", key.first,
+                              view_.where(cells)));
   }
 
   // Is the error no smaller than the motion itself?
@@ -159,7 +159,7 @@ class Judge {
       const std::string& label = view_.result().config.systems[i].label;
       if (!view_.result().config.reference) continue;
       if (reference.kind.starts_with("none") || reference.kind.starts_with("not converged"))
-        say("failed", fmt::format("{} has nothing to compare with: {}.", label, reference.kind));
+        say("note", fmt::format("{} has nothing to compare with: {}.", label, reference.kind));
       else if (reference.kind.starts_with("converged"))
         say("note", fmt::format("{}: errors are distances from a {} whose own error is at most "
                                 "{:.1e}.",
