@@ -49,7 +49,7 @@ struct BallOnTurntable {
   Mat<2, 5> constraints(const Element& g) const {
     return ball_on_plane::contact_velocity(g, radius);
   }
-  Vec<2> drift(double /*t*/, const Element& g) const {
+  Vec<2> drift(const Element& g) const {
     const auto& x = g.part<1>();
     return {-table_rate * x[1], table_rate * x[0]};
   }

@@ -91,6 +91,8 @@ struct FallingDisk {
     return mass * gravity * body_on_plane::height_differential(g);
   }
 
+  static std::vector<int> contacts() { return {2}; }
+
   /// At x = y = 0 with the axis at theta from the vertical and rolling without slip with body rates omega.
   Start rolling(double theta, const Vec<3>& omega) const {
     const Element g = body_on_plane::leaning(theta, radius * std::sin(theta));

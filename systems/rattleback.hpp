@@ -96,6 +96,8 @@ struct Rattleback {
     return mass * gravity * body_on_plane::height_differential(g);
   }
 
+  static std::vector<int> contacts() { return {2}; }
+
   /// Level but for a tilt about its long axis, spinning about the vertical.
   Start spinning(double spin, double tilt) const {
     Element g = body_on_plane::leaning(tilt);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <hamel/groups/exp.hpp>
@@ -26,9 +27,16 @@ class Reconstruction {
   Reconstruction(const Element& g, Velocity velocity, double step)
       : g_(g), velocity_(std::move(velocity)), step_(step) {}
 
+  /// Not finite where that would take more than kMost steps in all, some seconds.
+  static constexpr double kMost = 5e7;
   std::pair<Element, Vec<n>> operator()(double t) {
     const double whole = t - t_;
     const double count = std::ceil(std::abs(whole) / step_);
+    taken_ += count;
+    if (!(taken_ <= kMost)) {
+      const Vec<n> none = Vec<n>::Constant(std::numeric_limits<double>::quiet_NaN());
+      return {G::compose(g_, Exp<G>::tau(none)), none};
+    }
     for (double k = 0; k < count; ++k) advance(t_ + whole * (k / count), whole / count);
     t_ = t;
     return {g_, velocity_(t)};
@@ -49,7 +57,7 @@ class Reconstruction {
 
   Element g_;
   Velocity velocity_;
-  double step_, t_ = 0;
+  double step_, t_ = 0, taken_ = 0;
 };
 
 /// The motion with constant body velocity: g(t) = g0 exp(t xi).

@@ -1,12 +1,15 @@
 // routh_sphere: a ball whose mass centre lies off its centre, on an axis of symmetry, rolling on a plane.
 //
 //   SO(3) x R^2, xi = (omega in the body, x', y' of the centre of the ball), mass centre at a e3,
-//   l = 1/2 omega^T I omega + 1/2 m |(x', y', 0) + R (omega x a e3)|^2 - m g a gamma_3,  I1 = I2,
+//   l = 1/2 omega^T I omega + 1/2 m |(x', y', 0) + R (omega x a e3)|^2 - m g a gamma_3,
 //   with w = R omega, gamma = R^T e_z:  x' = rho w_y,  y' = -rho w_x.
 // The metric depends on R: it couples the rotation with the translation in space.
-// With r = -rho gamma - a e3 from the mass centre to the contact three functions are conserved: the energy,
+// Routh's sphere has I1 = I2. With r = -rho gamma - a e3 from the mass centre to the contact three functions are
+// conserved there: the energy,
 //   Jellett's omega^T I r   and   Routh's omega_3 sqrt(I1 I3 + m r^T I r).
-// Source: Routh, Advanced Rigid Dynamics (1884), art. 243; Cushman, Routh's sphere, Rep. Math. Phys. 42 (1998).
+// With three different moments it is Chaplygin's top, which keeps the energy and no other function in general.
+// Source: Routh, Advanced Rigid Dynamics (1884), art. 243; Cushman, Routh's sphere, Rep. Math. Phys. 42 (1998);
+// Borisov, Kazakov, Sataev, Regul. Chaotic Dyn. 19 (2014), on Chaplygin's top.
 #pragma once
 
 #include <cmath>
@@ -24,7 +27,8 @@ struct RouthSphere {
   double mass = 1.0;         // kg
   double radius = 0.5;       // m
   double offset = 0.15;      // m, a
-  double transverse = 0.12;  // kg m^2, I1 = I2, about the mass centre
+  double transverse = 0.12;  // kg m^2, I1, about the mass centre
+  double asymmetry = 0;      // kg m^2, I2 - I1
   double axial = 0.08;       // kg m^2, I3
   double gravity = 9.81;     // m/s^2
 
@@ -34,14 +38,19 @@ struct RouthSphere {
     return "SO(3)*R2, l = 1/2 w' I w + 1/2 m |x' + R (w x a e3)|^2 - m g a gamma_3, "
            "x' = rho w_y, y' = -rho w_x (in space)";
   }
-  static std::string known() { return "invariants: energy, Jellett's, Routh's (integrable)"; }
+  static std::string known() {
+    return "invariants: energy; Jellett's and Routh's where asymmetry is 0 (integrable)";
+  }
   static std::string source() { return "Routh 1884, art. 243; Cushman 1998"; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "total mass");
     f("radius", radius, "m", "radius of the ball");
     f("offset", offset, "m", "centre of the ball to mass centre, along the axis");
-    f("transverse_inertia", transverse, "kg m^2", "moment across the axis, about the mass centre");
+    f("transverse_inertia", transverse, "kg m^2",
+      "moment about e1, across the axis, about the mass centre");
+    f("asymmetry", asymmetry, "kg m^2",
+      "moment about e2 minus that about e1 (Chaplygin's top; 0: Routh's sphere)");
     f("axial_inertia", axial, "kg m^2", "moment about the axis");
     f("gravity", gravity, "m/s^2", "acceleration of gravity");
   }
@@ -51,7 +60,7 @@ struct RouthSphere {
     using T = std::decay_t<decltype(r(0, 0))>;
     MatT<T, 5, 5> i = MatT<T, 5, 5>::Zero();
     const double about_centre = transverse + mass * offset * offset;
-    i.diagonal() << T(about_centre), T(about_centre), T(axial), T(mass), T(mass);
+    i.diagonal() << T(about_centre), T(about_centre + asymmetry), T(axial), T(mass), T(mass);
     for (int k = 0; k < 2; ++k) {
       i(0, 3 + k) = i(3 + k, 0) = -(mass * offset) * r(k, 1);
       i(1, 3 + k) = i(3 + k, 1) = (mass * offset) * r(k, 0);
@@ -75,6 +84,7 @@ struct RouthSphere {
   }
   void invariants(auto& add) const {
     add("energy", energy_of(*this));
+    if (asymmetry != 0) return;
     const auto contact = [*this](const auto& g) {
       return Vec<3>(-radius * g.template part<0>().row(2).transpose() - offset * Vec<3>::UnitZ());
     };

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
-#include <fmt/format.h>
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
+#include <hamel/framework/analysis/conserved.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/mechanics/place.hpp>
@@ -72,102 +69,6 @@ class Frame {
   Matrix frame_;
 };
 
-std::string combination(const Vector& weights, const std::vector<std::string>& names) {
-  std::string out;
-  const double largest = weights.lpNorm<Eigen::Infinity>();
-  for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    const double w = weights[i] / largest;
-    if (std::abs(w) < 1e-6) continue;
-    const std::string size =
-        std::abs(std::abs(w) - 1) < 1e-6 ? "" : fmt::format("{:.6g} ", std::abs(w));
-    out += fmt::format("{}{}{}", out.empty() ? (w < 0 ? "-" : "") : (w < 0 ? " - " : " + "), size,
-                       names[static_cast<size_t>(i)]);
-  }
-  return out;
-}
-
-// Reduced row echelon form of the rows, so that each quantity has as few terms as possible.
-Matrix simplest(Matrix rows) {
-  Eigen::Index lead = 0;
-  for (Eigen::Index j = 0; j < rows.cols() && lead < rows.rows(); ++j) {
-    Eigen::Index pivot = 0;
-    const double size = rows.col(j).tail(rows.rows() - lead).cwiseAbs().maxCoeff(&pivot);
-    if (size < 1e-6) continue;
-    rows.row(lead).swap(rows.row(lead + pivot));
-    rows.row(lead) /= rows(lead, j);
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      if (i != lead) rows.row(i) -= rows(i, j) * rows.row(lead);
-    }
-    ++lead;
-  }
-  return rows;
-}
-
-void find_conserved(const Registry& registry, const std::string& system,
-                    const Parameters& parameters, const Result& first, const Geometry& geometry,
-                    Analysis& out) {
-  const auto n = static_cast<Eigen::Index>(out.n);
-  std::vector<std::string> names = {"E"};
-  for (int i = 1; i <= out.n; ++i) names.push_back(fmt::format("J{}", i));
-  for (int i = 1; i <= out.n; ++i) names.push_back(fmt::format("xi{}", i));
-  const auto width = static_cast<Eigen::Index>(names.size());
-  Matrix values(0, width), changes(0, width);
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal;
-  for (int motion = 0; motion < 4; ++motion) {
-    Config config = first.config;
-    config.parameters = parameters;
-    if (motion > 0) {
-      for (double& v : config.start.velocity) v += 0.3 * normal(random);
-    }
-    Simulation simulation(registry, system);
-    const Result run = simulation.config(config).run();
-    if (!run.status.ok) continue;
-    const size_t columns = run.system.group.columns.size();
-    Matrix rows(static_cast<Eigen::Index>(run.trajectory.rows()), width);
-    Vector g(geometry.size()), inverse(geometry.size()), spatial(n);
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      const auto row = run.trajectory.row(static_cast<size_t>(i));
-      geometry.from_coordinates(row.subspan(1, columns), g.data());
-      geometry.inverse(g.data(), inverse.data());
-      const double* momentum = row.data() + run.trajectory.index("mu1");
-      geometry.Ad_transpose(inverse.data(), momentum, spatial.data());
-      rows(i, 0) = row[run.trajectory.index("energy")];
-      rows.row(i).segment(1, n) = spatial.transpose();
-      rows.row(i).tail(n) = Eigen::Map<const Vector>(row.data() + 1 + columns, n).transpose();
-    }
-    Matrix change = rows.rowwise() - rows.row(0);
-    values.conservativeResize(values.rows() + rows.rows(), width);
-    values.bottomRows(rows.rows()) = rows;
-    changes.conservativeResize(changes.rows() + rows.rows(), width);
-    changes.bottomRows(rows.rows()) = change;
-  }
-  if (values.rows() == 0) return;
-  // The combinations that do not change, orthogonal to those that are zero on every motion.
-  const Eigen::JacobiSVD<Matrix> all(values, Eigen::ComputeThinV);
-  const double scale = all.singularValues()[0];
-  Eigen::Index meaningful = 0;
-  while (meaningful < width && all.singularValues()[meaningful] > 1e-7 * scale) ++meaningful;
-  const Matrix basis = all.matrixV().leftCols(meaningful);
-  const Matrix reduced = changes * basis;
-  const Eigen::JacobiSVD<Matrix> svd(reduced, Eigen::ComputeThinV);
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index i = 0; i < meaningful; ++i) {
-    if (svd.singularValues()[i] < 1e-7 * scale) kept.push_back(i);
-  }
-  Matrix found(static_cast<Eigen::Index>(kept.size()), width);
-  for (size_t i = 0; i < kept.size(); ++i) {
-    found.row(static_cast<Eigen::Index>(i)) = (basis * svd.matrixV().col(kept[i])).transpose();
-  }
-  if (found.rows() > 0) found = simplest(found);
-  for (Eigen::Index i = 0; i < found.rows(); ++i) {
-    const Vector weights = found.row(i).transpose();
-    const double size = std::max((values * weights).cwiseAbs().maxCoeff(), 1e-300);
-    out.conserved.push_back(
-        {combination(weights, names), (changes * weights).cwiseAbs().maxCoeff() / size});
-  }
-}
-
 }  // namespace
 
 std::optional<bool> Analysis::integrable() const {
@@ -189,7 +90,7 @@ Analysis analyse(const Registry& registry, const std::string& system,
   config.every = 10;
   const Result run = simulation.config(config).run();
   Analysis out;
-  out.notes = run.notes;
+  out.notes = simulation.build().notes();
   const auto geometry = registry.geometry(run.system.group.name, "exp");
   std::shared_ptr<const Mechanics> mechanics = run.system.mechanics;
   out.left_invariant = mechanics->left_invariant();
@@ -218,7 +119,7 @@ Analysis analyse(const Registry& registry, const std::string& system,
       }
     }
   }
-  find_conserved(registry, system, parameters, run, *geometry, out);
+  out.conserved = find_conserved(registry, run, out.frame, *geometry);
   return out;
 }
 

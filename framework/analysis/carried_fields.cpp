@@ -145,8 +145,8 @@ std::vector<Generation> generations(Fields& fields, const Vector& from, int dept
   }
   const int degree = depth > 3 ? 16 : 10;
   constexpr double never = std::numeric_limits<double>::infinity();
-  std::vector<Generation> out(static_cast<size_t>(depth),
-                              {Matrix::Zero(rows, each * paths), 0, never});
+  std::vector<Generation> out(static_cast<size_t>(depth), {Matrix::Zero(rows, each * paths), 0,
+                                                           never, Vector::Constant(rows, never)});
   std::vector<double> best(out.size(), never);
   std::vector<Matrix> before(out.size(), Matrix(rows, each * paths)), now = before;
   double last = 0, unit = 0.02;
@@ -158,12 +158,13 @@ std::vector<Generation> generations(Fields& fields, const Vector& from, int dept
     }
     bool known = last > 0;
     for (size_t j = 0; j < out.size() && last > 0; ++j) {
-      const double ratio = std::pow(last / radius, static_cast<double>(j)), size = before[j].norm(),
-                   error = (now[j] * ratio - before[j]).norm();
+      const double ratio = std::pow(last / radius, static_cast<double>(j)), size = before[j].norm();
+      const Matrix difference = now[j] * ratio - before[j];
+      const double error = difference.norm();
       const double relative = error / std::max(size, kNothing * before[0].norm());
       if (relative < best[j]) {
         best[j] = relative;
-        out[j] = {before[j], size, error};
+        out[j] = {before[j], size, error, difference.cwiseAbs().rowwise().maxCoeff()};
       }
       known = known && best[j] < 1e-7;
     }

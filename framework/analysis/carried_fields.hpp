@@ -48,6 +48,7 @@ class Fields {
 struct Generation {
   Matrix brackets;
   double size = 0, error = 0;
+  Vector errors;  // the largest of each coordinate
 };
 /// From a place `from`, entry j the brackets of j + 1 fields.
 std::vector<Generation> generations(Fields& fields, const Vector& from, int depth);

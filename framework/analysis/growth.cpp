@@ -15,6 +15,8 @@ namespace {
 using namespace carried;
 
 constexpr double kNew = 1e-6;  // of the size of its generation: what is smaller is no new direction
+constexpr double kSure =
+    10;  // times its error, for a bracket that is too small to be a direction not to be zero
 constexpr double kDecided = 1e-3;  // ten times the error of a generation, for a rank to be believed
 constexpr int kMostFields = 8;     // in a bracket that is looked at
 
@@ -22,7 +24,19 @@ constexpr int kMostFields = 8;     // in a bracket that is looked at
 struct Reach {
   std::vector<int> dimensions;
   bool round_off = false;  // what the next one adds is not told from round-off
+  bool near_zero = false;  // a bracket that is left out is small, but not zero
 };
+// Is what a generation has outside a span known not to be zero? Each coordinate has its own errors: those of
+// z' = 1e-12 y x' are far below those of x'.
+bool is_small_only(const Generation& generation, const Matrix& span) {
+  const Matrix& b = generation.brackets;
+  const Vector size = b.cwiseAbs().rowwise().maxCoeff(), error = generation.errors + 1e-15 * size,
+               left = (b - span * (span.transpose() * b)).cwiseAbs().rowwise().maxCoeff();
+  const Matrix across = span.cwiseAbs() * span.cwiseAbs().transpose();
+  const Vector bound = error + across * error + 1e-15 * (across * size);
+  return ((left - kSure * bound).array() > 0).any();
+}
+
 Reach reach_of(const std::vector<Generation>& generations) {
   const Eigen::Index rows = generations.front().brackets.rows();
   Matrix span(rows, 0);
@@ -41,6 +55,11 @@ Reach reach_of(const std::vector<Generation>& generations) {
     if (span.cols() + fresh < rows && !(10 * error < kDecided * size)) {
       out.round_off = true;
       break;
+    }
+    if (span.cols() + fresh < rows) {
+      Matrix known(rows, span.cols() + fresh);
+      known << span, svd.matrixU().leftCols(fresh);
+      out.near_zero = out.near_zero || is_small_only(generation, known);
     }
     if (fresh > 0) {
       tilt = std::max(tilt, error / sizes[fresh - 1]);
@@ -76,7 +95,7 @@ Vector ad(const Geometry& geometry, const Vector& x, const Vector& y) {
 }
 Reach constant_reach(const Geometry& geometry, const Matrix& fields) {
   Eigen::ColPivHouseholderQR<Matrix> qr(fields);
-  Reach out{{static_cast<int>(fields.cols())}, false};
+  Reach out{{static_cast<int>(fields.cols())}};
   Matrix span = qr.householderQ() * Matrix::Identity(fields.rows(), fields.cols()), last = span;
   while (true) {
     Matrix wider(fields.rows(), span.cols() + fields.cols() * last.cols());
@@ -89,7 +108,9 @@ Reach constant_reach(const Geometry& geometry, const Matrix& fields) {
     const Matrix outside = wider - span * (span.transpose() * wider);
     const Eigen::JacobiSVD<Matrix> svd(outside, Eigen::ComputeThinU);
     Eigen::Index fresh = 0;
-    while (fresh < svd.singularValues().size() && svd.singularValues()[fresh] > 1e-10) ++fresh;
+    const Vector& sizes = svd.singularValues();
+    while (fresh < sizes.size() && sizes[fresh] > 1e-10) ++fresh;
+    out.near_zero = out.near_zero || (fresh < sizes.size() && sizes[fresh] > 1e-13);
     if (fresh == 0) return out;
     last = svd.matrixU().leftCols(fresh);
     Matrix both(fields.rows(), span.cols() + fresh);
@@ -128,7 +149,7 @@ Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const dou
   const auto all = static_cast<int>(fields.coordinates());
   const Vector here = Vector::Zero(all);
   const int own = out.with_drift ? 1 : 0;
-  Reach reach{{static_cast<int>(fields.count())}, false};
+  Reach reach{{static_cast<int>(fields.count())}};
   int nearby = -1;
   if (fields.count() == all || fields.count() == 0) {
     nearby = static_cast<int>(fields.count());
@@ -142,12 +163,18 @@ Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const dou
     for (const int depth : {3, std::min(5, deepest), deepest}) {
       reach = reach_of(generations(fields, here, depth));
       if (reach.dimensions.back() == all) nearby = all;
-      else if (nearby < 0) nearby = closed_at(reach_of(generations(fields, there, depth)), all);
+      else if (nearby < 0) {
+        const Reach generic = reach_of(generations(fields, there, depth));
+        out.near_zero = generic.near_zero;
+        nearby = closed_at(generic, all);
+      }
       if (reach.dimensions.back() == nearby) break;
     }
   }
   out.looked_at = static_cast<int>(reach.dimensions.size());
   out.round_off = reach.round_off;
+  out.near_zero = (out.near_zero || reach.near_zero) && nearby < all;
+  if (out.near_zero) nearby = -1;
   auto& d = reach.dimensions;
   while (d.size() > 1 && d.back() == d[d.size() - 2]) d.pop_back();
   for (const int dimension : d) out.dimensions.push_back(dimension - own);

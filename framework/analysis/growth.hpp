@@ -10,7 +10,9 @@
 // itself brackets may pause and go on (z' = y^2 x' at y = 0: 2, 2, 3).
 // Tolerances: a direction is new when it is above 1e-6 of its generation and ten times above the generation's
 // error, measured by computing it twice. A generation whose error exceeds 1e-4 of it (from six or seven fields on) is
-// not decided, nor is any beyond it. Generations below 1e-6 of the fields are taken for zero.
+// not decided, nor is any beyond it. Generations below 1e-6 of the fields are taken for zero. Where such a small
+// bracket is ten times above the errors of its own coordinates, nothing is decided: z' = 1e-12 y x' is not
+// integrable, and no more than that distinguishes it.
 #pragma once
 
 #include <vector>
@@ -27,6 +29,7 @@ struct Growth {
   bool with_drift = false;  // X_0 is among the fields
   int looked_at = 0;        // brackets of at most this many fields were looked at
   bool round_off = false;   // deeper ones could not be told from round-off
+  bool near_zero = false;   // some that are left out are small, but not zero
   /// The span of all brackets is known and reached.
   bool decided() const { return dimensions.back() == nearby; }
 };

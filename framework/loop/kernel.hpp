@@ -31,8 +31,9 @@ struct KernelSetup {
   std::shared_ptr<Solver> fallback;  // for retry; null as above
   std::string fallback_name;
   bool forces_at_base = false;        // lift: f - dV at the base point instead of the nodes
-  std::vector<double> configuration;  // the element's coordinates at t = 0
-  Eigen::VectorXd velocity;           // xi at t = 0, n entries, admissible
+  double from = 0;                    // the time of the start
+  std::vector<double> configuration;  // the element's coordinates there
+  Eigen::VectorXd velocity;           // xi there, n entries, admissible
 };
 
 /// A step that failed and was rescued.
@@ -79,6 +80,8 @@ class Kernel {
   virtual Status advance(long count) = 0;
   /// Measures the current state into out (its vectors are reused).
   virtual void measure(Snapshot& out) const = 0;
+  /// The state alone: step, time, coordinates, velocity, momentum, energy.
+  virtual void state(Snapshot& out) const = 0;
   virtual const SolverStats& stats() const = 0;
 };
 

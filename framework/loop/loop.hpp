@@ -52,6 +52,7 @@ class Loop final : public TimeLoop {
     problem_.from_coordinates(setup.configuration, now_->g);
     typename P::Vector velocity = setup.velocity;
     problem_.carry(velocity, now_->x);
+    now_->t = setup.from;
     *previous_ = *now_;
     for (size_t i = 0; i < stages_.size(); ++i) stages_[i].coefficient = setup.composition[i];
   }
@@ -69,12 +70,13 @@ class Loop final : public TimeLoop {
     return {};
   }
 
-  [[gnu::cold]] void measure(Snapshot& out) const override {
-    out.step = steps_;
-    out.time = static_cast<double>(steps_) * h_;
+  [[gnu::cold]] void state(Snapshot& out) const override {
     typename P::Vector xi(problem_.dim());
-    if constexpr (requires { step_.velocity(*now_, xi); }) step_.velocity(*now_, xi);
-    else problem_.velocity(now_->x, xi);
+    state(out, xi);
+  }
+  [[gnu::cold]] void measure(Snapshot& out) const override {
+    typename P::Vector xi(problem_.dim());
+    state(out, xi);
     const double h = steps_ > 0 ? last_h_ : 0;
     hamel::measure(whole_, {previous_->g, previous_->t, now_->g, now_->t, h}, setup_.s, xi, out);
     out.iterations = last_.iterations;
@@ -83,6 +85,14 @@ class Loop final : public TimeLoop {
 
  private:
   using Memory = typename Newton::template Memory<Unknown>;
+
+  [[gnu::cold]] void state(Snapshot& out, typename P::Vector& xi) const {
+    out.step = steps_;
+    out.time = time();
+    if constexpr (requires { step_.velocity(*now_, xi); }) step_.velocity(*now_, xi);
+    else problem_.velocity(now_->x, xi);
+    hamel::state(whole_, now_->g, xi, out);
+  }
 
   // One substep of the composition, with what it remembers of its own last solves.
   struct Stage {

@@ -66,11 +66,10 @@ template <class P>
   return std::sqrt(squared);
 }
 
-/// All of a Snapshot but its step and time and what the solver knows. xi: the nodal velocity.
+/// The state alone: coordinates, velocity, momentum, energy. xi: the nodal velocity.
 template <class P>
-[[gnu::cold]] void measure(const P& problem, const LastStep<typename P::Element>& last, double s,
-                           const typename P::Vector& xi, Snapshot& out) {
-  const typename P::Element& g = last.after;
+[[gnu::cold]] void state(const P& problem, const typename P::Element& g,
+                         const typename P::Vector& xi, Snapshot& out) {
   out.coordinates.resize(static_cast<size_t>(problem.columns()));
   problem.coordinates(g, out.coordinates.data());
   typename P::Matrix inertia(problem.dim(), problem.dim());
@@ -79,6 +78,13 @@ template <class P>
   out.velocity.assign(xi.data(), xi.data() + xi.size());
   out.momentum.assign(mu.data(), mu.data() + mu.size());
   out.energy = 0.5 * mu.dot(xi) + problem.potential(g);
+}
+
+/// What is measured of the state and of the step that led to it.
+template <class P>
+[[gnu::cold]] void measure(const P& problem, const LastStep<typename P::Element>& last, double s,
+                           const typename P::Vector& xi, Snapshot& out) {
+  const typename P::Element& g = last.after;
   out.constraint = recover_rates(problem, last, s, xi, out.row_rates);
   typename P::Held phi(problem.held());
   problem.holonomic(g, phi);

@@ -27,7 +27,7 @@ SolveReport TimeLoop::recover(SolveReport failed) {
   }
   if (!rescued.ok()) restore();
   else if (++stats_.fallbacks <= 20) {
-    stats_.first_fallbacks.push_back({steps_ + 1, static_cast<double>(steps_) * h_, action});
+    stats_.first_fallbacks.push_back({steps_ + 1, time(), action});
   }
   SolveReport& report = rescued.ok() ? rescued : failed;
   const SolveReport& other = rescued.ok() ? failed : rescued;
@@ -62,7 +62,7 @@ Status TimeLoop::failure(const SolveReport& report) const {
   if (setup_.on_failure == OnFailure::retry) {
     reason += ", and " + setup_.fallback_name + " failed too";
   }
-  return {false, steps_ + 1, static_cast<double>(steps_) * h_, report.residual, reason};
+  return {false, steps_ + 1, time(), report.residual, reason};
 }
 
 }  // namespace hamel

@@ -20,6 +20,7 @@ class TimeLoop : public Kernel {
   /// Nothing to extrapolate, and no Jacobian kept.
   virtual void forget() = 0;
 
+  double time() const { return setup_.from + static_cast<double>(steps_) * h_; }
   void tally(const SolveReport& report) {
     last_ = report;
     ++steps_;

@@ -28,6 +28,7 @@
   X(invariants, inariants, inavriants, invaiants, invairants, invaraints, invarants, invarians,   \
     invarianst, invariant, invariatns, invariats, invarients, invarinats, invarints, invraiants,  \
     invriants, ivariants, ivnariants)                                                             \
+  X(contacts, contact, contacs, contatcs, cotnacts, normal_reactions)                             \
   X(fields, feilds, felds, fiedls, fieds, fiels, fielsd, filds, fileds)                           \
   X(potential_differential, potential_diferential, potential_differental,                         \
     potential_differentials)                                                                      \

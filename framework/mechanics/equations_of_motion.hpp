@@ -55,8 +55,10 @@ class EquationsOfMotion {
     find_rates(t, g, xi);  // uses inertia_ and the rows as work space
     if (!known_ || !problem_.constant_inertia()) {
       problem_.inertia(g, inertia_);
-      find_root();
+      find_root(inertia_);
     }
+    if (singular_) [[unlikely]]
+      find_stiff_root(t, g);
     momentum_ = inertia_.lazyProduct(xi);
     problem_.force(t, g, xi, change_);
     if (!problem_.constant_inertia()) change_ -= inertia_rate_.lazyProduct(xi);
@@ -74,6 +76,7 @@ class EquationsOfMotion {
       reaction_ = b_rate_ - y_.transpose().lazyProduct(work_);
       solve_gram();
       work_ += y_.lazyProduct(reaction_);
+      if (singular_) reaction_ -= stiffness_ * b_rate_;
     }
     if (diagonal_) acceleration_ = root_.diagonal().cwiseProduct(work_);
     else acceleration_ = root_.transpose().lazyProduct(work_);
@@ -109,16 +112,20 @@ class EquationsOfMotion {
   }
 
   // root_ = W = L^-1, I = L L^T: rows of W from those above.
-  void find_root() {
+  void find_root(const typename Problem::Matrix& inertia) {
     known_ = true;
+    singular_ = false;
     const int n = problem_.dim();
     diagonal_ = true;
     for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) diagonal_ = diagonal_ && (i == j || inertia_(i, j) == 0);
+      for (int i = 0; i < n; ++i) diagonal_ = diagonal_ && (i == j || inertia(i, j) == 0);
     }
     root_.setZero();
     if (diagonal_) {
-      for (int i = 0; i < n; ++i) root_(i, i) = 1 / std::sqrt(inertia_(i, i));
+      for (int i = 0; i < n; ++i) {
+        singular_ = singular_ || !(inertia(i, i) > 0);
+        root_(i, i) = 1 / std::sqrt(inertia(i, i));
+      }
       return;
     }
     // w_i = (e_i - sum_{j<i} (w_j I e_i) w_j) / its length: Gram-Schmidt on e_i in the metric I, row by row.
@@ -126,14 +133,24 @@ class EquationsOfMotion {
       for (int l = 0; l <= i; ++l) work_[l] = l == i ? 1 : 0;
       for (int j = 0; j < i; ++j) {
         double product = 0;
-        for (int l = 0; l <= j; ++l) product += root_(j, l) * inertia_(l, i);
+        for (int l = 0; l <= j; ++l) product += root_(j, l) * inertia(l, i);
         for (int l = 0; l <= j; ++l) work_[l] -= product * root_(j, l);
       }
       double square = 0;
-      for (int l = 0; l <= i; ++l) square += work_[l] * inertia_(l, i);  // orthogonal to e_j, j < i
+      for (int l = 0; l <= i; ++l) square += work_[l] * inertia(l, i);  // orthogonal to e_j, j < i
+      singular_ = singular_ || !(square > 1e-14 * inertia(i, i));
       const double scale = 1 / std::sqrt(square);
       for (int l = 0; l <= i; ++l) root_(i, l) = scale * work_[l];
     }
+  }
+  // With massless links I is definite on ker A only. I + kappa A^T A has the same motions, as the term it adds to
+  // the momentum is a reaction: (I + kappa A^T A) xi' = change + A^T (lambda + kappa A xi').
+  [[gnu::noinline, gnu::cold]] void find_stiff_root(double t, const Element& g) {
+    problem_.constraints(t, g, a_, b_);
+    stiffness_ = inertia_.trace() / a_.squaredNorm();
+    const typename Problem::Matrix stiff = inertia_ + stiffness_ * a_.transpose().lazyProduct(a_);
+    find_root(stiff);
+    singular_ = true;
   }
   void apply_root(const Vector& mu, Vector& out) const {
     if (diagonal_) out = root_.diagonal().cwiseProduct(mu);
@@ -160,7 +177,8 @@ class EquationsOfMotion {
   }
 
   Problem problem_;
-  bool known_ = false, diagonal_ = false;
+  bool known_ = false, diagonal_ = false, singular_ = false;
+  double stiffness_ = 0;
   Vector acceleration_, momentum_, change_, work_;
   Few reaction_, b_, b_rate_;
   typename Problem::Rows a_, a_rate_;

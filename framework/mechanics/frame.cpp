@@ -7,15 +7,31 @@
 #include <Eigen/QR>
 
 namespace hamel {
+namespace {
+
+// Of ker A, orthonormal columns; the rows of A are independent.
+Eigen::MatrixXd basis_of_kernel(const Eigen::MatrixXd& constraints) {
+  const auto n = constraints.cols();
+  if (constraints.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(constraints.transpose());
+  const Eigen::MatrixXd q = qr.householderQ();
+  return q.rightCols(n - constraints.rows());
+}
+
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)
+      .eigenvalues();
+}
+bool definite(const Eigen::VectorXd& values) {
+  return values.minCoeff() > 1e-14 * values.maxCoeff();
+}
+
+}  // namespace
+
+bool is_definite(const Eigen::MatrixXd& symmetric) { return definite(eigenvalues(symmetric)); }
 
 Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints) {
-  const auto n = inertia.rows();
-  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(n, n);
-  if (constraints.rows() > 0) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(constraints.transpose());
-    const Eigen::MatrixXd q = qr.householderQ();
-    basis = q.rightCols(n - constraints.rows());
-  }
+  const Eigen::MatrixXd basis = basis_of_kernel(constraints);
   const Eigen::LLT<Eigen::MatrixXd> llt(basis.transpose() * inertia * basis);
   // E = B L^-T:  E^T I E = L^-1 (B^T I B) L^-T = Id.
   return llt.matrixL().solve(basis.transpose()).transpose();
@@ -24,23 +40,6 @@ Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixX
 std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
                                                const Eigen::MatrixXd& constraints, int n) {
   std::vector<std::string> mistakes;
-  if (inertia.rows() != n || inertia.cols() != n) {
-    mistakes.push_back(fmt::format("inertia: got {} x {}, expected {} x {}", inertia.rows(),
-                                   inertia.cols(), n, n));
-  } else if (!inertia.allFinite()) {
-    mistakes.push_back("inertia: an entry is not finite");
-  } else {
-    const double asymmetry = (inertia - inertia.transpose()).norm();
-    const Eigen::VectorXd values =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(inertia, Eigen::EigenvaluesOnly)
-            .eigenvalues();
-    if (asymmetry > 1e-12 * inertia.norm()) {
-      mistakes.push_back(fmt::format("inertia: not symmetric, |I - I'| = {:.3g}", asymmetry));
-    } else if (!(values.minCoeff() > 1e-14 * values.maxCoeff())) {
-      mistakes.push_back(fmt::format("inertia: not positive definite, eigenvalues {:.6g}",
-                                     fmt::join(values.begin(), values.end(), ", ")));
-    }
-  }
   if (constraints.cols() != n) {
     mistakes.push_back(
         fmt::format("constraints: rows of {} entries, expected {}", constraints.cols(), n));
@@ -54,6 +53,31 @@ std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
     } else if (rank == n) {
       mistakes.push_back(
           fmt::format("constraints: {} independent rows leave no motion in dimension {}", rank, n));
+    }
+  }
+  const bool sound = mistakes.empty();  // the rows
+  if (inertia.rows() != n || inertia.cols() != n) {
+    mistakes.push_back(fmt::format("inertia: got {} x {}, expected {} x {}", inertia.rows(),
+                                   inertia.cols(), n, n));
+  } else if (!inertia.allFinite()) {
+    mistakes.push_back("inertia: an entry is not finite");
+  } else if (const double asymmetry = (inertia - inertia.transpose()).norm();
+             asymmetry > 1e-12 * inertia.norm()) {
+    mistakes.push_back(fmt::format("inertia: not symmetric, |I - I'| = {:.3g}", asymmetry));
+  } else if (const Eigen::VectorXd values = eigenvalues(inertia); !definite(values)) {
+    const bool massless = values.maxCoeff() > 0 && values.minCoeff() > -1e-14 * values.maxCoeff();
+    if (!massless || !sound) {
+      mistakes.push_back(fmt::format("inertia: not positive definite, eigenvalues {:.6g}",
+                                     fmt::join(values.begin(), values.end(), ", ")));
+    } else {
+      const Eigen::MatrixXd basis = basis_of_kernel(constraints);
+      const Eigen::VectorXd reduced = eigenvalues(basis.transpose() * inertia * basis);
+      if (!definite(reduced)) {
+        mistakes.push_back(fmt::format(
+            "inertia: not positive definite, and not on the admissible velocities either, "
+            "eigenvalues {:.6g} there",
+            fmt::join(reduced.begin(), reduced.end(), ", ")));
+      }
     }
   }
   return mistakes;

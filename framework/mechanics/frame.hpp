@@ -13,8 +13,12 @@ namespace hamel {
 /// constraints: k x n of rank k.
 Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints);
 
+/// Are all eigenvalues positive, above 1e-14 of the largest?
+bool is_definite(const Eigen::MatrixXd& symmetric);
+
 /// The mistakes in an inertia and constraint rows for a group of dimension n: shape, NaN, symmetry, definiteness,
-/// rank. Empty when there are none.
+/// rank. Empty when there are none. Where the inertia is semidefinite, as with massless links, it has to be definite on
+/// ker A.
 std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
                                                const Eigen::MatrixXd& constraints, int n);
 

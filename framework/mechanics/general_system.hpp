@@ -112,6 +112,10 @@ class Formulas {
     if constexpr (constant_inertia()) out.setZero();
     else out = inertia_differential(g, xi);
   }
+  double power(double t, const Element& g, const Vec<n>& xi) const {
+    if constexpr (has_force<S>()) return Vec<n>(force_of(system_, t, g, xi)).dot(xi);
+    else return 0;
+  }
   double potential(const Element& g) const {
     if constexpr (has_potential<S>()) return system_.potential(g);
     else return 0;
@@ -245,6 +249,9 @@ class TypedMechanics final : public Mechanics {
   int holonomic_rows() const override { return r; }
   bool constant_inertia() const override { return F::constant_inertia(); }
   bool constant_constraints() const override { return F::constant_constraints(); }
+  bool autonomous() const override { return is_autonomous<S>(); }
+  bool has_force() const override { return hamel::has_force<S>(); }
+  bool has_drift() const override { return hamel::has_drift<S>(); }
 
   void inertia(const double* g, Matrix out) const override {
     Mat<n, n> i;
@@ -276,6 +283,9 @@ class TypedMechanics final : public Mechanics {
     to = out;
   }
   bool force_depends_on_velocity() const override { return has_force<S>(); }
+  double power(double t, const double* g, ConstVector xi) const override {
+    return formulas_.power(t, load(g), Eigen::Map<const Vec<n>>(xi.data()));
+  }
   double potential(const double* g) const override { return formulas_.potential(load(g)); }
 
   // For the laws that compare differentials.

@@ -29,6 +29,11 @@ class Mechanics {
   virtual bool constant_constraints() const { return false; }
   /// Constant inertia and rows A xi = 0, and nothing else.
   virtual bool left_invariant() const { return false; }
+  /// Are A, b and f the same at all times?
+  virtual bool autonomous() const { return true; }
+  /// Is there a force f beside the potential, a drift b? Else the energy is kept, (M47).
+  virtual bool has_force() const { return false; }
+  virtual bool has_drift() const { return false; }
 
   /// I(g), n x n.
   virtual void inertia(const double* g, Matrix out) const = 0;
@@ -46,6 +51,8 @@ class Mechanics {
   }
   /// Does f of (M3) depend on xi?
   virtual bool force_depends_on_velocity() const { return true; }
+  /// <f, xi>, the power of the force.
+  virtual double power(double /*t*/, const double* /*g*/, ConstVector /*xi*/) const { return 0; }
   /// V(g).
   virtual double potential(const double* /*g*/) const { return 0; }
 };
@@ -81,6 +88,8 @@ class UnconstrainedMechanics final : public Mechanics {
   bool left_invariant() const override { return system_->left_invariant(); }
   void inertia(const double* g, Matrix out) const override { system_->inertia(g, out); }
   void constraints(double, const double*, Matrix, Vector) const override {}
+  bool autonomous() const override { return system_->autonomous(); }
+  bool has_force() const override { return system_->has_force(); }
   void force(double t, const double* g, ConstVector xi, Vector out) const override {
     system_->force(t, g, xi, out);
   }
@@ -88,6 +97,9 @@ class UnconstrainedMechanics final : public Mechanics {
     system_->inertial_force(g, xi, out);
   }
   bool force_depends_on_velocity() const override { return system_->force_depends_on_velocity(); }
+  double power(double t, const double* g, ConstVector xi) const override {
+    return system_->power(t, g, xi);
+  }
   double potential(const double* g) const override { return system_->potential(g); }
 
  private:

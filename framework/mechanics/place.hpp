@@ -1,6 +1,6 @@
 // Inertia and constraint at one configuration, and a frame of the admissible velocities there.
 //
-// With D = diag(I) and A D^-1/2 = [L 0] O^T, O the product of k Householder reflections, the last m = n - k
+// With D = diag(I), a massless direction taken as the lightest other, and A D^-1/2 = [L 0] O^T, O the product of k Householder reflections, the last m = n - k
 // columns of D^-1/2 O are E, a basis of ker A with E^T D E = 1. The equations of a step, E^T r = 0 (r a
 // momentum) and c = 0 (k rows of velocities), are the n numbers
 //   (c_i / |D^-1/2 a_i|, E^T r) = 0,   a_i row i of A,                                       (*)
@@ -76,7 +76,9 @@ class Place {
       system.inertia(g, inertia);
       diagonal_ = true;
       for (int j = 0; j < n(); ++j) {
-        weights_[j] = 1 / std::sqrt(inertia(j, j));
+        if (!(inertia(j, j) > 0)) [[unlikely]]
+          diagonal_ = false;
+        weights_[j] = 1 / std::sqrt(diagonal_of_weights(j));
         for (int i = 0; i < n(); ++i) diagonal_ = diagonal_ && (i == j || inertia(i, j) == 0);
       }
     }
@@ -153,6 +155,15 @@ class Place {
   }
   static void add(double factor, const double* x, double* y, int count) {
     for (int i = 0; i < count; ++i) y[i] += factor * x[i];
+  }
+
+  double diagonal_of_weights(int j) const { return inertia(j, j) > 0 ? inertia(j, j) : lightest(); }
+  [[gnu::noinline, gnu::cold]] double lightest() const {
+    double out = 0;
+    for (int i = 0; i < n(); ++i) {
+      if (inertia(i, i) > 0 && (out == 0 || inertia(i, i) < out)) out = inertia(i, i);
+    }
+    return out;
   }
 
   // Column j of reflections_ is the vector of reflection j; its first j entries are 0.

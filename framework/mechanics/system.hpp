@@ -11,6 +11,8 @@
 //   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
 //   bool has_exact() const;            where the exact motion depends on the parameters
 //   void invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
+//   std::vector<int> contacts() const; the rows of A whose multiplier is a contact's normal reaction, which
+//                                      pushes where it is positive (differentials of a height, counted from 0)
 //   void draw(auto& scene) const;      how the report page shows it (drawing.hpp)
 //   static name(), summary(), formula(), known(), source()   words for `hamel describe`
 #pragma once
@@ -70,6 +72,7 @@ struct SystemModel {
   /// Empty when nothing is known exactly.
   std::function<ExactFlow(const Start&)> exact;
   std::vector<Invariant> invariants;
+  std::vector<int> contacts;  // the rows whose multiplier is a normal reaction
   Drawing drawing;
 };
 
@@ -230,6 +233,12 @@ SystemModel erase(const S& system) {
          }});
   };
   detail::tell_invariants(system, add);
+  if constexpr (requires { system.contacts(); }) {
+    model.contacts = system.contacts();
+  } else {
+    static_assert(!named::contacts<S>,
+                  "contacts of this system cannot be called: expected a const member contacts()");
+  }
   Scene<G> scene(model.drawing);
   detail::tell_drawing(system, scene);
   return model;

@@ -17,7 +17,7 @@ namespace named {
 struct Names {
   int constraints, drift, holonomic, potential, force, start, exact, has_exact, invariants, fields,
       draw, name, summary, formula, known, source, potential_differential, holonomic_differential,
-      inertia_differential;
+      inertia_differential, contacts;
 };
 template <class S, bool = std::is_final_v<S>>
 struct Both : S, Names {};
@@ -54,6 +54,7 @@ HAMEL_NAMED(source)
 HAMEL_NAMED(potential_differential)
 HAMEL_NAMED(holonomic_differential)
 HAMEL_NAMED(inertia_differential)
+HAMEL_NAMED(contacts)
 #undef HAMEL_NAMED
 
 }  // namespace named
@@ -145,6 +146,17 @@ template <class S, class Xi>
 auto force_of(const S& system, [[maybe_unused]] double t, const ElementOf<S>& g, const Xi& xi) {
   if constexpr (requires { system.force(t, g, xi); }) return system.force(t, g, xi);
   else return system.force(g, xi);
+}
+
+/// No member asks for the time.
+template <class S>
+constexpr bool is_autonomous() {
+  using Element = const ElementOf<S>&;
+  using Xi = const Vec<S::Group::dim>&;
+  constexpr bool rows = requires(const S& s, Element g) { s.constraints(0.0, g); };
+  constexpr bool drift = requires(const S& s, Element g) { s.drift(0.0, g); };
+  constexpr bool force = requires(const S& s, Element g, Xi xi) { s.force(0.0, g, xi); };
+  return !rows && !drift && !force;
 }
 
 template <class S>

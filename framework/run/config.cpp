@@ -140,6 +140,10 @@ void Config::set(const std::string& option, const std::string& text) {
 Config Config::from_toml(const std::string& text, const std::string& origin) {
   TomlReader read(origin);
   const toml::table table = read.parse(text);
+  if (const toml::node* node = table.get("system"); node != nullptr && node->is_array())
+    throw ConfigError({fmt::format("{0}: this file is a study (hamel study {0})", origin)});
+  if (table.contains("group") && table.contains("inertia"))
+    throw ConfigError({fmt::format("{0}: this file is a system by data (hamel run {0})", origin)});
   Config config;
   for (const auto& [name, node] : table) {
     const std::string key(name.str());
@@ -177,7 +181,7 @@ std::string Config::to_toml() const {
 }
 
 long Config::steps() const {
-  return static_cast<long>(std::floor(until / step * (1 + 1e-12) + 1e-9));
+  return static_cast<long>(std::floor((until - from) / step * (1 + 1e-12) + 1e-9));
 }
 
 std::vector<std::string> Config::mistakes() const {
@@ -195,11 +199,14 @@ std::vector<std::string> Config::mistakes() const {
     if constexpr (std::is_same_v<Value, std::vector<double>>)
       for (const double x : this->*member) look_at(option, x);
   });
-  if (std::isfinite(until) && std::isfinite(step) && step != 0) {
-    if (until / step < 0) refuse("until", until, "the sign of step");
-    else if (until / step > 9e15) refuse("until", until, "fewer than 9e15 steps");
-    else if (until != 0 && steps() == 0)
-      refuse("step", step, fmt::format("at most until, {}: no whole step fits", until).c_str());
+  const double span = until - from;
+  if (std::isfinite(span) && std::isfinite(step) && step != 0) {
+    if (span / step < 0 && from == 0) refuse("until", until, "the sign of step");
+    else if (span / step < 0)
+      refuse("until", until, fmt::format("a time beyond from, {}, as step has it", from).c_str());
+    else if (span / step > 9e15) refuse("until", until, "fewer than 9e15 steps");
+    else if (span != 0 && steps() == 0)
+      refuse("step", step, fmt::format("at most until, {}: no whole step fits", span).c_str());
   }
   return out;
 }

@@ -36,10 +36,12 @@ struct Config {
   std::string on_failure = "stop";
   double tolerance = 1e-13;
   double step = 0.01;
+  double from = 0;
   double until = 20;
   long every = 1;
   bool check = false;
   bool force = false;
+  bool no_exact = false;
 
   /// Calls f(Option, member pointer) for each option; axes in the order in which a study runs through them.
   template <class F>
@@ -66,7 +68,11 @@ struct Config {
     f(Option{"step", "s", "step, of either sign", true,
              [](double x) { return std::isfinite(x) && x != 0; }, "a finite number other than 0"},
       &Config::step);
-    f(Option{"until", "s", "end time, of the sign of the step; whole steps only", false,
+    f(Option{"from", "s", "start time: that of a forced run which goes on", false,
+             [](double x) { return std::isfinite(x); }, "a finite number"},
+      &Config::from);
+    f(Option{"until", "s",
+             "end time, beyond the start in the direction of the step; whole steps only", false,
              [](double x) { return std::isfinite(x); }, "a finite number"},
       &Config::until);
     f(Option{"every", "1", "record every this many steps, first and last always", false,
@@ -75,6 +81,7 @@ struct Config {
     f(Option{"check", "", "estimate the error: the run again with half the step, and a quarter"},
       &Config::check);
     f(Option{"force", "", "compose a step that is not reversible all the same"}, &Config::force);
+    f(Option{"no_exact", "", "leave out the comparison with the exact motion"}, &Config::no_exact);
   }
   /// The same for the members of a Start.
   template <class F>
@@ -89,12 +96,15 @@ struct Config {
   std::string text(const std::string& option) const;
   void set(const std::string& option, const std::string& text);
 
-  /// The number of whole steps: until / step rounded down, up to round-off.
+  /// The number of whole steps: (until - from) / step rounded down, up to round-off.
   long steps() const;
   /// As TOML; reads back to an equal Config.
   std::string to_toml() const;
   /// Keys as on the command line. Throws ConfigError with line and column, or the nearest key.
   static Config from_toml(const std::string& text, const std::string& origin = "config");
+  /// A run that goes on where that of a record (Result::record, `-o x.json`) ended: its system, parameters and options,
+  /// its last state as the start, its time as `from`, for as long again. ConfigError for what is no record.
+  static Config continued(const std::string& record, const std::string& origin = "record");
   /// Everything wrong with the numbers themselves (names are the registry's business).
   std::vector<std::string> mistakes() const;
 };

@@ -53,6 +53,8 @@ class DataMechanics final : public Mechanics {
   int dim() const override { return static_cast<int>(inertia_.rows()); }
   int rows() const override { return static_cast<int>(a_.rows()); }
   bool constant_constraints() const override { return true; }
+  bool has_force() const override { return !terms_.damping.isZero(0); }
+  bool has_drift() const override { return !b_.isZero(0); }
   void inertia(const double* /*g*/, Matrix out) const override { out = inertia_; }
   void constraints(double /*t*/, const double* /*g*/, Matrix a, Vector b) const override {
     a = a_;
@@ -64,6 +66,9 @@ class DataMechanics final : public Mechanics {
     return terms_.weight.dot(columns_) + 0.5 * (terms_.stiffness.array() * off * off).sum();
   }
   bool force_depends_on_velocity() const override { return !terms_.damping.isZero(0); }
+  double power(double /*t*/, const double* /*g*/, ConstVector xi) const override {
+    return -terms_.damping.dot(xi.cwiseAbs2());
+  }
   void force(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
     out = -terms_.damping.cwiseProduct(xi);
     if (!terms_.potential()) return;
@@ -90,6 +95,13 @@ class File {
 
   SystemModel read(const std::string& text) {
     const toml::table table = read_.parse(text);
+    if (const toml::node* other = table.get("system")) {
+      throw ConfigError({fmt::format(
+          "{}: this file is {}, no system by data", origin_,
+          other->is_array()
+              ? fmt::format("a study (hamel study {})", origin_)
+              : fmt::format("the configuration of a run (hamel run --config {})", origin_))});
+    }
     SystemModel model;
     model.name = origin_;
     model.group = group_of(table);

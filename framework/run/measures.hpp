@@ -22,7 +22,10 @@ struct Quantity {
 };
 
 // At each state.
-inline constexpr Quantity kEnergyError = {"energy_error", "1", "(E - E0) / |E0|", "energy error"};
+inline constexpr Quantity kEnergyError = {
+    "energy_error", "1", "(E - E0) / |E0|; where work is done (E - E0 - work) / max |E|",
+    "energy error"};
+inline constexpr Quantity kWork = {"work", "J", "of forces and moving constraints", "work done"};
 inline constexpr Quantity kConstraint = {
     "constraint", "columns of xi", "|A xi/h - b|, from the configurations", "constraint residual"};
 inline constexpr Quantity kHolonomic = {"holonomic", "columns of g", "|phi(g)|",
@@ -39,6 +42,8 @@ inline constexpr Quantity kExactError = {"exact_error", "columns of g",
 inline constexpr Quantity kExactVelocityError = {"exact_velocity_error", "columns of xi",
                                                  "distance from the exact velocity"};
 // Over a run.
+inline constexpr Quantity kEnergyBalanceError = {"energy_balance_error", "1",
+                                                 "(E - E0 - work) / max |E|"};
 inline constexpr Quantity kReactionWork = {
     "reaction_work", "J", "of A^T lambda, by trapezoids over the rows", "work of reactions"};
 
@@ -52,6 +57,12 @@ struct InvariantDrift {
   std::string name;
   double start = 0;
   double drift_max = 0;  // max |value - start|
+};
+
+/// The energy balance at a state, (M48).
+struct BalancedState {
+  double work;   // J, since the start
+  double error;  // (E - E0 - work) / max |E|
 };
 
 /// (E - E0) / |E0|; E where E0 = 0.
@@ -81,6 +92,8 @@ struct Measurements {
   double group_defect_max = 0;
   double energy_error_max = 0;
   double rotation_per_step_max = kNone;
+  double energy_balance_error_max = kNone,
+         work = kNone;  // the same number, and W, where work is done
   double reaction_work = kNone;
   double exact_error_final = kNone, exact_error_max = kNone, exact_velocity_error_max = kNone;
   double estimated_error = kNone, observed_order = kNone;
@@ -94,6 +107,8 @@ struct Measurements {
     f(kGroupDefect, "_max", &Measurements::group_defect_max);
     f(kEnergyError, "_max", &Measurements::energy_error_max);
     f(kRotation, "_max", &Measurements::rotation_per_step_max);
+    f(kEnergyBalanceError, "_max", &Measurements::energy_balance_error_max);
+    f(kWork, "", &Measurements::work);
     f(kReactionWork, "", &Measurements::reaction_work);
     f(kExactError, "_final", &Measurements::exact_error_final);
     f(kExactError, "_max", &Measurements::exact_error_max);
@@ -113,6 +128,13 @@ struct Measurements {
       rotation_per_step_max = std::fmax(rotation_per_step_max, state.rotation);
     }
     return error;
+  }
+  /// After the last state, where work is done: the balance at the states in place of what take() saw.
+  void balance(const std::vector<BalancedState>& states) {
+    energy_error_max = 0;
+    for (const BalancedState& state : states) raise(energy_error_max, state.error);
+    energy_balance_error_max = energy_error_max;
+    work = states.back().work;
   }
   /// The distances of the element's columns and of the velocity.
   std::pair<double, double> compare(const Snapshot& state, std::span<const double> element,

@@ -1,11 +1,25 @@
 #include <hamel/framework/run/meter.hpp>
 
+#include <cmath>
+
+#include <fmt/format.h>
+
 namespace hamel {
 
 Meter::Meter(const SystemModel& system, const Start& start,
              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
-             double lag)
-    : system_(system), start_(start), geometry_(std::move(geometry)), lag_(lag) {
+             const std::shared_ptr<const Mechanics>& acting, double lag)
+    : system_(system),
+      start_(start),
+      balance_(geometry, acting),
+      pulls_(system.contacts.size()),
+      geometry_(std::move(geometry)),
+      lag_(lag) {
+  if (balance_.active()) {
+    notes_.push_back(
+        "forces or moving constraints do work: the energy error is the defect of the energy "
+        "balance, relative to the largest energy");
+  }
   holonomic_ = mechanics->holonomic_rows() > 0;
   if (holonomic_) all_.holonomic_max = 0;
   if (geometry_ != nullptr && mechanics->rows() > 0) {
@@ -33,7 +47,10 @@ void Meter::add_numbered(const char* name, std::span<const double> values) {
 }
 
 void Meter::take(const Snapshot& state) {
-  if (first_) energy_start_ = state.energy;
+  if (first_) {
+    energy_start_ = state.energy;
+    time_start_ = state.time;
+  }
   const double error = all_.take(state, energy_start_);
   row_.clear();
   add("t", state.time);
@@ -50,6 +67,10 @@ void Meter::take(const Snapshot& state) {
 }
 
 void Meter::compare(const Snapshot& state) {
+  if (balance_.active()) {
+    balance_.row();
+    add(kWork.name, 0);  // until finish
+  }
   if (motion_ != nullptr) react(state);
   for (size_t i = 0; i < system_.invariants.size(); ++i) {
     const Invariant& invariant = system_.invariants[i];
@@ -60,10 +81,15 @@ void Meter::compare(const Snapshot& state) {
   if (system_.exact) {
     if (first_)
       exact_ = system_.exact({.configuration = state.coordinates, .velocity = start_.velocity});
-    const auto [element, velocity] = exact_(state.time);
+    const auto [element, velocity] = exact_(state.time - time_start_);
     const auto [error, velocity_error] = all_.compare(state, element, velocity);
     add(kExactError.name, error);
     add(kExactVelocityError.name, velocity_error);
+    if (!exact_lost_ && !std::isfinite(error) && std::isfinite(state.energy)) {
+      exact_lost_ = true;
+      notes_.push_back(fmt::format(
+          "the exact motion was not followed to t = {:.6g}: it turns too fast", state.time));
+    }
   }
   first_ = false;
 }
@@ -86,12 +112,30 @@ void Meter::react(const Snapshot& state) {
   time_ = state.time;
   power_ = power;
   power_time_ = at;
+  for (size_t i = 0; i < pulls_.size(); ++i) {
+    const int row = system_.contacts[i];
+    if (pulls_[i] || !(now[row] < -1e-9 * now.lpNorm<Eigen::Infinity>())) continue;
+    pulls_[i] = true;
+    notes_.push_back(
+        fmt::format("the contact pulls from t = {:.6g} on, lambda{} < 0: a body that is not held "
+                    "would lift off",
+                    state.time, row + 1));
+  }
   add_numbered("lambda", {lambda_.data(), static_cast<size_t>(lambda_.size())});
   add(kReactionPower.name, power);
 }
 
-Measurements Meter::finish() {
+Measurements Meter::finish(Trajectory& rows) {
   if (motion_ != nullptr) all_.reaction_work += power_ * (time_ - power_time_);
+  if (balance_.active()) {
+    const size_t error = rows.index(kEnergyError.name), work = rows.index(kWork.name);
+    const std::vector<BalancedState> balance = balance_.rows();
+    all_.balance(balance);
+    for (size_t i = 0; i < rows.rows(); ++i) {
+      rows.at(i, error) = balance[i].error;
+      rows.at(i, work) = balance[i].work;
+    }
+  }
   return std::move(all_);
 }
 

@@ -9,17 +9,24 @@
 
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/energy_balance.hpp>
 #include <hamel/framework/run/measures.hpp>
+#include <hamel/framework/run/result.hpp>
 #include <hamel/framework/schemes/erased.hpp>
 
 namespace hamel {
 
 class Meter {
  public:
-  /// lag: from a step's velocity to its end. geometry: null for a group that is not registered.
+  /// lag: from a step's velocity to its end. geometry: null for a group that is not registered. acting: mechanics,
+  /// without its rows where the scheme does not keep them.
   Meter(const SystemModel& system, const Start& start, std::shared_ptr<const Geometry> geometry,
-        std::shared_ptr<const Mechanics> mechanics, double lag);
+        std::shared_ptr<const Mechanics> mechanics, const std::shared_ptr<const Mechanics>& acting,
+        double lag);
 
+  /// Does it want every node, not the recorded states only?
+  bool wants_nodes() const { return balance_.active(); }
+  void node(const Snapshot& state) { balance_.node(state); }
   /// Begins the row of a state with what the kernel measured of it (the columns of tools/README.md).
   void take(const Snapshot& state);
   /// Ends it with what the equations of motion, the invariants and the exact motion say.
@@ -27,8 +34,10 @@ class Meter {
   /// The names of the row's columns, after the first.
   const std::vector<std::string>& columns() const { return columns_; }
   const std::vector<double>& row() const { return row_; }
-  /// After the last state.
-  Measurements finish();
+  /// After the last state; completes the columns of the rows.
+  Measurements finish(Trajectory& rows);
+  /// What the user should know.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   // Adds to the row, and to the names of its columns while it is the first.
@@ -43,8 +52,12 @@ class Meter {
   std::vector<double> row_;
   Measurements all_;
   bool first_ = true, holonomic_ = false;
-  double energy_start_ = 0;
+  double energy_start_ = 0, time_start_ = 0;
+  EnergyBalance balance_;
   ExactFlow exact_;
+  bool exact_lost_ = false;  // said already
+  std::vector<std::string> notes_;
+  std::vector<bool> pulls_;  // of the contacts, said already
   // The multipliers lambda of A xi = b, from the continuous equations at each state, and their power
   // lambda . A v in the last step before it, A v recovered from the configurations (Snapshot::row_rates) and
   // lambda interpolated to the same time, `lag` before the state: round-off where b = 0, the power that a

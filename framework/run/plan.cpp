@@ -48,6 +48,15 @@ std::vector<std::string> read_on_failure(const Config& config, const Registry& r
 
 }  // namespace
 
+std::vector<std::string> unused_options(const SchemeInfo& scheme, const std::string& on_failure) {
+  std::vector<std::string> out;
+  if (!scheme.uses_s) out.emplace_back("s");
+  if (!scheme.explicit_step) return out;
+  out.insert(out.end(), {"solver", "tolerance"});
+  if (on_failure != "halve") out.emplace_back("on_failure");
+  return out;
+}
+
 Simulation::Plan Simulation::plan() const {
   Plan plan;
   plan.config = config_;
@@ -60,6 +69,8 @@ Simulation::Plan Simulation::plan() const {
     plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
   } else {
     plan.config.scheme = scheme->name;  // config_ may name an alias
+    plan.keeps_rows = scheme->adapted;
+    plan.unused = unused_options(*scheme, config_.on_failure);
     if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
   }
   const SolverInfo* solver = registry_->solver(config_.solver);
@@ -146,21 +157,40 @@ Simulation::Plan Simulation::plan() const {
 
   if (scheme != nullptr && geometry != nullptr) plan.check_composition(*scheme, left_invariant);
 
-  const double rows = std::abs(config_.until / config_.step) / static_cast<double>(config_.every);
+  const double rows =
+      std::abs((config_.until - config_.from) / config_.step) / static_cast<double>(config_.every);
   const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
-  if (rows * width > kMaxNumbers) {
+  if (rows < 9e15 && rows * width > kMaxNumbers) {
     plan.add({fmt::format(
         "every: {:.3g} rows would be recorded, more than memory holds; record "
         "every {:.0f} steps or more",
         rows, std::ceil(rows * static_cast<double>(config_.every) * width / kMaxNumbers))});
   }
+  if (scheme != nullptr && !scheme->steps_admissible && plan.mistakes.empty() &&
+      !is_definite(plan.inertia)) {
+    plan.add(
+        {fmt::format("scheme: {} needs a definite inertia; with massless links lift and "
+                     "balance are offered",
+                     scheme->name)});
+  }
   if (!plan.mistakes.empty()) return plan;
   plan.project();
-  if (const double end = static_cast<double>(config_.steps()) * config_.step;
-      std::abs(end - config_.until) > 1e-9 * std::abs(config_.until)) {
+  if (const double end = config_.from + static_cast<double>(config_.steps()) * config_.step;
+      std::abs(end - config_.until) > 1e-9 * std::abs(config_.until - config_.from)) {
     plan.notes.push_back(
         fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}", end,
                     config_.step, config_.until));
+  }
+  if (config_.no_exact) plan.system.exact = nullptr;
+  if (config_.from != 0 && plan.system.exact && !plan.mechanics->autonomous()) {
+    plan.system.exact = nullptr;
+    plan.notes.push_back("the exact motion is known from t = 0 on only: there is no comparison");
+  }
+  plan.setup.from = config_.from;
+  for (const std::string& option : plan.unused) {
+    if (config_.text(option) != Config().text(option)) {
+      plan.notes.push_back(fmt::format("{} is not used by {}", option, plan.config.scheme));
+    }
   }
   plan.setup.s = plan.config.s;
   plan.setup.step = config_.step;
@@ -232,7 +262,7 @@ void Simulation::Plan::look_at_start() {
   inertia.resize(mechanics->dim(), mechanics->dim());
   drift.resize(mechanics->rows());
   mechanics->inertia(g.data(), inertia);
-  mechanics->constraints(0, g.data(), constraints, drift);
+  mechanics->constraints(config.from, g.data(), constraints, drift);
   Eigen::VectorXd phi(mechanics->holonomic_rows());
   mechanics->holonomic(g.data(), phi);
   if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
@@ -253,7 +283,7 @@ void Simulation::Plan::satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g) {
     geometry->tau(move.data(), turn.data());
     geometry->compose(g.data(), turn.data(), g.data());
     mechanics->inertia(g.data(), inertia);
-    mechanics->constraints(0, g.data(), constraints, drift);
+    mechanics->constraints(config.from, g.data(), constraints, drift);
     mechanics->holonomic(g.data(), phi);
   }
   if (!(phi.lpNorm<Eigen::Infinity>() < 1e-12)) {
@@ -279,9 +309,10 @@ void Simulation::Plan::project() {
   const Eigen::VectorXd mu = by_velocity ? Eigen::VectorXd(inertia * datum) : datum;
   const Eigen::VectorXd mu_bar = frame.transpose() * mu;
   Eigen::VectorXd velocity = frame * mu_bar;
-  if (drift.size() > 0) {  // the shortest xi with A xi = b
-    const Eigen::MatrixXd reach = inertia.ldlt().solve(constraints.transpose());
-    velocity += reach * (constraints * reach).ldlt().solve(drift);
+  if (drift.size() > 0) {  // E y + xi_b with A xi_b = b and E^T I xi_b = 0
+    const Eigen::VectorXd some =
+        constraints.transpose() * (constraints * constraints.transpose()).ldlt().solve(drift);
+    velocity += some - frame * (frame.transpose() * (inertia * some));
   }
   const Eigen::VectorXd dropped =
       datum - (by_velocity ? velocity : Eigen::VectorXd(inertia * velocity));

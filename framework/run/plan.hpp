@@ -8,15 +8,20 @@
 
 namespace hamel {
 
+/// The options of a run that a scheme makes no use of: s; solver, tolerance and, but for "halve", on_failure of explicit
+/// ones, which solve no equation. Half an explicit step may succeed where the whole left the domain of tau.
+std::vector<std::string> unused_options(const SchemeInfo& scheme, const std::string& on_failure);
+
 // Everything that a run needs, or all its mistakes.
 struct Simulation::Plan {
-  std::vector<std::string> mistakes, notes;
+  std::vector<std::string> mistakes, notes, unused;
   Config config;
   SystemModel system;
   Eigen::MatrixXd inertia, constraints;  // at the start
   Eigen::VectorXd drift;
   std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
   std::shared_ptr<const Mechanics> mechanics;
+  bool keeps_rows = true;  // the scheme does
   KernelSetup setup;
   KernelFactory kernel;
 

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/version.hpp>
 
 namespace hamel {
@@ -74,8 +75,10 @@ Json record_of(const Result& r) {
   });
   diagnostics["invariants"] = invariants;
   Json out = {{"system", r.system.name}, {"group", r.system.group.name}};
-  Config::fields(
-      [&](const Option& option, auto member) { out[option.name] = json_of(r.config.*member); });
+  Config::fields([&](const Option& option, auto member) {
+    const bool used = std::find(r.unused.begin(), r.unused.end(), option.name) == r.unused.end();
+    out[option.name] = used ? json_of(r.config.*member) : Json(nullptr);
+  });
   out.update(Json{
       {"parameters", parameters},
       {"start",
@@ -92,6 +95,7 @@ Json record_of(const Result& r) {
                                      {"residual", json_of(r.status.residual)}}},
       {"final",
        {{"element", element(r)},
+        {"configuration", json_of(r.last.coordinates)},
         {"velocity", json_of(r.last.velocity)},
         {"momentum", json_of(r.last.momentum)},
         {"energy", json_of(r.last.energy)}}},
@@ -129,13 +133,48 @@ std::vector<double> Trajectory::column(const std::string& name) const {
   return out;
 }
 
+// The way back from record_of.
+Config Config::continued(const std::string& record, const std::string& origin) {
+  Config config;
+  try {
+    const Json json = Json::parse(record);
+    config.system = json.at("system").get<std::string>();
+    fields([&](const Option& option, auto member) {
+      const auto it = json.find(option.name);
+      if (it == json.end() || it->is_null()) return;
+      read_text(option.name, it->is_string() ? it->get<std::string>() : it->dump(), config.*member);
+    });
+    for (const auto& [name, value] : json.at("parameters").items()) {
+      config.parameters[name] = value.is_array() ? value.get<std::vector<double>>()
+                                                 : std::vector<double>{value.get<double>()};
+    }
+    const Json& last = json.at("final");
+    config.start.configuration = last.at("configuration").get<std::vector<double>>();
+    config.start.velocity = last.at("velocity").get<std::vector<double>>();
+    const double span = config.until - config.from;
+    config.from = json.at("time").get<double>();
+    config.until = config.from + span;
+  } catch (const Json::exception& error) {
+    throw ConfigError({fmt::format("{}: not the record of a run (hamel run … -o x.json): {}",
+                                   origin, error.what())});
+  }
+  return config;
+}
+
 std::string Result::record(int indent) const { return record_of(*this).dump(indent); }
+
+std::string Result::method() const {
+  const auto used = [&](const char* option) {
+    return std::find(unused.begin(), unused.end(), option) == unused.end();
+  };
+  return config.scheme + (used("s") ? fmt::format(" (s = {})", config.s) : "") + ", " +
+         config.retraction + (used("solver") ? ", " + config.solver : "") +
+         (config.compose == "none" ? "" : ", composed by " + config.compose);
+}
 
 std::string Result::report() const {
   std::string out =
-      fmt::format("{} on {}: {} (s = {}), {}, {}{}, h = {}\n", system.name, system.group.name,
-                  config.scheme, config.s, config.retraction, config.solver,
-                  config.compose == "none" ? "" : ", composed by " + config.compose, config.step);
+      fmt::format("{} on {}: {}, h = {}\n", system.name, system.group.name, method(), config.step);
   const double count = static_cast<double>(std::max(steps, 1L));
   const auto line = [&](const std::string& name, const std::string& value) {
     out += fmt::format("  {:<22} {}\n", name, value);
@@ -164,7 +203,8 @@ std::string Result::report() const {
     // NaN: there is no such thing here; of an energy or a constraint, something went wrong.
     const bool always = member == &Result::energy_error_max || member == &Result::constraint_max;
     if (*quantity.title == 0 || (!always && std::isnan(value))) return;
-    line(quantity.title,
+    const bool balance = member == &Result::energy_error_max && std::isfinite(work);
+    line(balance ? "energy balance" : quantity.title,
          fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
                      member == &Result::constraint_max ? ", " + constraints_in_words(system) : ""));
   });

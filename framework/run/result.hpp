@@ -21,6 +21,7 @@ class Trajectory {
     return std::span(values_).subspan(i * columns_.size(), columns_.size());
   }
   double at(size_t i, size_t j) const { return values_[i * columns_.size() + j]; }
+  double& at(size_t i, size_t j) { return values_[i * columns_.size() + j]; }
   /// The index of a column; ConfigError naming the nearest when there is none.
   size_t index(const std::string& column) const;
   std::vector<double> column(const std::string& name) const;
@@ -38,7 +39,8 @@ class Trajectory {
 struct Result : Measurements {
   Config config;  // as it was run: start and parameters filled in
   SystemModel system;
-  std::vector<std::string> notes;  // what the user should know (a start that was projected, ...)
+  std::vector<std::string> unused;  // options that the scheme makes no use of
+  std::vector<std::string> notes;   // what the user should know (a start that was projected, ...)
   Status status;
   Snapshot last;  // the last good state
   long steps = 0;
@@ -47,6 +49,8 @@ struct Result : Measurements {
   double seconds = 0;  // of the time loop, recording included
 
   explicit operator bool() const { return status.ok; }
+  /// "lift (s = 0.5), cayley, newton": the method, without what the scheme makes no use of.
+  std::string method() const;
   /// The record of tools/README.md as JSON; indent < 0 for one line.
   std::string record(int indent = 2) const;
   /// One screen of text: status, iterations, drifts, error against the exact solution.

@@ -68,11 +68,14 @@ Result Simulation::run() const {
   Result result;
   result.config = plan.config;
   result.system = plan.system;
+  result.unused = plan.unused;
   result.notes = plan.notes;
   const std::unique_ptr<Kernel> kernel = plan.kernel(plan.setup);
   const long steps = config_.steps(), every = config_.every;
   const double lag = (1 - plan.setup.s) * plan.setup.composition.back() * plan.setup.step;
-  Meter meter(result.system, result.config.start, plan.geometry, plan.mechanics, lag);
+  const std::shared_ptr<const Mechanics> acting =
+      plan.keeps_rows ? plan.mechanics : std::make_shared<UnconstrainedMechanics>(plan.mechanics);
+  Meter meter(result.system, result.config.start, plan.geometry, plan.mechanics, acting, lag);
   using Clock = std::chrono::steady_clock;
   Clock::duration comparing{};  // is no part of the time of a run
   Snapshot& state = result.last;
@@ -91,11 +94,23 @@ Result Simulation::run() const {
     result.trajectory.append(meter.row());
     return !observer_ || observer_(state);
   };
+  Snapshot node;
+  const auto look = [&] {
+    kernel->state(node);
+    meter.node(node);
+  };
+  const auto advance = [&](long count) {
+    if (!meter.wants_nodes()) return kernel->advance(count);
+    Status status;
+    for (long i = 0; i < count && (status = kernel->advance(1)).ok; ++i) look();
+    return status;
+  };
+  if (meter.wants_nodes()) look();
   const auto begin = Clock::now();
   auto next_progress = begin + std::chrono::milliseconds(200);
   bool go_on = record();
   for (long done = 0; go_on && done < steps; done += every) {
-    result.status = kernel->advance(std::min(every, steps - done));
+    result.status = advance(std::min(every, steps - done));
     const bool wanted = record();
     if (!result.status.ok) break;
     if (!wanted) {
@@ -110,7 +125,8 @@ Result Simulation::run() const {
   result.seconds = std::chrono::duration<double>(Clock::now() - begin - comparing).count();
   result.steps = state.step;
   result.stats = kernel->stats();
-  static_cast<Measurements&>(result) = meter.finish();
+  static_cast<Measurements&>(result) = meter.finish(result.trajectory);
+  result.notes.insert(result.notes.end(), meter.notes().begin(), meter.notes().end());
   add_notes(result);
   if (config_.check && result.status.ok) estimate_error(result);
   return result;

@@ -88,7 +88,9 @@ class Simulation {
   Simulation& compose(std::string name) { return with(&Config::compose, std::move(name)); }
   /// The step h in seconds, of either sign.
   Simulation& step(double h) { return with(&Config::step, h); }
-  /// The end time in seconds, of the sign of h.
+  /// The start time in seconds.
+  Simulation& from(double t) { return with(&Config::from, t); }
+  /// The end time in seconds, beyond the start in the direction of h.
   Simulation& until(double t) { return with(&Config::until, t); }
   /// Record every this many steps (the first and the last state always).
   Simulation& every(long steps) { return with(&Config::every, steps); }

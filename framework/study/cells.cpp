@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/run/plan.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/study/parts.hpp>
 
@@ -24,20 +25,17 @@ int claim(const Registry& registry, const StudyCell& cell, const SystemModel& sy
 }
 
 // What a scheme makes no use of is empty in `axes` and the default in `run`, so that one cell stands for all
-// values. An explicit step that fails is not solved by another solver, but halves of it may well succeed.
+// values.
 void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, std::string>& axes,
                   Config& run) {
   const auto leave = [&](const char* axis) {
     axes[axis] = "";
     run.set(axis, Config().text(axis));
   };
-  if (!scheme.uses_s) leave("s");
-  if (!scheme.explicit_step) return;
-  leave("solver");
-  leave("tolerance");
-  if (run.on_failure == "halve") return;
-  leave("on_failure");
-  if (halving) axes["on_failure"] = run.on_failure;
+  for (const std::string& option : unused_options(scheme, run.on_failure)) {
+    leave(option.c_str());
+    if (option == "on_failure" && halving) axes[option] = run.on_failure;
+  }
 }
 
 // Why a cell is another one's duplicate: "boxed does not use s: one cell stands for all".

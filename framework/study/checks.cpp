@@ -246,6 +246,7 @@ std::vector<std::string> StudyConfig::mistakes(const Registry& registry) const {
 std::string StudyConfig::fingerprint() const {
   std::string out = fmt::format("mode = {}\nuntil = {}\nrepeats = {}\n",
                                 zipped ? "zipped" : "factorial", until, repeats);
+  if (!reference) out += "reference = false\n";
   for (const StudySystem& system : systems) {
     out += fmt::format("system {} = {}, configuration ({}), velocity ({}), momentum ({})",
                        system.label, system.name, join(system.start.configuration),

@@ -25,6 +25,7 @@ std::vector<std::vector<size_t>> groups(const std::vector<StudyCell>& cells, con
 }  // namespace
 
 void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
+             const std::vector<std::vector<bool>>& angles,
              const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics) {
   for (auto& group : groups(cells, "step")) {
     std::sort(group.begin(), group.end(),
@@ -56,7 +57,7 @@ void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
     for (auto i = first + 1; i != group.end(); ++i)
       if (metrics[*i].ok)
         metrics[*i].solver_difference =
-            euclidean_distance(metrics[*i].final, metrics[*first].final);
+            distance(angles[cells[*i].system], metrics[*i].final, metrics[*first].final);
   }
 }
 

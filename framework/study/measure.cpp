@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include <hamel/framework/run/energy_balance.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
@@ -32,12 +34,30 @@ double processor_time() {
 // Follows a run along the reference.
 class Meter {
  public:
-  Meter(const StudyReference& reference, StudyMetrics& out) : reference_(reference), out_(out) {
+  Meter(const GroupInfo& group, const StudyReference& reference, EnergyBalance balance,
+        StudyMetrics& out)
+      : angles_(angle_columns(group)),
+        reference_(reference),
+        balance_(std::move(balance)),
+        out_(out) {
     if (reference.coordinates.empty()) return;
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
   }
 
+  // That many steps, every node of them where the balance wants it.
+  Status advance(Integration& run, long steps, const std::atomic<bool>* stop) {
+    if (!balance_.active()) return study::advance(run, steps, stop);
+    Status status;
+    for (long i = 0; i < steps && !stopped(stop) && (status = run.step()).ok; ++i)
+      balance_.node(run.state());
+    return status;
+  }
+  void start(const Snapshot& state) {
+    if (balance_.active()) balance_.node(state);
+    row(state);
+  }
   void row(const Snapshot& state) {
+    if (balance_.active()) balance_.row();
     if (times_.empty()) energy_start_ = state.energy;
     times_.push_back(state.time);
     energy_.push_back(all_.take(state, energy_start_));
@@ -45,12 +65,18 @@ class Meter {
   }
   void compare(const Snapshot& state, size_t k) {
     if (reference_.coordinates.empty()) return;
-    all_.compare(state, reference_.coordinates[k], reference_.velocities[k]);
+    all_.compare(state, turned_towards(angles_, state.coordinates, reference_.coordinates[k]),
+                 reference_.velocities[k]);
   }
   void finish(Integration& run) {
     const SolverStats& stats = run.stats();
     const Snapshot& state = run.state();
     out_.done = true;
+    if (balance_.active()) {
+      const std::vector<BalancedState> states = balance_.rows();
+      all_.balance(states);
+      for (size_t i = 0; i < states.size(); ++i) energy_[i] = states[i].error;
+    }
     out_.steps = state.step;
     out_.time = state.time;
     out_.final = state.coordinates;
@@ -73,7 +99,9 @@ class Meter {
   }
 
  private:
+  std::vector<bool> angles_;
   const StudyReference& reference_;
+  EnergyBalance balance_;
   StudyMetrics& out_;
   Measurements all_;
   double energy_start_ = 0, size_ = 0;
@@ -81,6 +109,26 @@ class Meter {
 };
 
 }  // namespace
+
+std::vector<bool> angle_columns(const GroupInfo& group) {
+  std::vector<bool> out;
+  for (const std::string& column : group.columns)
+    out.push_back(column == "theta" || column.ends_with("_theta"));
+  return out;
+}
+
+std::vector<double> turned_towards(const std::vector<bool>& angles, std::span<const double> other,
+                                   std::vector<double> element) {
+  constexpr double turn = 2 * std::numbers::pi;
+  for (size_t j = 0; j < element.size(); ++j)
+    if (angles[j]) element[j] += turn * std::round((other[j] - element[j]) / turn);
+  return element;
+}
+
+double distance(const std::vector<bool>& angles, const std::vector<double>& a,
+                const std::vector<double>& b) {
+  return euclidean_distance(a, turned_towards(angles, a, b));
+}
 
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
   const double n = static_cast<double>(x.size());
@@ -103,12 +151,17 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
   const long steps = cell.config.steps();
   const long intervals = static_cast<long>(reference.times.size()) - 1;
   const long rows = rows_each(steps / intervals, intervals), every = steps / (intervals * rows);
-  Meter meter(reference, out);
+  const SystemModel& model = run.system();
+  const auto geometry = registry.geometry(model.group.name, cell.config.retraction);
+  const bool adapted = registry.scheme(cell.config.scheme)->adapted;
+  const std::shared_ptr<const Mechanics> acting =
+      adapted ? model.mechanics : std::make_shared<UnconstrainedMechanics>(model.mechanics);
+  Meter meter(model.group, reference, EnergyBalance(geometry, acting), out);
   out.ok = true;
-  meter.row(run.state());
+  meter.start(run.state());
   meter.compare(run.state(), 0);
   for (long row = 1; row <= intervals * rows; ++row) {
-    const Status status = advance(run, every, stop);
+    const Status status = meter.advance(run, every, stop);
     if (stopped(stop)) return out;
     const Snapshot& state = run.state();
     meter.row(state);

@@ -53,8 +53,9 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
 double time_per_step(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const std::atomic<bool>* stop);
 
-/// Measured orders and the distances between solvers, from all cells together.
+/// Measured orders and the distances between solvers, from all cells together; angles of each system.
 void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
+             const std::vector<std::vector<bool>>& angles,
              const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics);
 
 /// The columns of the table that a cell which was run has: f(Quantity, member pointer) for what one run of it
@@ -112,6 +113,15 @@ void measured_columns(F&& f) {
   f(Quantity{"seconds", "s", "steps times ns_per_step"},
     [](C, M m, R) { return 1e-9 * m.nanoseconds_median() * static_cast<double>(m.steps); });
 }
+
+/// Which of a group's columns are angles: those called theta, in products too.
+std::vector<bool> angle_columns(const GroupInfo& group);
+/// An element's columns, its angles turned by full turns to be next to those of another.
+std::vector<double> turned_towards(const std::vector<bool>& angles, std::span<const double> other,
+                                   std::vector<double> element);
+/// Euclidean distance of two elements' columns, angles by what is left of full turns.
+double distance(const std::vector<bool>& angles, const std::vector<double>& a,
+                const std::vector<double>& b);
 
 /// Least-squares slope of y over x; NaN for fewer than two different x.
 double slope(const std::vector<double>& x, const std::vector<double>& y);

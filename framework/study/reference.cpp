@@ -25,10 +25,10 @@ struct Motion {
   std::vector<std::vector<double>> coordinates, velocities;
 };
 
-double apart(const Motion& a, const Motion& b) {
+double apart(const std::vector<bool>& angles, const Motion& a, const Motion& b) {
   double out = 0;
   for (size_t k = 0; k < a.coordinates.size(); ++k) {
-    raise(out, euclidean_distance(a.coordinates[k], b.coordinates[k]));
+    raise(out, distance(angles, a.coordinates[k], b.coordinates[k]));
     raise(out, euclidean_distance(a.velocities[k], b.velocities[k]));
   }
   return out;
@@ -56,7 +56,9 @@ class Convergence {
         each_(first_steps_each(study)),
         stepped_(stepped),
         stop_(stop) {
-    const std::string group = model(registry, system).group.name;
+    const SystemModel made = model(registry, system);
+    angles_ = angle_columns(made.group);
+    const std::string& group = made.group.name;
     config_.retraction = registry.retractions_or_common(group).front();
     for (const char* good : {"cayley", "exp"})
       if (registry.geometry(group, good) != nullptr) config_.retraction = good;
@@ -81,7 +83,7 @@ class Convergence {
       each_ *= 2;
       Motion next = follow();
       if (!next.ok) why = next.reason;
-      const double difference = last.ok && next.ok ? apart(last, next) : kNotMeasured;
+      const double difference = last.ok && next.ok ? apart(angles_, last, next) : kNotMeasured;
       if (difference < out.bound) {
         out.kind = fmt::format("converged: {}, {} steps", method, each_ * intervals_);
         out.bound = difference;
@@ -125,6 +127,7 @@ class Convergence {
   const Registry& registry_;
   const StudySystem& system_;
   Config config_;
+  std::vector<bool> angles_;
   long intervals_, each_;
   const std::function<void(long)>& stepped_;
   const std::atomic<bool>* stop_;
@@ -150,7 +153,7 @@ long common_intervals(const StudyConfig& config) {
 long reference_steps(const Registry& registry, const StudyConfig& config,
                      const StudySystem& system) {
   const long intervals = common_intervals(config);
-  if (model(registry, system).exact) return intervals;
+  if (!config.reference || model(registry, system).exact) return intervals;
   return 7 * kStages * intervals * first_steps_each(config);  // a run, and twice with half the step
 }
 
@@ -163,7 +166,10 @@ StudyReference reference(const Registry& registry, const StudyConfig& config,
   std::vector<double> times;
   for (long k = 0; k <= intervals; ++k)
     times.push_back(config.until * static_cast<double>(k) / static_cast<double>(intervals));
-  if (start.system().exact) {
+  if (!config.reference) {
+    out.kind = "none: the study does not ask for errors";
+    out.bound = kNotMeasured;
+  } else if (start.system().exact) {
     out.kind = "exact";
     const ExactFlow flow = start.system().exact(start.config().start);
     for (const double t : times) {
@@ -177,8 +183,9 @@ StudyReference reference(const Registry& registry, const StudyConfig& config,
   }
   if (stopped(stop)) return {};
   out.times = std::move(times);
+  const std::vector<bool> angles = angle_columns(start.system().group);
   for (const auto& there : out.coordinates)
-    raise(out.extent, euclidean_distance(there, out.coordinates.front()));
+    raise(out.extent, distance(angles, there, out.coordinates.front()));
   // A pair of runs that differ by more than that does not converge, and nothing is derived from it.
   if (out.bound > kConverged * out.extent) {
     out.kind =

@@ -59,7 +59,10 @@ StudyResult Study::run() const {
   study::Runner runner(*registry_, result, journal.get(), progress_, stop_);
   runner.run();
   result.complete = runner.complete();
-  study::compare(config_, cells_, result.references, result.metrics);
+  std::vector<std::vector<bool>> angles;
+  for (const StudySystem& system : config_.systems)
+    angles.push_back(study::angle_columns(study::model(*registry_, system).group));
+  study::compare(config_, cells_, angles, result.references, result.metrics);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

@@ -59,6 +59,7 @@ struct StudyConfig {
   bool zipped = false;            // the lists run together instead of in all combinations
   double until = Config().until;  // seconds
   int repeats = 3;                // timing rounds
+  bool reference = true;  // false: no errors and orders, and no motion to measure them against
   std::vector<StudySystem> systems;
   std::map<std::string, StudyValues> axes;  // those not named have the default of a run
   std::vector<StudyExclusion> exclude;

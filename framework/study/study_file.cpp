@@ -24,6 +24,7 @@ class StudyReader {
       else if (key == "mode") mode(node);
       else if (key == "until") read_.value(node, key, config_.until);
       else if (key == "repeats") read_.value(node, key, config_.repeats);
+      else if (key == "reference") read_.value(node, key, config_.reference);
       else if (key == "system") systems(node);
       else if (key == "exclude") exclusions(node);
       else if (!axis(key, node)) read_.unknown_key(node, key, keys());
@@ -34,7 +35,8 @@ class StudyReader {
 
  private:
   static std::vector<std::string> keys() {
-    std::vector<std::string> all = {"title", "mode", "until", "repeats", "system", "exclude"};
+    std::vector<std::string> all = {"title",     "mode",   "until",  "repeats",
+                                    "reference", "system", "exclude"};
     all.insert(all.end(), study_axes().begin() + 1, study_axes().end());
     return all;
   }

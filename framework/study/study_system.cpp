@@ -36,7 +36,11 @@ Simulation simulation(const Registry& registry, const StudySystem& system, const
 }
 
 SystemModel model(const Registry& registry, const StudySystem& system) {
-  return maker(registry, system)(system.parameters);
+  SystemModel out = maker(registry, system)(system.parameters);
+  if (out.group.dim == 0) {  // a product by name alone
+    if (const auto group = registry.group_or_product(out.group.name)) out.group = *group;
+  }
+  return out;
 }
 
 Status advance(Integration& run, long steps, const std::atomic<bool>* stop) {

@@ -76,8 +76,8 @@ TEST_F(Record, HasExactlyTheseKeys) {
                         "parameters", "status", "reason", "steps", "time", "final", "diagnostics",
                         "solver_stats", "timing", "version", "git", "host",
                         // later keys:
-                        "tolerance", "on_failure", "until", "every", "start", "notes", "failure",
-                        "fallbacks"));
+                        "tolerance", "on_failure", "from", "until", "every", "no_exact", "start",
+                        "notes", "failure", "fallbacks"));
 }
 
 TEST_F(Record, OfEverySystem) {

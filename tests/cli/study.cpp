@@ -188,7 +188,7 @@ velocity = [3, 1, 0]
 )");
   const Outcome o = run({"study", name, "-o", "out"});
   EXPECT_EQ(o.status, 0) << o.err;
-  EXPECT_THAT(o.out, AllOf(HasSubstr("1 failed"), HasSubstr("[failed] 1 cell failed, `newton`"),
+  EXPECT_THAT(o.out, AllOf(HasSubstr("1 failed"), HasSubstr("[note] 1 cell failed, newton"),
                            HasSubstr("Where: h 6")));
   EXPECT_EQ(count(cells("out"), ",failed,"), 1u);
   if (std::filesystem::exists(file("out/report.html"))) {

@@ -1,4 +1,6 @@
 // Verdicts of hamel study: on explicit schemes, on failures alone, and on systems from files.
+#include <chrono>
+
 #include <nlohmann/json.hpp>
 
 #include "study_command.hpp"
@@ -30,10 +32,10 @@ name = "chaplygin_sleigh"
 )");
   Outcome o = run({"study", name, "-o", "out"});
   EXPECT_EQ(o.status, 0) << o.err;
-  EXPECT_THAT(o.out, AllOf(HasSubstr("6 cells run: 6 ok, 0 failed"), HasSubstr("`rkmk4`"),
-                           HasSubstr("**solver**, 2 groups of otherwise equal cells"),
+  EXPECT_THAT(o.out, AllOf(HasSubstr("6 cells run: 6 ok, 0 failed"), HasSubstr("rkmk4"),
+                           HasSubstr("solver, 2 groups of otherwise equal cells"),
                            HasSubstr("The solvers agree: 2 runs end within"),
-                           HasSubstr("**scheme**, 4 groups")));
+                           HasSubstr("scheme, 4 groups")));
   for (const char* wrong : {"rkmk4, newton", "rkmk4, hybrid", "newton, rkmk4", "``", "nan"})
     EXPECT_THAT(o.out, Not(HasSubstr(wrong)));
   EXPECT_EQ(count(cells("out"), "rkmk4,cayley,,,none,,,0.2,ok"), 1u);
@@ -47,7 +49,7 @@ name = "chaplygin_sleigh"
            "-o", "alone"});
   EXPECT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, AllOf(HasSubstr("2 cells run"), Not(HasSubstr("solvers agree")),
-                           Not(HasSubstr("**solver**"))));
+                           Not(HasSubstr("] solver, "))));
 }
 
 /// Verdicts state a name and a number, also when all cells of a scheme have failed and when there is nothing to
@@ -68,7 +70,7 @@ velocity = [3, 1, 0]
 )"),
                    "-o", "failed"});
   EXPECT_EQ(o.status, 0) << o.err;
-  EXPECT_THAT(o.out, AllOf(HasSubstr("3 failed"), HasSubstr("**s**"), Not(HasSubstr("``")),
+  EXPECT_THAT(o.out, AllOf(HasSubstr("3 failed"), HasSubstr("] s, "), Not(HasSubstr("``")),
                            Not(HasSubstr("nan"))));
   std::ofstream(file("bowl.toml")) << kBowl;
   o = run({"study",
@@ -99,6 +101,73 @@ TEST_F(StudyCommand, SystemsMayBeFiles) {
   o = run({"study", name, "-o", "out"});
   EXPECT_EQ(o.status, 2);
   EXPECT_THAT(o.err, HasSubstr("here:  bowl.toml: y = -0.25"));
+}
+
+/// A control that leaves the constraint alone is exact where the free motion keeps it; it never wins without a word.
+TEST_F(StudyCommand, AControlDoesNotWinWithoutAWarning) {
+  const Outcome o = run({"study", study(R"(until = 4
+scheme = ["lift", "unadapted"]
+retraction = "cayley"
+step = [0.2, 0.1]
+repeats = 1
+[[system]]
+name = "suslov"
+velocity = [1, 0.001, 0]
+)"),
+                         "-o", "out"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  for (const std::string& line : lines(o.out)) {
+    if (line.find("least time") == std::string::npos || line.find("unadapted") == std::string::npos)
+      continue;
+    EXPECT_THAT(line,
+                HasSubstr("unadapted (a control: it claims no order, and leaves the constraint"));
+  }
+  EXPECT_THAT(o.out, HasSubstr("unadapted (a control: it claims no order"));
+}
+
+/// Two large steps show no order: neither reached nor failed.
+TEST_F(StudyCommand, StepsTooLargeDeriveNoOrder) {
+  const Outcome o = run({"study", study(R"(until = 12
+step = [1.5, 1, 0.75]
+repeats = 1
+[[system]]
+name = "suslov"
+set = { inertia = [2, 0.3, 0.5, 3, 0.4, 4] }
+velocity = [1.2, 0.5, 0]
+)"),
+                         "-o", "out"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out,
+              AllOf(Not(HasSubstr("[failed]")), Not(HasSubstr("[ok] The one measured order"))));
+  EXPECT_THAT(o.out, testing::AnyOf(HasSubstr("Not in the asymptotic range"),
+                                    HasSubstr("1 method without an order")));
+}
+
+/// An error as large as the motion is said to be no more than that.
+TEST_F(StudyCommand, SaturatedCellsAreSaidToBeSo) {
+  const Outcome o = run({"study", study(R"(until = 400
+scheme = ["lift", "boxed"]
+retraction = "cayley"
+step = [0.2, 0.1]
+repeats = 1
+[[system]]
+name = "suslov"
+)"),
+                         "-o", "out"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("saturated: an error above 0.3 of the motion"));
+}
+
+/// Where only times are asked for no reference is made: a minute is enough for sixty trailers.
+TEST_F(StudyCommand, TrailersTakeLessThanAMinute) {
+  std::ofstream(file("trailers.toml")) << source_file("tools/studies/trailers.toml");
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome o = run({"study", "trailers.toml", "-o", "out", "--threads", "1"});
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, AllOf(HasSubstr("10 cells run: 10 ok"), Not(HasSubstr("nothing to compare"))));
+  EXPECT_LT(taken.count(), 60);
+  EXPECT_GT(Json::parse(contents(file("out/record.json")))["references"].size(), 0u);
 }
 
 }  // namespace

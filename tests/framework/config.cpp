@@ -38,8 +38,10 @@ Config unusual() {
   c.on_failure = "retry:hybrid";
   c.compose = "suzuki4";
   c.step = -1.0 / 7;
+  c.from = 0.1;
   c.until = -1e5;
   c.every = 123456789012;
+  c.no_exact = true;
   return c;
 }
 
@@ -69,8 +71,9 @@ TEST(Config, EveryOptionIsInTheListAndGoesByName) {
     EXPECT_EQ(copy.*member, unusual().*member) << option.name;
     EXPECT_THAT(unusual().to_toml(), HasSubstr("\n" + names.back() + " = "));
   });
-  EXPECT_THAT(names, testing::ElementsAre("scheme", "retraction", "s", "solver", "compose",
-                                          "on_failure", "tolerance", "step", "until", "every"));
+  EXPECT_THAT(names,
+              testing::ElementsAre("scheme", "retraction", "s", "solver", "compose", "on_failure",
+                                   "tolerance", "step", "from", "until", "every", "no_exact"));
   EXPECT_THROW(copy.set("tolerence", "1"), ConfigError);
   EXPECT_THROW(copy.set("every", "1.5"), ConfigError);
   EXPECT_THROW(copy.set("step", "0.1x"), ConfigError);

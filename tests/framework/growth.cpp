@@ -62,6 +62,17 @@ TEST(Growth, SeesAHolonomicConstraint) {
   EXPECT_TRUE(closed.decided());
 }
 
+/// z' = e y x' is not integrable for any e. Brackets that small are near the errors of others; they are not called zero.
+template <int Exponent>
+struct Faint : Point<3> {
+  Mat<1, 3> constraints(const Vec<3>& g) const { return {-std::pow(10.0, Exponent) * g[1], 0, 1}; }
+};
+TEST(Growth, SmallIsNotZero) {
+  EXPECT_FALSE(growth(Faint<-12>{}, {0.3, 0.2, 0.1}).decided());
+  EXPECT_FALSE(growth(Faint<-12>{}, {0, 0, 0}).decided());
+  EXPECT_THAT(growth(Faint<-8>{}, {0.3, 0.2, 0.1}).dimensions, ElementsAre(2, 3));
+}
+
 /// y' = cos 3t is integrable with time; y' = sin x is not, though ker A = span(d/dx) is closed; nor is
 /// y' = t x', whose ker A is closed at every t.
 struct Driven : Point<2> {

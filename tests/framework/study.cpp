@@ -1,5 +1,7 @@
 // Studies from C++: combinations, references of the cells, orders, stopping and continuing.
 #include <atomic>
+#include <cmath>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -210,6 +212,35 @@ TEST(Table, QuotesWhatNeedsIt) {
        {"x", "s", "", std::vector<double>{0.1, kNotMeasured, 3}}}};
   EXPECT_EQ(table.csv(), "\"a,b\",x\n\"say \"\"x\"\"\",0.1\n\"two\nlines\",\nplain,3\n");
   EXPECT_THROW(table.column("y"), ConfigError);
+}
+
+/// Angles that are not wrapped are compared by what is left of full turns; other columns as numbers.
+TEST(Study, ComparesAnglesAsAngles) {
+  const std::vector<bool> angles = study::angle_columns(*registry().group_or_product("se2*so2*r2"));
+  EXPECT_THAT(angles, testing::ElementsAre(true, false, false, true, false, false));
+  const std::vector<double> a = {0.1, 1, 2, 100, 7, 8};
+  std::vector<double> b = a;
+  b[0] += 2 * std::numbers::pi * 1000;
+  b[3] -= 2 * std::numbers::pi * 3 + 0.25;
+  EXPECT_NEAR(study::distance(angles, a, b), 0.25, 1e-11);
+  b[1] += 2 * std::numbers::pi;
+  EXPECT_GT(study::distance(angles, a, b), 6);
+}
+
+/// A study of times makes no reference and measures no error.
+TEST(Study, OfTimesAlone) {
+  StudyConfig config;
+  config.until = 1;
+  config.repeats = 1;
+  config.reference = false;
+  config.systems = {{"disk", "falling_disk"}};
+  config.axes["step"] = {0.1};
+  const StudyResult result = Study(registry(), config).threads(1).run();
+  ASSERT_TRUE(result.complete);
+  EXPECT_TRUE(result.references[0].coordinates.empty());
+  EXPECT_THAT(result.references[0].kind, testing::HasSubstr("does not ask for errors"));
+  EXPECT_TRUE(std::isnan(result.metrics[0].error));
+  EXPECT_GT(result.metrics[0].nanoseconds[0], 0);
 }
 
 }  // namespace

@@ -54,6 +54,27 @@ TEST(Reactions, WorkWhereTheStepsLeaveTheConstraint) {
   EXPECT_GT(largest, 1e-5);
 }
 
+/// A normal reaction can push only: a disk with a slow turn that falls over is pulled from t = 0.56 s on, and that is said
+/// with its first time. Rolling as it starts by default it is pushed all the way.
+TEST(Reactions, OfAContactThatPullsIsNoted) {
+  const auto notes = [](const Result& run) {
+    std::string all;
+    for (const std::string& note : run.notes) all += note + "\n";
+    return all;
+  };
+  const Result falls =
+      simulate("falling_disk").start({.velocity = {0.5, 0, 0, 0, 0, 0}}).until(0.6).run();
+  ASSERT_TRUE(falls.status.ok);
+  const std::vector<double> normal = falls.trajectory.column("lambda3"),
+                            t = falls.trajectory.column("t");
+  const auto first = std::find_if(normal.begin(), normal.end(), [](double n) { return n < 0; });
+  ASSERT_NE(first, normal.end());
+  EXPECT_NEAR(t[static_cast<size_t>(first - normal.begin())], 0.56, 1e-9);
+  EXPECT_NE(notes(falls).find("the contact pulls from t = 0.56 on, lambda3 < 0"), std::string::npos)
+      << notes(falls);
+  EXPECT_EQ(notes(simulate("falling_disk").until(5).run()).find("pulls"), std::string::npos);
+}
+
 /// On a turning table nothing but the reactions works on the ball: its energy changes by their work, to O(h^2).
 TEST(Reactions, OfAMovingConstraintFeedInTheEnergy) {
   const auto balance = [](double h) {

@@ -154,5 +154,36 @@ TEST(FallingDisk, UprightRollingIsStableAboveTheKnownRate) {
   }
 }
 
+/// Chaplygin's top: three different moments. Names of the axes e1, e2 exchanged by a quarter turn, the motion in space is
+/// the same; the energy is kept, and Routh's integral is not among its invariants.
+TEST(RollingBodies, ChaplyginsTop) {
+  const double c = std::cos(0.5), s = std::sin(0.5);
+  const auto top = [](double first, double second, const std::vector<double>& configuration,
+                      const std::vector<double>& velocity) {
+    return simulate("routh_sphere")
+        .set("transverse_inertia", first)
+        .set("asymmetry", second - first)
+        .set("axial_inertia", 0.08)
+        .start({.configuration = configuration, .velocity = velocity})
+        .retraction("exp")
+        .scheme("rkmk4")
+        .step(0.005)
+        .until(4)
+        .run();
+  };
+  // R Q with Q e1 = e2, Q e2 = -e1: columns (b2, -b1, b3), rates (w2, -w1, w3).
+  const Result one = top(0.10, 0.14, {1, 0, 0, 0, c, -s, 0, s, c, 0, 0}, {0.5, 1.0, 4.0, 0, 0}),
+               two = top(0.14, 0.10, {0, -1, 0, c, 0, -s, s, 0, c, 0, 0}, {1.0, -0.5, 4.0, 0, 0});
+  ASSERT_TRUE(one.status.ok && two.status.ok);
+  ASSERT_EQ(one.invariants.size(), 1u);
+  EXPECT_LT(one.invariants[0].drift_max, 1e-7);
+  const std::vector<double>&a = one.last.coordinates, &b = two.last.coordinates;
+  for (const size_t j : {9u, 10u}) EXPECT_NEAR(a[j], b[j], 1e-9);     // the centre
+  for (const size_t j : {2u, 5u, 8u}) EXPECT_NEAR(a[j], b[j], 1e-9);  // the axis
+  const Result round = top(0.12, 0.12, {1, 0, 0, 0, c, -s, 0, s, c, 0, 0}, {0.5, 1, 4, 0, 0});
+  EXPECT_EQ(round.invariants.size(), 3u);
+  EXPECT_GT(std::abs(a[9] - round.last.coordinates[9]), 1e-3);
+}
+
 }  // namespace
 }  // namespace hamel

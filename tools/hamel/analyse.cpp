@@ -45,7 +45,9 @@ std::string verdict(const Analysis& a) {
         "{}: brackets of up to {} fields{} span {} of {} directions{} (growth {}){}; {}",
         a.integrable() ? "nonholonomic" : "not decided", a.growth.looked_at, drift, reached,
         possible, left, growth, nearby,
-        a.growth.round_off ? "stopped: deeper ones drown in round-off" : "stopped there");
+        a.growth.near_zero   ? "others are too small to tell from zero"
+        : a.growth.round_off ? "stopped: deeper ones drown in round-off"
+                             : "stopped there");
   }
   if (*a.integrable()) {
     return fmt::format(
@@ -68,7 +70,7 @@ std::string verdict(const Analysis& a) {
 }  // namespace
 
 int analyse(const DescribeOptions& options) {
-  const Analysis a = hamel::analyse(registry(), options.name);
+  const Analysis a = hamel::analyse(registry(), options.name, options.parameters);
   if (options.json) {
     Json structure = Json::array(), conserved = Json::array();
     for (const auto& c : a.structure) structure.push_back(rows_of(c));
@@ -111,7 +113,9 @@ int analyse(const DescribeOptions& options) {
     fmt::print("  structure constants along direction {}: [X_i, X_j]\n", d + 1);
     print_rows(a.structure[d]);
   }
-  fmt::print("  kept along four motions (E energy, J spatial momentum, xi body velocity)\n");
+  fmt::print(
+      "  kept along eight motions of up to 20 s (E energy, J spatial momentum, xi body "
+      "velocity)\n");
   if (a.conserved.empty()) fmt::print("     nothing among their linear combinations\n");
   for (const auto& c : a.conserved)
     fmt::print("     {}   (change {:.1e})\n", c.expression, c.change);

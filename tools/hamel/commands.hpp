@@ -18,6 +18,7 @@ int list(const ListOptions& options);
 
 struct DescribeOptions {
   std::string name;
+  Parameters parameters;
   bool analyse = false;
   bool json = false;
 };

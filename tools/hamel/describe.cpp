@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 
@@ -15,7 +16,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json describe_system(const SystemInfo& info) {
+// Where a system starts, its defaults filled in.
+Json start_of(const SystemModel& model) {
+  Json out;
+  out["configuration"] = model.start.configuration;
+  if (model.start.configuration.empty()) {
+    const auto group = registry().group_or_product(model.group.name);
+    out["configuration"] = group ? group->identity : model.group.identity;
+  }
+  if (!model.start.velocity.empty()) out["velocity"] = model.start.velocity;
+  if (!model.start.momentum.empty()) out["momentum"] = model.start.momentum;
+  return out;
+}
+
+Json describe_system(const SystemInfo& info, const Parameters& given) {
   Json parameters = Json::array();
   for (const Field& field : info.fields) {
     parameters.push_back(
@@ -24,17 +38,31 @@ Json describe_system(const SystemInfo& info) {
          {"unit", field.unit},
          {"meaning", field.meaning}});
   }
-  const Start start = info.make({}).start;
   return {{"kind", "system"},
           {"name", info.name},
           {"summary", info.summary},
           {"group", info.group.name},
           {"formula", info.formula},
           {"parameters", parameters},
-          {"start", start.velocity.empty() ? Json{{"momentum", start.momentum}}
-                                           : Json{{"velocity", start.velocity}}},
+          {"start", start_of(info.make(given))},
           {"known", info.known},
           {"source", info.source}};
+}
+
+// A system by data.
+Json describe_file(const std::string& path, const Parameters& given) {
+  const SystemModel model = data_system_maker(registry(), path)(given);
+  const Mechanics& mechanics = *model.mechanics;
+  return {{"kind", "system"},
+          {"name", model.name},
+          {"file", path},
+          {"group", model.group.name},
+          {"columns", model.group.columns},
+          {"constraints", constraints_in_words(model)},
+          {"left_invariant", mechanics.left_invariant()},
+          {"forces", mechanics.has_force()},
+          {"drift", mechanics.has_drift()},
+          {"start", start_of(model)}};
 }
 
 Json describe_group(const GroupInfo& info) {
@@ -60,28 +88,40 @@ Json describe_retraction(const std::string& name) {
   return {{"kind", "retraction"}, {"name", name}, {"groups", where}};
 }
 
+// What a scheme claims for each kind of run that it tells apart; one that makes no use of s has no s in it.
+Json claims(const SchemeInfo& info, bool left_invariant) {
+  Json out = Json::object();
+  for (const double s : info.uses_s ? std::vector<double>{0.5, 0} : std::vector<double>{0}) {
+    for (const bool symmetric : {true, false}) {
+      const ClaimedOrder claimed = info.claim(s, symmetric, left_invariant);
+      out[fmt::format("{}{} retraction",
+                      !info.uses_s ? ""
+                      : s == 0.5   ? "s = 1/2, "
+                                   : "other s, ",
+                      symmetric ? "symmetric" : "other")] = {{"order", claimed.order},
+                                                             {"reversible", claimed.reversible}};
+    }
+  }
+  return out;
+}
+
 Json describe_scheme(const SchemeInfo& info) {
-  const auto order = [&](double s, bool symmetric) {
-    const ClaimedOrder claimed = info.claim(s, symmetric, true);
-    return Json{{"order", claimed.order}, {"reversible", claimed.reversible}};
-  };
-  return {{"kind", "scheme"},
-          {"name", info.name},
-          {"formula", info.formula},
-          {"uses_s", info.uses_s},
-          {"keeps_the_constraint", info.adapted},
-          {"steps_admissible", info.steps_admissible},
-          {"general_systems", !info.left_invariant_only},
-          {"claims",
-           {{"s = 1/2", order(0.5, true)},
-            {"other s, symmetric retraction", order(0, true)},
-            {"other s, other retraction", order(0, false)}}},
-          {"claims_on_general_systems",
-           !info.left_invariant_only
-               ? Json{{"s = 1/2", {{"order", info.claim(0.5, true, false).order}}},
-                      {"other s", {{"order", info.claim(0, true, false).order}}}}
-               : Json(nullptr)},
-          {"source", info.source}};
+  return {
+      {"kind", "scheme"},
+      {"name", info.name},
+      {"formula", info.formula},
+      {"uses_s", info.uses_s},
+      {"keeps_the_constraint", info.adapted},
+      {"steps_admissible", info.steps_admissible},
+      {"constraint", !info.adapted ? "not kept"
+                     : info.steps_admissible
+                         ? "kept at the nodes, and by the velocity of each step"
+                         : "kept at the nodes; the velocity of a step satisfies "
+                           "it up to the error of the step only"},
+      {"general_systems", !info.left_invariant_only},
+      {"claims", claims(info, true)},
+      {"claims_on_general_systems", info.left_invariant_only ? Json(nullptr) : claims(info, false)},
+      {"source", info.source}};
 }
 
 Json describe_solver(const SolverInfo& info, bool built) {
@@ -97,9 +137,11 @@ Json describe_solver(const SolverInfo& info, bool built) {
   return out;
 }
 
-Json description_of(const std::string& name) {
+Json description_of(const std::string& name, const Parameters& given) {
   const Registry& all = registry();
-  if (const SystemInfo* info = all.system(name)) return describe_system(*info);
+  if (const SystemInfo* info = all.system(name)) return describe_system(*info, given);
+  if (name.ends_with(".toml")) return describe_file(name, given);
+  if (!given.empty()) throw ConfigError({fmt::format("set: {} is no system", name)});
   if (const SchemeInfo* info = all.scheme(name)) {
     Json out = describe_scheme(*info);
     if (name != info->name) {
@@ -152,6 +194,9 @@ void print(const Json& json) {
         }
         fmt::print("    {}\n", line);
       }
+    } else if (value.is_object()) {
+      for (const auto& [name, member] : value.items())
+        fmt::print("  {:<12} {} {}\n", name == value.begin().key() ? key : "", name, member.dump());
     } else {
       fmt::print("  {:<12} {}\n", key, value.dump());
     }
@@ -162,7 +207,7 @@ void print(const Json& json) {
 
 int describe(const DescribeOptions& options) {
   if (options.analyse) return analyse(options);
-  const Json json = description_of(options.name);
+  const Json json = description_of(options.name, options.parameters);
   if (options.json) fmt::print("{}\n", json.dump(2));
   else print(json);
   return 0;

@@ -23,18 +23,69 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
+constexpr size_t kWidth = 80;
+
+// The lines of a text, broken behind spaces and commas where it is longer; a longer word stays whole.
+std::vector<std::string> wrapped(const std::string& text, size_t width) {
+  std::vector<std::string> out;
+  std::string line, word;
+  const auto put = [&] {
+    if (!line.empty() && line.size() + word.size() - (word.ends_with(' ') ? 1 : 0) > width) {
+      out.push_back(line);
+      line.clear();
+    }
+    line += word;
+    word.clear();
+  };
+  for (const char c : text) {
+    word += c;
+    if (c == ' ' || c == ',') put();
+  }
+  put();
+  out.push_back(line);
+  return out;
+}
+
+// In kWidth characters: cells of the widest columns are broken.
 void print(const Table& table) {
-  std::vector<size_t> width;
-  for (const std::string& column : table.columns) width.push_back(column.size());
-  for (const auto& row : table.rows) {
-    for (size_t j = 0; j < row.size(); ++j) width[j] = std::max(width[j], row[j].size());
+  std::vector<size_t> width, least;  // least: that of the longest word
+  const auto widen = [&](size_t j, const std::string& cell) {
+    width[j] = std::max(width[j], cell.size());
+    for (const std::string& word : wrapped(cell, 1)) least[j] = std::max(least[j], word.size());
+  };
+  for (size_t j = 0; j < table.columns.size(); ++j) {
+    width.push_back(0);
+    least.push_back(0);
+    widen(j, table.columns[j]);
+    for (const auto& row : table.rows) widen(j, row[j]);
+  }
+  const auto all = [&] {
+    size_t sum = 1;
+    for (const size_t w : width) sum += 1 + w;
+    return sum;
+  };
+  while (all() > kWidth) {
+    size_t widest = 0;
+    for (size_t j = 0; j < width.size(); ++j)
+      if (width[j] - least[j] > width[widest] - least[widest]) widest = j;
+    if (width[widest] == least[widest]) break;
+    --width[widest];
   }
   fmt::print("{}\n", table.kind);
   const auto line = [&](const std::vector<std::string>& cells) {
-    std::string text = " ";
-    for (size_t j = 0; j < cells.size(); ++j) text += fmt::format(" {:<{}}", cells[j], width[j]);
-    text.erase(text.find_last_not_of(' ') + 1);
-    fmt::print("{}\n", text);
+    std::vector<std::vector<std::string>> lines;
+    size_t height = 0;
+    for (size_t j = 0; j < cells.size(); ++j) {
+      lines.push_back(wrapped(cells[j], width[j]));
+      height = std::max(height, lines[j].size());
+    }
+    for (size_t i = 0; i < height; ++i) {
+      std::string text = " ";
+      for (size_t j = 0; j < cells.size(); ++j)
+        text += fmt::format(" {:<{}}", i < lines[j].size() ? lines[j][i] : "", width[j]);
+      text.erase(text.find_last_not_of(' ') + 1);
+      fmt::print("{}\n", text);
+    }
   };
   line(table.columns);
   for (const auto& row : table.rows) line(row);
@@ -137,8 +188,9 @@ std::string order_in_words(const SchemeInfo& info) {
   if (half == 0) return "none";
   if (other != half) return fmt::format("{} at s = ½, else {}", half, other);
   if (skewed == half) return std::to_string(half);
-  return fmt::format("{}; {} if τ is not symmetric{}", half, skewed,
-                     info.uses_s ? " and s ≠ ½" : "");
+  if (info.uses_s) return fmt::format("{}; {} if τ is not symmetric and s ≠ ½", half, skewed);
+  // Without s, tau is in g_1 = g_0 tau(h W) alone.
+  return fmt::format("{}; {} in the configuration if τ is not symmetric", half, skewed);
 }
 std::string general_order_in_words(const SchemeInfo& info) {
   if (!info.defined(false)) return "not defined";

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <functional>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -17,9 +19,35 @@ namespace {
 
 constexpr int kBadInput = 2;
 
+std::string read_file(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf())) throw ConfigError({fmt::format("cannot read '{}'", path)});
+  return text.str();
+}
+
+// name=value[,value...], each as --set has it, into parameters. Throws ConfigError with all that do not fit.
+void read_sets(const std::vector<std::string>& sets, Parameters& parameters) {
+  std::vector<std::string> mistakes;
+  for (const std::string& set : sets) {
+    const size_t equal = set.find('=');
+    if (equal == std::string::npos || equal == 0) {
+      mistakes.push_back(fmt::format("--set: '{}' is not name=value[,value...]", set));
+      continue;
+    }
+    const std::string name = set.substr(0, equal);
+    try {
+      read_text("--set " + name, set.substr(equal + 1), parameters[name]);
+    } catch (const ConfigError& error) {
+      mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
+    }
+  }
+  if (!mistakes.empty()) throw ConfigError(mistakes);
+}
+
 // The options of `hamel run` as given; the file first, then what the command line says.
 struct RunLine {
-  std::string system, config_file;
+  std::string system, config_file, record_file;
   std::vector<std::string> sets;
   std::vector<std::function<void(Config&)>> overrides;  // of what is given, in its order
   RunOptions options;
@@ -51,8 +79,13 @@ struct RunLine {
   void define(CLI::App& app) {
     app.add_option("SYSTEM", system,
                    "a registered system (hamel list systems) or a file my_system.toml");
-    app.add_option("--config", config_file,
-                   "a TOML file with the same names; the command line wins");
+    CLI::Option* config = app.add_option("--config", config_file,
+                                         "a TOML file with the same names; the command line wins");
+    app.add_option(
+           "--continue", record_file,
+           "go on where the run of this record (-o x.json) ended, as it was run; the command "
+           "line wins")
+        ->excludes(config);
     app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
         ->allow_extra_args(false);
     Config::start_fields([&]<class Value>(const Option& field, Value Start::*member) {
@@ -73,14 +106,20 @@ struct RunLine {
         "  hamel run suslov --until 20 --report suslov.html\n"
         "  hamel run suslov --set inertia=2,0.3,0.5,3,0.4,4 --velocity 1,0.5,0 --retraction exp\n"
         "  hamel run chaplygin_sleigh --scheme balance --step 0.05 -o sleigh.csv --json\n"
-        "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv");
+        "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv\n"
+        "  hamel run roller_racer -o first.json && hamel run --continue first.json --until 60");
   }
 
   RunOptions resolve(const CLI::App& app) {
     Config& config = options.config;
     std::vector<std::string> mistakes;
     if (!config_file.empty()) config = read_config(config_file);
-    if (!system.empty()) config.system = system;
+    if (!record_file.empty()) config = Config::continued(read_file(record_file), record_file);
+    if (!system.empty() && system != config.system) {
+      config.system = system;
+      if (!record_file.empty())
+        config.parameters.clear();  // another system's, or a file's, which has none
+    }
     if (config.system.empty()) mistakes.push_back("system: name one, or give --config with one");
     if (app.count("--velocity") + app.count("--momentum") > 0)
       config.start.velocity = config.start.momentum = {};
@@ -92,16 +131,7 @@ struct RunLine {
       }
     };
     for (const auto& override : overrides) collect([&] { override(config); });
-    for (const std::string& set : sets) {
-      collect([&] {
-        const size_t equal = set.find('=');
-        if (equal == std::string::npos || equal == 0) {
-          throw ConfigError({fmt::format("--set: '{}' is not name=value[,value...]", set)});
-        }
-        const std::string name = set.substr(0, equal);
-        read_text("--set " + name, set.substr(equal + 1), config.parameters[name]);
-      });
-    }
+    collect([&] { read_sets(sets, config.parameters); });
     if (!mistakes.empty()) throw ConfigError(mistakes);
     return options;
   }
@@ -134,15 +164,27 @@ int program(int argc, char** argv) {
   DescribeOptions description;
   CLI::App* describe_command = app.add_subcommand(
       "describe", "One group, retraction, scheme, solver or system: formula, parameters, source");
-  describe_command->add_option("NAME", description.name, "a name (hamel list)")->required();
+  describe_command
+      ->add_option("NAME", description.name, "a name (hamel list) or a file my_system.toml")
+      ->required();
+  std::vector<std::string> description_sets;
+  describe_command
+      ->add_option("--set", description_sets,
+                   "a parameter of a system, name=value[,value...] (repeatable)")
+      ->allow_extra_args(false);
   describe_command->add_flag("--analyse", description.analyse,
-                             "a system (or a file my_system.toml): frame, structure constants, "
-                             "growth of brackets, what is kept");
+                             "a system: frame, structure constants, growth of brackets, what is "
+                             "kept");
   describe_command->add_flag("--json", description.json, "as JSON");
   describe_command->footer(
       "Examples:\n  hamel describe suslov\n  hamel describe 'se2*so2'\n  hamel describe cayley "
-      "--json\n  hamel describe --analyse chaplygin_sleigh");
-  describe_command->callback([&] { command = [&] { return describe(description); }; });
+      "--json\n  hamel describe --analyse chaplygin_sleigh --set offset=0");
+  describe_command->callback([&] {
+    command = [&] {
+      read_sets(description_sets, description.parameters);
+      return describe(description);
+    };
+  });
 
   RunLine line;
   CLI::App* run_command = app.add_subcommand("run", "One trajectory");

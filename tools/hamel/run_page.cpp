@@ -1,6 +1,7 @@
 #include "run_page.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -26,17 +27,27 @@ std::vector<size_t> thin_rows(const Result& result, size_t points) {
   return out;
 }
 
+// Forces or moving constraints do.
+bool does_work(const Result& r) { return std::isfinite(r.work); }
+
 std::string headline(const Result& r) {
   if (!r.status.ok) {
     return fmt::format(
         "Failed in step {} at t = {:.6g}: {} (residual {:.2e}). {} good steps are kept.",
         r.status.step, r.status.time, r.status.reason, r.status.residual, r.steps);
   }
-  std::string out = fmt::format(
-      "{} steps of h = {} to t = {:.6g}; constraint residual at most {:.1e}, group "
-      "defect at most {:.1e}, energy error at most {:.1e}.",
-      r.steps, r.config.step, r.last.time, r.constraint_max, r.group_defect_max,
-      r.energy_error_max);
+  std::string out =
+      fmt::format("{} steps of h = {} to t = {:.6g}", r.steps, r.config.step, r.last.time);
+  if (std::isfinite(r.exact_error_max)) {
+    out += fmt::format(
+        "; against the exact motion the configuration is off by at most {:.1e}, the velocity by at "
+        "most {:.1e}",
+        r.exact_error_max, r.exact_velocity_error_max);
+  }
+  out += fmt::format(
+      "; constraint residual at most {:.1e}, group defect at most {:.1e}, {} at most {:.1e}.",
+      r.constraint_max, r.group_defect_max,
+      does_work(r) ? "defect of the energy balance" : "energy error", r.energy_error_max);
   if (r.stats.fallbacks > 0) {
     const Fallback& first = r.stats.first_fallbacks.front();
     out += fmt::format(" {} steps failed and were rescued, the first at t = {:.6g}: {}.",
@@ -110,9 +121,7 @@ std::optional<Animation> animation_of(const Result& result) {
 
 Page run_page(const Result& r) {
   Page page(fmt::format("{}: {} with {}", r.system.name, r.config.scheme, r.config.retraction),
-            fmt::format("{}, s = {}, h = {}, solver {}{}", r.system.group.name, r.config.s,
-                        r.config.step, r.config.solver,
-                        r.config.compose == "none" ? "" : ", composed by " + r.config.compose));
+            fmt::format("{}: {}, h = {}", r.system.group.name, r.method(), r.config.step));
   page.section("Result");
   page.verdict(r.status.ok ? "ok" : "failed", headline(r));
   if (!r.notes.empty()) page.text(r.notes);
@@ -130,7 +139,12 @@ Page run_page(const Result& r) {
   if (const auto axes = axes_on_sphere(r); !axes.empty()) {
     page.sphere("Motion of the body axes", axes, "Columns of R; drag to turn.");
   }
-  page.plot("Energy error", with(log, "|E - E0| / E0"), {curve(r, name, "energy_error")});
+  if (does_work(r)) {
+    page.plot("Energy balance", with(log, "|E - E0 - W| / max E"), {curve(r, name, "energy_error")},
+              "W is the work of forces and moving constraints, by a quadrature over all steps.");
+  } else {
+    page.plot("Energy error", with(log, "|E - E0| / E0"), {curve(r, name, "energy_error")});
+  }
   if (exact) {
     page.plot(
         "Error against the exact motion", with(log, "|difference|"),

@@ -22,6 +22,17 @@ extern "C" void ask_to_stop(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+// Without the marks of Markdown, which the page understands.
+std::string plain(const std::string& text) {
+  std::string out;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '`') continue;
+    if (text.compare(i, 2, "**") == 0) ++i;
+    else out += text[i];
+  }
+  return out;
+}
+
 std::string summary(const StudyResult& result) {
   std::map<std::string, int> counts;
   const Table table = result.table();
@@ -41,7 +52,7 @@ std::string summary(const StudyResult& result) {
     out += '\n';
   }
   for (const Verdict& verdict : study_verdicts(result))
-    out += fmt::format("  [{}] {}\n", verdict.status, verdict.text);
+    out += fmt::format("  [{}] {}\n", verdict.status, plain(verdict.text));
   return out + fmt::format("  time                   {:.1f} s on {} thread{}\n", result.seconds,
                            result.threads, result.threads == 1 ? "" : "s");
 }

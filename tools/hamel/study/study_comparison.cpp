@@ -29,8 +29,10 @@ class Comparison {
   Comparison(const StudyView& view, std::vector<Verdict>& out) : view_(view), out_(out) {}
 
   void all() {
-    for (const auto& [system, cells] : view_.groups({"system"})) best(system[0], cells);
-    orders();
+    if (view_.result().config.reference) {
+      for (const auto& [system, cells] : view_.groups({"system"})) best(system[0], cells);
+      orders();
+    }
     for (const std::string& axis : view_.varying_without({"system", "step"})) worse(axis);
   }
 
@@ -57,11 +59,28 @@ class Comparison {
     return kNotMeasured;
   }
 
+  // Of a control, which wins by chance if it does: "" for all others.
+  std::string warning(const std::vector<size_t>& cells) const {
+    double left = 0;
+    for (const size_t i : cells) {
+      if (view_.cell(i).claimed_order > 0) return "";
+      if (view_.metrics(i).constraint > left) left = view_.metrics(i).constraint;
+    }
+    return left > 1e-9 ? fmt::format(
+                             " (a control: it claims no order, and leaves the constraint "
+                             "by up to {:.1e})",
+                             left)
+                       : " (a control: it claims no order)";
+  }
+
   void best(const std::string& system, const std::vector<size_t>& of_system) {
     const std::vector<std::string> axes = view_.varying_without({"system", "step"});
     if (axes.empty()) return;
     std::map<std::string, std::vector<size_t>> methods;
     for (const size_t i : of_system) methods[view_.words(i, axes)].push_back(i);
+    const auto called = [&](const std::string& name) {
+      return "`" + name + "`" + warning(methods.at(name));
+    };
     // The error that a third of the methods reach, as a power of ten.
     std::vector<double> reached;
     for (const auto& [name, cells] : methods) {
@@ -97,12 +116,13 @@ class Comparison {
                  fmt::format("{}: no method gets the error down to {:.0e} with these steps.",
                              system, target));
     std::sort(ranked.begin(), ranked.end());
-    std::string text = fmt::format("{}: at the error {:.0e} the least time is {} by `{}`", system,
-                                   target, time_words(ranked[0].first), ranked[0].second);
+    std::string text = fmt::format("{}: at the error {:.0e} the least time is {} by {}", system,
+                                   target, time_words(ranked[0].first), called(ranked[0].second));
     if (ranked.size() > 1) {
       const double next = ranked[1].first / ranked[0].first;
-      text += next < 1.05 ? fmt::format(", level with it `{}`", ranked[1].second)
-                          : fmt::format(", then {:.3g} times that by `{}`", next, ranked[1].second);
+      text += next < 1.05
+                  ? fmt::format(", level with it {}", called(ranked[1].second))
+                  : fmt::format(", then {:.3g} times that by {}", next, called(ranked[1].second));
       text +=
           fmt::format("; the slowest of {} that get there takes {:.3g} times as long: `{}`",
                       ranked.size(), ranked.back().first / ranked[0].first, ranked.back().second);
@@ -120,7 +140,7 @@ class Comparison {
   }
 
   void orders() {
-    std::vector<std::string> axes = study_axes(), short_of, late;
+    std::vector<std::string> axes = study_axes(), short_of, late, unsettled;
     std::erase(axes, "step");
     size_t measured = 0, reach = 0;
     std::vector<std::string> unknown;
@@ -130,29 +150,38 @@ class Comparison {
       const std::string name = "`" + view_.name(cells.front()) + "`";
       const int claim = view_.cell(cells.front()).claimed_order;
       if (m.order_of < 2 || claim == 0) continue;
-      if (std::isnan(m.order)) {
+      const std::string verdict = order_verdict(m, claim);
+      if (verdict == "not measured") {
         unknown.push_back(name);
         continue;
       }
       ++measured;
-      if (m.order >= claim - kShortOfClaim) {
+      if (verdict == "ok") {
         ++reach;
         worst = std::min(worst, m.order - claim);
       } else {
-        auto& list = m.order_finest >= claim - kShortOfClaim ? late : short_of;
+        auto& list = verdict == "finest only"       ? late
+                     : verdict == "below its claim" ? short_of
+                                                    : unsettled;
         list.push_back(fmt::format("{} {:.2f} of {} ({} of {} steps; the two finest {:.2f})", name,
                                    m.order, claim, m.order_points, m.order_of, m.order_finest));
       }
     }
     if (measured > 0) {
       std::string text =
-          fmt::format("{} of {} measured orders reach the claim of their scheme to {}", reach,
-                      measured, kShortOfClaim);
+          measured == 1
+              ? fmt::format("The one measured order {} the claim of its scheme to {}",
+                            reach == 1 ? "reaches" : "does not reach", kShortOfClaim)
+              : fmt::format("{} of {} measured orders {} the claim of their scheme to {}", reach,
+                            measured, reach == 1 ? "reaches" : "reach", kShortOfClaim);
       if (reach > 0) text += fmt::format(" (at worst {:+.2f})", worst);
       text += ".";
       if (!late.empty()) text += " Only with the finest steps: " + first_few(late, 6) + ".";
       if (!short_of.empty()) text += " Below it: " + first_few(short_of, 8) + ".";
-      say(short_of.empty() ? "ok" : "failed", text);
+      say(!short_of.empty() ? "failed" : unsettled.empty() ? "ok" : "note", text);
+      if (!unsettled.empty())
+        say("note",
+            "Not in the asymptotic range, no order is derived: " + first_few(unsettled, 8) + ".");
     }
     if (!unknown.empty())
       say("note",
@@ -167,6 +196,7 @@ class Comparison {
     struct Tally {
       double error = 0, time = 0;
       size_t groups = 0, timed = 0, worst = 0, failed = 0;
+      std::vector<size_t> cells;
     };
     std::map<std::string, Tally> tallies;
     size_t compared = 0;
@@ -193,6 +223,7 @@ class Comparison {
         if (!view_.metrics(i).ok || !std::isfinite(error(i))) continue;
         Tally& tally = tallies[view_.cell(i).axes.at(axis)];
         ++tally.groups;
+        tally.cells.push_back(i);
         tally.error += std::log(error(i) / least);
         if (view_.seconds(i) > 0) {
           ++tally.timed;
@@ -217,7 +248,8 @@ class Comparison {
       const double error = mean(tally.error, tally.groups), time = mean(tally.time, tally.timed);
       if (error > wrong.first) wrong = {error, value};
       if (time > slow.first) slow = {time, value};
-      text += fmt::format("{}`{}`", first ? "" : "; ", value);
+      text += fmt::format("{}`{}`{}", first ? "" : "; ", value,
+                          axis == "scheme" ? warning(tally.cells) : "");
       if (tally.groups > 0) text += fmt::format(" error ×{:.3g}", error);
       if (tally.timed > 0) text += fmt::format(", time ×{:.3g}", time);
       if (tally.worst > 0) text += fmt::format(", worst in {}", tally.worst);

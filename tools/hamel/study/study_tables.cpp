@@ -44,14 +44,9 @@ void add_orders(Page& page, const StudyView& view) {
     std::vector<Cell> row;
     for (const std::string& axis : shown)
       row.push_back(axis_cell(view.cell(cells.front()).axes.at(axis)));
-    const char* verdict = claim == 0                                ? "claims none"
-                          : std::isnan(m.order)                     ? "not measured"
-                          : m.order >= claim - kShortOfClaim        ? "ok"
-                          : m.order_finest >= claim - kShortOfClaim ? "finest only"
-                                                                    : "below its claim";
-    for (const Cell& cell : std::vector<Cell>{m.order, m.order_finest, static_cast<double>(claim),
-                                              verdict, static_cast<double>(m.order_points),
-                                              static_cast<double>(m.order_of), least})
+    for (const Cell& cell : std::vector<Cell>{
+             m.order, m.order_finest, static_cast<double>(claim), order_verdict(m, claim),
+             static_cast<double>(m.order_points), static_cast<double>(m.order_of), least})
       row.push_back(cell);
     rows.push_back(std::move(row));
   }

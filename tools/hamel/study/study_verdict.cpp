@@ -22,6 +22,7 @@ class Judge {
     counts();
     failures();
     compare_methods(view_, out_);
+    saturated();
     energy();
     solvers();
     references();
@@ -48,34 +49,51 @@ class Judge {
     say(ok == view_.run().size() ? "ok" : "note", text);
   }
 
-  // One sentence for each reason and solver, if one was used.
+  // One sentence for each reason and solver, if one was used. A cell that fails is a result, and nothing wrong with the study.
   void failures() {
     std::map<std::pair<std::string, std::string>, std::vector<size_t>> by_reason;
     for (const size_t i : view_.run())
       if (!view_.metrics(i).ok)
         by_reason[{view_.metrics(i).reason, view_.cell(i).axes.at("solver")}].push_back(i);
     for (const auto& [key, cells] : by_reason)
-      say("failed", fmt::format("{} failed{}: {}. Where: {}.", plural(cells.size(), "cell"),
-                                key.second.empty() ? "" : ", `" + key.second + "`", key.first,
-                                view_.where(cells)));
+      say("note", fmt::format("{} failed{}: {}. Where: {}.", plural(cells.size(), "cell"),
+                              key.second.empty() ? "" : ", `" + key.second + "`", key.first,
+                              view_.where(cells)));
+  }
+
+  // Is the error no smaller than the motion itself?
+  bool lost(size_t i) const {
+    return view_.metrics(i).ok &&
+           view_.metrics(i).error > kLost * view_.result().references[view_.cell(i).system].extent;
+  }
+  void saturated() {
+    std::vector<size_t> cells;
+    for (const size_t i : view_.run())
+      if (lost(i)) cells.push_back(i);
+    if (cells.empty()) return;
+    say("note", fmt::format("{} {} saturated: an error above {} of the motion says that the motion "
+                            "is lost, not by how much. Where: {}.",
+                            plural(cells.size(), "cell"), cells.size() == 1 ? "is" : "are", kLost,
+                            view_.where(cells)));
   }
 
   void energy() {
-    std::vector<size_t> lost;
+    std::vector<size_t> kept;
     double least = std::numeric_limits<double>::infinity();
     for (const size_t i : view_.run()) {
       const StudyMetrics& m = view_.metrics(i);
-      if (m.ok && m.energy_error < kGoodEnergy &&
-          m.error > kLost * view_.result().references[view_.cell(i).system].extent) {
-        lost.push_back(i);
+      if (m.energy_error < kGoodEnergy && lost(i)) {
+        kept.push_back(i);
         least = std::min(least, m.energy_error);
       }
     }
-    if (lost.empty()) return;
+    if (kept.empty()) return;
+    const bool one = kept.size() == 1;
     say("note",
-        fmt::format("Energy proves nothing: {} keep the energy to {:.0e} (the best to {:.1e}) "
-                    "and are off by more than {} of the motion. Where: {}.",
-                    plural(lost.size(), "cell"), kGoodEnergy, least, kLost, view_.where(lost)));
+        fmt::format("Energy proves nothing: {} {} the energy to {:.0e} (the best to {:.1e}) "
+                    "and {} off by more than {} of the motion. Where: {}.",
+                    plural(kept.size(), "cell"), one ? "keeps" : "keep", kGoodEnergy, least,
+                    one ? "is" : "are", kLost, view_.where(kept)));
   }
 
   // Where some solvers find a step's solution and others do not.
@@ -96,9 +114,9 @@ class Judge {
     }
     if (none + some == 0) return;
     std::string text = fmt::format(
-        "Where the solvers end: of {} otherwise equal cells {} are solved by "
-        "all, {} by none, {} by some.",
-        all + none + some, all, none, some);
+        "Where the solvers end: of {} of otherwise equal cells {} {} solved by all, {} by none, {} "
+        "by some.",
+        plural(all + none + some, "group"), all, all == 1 ? "is" : "are", none, some);
     if (some > 0) {
       std::string words;
       for (const std::string& solver : view_.values("solver"))
@@ -124,13 +142,14 @@ class Judge {
     }
     if (count == 0) return;
     if (apart.empty()) {
-      say("ok", fmt::format("The solvers agree: {} end within {:.1e} of the first solver's.",
-                            plural(count, "run"), largest));
+      say("ok", fmt::format("The solvers agree: {} {} within {:.1e} of the first solver's.",
+                            plural(count, "run"), count == 1 ? "ends" : "end", largest));
     } else {
-      say("failed", fmt::format("{} of {} end more than {:.0e} from the first solver's, at most "
-                                "{:.1e}. Where: {}.",
-                                apart.size(), plural(count, "run"), kSolversAgree, largest,
-                                view_.where(apart)));
+      say("failed",
+          fmt::format("{} of {} {} more than {:.0e} from the first solver's, at most "
+                      "{:.1e}. Where: {}.",
+                      apart.size(), plural(count, "run"), apart.size() == 1 ? "ends" : "end",
+                      kSolversAgree, largest, view_.where(apart)));
     }
   }
 
@@ -138,8 +157,9 @@ class Judge {
     for (size_t i = 0; i < view_.result().references.size(); ++i) {
       const StudyReference& reference = view_.result().references[i];
       const std::string& label = view_.result().config.systems[i].label;
+      if (!view_.result().config.reference) continue;
       if (reference.kind.starts_with("none") || reference.kind.starts_with("not converged"))
-        say("failed", fmt::format("{} has nothing to compare with: {}.", label, reference.kind));
+        say("note", fmt::format("{} has nothing to compare with: {}.", label, reference.kind));
       else if (reference.kind.starts_with("converged"))
         say("note", fmt::format("{}: errors are distances from a {} whose own error is at most "
                                 "{:.1e}.",

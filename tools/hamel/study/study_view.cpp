@@ -1,6 +1,7 @@
 #include "study_view.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -18,6 +19,17 @@ std::string axis_words(const std::string& axis, const std::string& value) {
     if (option.name == axis && !std::is_same_v<Value, std::string>) out = axis + " " + value;
   });
   return out;
+}
+
+const char* order_verdict(const StudyMetrics& m, int claim) {
+  if (claim == 0) return "claims none";
+  if (std::isnan(m.order)) return "not measured";
+  const double off = m.order - claim, finest = m.order_finest - claim;
+  if (off >= -kShortOfClaim && off <= kFarAboveClaim) return "ok";
+  if (m.order_points < 3) return "not asymptotic";
+  if (std::abs(finest) <= kShortOfClaim) return "finest only";
+  const bool settled = std::abs(finest - off) <= kShortOfClaim;
+  return off < 0 && settled ? "below its claim" : "not asymptotic";
 }
 
 StudyView::StudyView(const StudyResult& result) : result_(result) {

@@ -9,8 +9,11 @@
 
 namespace hamel::tools {
 
-/// An order measured this much below its claim falls short.
-constexpr double kShortOfClaim = 0.25;
+/// An order measured this much below its claim falls short; one this much above it is no order yet.
+constexpr double kShortOfClaim = 0.25, kFarAboveClaim = 0.5;
+/// Of the slopes over all steps and over the two finest against the claim: "ok", "finest only", "below its claim" where
+/// the slopes agree, else "not asymptotic": too few steps, or too large, to tell. "claims none", "not measured".
+const char* order_verdict(const StudyMetrics& m, int claim);
 
 class StudyView {
  public:

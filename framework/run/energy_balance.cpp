@@ -1,0 +1,56 @@
+#include <hamel/framework/run/energy_balance.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hamel {
+
+EnergyBalance::EnergyBalance(std::shared_ptr<const Geometry> geometry,
+                             const std::shared_ptr<const Mechanics>& mechanics)
+    : geometry_(std::move(geometry)),
+      mechanics_(mechanics),
+      active_(geometry_ != nullptr && (mechanics->has_force() || mechanics->has_drift())) {
+  if (!active_) return;
+  g_.resize(geometry_->size());
+  if (!mechanics->has_drift()) return;
+  motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, mechanics));
+  b_.resize(mechanics->rows());
+  a_.resize(mechanics->rows(), mechanics->dim());
+}
+
+double EnergyBalance::power(const Snapshot& state) {
+  geometry_->from_coordinates(state.coordinates, g_.data());
+  xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
+                                          static_cast<Eigen::Index>(state.velocity.size()));
+  double out = mechanics_->power(state.time, g_.data(), xi_);
+  if (motion_ != nullptr) {
+    mechanics_->constraints(state.time, g_.data(), a_, b_);
+    motion_->solve(state.time, g_, xi_);
+    out += motion_->reaction().dot(b_);
+  }
+  return out;
+}
+
+void EnergyBalance::node(const Snapshot& state) {
+  work_.add(state.time, power(state));
+  energy_ = state.energy;
+  if (nodes_ == 0) energy_start_ = energy_;
+  ++nodes_;
+  raise(energy_max_, energy_);
+}
+
+void EnergyBalance::row() { recorded_.push_back({nodes_ - 1, energy_, work_.value()}); }
+
+std::vector<BalancedState> EnergyBalance::rows() const {
+  std::vector<BalancedState> out;
+  out.reserve(recorded_.size());
+  const double scale = energy_max_ == 0 ? 1 : energy_max_;
+  for (const Recorded& r : recorded_) {
+    const bool early = r.node < static_cast<long>(NodalQuadrature::kNodes);
+    const double work = early ? work_.first(static_cast<size_t>(r.node)) : r.work;
+    out.push_back({work, (r.energy - energy_start_ - work) / scale});
+  }
+  return out;
+}
+
+}  // namespace hamel

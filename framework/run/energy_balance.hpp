@@ -1,0 +1,50 @@
+// The energy balance of a run: the energy less what forces and moving constraints have done, (M47) (M48) (M49).
+// Not installed.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/run/measures.hpp>
+#include <hamel/framework/run/nodal_quadrature.hpp>
+#include <hamel/framework/schemes/erased.hpp>
+
+namespace hamel {
+
+class EnergyBalance {
+ public:
+  /// geometry: null for a group that is not registered; then, and where the energy is kept, it is not active.
+  EnergyBalance(std::shared_ptr<const Geometry> geometry,
+                const std::shared_ptr<const Mechanics>& mechanics);
+  bool active() const { return active_; }
+
+  /// Of each node, from the start on: its step, time, coordinates, velocity and energy.
+  void node(const Snapshot& state);
+  /// The last node is a recorded state.
+  void row();
+
+  /// After the last node: one for each recorded state.
+  std::vector<BalancedState> rows() const;
+
+ private:
+  // <f, xi> + lambda . b.
+  double power(const Snapshot& state);
+
+  std::shared_ptr<const Geometry> geometry_;
+  std::shared_ptr<const Mechanics> mechanics_;
+  std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without a drift
+  bool active_;
+  NodalQuadrature work_;
+  long nodes_ = 0;
+  double energy_ = 0, energy_start_ = 0, energy_max_ = 0;
+  struct Recorded {
+    long node;
+    double energy, work;
+  };
+  std::vector<Recorded> recorded_;
+  Eigen::VectorXd g_, xi_, b_;
+  Eigen::MatrixXd a_;
+};
+
+}  // namespace hamel
