@@ -51,6 +51,7 @@ std::vector<std::string> read_on_failure(const Config& config, const Registry& r
 std::vector<std::string> unused_options(const SchemeInfo& scheme, const std::string& on_failure) {
   std::vector<std::string> out;
   if (!scheme.uses_s) out.emplace_back("s");
+  if (!scheme.places_forces) out.emplace_back("force_at");
   if (!scheme.explicit_step) return out;
   out.insert(out.end(), {"solver", "tolerance"});
   if (on_failure != "halve") out.emplace_back("on_failure");
@@ -88,9 +89,6 @@ Simulation::Plan Simulation::plan() const {
   const std::string& place = config_.force_at;
   if (place != "nodes" && place != "base") {
     plan.add({unknown_name("force_at", place, {"nodes", "base"})});
-  } else if (scheme != nullptr && !scheme->places_forces && place != Config().force_at) {
-    plan.add({fmt::format("force_at: {} has one place for the forces; an option of lift",
-                          scheme->name)});
   }
   plan.setup.forces_at_base = place == "base";
 

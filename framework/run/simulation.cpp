@@ -58,6 +58,13 @@ void add_notes(Result& result) {
         "the diagnostics say; take a smaller step, or check",
         result.rotation_per_step_max, far));
   }
+  constexpr double percent = 0.01;
+  if (!std::isfinite(result.work) && result.energy_error_max > percent) {
+    result.notes.push_back(
+        fmt::format("the energy changes by {:.2g} of its size though nothing does work: take a "
+                    "smaller step, or check",
+                    result.energy_error_max));
+  }
 }
 
 }  // namespace
