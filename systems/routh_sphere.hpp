@@ -44,15 +44,17 @@ struct RouthSphere {
   static std::string source() { return "Routh 1884, art. 243; Cushman 1998"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("radius", radius, "m", "radius of the ball");
-    f("offset", offset, "m", "centre of the ball to mass centre, along the axis");
+    f("mass", mass, "kg", "total mass", positive);
+    f("radius", radius, "m", "radius of the ball", positive);
+    f("offset", offset, "m", "centre of the ball to mass centre, along the axis",
+      between(-radius, radius));
     f("transverse_inertia", transverse, "kg m^2",
-      "moment about e1, across the axis, about the mass centre");
+      "moment about e1, across the axis, about the mass centre", positive);
     f("asymmetry", asymmetry, "kg m^2",
-      "moment about e2 minus that about e1 (Chaplygin's top; 0: Routh's sphere)");
-    f("axial_inertia", axial, "kg m^2", "moment about the axis");
-    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+      "moment about e2 minus that about e1 (Chaplygin's top; 0: Routh's sphere)",
+      Range{.least = -transverse, .open = true});
+    f("axial_inertia", axial, "kg m^2", "moment about the axis", axial_moment(transverse));
+    f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
   }
   // omega x a e3 = a (w2, -w1, 0).
   auto inertia(const auto& g) const {

@@ -30,11 +30,12 @@ bool definite(const Eigen::VectorXd& values) {
 
 bool is_definite(const Eigen::MatrixXd& symmetric) { return definite(eigenvalues(symmetric)); }
 
-Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints) {
+void detail::hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints,
+                         Eigen::Ref<Eigen::MatrixXd> frame) {
   const Eigen::MatrixXd basis = basis_of_kernel(constraints);
   const Eigen::LLT<Eigen::MatrixXd> llt(basis.transpose() * inertia * basis);
   // E = B L^-T:  E^T I E = L^-1 (B^T I B) L^-T = Id.
-  return llt.matrixL().solve(basis.transpose()).transpose();
+  frame = llt.matrixL().solve(basis.transpose()).transpose();
 }
 
 std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,

@@ -132,15 +132,24 @@ function(hamel_rooms_test)
   set_tests_properties(framework/rooms PROPERTIES LABELS compile_error)
 endfunction()
 
-# tests/consumers/<kind>: configured, built and run as a user would.
-function(hamel_consumer kind)
-  add_test(NAME consumers/${kind}
-    COMMAND ${CMAKE_COMMAND} -DKIND=${kind} -DSOURCE=${CMAKE_CURRENT_SOURCE_DIR}/consumers/${kind}
-            -DHAMEL_SOURCE=${PROJECT_SOURCE_DIR} -DHAMEL_BUILD=${PROJECT_BINARY_DIR}
-            -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
-            -DCONFIG=$<CONFIG> -DCCACHE=$<$<BOOL:${CCACHE_PROGRAM}>:${CCACHE_PROGRAM}>
-            -P ${PROJECT_SOURCE_DIR}/tools/cmake/run_consumer.cmake)
-  set_tests_properties(consumers/${kind} PROPERTIES LABELS consumer TIMEOUT 900)
+# tests/consumers/<project>: configured, built and tested as a user would, against the installed tree and with
+# each of the compilers that is there (tests/consumers/run).
+function(hamel_consumer project)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "COMPILERS;LABELS")
+  add_test(NAME consumers/${project}
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/consumers/run ${PROJECT_BINARY_DIR} ${project} ${arg_COMPILERS})
+  set_tests_properties(consumers/${project} PROPERTIES LABELS "consumer;${arg_LABELS}" TIMEOUT 1800)
+endfunction()
+
+# tests/consumers/subdirectory: the same with add_subdirectory of the clone.
+function(hamel_consumer_of_the_clone)
+  set(build ${CMAKE_CURRENT_BINARY_DIR}/consumers/subdirectory)
+  add_test(NAME consumers/subdirectory
+    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/consumers/subdirectory ${build}
+            --build-generator ${CMAKE_GENERATOR} --build-options -DHAMEL_SOURCE=${PROJECT_SOURCE_DIR}
+            -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_BUILD_TYPE=Debug
+            --test-command ${build}/consumer)
+  set_tests_properties(consumers/subdirectory PROPERTIES LABELS consumer TIMEOUT 900)
 endfunction()
 
 # node <arguments>, in the build's copy of tools/report: ctest page/<name>. Status 77, no browser, is a
@@ -164,4 +173,25 @@ function(hamel_page name file)
     LABELS page TIMEOUT 300 FIXTURES_SETUP page_${name})
   hamel_page_script(${name} test/render.mjs ${folder}/${file})
   set_tests_properties(page/${name} PROPERTIES FIXTURES_REQUIRED page_${name})
+endfunction()
+
+# tests/fuzz/<stem>.cpp -> build/tests/fuzz/<stem>. It sees the headers of the systems but links no kernels: the
+# schemes that it needs are compiled, erased, in tests/fuzz/registry.cpp.
+function(hamel_fuzz_options target)
+  target_link_libraries(${target} PRIVATE
+    hamel::study hamel::groups hamel::solvers fmt::fmt hamel_build_options)
+  target_include_directories(${target} PRIVATE
+    $<TARGET_PROPERTY:hamel_systems,INTERFACE_INCLUDE_DIRECTORIES>)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+endfunction()
+function(hamel_fuzz_library stem)
+  add_library(fuzz_${stem} OBJECT fuzz/${stem}.cpp)
+  hamel_fuzz_options(fuzz_${stem})
+endfunction()
+function(hamel_fuzzer stem)
+  add_executable(fuzz_${stem} fuzz/${stem}.cpp)
+  hamel_fuzz_options(fuzz_${stem})
+  target_link_libraries(fuzz_${stem} PRIVATE fuzz_registry -fsanitize=fuzzer)
+  set_target_properties(fuzz_${stem} PROPERTIES
+    OUTPUT_NAME ${stem} RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz)
 endfunction()

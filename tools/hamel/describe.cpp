@@ -16,6 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string words_of(const Range& range) {
+  return range.words() + (range.moments ? ", of a rigid body" : "");
+}
+
 // Where a system starts, its defaults filled in.
 Json start_of(const SystemModel& model) {
   Json out;
@@ -36,6 +40,7 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
         {{"name", field.name},
          {"default", field.value.size() == 1 ? Json(field.value[0]) : Json(field.value)},
          {"unit", field.unit},
+         {"range", words_of(field.range)},
          {"meaning", field.meaning}});
   }
   return {{"kind", "system"},
@@ -153,6 +158,7 @@ Json description_of(const std::string& name, const Parameters& given) {
   if (const SolverInfo* info = all.solver(name)) return describe_solver(*info, true);
   if (const SolverInfo* info = all.absent_solver(name)) return describe_solver(*info, false);
   if (const auto info = all.group_or_product(name)) return describe_group(*info);
+  if (name.find_first_of("*^") != std::string::npos) throw ConfigError({all.missing_group(name)});
   std::vector<std::string> known;
   for (const std::string& retraction : all.retractions()) {
     if (retraction == name) return describe_retraction(name);
@@ -188,7 +194,8 @@ void print(const Json& json) {
           line += name == "name" || name == "group" ? fmt::format("{:<14}", text)
                   : name == "default"               ? fmt::format(" = {:<12}", text)
                   : name == "unit"                  ? fmt::format(" [{}]", text)
-                  : name == "domain"                ? fmt::format("; domain {}", text)
+                  : name == "range"     ? (text.empty() ? "" : fmt::format("  {};", text))
+                  : name == "domain"    ? fmt::format("; domain {}", text)
                   : name == "symmetric" ? (text == "true" ? "; symmetric" : "; not symmetric")
                                         : fmt::format("  {}", text);
         }
