@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <Eigen/QR>
 
 #include <hamel/framework/analysis/conserved.hpp>

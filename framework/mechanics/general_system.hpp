@@ -282,7 +282,7 @@ class TypedMechanics final : public Mechanics {
     formulas_.inertial_force(load(g), Eigen::Map<const Vec<n>>(xi.data()), out);
     to = out;
   }
-  bool force_depends_on_velocity() const override { return has_force<S>(); }
+  bool force_depends_on_velocity() const override { return hamel::has_force<S>(); }
   double power(double t, const double* g, ConstVector xi) const override {
     return formulas_.power(t, load(g), Eigen::Map<const Vec<n>>(xi.data()));
   }
