@@ -62,7 +62,7 @@ std::string summary(const StudyResult& result) {
                      result.resumed > 0 ? fmt::format("; {} were there", result.resumed) : "");
   for (size_t i = 0; i < result.references.size(); ++i) {
     const StudyReference& reference = result.references[i];
-    if (reference.times.empty()) continue;
+    if (reference.times.empty() || !result.config.reference) continue;
     out += fmt::format("  reference              {}: {}", result.config.systems[i].label,
                        reference.kind);
     if (reference.bound >= 0) out += fmt::format(", its error at most {:.1e}", reference.bound);
