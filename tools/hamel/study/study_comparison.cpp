@@ -150,7 +150,7 @@ class Comparison {
       const std::string name = "`" + view_.name(cells.front()) + "`";
       const int claim = view_.cell(cells.front()).claimed_order;
       if (m.order_of < 2 || claim == 0) continue;
-      const std::string verdict = order_verdict(m, claim);
+      const std::string verdict = view_.order_verdict(cells);
       if (verdict == "not measured") {
         unknown.push_back(name);
         continue;

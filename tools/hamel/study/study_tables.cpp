@@ -45,7 +45,7 @@ void add_orders(Page& page, const StudyView& view) {
     for (const std::string& axis : shown)
       row.push_back(axis_cell(view.cell(cells.front()).axes.at(axis)));
     for (const Cell& cell : std::vector<Cell>{
-             m.order, m.order_finest, static_cast<double>(claim), order_verdict(m, claim),
+             m.order, m.order_finest, static_cast<double>(claim), view.order_verdict(cells),
              static_cast<double>(m.order_points), static_cast<double>(m.order_of), least})
       row.push_back(cell);
     rows.push_back(std::move(row));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -19,17 +20,6 @@ std::string axis_words(const std::string& axis, const std::string& value) {
     if (option.name == axis && !std::is_same_v<Value, std::string>) out = axis + " " + value;
   });
   return out;
-}
-
-const char* order_verdict(const StudyMetrics& m, int claim) {
-  if (claim == 0) return "claims none";
-  if (std::isnan(m.order)) return "not measured";
-  const double off = m.order - claim, finest = m.order_finest - claim;
-  if (off >= -kShortOfClaim && off <= kFarAboveClaim) return "ok";
-  if (m.order_points < 3) return "not asymptotic";
-  if (std::abs(finest) <= kShortOfClaim) return "finest only";
-  const bool settled = std::abs(finest - off) <= kShortOfClaim;
-  return off < 0 && settled ? "below its claim" : "not asymptotic";
 }
 
 StudyView::StudyView(const StudyResult& result) : result_(result) {
@@ -136,6 +126,23 @@ std::vector<std::vector<size_t>> StudyView::otherwise_equal(const std::string& a
   for (size_t i = 0; i < all.size(); ++i)
     if (!taken[i] && !joined[i].empty()) out.push_back(std::move(joined[i]));
   return out;
+}
+
+const char* StudyView::order_verdict(const std::vector<size_t>& cells) const {
+  const StudyMetrics& m = metrics(cells.front());
+  const int claim = cell(cells.front()).claimed_order;
+  if (claim == 0) return "claims none";
+  if (std::isnan(m.order)) return "not measured";
+  const double off = m.order - claim, finest = m.order_finest - claim;
+  if (off >= -kShortOfClaim && off <= kFarAboveClaim) return "ok";
+  if (m.order_points < 3) return "not asymptotic";
+  if (std::abs(finest) <= kShortOfClaim) return "finest only";
+  double least = std::numeric_limits<double>::infinity();
+  for (const size_t i : cells)
+    if (metrics(i).ok) least = std::fmin(least, metrics(i).error);
+  const bool settled = std::abs(finest - off) <= kShortOfClaim &&
+                       least < kSmall * result_.references[cell(cells.front()).system].extent;
+  return off < 0 && settled ? "below its claim" : "not asymptotic";
 }
 
 std::string StudyView::where(const std::vector<size_t>& some, const std::string& known) const {

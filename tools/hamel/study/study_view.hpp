@@ -11,9 +11,8 @@ namespace hamel::tools {
 
 /// An order measured this much below its claim falls short; one this much above it is no order yet.
 constexpr double kShortOfClaim = 0.25, kFarAboveClaim = 0.5;
-/// Of the slopes over all steps and over the two finest against the claim: "ok", "finest only", "below its claim" where
-/// the slopes agree, else "not asymptotic": too few steps, or too large, to tell. "claims none", "not measured".
-const char* order_verdict(const StudyMetrics& m, int claim);
+/// An order is not known to fall short before errors are below this part of the motion's extent.
+constexpr double kSmall = 1e-4;
 
 class StudyView {
  public:
@@ -50,6 +49,10 @@ class StudyView {
   /// Groups of cells that differ in one axis only, which all of them use. A cell that does not use another
   /// axis, as boxed does not use s, is in every group of its kind.
   std::vector<std::vector<size_t>> otherwise_equal(const std::string& axis) const;
+  /// Of cells that differ in their step, the slopes over all steps and over the two finest against the claim: "ok",
+  /// "finest only"; "below its claim" where the slopes agree and the least error is below kSmall of the motion, else
+  /// "not asymptotic": too few steps, or too large, to tell. "claims none", "not measured".
+  const char* order_verdict(const std::vector<size_t>& cells) const;
 
  private:
   const StudyResult& result_;
