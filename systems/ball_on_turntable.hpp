@@ -40,9 +40,9 @@ struct BallOnTurntable {
   static std::string source() { return "Earnshaw 1844; Weltner 1979; Fasso and Sansonetto 2016"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("radius", radius, "m", "radius of the ball");
-    f("inertia", moment, "kg m^2", "moment about the centre");
+    f("mass", mass, "kg", "total mass", positive);
+    f("radius", radius, "m", "radius of the ball", positive);
+    f("inertia", moment, "kg m^2", "moment about the centre", positive);
     f("table_rate", table_rate, "rad/s", "angular velocity of the table");
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(Vec<3>::Constant(moment), mass); }

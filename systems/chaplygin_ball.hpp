@@ -33,9 +33,9 @@ struct ChaplyginBall {
   static std::string source() { return "Chaplygin 1903; Duistermaat 2004"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("radius", radius, "m", "radius of the ball");
-    f("inertia", moments, "kg m^2", "principal moments about the centre");
+    f("mass", mass, "kg", "total mass", positive);
+    f("radius", radius, "m", "radius of the ball", positive);
+    f("inertia", moments, "kg m^2", "principal moments about the centre", moments_of_inertia);
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(moments, mass); }
   Mat<2, 5> constraints(const Element& g) const {

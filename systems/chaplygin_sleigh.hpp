@@ -69,8 +69,8 @@ struct ChaplyginSleigh {
   static std::string source() { return "Chaplygin 1911; Bloch 2003, section 1.7"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("inertia", moment, "kg m^2", "moment about the mass centre");
+    f("mass", mass, "kg", "total mass", positive);
+    f("inertia", moment, "kg m^2", "moment about the mass centre", positive);
     f("offset", offset, "m", "blade to mass centre, along the blade");
   }
   Mat<3, 3> inertia() const {

@@ -29,7 +29,7 @@ struct ContactOscillator {
 
   void fields(auto& f) {
     f("ratio", ratio, "1", "mean transmission ratio");
-    f("spring", spring, "N/m", "stiffness of the driving oscillator");
+    f("spring", spring, "N/m", "stiffness of the driving oscillator", non_negative);
   }
   Mat<3, 3> inertia() const { return Mat<3, 3>::Identity(); }
   Mat<1, 3> constraints(const Element& g) const { return Mat<1, 3>{1, 0, ratio + g[1]}; }

@@ -42,12 +42,12 @@ struct DifferentialDrive {
   static std::string source() { return "Campion, Bastin and d'Andrea-Novel 1996"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("inertia", moment, "kg m^2", "moment about the mass centre");
+    f("mass", mass, "kg", "total mass", positive);
+    f("inertia", moment, "kg m^2", "moment about the mass centre", positive);
     f("offset", offset, "m", "axle to mass centre, forwards");
-    f("wheel_radius", wheel_radius, "m", "radius of the wheels");
-    f("half_track", half_track, "m", "centre to wheel, along the axle");
-    f("wheel_inertia", wheel_inertia, "kg m^2", "moment of a wheel about the axle");
+    f("wheel_radius", wheel_radius, "m", "radius of the wheels", positive);
+    f("half_track", half_track, "m", "centre to wheel, along the axle", positive);
+    f("wheel_inertia", wheel_inertia, "kg m^2", "moment of a wheel about the axle", non_negative);
   }
   Mat<5, 5> inertia() const {
     Mat<5, 5> i = Mat<5, 5>::Zero();

@@ -42,11 +42,12 @@ struct FallingDisk {
   static std::string source() { return "Neimark and Fufaev 1972, ch. V; O'Reilly 1996"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("radius", radius, "m", "radius of the disk");
-    f("axial_inertia", axial_inertia, "kg m^2", "moment about the axis");
-    f("diametral_inertia", diametral_inertia, "kg m^2", "moment about a diameter");
-    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+    f("mass", mass, "kg", "total mass", positive);
+    f("radius", radius, "m", "radius of the disk", positive);
+    f("axial_inertia", axial_inertia, "kg m^2", "moment about the axis",
+      axial_moment(diametral_inertia));
+    f("diametral_inertia", diametral_inertia, "kg m^2", "moment about a diameter", positive);
+    f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
   }
   Mat<6, 6> inertia() const {
     Vec<6> d;

@@ -24,7 +24,7 @@ struct HeisenbergParticle {
   static std::string known() { return "everything: xi is constant, straight lines"; }
   static std::string source() { return "Bloch 2003, section 1.8"; }
 
-  void fields(auto& f) { f("mass", mass, "kg", "mass"); }
+  void fields(auto& f) { f("mass", mass, "kg", "mass", positive); }
   Mat<3, 3> inertia() const { return Vec<3>::Constant(mass).asDiagonal(); }
   Mat<1, 3> constraints() const { return Mat<1, 3>{0, 0, 1}; }
   Start start() const {

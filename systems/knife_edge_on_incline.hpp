@@ -41,10 +41,10 @@ struct KnifeEdgeOnIncline {
   static std::string source() { return "Neimark and Fufaev 1972; Bloch 2003, section 1.6"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("inertia", moment, "kg m^2", "moment about the blade");
+    f("mass", mass, "kg", "total mass", positive);
+    f("inertia", moment, "kg m^2", "moment about the blade", positive);
     f("slope", slope, "rad", "angle of the plane");
-    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+    f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
   }
   Mat<3, 3> inertia() const { return Vec<3>(moment, mass, mass).asDiagonal(); }
   Mat<1, 3> constraints() const { return Mat<1, 3>{0, 0, 1}; }

@@ -48,12 +48,13 @@ struct NTrailer {
   static std::string source() { return "Laumond 1993; Altafini 2001"; }
 
   void fields(auto& f) {
-    f("trailers", trailers, "1", "number of trailers, 1 to 60");
-    f("length", lengths, "m", "axle to axle: one length for all trailers, or one for each");
-    f("mass", mass, "kg", "mass of the car, at its axle");
-    f("inertia", moment, "kg m^2", "moment of the car");
-    f("trailer_mass", trailer_mass, "kg", "mass of a trailer, at its axle");
-    f("trailer_inertia", trailer_moment, "kg m^2", "moment of a trailer");
+    f("trailers", trailers, "1", "number of trailers", between(1, 60));
+    f("length", lengths, "m", "axle to axle: one length for all trailers, or one for each",
+      positive);
+    f("mass", mass, "kg", "mass of the car, at its axle", positive);
+    f("inertia", moment, "kg m^2", "moment of the car", non_negative);
+    f("trailer_mass", trailer_mass, "kg", "mass of a trailer, at its axle", non_negative);
+    f("trailer_inertia", trailer_moment, "kg m^2", "moment of a trailer", non_negative);
   }
   std::string group() const;
   std::shared_ptr<const Mechanics> mechanics() const;

@@ -32,8 +32,8 @@ struct NonholonomicParticle {
   static std::string source() { return "Rosenberg 1977; Bates and Sniatycki 1993"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "mass");
-    f("spring", spring, "N/m", "stiffness of a spring along y");
+    f("mass", mass, "kg", "mass", positive);
+    f("spring", spring, "N/m", "stiffness of a spring along y", non_negative);
   }
   Mat<3, 3> inertia() const { return Vec<3>::Constant(mass).asDiagonal(); }
   Mat<1, 3> constraints(const Element& g) const { return Mat<1, 3>{-g[1], 0, 1}; }

@@ -44,12 +44,13 @@ struct Rattleback {
   static std::string source() { return "Walker 1896; Kane and Levinson 1982"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("semi_axes", semi_axes, "m", "semi-axes of the ellipsoid");
-    f("depth", depth, "m", "mass centre below the centre of the ellipsoid");
-    f("inertia", moments, "kg m^2", "principal moments about the mass centre");
+    f("mass", mass, "kg", "total mass", positive);
+    f("semi_axes", semi_axes, "m", "semi-axes of the ellipsoid", positive);
+    f("depth", depth, "m", "mass centre below the centre of the ellipsoid",
+      between(0, semi_axes[2]));
+    f("inertia", moments, "kg m^2", "principal moments about the mass centre", moments_of_inertia);
     f("skew", skew, "rad", "angle of the axes of inertia against those of the surface, about e3");
-    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+    f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
   }
   Mat<6, 6> inertia() const {
     const double c = std::cos(skew), s = std::sin(skew);

@@ -16,7 +16,7 @@
 namespace hamel {
 
 /// velocity: t -> Vec<n>. Called with |t| increasing; step: the longest step that is at round-off,
-/// about 0.02 over the fastest rate of the motion.
+/// about 0.02 over the fastest rate of the motion. NaN from where a call would take more than a million steps.
 template <class G, class Velocity>
 class Reconstruction {
  public:
@@ -29,12 +29,18 @@ class Reconstruction {
   std::pair<Element, Vec<n>> operator()(double t) {
     const double whole = t - t_;
     const double count = std::ceil(std::abs(whole) / step_);
-    for (double k = 0; k < count; ++k) advance(t_ + whole * (k / count), whole / count);
+    if (!(count <= kMost)) {
+      g_ = Exp<G>::tau(Vec<n>(Vec<n>::Constant(std::nan(""))));
+    } else {
+      for (double k = 0; k < count; ++k) advance(t_ + whole * (k / count), whole / count);
+    }
     t_ = t;
     return {g_, velocity_(t)};
   }
 
  private:
+  static constexpr double kMost = 1e6;
+
   void advance(double t, double h) {
     const double c = std::sqrt(15.0) / 10;
     const Vec<n> x1 = -velocity_(t + (0.5 - c) * h), x2 = -velocity_(t + 0.5 * h),

@@ -45,12 +45,12 @@ struct RollerRacer {
   static std::string source() { return "Krishnaprasad and Tsakiris 2001"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "mass, at the rear axle");
-    f("inertia", moment, "kg m^2", "moment of the rear body");
-    f("front_inertia", front_moment, "kg m^2", "moment of the front body");
-    f("rear_length", rear_length, "m", "rear axle to hinge");
-    f("front_length", front_length, "m", "front axle to hinge, which it trails");
-    f("stiffness", stiffness, "N m", "spring that centres the handlebar");
+    f("mass", mass, "kg", "mass, at the rear axle", positive);
+    f("inertia", moment, "kg m^2", "moment of the rear body", non_negative);
+    f("front_inertia", front_moment, "kg m^2", "moment of the front body", non_negative);
+    f("rear_length", rear_length, "m", "rear axle to hinge", positive);
+    f("front_length", front_length, "m", "front axle to hinge, which it trails", positive);
+    f("stiffness", stiffness, "N m", "spring that centres the handlebar", non_negative);
     f("torque", torque, "N m", "amplitude of the torque on the handlebar");
     f("frequency", frequency, "rad/s", "of the torque");
   }

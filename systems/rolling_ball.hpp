@@ -31,9 +31,9 @@ struct RollingBall {
   static std::string source() { return "Neimark and Fufaev 1972"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("radius", radius, "m", "radius of the ball");
-    f("inertia", moment, "kg m^2", "moment about the centre");
+    f("mass", mass, "kg", "total mass", positive);
+    f("radius", radius, "m", "radius of the ball", positive);
+    f("inertia", moment, "kg m^2", "moment about the centre", positive);
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(Vec<3>::Constant(moment), mass); }
   Mat<2, 5> constraints(const Element& g) const {

@@ -36,10 +36,10 @@ struct RollingDisk {
   static std::string source() { return "Bloch 2003, section 1.4"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("radius", radius, "m", "radius of the disk");
-    f("spin_inertia", spin_inertia, "kg m^2", "moment about the axle");
-    f("yaw_inertia", yaw_inertia, "kg m^2", "moment about the vertical");
+    f("mass", mass, "kg", "total mass", positive);
+    f("radius", radius, "m", "radius of the disk", positive);
+    f("spin_inertia", spin_inertia, "kg m^2", "moment about the axle", axial_moment(yaw_inertia));
+    f("yaw_inertia", yaw_inertia, "kg m^2", "moment about the vertical", positive);
   }
   Mat<4, 4> inertia() const { return Vec<4>(yaw_inertia, mass, mass, spin_inertia).asDiagonal(); }
   Mat<2, 4> constraints() const { return Mat<2, 4>{{0, 1, 0, -radius}, {0, 0, 1, 0}}; }

@@ -38,12 +38,14 @@ struct RouthSphere {
   static std::string source() { return "Routh 1884, art. 243; Cushman 1998"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("radius", radius, "m", "radius of the ball");
-    f("offset", offset, "m", "centre of the ball to mass centre, along the axis");
-    f("transverse_inertia", transverse, "kg m^2", "moment across the axis, about the mass centre");
-    f("axial_inertia", axial, "kg m^2", "moment about the axis");
-    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+    f("mass", mass, "kg", "total mass", positive);
+    f("radius", radius, "m", "radius of the ball", positive);
+    f("offset", offset, "m", "centre of the ball to mass centre, along the axis",
+      between(-radius, radius));
+    f("transverse_inertia", transverse, "kg m^2", "moment across the axis, about the mass centre",
+      positive);
+    f("axial_inertia", axial, "kg m^2", "moment about the axis", axial_moment(transverse));
+    f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
   }
   // omega x a e3 = a (w2, -w1, 0).
   auto inertia(const auto& g) const {

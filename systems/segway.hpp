@@ -48,15 +48,17 @@ struct Segway {
   static std::string source() { return "Grasser, d'Arrigo, Colombi and Rufer 2002"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "mass of the body");
-    f("height", height, "m", "axle to the mass centre of the body");
-    f("inertia", moments, "kg m^2", "moments of the body: forward, axle and upward axis");
-    f("wheel_mass", wheel_mass, "kg", "mass of a wheel");
-    f("wheel_radius", wheel_radius, "m", "radius of the wheels");
-    f("half_track", half_track, "m", "centre to wheel, along the axle");
-    f("wheel_inertia", wheel_inertia, "kg m^2", "moment of a wheel about the axle");
-    f("wheel_diameter_inertia", wheel_diameter, "kg m^2", "moment of a wheel about a diameter");
-    f("gravity", gravity, "m/s^2", "acceleration of gravity");
+    f("mass", mass, "kg", "mass of the body", positive);
+    f("height", height, "m", "axle to the mass centre of the body", positive);
+    f("inertia", moments, "kg m^2", "moments of the body: forward, axle and upward axis",
+      moments_of_inertia);
+    f("wheel_mass", wheel_mass, "kg", "mass of a wheel", non_negative);
+    f("wheel_radius", wheel_radius, "m", "radius of the wheels", positive);
+    f("half_track", half_track, "m", "centre to wheel, along the axle", positive);
+    f("wheel_inertia", wheel_inertia, "kg m^2", "moment of a wheel about the axle", non_negative);
+    f("wheel_diameter_inertia", wheel_diameter, "kg m^2", "moment of a wheel about a diameter",
+      non_negative);
+    f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
   }
   auto inertia(const auto& g) const {
     const auto& pitch = g.template part<3>();

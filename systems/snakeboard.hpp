@@ -50,11 +50,13 @@ struct Snakeboard {
   static std::string source() { return "Lewis, Ostrowski, Murray and Burdick 1994"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("half_length", half_length, "m", "centre to axle");
-    f("board_inertia", board_inertia, "kg m^2", "moment of the board about the centre");
-    f("rotor_inertia", rotor_inertia, "kg m^2", "moment of the rotor");
-    f("axle_inertia", axle_inertia, "kg m^2", "moment of each axle about its steering axis");
+    f("mass", mass, "kg", "total mass", positive);
+    f("half_length", half_length, "m", "centre to axle", positive);
+    f("board_inertia", board_inertia, "kg m^2", "moment of the board about the centre",
+      non_negative);
+    f("rotor_inertia", rotor_inertia, "kg m^2", "moment of the rotor", positive);
+    f("axle_inertia", axle_inertia, "kg m^2", "moment of each axle about its steering axis",
+      non_negative);
     f("rotor_amplitude", rotor_amplitude, "rad", "swing of the rotor");
     f("steering_amplitude", steering_amplitude, "rad", "swing of the axles, against each other");
     f("frequency", frequency, "rad/s", "of both");

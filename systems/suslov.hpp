@@ -43,7 +43,8 @@ struct Suslov {
   static std::string source() { return "Suslov 1902; Fedorov and Kozlov 1995"; }
 
   void fields(auto& f) {
-    f("inertia", moments, "kg m^2", "3 principal moments, 6 of the upper triangle, or 9 row-major");
+    f("inertia", moments, "kg m^2", "3 principal moments, 6 of the upper triangle, or 9 row-major",
+      moments_of_inertia);
     f("normal", normal, "1", "the forbidden body axis (any length)");
   }
 

@@ -25,7 +25,7 @@ struct SuslovInPotential {
   static std::string source() { return "Kozlov 1988; Borisov and Mamaev 2011"; }
 
   void fields(auto& f) {
-    f("inertia", moments, "kg m^2", "the 6 entries of the upper triangle");
+    f("inertia", moments, "kg m^2", "the 6 entries of the upper triangle", moments_of_inertia);
     f("weight", weight, "N m", "weight times the body vector to the mass centre");
   }
   Mat<3, 3> inertia() const {

@@ -26,8 +26,8 @@ struct Unicycle3d {
   static std::string source() { return "Bloch 2003, chapter 5"; }
 
   void fields(auto& f) {
-    f("mass", mass, "kg", "total mass");
-    f("inertia", moments, "kg m^2", "principal moments");
+    f("mass", mass, "kg", "total mass", positive);
+    f("inertia", moments, "kg m^2", "principal moments", moments_of_inertia);
   }
   Mat<6, 6> inertia() const {
     Vec<6> d;

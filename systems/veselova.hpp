@@ -23,7 +23,7 @@ struct Veselova {
   static std::string known() { return "invariants: energy, |I w - (I w.gamma) gamma|^2"; }
   static std::string source() { return "Veselova 1986; Fedorov and Jovanovic 2004"; }
 
-  void fields(auto& f) { f("inertia", moments, "kg m^2", "principal moments"); }
+  void fields(auto& f) { f("inertia", moments, "kg m^2", "principal moments", moments_of_inertia); }
   Mat<3, 3> inertia() const { return moments.asDiagonal(); }
   Mat<1, 3> constraints(const Element& r) const { return r.row(2); }
   Start start() const { return {.configuration = {}, .velocity = {1, 0.6, 0}, .momentum = {}}; }

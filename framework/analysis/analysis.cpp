@@ -16,6 +16,8 @@
 namespace hamel {
 namespace {
 
+constexpr int kMostAnalysed = 100;  // n^4 operations, n^3 numbers
+
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
@@ -170,6 +172,11 @@ void find_conserved(const Registry& registry, const std::string& system,
 
 }  // namespace
 
+Analysis::Analysis() = default;
+Analysis::Analysis(const Analysis&) = default;
+Analysis& Analysis::operator=(const Analysis&) = default;
+Analysis::~Analysis() = default;
+
 std::optional<bool> Analysis::integrable() const {
   if (rows == 0 || std::max(growth.nearby, growth.dimensions.back()) > m) return false;
   return growth.decided() ? std::optional(true) : std::nullopt;
@@ -187,7 +194,11 @@ Analysis analyse(const Registry& registry, const std::string& system,
   config.step = 0.005;
   config.until = 1;
   config.every = 10;
-  const Result run = simulation.config(config).run();
+  const int dim = simulation.config(config).build().system().group.dim;
+  if (dim > kMostAnalysed)
+    throw ConfigError({fmt::format("{}: its dimension {} is above {}, the most that is analysed",
+                                   system, dim, kMostAnalysed)});
+  const Result run = simulation.run();
   Analysis out;
   out.notes = run.notes;
   const auto geometry = registry.geometry(run.system.group.name, "exp");

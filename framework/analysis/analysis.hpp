@@ -20,6 +20,12 @@
 namespace hamel {
 
 struct Analysis {
+  // In analysis.cpp, since it holds memory that Eigen took (lie/types.hpp).
+  Analysis();
+  Analysis(const Analysis&);
+  Analysis& operator=(const Analysis&);
+  ~Analysis();
+
   int n = 0, rows = 0, rank = 0, m = 0;  // of A at the start
   int holonomic_rows = 0;
   bool left_invariant = false;
@@ -36,7 +42,7 @@ struct Analysis {
   std::vector<std::string> notes;  // how the start was projected
 };
 
-/// Throws ConfigError as Simulation::run does.
+/// Throws ConfigError as Simulation::run does, and above dimension 100.
 Analysis analyse(const Registry& registry, const std::string& system,
                  const Parameters& parameters = {});
 

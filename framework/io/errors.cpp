@@ -31,8 +31,14 @@ ConfigError::ConfigError(std::vector<std::string> mistakes)
     : std::invalid_argument(fmt::format("{}", fmt::join(mistakes, "\n"))),
       mistakes_(std::move(mistakes)) {}
 
-std::string unknown_name(const std::string& kind, const std::string& value,
+std::string shortened(const std::string& text) {
+  constexpr size_t kMost = 80;
+  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
+std::string unknown_name(const std::string& kind, const std::string& given,
                          const std::vector<std::string>& known) {
+  const std::string value = shortened(given);
   std::string text = fmt::format("unknown {} '{}': expected one of {}", kind, value, join(known));
   const auto nearest = std::min_element(known.begin(), known.end(), [&](auto& a, auto& b) {
     return edit_distance(value, a) < edit_distance(value, b);

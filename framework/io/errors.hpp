@@ -25,6 +25,9 @@ class ConfigError : public std::invalid_argument {
 std::string unknown_name(const std::string& kind, const std::string& value,
                          const std::vector<std::string>& known);
 
+/// The beginning of a text that is too long for a message.
+std::string shortened(const std::string& text);
+
 /// Comma-separated, in the shortest form that reads back to the same double.
 std::string join(std::span<const double> values);
 std::string join(const std::vector<std::string>& words);

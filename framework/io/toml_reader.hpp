@@ -18,14 +18,9 @@ class TomlReader {
  public:
   explicit TomlReader(const std::string& origin) : origin_(origin) {}
 
-  /// ConfigError with line and column when text is not TOML.
-  toml::table parse(const std::string& text) const {
-    try {
-      return toml::parse(text);
-    } catch (const toml::parse_error& error) {
-      throw ConfigError({fmt::format("{}: {}", place(error.source().begin), error.description())});
-    }
-  }
+  /// ConfigError with its place when text is not TOML, longer than kMaxText, or nested so deep that toml++ and its
+  /// tables, which work by recursion, would run out of stack.
+  toml::table parse(const std::string& text) const;
 
   /// The node as the type of `out`, else a mistake; one entry is a list too.
   void value(const toml::node& node, const std::string& key, std::string& out) {

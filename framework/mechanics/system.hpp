@@ -6,7 +6,7 @@
 //   auto constraints() const;          k x n rows A of full rank, A xi = 0 (k = 0: leave it out)
 // (inertia(g), constraints(g), holonomic(g), potential(g), ... for those that are not left-invariant:
 // general_system.hpp) and, where it has them,
-//   void fields(auto& f);              f("mass", mass, "kg", "what it is"): parameters, units, words
+//   void fields(auto& f);              f("mass", mass, "kg", "what it is", positive): parameters (fields.hpp)
 //   Start start() const;               the default start
 //   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
 //   bool has_exact() const;            where the exact motion depends on the parameters
@@ -16,7 +16,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +26,7 @@
 #include <hamel/framework/lie/group_info.hpp>
 #include <hamel/framework/mechanics/close_names.hpp>
 #include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/mechanics/fields.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/system_members.hpp>
 
@@ -37,17 +37,6 @@ struct Start {
   std::vector<double> configuration = {};  // the element's CSV columns
   std::vector<double> velocity = {};       // body velocity xi, n entries
   std::vector<double> momentum = {};       // body momentum mu, n entries
-};
-
-using Parameters = std::map<std::string, std::vector<double>>;
-
-/// One parameter of a system, as its fields() states it.
-struct Field {
-  std::string name;
-  std::vector<double> value;
-  std::string unit;
-  std::string meaning;
-  bool any_length = false;  // a list whose length the system itself checks
 };
 
 /// The exact motion from a start: t -> (coordinates of g, xi). Call with |t| increasing.
@@ -84,37 +73,6 @@ struct SystemInfo {
 
 namespace detail {
 
-// The visitors that a system's fields() meets: f(name, member, unit, meaning).
-struct FieldReader {
-  std::vector<Field> fields;
-  void operator()(const char* name, double& value, const char* unit, const char* meaning = "") {
-    fields.push_back({name, {value}, unit, meaning});
-  }
-  void operator()(const char* name, std::vector<double>& value, const char* unit,
-                  const char* meaning = "") {
-    fields.push_back({name, value, unit, meaning, true});
-  }
-  template <int N>
-  void operator()(const char* name, Vec<N>& value, const char* unit, const char* meaning = "") {
-    fields.push_back({name, std::vector<double>(value.begin(), value.end()), unit, meaning});
-  }
-};
-
-struct FieldWriter {
-  const Parameters& given;
-  void operator()(const char* name, double& value, const char*, const char* = "") {
-    if (auto it = given.find(name); it != given.end()) value = it->second.front();
-  }
-  void operator()(const char* name, std::vector<double>& value, const char*, const char* = "") {
-    if (auto it = given.find(name); it != given.end()) value = it->second;
-  }
-  template <int N>
-  void operator()(const char* name, Vec<N>& value, const char*, const char* = "") {
-    if (auto it = given.find(name); it != given.end())
-      value = Eigen::Map<const Vec<N>>(it->second.data());
-  }
-};
-
 // The members that tell a visitor, where a system has them.
 template <class S, class Visitor>
 void tell_fields(S& system, Visitor& visitor) {
@@ -148,10 +106,6 @@ std::vector<Field> fields_of(S system) {
   tell_fields(system, reader);
   return reader.fields;
 }
-
-/// Names, lengths and finiteness of given parameters against the fields; throws ConfigError.
-void check_parameters(const std::string& system, const std::vector<Field>& fields,
-                      const Parameters& given);
 
 }  // namespace detail
 

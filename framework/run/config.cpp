@@ -1,11 +1,11 @@
 #include <hamel/framework/run/config.hpp>
 
-#include <fstream>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
 
 namespace hamel {
@@ -205,11 +205,7 @@ std::vector<std::string> Config::mistakes() const {
 }
 
 Config read_config(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw ConfigError({fmt::format("config: cannot read '{}'", path)});
-  return Config::from_toml(text.str(), path);
+  return Config::from_toml(read_text_file("config", path), path);
 }
 
 }  // namespace hamel

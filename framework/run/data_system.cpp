@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
+#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
 #include <hamel/framework/lie/differences.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
@@ -144,10 +143,15 @@ class File {
     } else {
       read_.value(*node, "group", name);
     }
+    if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
     const auto info = registry_.group_or_product(name);
-    if (info) return *info;
-    if (!name.empty()) read_.unknown(*node, "group", name, registry_.groups());
-    throw ConfigError(read_.mistakes);
+    if (!info)
+      read_.mistakes.push_back(
+          fmt::format("{}: {}", read_.place(*node), registry_.missing_group(name)));
+    else if (registry_.geometry(name, "exp") == nullptr)
+      read_.wrong(*node, "group", "a group with the retraction exp");
+    if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
+    return *info;
   }
 
   double number(const toml::node& node, const std::string& key) {
@@ -274,12 +278,7 @@ SystemModel data_system(const Registry& registry, const std::string& text,
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path) {
   return [&registry, path](const Parameters& given) {
-    std::ifstream in(path);
-    std::ostringstream text;
-    if (!in || !(text << in.rdbuf())) {
-      throw ConfigError({fmt::format("system: cannot read '{}'", path)});
-    }
-    return data_system_maker(registry, path, text.str())(given);
+    return data_system_maker(registry, path, read_text_file("system", path))(given);
   };
 }
 

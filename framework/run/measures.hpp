@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -50,8 +51,9 @@ inline double energy_error(double energy, double start) {
   return (energy - start) / (start != 0 ? std::abs(start) : 1.0);
 }
 
-/// Euclidean distance of two elements' columns, or of two velocities.
+/// Euclidean distance of two elements' columns, or of two velocities, of one length.
 inline double euclidean_distance(std::span<const double> a, std::span<const double> b) {
+  assert(a.size() == b.size());
   double sum = 0;
   for (std::size_t i = 0; i < b.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return std::sqrt(sum);

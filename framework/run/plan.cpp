@@ -97,10 +97,12 @@ Simulation::Plan Simulation::plan() const {
     plan.add({fmt::format("{}: {}", config_.system, error.what())});
     return plan;
   }
+  plan.add(out_of_range(plan.system.name, plan.system.fields));
+  plan.notes = no_rigid_body(plan.system.name, plan.system.fields);
   if (plan.system.group.dim == 0) {  // a product by name alone
     const std::string name = plan.system.group.name;
     if (auto group = registry_->group_or_product(name)) plan.system.group = *group;
-    else plan.add({unknown_name("group", name, registry_->groups())});
+    else plan.add({registry_->missing_group(name)});
   }
   if (plan.system.group.dim == 0) return plan;
   plan.fill_start();

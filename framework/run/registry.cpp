@@ -1,6 +1,8 @@
 #include <hamel/framework/run/registry.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -103,7 +105,8 @@ const KernelFactory* Registry::kernel(const std::string& group, const Mechanics&
 
 namespace {
 
-// "se2*so2^3" -> {"se2", "so2", "so2", "so2"}; empty when it cannot be read.
+// "se2*so2^3" -> {"se2", "so2", "so2", "so2"}, no more than kMaxDimension + 1 of them; empty when it cannot be
+// read.
 std::vector<std::string> factors_of(const std::string& name) {
   std::vector<std::string> out;
   std::istringstream in(name);
@@ -112,12 +115,11 @@ std::vector<std::string> factors_of(const std::string& name) {
     if (const size_t hat = word.find('^'); hat != std::string::npos) {
       const std::string power = word.substr(hat + 1);
       const auto [end, error] = std::from_chars(power.data(), power.data() + power.size(), count);
-      if (error != std::errc() || end != power.data() + power.size() || count < 0 || count > 1000) {
-        return {};
-      }
+      if (error != std::errc() || end != power.data() + power.size() || count < 0) return {};
       word.resize(hat);
     }
-    out.insert(out.end(), static_cast<size_t>(count), word);
+    const auto room = static_cast<long>(kMaxDimension + 1 - out.size());
+    out.insert(out.end(), static_cast<size_t>(std::min(count, room)), word);
   }
   return out;
 }
@@ -132,8 +134,18 @@ std::optional<GroupInfo> Registry::group_or_product(const std::string& name) con
     if (info == nullptr) return {};
     factors.push_back(*info);
   }
-  if (factors.empty()) return {};
+  const int dim = std::accumulate(factors.begin(), factors.end(), 0,
+                                  [](int sum, const GroupInfo& info) { return sum + info.dim; });
+  if (factors.empty() || dim > kMaxDimension) return {};
   return product_info(name, factors);
+}
+
+std::string Registry::missing_group(const std::string& name) const {
+  const std::vector<std::string> factors = factors_of(name);
+  const auto known = [&](const std::string& word) { return group(word) != nullptr; };
+  if (factors.empty() || !std::all_of(factors.begin(), factors.end(), known))
+    return unknown_name("group", name, groups());
+  return fmt::format("group '{}': its dimension is above {}", shortened(name), kMaxDimension);
 }
 
 std::shared_ptr<const Geometry> Registry::geometry(const std::string& group,

@@ -63,6 +63,9 @@ using SolveFunction =
 std::string problem_key(const std::string& group, int m);
 std::string problem_key(const std::type_info& mechanics);
 
+/// Of products put together by name: a step takes n^3 operations and n^2 numbers.
+constexpr int kMaxDimension = 1000;
+
 class Registry {
  public:
   // Adding a name again replaces the earlier entry.
@@ -92,8 +95,10 @@ class Registry {
                               const std::string& retraction, const std::string& scheme) const;
 
   // Products written "se2*so2^3" that nobody registered are put together from their factors.
-  /// Nothing when a factor is unknown.
+  /// Nothing when a factor is unknown, or the dimension above kMaxDimension.
   std::optional<GroupInfo> group_or_product(const std::string& name) const;
+  /// The reason why there is no group or product of this name.
+  std::string missing_group(const std::string& name) const;
   /// Null when a factor has no such retraction.
   std::shared_ptr<const Geometry> geometry(const std::string& group,
                                            const std::string& retraction) const;

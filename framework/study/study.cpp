@@ -50,7 +50,7 @@ StudyResult Study::run() const {
   std::unique_ptr<study::Journal> journal;
   if (!folder_.empty()) {
     journal = std::make_unique<study::Journal>(folder_, config_, fresh_);
-    journal->read(result);
+    result.notes = study::read_lines(journal->lines(), study::shapes(*registry_, config_), result);
   }
   for (StudyMetrics& m : result.metrics) {
     if (m.done) ++result.resumed;

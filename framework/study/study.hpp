@@ -146,6 +146,7 @@ struct StudyResult {
   std::vector<StudyCell> cells;
   std::vector<StudyMetrics> metrics;       // one for each cell; not done where the cell is skipped
   std::vector<StudyReference> references;  // one for each system
+  std::vector<std::string> notes;          // lines of the journal that were damaged
   bool complete = false;
   size_t resumed = 0;  // cells taken over from the journal, references not counted
   int threads = 1;

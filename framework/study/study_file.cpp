@@ -1,9 +1,7 @@
 // Study files: TOML with the names of `hamel run` as lists.
-#include <fstream>
-#include <sstream>
-
 #include <fmt/format.h>
 
+#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
 #include <hamel/framework/study/parts.hpp>
 
@@ -170,11 +168,7 @@ StudyConfig parse_study(const std::string& text, const std::string& origin,
 }
 
 StudyConfig read_study(const std::string& path, const Registry& registry) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw ConfigError({fmt::format("study: cannot read '{}'", path)});
-  return parse_study(text.str(), path, registry);
+  return parse_study(read_text_file("study", path), path, registry);
 }
 
 }  // namespace hamel

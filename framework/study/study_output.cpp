@@ -116,6 +116,7 @@ std::string StudyResult::record() const {
       {"status", complete ? "ok" : "failed"},
       {"cells", counts},
       {"resumed", resumed},
+      {"notes", notes},
       {"references", reference_list},
       {"until", config.until},
       {"repeats", config.repeats},

@@ -1,7 +1,5 @@
 // The systems of a study: registered ones, and data files as they were when the study began.
-#include <fstream>
-#include <sstream>
-
+#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/study/parts.hpp>
 
@@ -22,9 +20,10 @@ Simulation::Maker maker(const Registry& registry, const StudySystem& system) {
 void read_data(StudyConfig& config) {
   for (StudySystem& system : config.systems) {
     if (!system.name.ends_with(".toml") || !system.data.empty()) continue;
-    std::ifstream in(system.name);
-    std::ostringstream text;
-    if (in && text << in.rdbuf()) system.data = text.str();  // else the checks say so
+    try {
+      system.data = read_text_file("system", system.name);
+    } catch (const ConfigError&) {  // the checks say so
+    }
   }
 }
 

@@ -97,6 +97,12 @@ TEST_F(Describe, ASystemSaysEverything) {
   std::vector<std::string> names;
   for (const Json& p : disk["parameters"]) names.push_back(p["name"]);
   EXPECT_THAT(names, testing::ElementsAre("mass", "radius", "spin_inertia", "yaw_inertia"));
+  EXPECT_EQ(disk["parameters"][1]["range"], "positive");
+  EXPECT_EQ(suslov["parameters"][0]["range"], "positive, of a rigid body");
+  EXPECT_EQ(suslov["parameters"][1]["range"], "");
+  EXPECT_THAT(run({"describe", "rolling_disk"}).out,
+              testing::ContainsRegex("radius +=.*\\[m\\]  positive;  radius of the disk"));
+  EXPECT_THAT(run({"describe", "n_trailer"}).out, HasSubstr("in [1, 60]"));
   const Json sleigh = Json::parse(run({"describe", "chaplygin_sleigh", "--json"}).out);
   names.clear();
   for (const Json& p : sleigh["parameters"]) names.push_back(p["name"]);
@@ -134,6 +140,9 @@ TEST_F(Describe, AnUnknownName) {
   EXPECT_EQ(o.status, 2);
   EXPECT_THAT(o.err, HasSubstr("did you mean 'suslov'?"));
   EXPECT_EQ(run({"describe"}).status, 2);
+  const Outcome large = run({"describe", "so2^1000*so2"});
+  EXPECT_EQ(large.status, 2);
+  EXPECT_THAT(large.err, HasSubstr("its dimension is above 1000"));
 }
 
 TEST_F(Help, OfEveryCommandHasExamples) {

@@ -1,7 +1,4 @@
 // hamel study: its files, its mistakes; neither threads nor a kill change its results.
-#include <fcntl.h>
-#include <signal.h>
-
 #include <chrono>
 #include <thread>
 
@@ -110,17 +107,7 @@ TEST_F(StudyCommand, GoesOnAfterAKill) {
   longer.replace(longer.find("until = 2"), 9, "until = 40");
   const std::string name = study(longer);
   for (const int signal : {SIGKILL, SIGINT}) {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      const int nowhere = open("/dev/null", O_WRONLY);
-      dup2(nowhere, STDERR_FILENO);
-      dup2(nowhere, STDOUT_FILENO);
-      if (chdir(std::filesystem::path(file("")).c_str()) == 0)
-        execl(std::getenv("HAMEL_PROGRAM"), "hamel", "study", name.c_str(), "-o", "killed",
-              nullptr);
-      _exit(127);
-    }
+    const pid_t child = started(name, "killed");
     // As soon as it has kept some cells more.
     const std::string journal = file("killed/journal.jsonl");
     const size_t before = lines(contents(journal)).size();

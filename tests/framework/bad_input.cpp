@@ -132,8 +132,8 @@ TEST(BadInput, AnInadmissibleStartIsProjectedWithANote) {
                        .start({.configuration = {}, .velocity = {1, 0, 0.25}, .momentum = {}})
                        .until(0.1)
                        .run();
-  ASSERT_EQ(r.notes.size(), 1u);
-  EXPECT_THAT(r.notes[0], AllOf(HasSubstr("velocity was projected"), HasSubstr("0.25")));
+  EXPECT_THAT(r.notes,
+              testing::Contains(AllOf(HasSubstr("velocity was projected"), HasSubstr("0.25"))));
   EXPECT_NEAR(r.config.start.velocity[2], 0, 1e-16);
 }
 

@@ -165,3 +165,24 @@ function(hamel_page name file)
   hamel_page_script(${name} test/render.mjs ${folder}/${file})
   set_tests_properties(page/${name} PROPERTIES FIXTURES_REQUIRED page_${name})
 endfunction()
+
+# tests/fuzz/<stem>.cpp -> build/tests/fuzz/<stem>. It sees the headers of the systems but links no kernels: the
+# schemes that it needs are compiled, erased, in tests/fuzz/registry.cpp.
+function(hamel_fuzz_options target)
+  target_link_libraries(${target} PRIVATE
+    hamel::study hamel::groups hamel::solvers fmt::fmt hamel_build_options)
+  target_include_directories(${target} PRIVATE
+    $<TARGET_PROPERTY:hamel_systems,INTERFACE_INCLUDE_DIRECTORIES>)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+endfunction()
+function(hamel_fuzz_library stem)
+  add_library(fuzz_${stem} OBJECT fuzz/${stem}.cpp)
+  hamel_fuzz_options(fuzz_${stem})
+endfunction()
+function(hamel_fuzzer stem)
+  add_executable(fuzz_${stem} fuzz/${stem}.cpp)
+  hamel_fuzz_options(fuzz_${stem})
+  target_link_libraries(fuzz_${stem} PRIVATE fuzz_registry -fsanitize=fuzzer)
+  set_target_properties(fuzz_${stem} PROPERTIES
+    OUTPUT_NAME ${stem} RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz)
+endfunction()

@@ -15,6 +15,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string words_of(const Range& range) {
+  return range.words() + (range.moments ? ", of a rigid body" : "");
+}
+
 Json describe_system(const SystemInfo& info) {
   Json parameters = Json::array();
   for (const Field& field : info.fields) {
@@ -22,6 +26,7 @@ Json describe_system(const SystemInfo& info) {
         {{"name", field.name},
          {"default", field.value.size() == 1 ? Json(field.value[0]) : Json(field.value)},
          {"unit", field.unit},
+         {"range", words_of(field.range)},
          {"meaning", field.meaning}});
   }
   const Start start = info.make({}).start;
@@ -111,6 +116,7 @@ Json description_of(const std::string& name) {
   if (const SolverInfo* info = all.solver(name)) return describe_solver(*info, true);
   if (const SolverInfo* info = all.absent_solver(name)) return describe_solver(*info, false);
   if (const auto info = all.group_or_product(name)) return describe_group(*info);
+  if (name.find_first_of("*^") != std::string::npos) throw ConfigError({all.missing_group(name)});
   std::vector<std::string> known;
   for (const std::string& retraction : all.retractions()) {
     if (retraction == name) return describe_retraction(name);
@@ -146,7 +152,8 @@ void print(const Json& json) {
           line += name == "name" || name == "group" ? fmt::format("{:<14}", text)
                   : name == "default"               ? fmt::format(" = {:<12}", text)
                   : name == "unit"                  ? fmt::format(" [{}]", text)
-                  : name == "domain"                ? fmt::format("; domain {}", text)
+                  : name == "range"     ? (text.empty() ? "" : fmt::format("  {};", text))
+                  : name == "domain"    ? fmt::format("; domain {}", text)
                   : name == "symmetric" ? (text == "true" ? "; symmetric" : "; not symmetric")
                                         : fmt::format("  {}", text);
         }

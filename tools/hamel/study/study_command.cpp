@@ -22,6 +22,23 @@ extern "C" void ask_to_stop(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+// A study of many cells says so, since it may take long.
+void announce(const Study& study, const std::string& folder, bool quiet) {
+  constexpr long kMany = 1000;
+  long cells = 0;
+  double steps = 0;
+  for (const StudyCell& cell : study.cells()) {
+    if (!cell.runs()) continue;
+    ++cells;
+    steps += static_cast<double>(cell.config.steps()) * (1 + study.config().repeats);
+  }
+  if (quiet || cells < kMany) return;
+  fmt::print(stderr,
+             "hamel: {} cells, {:.1e} steps in all; each is kept in {} when it is finished, and "
+             "the same command goes on from there\n",
+             cells, steps, folder);
+}
+
 std::string summary(const StudyResult& result) {
   std::map<std::string, int> counts;
   const Table table = result.table();
@@ -40,6 +57,8 @@ std::string summary(const StudyResult& result) {
     if (reference.bound >= 0) out += fmt::format(", its error at most {:.1e}", reference.bound);
     out += '\n';
   }
+  for (const std::string& note : result.notes)
+    out += fmt::format("  note                   {}\n", note);
   for (const Verdict& verdict : study_verdicts(result))
     out += fmt::format("  [{}] {}\n", verdict.status, verdict.text);
   return out + fmt::format("  time                   {:.1f} s on {} thread{}\n", result.seconds,
@@ -55,6 +74,7 @@ int study(const StudyOptions& options) {
                                  : options.directory;
   Study study(registry(), read_study(options.file, registry()));
   study.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_asked);
+  announce(study, folder, options.quiet);
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
   StudyResult result;

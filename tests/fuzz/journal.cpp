@@ -1,0 +1,46 @@
+// Fuzz target: the lines of a study's journal, and what is made of them. Input that begins with '!' is given the
+// checksums that it lacks, so that what stands behind them is reached.
+#include <sstream>
+
+#include <hamel/framework/study/journal.hpp>
+#include <hamel/framework/study/parts.hpp>
+
+#include "registry.hpp"
+
+namespace {
+
+using namespace hamel;
+
+StudyConfig two_systems() {
+  StudyConfig config;
+  config.until = 1;
+  config.repeats = 2;
+  config.systems = {{.label = "body", .name = "suslov"}, {.label = "disk", .name = "rolling_disk"}};
+  config.axes["retraction"] = {"exp"};
+  config.axes["step"] = {0.5, 0.25};
+  return config;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  static const StudyConfig config = two_systems();
+  static const std::vector<StudyCell> cells = study_cells(config, fuzz::registry());
+  static const std::vector<study::Shape> shapes = study::shapes(fuzz::registry(), config);
+  std::string text = fuzz::text_of(data, size);
+  if (text.starts_with('!')) {
+    std::istringstream in(text.substr(1));
+    text.clear();
+    for (std::string line; std::getline(in, line);) text += study::sealed(line) + "\n";
+  }
+  StudyResult result;
+  result.config = config;
+  result.cells = cells;
+  result.metrics.resize(cells.size());
+  result.references.resize(config.systems.size());
+  study::read_lines(text, shapes, result);
+  for (StudyMetrics& m : result.metrics) m.nanoseconds.resize(2, study::kPending);
+  study::compare(config, cells, result.references, result.metrics);
+  fuzz::expect(result.table().rows() == cells.size(), "a row for each cell");
+  return 0;
+}
