@@ -91,7 +91,11 @@ struct Product {
 
   static std::string name() {
     std::string text;
-    ((text += (text.empty() ? "" : "*") + std::string(Gs::name())), ...);
+    const auto add = [&text](const std::string& factor) {
+      if (!text.empty()) text += '*';
+      text += factor;
+    };
+    (add(Gs::name()), ...);
     return text;
   }
 

@@ -161,4 +161,31 @@ struct Algebra {
   }
 };
 
+/// d/dd of tau(xi + d) taken back to e on the right or left, in the algebra: dR or dL, by differences.
+class NumericalDerivative {
+ public:
+  explicit NumericalDerivative(const Geometry& geometry) : geometry_(geometry) {
+    const Algebra on{geometry_};
+    chart_ = on.slopes([&](const Vector& d) { return on.tau(d); });
+  }
+  Matrix right(const Vector& xi) const {
+    const Algebra on{geometry_};
+    const Vector back = on.inverse(on.tau(xi));
+    return in_algebra(on.slopes([&](const Vector& d) { return on.compose(on.tau(xi + d), back); }));
+  }
+  Matrix left(const Vector& xi) const {
+    const Algebra on{geometry_};
+    const Vector back = on.inverse(on.tau(xi));
+    return in_algebra(on.slopes([&](const Vector& d) { return on.compose(back, on.tau(xi + d)); }));
+  }
+
+ private:
+  Matrix in_algebra(const Matrix& slopes) const {
+    const Matrix normal = chart_.transpose() * chart_;
+    return normal.inverse() * (chart_.transpose() * slopes);
+  }
+  const Geometry& geometry_;
+  Matrix chart_;  // the slope at e: tau'(0) = id makes it the coordinates of the algebra
+};
+
 }  // namespace hamel::check

@@ -12,12 +12,11 @@ using check::Vector;
 
 namespace check {
 
-Vector random_vector(std::mt19937_64& random, int n, double radius) {
+void random_vector(std::mt19937_64& random, double radius, Eigen::Ref<Vector> v) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(0.1, 1);
-  Vector v(n);
   for (double& x : v) x = normal(random);
-  return v * (radius * uniform(random) / v.norm());
+  v *= radius * uniform(random) / v.norm();
 }
 
 }  // namespace check
@@ -78,7 +77,13 @@ LawReport check_group(const GroupInfo& info, const Geometry& geometry, unsigned 
 
     const auto matrices = [&](const Vector& of) {
       const Vector at = on.coordinates(of);
-      return info.matrices(std::vector<double>(at.begin(), at.end()));
+      std::vector<Matrix> out;
+      for (const PlainMatrix& m : info.matrices(std::vector<double>(at.begin(), at.end()))) {
+        out.emplace_back(m.rows, m.columns);
+        for (long i = 0; i < m.rows; ++i)
+          for (long j = 0; j < m.columns; ++j) out.back()(i, j) = m(i, j);
+      }
+      return out;
     };
     const auto of_g = matrices(g), of_h = matrices(h), of_gh = matrices(gh), of_e = matrices(e);
     for (size_t i = 0; i < of_g.size(); ++i) {
@@ -113,7 +118,7 @@ LawReport check_group(const Registry& registry, const std::string& group, unsign
   const auto info = registry.group_or_product(group);
   const auto names = registry.retractions_or_common(group);
   if (!info || names.empty()) {
-    throw ConfigError({unknown_name("group", group, registry.groups())});
+    throw ConfigError({registry.missing_group(group)});
   }
   return check_group(*info, *registry.geometry(group, names.front()), seed);
 }

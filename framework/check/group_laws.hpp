@@ -32,7 +32,12 @@ LawReport check_group(const Registry& registry, const std::string& group,
 namespace check {
 
 /// Uniform direction and length between a tenth of the radius and the radius.
-Eigen::VectorXd random_vector(std::mt19937_64& random, int n, double radius = 1);
+void random_vector(std::mt19937_64& random, double radius, Eigen::Ref<Eigen::VectorXd> out);
+inline Eigen::VectorXd random_vector(std::mt19937_64& random, int n, double radius = 1) {
+  Eigen::VectorXd out(n);
+  random_vector(random, radius, out);
+  return out;
+}
 template <int N>
 Vec<N> random_vector(std::mt19937_64& random, double radius = 1) {
   return random_vector(random, N, radius);

@@ -27,29 +27,11 @@ std::vector<Point> points(const Geometry& geometry, unsigned long long seed) {
     if (!reached) edge = on.reach(direction, [&](const Vector& xi) { return on.reaches(xi); });
     for (const double length : {1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.1 * edge, 0.3 * edge, 0.45 * edge,
                                 0.55 * edge, 0.7 * edge, 0.9 * edge, 0.999 * edge}) {
-      out.push_back({length * direction, p, length, edge, reached});
+      const Vector xi = length * direction;
+      out.push_back({{xi.begin(), xi.end()}, {p.begin(), p.end()}, length, edge, reached});
     }
   }
   return out;
-}
-
-NumericalDerivative::NumericalDerivative(const Geometry& geometry) : geometry_(geometry) {
-  const Algebra on{geometry_};
-  chart_ = on.slopes([&](const Vector& d) { return on.tau(d); });
-}
-Matrix NumericalDerivative::right(const Vector& xi) const {
-  const Algebra on{geometry_};
-  const Vector back = on.inverse(on.tau(xi));
-  return in_algebra(on.slopes([&](const Vector& d) { return on.compose(on.tau(xi + d), back); }));
-}
-Matrix NumericalDerivative::left(const Vector& xi) const {
-  const Algebra on{geometry_};
-  const Vector back = on.inverse(on.tau(xi));
-  return in_algebra(on.slopes([&](const Vector& d) { return on.compose(back, on.tau(xi + d)); }));
-}
-Matrix NumericalDerivative::in_algebra(const Matrix& slopes) const {
-  const Matrix normal = chart_.transpose() * chart_;
-  return normal.inverse() * (chart_.transpose() * slopes);
 }
 
 double flag(bool claimed, double violation, bool abelian) {
@@ -85,7 +67,9 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
     nan(on.in_domain(bad) ? 1 : 0);
   }
 
-  for (const auto& [xi, p, length, edge, reached] : check::points(geometry, seed)) {
+  for (const auto& [there, covector, length, edge, reached] : check::points(geometry, seed)) {
+    const Vector xi = Eigen::Map<const Vector>(there.data(), n),
+                 p = Eigen::Map<const Vector>(covector.data(), n);
     const Vector g = on.tau(xi);
     const Matrix dR = on.dtau_right(xi), dL_inverse = on.dtau_left_inverse(xi);
     const double condition = std::max(1.0, dL_inverse.norm() * dL_inverse.inverse().norm());

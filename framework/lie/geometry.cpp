@@ -134,9 +134,11 @@ void ProductGeometry::nearest(std::span<const double> values, double* out) const
   }
 }
 
-bool recover_step(const Geometry& geometry, const double* delta, double s, Eigen::VectorXd& xi) {
+ProductGeometry::~ProductGeometry() = default;
+
+bool recover_step(const Geometry& geometry, const double* delta, double s,
+                  Eigen::Ref<Eigen::VectorXd> xi) {
   const int n = geometry.dim(), size = geometry.size();
-  xi.resize(n);
   if (!geometry.tau_inverse(delta, xi.data())) return false;
   if (s == 0 || geometry.one_parameter()) return true;
   Eigen::VectorXd f0(size), f1(size), z(n), rest(n);

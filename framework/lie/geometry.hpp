@@ -154,6 +154,7 @@ class TypedGeometry final : public Geometry {
 class ProductGeometry final : public Geometry {
  public:
   explicit ProductGeometry(std::vector<std::shared_ptr<const Geometry>> factors);
+  ~ProductGeometry() override;  // no other object may need the vtable (tools/cmake/localise)
   int dim() const override { return dim_; }
   int size() const override { return size_; }
   bool symmetric() const override;
@@ -192,6 +193,7 @@ class ProductGeometry final : public Geometry {
 };
 
 /// xi with tau_s(xi) = delta (recover_step.hpp, for an erased group); false where there is none.
-bool recover_step(const Geometry& geometry, const double* delta, double s, Eigen::VectorXd& xi);
+bool recover_step(const Geometry& geometry, const double* delta, double s,
+                  Eigen::Ref<Eigen::VectorXd> xi);
 
 }  // namespace hamel

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+extern "C" const int HAMEL_BUILT_WITH = 1;
+
 namespace hamel {
 
 GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors) {
@@ -31,7 +33,7 @@ GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors) 
     return out;
   };
   info.matrices = [factors](std::span<const double> values) {
-    std::vector<Eigen::MatrixXd> out;
+    std::vector<PlainMatrix> out;
     size_t at = 0;
     for (const GroupInfo& factor : factors) {
       for (auto& m : factor.matrices(values.subspan(at, factor.columns.size()))) out.push_back(m);

@@ -12,6 +12,18 @@
 
 namespace hamel {
 
+/// A matrix as plain numbers.
+struct PlainMatrix {
+  long rows = 0, columns = 0;
+  std::vector<double> values = {};  // row after row
+  explicit PlainMatrix(const Eigen::Ref<const Eigen::MatrixXd>& m)
+      : rows(m.rows()), columns(m.cols()) {
+    for (long i = 0; i < rows; ++i)
+      for (long j = 0; j < columns; ++j) values.push_back(m(i, j));
+  }
+  double operator()(long i, long j) const { return values[static_cast<size_t>(i * columns + j)]; }
+};
+
 struct GroupInfo {
   std::string name;                  // "se2*so2"
   std::string summary;               // one line
@@ -21,7 +33,7 @@ struct GroupInfo {
   /// The nearest group element in coordinates; std::invalid_argument when values are not one.
   std::function<std::vector<double>(std::span<const double>)> element;
   /// Defining (or homogeneous) matrix; one for each factor of a product.
-  std::function<std::vector<Eigen::MatrixXd>(std::span<const double>)> matrices;
+  std::function<std::vector<PlainMatrix>(std::span<const double>)> matrices;
 };
 
 /// The product of groups, factor after factor; columns carry the number of the factor.
@@ -39,13 +51,15 @@ GroupInfo group_info() {
   info.element = [](std::span<const double> values) {
     return G::coordinates(G::from_coordinates(values));
   };
-  info.matrices = [](std::span<const double> values) -> std::vector<Eigen::MatrixXd> {
+  info.matrices = [](std::span<const double> values) {
     const auto g = G::from_coordinates(values);
+    std::vector<PlainMatrix> out;
     if constexpr (requires { G::matrices(g); }) {
-      return G::matrices(g);
+      for (const auto& factor : G::matrices(g)) out.emplace_back(factor);
     } else {
-      return {G::matrix(g)};
+      out.emplace_back(G::matrix(g));
     }
+    return out;
   };
   return info;
 }

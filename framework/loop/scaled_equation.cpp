@@ -5,6 +5,9 @@
 
 namespace hamel {
 
+ScaledEquation::ScaledEquation() = default;
+ScaledEquation::~ScaledEquation() = default;
+
 void ScaledEquation::start(const Equation& equation, std::span<const double> guess,
                            double tolerance, int patience) {
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -19,6 +19,10 @@ class ScaledEquation final : public Equation {
  public:
   static constexpr double round_off = 64 * std::numeric_limits<double>::epsilon();
 
+  // No other object may need the vtable (tools/cmake/localise).
+  ScaledEquation();
+  ~ScaledEquation() override;
+
   /// Begins a solve. patience: evaluations without a residual half as large, after which a point within
   /// the tolerance is good enough.
   void start(const Equation& equation, std::span<const double> guess, double tolerance,

@@ -8,7 +8,8 @@
 
 namespace hamel {
 
-Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints) {
+void detail::hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints,
+                         Eigen::Ref<Eigen::MatrixXd> frame) {
   const auto n = inertia.rows();
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(n, n);
   if (constraints.rows() > 0) {
@@ -18,7 +19,7 @@ Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixX
   }
   const Eigen::LLT<Eigen::MatrixXd> llt(basis.transpose() * inertia * basis);
   // E = B L^-T:  E^T I E = L^-1 (B^T I B) L^-T = Id.
-  return llt.matrixL().solve(basis.transpose()).transpose();
+  frame = llt.matrixL().solve(basis.transpose()).transpose();
 }
 
 std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,

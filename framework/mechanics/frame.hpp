@@ -7,11 +7,21 @@
 #include <Eigen/Core>
 
 namespace hamel {
+namespace detail {
+// Into n x m: memory that Eigen took is given back where it was taken (lie/types.hpp).
+void hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints,
+                 Eigen::Ref<Eigen::MatrixXd> frame);
+}  // namespace detail
 
 /// E: n x m with A E = 0 and E^T I E = Id, m = n - k. From the QR factors of A^T (the last m columns of
 /// Q span ker A) and a Cholesky factor of I restricted to them. inertia: n x n positive definite;
 /// constraints: k x n of rank k.
-Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints);
+inline Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia,
+                                   const Eigen::MatrixXd& constraints) {
+  Eigen::MatrixXd frame(inertia.rows(), inertia.rows() - constraints.rows());
+  detail::hamel_frame(inertia, constraints, frame);
+  return frame;
+}
 
 /// The mistakes in an inertia and constraint rows for a group of dimension n: shape, NaN, symmetry, definiteness,
 /// rank. Empty when there are none.

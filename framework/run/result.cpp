@@ -31,11 +31,11 @@ Json json_of(const std::vector<double>& values) {
   return out;
 }
 
-Json matrix(const Eigen::MatrixXd& m) {
+Json matrix(const PlainMatrix& m) {
   Json rows = Json::array();
-  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+  for (long i = 0; i < m.rows; ++i) {
     Json row = Json::array();
-    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(json_of(m(i, j)));
+    for (long j = 0; j < m.columns; ++j) row.push_back(json_of(m(i, j)));
     rows.push_back(row);
   }
   return rows;

@@ -15,7 +15,8 @@ namespace hamel {
 class Erased {
  public:
   static constexpr bool left_invariant = false;
-  using Element = Eigen::VectorXd;  // as Packing lays it out
+  static constexpr bool has_jacobians = false;  // clang 14 asks for it wherever Step<P> is named
+  using Element = Eigen::VectorXd;              // as Packing lays it out
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
   using State = Eigen::VectorXd;  // xi

@@ -33,6 +33,7 @@ class Typed : public GroupOperations<Tau> {
  public:
   using Group = typename System::Group;
   static constexpr bool left_invariant = false;
+  static constexpr bool has_jacobians = false;  // clang 14 asks for it wherever Step<P> is named
   static constexpr int n = F::n, k = F::k, r = F::r;
   using typename GroupOperations<Tau>::Element;
   using Vector = Vec<n>;

@@ -3,7 +3,7 @@
 // conjugation.
 #include <gtest/gtest.h>
 
-#include <hamel/framework/check/retraction_laws.hpp>
+#include <hamel/framework/check/algebra.hpp>
 #include <hamel/framework/lie/recover_step.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/groups/cayley.hpp>

@@ -1,5 +1,26 @@
 # One function per kind of library target.
 
+# A static library keeps its own copies of inline functions, whatever flags a program is compiled with
+# (tools/cmake/localise): with GNU ld on ELF, and neither under sanitizers nor with objects of an LTO compiler.
+string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+find_program(HAMEL_LD NAMES ld.bfd)
+set(HAMEL_LOCALISE ON)
+if(NOT HAMEL_LD OR NOT CMAKE_NM OR NOT CMAKE_OBJCOPY OR NOT CMAKE_EXECUTABLE_FORMAT STREQUAL "ELF"
+   OR HAMEL_SANITIZE OR CMAKE_INTERPROCEDURAL_OPTIMIZATION
+   OR "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" MATCHES "-flto|-fsanitize")
+  set(HAMEL_LOCALISE OFF)
+  message(STATUS "hamel: programs need the flags that the library is compiled with")
+endif()
+function(hamel_localise target)
+  if(HAMEL_LOCALISE)
+    # Unique symbols, of static variables in inline functions, cannot be made local: weak ones can.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
+    add_custom_command(TARGET ${target} POST_BUILD
+      COMMAND ${PROJECT_SOURCE_DIR}/tools/cmake/localise ${CMAKE_AR} ${HAMEL_LD} ${CMAKE_NM}
+              ${CMAKE_OBJCOPY} $<TARGET_FILE:${target}>)
+  endif()
+endfunction()
+
 # A layer is a folder, a library named after its last part and an include root of its own.
 #
 #   hamel_layer(groups
@@ -34,6 +55,7 @@ function(hamel_layer path)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
     set_source_files_properties(${arg_KERNELS} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    hamel_localise(${target})
   else()
     add_library(${target} INTERFACE)
     set(public INTERFACE)

@@ -132,15 +132,24 @@ function(hamel_rooms_test)
   set_tests_properties(framework/rooms PROPERTIES LABELS compile_error)
 endfunction()
 
-# tests/consumers/<kind>: configured, built and run as a user would.
-function(hamel_consumer kind)
-  add_test(NAME consumers/${kind}
-    COMMAND ${CMAKE_COMMAND} -DKIND=${kind} -DSOURCE=${CMAKE_CURRENT_SOURCE_DIR}/consumers/${kind}
-            -DHAMEL_SOURCE=${PROJECT_SOURCE_DIR} -DHAMEL_BUILD=${PROJECT_BINARY_DIR}
-            -DGENERATOR=${CMAKE_GENERATOR} -DCOMPILER=${CMAKE_CXX_COMPILER}
-            -DCONFIG=$<CONFIG> -DCCACHE=$<$<BOOL:${CCACHE_PROGRAM}>:${CCACHE_PROGRAM}>
-            -P ${PROJECT_SOURCE_DIR}/tools/cmake/run_consumer.cmake)
-  set_tests_properties(consumers/${kind} PROPERTIES LABELS consumer TIMEOUT 900)
+# tests/consumers/<project>: configured, built and tested as a user would, against the installed tree and with
+# each of the compilers that is there (tests/consumers/run).
+function(hamel_consumer project)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "COMPILERS;LABELS")
+  add_test(NAME consumers/${project}
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/consumers/run ${PROJECT_BINARY_DIR} ${project} ${arg_COMPILERS})
+  set_tests_properties(consumers/${project} PROPERTIES LABELS "consumer;${arg_LABELS}" TIMEOUT 1800)
+endfunction()
+
+# tests/consumers/subdirectory: the same with add_subdirectory of the clone.
+function(hamel_consumer_of_the_clone)
+  set(build ${CMAKE_CURRENT_BINARY_DIR}/consumers/subdirectory)
+  add_test(NAME consumers/subdirectory
+    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/consumers/subdirectory ${build}
+            --build-generator ${CMAKE_GENERATOR} --build-options -DHAMEL_SOURCE=${PROJECT_SOURCE_DIR}
+            -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_BUILD_TYPE=Debug
+            --test-command ${build}/consumer)
+  set_tests_properties(consumers/subdirectory PROPERTIES LABELS consumer TIMEOUT 900)
 endfunction()
 
 # node <arguments>, in the build's copy of tools/report: ctest page/<name>. Status 77, no browser, is a
