@@ -53,7 +53,8 @@ struct RouthSphere {
     f("asymmetry", asymmetry, "kg m^2",
       "moment about e2 minus that about e1 (Chaplygin's top; 0: Routh's sphere)",
       Range{.least = -transverse, .open = true});
-    f("axial_inertia", axial, "kg m^2", "moment about the axis", axial_moment(transverse));
+    f("axial_inertia", axial, "kg m^2", "moment about the axis",
+      axial_moment(transverse + asymmetry / 2));
     f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
   }
   // omega x a e3 = a (w2, -w1, 0).

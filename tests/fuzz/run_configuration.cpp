@@ -13,6 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     simulation.config(config);
     if (!simulation.mistakes().empty()) throw ConfigError(simulation.mistakes());
     config.until = 2 * config.step;
+    config.on_failure = "stop";  // a step that fails may be halved a thousand times
     simulation.config(config).run().record();
   });
   return 0;
