@@ -182,7 +182,7 @@ inline LawReport check_scheme(const Registry& registry, const SchemeCase& c) {
   const SchemeInfo& scheme = *registry.scheme(c.scheme);
   const SystemModel model = registry.system(c.system)->make(c.parameters);
   const TauTraits tau = registry.geometry(model.group.name, c.retraction)->traits();
-  return check_scheme(simulation, scheme.claim(c.s, tau, model.mechanics->left_invariant()),
+  return check_scheme(simulation, scheme.claim(c.s, tau, *model.mechanics, Config().force_at),
                       scheme.adapted, c.step, c.until, c.generic, scheme.steps_admissible);
 }
 

@@ -202,7 +202,8 @@ Simulation::Plan Simulation::plan() const {
 // A composition has its order only over a reversible step.
 void Simulation::Plan::check_composition(const SchemeInfo& scheme, bool left_invariant) {
   if (config.compose == "none" || config.force || !scheme.defined(left_invariant)) return;
-  const ClaimedOrder claim = scheme.claim(config.s, geometry->traits(), left_invariant);
+  const ClaimedOrder claim =
+      scheme.claim(config.s, geometry->traits(), *mechanics, config.force_at);
   if (claim.reversible) return;
   add(
       {fmt::format("compose: {} raises the order of a reversible step, and {} with s = {} and {} "

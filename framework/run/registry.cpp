@@ -49,6 +49,13 @@ class FunctionSolver final : public Solver {
 
 }  // namespace
 
+ClaimedOrder SchemeInfo::claim(double s, TauTraits tau, const Mechanics& system,
+                               const std::string& force_at) const {
+  const bool constant =
+      system.constant_inertia() && system.constant_constraints() && !system.has_drift();
+  const bool nodal = places_forces && force_at == "nodes";
+  return claim(s, tau, system.left_invariant() || (nodal && constant));
+}
 ClaimedOrder SchemeInfo::claim(double s, TauTraits tau, bool left_invariant) const {
   if (!defined(left_invariant)) return {0, false};
   return claims(uses_s ? s : fixed_s, tau, left_invariant);

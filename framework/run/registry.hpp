@@ -44,6 +44,10 @@ struct SchemeInfo {
   bool defined(bool left_invariant) const { return left_invariant || !left_invariant_only; }
   /// What it claims for a run; order 0 where it is not defined.
   ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) const;
+  /// The same on a system. With forces at the nodes only (lift), constant inertia and rows A xi = 0 do for
+  /// left-invariant: (M43).
+  ClaimedOrder claim(double s, TauTraits tau, const Mechanics& system,
+                     const std::string& force_at) const;
 };
 
 struct SolverInfo {

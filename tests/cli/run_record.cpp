@@ -76,8 +76,8 @@ TEST_F(Record, HasExactlyTheseKeys) {
                         "parameters", "status", "reason", "steps", "time", "final", "diagnostics",
                         "solver_stats", "timing", "version", "git", "host",
                         // later keys:
-                        "tolerance", "on_failure", "from", "until", "every", "no_exact", "start",
-                        "notes", "failure", "fallbacks"));
+                        "tolerance", "on_failure", "from", "until", "every", "check", "force",
+                        "force_at", "no_exact", "start", "notes", "failure", "fallbacks"));
 }
 
 TEST_F(Record, OfEverySystem) {
@@ -125,6 +125,7 @@ TEST_F(Record, EveryOptionReachesTheRun) {
                          "1e-12",
                          "--compose",
                          "suzuki4",
+                         "--force",
                          "--step",
                          "0.05",
                          "--until",
@@ -141,6 +142,7 @@ TEST_F(Record, EveryOptionReachesTheRun) {
   EXPECT_EQ(r["solver"], "newton");
   EXPECT_EQ(r["tolerance"], 1e-12);
   EXPECT_EQ(r["compose"], "suzuki4");
+  EXPECT_EQ(r["force"], true);
   EXPECT_EQ(r["step"], 0.05);
   EXPECT_EQ(r["steps"], 40);
   EXPECT_EQ(r["every"], 4);

@@ -90,6 +90,7 @@ void expect_none(const S& system, const std::string& compose = "none") {
                               .retraction(retraction)
                               .start(start)
                               .compose(compose)
+                              .with(&Config::force, true)
                               .step(0.02)
                               .build();
         Status status;

@@ -42,6 +42,8 @@ Config unusual() {
   c.until = -1e5;
   c.every = 123456789012;
   c.no_exact = true;
+  c.force_at = "base";
+  c.check = c.force = true;
   return c;
 }
 
@@ -71,9 +73,9 @@ TEST(Config, EveryOptionIsInTheListAndGoesByName) {
     EXPECT_EQ(copy.*member, unusual().*member) << option.name;
     EXPECT_THAT(unusual().to_toml(), HasSubstr("\n" + names.back() + " = "));
   });
-  EXPECT_THAT(names,
-              testing::ElementsAre("scheme", "retraction", "s", "solver", "compose", "on_failure",
-                                   "tolerance", "step", "from", "until", "every", "no_exact"));
+  EXPECT_THAT(names, testing::ElementsAre("scheme", "retraction", "s", "solver", "force_at",
+                                          "compose", "on_failure", "tolerance", "step", "from",
+                                          "until", "every", "check", "force", "no_exact"));
   EXPECT_THROW(copy.set("tolerence", "1"), ConfigError);
   EXPECT_THROW(copy.set("every", "1.5"), ConfigError);
   EXPECT_THROW(copy.set("step", "0.1x"), ConfigError);
