@@ -43,6 +43,9 @@ std::string headline(const Result& r) {
         "; against the exact motion the configuration is off by at most {:.1e}, the velocity by at "
         "most {:.1e}",
         r.exact_error_max, r.exact_velocity_error_max);
+  } else if (std::isfinite(r.estimated_error)) {
+    out += fmt::format("; by half and a quarter of the step its end is off by about {:.1e}",
+                       r.estimated_error);
   }
   out += fmt::format(
       "; constraint residual at most {:.1e}, group defect at most {:.1e}, {} at most {:.1e}.",
@@ -154,6 +157,9 @@ Page run_page(const Result& r) {
   page.plot("Constraint residual", with(log, "|A xi/h|"), {curve(r, name, "constraint")},
             "The step's velocity is recovered from consecutive configurations; its floor is about "
             "2e-16/h times the size of the coordinates.");
+  if (r.trajectory.has("holonomic")) {
+    page.plot("Holonomic residual", with(log, "|phi(g)|"), {curve(r, name, "holonomic")});
+  }
   page.plot("Group defect", with(log, "defect"), {curve(r, name, "group_defect")});
   std::vector<Series> momentum, velocity;
   for (int i = 1; i <= r.system.group.dim; ++i) {
