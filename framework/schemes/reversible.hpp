@@ -19,7 +19,10 @@ struct Reversible : SchemeDefaults {
     return "(1) and (2) of the cotangent lift at s = 1/2 with nu = h (f + A(g)' lambda), "
            "A(g_1) xi_1 = b";
   }
-  static std::string source() { return "after McLachlan and Perlmutter 2006, (4.18), with the forces at the step's own midpoint"; }
+  static std::string source() {
+    return "after McLachlan and Perlmutter 2006, (4.18), with the forces at the step's own "
+           "midpoint";
+  }
   static constexpr double fixed_s = 0.5;
   static constexpr bool steps_admissible = false;
   static ClaimedOrder claim(double /*s*/, TauTraits /*tau*/, bool /*left_invariant*/) {
