@@ -16,7 +16,8 @@ int claim(const Registry& registry, const StudyCell& cell, const SystemModel& sy
   const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
   if (!scheme->adapted) return 0;  // of the free motion only: here it approximates nothing
   const TauTraits tau = registry.geometry(system.group.name, cell.config.retraction)->traits();
-  const ClaimedOrder plain = scheme->claim(cell.config.s, tau, *system.mechanics, cell.config.force_at);
+  const ClaimedOrder plain =
+      scheme->claim(cell.config.s, tau, *system.mechanics, cell.config.force_at);
   for (const Composition& table : compositions()) {
     if (table.name == cell.config.compose && plain.reversible && plain.order == 2)
       return table.order;
