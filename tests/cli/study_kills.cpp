@@ -12,8 +12,8 @@ using namespace hamel::test;
 class StudyKills : public StudyCommand {};
 
 TEST_F(StudyKills, LoseNothing) {
-  const std::string name = study(R"(until = 2000
-repeats = 60
+  const std::string name = study(R"(until = 20
+repeats = 1000
 scheme = ["lift", "balance", "rkmk4"]
 retraction = ["cayley", "exp"]
 s = [0, 0.5]
@@ -27,7 +27,7 @@ name = "chaplygin_sleigh"
 name = "suslov_in_potential"
 )");
   std::mt19937 random(9);
-  std::uniform_int_distribution<int> moments(0, 120);  // ms
+  std::uniform_int_distribution<int> moments(0, 200);  // ms
   int interrupted = 0;
   std::string kept;
   for (int i = 0; i < 50; ++i) {
