@@ -27,6 +27,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const StudyConfig config = two_systems();
   static const std::vector<StudyCell> cells = study_cells(config, fuzz::registry());
   static const std::vector<study::Shape> shapes = study::shapes(fuzz::registry(), config);
+  static const std::vector<std::vector<bool>> angles = {std::vector<bool>(9),
+                                                        {true, false, false, true}};
   std::string text = fuzz::text_of(data, size);
   if (text.starts_with('!')) {
     std::istringstream in(text.substr(1));
@@ -40,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   result.references.resize(config.systems.size());
   study::read_lines(text, shapes, result);
   for (StudyMetrics& m : result.metrics) m.nanoseconds.resize(2, study::kPending);
-  study::compare(config, cells, result.references, result.metrics);
+  study::compare(config, cells, angles, result.references, result.metrics);
   fuzz::expect(result.table().rows() == cells.size(), "a row for each cell");
   return 0;
 }
