@@ -146,7 +146,7 @@ void Simulation::estimate_error(Result& result) const {
   std::vector<double> ends[3] = {result.last.coordinates, {}, {}};
   for (const int parts : {2, 4}) {
     Simulation finer = *this;
-    finer.step(config_.step / parts);
+    finer.step(config_.step / parts).every(config_.every * parts);  // as many rows as were allowed
     Integration run = finer.build();
     if (!run.step(parts * result.steps)) return;
     ends[parts / 2] = run.state().coordinates;
