@@ -10,7 +10,7 @@ import { formatNumber, formatShort } from './format.js';
 import { floorGrid, placed, placeInTime, poseAt, readMotion } from './motion.js';
 import { followWidth } from './plot.js';
 import { View } from './view.js';
-import { webglWorks } from './webgl.js';
+import { afterFirstPicture, webglWorks } from './webgl.js';
 
 const heightFor = (width) => Math.round(Math.max(250, Math.min(380, 0.75 * width)));
 const SHARPEST = 2;       // device pixels per CSS pixel at least while nothing moves, so that print is sharp too
@@ -23,7 +23,6 @@ export function animation(block) {
   const motion = readMotion(block);
   const { times, bodies } = motion;
   const trails = bodies.map((_, b) => TRAILS[b % TRAILS.length]);
-  const solid = webglWorks();
   const [start, end] = [times[0], times[times.length - 1]];
   const view = new View(motion, new Camera(block.view === 'top' ? ABOVE : HOME), Boolean(block.floor));
   const grid = block.floor ? floorGrid(motion.box, view.follows ? 1.5 * motion.reach : 0) : null;
@@ -43,7 +42,8 @@ export function animation(block) {
     h('button', { type: 'button', onclick: () => look(() => view.turnTo(ABOVE)) }, 'from above'), follow,
     h('button', { type: 'button', class: 'home', onclick: () => look(() => view.goHome()) }, 'reset view')];
 
-  let [stage, flat, drawing, again, playing] = [null, null, false, false, false];
+  const flat = makeFlat(motion, grid);
+  let [stage, drawing, again, playing] = [null, false, false, false];  // no stage: drawn flat
   const paint = async () => {
     const scale = playing ? devicePixelRatio : Math.max(SHARPEST, devicePixelRatio);
     if (canvas.clientWidth === 0) return;
@@ -110,22 +110,23 @@ export function animation(block) {
     requestAnimationFrame(tick);
   };
 
-  const notes = [];
-  if (!solid) notes.push('Drawn flat: this browser offers no WebGL.');
-  if (motion.missing) notes.push(`${motion.missing} of ${times.length} poses are missing.`);
+  const notes = motion.missing ? [`${motion.missing} of ${times.length} poses are missing.`] : [];
   const element = figure(block, [canvas,
     h('div', { class: 'player' }, play, bar, clock, h('label', {}, 'speed ', speed), h('span', { class: 'views' }, tools)),
     notes.map((text) => h('p', { class: 'remark' }, text)), block.note ? h('p', { class: 'remark' }, inline(block.note)) : null]);
-  const draw = () => {
+  /** The flat picture at once, the solid one when WebGL is there. */
+  const draw = async () => {
     drawing = true;  // until all is set
-    if (solid) stage = makeStage(motion, grid, trails, view.depth);
-    else flat = makeFlat(motion, grid);
     view.handle(canvas, look, () => (playing ? pause() : run()));
     followWidth(canvas, repaint);
     say();
     seek(start);
     look(() => view.goHome());
-    return paintNow();
+    paintNow();
+    await afterFirstPicture();
+    if (webglWorks()) stage = makeStage(motion, grid, trails, view.depth);
+    else element.append(h('p', { class: 'remark' }, 'Drawn flat: this browser offers no WebGL.'));
+    repaint();
   };
   return { element, draw };
 }

@@ -54,16 +54,20 @@ function showBlock(block, number, later) {
 
 const broken = (kind, error) => problem(`This ${kind} could not be shown`, error.message);
 
-async function drawAll(later) {
-  for (const { element, kind, draw } of later) {
-    try {
-      await draw();
-    } catch (error) {
+/** Draws every figure at once -> promises of what is still to come (pictures by WebGL). */
+function drawAll(later) {
+  return later.map(({ element, kind, draw }) => {
+    const fail = (error) => {
       const box = broken(kind, error);
       box.dataset.block = kind;
       element.replaceWith(box);
+    };
+    try {
+      return Promise.resolve(draw()).catch(fail);
+    } catch (error) {
+      return fail(error);
     }
-  }
+  });
 }
 
 /** Neighbouring figures share a grid: two side by side where there is room. */
@@ -142,7 +146,7 @@ async function showPage() {
   document.body.append(h('div', { class: 'page' }, header(data), nav, main,
     later.length ? h('footer', {}, HELP) : null));
   preparePrinting();
-  await drawAll(later);
+  await Promise.all(drawAll(later));
 }
 
 showPage().then(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = 'true'; }));

@@ -9,7 +9,7 @@ import { FONT } from './chart.js';
 import { followWidth } from './plot.js';
 import { drawFlat } from './sphere_flat.js';
 import { makeScene } from './sphere_webgl.js';
-import { webglWorks } from './webgl.js';
+import { afterFirstPicture, webglWorks } from './webgl.js';
 
 const HEIGHT = 340;
 const SHARPEST = 2;  // device pixels per CSS pixel at least, so that print is sharp too
@@ -18,7 +18,6 @@ export function sphere(block) {
   if (!Array.isArray(block.series)) throw new Error('no list "series"');
   const curves = block.series.map(readCurve);
   const camera = new Camera();
-  const solid = webglWorks();
   const canvas = h('canvas', { class: 'globe', role: 'img', tabindex: 0, 'aria-label':
     `Curves on the unit sphere: ${block.title ?? 'untitled'}; series: ${curves.map((c) => c.name).join(', ')}. ` +
     'Arrow keys turn the sphere.' });
@@ -57,16 +56,19 @@ export function sphere(block) {
     repaint();
   } });
   const notes = [];
-  if (!solid) notes.push('Drawn flat: this browser offers no WebGL.');
   const far = Math.max(0, ...curves.map((curve) => curve.defect));
   if (far > 1e-3) notes.push(`Some points lie off the unit sphere, by up to ${far.toPrecision(2)}.`);
   const element = figure(block, [canvas, legend.element, notes.map((text) => h('p', { class: 'remark' }, text)),
     block.note ? h('p', { class: 'remark' }, inline(block.note)) : null]);
-  const draw = () => {
-    if (solid) scene = makeScene(curves);
+  /** The flat picture at once, the solid one when WebGL is there. */
+  const draw = async () => {
     handle(canvas, camera, repaint);
     followWidth(canvas, repaint);
-    return paint();
+    paint();
+    await afterFirstPicture();
+    if (webglWorks()) scene = makeScene(curves);
+    else element.append(h('p', { class: 'remark' }, 'Drawn flat: this browser offers no WebGL.'));
+    repaint();
   };
   return { element, draw };
 }

@@ -24,6 +24,12 @@ export function webglWorks() {
   return renderer !== null;
 }
 
+/** Resolves when the page has its first picture: WebGL may take seconds to come up, and nothing waits for it. */
+export async function afterFirstPicture() {
+  if (document.readyState !== 'complete') await new Promise((resolve) => { addEventListener('load', resolve); });
+  await new Promise((resolve) => { setTimeout(resolve); });
+}
+
 /** A curve as segments; null points are gaps, and none where there is nothing to draw. */
 export function segments(points) {
   const positions = [];

@@ -23,8 +23,10 @@ export async function launch() {
   return running ? playwright.chromium.connect(running) : playwright.chromium.launch(options);
 }
 
+export const executable = () => process.env.CHROMIUM || '/usr/bin/chromium';
+
 async function find() {
-  const executablePath = process.env.CHROMIUM || '/usr/bin/chromium';
+  const executablePath = executable();
   if (!existsSync(executablePath)) skip(`no Chromium at ${executablePath}`);
   let playwright;
   try {

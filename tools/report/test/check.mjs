@@ -95,6 +95,7 @@ const cases = [
   ['dead keys', () => bent(spin, 'view.js', 'this.turn(-0.12, 0)', 'this.turn(0, 0)'), 1, /: an arrow key turns the view/],
   ['no dragging', () => bent(spin, 'view.js', 'this.turn(-event.movementX * perPixel, event.movementY * perPixel)', 'this.turn(0, 0)'), 1, /: dragging turns the view/],
   ['no way home', () => bent(spin, 'animation.js', "class: 'home', onclick: () => look(() => view.goHome())", "class: 'home'"), 1, /: the view resets/],
+  ['a figure that waits', () => bent(spin, 'animation.js', 'paintNow();\n    await afterFirstPicture();', 'await new Promise((resolve) => { setTimeout(resolve, 4000); });'), 1, /plain screenshot: Spin shows curves: 0/],
   ['no word about WebGL', () => bent(spin, 'animation.js', 'offers no WebGL', 'is as it is'), 1, /drawn flat and say so: 1 say nothing/],
 ];
 

@@ -1,4 +1,4 @@
-// node test/render.mjs PAGE.html [--screenshot OUT.png] [--narrow OUT.png] [--pdf OUT.pdf] [--fallback OUT.png]
+// node test/render.mjs PAGE.html [--screenshot OUT.png] [--narrow OUT.png] [--pdf OUT.pdf] [--fallback OUT.png] [--plain OUT.png]
 // Opens a report in headless Chromium and fails on anything that is not as it should be. Exit status: 0 passed,
 // 1 failed, 2 wrong use, 77 no browser here.
 
@@ -6,6 +6,7 @@ import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
+import { lookPlainly } from './plain.mjs';
 import { useAnimation } from './use_animation.mjs';
 import { useFilters, useHeatmap, useTable } from './use_study.mjs';
 
@@ -13,7 +14,7 @@ const [file, ...rest] = process.argv.slice(2);
 const options = {};
 for (let i = 0; i < rest.length; i += 2) options[rest[i].replace(/^--/, '')] = rest[i + 1];
 if (!file || !existsSync(file)) {
-  console.error('usage: node test/render.mjs PAGE.html [--screenshot|--narrow|--pdf|--fallback OUT]');
+  console.error('usage: node test/render.mjs PAGE.html [--screenshot|--narrow|--pdf|--fallback|--plain OUT]');
   process.exit(2);
 }
 
@@ -106,7 +107,7 @@ function drawable() {
 async function checkBlocks(page) {
   const found = await page.evaluate(survey);
   check('readable data', found.blocks !== null && !found.unreadable, found.unreadable ?? 'not JSON with sections');
-  if (found.blocks === null) return false;
+  if (found.blocks === null) return { expected: [], solid: false };
   check('title above the fold', found.heading !== null && found.heading < 400);
   check('number of blocks', found.rendered.length === found.blocks.length,
     `${found.rendered.length} of ${found.blocks.length} rendered`);
@@ -120,7 +121,7 @@ async function checkBlocks(page) {
     check(`${name} is not blank`, block.canvas.inked > 200, `${block.canvas.inked} inked pixels`);
     if (expected[i]) check(`${name} shows curves`, block.canvas.colours > 20, `${block.canvas.colours} coloured pixels`);
   });
-  return found.blocks.includes('sphere') || found.blocks.includes('animation');
+  return { expected, solid: found.blocks.includes('sphere') || found.blocks.includes('animation') };
 }
 
 async function checkWidth(page, width) {
@@ -196,13 +197,14 @@ async function checkPrint(page) {
 
 const browser = await launch();
 const { page, complaints } = await open(browser);
-const solid = await checkBlocks(page);
+const { expected, solid } = await checkBlocks(page);
 await checkWidth(page, 390);
 if (options.narrow) await page.screenshot({ path: options.narrow, fullPage: true });
 await checkWidth(page, 1280);
 if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
 await checkPrint(page);
 await useIt(page);
+if (expected.includes(true)) await lookPlainly(page, file, expected, check, options.plain);
 check('no console message, error or request', complaints.length === 0, complaints.join('; '));
 if (solid) {  // once more without WebGL
   const flat = await open(browser, { webgl: false });
