@@ -82,12 +82,17 @@ function(hamel_example stem)
   set_tests_properties(examples/${stem} PROPERTIES LABELS "example;${arg_LABELS}" TIMEOUT 120)
 endfunction()
 
-# tests/benchmarks/<stem>.cpp -> build/tests/benchmarks/<stem>; ctest only checks that it runs.
+# tests/benchmarks/<stem>.cpp -> build/tests/benchmarks/<stem>; ctest only checks that it runs,
+# with the argument after QUICK, else that of Google Benchmark.
 function(hamel_benchmark stem)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "QUICK" "")
+  if(NOT arg_QUICK)
+    set(arg_QUICK --benchmark_min_time=0.001)
+  endif()
   find_package(benchmark 1.7 REQUIRED)
   hamel_test_executable(benchmark_${stem} benchmarks/${stem})
   target_link_libraries(benchmark_${stem} PRIVATE benchmark::benchmark benchmark::benchmark_main)
-  add_test(NAME benchmarks/${stem} COMMAND benchmark_${stem} --benchmark_min_time=0.001)
+  add_test(NAME benchmarks/${stem} COMMAND benchmark_${stem} ${arg_QUICK})
   set_tests_properties(benchmarks/${stem} PROPERTIES LABELS benchmark TIMEOUT 120)
 endfunction()
 
