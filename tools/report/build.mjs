@@ -22,7 +22,7 @@ const bundled = (extension) => outputFiles.find((file) => file.path.endsWith(ext
 // What stands inside <script> and <style> must not end them, nor look like the placeholder.
 const script = bundled('.js').replace(/<\/(script)/gi, '<\\/$1').replace(/<!--/g, '<\\!--');
 const style = bundled('.css');
-const licences = ['uplot', 'three'].map((name) =>
+const licences = ['echarts', 'zrender', 'three'].map((name) =>
   `${name}\n${readFileSync(join(here, 'node_modules', name, 'LICENSE'), 'utf8').trim()}`).join('\n\n');
 
 const fill = (text, mark, value) => {

@@ -1,8 +1,8 @@
 // The colour scale of heat maps: viridis (van der Walt and Smith 2015) turned round, so that ink grows with the
 // value. Its lightness is monotone: it reads in grey and with colour-blind eyes.
 
-const STOPS = ['fde725', 'bbdf27', '7ad151', '43bf71', '22a884', '21908c', '2a788e', '35608d', '414487', '482576', '440154']
-  .map((hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16)));
+export const COLOURS = ['fde725', 'bbdf27', '7ad151', '43bf71', '22a884', '21908c', '2a788e', '35608d', '414487', '482576', '440154'].map((hex) => `#${hex}`);
+const STOPS = COLOURS.map((hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16)));
 
 /** t from 0 to 1 -> [r, g, b] from 0 to 255. */
 export function sequential(t) {

@@ -1,6 +1,6 @@
 // One helper that makes elements. Text is always set as text, never as markup.
 
-const SVG_TAGS = new Set(['svg', 'line', 'circle', 'path']);
+const SVG_TAGS = new Set(['svg', 'line', 'circle', 'text']);
 
 /** h('p', {class: 'note'}, 'text', child…) -> element; a null attribute or child is left out. */
 export function h(tag, attributes = {}, ...children) {

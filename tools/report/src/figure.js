@@ -1,8 +1,17 @@
-// The frame around every figure: title, drawing, legend, notes.
+// The frame around every figure: title, buttons that save it, drawing, legend, notes.
 
-import { h } from './dom.js';
+import { h, inline } from './dom.js';
+import { saveData, savePng, saveSvg } from './save.js';
 
-export function figure(block, contents, ...tools) {
+/** `exports`: {svg() -> text, csv() -> text}, either may be missing; further tools stand before these buttons. */
+export function figure(block, contents, exports, ...tools) {
+  const name = String(block.title || block.kind).toLowerCase().replace(/[^\p{L}\p{N}]+/gu, '-');
+  const button = (label, title, onclick) => h('button', { type: 'button', class: 'save', title, onclick }, label);
+  const saves = [exports?.svg && button('SVG', 'save the figure as SVG', () => saveSvg(name, exports.svg())),
+    exports?.svg && button('PNG', 'save the figure as PNG', () => savePng(name, exports.svg())),
+    exports?.csv && button('CSV', 'save the data of the figure as CSV', () => saveData(name, exports.csv()))].filter(Boolean);
   return h('figure', { class: `figure ${block.kind}` },
-    h('figcaption', {}, h('span', { class: 'title' }, block.title ?? ''), tools), contents);
+    h('figcaption', {}, h('span', { class: 'title' }, inline(block.title)), h('span', { class: 'tools' }, tools, saves)), contents);
 }
+
+export const remark = (text) => h('p', { class: 'remark' }, inline(text));

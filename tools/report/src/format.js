@@ -59,3 +59,38 @@ function formatList(list, number) {
   if (list.some((item) => Array.isArray(item))) return list.map((item) => formatValue(item, number)).join('\n');
   return '(' + list.map((item) => formatValue(item, number)).join(', ') + ')';
 }
+
+/** Ticks at multiples of 1, 2 or 5 times a power of ten, about `count` of them -> {at, read(value)}. */
+export function niceTicks(min, max, count) {
+  const raw = (max - min) / Math.max(2, count);
+  const magnitude = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].find((factor) => factor * magnitude >= raw * 0.999) * magnitude;
+  const [first, last] = [Math.ceil(min / step - 1e-9), Math.floor(max / step + 1e-9)];
+  const at = Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => +((first + i) * step).toPrecision(12));
+  const labels = at.length ? formatTicks(at, step) : [];
+  return { at, read: (value) => labels[at.findIndex((v) => Math.abs(v - value) < 1e-6 * step)] ?? '' };
+}
+
+const [TYPED, MOST_DECIMALS] = [6, 6];  // a number of so few digits was typed by a person
+
+/** The one notation of a column of numbers: whole, with equal decimals, or m.mm·10ⁿ -> a function from number to text. */
+export function columnFormat(values) {
+  const numbers = values.filter((v) => typeof v === 'number' && Number.isFinite(v));
+  const sizes = numbers.filter((v) => v !== 0).map(Math.abs);
+  const [least, most] = [Math.min(...sizes), Math.max(...sizes)];
+  const shown = (write) => (v) => (typeof v !== 'number' || !Number.isFinite(v) ? formatNumber(v) : minus(write(v)));
+  if (sizes.length === 0 || (numbers.every(Number.isInteger) && most < 1e9)) return shown(String);
+  const places = (v) => (String(v).includes('e') ? Infinity : (String(v).split('.')[1] ?? '').length);
+  const digits = (v) => String(v).replace(/^0\.0*|\./g, '').length;
+  const typed = numbers.every((v) => digits(v) <= TYPED) ? Math.max(...numbers.map(places)) : Infinity;
+  if (typed <= MOST_DECIMALS) return shown((v) => v.toFixed(typed));
+  if (least >= 1e-3 && most < 1e5 && most / least < 1e3) {
+    const decimals = Math.max(0, Math.min(MOST_DECIMALS, 2 - Math.floor(Math.log10(least))));
+    return shown((v) => v.toFixed(decimals));
+  }
+  return shown((v) => {
+    if (v === 0) return '0';
+    const [mantissa, exponent] = v.toExponential(2).split('e');
+    return `${mantissa}·${power(+exponent)}`;
+  });
+}

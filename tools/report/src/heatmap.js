@@ -1,64 +1,42 @@
-// The figure `heatmap`: one coloured cell per pair of values; the cell under the pointer or reached with the arrow
-// keys is read out.
+// The figure `heatmap`: one coloured cell per pair of values, read with the pointer or the arrow keys.
 
-import { Axis } from './axis.js';
-import { h, inline } from './dom.js';
-import { figure } from './figure.js';
-import { formatNumber, formatShort } from './format.js';
-import { drawMap } from './heatmap_draw.js';
-import { followWidth } from './plot.js';
-import { onPrint } from './print.js';
+import { axisOptions, makeChart, TEXT, TOOLTIP, widest, widthOf } from './chart.js';
+import { COLOURS, inkOn, sequential } from './colours.js';
+import { h } from './dom.js';
+import { figure, remark } from './figure.js';
+import { formatNumber, formatShort, power } from './format.js';
+import { readByKeys } from './keys.js';
+import { columnsToCsv } from './save.js';
+import { extent } from './series.js';
 
-const WIDE = 16;  // more columns take the whole width of the page
+const WIDE = 16;       // more columns take the whole width of the page
+const [BAR, TOP] = [30, 8];
+const [ROW, LEAST] = [26, 3.5];  // pixels: of a named row, of one of many numbers
+const SAVED = 720;
+const HATCH = { type: 'pattern', repeat: 'repeat', imageWidth: 7, imageHeight: 7, image: `data:image/svg+xml,${encodeURIComponent(
+  '<svg xmlns="http://www.w3.org/2000/svg" width="7" height="7"><path d="M-1 8L8 -1M-1 1L1 -1M6 8L8 6" stroke="#8d96a0" stroke-width="1"/></svg>')}` };
 
 export function heatmap(block) {
   const map = readMap(block);
-  const canvas = h('canvas', { 'aria-hidden': 'true' });
-  const frame = h('div', { class: 'cell', hidden: true });
-  const tip = h('div', { class: 'tip', role: 'status' });
-  const holder = h('div', { class: 'chart cells', role: 'img', tabindex: 0, 'aria-label':
+  const holder = h('div', { class: 'chart drawing', role: 'img', tabindex: 0, 'aria-label':
     `Heat map: ${block.title ?? 'untitled'}; ${map.columns.length} times ${map.rows.length} cells, ` +
-    `${map.y.label || 'rows'} against ${map.x.label || 'columns'}. Arrow keys read the cells.` }, canvas, frame, tip);
-  let place = null;  // the layout on the screen
-
-  const notes = [];
-  if (map.hidden) notes.push(`${map.hidden === 1 ? '1 cell' : `${map.hidden} cells`} at or below zero left white.`);
-  const element = figure(block, [holder, notes.map((text) => h('p', { class: 'remark' }, text)),
-    block.note ? h('p', { class: 'remark' }, inline(block.note)) : null]);
+    `${block.y || 'rows'} against ${block.x || 'columns'}. Arrow keys read the cells.` });
+  let drawn = null;
+  const tall = (width) => layout(map, width).height;
+  const svg = () => drawn.picture(SAVED, tall(SAVED), 0, {});
+  const csv = () => columnsToCsv([{ name: block.y || 'row', values: map.rows }, ...map.columns.map((name, c) =>
+    ({ name, values: map.values.map((row, r) => row[c] ?? map.marks[r]?.[c] ?? '') }))]);
+  const element = figure(block, [holder, map.hidden ? remark(`${map.hidden} cell${map.hidden === 1 ? '' : 's'} at or below zero left white.`) : null,
+    map.values.flat().includes(null) ? remark('A hatched cell has no value.') : null, block.note ? remark(block.note) : null], { svg, csv });
   if (map.columns.length > WIDE) element.classList.add('wide');
-
-  const show = (column, row) => {
-    const cell = row === null || column === null ? null : map.rows[row]?.cells[column];
-    frame.hidden = !cell;
-    tip.textContent = cell ? readCell(map, column, row) : '';
-    if (!cell) return;
-    const [left, top] = [place.left + column * place.width, place.top + row * place.height];
-    Object.assign(frame.style, { left: `${left}px`, top: `${top}px`, width: `${place.width}px`, height: `${place.height}px` });
-    tip.style.left = `${Math.max(0, Math.min(left + place.width / 2 - tip.offsetWidth / 2, holder.clientWidth - tip.offsetWidth))}px`;
-    const above = top - tip.offsetHeight - 6;
-    tip.style.top = `${above >= -30 ? above : top + place.height + 6}px`;
-  };
-  handle(holder, canvas, map, () => place, show);
-
-  const paint = () => {
-    place = drawMap(canvas, map, holder.clientWidth, Math.max(1, devicePixelRatio));
-    holder.style.height = `${place.total}px`;
-    show(null, null);
-  };
   const draw = () => {
-    paint();
-    followWidth(holder, paint);
-    onPrint(holder, 0, (stage, width, _, k) => {
-      const paper = h('canvas');
-      stage.append(paper);
-      drawMap(paper, map, width, k);
-      return paper;
-    });
+    drawn = makeChart(holder, tall, (width) => option(map, block, layout(map, width)));
+    readByKeys(holder, drawn.chart, () => ({ series: 0, points: map.columns.length * map.rows.length, columns: map.columns.length }));
   };
   return { element, draw };
 }
 
-/** The block -> {x, y: {label, texts, numbers}, value: Axis, range, unit, columns, rows: [{text, cells}], empty, hidden}. */
+/** The block -> {columns, rows: texts; values, marks: rows from the top; at(value): on the scale; range, hidden}. */
 function readMap(block) {
   for (const name of ['x_values', 'y_values', 'values']) {
     if (!Array.isArray(block[name])) throw new Error(`no list "${name}"`);
@@ -71,50 +49,51 @@ function readMap(block) {
       if (row?.length !== nx) throw new Error(`row ${i + 1} of "${name}" has ${row?.length} entries, "x_values" has ${nx}`);
     });
   }
-  const value = new Axis(block.unit, block.log, block.values);
-  const cells = block.values.map((row, i) => row.map((v, c) => ({
-    value: v, mark: String(block.marks?.[i][c] ?? ''), at: value.to(v), missing: typeof v !== 'number',
-  })));
-  const all = cells.flat();
-  const known = all.map((cell) => cell.at).filter(Number.isFinite);
-  const range = value.home(known.reduce((a, b) => Math.min(a, b), Infinity), known.reduce((a, b) => Math.max(a, b), -Infinity), 0);
-  const [x, y] = [block.x_values, block.y_values].map((values, i) => ({
-    label: String((i ? block.y : block.x) ?? ''), numbers: values.every((v) => typeof v === 'number'),
-    texts: values.map((v) => (typeof v === 'number' ? formatShort(v, 4) : String(v ?? ''))),
-  }));
-  const rows = cells.map((row, i) => ({ text: y.texts[i], cells: row }));
-  const rises = y.numbers && block.y_values[ny - 1] > block.y_values[0];
-  if (rises) rows.reverse();  // numbers grow upwards, names are read downwards
-  return { x, y, value, range, unit: String(block.unit ?? ''), columns: x.texts, rows, empty: all.some((cell) => cell.missing),
-    hidden: all.filter((cell) => !cell.missing && Number.isNaN(cell.at)).length };
+  const at = (value) => (typeof value !== 'number' ? null : block.log ? (value > 0 ? Math.log10(value) : null) : value);
+  const [columns, names] = [block.x_values, block.y_values].map((values) => values.map((v) => (typeof v === 'number' ? formatShort(v, 4) : String(v ?? ''))));
+  const order = block.y_values.map((_, i) => i);
+  const numbers = block.y_values.every((v) => typeof v === 'number');
+  if (numbers && block.y_values[ny - 1] > block.y_values[0]) order.reverse();  // numbers grow upwards, names are read downwards
+  const [min, max] = extent(block.values.flat().map(at));
+  return { label: String(block.y ?? ''), columns, rows: order.map((i) => names[i]), values: order.map((i) => block.values[i]), marks: order.map((i) => block.marks?.[i] ?? []), at,
+    range: min < max ? [min, max] : min === max ? [min - 0.5, max + 0.5] : [0, 1], numbers, log: Boolean(block.log),
+    hidden: block.values.flat().filter((v) => typeof v === 'number' && at(v) === null).length };
 }
 
-function readCell(map, column, row) {
-  const cell = map.rows[row].cells[column];
-  const name = (axis, text) => (axis.label ? `${axis.label}: ${text}` : text);
-  const value = cell.missing ? 'no value' : `${formatNumber(cell.value)} ${map.unit}`.trim();
-  return `${name(map.y, map.rows[row].text)}\n${name(map.x, map.columns[column])}\n${value}${cell.mark ? ` (${cell.mark})` : ''}`;
+function layout(map, width) {
+  const left = (map.label ? 34 : 14) + Math.ceil(Math.min(widest(map.rows), width * 0.34));
+  const cell = (width - left - 12) / map.columns.length;
+  const turned = widest(map.columns) + 6 > cell && map.columns.length > 1 && !(cell < 20);
+  const under = turned ? Math.min(90, widest(map.columns)) + 30 : 42;
+  const row = map.numbers ? Math.max(LEAST, Math.min(ROW, 430 / map.rows.length)) : ROW;
+  return { left, cell, row, turned, under, height: Math.round(TOP + Math.max(row * map.rows.length, widthOf(map.label, 13) + 4) + under + BAR) };
 }
 
-function handle(holder, canvas, map, placeNow, show) {
-  let [column, row] = [0, 0];  // of the keyboard
-  canvas.addEventListener('pointermove', (event) => {
-    const { left, top, width, height } = placeNow();
-    const [c, r] = [Math.floor((event.offsetX - left) / width), Math.floor((event.offsetY - top) / height)];
-    const inside = c >= 0 && c < map.columns.length && r >= 0 && r < map.rows.length;
-    if (inside) [column, row] = [c, r];
-    show(inside ? c : null, inside ? r : null);
+function option(map, block, { left, cell, row, turned, under }) {
+  const part = (value) => (map.at(value) - map.range[0]) / (map.range[1] - map.range[0]);
+  const cells = map.values.flatMap((line, r) => line.map((value, c) => ({ value, mark: map.marks[r][c] || '', place: [c, r] })));
+  const list = cells.map(({ value, mark, place }) => {
+    const known = map.at(value) !== null;
+    return { value: [...place, known ? map.at(value) : map.range[0]], visualMap: known, itemStyle: { borderColor: 'var(--paper)', borderWidth: row > 12 ? 1 : 0,
+      ...(known ? {} : { color: typeof value === 'number' ? 'var(--paper)' : HATCH }) },
+      label: { show: mark !== '', formatter: mark, color: known ? inkOn(sequential(part(value))) : 'var(--ink)', fontSize: 11, width: cell - 4, overflow: 'truncate',
+        backgroundColor: known ? 'transparent' : 'var(--paper)', padding: [1, 3] } };
   });
-  canvas.addEventListener('pointerleave', () => show(null, null));
-  holder.addEventListener('blur', () => show(null, null));
-  holder.addEventListener('focus', () => { if (holder.matches(':focus-visible')) show(column, row); });
-  holder.addEventListener('keydown', (event) => {
-    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-    if (event.key === 'Escape') show(null, null);
-    if (!step) return;
-    event.preventDefault();
-    column = Math.max(0, Math.min(map.columns.length - 1, column + step[0]));
-    row = Math.max(0, Math.min(map.rows.length - 1, row + step[1]));
-    show(column, row);
-  });
+  const name = (label, text) => `${label ? `${label}: ` : ''}${text}`;
+  const names = { type: 'category', splitLine: { show: false } };
+  return {
+    grid: { left, right: 12, top: TOP, bottom: under + BAR, outerBoundsMode: 'none' },
+    xAxis: axisOptions(block.x || '', under - 16, { ...names, data: map.columns, axisLabel: { rotate: turned ? 90 : 0, width: turned ? 88 : undefined, overflow: 'truncate' }, axisTick: { show: false } }),
+    yAxis: axisOptions(block.y || '', left - 14, { ...names, data: map.rows, inverse: true, axisLabel: { width: left - (map.label ? 32 : 12), overflow: 'truncate' }, axisTick: { show: false } }),
+    series: [{ type: 'heatmap', data: list, emphasis: { itemStyle: { borderColor: 'var(--ink)', borderWidth: 2 } } }],
+    visualMap: [{ type: 'continuous', show: true, seriesIndex: 0, dimension: 2, min: map.range[0], max: map.range[1], orient: 'horizontal', left, bottom: 0, itemWidth: 11, itemHeight: 180, padding: 2,
+      inRange: { color: COLOURS }, precision: 12, text: [`${scaleText(map, map.range[1])}  ${block.unit ?? ''}`, scaleText(map, map.range[0])], textStyle: TEXT, calculable: false }],
+    tooltip: { ...TOOLTIP, trigger: 'item', formatter: ({ dataIndex }) => {
+      const { value, mark, place: [c, r] } = cells[dataIndex];
+      const text = typeof value === 'number' ? `${formatNumber(value)} ${block.unit ?? ''}`.trim() : 'no value';
+      return h('div', {}, h('div', {}, name(block.y, map.rows[r])), h('div', {}, name(block.x, map.columns[c])), h('div', {}, text + (mark ? ` (${mark})` : '')));
+    } },
+  };
 }
+
+const scaleText = ({ log }, value) => (log ? formatNumber(10 ** value, 3) : formatNumber(value, 3));

@@ -1,6 +1,5 @@
 // The whole page from the data in #hamel-data: header, contents, sections, blocks.
 
-import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import './figures.css';
 import './print.css';
@@ -17,10 +16,9 @@ import { text, verdict } from './text.js';
 
 const KINDS = { text, verdict, table, record, plot, path, sphere, heatmap, animation };
 const FIGURES = new Set(['plot', 'path', 'sphere', 'heatmap', 'animation']);
-const HELP = 'Charts: drag to zoom, Ctrl and wheel (after a click the wheel alone) to zoom at the pointer, ' +
-  'double-click to see all again. A click on a name hides or shows its curve. Spheres turn by dragging or with ' +
-  'the arrow keys; the side away from you is drawn faint, a ring marks where a curve starts. Cells of heat ' +
-  'maps are read with the pointer or the arrow keys. Animations turn by dragging; Ctrl and wheel or plus and minus zoom.';
+const HELP = 'Charts: a box drawn with the mouse zooms, Ctrl and wheel zoom at the pointer, a double click shows all again; the arrow ' +
+  'keys read the points. A click on a name hides or shows its curve. Spheres and bodies turn by dragging or with the arrow keys; ' +
+  'Ctrl and wheel or plus and minus zoom.';
 
 function readData() {
   const source = document.getElementById('hamel-data')?.textContent.trim() ?? '';
@@ -143,6 +141,7 @@ async function showPage() {
   const nav = contents(data.sections);
   if (nav) document.body.classList.add('with-contents');
   const main = h('main', {}, data.sections.map((section, i) => showSection(section, i + 1, counter, later)));
+  document.body.append(h('span', { id: 'light', class: 'light', hidden: true }));
   document.body.append(h('div', { class: 'page' }, header(data), nav, main,
     later.length ? h('footer', {}, HELP) : null));
   preparePrinting();

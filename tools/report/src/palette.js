@@ -1,15 +1,14 @@
-// One look per series name on the whole page: ten colours that stay apart for colour-blind eyes (after Okabe and
-// Ito, and Tol). Beyond ten names a colour serves again where the two never meet in a figure (or, if need be, are kept
-// apart by its filters); then come dashes.
+// One look per series name on the whole page: ten colours of the style sheet that stay apart for colour-blind eyes
+// (after Okabe and Ito, and Tol). Beyond ten names a colour serves again where the two never meet in a figure (or, if
+// need be, are kept apart by its filters); then come dashes. Series with a `key` share the look of that key.
 
-const COLOURS = ['#0072b2', '#d55e00', '#009e73', '#b0508c', '#e69f00', '#2e2585', '#56b4e9', '#7a1f3d',
-  '#786048', '#8a8a1c'];
+const COLOURS = Array.from({ length: 10 }, (_, i) => `var(--c${i + 1})`);
 const DASHES = [[], [8, 3], [2, 3], [9, 3, 2, 3]];
 const DASHED = [7, 4];
 
 let styles = new Map();
 
-const nameOf = (series) => String(series?.name);
+const nameOf = (series) => String(series?.key ?? series?.name);
 
 /** The names of a block that are seen at one time: all, or those whose tags a filter shows together. */
 function seenTogether(block) {
@@ -39,6 +38,6 @@ export function assignStyles(sections) {
 
 /** -> {colour, dash} of a series; the data's `dashed` wins over the palette's own dash. */
 export function styleOf(series) {
-  const style = styles.get(String(series.name)) ?? { colour: COLOURS[0], dash: [] };
+  const style = styles.get(nameOf(series)) ?? { colour: COLOURS[0], dash: [] };
   return series.dashed ? { colour: style.colour, dash: DASHED } : style;
 }

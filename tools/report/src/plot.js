@@ -1,132 +1,182 @@
-// The figures that uPlot draws: `plot` (curves over x) and `path` (curves in the plane, equal scales).
+// The figures of curves: `plot` (over x) and `path` (in the plane, equal scales).
 
-import { h, inline } from './dom.js';
-import { MISSING } from './format.js';
-import { nearestInPlane, nearestInX, readCurves } from './curves.js';
-import { makeChart, refresh, View } from './chart.js';
+import { axisOptions, makeChart, TEXT, TOOLTIP, widest } from './chart.js';
+import { h } from './dom.js';
+import { figure, remark } from './figure.js';
 import { makeFilters } from './filters.js';
+import { formatNumber, formatShort, MISSING, niceTicks, power } from './format.js';
+import { readByKeys } from './keys.js';
 import { makeLegend, MANY } from './legend.js';
-import { onPrint } from './print.js';
-import { figure } from './figure.js';
+import { markings } from './markings.js';
+import { columnsToCsv } from './save.js';
+import { covered, extent, readSeries } from './series.js';
+import { makeZoom, ZOOMS } from './zoom.js';
 
-const HEIGHT = 320;
-const PRINT_HEIGHT = { plot: 205, path: 290 };
+const MARGIN = { left: 74, right: 18, top: 12, bottom: 46 };
+const BESIDE = 36;  // pixels left of the numbers of the y axis: its name
+const LEGEND_ROW = 20;
+const [LONG, MOST_READ] = [2000, 14];  // longer curves are drawn by their least and greatest values, so many are read out
+const [NARROW, FLAT] = [2, 0.4];       // decades of a logarithmic axis: over fewer it names 1, 2 and 5 in each, or even steps
+const SAVED = [720, 420];              // pixels of a figure that is saved
 
-const OVER_X = {
-  sorted: true, equal: false, start: false,
-  nearest: (curve, x, y, u) => nearestInX(curve, x, (u.scales.x.max - u.scales.x.min) * 0.01),
-};
-const IN_PLANE = {
-  sorted: false, equal: true, start: true,
-  nearest: (curve, x, y, u) => {
-    const reach = (24 * (u.scales.x.max - u.scales.x.min)) / u.over.clientWidth;  // 24 pixels
-    return nearestInPlane(curve, x, y, reach, reach);
-  },
-};
+export const plot = (block) => chartFigure(block, readSeries(block, true), false);
+export const path = (block) => chartFigure(block, readSeries(block, false), true);
 
-export function plot(block) {
-  const data = readCurves(block, { sorted: true, logX: block.log_x, logY: block.log_y });
-  return chartFigure(block, data, OVER_X, 'Plot');
-}
-
-export function path(block) {
-  return chartFigure(block, readCurves(block, { sorted: false }), IN_PLANE, 'Path in the plane');
-}
-
-function chartFigure(block, data, manner, kind) {
-  const filters = makeFilters(block.filters, () => {
-    offer();
-    if (!view.zoomed) view.goHome();
-    u?.batch(() => data.curves.forEach((curve, i) => u.setSeries(i + 1, { show: curve.show })));
-    redraw();
-  });
-  const holder = h('div', { class: 'chart', role: 'img', 'aria-label': describe(block, data, kind) });
-  const reset = h('button', { type: 'button', class: 'reset', hidden: true,
-    onclick: () => { view.goHome(); redraw(); } }, 'reset zoom');
-  let u = null;
-
+function chartFigure(block, data, equal) {
+  const { curves } = data;
+  const points = new Set(curves.flatMap((curve) => curve.points.filter(isPoint).map((p) => p.join())));
+  if (points.size < 2) return { element: instead(block, data, points.size) };
+  let drawn = null;
   const redraw = () => {
-    reset.hidden = !view.zoomed;
-    if (u) refresh(u);
+    drawn?.redraw();
+    const pairs = covered(data);
+    cover.textContent = pairs.map(([a, b]) => `${a} lies on ${b}`).join('; ') + (pairs.length ? '.' : '');
+    cover.hidden = pairs.length === 0;
   };
-  const legend = makeLegend(data.curves, {
-    onToggle: (i, visible) => {
-      data.curves[i].show = data.curves[i].picked = visible;
-      if (!view.zoomed) view.goHome();
-      u.setSeries(i + 1, { show: visible });
-      redraw();
-    },
-    onFocus: (i) => { if (data.curves.length > 1) u.setSeries(i === null ? null : i + 1, { focus: true }); },
-  });
-
-  const offer = () => data.curves.forEach((curve, i) => {
-    const passes = filters.passes(curve.tags);
-    curve.show = curve.picked && passes;
-    legend.offer(i, passes, filters.rest(curve.tags));
-  });
+  const filters = makeFilters(block.filters, () => offer());
+  const legend = makeLegend(curves, (i, visible) => {
+    curves[i].show = curves[i].picked = visible;
+    redraw();
+  }, (i) => drawn?.chart.dispatchAction(i === null ? { type: 'downplay' } : { type: 'highlight', seriesId: String(i) }));
+  const cover = remark('');
+  const offer = () => {
+    curves.forEach((curve, i) => {
+      const passes = filters.passes(curve.tags);
+      curve.show = curve.picked && passes;
+      legend.offer(i, passes, filters.rest(curve.tags));
+    });
+    redraw();
+  };
+  const holder = h('div', { class: 'chart drawing', role: 'img', tabindex: 0, 'aria-label': describe(block, data, equal) });
+  const zoom = makeZoom(holder, () => drawn.redraw());
+  const alone = curves.length === 1 && (!curves[0].name || curves[0].name === block.title);
+  const notes = [cover, data.hidden ? remark(`${data.hidden} point${data.hidden === 1 ? '' : 's'} at or below zero not drawn.`) : null,
+    block.note ? remark(block.note) : null];
+  const svg = () => {
+    const shown = curves.filter((curve) => curve.show);
+    const wide = widest(shown.map((curve) => curve.name)) + 8;
+    const rows = alone ? 0 : Math.ceil(shown.length / Math.max(1, Math.floor((SAVED[0] - MARGIN.left) / (wide + 46))));
+    return drawn.picture(...SAVED, rows ? rows * LEGEND_ROW + 6 : 0, {
+      legend: { show: rows > 0, bottom: 2, left: MARGIN.left, right: 0, itemWidth: 28, itemGap: 12, textStyle: { ...TEXT, width: wide }, selectedMode: false } });
+  };
+  const csv = () => columnsToCsv(block.series.flatMap((s) => [{ name: block.x ?? 'x', values: s.x },
+    { name: `${s.name} ${block.y ?? ''}`.trim(), values: s.y }]));
+  const element = figure(block, [filters.element, holder, alone ? null : legend.element, notes], { svg, csv }, zoom.reset);
+  if (curves.length > MANY) element.classList.add('wide');
   offer();
-  const view = new View(data, manner.equal);
-  holder.append(legend.cursor);
-  const notes = [];
-  if (data.hidden > 0) {
-    const points = data.hidden === 1 ? '1 point' : `${data.hidden} points`;
-    notes.push(h('p', { class: 'remark' }, `${points} at or below zero not drawn.`));
-  }
-  if (block.note) notes.push(h('p', { class: 'remark' }, inline(block.note)));
-  const element = figure(block, [filters.element, holder, legend.element, ...notes].filter(Boolean), reset);
-  if (data.curves.length > MANY) element.classList.add('wide');
 
   const draw = () => {
-    u = makeChart(holder, data, view, manner, {
-      width: holder.clientWidth, height: HEIGHT,
-      on: { cursor: (chart) => showCursor(chart, data, manner, legend), zoom: redraw },
-    });
-    activate(u);
-    followWidth(holder, (width) => {
-      u.setSize({ width, height: HEIGHT });
-      if (manner.equal) refresh(u);
-    });
-    onPrint(holder, PRINT_HEIGHT[block.kind], (place, width, height, k) =>
-      makeChart(place, data, view, manner, { width: width * k, height: height * k, k }).ctx.canvas);
+    drawn = makeChart(holder, (width) => Math.min(320, Math.max(240, 0.72 * width)), (width, height) => option(block, data, equal, width, height, zoom.seen));
+    zoom.watch(drawn.chart);
+    readByKeys(holder, drawn.chart, () => ({ series: curves.findIndex((c) => c.show), points: curves.find((c) => c.show)?.points.length ?? 0 }));
   };
   return { element, draw };
 }
 
-function showCursor(u, data, manner, legend) {
-  if (u.cursor.left < 0) {
-    legend.show(null);
-    return;
-  }
-  const read = (axis, coordinate) => axis.read(coordinate, 4);
-  const texts = data.curves.map((curve, i) => {
-    const index = u.cursor.idxs[i + 1];
-    if (!curve.show || index === null || index === undefined) return curve.show ? MISSING : '';
-    const y = read(data.y, curve.y[index]);
-    return manner.equal ? `${read(data.x, curve.x[index])}, ${y}` : y;
+const isPoint = (p) => p[0] !== null && p[1] !== null;
+
+/** No axes for nothing, or for one point. */
+function instead(block, data, count) {
+  const what = count === 0 ? `nothing to draw${data.hidden ? ', no value is above zero' : ''}` :
+    data.curves.filter((curve) => curve.points.some(isPoint)).map((curve) => {
+      const [x, y] = curve.points.find(isPoint);
+      return `${curve.name}: ${block.x || 'x'} = ${formatNumber(data.x.from(x))}, ${block.y || 'y'} = ${formatNumber(data.y.from(y))}`;
+    }).join('; ');
+  return h('p', { class: 'remark' }, h('b', {}, `${block.title ?? 'Plot'}: `), `${what}.`);
+}
+
+function describe(block, { curves, y }, equal) {
+  const ranges = curves.map(({ name, points }) => {
+    const [low, high] = extent(points.map((p) => (p[1] === null ? null : y.from(p[1]))));
+    return low <= high ? `${name} from ${formatShort(low, 3)} to ${formatShort(high, 3)}` : `${name} empty`;
   });
-  const x = `${data.x.label || 'x'} = ${read(data.x, u.posToVal(u.cursor.left, 'x'))}`;
-  const y = `${data.y.label || 'y'} = ${read(data.y, u.posToVal(u.cursor.top, 'y'))}`;
-  legend.show(texts, manner.equal ? `${x}, ${y}` : x);
+  return `${equal ? 'Path in the plane' : 'Plot'}: ${block.title ?? 'untitled'}; ${block.y || 'y'} against ${block.x || 'x'}; ` +
+    `${ranges.join(', ')}. Left and right arrow keys read the points.`;
 }
 
-function describe(block, data, kind) {
-  const names = data.curves.map((curve) => curve.name).join(', ');
-  return `${kind}: ${block.title ?? 'untitled'}; ${block.y ?? 'y'} against ${block.x ?? 'x'}; series: ${names}`;
+/** seen: the part of each axis that is zoomed to. */
+function option(block, data, equal, width, height, seen) {
+  const shown = data.curves.map((curve, i) => ({ ...curve, id: String(i) })).filter((curve) => curve.show && curve.points.length > 0);
+  const marked = equal ? null : markings(block, shown, data);
+  const margin = { ...MARGIN };
+  const ranges = equal ? equalRanges(shown, width, height) : { x: rangeOf(shown, 0, data.x), y: marked.range ?? rangeOf(shown, 1, data.y) };
+  const y = ticksOf(data.y, seen.y ?? ranges.y, height / 50);
+  const labels = equal ? MARGIN.left - BESIDE : Math.ceil(widest(y.at.map(y.read)));  // (equal scales need the margin beforehand)
+  margin.left = labels + BESIDE;
+  return {
+    grid: { ...margin, outerBoundsMode: 'none' },
+    xAxis: oneAxis(data.x, ranges.x, 28, ticksOf(data.x, seen.x ?? ranges.x, width / 90)), yAxis: oneAxis(data.y, ranges.y, labels + 14, y),
+    series: [...shown.map((curve) => oneSeries(curve, !equal)), ...(marked?.series ?? [])],
+    tooltip: { ...TOOLTIP, trigger: 'axis', axisPointer: { type: equal ? 'cross' : 'line', label: { show: equal, backgroundColor: 'var(--ink)', color: 'var(--paper)',
+      formatter: ({ value, axisDimension }) => formatNumber(data[axisDimension].from(value)) }, lineStyle: { color: 'var(--soft)' }, crossStyle: { color: 'var(--soft)' } },
+    showContent: !equal, formatter: (list) => readOut(list, data) },
+    ...ZOOMS,
+  };
 }
 
-/** A click makes a chart take the wheel until the pointer leaves it. */
-function activate(u) {
-  u.over.addEventListener('click', () => u.root.classList.add('active'));
-  u.over.addEventListener('mouseleave', () => u.root.classList.remove('active'));
+const oneSeries = ({ id, name, style, points, markers }, sorted) => ({
+  id, name, type: 'line', data: points, clip: true, silent: true,
+  showSymbol: Boolean(markers), symbol: 'circle', symbolSize: 6.5, sampling: sorted && points.length > LONG ? 'minmax' : undefined,
+  lineStyle: { color: style.colour, width: 1.6, type: style.dash.length ? style.dash : 'solid', cap: 'round', join: 'round' }, itemStyle: { color: style.colour, borderWidth: 0 },
+  emphasis: { focus: 'series', lineStyle: { color: style.colour, width: 2.4 }, itemStyle: { color: style.colour } }, blur: { lineStyle: { opacity: 0.18 }, itemStyle: { opacity: 0.18 } },
+  markPoint: sorted || !points[0] ? undefined : { silent: true, symbol: 'circle', symbolSize: 8, label: { show: false },
+    itemStyle: { color: 'var(--paper)', borderColor: style.colour, borderWidth: 2 }, data: [{ coord: points.find(isPoint) ?? [0, 0] }] },
+});
+
+function rangeOf(shown, k, axis) {
+  const markers = shown.some((curve) => curve.markers);
+  const [min, max] = extent(shown.flatMap((curve) => curve.points.filter(isPoint).map((p) => p[k])));
+  if (!(min <= max)) return [0, 1];
+  if (axis.log) return max - min >= NARROW && k === 1 ? [Math.floor(min), Math.ceil(max)] : [min - 0.1, max + 0.1];
+  const air = max > min ? (k === 1 ? 0.05 : markers ? 0.03 : 0) * (max - min) : (Math.abs(min) || 1) * 0.1;
+  return [min - air, max + air];
 }
 
-/** Calls back, once a frame, when the element has another width. */
-export function followWidth(element, callback) {
-  let last = element.clientWidth;
-  new ResizeObserver(() => requestAnimationFrame(() => {
-    const width = element.clientWidth;
-    if (width === last || width === 0) return;
-    last = width;
-    callback(width);
-  })).observe(element);
+/** One unit of length is as long on both axes. */
+function equalRanges(shown, width, height) {
+  const size = [width - MARGIN.left - MARGIN.right, height - MARGIN.top - MARGIN.bottom];
+  const boxes = [0, 1].map((k) => rangeOf(shown, k, { log: false }));
+  const unit = 1.06 * Math.max(...boxes.map(([min, max], k) => (max - min) / size[k]));
+  const [x, y] = boxes.map(([min, max], k) => [(min + max - unit * size[k]) / 2, (min + max + unit * size[k]) / 2]);
+  return { x, y };
+}
+
+/** Ticks in a range of an axis, about `count` -> {at, read(coordinate)}. */
+const ticksOf = (axis, [min, max], count) => (axis.log ? logTicks : niceTicks)(min, max, count);
+
+function oneAxis(axis, [min, max], gap, { at, read }) {
+  const custom = { customValues: at };
+  return axisOptions(axis.label, gap, { type: 'value', min, max, axisLabel: { ...custom, formatter: read },
+    axisTick: { ...custom, lineStyle: { color: 'var(--rule)' } }, splitLine: { ...custom, lineStyle: { color: 'var(--grid)' } } });
+}
+
+/** Of an axis of logarithms: powers of ten, 1-2-5 between them where these are few, even steps where they are none. */
+function logTicks(min, max, count) {
+  if (max - min < FLAT) {
+    const { at, read } = niceTicks(10 ** min, 10 ** max, count);
+    return { at: at.map(Math.log10), read: (coordinate) => read(10 ** coordinate) };
+  }
+  const step = Math.max(1, Math.ceil((max - min) / count));
+  const at = [];
+  for (let n = Math.floor(min); n <= Math.ceil(max); ++n) {
+    if (max - min < NARROW) at.push(...[1, 2, 5].map((factor) => n + Math.log10(factor)));
+    else if (n % step === 0) at.push(n);
+  }
+  return { at: at.filter((v) => v >= min - 1e-9 && v <= max + 1e-9), read: (coordinate) => powerLabel(10 ** coordinate) };
+}
+
+/** 10⁻⁷, 2·10⁻⁷. */
+function powerLabel(value) {
+  const n = Math.floor(Math.log10(value) + 1e-9);
+  const factor = Math.round(value / 10 ** n);
+  return `${factor === 1 ? '' : `${factor}·`}${power(n)}`;
+}
+
+/** What the curves are at the place of the pointer. */
+function readOut(list, data) {
+  if (!list.length) return '';
+  const value = (axis, v) => (v === null || v === undefined ? MISSING : formatNumber(axis.from(v)));
+  return h('div', {}, h('b', {}, `${data.x.label || 'x'} = ${value(data.x, list[0].axisValue)}`),
+    list.filter(({ seriesName }) => seriesName).slice(0, MOST_READ).map(({ seriesName, data: point, color }) =>
+      h('div', { class: 'read' }, h('i', { style: `background:${color}` }), `${seriesName} `, h('span', {}, value(data.y, point[1])))));
 }

@@ -1,27 +1,36 @@
 // The record of a run as keys and values, nested keys joined by dots, with its JSON to copy.
 
 import { h } from './dom.js';
-import { formatShort, formatValue } from './format.js';
+import { formatShort, formatValue, MISSING } from './format.js';
+
+/** What a reader looks for; the rest is folded away. */
+const SOUGHT = /^(system|group|scheme|s|retraction|solver|compose|tolerance|rtol|atol|step|until|status|reason|steps|time|notes|git|version|host|title)$|^(parameters|start|diagnostics|timing|failure|study)\b/;
 
 export function record(block) {
   const values = block.record;
   if (values === null || typeof values !== 'object') throw new Error('no object "record"');
   const copy = h('button', { type: 'button', class: 'copy', onclick: () => copyText(values, copy) }, 'copy JSON');
-  const rows = flatten(values).map(([key, value]) => {
-    const dot = key.lastIndexOf('.') + 1;
-    const status = key === 'status' ? `status ${value === 'ok' ? 'ok' : 'failed'}` : null;
-    const text = formatValue(value, formatShort) || '–';
-    return h('tr', {}, h('th', { scope: 'row' }, 
-      h('span', { class: 'parent' }, breakable(key.slice(0, dot))), breakable(key.slice(dot))),
-      h('td', { title: typeof value === 'number' ? String(value) : null },
-        status ? h('span', { class: status }, text) : text));
-  });
+  const entries = flatten(values);
+  const sought = entries.filter(([key, value]) => SOUGHT.test(key) && value !== null && !isEmpty(value) && value !== 'none');
   const title = block.title ?? ['system', 'scheme', 'retraction', 'solver'].map((key) => values[key])
     .filter((part) => typeof part === 'string').join(', ');
-  const element = h('div', { class: 'record-block' }, copy,
-    h('table', {}, h('caption', {}, title ? `Record of the run: ${title}` : 'Record of the run'),
-      h('tbody', {}, rows)));
+  const caption = title ? `Record of the run: ${title}` : 'Record of the run';
+  const rest = entries.filter((entry) => !sought.includes(entry));
+  const element = h('div', { class: 'record-block' }, copy, entryTable(caption, sought), rest.length === 0 ? null :
+    h('details', {}, h('summary', {}, `${rest.length} more entries`), entryTable('Further entries', rest)));
   return { element };
+}
+
+const isEmpty = (value) => value === '' || (Array.isArray(value) && value.length === 0);
+
+function entryTable(caption, entries) {
+  return h('table', {}, h('caption', {}, caption), h('tbody', {}, entries.map(([key, value]) => {
+    const dot = key.lastIndexOf('.') + 1;
+    const status = key === 'status' ? `status ${value === 'ok' ? 'ok' : 'failed'}` : null;
+    const text = isEmpty(value) ? MISSING : formatValue(value, formatShort);
+    return h('tr', {}, h('th', { scope: 'row' }, h('span', { class: 'parent' }, breakable(key.slice(0, dot))), breakable(key.slice(dot))),
+      h('td', { title: typeof value === 'number' ? String(value) : null }, status ? h('span', { class: status }, text) : text));
+  })));
 }
 
 /** A long name may break after its dots and underscores. */
@@ -47,7 +56,7 @@ async function copyText(values, button) {
 }
 
 function copyBySelection(text) {
-  const area = h('textarea', { class: 'stage' });
+  const area = h('textarea', { class: 'copied' });
   area.value = text;
   document.body.append(area);
   area.select();

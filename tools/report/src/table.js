@@ -2,7 +2,7 @@
 // data asks for them. Long tables stand in a box of their own and grow while they are scrolled.
 
 import { h, inline } from './dom.js';
-import { formatValue } from './format.js';
+import { columnFormat, formatValue } from './format.js';
 import { onPaper } from './print.js';
 import { compare, makeFilter } from './table_filter.js';
 
@@ -15,6 +15,7 @@ export function table(block) {
     const cells = block.rows.map((row) => row?.[c]).filter((cell) => cell !== null && cell !== undefined);
     return cells.length > 0 && cells.filter((cell) => typeof cell === 'number').length * 2 > cells.length;
   });
+  const formats = block.columns.map((_, c) => columnFormat(block.rows.map((row) => row?.[c])));
   const rows = block.rows.map((row, place) => ({ row: row ?? [], place }));
   const body = h('tbody');
   const heads = block.columns.map((name, c) => h('th', { scope: 'col', class: numeric[c] ? 'number' : null },
@@ -24,7 +25,7 @@ export function table(block) {
   let sorted = { column: -1, direction: 1 };
   let order = rows;  // what passes the filter, sorted; the first rows of it are in the document
   const grow = (end) => body.append(...order.slice(body.childElementCount, end)
-    .map((entry) => (entry.element ??= line(entry.row, numeric))));
+    .map((entry) => (entry.element ??= line(entry.row, numeric, formats))));
   const refill = () => {
     const kept = filter ? rows.filter((entry) => filter.passes(entry)) : [...rows];
     const { column, direction } = sorted;
@@ -51,7 +52,13 @@ export function table(block) {
   box.addEventListener('scroll', () => {
     if (box.scrollTop + 3 * box.clientHeight > box.scrollHeight) grow(body.childElementCount + SLICE);
   });
-  onPaper(() => grow(order.length), () => refill());
+  onPaper(() => {
+    grow(order.length);
+    splitForPaper(box);
+  }, () => {
+    box.parentElement.querySelectorAll('.part').forEach((part) => part.remove());
+    refill();
+  });
   const filter = block.filter ? makeFilter(block, rows, refill) : null;
   refill();
   const element = h('div', { class: 'table-block' }, filter?.element, box,
@@ -59,12 +66,43 @@ export function table(block) {
   return { element };
 }
 
-function line(row, numeric) {
+/** A table wider than the page is printed in parts, each with the first column. */
+function splitForPaper(box) {
+  const whole = box.querySelector('table');
+  const widths = [...whole.tHead.rows[0].cells].map((cell) => cell.offsetWidth);
+  const room = box.clientWidth;
+  if (whole.offsetWidth <= room + 1) return;
+  const parts = [[0]];
+  let used = widths[0];
+  widths.slice(1).forEach((width, i) => {
+    if (used + width > room && parts.at(-1).length > 1) {
+      parts.push([0]);
+      used = widths[0];
+    }
+    parts.at(-1).push(i + 1);
+    used += width;
+  });
+  const copies = parts.map((columns, i) => {
+    const copy = whole.cloneNode(true);
+    for (const row of copy.rows) row.replaceChildren(...columns.map((c) => row.cells[c].cloneNode(true)));
+    copy.caption.append(` (part ${i + 1} of ${parts.length})`);
+    return h('div', { class: 'part' }, copy);
+  });
+  box.after(...copies);
+}
+
+/** 1.23·10⁻⁷ with the exponent in a column of its own. */
+const aligned = (text) => {
+  const [mantissa, exponent] = text.split('·');
+  return exponent ? [mantissa, h('span', { class: 'exponent' }, `·${exponent}`)] : [text];
+};
+
+function line(row, numeric, formats) {
   return h('tr', {}, numeric.map((isNumber, c) => {
     const value = row[c];
     const exact = typeof value === 'number' && !Number.isInteger(value) ? String(value) : null;
     const status = ['ok', 'failed'].includes(value) ? `status ${value}` : null;
-    const text = typeof value === 'string' ? inline(value) : [formatValue(value)];
+    const text = typeof value === 'string' ? inline(value) : typeof value === 'number' ? aligned(formats[c](value)) : [formatValue(value)];
     const short = typeof value === 'string' && value.length < 28 ? 'short' : null;
     return h('td', { class: isNumber ? 'number' : short, title: exact },
       status ? h('span', { class: status }, text) : text);

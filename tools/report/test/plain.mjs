@@ -7,33 +7,15 @@ import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { inflateSync } from 'node:zlib';
 import { executable } from './browser.mjs';
+import { countPixels } from './pixels.mjs';
 
 const TALLEST = 15000;  // pixels of a picture; a longer page is looked at down to there
 
 function chromium(file, output, ...flags) {
   const run = spawnSync(executable(), ['--headless', '--no-sandbox', '--hide-scrollbars', ...flags, pathToFileURL(resolve(file)).href],
-    { encoding: 'utf8', timeout: 120000 });
+    { encoding: 'utf8', timeout: 400000 });
   if (run.status !== 0) throw new Error(`chromium ${flags.join(' ')}: ${run.stderr}`);
   return readFileSync(output);
-}
-
-/** Runs in a page: how many pixels of a curve, neither white nor grey, each of the boxes holds. */
-async function countColours({ png, boxes }) {
-  const image = new Image();
-  image.src = `data:image/png;base64,${png}`;
-  await image.decode();
-  const canvas = new OffscreenCanvas(image.width, image.height);
-  const context = canvas.getContext('2d', { willReadFrequently: true });
-  context.drawImage(image, 0, 0);
-  return boxes.map(({ x, y, width, height }) => {
-    const { data } = context.getImageData(x, y, width, height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) {
-      const [red, green, blue] = [data[i], data[i + 1], data[i + 2]];
-      count += Math.max(red, green, blue) - Math.min(red, green, blue) > 40;
-    }
-    return count;
-  });
 }
 
 /** How many pictures a PDF holds, and how often it sets the colour of lines to one that is neither white nor grey. */
@@ -58,16 +40,16 @@ export async function lookPlainly(page, file, expected, check, keep) {
   await page.setViewportSize({ width: 1280, height: tall });
   await page.waitForTimeout(250);
   const figures = (await page.evaluate(() => [...document.querySelectorAll('[data-block]')].map((block) => {
-    const box = (block.matches('figure') ? block.querySelector('.chart, .globe') : null)?.getBoundingClientRect();
+    const box = block.querySelector('.drawing')?.getBoundingClientRect();
     return box ? { title: block.querySelector('.title').textContent, box: { x: box.x, y: box.y, width: box.width, height: box.height } } : null;
   }))).map((figure, i) => ({ ...figure, expected: expected[i] }))
     .filter(({ box, expected }) => expected && box && box.y + box.height <= tall);
   const folder = mkdtempSync(join(tmpdir(), 'hamel-plain-'));
   try {
     const picture = keep ?? join(folder, 'page.png');
-    const png = chromium(file, picture, `--screenshot=${picture}`, `--window-size=1280,${tall}`).toString('base64');
-    const colours = await page.evaluate(countColours, { png, boxes: figures.map(({ box }) => box) });
-    figures.forEach(({ title }, i) => check(`plain screenshot: ${title} shows curves`, colours[i] > 20, `${colours[i]} coloured pixels`));
+    const png = chromium(file, picture, `--screenshot=${picture}`, `--window-size=1280,${tall}`);
+    const found = await countPixels(page, [png], figures.map(({ box }) => box));
+    figures.forEach(({ title }, i) => check(`plain screenshot: ${title} shows curves`, found[i].colours > 20, `${found[i].colours} coloured pixels`));
     const pdf = join(folder, 'page.pdf');
     const strokes = picturesAndCurves(chromium(file, pdf, `--print-to-pdf=${pdf}`));
     check('plain print: the curves of the figures', strokes >= figures.length, `${strokes} pictures and coloured lines in ${figures.length} figures`);

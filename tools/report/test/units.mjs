@@ -1,7 +1,10 @@
 // What can be checked without a browser: [what, whether it is so].
 
 import { luminance, sequential } from '../src/colours.js';
+import { niceTicks } from '../src/format.js';
 import { floorGrid, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/motion.js';
+import { columnsToCsv } from '../src/save.js';
+import { covered, readSeries } from '../src/series.js';
 
 const near = (a, b) => a.length === b.length && a.every((v, i) => Math.abs(v - b[i]) < 1e-12);
 const about = (axis, angle) => [Math.cos(angle / 2), ...axis.map((v) => v * Math.sin(angle / 2))];
@@ -15,6 +18,10 @@ const motion = readMotion({ times: [0, 1, 3], bodies: [{ name: 'b', trail: true,
   poses: [[0, 0, 0, 1, 0, 0, 0], [2, 0, 0, 2 * quarter[0], 0, 0, 2 * quarter[3]], [null, 0, 0, 1, 0, 0, 0]] }] });
 const at = (t) => poseAt(motion.bodies[0], placeInTime(motion.times, t));
 const grid = floorGrid([[0, 0, 0], [10, 3, 1]]);
+
+const x = [0, 1, 2, 3];
+const over = (a, b) => covered(readSeries({ series: [{ name: 'a', x, y: a }, { name: 'b', x, y: b }] }, true)).length;
+const ticks = niceTicks(-0.31, 0.42, 5);
 
 export const units = [
   ['the colour scale gets darker throughout', lights.every((light, i) => i === 0 || light < lights[i - 1])],
@@ -31,4 +38,8 @@ export const units = [
   ['beyond the last good pose there is none', at(2) === null && at(3) === null && motion.missing === 1],
   ['the room that a motion takes', near(motion.box[0], [-1, -1, -1]) && near(motion.box[1], [3, 1, 1])],
   ['the floor reaches under all of it', Math.max(...grid.lines.flat().map((p) => p[0])) >= 10 && grid.lines.length < 40],
+  ['curves that cover each other are found', over([0, 1, 0, 1], [0, 1.001, 0, 1]) === 1 && over([0, 1, 0, 1], [0, 1, 0, 0.9]) === 0],
+  ['a logarithm leaves out what is not above zero', readSeries({ log_y: true, series: [{ name: 'a', x, y: [1, 0, -1, null] }] }, true).hidden === 2],
+  ['ticks at round numbers with equal decimals', near(ticks.at, [-0.2, 0, 0.2, 0.4]) && ticks.read(0) === '0.0' && ticks.read(-0.2) === '−0.2'],
+  ['a saved table', columnsToCsv([{ name: 't', values: [0, 1] }, { name: 'a "b"', values: [2] }]) === '"t","a ""b"""\n0,2\n1,\n'],
 ];

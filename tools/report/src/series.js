@@ -1,0 +1,64 @@
+// The series of a block as ECharts takes them, on two axes that may be logarithmic or have a common offset taken away.
+
+import { formatShort } from './format.js';
+import { styleOf } from './palette.js';
+
+const FEW = 48;       // so few points get markers
+const ON_TOP = 2e-3;  // of the axis: closer curves cover each other
+
+/** One axis: {label, log, to(value), from(coordinate)}: values are drawn at their logarithm, or less their common offset
+ * where they are nearly constant; null is a gap. (An axis of ECharts that is itself logarithmic zooms in rounded values.) */
+function readAxis(label, log, lists) {
+  const offset = log ? 0 : commonOffset(lists);
+  const sign = offset > 0 ? '−' : '+';
+  return {
+    label: `${label ?? ''}${offset === 0 ? '' : ` ${sign} ${formatShort(Math.abs(offset), 10)}`}`, log: Boolean(log), offset,
+    to: (value) => (typeof value !== 'number' || (log && value <= 0) ? null : log ? Math.log10(value) : value - offset),
+    from: (coordinate) => (log ? 10 ** coordinate : coordinate),
+  };
+}
+
+function commonOffset(lists) {
+  const [min, max] = extent(lists.flat());
+  const [span, size] = [max - min, Math.max(Math.abs(min), Math.abs(max))];
+  if (!(span > 0) || span > 1e-5 * size) return 0;
+  const unit = 10 ** (Math.ceil(Math.log10(span)) + 1);
+  return Number((Math.round((min + max) / 2 / unit) * unit).toPrecision(15));
+}
+
+export function extent(values) {
+  return values.reduce(([a, b], v) => (Number.isFinite(v) ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]);
+}
+
+/** -> {x, y: axes, curves: [{name, style, points: [[x, y], …], markers, tags, fit}], hidden}; `sorted` in order of x. */
+export function readSeries(block, sorted) {
+  if (!Array.isArray(block.series)) throw new Error('no list "series"');
+  block.series.forEach((s, i) => {
+    if (!Array.isArray(s?.x) || !Array.isArray(s?.y)) throw new Error(`series ${i + 1} (${s?.name}) needs the lists x and y`);
+    if (s.x.length !== s.y.length) throw new Error(`series ${s.name}: x has ${s.x.length} values, y has ${s.y.length}`);
+  });
+  const x = readAxis(block.x, block.log_x, block.series.map((s) => s.x));
+  const y = readAxis(block.y, block.log_y, block.series.map((s) => s.y));
+  let hidden = 0;
+  const curves = block.series.map((s) => {
+    const points = s.x.map((v, i) => [x.to(v), y.to(s.y[i])]);
+    hidden += s.x.filter((v, i) => (x.log && v !== null && v <= 0) || (y.log && s.y[i] !== null && s.y[i] <= 0)).length;
+    if (sorted && s.x.some((v, i) => i > 0 && v < s.x[i - 1])) points.sort((a, b) => a[0] - b[0]);
+    return { name: String(s.name ?? ''), style: styleOf(s), points, markers: s.markers ?? (sorted && points.length <= FEW), tags: s.tags,
+      fit: s.fit ? String(s.fit.text || `slope ${s.fit.slope?.toFixed(2)}`) : '', picked: true, show: true };
+  });
+  return { x, y, curves, hidden };
+}
+
+/** Of the curves shown, the pairs of names of which one covers the other all along. */
+export function covered({ curves }) {
+  const shown = curves.filter((curve) => curve.show && curve.points.length > 2);
+  const [low, high] = extent(shown.flatMap((curve) => curve.points.map((p) => p[1])));
+  const pairs = [];
+  shown.forEach((a, i) => shown.slice(0, i).forEach((b) => {
+    const same = a.points.length === b.points.length && a.points.every(([x, v], k) => x === b.points[k][0] &&
+      (v === null ? b.points[k][1] === null : b.points[k][1] !== null && Math.abs(v - b.points[k][1]) <= ON_TOP * (high - low)));
+    if (same) pairs.push([a.name, b.name]);
+  }));
+  return pairs;
+}

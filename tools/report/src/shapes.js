@@ -1,0 +1,94 @@
+// Shapes and lines as three.js draws them: finely for WebGL, of fewer faces and with lines of its own for SVG.
+
+import { AmbientLight, BoxGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, EdgesGeometry, Float32BufferAttribute, Group,
+  LineBasicMaterial, LineSegments, BufferGeometry, Mesh, MeshLambertMaterial, SphereGeometry } from 'three';
+import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
+import { luminance } from './colours.js';
+import { turnFromZ } from './motion.js';
+
+const MARK = 0.7;  // radians
+
+/** A colour of the style sheet, as it is now. */
+export const styled = (name) => new Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+
+/** Pairs of points that follow each other; null points are gaps. */
+export function pairs(points) {
+  const out = [];
+  for (let i = 1; i < points.length; ++i) if (points[i - 1] && points[i]) out.push(...points[i - 1], ...points[i]);
+  return out;
+}
+
+/** Segments, six numbers each, of a width in pixels; its `place(positions)` takes others. */
+export function lines(solid, positions, color, width, { opacity = 1, renderOrder = 0, depthTest = true } = {}) {
+  const more = { color, linewidth: width, opacity, transparent: opacity < 1, depthTest };
+  const object = solid ? new LineSegments2(new LineSegmentsGeometry(), new LineMaterial(more))
+    : new LineSegments(new BufferGeometry(), new LineBasicMaterial({ ...more, linecap: 'round' }));
+  object.place = (numbers) => {
+    object.visible = numbers.length > 0;
+    if (!object.visible) return;
+    if (solid) object.geometry.setPositions(numbers);
+    else object.geometry.setAttribute('position', new Float32BufferAttribute(numbers, 3));
+  };
+  object.place(positions);
+  return Object.assign(object, { renderOrder, frustumCulled: false });
+}
+
+/** A lamp beside the eye, and light from all sides. (WebGL divides by π as a physical surface does, SVG does not.) */
+export function addLight(scene, solid) {
+  const part = solid ? 1 : 1 / Math.PI;
+  const light = new DirectionalLight(0xffffff, 1.9 * part);
+  scene.add(light, light.target, new AmbientLight(0xffffff, 1.7 * part));
+  return (camera) => {
+    light.position.set(-0.5, 0.8, 1).applyQuaternion(camera.quaternion);
+  };
+}
+
+/** Light on dark and dark on light: the mark by which one sees a round body turn. */
+const markOf = (colour) => (luminance([1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16))) > 0.4 ? '#2f3a46' : '#f6f8fa');
+
+export function stand(object, { at, turn: [w, x, y, z] }) {
+  object.position.set(...at);
+  object.quaternion.set(x, y, z, w);
+  return object;
+}
+
+const upright = (geometry) => geometry.rotateX(Math.PI / 2);  // along z, where three.js puts it along y
+const lit = (color, side) => new MeshLambertMaterial(side ? { color, side } : { color });
+
+/** The parts of a shape, in its own frame. */
+export function solids(shape, solid) {
+  const { colour } = shape;
+  const round = solid ? 72 : 36;  // sides of a circle
+  switch (shape.shape) {
+    case 'box': {
+      const box = new BoxGeometry(...shape.size);
+      return [new Mesh(box, lit(colour)), lines(solid, [...new EdgesGeometry(box).attributes.position.array], new Color(colour).multiplyScalar(0.45), 1.3)];
+    }
+    case 'cylinder': {
+      const { radius: r, length } = shape;
+      const sector = upright(new CylinderGeometry(r * 1.004, r * 1.004, length * 1.004 + r * 0.002, 8, 1, false, 0, MARK));
+      return [new Mesh(upright(new CylinderGeometry(r, r, length, round)), lit(colour)), new Mesh(sector, lit(markOf(colour), DoubleSide))];
+    }
+    case 'sphere': case 'ellipsoid': {
+      const ball = (radius, ...part) => upright(new SphereGeometry(radius, ...part));
+      const mark = lit(markOf(colour));
+      const [few, over] = solid ? [6, 1.004] : [4, 1.03];  // (SVG sorts whole faces)
+      const parts = [new Mesh(ball(1, round, round / 2), lit(colour)), new Mesh(ball(over, few, round / 2, 0, MARK), mark),
+        new Mesh(ball(over, few, round / 2, Math.PI, MARK), mark), new Mesh(ball(over + 0.002, round, 3, 0, 2 * Math.PI, 0, 0.3), mark)];
+      parts.forEach((part) => part.scale.set(...(shape.radii ?? Array(3).fill(shape.radius))));
+      return parts;
+    }
+    case 'line': return [lines(solid, pairs(shape.points), colour, 2.6)];
+    default: {
+      const length = Math.hypot(...shape.to);
+      if (!(length > 0)) return [];
+      const [head, thick] = [length * 0.2, length * 0.02];
+      const group = new Group();
+      group.add(new Mesh(upright(new CylinderGeometry(thick, thick, length - head, 16)).translate(0, 0, (length - head) / 2), lit(colour)),
+        new Mesh(upright(new ConeGeometry(thick * 3, head, 24)).translate(0, 0, length - head / 2), lit(colour)));
+      return [stand(group, { at: [0, 0, 0], turn: turnFromZ(shape.to) })];
+    }
+  }
+}
