@@ -125,6 +125,15 @@ struct Product {
       }
     });
   }
+  /// g with its derivative along xi, as dual numbers, where the factors have it.
+  template <class Dual>
+  requires(requires(const typename Gs::template Element<double>& g, const Vec<Gs::dim>& xi) {
+    Gs::template along<Dual>(g, xi);
+  } && ...) static Element<Dual> along(const ProductElement<double, Gs...>& g, const Vec<dim>& xi) {
+    return each<Dual>([&](auto i) {
+      return Factor<i>::template along<Dual>(g.template part<i>(), segment<i>(xi));
+    });
+  }
   template <class T>
   static MatT<T, dim, dim> Ad(const ProductElement<T, Gs...>& g) {
     return block_diagonal<T>([&](auto i) { return Factor<i>::Ad(g.template part<i>()); });

@@ -29,6 +29,16 @@ struct Rn : GroupDefaults<Rn<N>, N> {
   static VecT<T, N> compose(const VecT<T, N>& g, const VecT<T, N>& h) {
     return g + h;
   }
+  /// x with its derivative xi, as dual numbers.
+  template <class Dual>
+  static VecT<Dual, N> along(const Vec<N>& g, const Vec<N>& xi) {
+    VecT<Dual, N> out;
+    for (int i = 0; i < N; ++i) {
+      out[i].a = g[i];
+      out[i].v[0] = xi[i];
+    }
+    return out;
+  }
   template <class T>
   static VecT<T, N> inverse(const VecT<T, N>& g) {
     return -g;

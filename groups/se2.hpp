@@ -45,6 +45,17 @@ struct SE2 {
   static Element<T> compose(const SE2Element<T>& g, const SE2Element<T>& h) {
     return {SO2::compose(g.rotation, h.rotation), g.translation + g.rotation.rotate(h.translation)};
   }
+  /// (R, p) with its derivative along (omega, v), as dual numbers.
+  template <class Dual>
+  static Element<Dual> along(const SE2Element<double>& g, const Vec<3>& xi) {
+    Element<Dual> out{SO2::along<Dual>(g.rotation, xi.head<1>()), {}};
+    const Vec<2> rate = g.rotation.rotate(xi.tail<2>());
+    for (int i = 0; i < 2; ++i) {
+      out.translation[i].a = g.translation[i];
+      out.translation[i].v[0] = rate[i];
+    }
+    return out;
+  }
   /// (R^T, -R^T p).
   template <class T>
   static Element<T> inverse(const SE2Element<T>& g) {

@@ -48,6 +48,17 @@ struct SE3 {
     return {g.rotation.lazyProduct(h.rotation),
             g.translation + g.rotation.lazyProduct(h.translation)};
   }
+  /// (R, p) with its derivative along (omega, v), (R hat(omega), R v), as dual numbers.
+  template <class Dual>
+  static Element<Dual> along(const SE3Element<double>& g, const Vec<6>& xi) {
+    Element<Dual> out{SO3::along<Dual>(g.rotation, xi.head<3>()), {}};
+    const Vec<3> rate = g.rotation.lazyProduct(xi.tail<3>());
+    for (int i = 0; i < 3; ++i) {
+      out.translation[i].a = g.translation[i];
+      out.translation[i].v[0] = rate[i];
+    }
+    return out;
+  }
   /// (R^T, -R^T p).
   template <class T>
   static Element<T> inverse(const SE3Element<T>& g) {

@@ -60,6 +60,14 @@ struct SO2 {
     return {};
   }
 
+  /// exp(i theta) with its derivative along omega, as dual numbers.
+  template <class Dual>
+  static Element<Dual> along(const SO2Element<double>& g, const Vec<1>& xi) {
+    Element<Dual> out{Dual(g.c), Dual(g.s), g.turns};
+    out.c.v[0] = -xi[0] * g.s;
+    out.s.v[0] = xi[0] * g.c;
+    return out;
+  }
   template <class T>
   static Element<T> compose(const SO2Element<T>& g, const SO2Element<T>& h) {
     Element<T> r{g.c * h.c - g.s * h.s, g.s * h.c + g.c * h.s, g.turns + h.turns};

@@ -43,6 +43,17 @@ struct SO3 {
   static MatT<T, 3, 3> compose(const MatT<T, 3, 3>& g, const MatT<T, 3, 3>& h) {
     return g.lazyProduct(h);
   }
+  /// R with its derivative along xi, R hat(xi), as dual numbers.
+  template <class Dual>
+  static MatT<Dual, 3, 3> along(const Mat<3, 3>& g, const Vec<3>& xi) {
+    const Mat<3, 3> rate = g.lazyProduct(cross_matrix(xi));
+    MatT<Dual, 3, 3> out;
+    for (int i = 0; i < 9; ++i) {
+      out.data()[i].a = g.data()[i];
+      out.data()[i].v[0] = rate.data()[i];
+    }
+    return out;
+  }
   template <class T>
   static MatT<T, 3, 3> inverse(const MatT<T, 3, 3>& g) {
     return g.transpose();

@@ -86,6 +86,10 @@ struct ChaplyginSleigh {
   }
 
   void invariants(auto& add) const { add("kinetic energy", energy_of(*this)); }
+  void events(auto& add) const {
+    add("cusp", "the blade stops, and its path has a cusp", 0,
+        [](double, const auto&, const auto& xi) { return xi[1]; });
+  }
   void draw(auto& scene) const {
     scene.from_above();
     scene

@@ -102,6 +102,12 @@ struct FallingDisk {
   Start start() const { return rolling(1.3, {0.1, 0.4, 5}); }
 
   void invariants(auto& add) const { add("energy", energy_of(*this)); }
+  void events(auto& add) const {
+    add("fallen", "the centre is lower than a tenth of the radius", -1,
+        [rho = radius](double, const auto& g, const auto&) {
+          return g.translation[2] - 0.1 * rho;
+        });
+  }
   void draw(auto& scene) const {
     scene.floor();
     scene

@@ -29,12 +29,32 @@ RetractionInfo retraction_info() {
           std::make_shared<TypedGeometry<Tau>>()};
 }
 
+namespace detail {
+// Schemes that differ in their tableau only share one loop.
+template <class Scheme>
+struct FamilyOf {
+  using type = Scheme;
+};
+template <class Scheme>
+requires requires { typename Scheme::Family; }
+struct FamilyOf<Scheme> {
+  using type = typename Scheme::Family;
+};
+}  // namespace detail
+
 /// The time loop compiled for these types.
 template <class Scheme, class P>
 KernelFactory compile() {
-  return [](const KernelSetup& setup) -> std::unique_ptr<Kernel> {
-    return std::make_unique<Loop<Scheme, P, Newton>>(setup);
-  };
+  if constexpr (requires { Scheme::tableau(); }) {
+    return [](KernelSetup setup) -> std::unique_ptr<Kernel> {
+      setup.tableau = &Scheme::tableau();
+      return std::make_unique<Loop<typename detail::FamilyOf<Scheme>::type, P, Newton>>(setup);
+    };
+  } else {
+    return [](const KernelSetup& setup) -> std::unique_ptr<Kernel> {
+      return std::make_unique<Loop<Scheme, P, Newton>>(setup);
+    };
+  }
 }
 
 template <class Scheme>
@@ -48,6 +68,8 @@ SchemeInfo scheme_info() {
           .steps_admissible = Scheme::steps_admissible,
           .left_invariant_only = Scheme::left_invariant_only,
           .explicit_step = Scheme::explicit_step,
+          .estimates_error = Scheme::estimates_error,
+          .varies_steps = Scheme::varies_steps,
           .places_forces = Scheme::places_forces,
           .claims = &Scheme::claim};
 }

@@ -109,6 +109,12 @@ struct Rattleback {
   Start start() const { return spinning(-1.5, 0.02); }
 
   void invariants(auto& add) const { add("energy", energy_of(*this)); }
+  void events(auto& add) const {
+    add("reversed", "the spin about the vertical changes its sign", 0,
+        [](double, const auto& g, const auto& xi) {
+          return (g.rotation.row(2) * xi.template head<3>()).value();
+        });
+  }
   void draw(auto& scene) const {
     scene.floor();
     const auto place = [](const auto& g) { return Placement{g.translation, g.rotation}; };

@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ class TomlReader {
   }
   void value(const toml::node& node, const std::string& key, double& out) {
     scalar(node, key, out, "a number");
+  }
+  void value(const toml::node& node, const std::string& key, std::optional<double>& out) {
+    value(node, key, out.emplace());
   }
   void value(const toml::node& node, const std::string& key, bool& out) {
     scalar(node, key, out, "true or false", node.is_boolean());

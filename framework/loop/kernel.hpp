@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/loop/solver.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/schemes/tableau.hpp>
 
 namespace hamel {
 
@@ -30,6 +32,10 @@ struct KernelSetup {
   OnFailure on_failure = OnFailure::stop;
   std::shared_ptr<Solver> fallback;  // for retry; null as above
   std::string fallback_name;
+  const Tableau* tableau = nullptr;   // of explicit schemes that are given by one
+  double relative = 0, absolute = 0;  // tolerances that choose the steps; 0: all of size step
+  bool first_chosen = false;          // the first too
+  int order = 0;                      // the scheme's, with its composition
   bool forces_at_base = false;        // lift: f - dV at the base point instead of the nodes
   double from = 0;                    // the time of the start
   std::vector<double> configuration;  // the element's coordinates there
@@ -49,6 +55,7 @@ struct SolverStats {
   long evaluations = 0;
   int iterations_max = 0;  // over one step
   double residual_max = 0;
+  long rejected = 0;  // steps taken again, smaller
   long fallbacks = 0;
   std::vector<Fallback> first_fallbacks;  // at most 20
 };
@@ -66,6 +73,7 @@ struct Snapshot {
   double holonomic = 0;           // max |phi(g)|
   double group_defect = 0;        // how far g is from the group
   double rotation = 0;            // of the last substep, radians; NaN: the group has none
+  double lag = 0;                 // from the velocity of row_rates to the state, s
   int iterations = 0;             // of the last step, all substeps
   double residual = 0;            // relative, the largest of the last step's substeps
 };
@@ -83,6 +91,23 @@ class Kernel {
   /// The state alone: step, time, coordinates, velocity, momentum, energy.
   virtual void state(Snapshot& out) const = 0;
   virtual const SolverStats& stats() const = 0;
+
+  /// The node itself, and that at the beginning of the last step: time, coordinates, and the velocity that is carried.
+  virtual void node(Snapshot& out) const = 0;
+  virtual void beginning(Snapshot& out) const = 0;
+  /// Steps that are chosen end at t at the latest, and advance() does nothing there.
+  virtual void limit(double t) = 0;
+  /// The size of the step that comes next (chosen ones before they are cut at the limit).
+  virtual double next_step() const = 0;
+  /// Time runs the other way: h changes its sign, and steps that are chosen are taken back as they came.
+  virtual void turn_back() = 0;
+  /// Goes on from another state; step: the size of the next. Throws std::invalid_argument when the values are no element.
+  virtual void restart(double t, std::span<const double> coordinates,
+                       const Eigen::VectorXd& velocity, double step) = 0;
+  /// Drops what is remembered of forces: after a change of something that they depend on.
+  virtual void forget() = 0;
+  /// The state at a time within the last step, by the scheme's own dense output; false where it has none.
+  virtual bool interpolate(double t, Snapshot& out) = 0;
 };
 
 }  // namespace hamel

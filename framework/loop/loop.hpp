@@ -11,7 +11,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +22,7 @@
 #include <hamel/framework/loop/extrapolation.hpp>
 #include <hamel/framework/loop/measure.hpp>
 #include <hamel/framework/loop/principal_root.hpp>
+#include <hamel/framework/loop/step_control.hpp>
 #include <hamel/framework/loop/time_loop.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
@@ -36,7 +40,7 @@ class Loop final : public TimeLoop {
   [[gnu::cold]] explicit Loop(const KernelSetup& setup)
       : TimeLoop(setup),
         whole_(setup.geometry, setup.mechanics),
-        step_(whole_, setup.s),
+        step_(step_of(whole_, setup)),
         problem_(problem_of(whole_)),
         symmetric_(whole_.symmetric()),
         nodes_{Node(problem_), Node(problem_), Node(problem_)},
@@ -54,44 +58,114 @@ class Loop final : public TimeLoop {
     problem_.carry(velocity, now_->x);
     now_->t = setup.from;
     *previous_ = *now_;
+    if (chooses_steps()) {
+      if constexpr (kEstimates) errors_.emplace(step_.estimated_order());
+      else if constexpr (Scheme::varies_steps) reversible_.emplace(problem_);
+      if (setup.first_chosen) choose_first();
+    }
     for (size_t i = 0; i < stages_.size(); ++i) stages_[i].coefficient = setup.composition[i];
   }
 
   Status advance(long count) override {
     const FlushDenormals flushed;
     for (long k = 0; k < count; ++k) {
-      SolveReport report = one_step();
+      const bool chosen = chooses_steps();
+      if (chosen && now_->t == limit_) return {};
+      SolveReport report = chosen ? chosen_step() : one_step();
       if (!report.ok()) [[unlikely]] {
-        report = recover(report);
+        if (!chosen || !kEstimates) {
+          report = recover(report);
+          beginning_ = &start_of_rescue_.now;
+        }
         if (!report.ok()) return failure(report);
       }
       tally(report);
+      time_ = now_->t;
     }
     return {};
   }
 
   [[gnu::cold]] void state(Snapshot& out) const override {
     typename P::Vector xi(problem_.dim());
-    state(out, xi);
+    state(*now_, out, xi);
   }
-  [[gnu::cold]] void measure(Snapshot& out) const override {
-    typename P::Vector xi(problem_.dim());
-    state(out, xi);
-    const double h = steps_ > 0 ? last_h_ : 0;
-    hamel::measure(whole_, {previous_->g, previous_->t, now_->g, now_->t, h}, setup_.s, xi, out);
-    out.iterations = last_.iterations;
-    out.residual = last_.residual;
+  [[gnu::cold]] void measure(Snapshot& out) const override { measure(*now_, out); }
+  [[gnu::cold]] void node(Snapshot& out) const override { carried(*now_, out); }
+  [[gnu::cold]] void beginning(Snapshot& out) const override { carried(*beginning_, out); }
+  [[gnu::cold]] bool interpolate([[maybe_unused]] double t,
+                                 [[maybe_unused]] Snapshot& out) override {
+    if constexpr (kEstimates) {
+      if (step_.estimated_order() == 0 || last_h_ == 0) return false;
+      if (!step_.interpolate((t - previous_->t) / last_h_, *next_)) return false;
+      measure(*next_, out);
+      out.time = t;
+      return true;
+    }
+    return false;
+  }
+  [[gnu::cold]] void turn_back() override {
+    count_from(now_->t);
+    h_ = -h_;
+    limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
+    forget();
+  }
+  [[gnu::cold]] void restart(double t, std::span<const double> coordinates,
+                             const Eigen::VectorXd& velocity, double step) override {
+    problem_.from_coordinates(coordinates, now_->g);
+    typename P::Vector xi = velocity;
+    problem_.carry(xi, now_->x);
+    now_->t = t;
+    *previous_ = *now_;
+    h_ = step;
+    last_h_ = 0;
+    limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
+    count_from(t);
+    forget();
+    if constexpr (Scheme::varies_steps) {
+      if (reversible_) reversible_->forget();
+    }
+  }
+  [[gnu::cold]] void forget() override {
+    for (Stage& stage : stages_) {
+      stage.extrapolation.forget();
+      stage.trusted = stage.memory.valid = false;
+    }
+    if constexpr (requires { step_.forget(); }) step_.forget();
   }
 
  private:
   using Memory = typename Newton::template Memory<Unknown>;
+  static constexpr bool kEstimates = requires(const Step& step) { step.estimated_order(); };
 
-  [[gnu::cold]] void state(Snapshot& out, typename P::Vector& xi) const {
+  static Step step_of(const Whole& whole, const KernelSetup& setup) {
+    if constexpr (std::is_constructible_v<Step, const Whole&, const Tableau&>)
+      return Step(whole, *setup.tableau);
+    else return Step(whole, setup.s);
+  }
+
+  [[gnu::cold]] void state(const Node& node, Snapshot& out, typename P::Vector& xi) const {
     out.step = steps_;
-    out.time = time();
-    if constexpr (requires { step_.velocity(*now_, xi); }) step_.velocity(*now_, xi);
-    else problem_.velocity(now_->x, xi);
-    hamel::state(whole_, now_->g, xi, out);
+    out.time = &node == now_ ? time() : node.t;
+    if constexpr (requires { step_.velocity(node, xi); }) step_.velocity(node, xi);
+    else problem_.velocity(node.x, xi);
+    hamel::state(whole_, node.g, xi, out);
+  }
+  [[gnu::cold]] void carried(const Node& node, Snapshot& out) const {
+    typename P::Vector xi(problem_.dim());
+    problem_.velocity(node.x, xi);
+    hamel::state(whole_, node.g, xi, out);
+    out.time = node.t;
+  }
+  // A step that keeps its rows at its end by itself is measured there, others along the step.
+  [[gnu::cold]] void measure(const Node& node, Snapshot& out) const {
+    typename P::Vector xi(problem_.dim());
+    state(node, out, xi);
+    double h = last_h_;
+    if constexpr (kEstimates) h = step_.estimated_order() > 0 ? 0 : h;
+    hamel::measure(whole_, {previous_->g, previous_->t, node.g, node.t, h}, setup_.s, xi, out);
+    out.lag = (1 - setup_.s) * h;
+    out.iterations = last_.iterations;
+    out.residual = last_.residual;
   }
 
   // One substep of the composition, with what it remembers of its own last solves.
@@ -108,12 +182,63 @@ class Loop final : public TimeLoop {
   }
 
   [[gnu::always_inline]] SolveReport one_step() {
-    if (stages_.size() == 1) [[likely]]
-      return flat_substep(stages_.front());  // one that fails leaves the state alone
-    return composed_step();
+    if (stages_.size() > 1) [[unlikely]]
+      return composed_step();
+    const SolveReport report =
+        flat_substep(stages_.front());  // one that fails leaves the state alone
+    beginning_ = previous_;
+    return report;
+  }
+  // A step of a size chosen by the error: explicit pairs take one again that is too large.
+  [[gnu::noinline]] SolveReport chosen_step() {
+    if constexpr (kEstimates) return error_controlled_step();
+    const double left = limit_ - now_->t;
+    if constexpr (Scheme::varies_steps) {
+      const double epsilon = std::pow(setup_.relative + setup_.absolute, 1.0 / setup_.order);
+      h_ = reversible_->next(*now_, epsilon, h_);
+    }
+    const bool cut = std::abs(h_) >= std::abs(left);
+    if (cut) {
+      h_ = left;
+      forget();
+    }
+    const SolveReport report = one_step();
+    if (cut && report.ok()) now_->t = limit_;
+    return report;
+  }
+  SolveReport error_controlled_step() {
+    constexpr int most = 100;
+    SolveReport total;
+    for (int tries = 0; tries < most; ++tries) {
+      const double left = limit_ - now_->t, wanted = h_;
+      const bool cut = std::abs(h_) >= std::abs(left);
+      if (cut) h_ = left;
+      error_ = std::numeric_limits<double>::infinity();  // of a step that fails
+      const SolveReport report = one_step();
+      total.evaluations += report.evaluations;
+      if (errors_->accept(error_, h_)) {
+        if (cut) {
+          now_->t = limit_;
+          if (std::abs(h_) < std::abs(wanted)) h_ = wanted;
+        }
+        return total;
+      }
+      ++stats_.rejected;
+      if (std::abs(h_) < smallest_step(now_->t)) {
+        total.reason = Reason::too_small;
+        return total;
+      }
+    }
+    total.reason = Reason::too_many;
+    return total;
+  }
+  [[gnu::cold]] void choose_first() {
+    if constexpr (kEstimates)
+      h_ = std::copysign(step_.first_step(*now_, setup_.relative, setup_.absolute), h_);
   }
   SolveReport composed_step() {
     put_away(start_of_step_);
+    beginning_ = &start_of_step_.now;
     SolveReport total;
     for (Stage& stage : stages_) {
       const SolveReport report = flat_substep(stage);
@@ -140,7 +265,7 @@ class Loop final : public TimeLoop {
     step_.begin(*now_, h);
     SolveReport report;
     if constexpr (Scheme::explicit_step) {
-      report.evaluations = Scheme::stages;
+      report.evaluations = step_.evaluations();
     } else {
       if (stage.extrapolation.count() == 0) step_.guess(x_);
       else stage.extrapolation(x_);
@@ -152,6 +277,12 @@ class Loop final : public TimeLoop {
       }
     }
     if (report.ok() && !step_.finish(x_, *next_)) report.reason = why_not_finished();
+    if constexpr (kEstimates) {
+      if (errors_ && report.ok()) {
+        error_ = step_.error(*next_, setup_.relative, setup_.absolute);
+        if (!(error_ <= 1)) report.reason = Reason::rejected;
+      }
+    }
     if (!report.ok()) [[unlikely]]
       return report;
     last_h_ = h;
@@ -223,25 +354,24 @@ class Loop final : public TimeLoop {
   [[gnu::cold]] SolveReport repeat_step() override { return one_step(); }
   [[gnu::cold]] void save() override { put_away(start_of_rescue_); }
   [[gnu::cold]] void restore() override { fetch(start_of_rescue_); }
-  [[gnu::cold]] void forget() override {
-    for (Stage& stage : stages_) {
-      stage.extrapolation.forget();
-      stage.trusted = stage.memory.valid = false;
-    }
-  }
 
   Whole whole_;
   Step step_;
   P problem_;
-  double last_h_ = 1;
+  double last_h_ = 0;  // of the last substep; 0 before the first
   bool symmetric_;
   int products_ = 0;
   Node nodes_[3];
   Node *now_ = &nodes_[0], *previous_ = &nodes_[1], *next_ = &nodes_[2];
+  const Node* beginning_ = &nodes_[0];  // of the last step
   State start_of_step_, start_of_rescue_;
   Unknown x_, guess_;
   PrincipalRoot<Unknown, Newton> root_;
   std::vector<Stage> stages_;
+  // Where steps are chosen.
+  std::optional<ErrorControl> errors_;
+  std::optional<ReversibleControl<P>> reversible_;
+  double error_ = 0;
 };
 
 }  // namespace hamel

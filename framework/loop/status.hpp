@@ -16,6 +16,9 @@ enum class Reason {
   outside_domain,    // the solution lies where the retraction is no diffeomorphism
   not_principal,     // the solution is a root that the path from h = 0 does not lead to
   lost_constraints,  // an explicit step ends off the constraints
+  rejected,          // the estimated error is above the tolerance
+  too_small,         // no step above 1e-14 of the interval meets the tolerance
+  too_many,          // nor one of so many tries
   stopped,           // the user's observer asked to stop
 };
 
@@ -35,6 +38,12 @@ constexpr const char* to_string(Reason reason) {
       return "the constraints do not hold at the end of the step: the equations of motion are "
              "nearly "
              "singular there, or the step is too long";
+    case Reason::rejected: return "the error of the step is above the tolerance";
+    case Reason::too_small:
+      return "no step above 1e-14 of the time passed meets the tolerance: the motion is singular "
+             "there, or the tolerance "
+             "below round-off";
+    case Reason::too_many: return "a step was rejected 100 times in a row";
     case Reason::stopped: return "stopped by the observer";
   }
   return "";

@@ -1,6 +1,9 @@
 // What every time loop does, whatever it is compiled for: it counts, and decides what becomes of a step that fails.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include <hamel/framework/loop/kernel.hpp>
 
 namespace hamel {
@@ -8,19 +11,33 @@ namespace hamel {
 class TimeLoop : public Kernel {
  public:
   const SolverStats& stats() const final { return stats_; }
+  void limit(double t) final { limit_ = t; }
+  double next_step() const final { return h_; }
 
  protected:
-  explicit TimeLoop(const KernelSetup& setup) : setup_(setup), h_(setup.step) {}
+  explicit TimeLoop(const KernelSetup& setup)
+      : setup_(setup), h_(setup.step), from_(setup.from), time_(setup.from) {}
 
   /// One step of size h_. A step that fails leaves the state alone.
   virtual SolveReport repeat_step() = 0;
   /// The state, put away and fetched back.
   virtual void save() = 0;
   virtual void restore() = 0;
-  /// Nothing to extrapolate, and no Jacobian kept.
-  virtual void forget() = 0;
 
-  double time() const { return setup_.from + static_cast<double>(steps_) * h_; }
+  bool chooses_steps() const { return setup_.relative > 0 || setup_.absolute > 0; }
+  double time() const {
+    return chooses_steps() ? time_ : from_ + static_cast<double>(steps_ - first_) * h_;
+  }
+  /// Above it a chosen step is worth trying.
+  double smallest_step(double t) const {
+    const double span = std::isfinite(limit_) ? limit_ - from_ : std::fmax(t - from_, setup_.step);
+    return 1e-14 * std::abs(span);
+  }
+  /// Steps count from here.
+  void count_from(double t) {
+    from_ = time_ = t;
+    first_ = steps_;
+  }
   void tally(const SolveReport& report) {
     last_ = report;
     ++steps_;
@@ -35,6 +52,9 @@ class TimeLoop : public Kernel {
 
   KernelSetup setup_;
   double h_;
+  double limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
+  double from_, time_;  // where steps were first counted; of the last node
+  long first_ = 0;
   SolveReport last_;
   long steps_ = 0;
   SolverStats stats_;

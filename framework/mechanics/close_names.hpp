@@ -29,6 +29,7 @@
     invarianst, invariant, invariatns, invariats, invarients, invarinats, invarints, invraiants,  \
     invriants, ivariants, ivnariants)                                                             \
   X(contacts, contact, contacs, contatcs, cotnacts, normal_reactions)                             \
+  X(events, eents, eevnts, evens, evenst, event, evetns, evets, evnets, evnts, vents)             \
   X(fields, feilds, felds, fiedls, fieds, fiels, fielsd, filds, fileds)                           \
   X(potential_differential, potential_diferential, potential_differental,                         \
     potential_differentials)                                                                      \

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -33,8 +34,11 @@ class EquationsOfMotion {
         b_rate_(problem.rows()),
         a_(problem.rows(), problem.dim()),
         a_rate_(problem.rows(), problem.dim()),
+        moved_a_(a_),
+        moved_b_(b_),
         inertia_(problem.dim(), problem.dim()),
-        inertia_rate_(problem.dim(), problem.dim()),
+        inertia_rate_(inertia_),
+        moved_inertia_(inertia_),
         root_(problem.dim(), problem.dim()),
         y_(problem.dim(), problem.rows()),
         gram_(problem.rows(), problem.rows()),
@@ -49,16 +53,10 @@ class EquationsOfMotion {
       rate = acceleration_;
     }
   }
-  /// xi' and lambda (k entries, N or N m as the rows have it). With W^T W = I^-1 (W lower triangular),
-  /// Y = W A^T and c = W change:  Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
+  /// xi' and lambda (k entries, N or N m as the rows have it) at (t, g, xi).
   void solve(double t, const Element& g, const Vector& xi) {
-    find_rates(t, g, xi);  // uses inertia_ and the rows as work space
-    if (!known_ || !problem_.constant_inertia()) {
-      problem_.inertia(g, inertia_);
-      find_root(inertia_);
-    }
-    if (singular_) [[unlikely]]
-      find_stiff_root(t, g);
+    set(t, g);
+    find_rates(t, g, xi);
     momentum_ = inertia_.lazyProduct(xi);
     problem_.force(t, g, xi, change_);
     if (!problem_.constant_inertia()) change_ -= inertia_rate_.lazyProduct(xi);
@@ -66,20 +64,52 @@ class EquationsOfMotion {
     change_ += work_;
     apply_root(change_, work_);
     if (problem_.rows() > 0) {
-      problem_.constraints(t, g, a_, b_);
-      for (int j = 0; j < problem_.rows(); ++j) {
-        momentum_ = a_.row(j).transpose();
-        apply_root(momentum_, acceleration_);
-        y_.col(j) = acceleration_;
-      }
       b_rate_ -= a_rate_.lazyProduct(xi);
       reaction_ = b_rate_ - y_.transpose().lazyProduct(work_);
-      solve_gram();
+      solve_gram(reaction_);
       work_ += y_.lazyProduct(reaction_);
       if (singular_) reaction_ -= stiffness_ * b_rate_;
     }
-    if (diagonal_) acceleration_ = root_.diagonal().cwiseProduct(work_);
-    else acceleration_ = root_.transpose().lazyProduct(work_);
+    apply_root_transpose(work_, acceleration_);
+  }
+  /// What depends on (t, g) alone. With W^T W = I^-1 (W lower triangular), Y = W A^T and c = W change:
+  /// Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
+  void set(double t, const Element& g) {
+    const bool inertia_changes = !known_ || !problem_.constant_inertia();
+    const bool rows_change = problem_.rows() > 0 && (!known_ || !problem_.constant_constraints());
+    if (inertia_changes) {
+      problem_.inertia(g, inertia_);
+      find_root(inertia_);
+    }
+    if (singular_) [[unlikely]]
+      find_stiff_root(t, g);
+    if (rows_change) problem_.constraints(t, g, a_, b_);
+    if (problem_.rows() == 0 || !(inertia_changes || rows_change)) return;
+    for (int j = 0; j < problem_.rows(); ++j) {
+      momentum_ = a_.row(j).transpose();
+      apply_root(momentum_, work_);
+      y_.col(j) = work_;
+    }
+    factor_gram();
+  }
+  /// The smallest v in the metric I with A v = c, A and I those of the last set(); returns its size, v . I v.
+  double smallest(const Few& c, Vector& v) {
+    reaction_ = c;
+    solve_gram(reaction_);
+    work_ = y_.lazyProduct(reaction_);
+    apply_root_transpose(work_, v);
+    return work_.squaredNorm();
+  }
+  /// Moves xi onto A xi = b in the metric I (A, b, I those of the last set()); returns the squared sizes of what was added, and
+  /// of xi.
+  std::pair<double, double> project(Vector& xi) {
+    momentum_ = inertia_.lazyProduct(xi);
+    const double size = momentum_.dot(xi);
+    if (problem_.rows() == 0) return {0, size};
+    b_rate_ = b_ - a_.lazyProduct(xi);
+    const double added = smallest(b_rate_, acceleration_);
+    xi += acceleration_;
+    return {added, size};
   }
   const Vector& acceleration() const { return acceleration_; }
   const Few& reaction() const { return reaction_; }
@@ -100,13 +130,13 @@ class EquationsOfMotion {
     inertia_rate_.setZero();
     differentiate_along(problem_, g, xi, work_, moved_, [&](double shift, double weight) {
       if (moves) {
-        problem_.constraints(t + shift, moved_, a_, b_);
-        a_rate_ += weight * a_;
-        b_rate_ += weight * b_;
+        problem_.constraints(t + shift, moved_, moved_a_, moved_b_);
+        a_rate_ += weight * moved_a_;
+        b_rate_ += weight * moved_b_;
       }
       if (varies) {
-        problem_.inertia(moved_, inertia_);
-        inertia_rate_ += weight * inertia_;
+        problem_.inertia(moved_, moved_inertia_);
+        inertia_rate_ += weight * moved_inertia_;
       }
     });
   }
@@ -156,8 +186,12 @@ class EquationsOfMotion {
     if (diagonal_) out = root_.diagonal().cwiseProduct(mu);
     else out = root_.lazyProduct(mu);
   }
-  // reaction_ <- (Y^T Y)^-1 reaction_, by Cholesky.
-  void solve_gram() {
+  void apply_root_transpose(const Vector& v, Vector& out) const {
+    if (diagonal_) out = root_.diagonal().cwiseProduct(v);
+    else out = root_.transpose().lazyProduct(v);
+  }
+  // gram_: the Cholesky factor of Y^T Y.
+  void factor_gram() {
     const int k = problem_.rows();
     for (int j = 0; j < k; ++j) {
       for (int i = j; i < k; ++i) {
@@ -166,13 +200,17 @@ class EquationsOfMotion {
         gram_(i, j) = i == j ? std::sqrt(sum) : sum / gram_(j, j);
       }
     }
+  }
+  // c <- (Y^T Y)^-1 c.
+  void solve_gram(Few& c) const {
+    const int k = problem_.rows();
     for (int i = 0; i < k; ++i) {
-      for (int l = 0; l < i; ++l) reaction_[i] -= gram_(i, l) * reaction_[l];
-      reaction_[i] /= gram_(i, i);
+      for (int l = 0; l < i; ++l) c[i] -= gram_(i, l) * c[l];
+      c[i] /= gram_(i, i);
     }
     for (int i = k - 1; i >= 0; --i) {
-      for (int l = i + 1; l < k; ++l) reaction_[i] -= gram_(l, i) * reaction_[l];
-      reaction_[i] /= gram_(i, i);
+      for (int l = i + 1; l < k; ++l) c[i] -= gram_(l, i) * c[l];
+      c[i] /= gram_(i, i);
     }
   }
 
@@ -181,8 +219,9 @@ class EquationsOfMotion {
   double stiffness_ = 0;
   Vector acceleration_, momentum_, change_, work_;
   Few reaction_, b_, b_rate_;
-  typename Problem::Rows a_, a_rate_;
-  typename Problem::Matrix inertia_, inertia_rate_, root_;
+  typename Problem::Rows a_, a_rate_, moved_a_;
+  Few moved_b_;
+  typename Problem::Matrix inertia_, inertia_rate_, moved_inertia_, root_;
   Eigen::Matrix<double, Vector::RowsAtCompileTime, Few::RowsAtCompileTime> y_;
   Eigen::Matrix<double, Few::RowsAtCompileTime, Few::RowsAtCompileTime> gram_;
   Element moved_;

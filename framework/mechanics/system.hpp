@@ -13,6 +13,8 @@
 //   void invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
 //   std::vector<int> contacts() const; the rows of A whose multiplier is a contact's normal reaction, which
 //                                      pushes where it is positive (differentials of a height, counted from 0)
+//   void events(auto& add) const;      add("name", "what it is", direction, [](double t, const auto& g, const auto& xi) {
+//                                      return ...; }): zero at the event; direction +1, -1, or 0 for both ways
 //   void draw(auto& scene) const;      how the report page shows it (drawing.hpp)
 //   static name(), summary(), formula(), known(), source()   words for `hamel describe`
 #pragma once
@@ -51,6 +53,15 @@ struct Invariant {
       value;
 };
 
+/// A function of the state that is zero at an event.
+struct Event {
+  std::string name, meaning;
+  int direction = 0;  // in which it crosses zero as time runs on: +1, -1, or 0 for both
+  std::function<double(double t, std::span<const double> coordinates,
+                       std::span<const double> velocity)>
+      value = {};
+};
+
 /// A system with its parameters set and its type erased.
 struct SystemModel {
   std::string name;
@@ -61,6 +72,7 @@ struct SystemModel {
   /// Empty when nothing is known exactly.
   std::function<ExactFlow(const Start&)> exact;
   std::vector<Invariant> invariants;
+  std::vector<Event> events;
   std::vector<int> contacts;  // the rows whose multiplier is a normal reaction
   Drawing drawing;
 };
@@ -91,6 +103,15 @@ void tell_invariants(const S& system, Visitor& add) {
     static_assert(
         !named::invariants<S>,
         "invariants of this system cannot be called: expected a const member invariants(add)");
+  }
+}
+template <class S, class Visitor>
+void tell_events(const S& system, Visitor& add) {
+  if constexpr (requires { system.events(add); }) {
+    system.events(add);
+  } else {
+    static_assert(!named::events<S>,
+                  "events of this system cannot be called: expected a const member events(add)");
   }
 }
 template <class S, class Visitor>
@@ -187,6 +208,14 @@ SystemModel erase(const S& system) {
          }});
   };
   detail::tell_invariants(system, add);
+  auto add_event = [&model](std::string name, std::string meaning, int direction, auto value) {
+    model.events.push_back(
+        {std::move(name), std::move(meaning), direction,
+         [value](double t, std::span<const double> g, std::span<const double> xi) -> double {
+           return value(t, G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
+         }});
+  };
+  detail::tell_events(system, add_event);
   if constexpr (requires { system.contacts(); }) {
     model.contacts = system.contacts();
   } else {
@@ -199,7 +228,7 @@ SystemModel erase(const S& system) {
 }
 
 /// A system whose dimension is one of its parameters: it names its group ("se2*so2^5") and gives its
-/// Mechanics itself. start() as for any system; invariants(add) and draw(scene) see coordinates.
+/// Mechanics itself. start() as for any system; invariants(add), events(add) and draw(scene) see coordinates.
 template <class S>
 concept RunTimeSystem = requires(const S& s) {
   { s.group() } -> std::convertible_to<std::string>;
@@ -225,6 +254,10 @@ SystemModel erase(const S& system) {
     model.invariants.push_back({std::move(name), value});
   };
   detail::tell_invariants(system, add);
+  auto add_event = [&model](std::string name, std::string meaning, int direction, auto value) {
+    model.events.push_back({std::move(name), std::move(meaning), direction, value});
+  };
+  detail::tell_events(system, add_event);
   detail::tell_drawing(system, model.drawing);
   return model;
 }

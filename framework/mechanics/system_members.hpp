@@ -17,7 +17,7 @@ namespace named {
 struct Names {
   int constraints, drift, holonomic, potential, force, start, exact, has_exact, invariants, fields,
       draw, name, summary, formula, known, source, potential_differential, holonomic_differential,
-      inertia_differential, contacts;
+      inertia_differential, contacts, events;
 };
 template <class S, bool = std::is_final_v<S>>
 struct Both : S, Names {};
@@ -55,6 +55,7 @@ HAMEL_NAMED(potential_differential)
 HAMEL_NAMED(holonomic_differential)
 HAMEL_NAMED(inertia_differential)
 HAMEL_NAMED(contacts)
+HAMEL_NAMED(events)
 #undef HAMEL_NAMED
 
 }  // namespace named

@@ -39,14 +39,19 @@ template <class Value>
 std::string toml_of(const Value& value) {
   std::string out = text_of(value);
   if constexpr (std::is_same_v<Value, std::string>) return quoted(out);
-  if constexpr (std::is_same_v<Value, double>)
+  if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>)
     return out.find_first_of(".en") == std::string::npos ? out + ".0" : out;
-  if constexpr (std::is_class_v<Value> && !std::is_same_v<Value, std::string>) {
+  else if constexpr (std::is_class_v<Value> && !std::is_same_v<Value, std::string>) {
     std::vector<std::string> entries;
     for (const auto& entry : value) entries.push_back(toml_of(entry));
     return "[" + join(entries) + "]";
   }
   return out;
+}
+
+template <class Value>
+constexpr bool is_text(const Value&) {
+  return std::is_same_v<Value, std::string>;
 }
 
 // f(member pointer) for the option of that name.
@@ -84,6 +89,7 @@ bool number(const std::string& text, double& out) {
 }  // namespace
 
 std::string text_of(double value) { return fmt::format("{}", value); }
+std::string text_of(std::optional<double> value) { return value ? text_of(*value) : ""; }
 std::string text_of(long value) { return fmt::format("{}", value); }
 std::string text_of(bool value) { return value ? "true" : "false"; }
 std::string text_of(const std::string& value) { return value; }
@@ -95,6 +101,10 @@ std::string text_of(const std::vector<std::string>& value) {
 void read_text(const std::string& option, const std::string& text, double& out) {
   if (!number(text, out))
     throw ConfigError({fmt::format("{}: '{}' is not a number", option, text)});
+}
+void read_text(const std::string& option, const std::string& text, std::optional<double>& out) {
+  out.reset();
+  if (!text.empty()) read_text(option, text, out.emplace());
 }
 void read_text(const std::string& option, const std::string& text, long& out) {
   size_t used = 0;
@@ -172,6 +182,7 @@ std::string Config::to_toml() const {
       out += fmt::format("{} = {}\n", option.name, toml_of(start.*member));
   });
   fields([&](const Option& option, auto member) {
+    if (const auto& value = this->*member; text_of(value).empty() && !is_text(value)) return;
     out += fmt::format("{} = {}\n", option.name, toml_of(this->*member));
   });
   if (!parameters.empty()) out += "[set]\n";
@@ -182,6 +193,15 @@ std::string Config::to_toml() const {
 
 long Config::steps() const {
   return static_cast<long>(std::floor((until - from) / step * (1 + 1e-12) + 1e-9));
+}
+
+std::vector<double> Config::rows() const {
+  if (!output_times.empty() || !output_step) return output_times;
+  const double count = std::floor(std::abs(until - from) / *output_step * (1 + 1e-12) + 1e-9);
+  std::vector<double> out;
+  for (double i = 0; i <= count; ++i)
+    out.push_back(from + std::copysign(i * *output_step, until - from));
+  return out;
 }
 
 std::vector<std::string> Config::mistakes() const {
@@ -196,14 +216,29 @@ std::vector<std::string> Config::mistakes() const {
   fields([&](const Option& option, auto member) {
     using Value = std::remove_cvref_t<decltype(this->*member)>;
     if constexpr (std::is_arithmetic_v<Value>) look_at(option, static_cast<double>(this->*member));
+    if constexpr (std::is_same_v<Value, std::optional<double>>)
+      if (this->*member) look_at(option, *(this->*member));
     if constexpr (std::is_same_v<Value, std::vector<double>>)
       for (const double x : this->*member) look_at(option, x);
   });
   const double span = until - from;
+  if (output_step && !output_times.empty())
+    out.push_back("output_times: give them or output_step, not both");
+  if ((output_step || !output_times.empty()) && every != 1)
+    out.push_back("every: the rows are at the output times: leave it out");
+  for (size_t i = 0; i < output_times.size(); ++i) {
+    const double t = output_times[i], sign = span < 0 ? -1 : 1;
+    if (sign * (t - from) < 0 || sign * (until - t) < 0)
+      refuse("output_times", t, fmt::format("times from {} to {}", from, until).c_str());
+    else if (i > 0 && sign * (t - output_times[i - 1]) <= 0)
+      refuse("output_times", t,
+             fmt::format("a time beyond the one before, {}", output_times[i - 1]).c_str());
+  }
   if (std::isfinite(span) && std::isfinite(step) && step != 0) {
     if (span / step < 0 && from == 0) refuse("until", until, "the sign of step");
     else if (span / step < 0)
       refuse("until", until, fmt::format("a time beyond from, {}, as step has it", from).c_str());
+    else if (chooses_steps()) return out;
     else if (span / step > 9e15) refuse("until", until, "fewer than 9e15 steps");
     else if (span != 0 && steps() == 0)
       refuse("step", step, fmt::format("at most until, {}: no whole step fits", span).c_str());

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@
 
 namespace hamel {
 
-/// What is said of one option: a double, long, bool or string, or a list of doubles or strings.
+/// What is said of one option: a double (or none), long, bool or string, or a list of doubles or strings.
 struct Option {
   const char* name;  // in files and records; on the command line with dashes, --on-failure
   const char* unit;  // "" for words, "1" for plain numbers
@@ -36,9 +37,13 @@ struct Config {
   std::string on_failure = "stop";
   double tolerance = 1e-13;
   double step = 0.01;
+  std::optional<double> rtol, atol;  // given: steps chosen by the error
   double from = 0;
   double until = 20;
   long every = 1;
+  std::optional<double> output_step;
+  std::vector<double> output_times;
+  std::vector<std::string> events, stop_at;
   bool check = false;
   bool force = false;
   bool no_exact = false;
@@ -65,9 +70,18 @@ struct Config {
     f(Option{"tolerance", "1", "residual of each step, relative to the scale of its equation", true,
              [](double x) { return x > 0 && x < 1; }, "a number in (0, 1)"},
       &Config::tolerance);
-    f(Option{"step", "s", "step, of either sign", true,
+    f(Option{"step", "s", "step, of either sign; where steps are chosen the first one", true,
              [](double x) { return std::isfinite(x) && x != 0; }, "a finite number other than 0"},
       &Config::step);
+    constexpr auto tolerance = [](double x) { return x > 0 && x < 1; };
+    f(Option{"rtol", "1",
+             "steps chosen by the error: relative tolerance (dopri5 tsit5 dop853; lift, balance at "
+             "s = 0.5)",
+             true, tolerance, "a number in (0, 1)"},
+      &Config::rtol);
+    f(Option{"atol", "1", "absolute tolerance beside it; that of rtol where not given", true,
+             tolerance, "a number in (0, 1)"},
+      &Config::atol);
     f(Option{"from", "s", "start time: that of a forced run which goes on", false,
              [](double x) { return std::isfinite(x); }, "a finite number"},
       &Config::from);
@@ -78,6 +92,15 @@ struct Config {
     f(Option{"every", "1", "record every this many steps, first and last always", false,
              [](double x) { return x >= 1; }, "at least 1"},
       &Config::every);
+    f(Option{"output_step", "s", "rows at this distance in time, by dense output, instead", false,
+             [](double x) { return x > 0 && std::isfinite(x); }, "a number above 0"},
+      &Config::output_step);
+    f(Option{"output_times", "s", "rows at these times", false,
+             [](double x) { return std::isfinite(x); }, "finite numbers"},
+      &Config::output_times);
+    f(Option{"events", "", "events to locate and record (hamel describe SYSTEM), or COLUMN=VALUE"},
+      &Config::events);
+    f(Option{"stop_at", "", "the same, where the run ends"}, &Config::stop_at);
     f(Option{"check", "", "estimate the error: the run again with half the step, and a quarter"},
       &Config::check);
     f(Option{"force", "", "compose a step that is not reversible all the same"}, &Config::force);
@@ -96,6 +119,13 @@ struct Config {
   std::string text(const std::string& option) const;
   void set(const std::string& option, const std::string& text);
 
+  /// Are steps chosen by the error, with which tolerances?
+  bool chooses_steps() const { return rtol || atol; }
+  double relative() const { return rtol.value_or(0); }
+  double absolute() const { return atol.value_or(relative()); }
+
+  /// The times of the rows where they are given by output_step or output_times, else none.
+  std::vector<double> rows() const;
   /// The number of whole steps: (until - from) / step rounded down, up to round-off.
   long steps() const;
   /// As TOML; reads back to an equal Config.
@@ -115,12 +145,14 @@ Config read_config(const std::string& path);
 /// The value of an option as text, lists separated by commas, and back: exact for numbers. ConfigError that
 /// begins with `option` for text that does not fit.
 std::string text_of(double value);
+std::string text_of(std::optional<double> value);  // "" for none
 std::string text_of(long value);
 std::string text_of(bool value);
 std::string text_of(const std::string& value);
 std::string text_of(const std::vector<double>& value);
 std::string text_of(const std::vector<std::string>& value);
 void read_text(const std::string& option, const std::string& text, double& out);
+void read_text(const std::string& option, const std::string& text, std::optional<double>& out);
 void read_text(const std::string& option, const std::string& text, long& out);
 void read_text(const std::string& option, const std::string& text, bool& out);
 void read_text(const std::string& option, const std::string& text, std::string& out);

@@ -33,23 +33,28 @@ double EnergyBalance::power(const Snapshot& state) {
 
 void EnergyBalance::node(const Snapshot& state) {
   work_.add(state.time, power(state));
-  energy_ = state.energy;
-  if (nodes_ == 0) energy_start_ = energy_;
-  ++nodes_;
-  raise(energy_max_, energy_);
+  if (work_.count() == 1) energy_start_ = state.energy;
+  raise(energy_max_, state.energy);
+  if (work_.count() == NodalQuadrature::kNodes) settle();
 }
 
-void EnergyBalance::row() { recorded_.push_back({nodes_ - 1, energy_, work_.value()}); }
+void EnergyBalance::row(const Snapshot& state) {
+  recorded_.push_back({state.time, state.energy, 0});
+  if (work_.count() >= NodalQuadrature::kNodes) settle();
+}
 
-std::vector<BalancedState> EnergyBalance::rows() const {
+void EnergyBalance::settle() {
+  for (; settled_ < recorded_.size(); ++settled_)
+    recorded_[settled_].work = work_.value(recorded_[settled_].time);
+}
+
+std::vector<BalancedState> EnergyBalance::rows() {
+  settle();
   std::vector<BalancedState> out;
   out.reserve(recorded_.size());
   const double scale = energy_max_ == 0 ? 1 : energy_max_;
-  for (const Recorded& r : recorded_) {
-    const bool early = r.node < static_cast<long>(NodalQuadrature::kNodes);
-    const double work = early ? work_.first(static_cast<size_t>(r.node)) : r.work;
-    out.push_back({work, (r.energy - energy_start_ - work) / scale});
-  }
+  for (const Recorded& r : recorded_)
+    out.push_back({r.work, (r.energy - energy_start_ - r.work) / scale});
   return out;
 }
 

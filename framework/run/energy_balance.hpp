@@ -21,11 +21,11 @@ class EnergyBalance {
 
   /// Of each node, from the start on: its step, time, coordinates, velocity and energy.
   void node(const Snapshot& state);
-  /// The last node is a recorded state.
-  void row();
+  /// A recorded state, between the last two nodes or one of them.
+  void row(const Snapshot& state);
 
   /// After the last node: one for each recorded state.
-  std::vector<BalancedState> rows() const;
+  std::vector<BalancedState> rows();
 
  private:
   // <f, xi> + lambda . b.
@@ -35,13 +35,14 @@ class EnergyBalance {
   std::shared_ptr<const Mechanics> mechanics_;
   std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without a drift
   bool active_;
+  // The work at the recorded states that wait for the first nodes.
+  void settle();
   NodalQuadrature work_;
-  long nodes_ = 0;
-  double energy_ = 0, energy_start_ = 0, energy_max_ = 0;
+  double energy_start_ = 0, energy_max_ = 0;
   struct Recorded {
-    long node;
-    double energy, work;
+    double time, energy, work;
   };
+  std::size_t settled_ = 0;
   std::vector<Recorded> recorded_;
   Eigen::VectorXd g_, xi_, b_;
   Eigen::MatrixXd a_;

@@ -8,13 +8,12 @@ namespace hamel {
 
 Meter::Meter(const SystemModel& system, const Start& start,
              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
-             const std::shared_ptr<const Mechanics>& acting, double lag)
+             const std::shared_ptr<const Mechanics>& acting)
     : system_(system),
       start_(start),
       balance_(geometry, acting),
       pulls_(system.contacts.size()),
-      geometry_(std::move(geometry)),
-      lag_(lag) {
+      geometry_(std::move(geometry)) {
   if (balance_.active()) {
     notes_.push_back(
         "forces or moving constraints do work: the energy error is the defect of the energy "
@@ -68,7 +67,7 @@ void Meter::take(const Snapshot& state) {
 
 void Meter::compare(const Snapshot& state) {
   if (balance_.active()) {
-    balance_.row();
+    balance_.row(state);
     add(kWork.name, 0);  // until finish
   }
   if (motion_ != nullptr) react(state);
@@ -100,13 +99,13 @@ void Meter::react(const Snapshot& state) {
                                           static_cast<Eigen::Index>(state.velocity.size()));
   motion_->solve(state.time, g_, xi_);
   const Eigen::VectorXd& now = motion_->reaction();
-  const double part = first_ ? 0 : lag_ / (state.time - time_);
+  const double part = first_ ? 0 : state.lag / (state.time - time_);
   double power = 0;
   for (Eigen::Index j = 0; j < now.size(); ++j) {
     const double there = first_ ? now[j] : now[j] - part * (now[j] - lambda_[j]);
     power += there * state.row_rates[static_cast<size_t>(j)];
   }
-  const double at = first_ ? state.time : state.time - lag_;
+  const double at = first_ ? state.time : state.time - state.lag;
   if (!first_) all_.reaction_work += (power_ + power) / 2 * (at - power_time_);
   lambda_ = now;
   time_ = state.time;

@@ -18,11 +18,10 @@ namespace hamel {
 
 class Meter {
  public:
-  /// lag: from a step's velocity to its end. geometry: null for a group that is not registered. acting: mechanics,
+  /// geometry: null for a group that is not registered. acting: mechanics,
   /// without its rows where the scheme does not keep them.
   Meter(const SystemModel& system, const Start& start, std::shared_ptr<const Geometry> geometry,
-        std::shared_ptr<const Mechanics> mechanics, const std::shared_ptr<const Mechanics>& acting,
-        double lag);
+        std::shared_ptr<const Mechanics> mechanics, const std::shared_ptr<const Mechanics>& acting);
 
   /// Does it want every node, not the recorded states only?
   bool wants_nodes() const { return balance_.active(); }
@@ -60,11 +59,11 @@ class Meter {
   std::vector<bool> pulls_;  // of the contacts, said already
   // The multipliers lambda of A xi = b, from the continuous equations at each state, and their power
   // lambda . A v in the last step before it, A v recovered from the configurations (Snapshot::row_rates) and
-  // lambda interpolated to the same time, `lag` before the state: round-off where b = 0, the power that a
+  // lambda interpolated to the same time, Snapshot::lag before the state: round-off where b = 0, the power that a
   // moving constraint feeds in where it is not.
   std::shared_ptr<const Geometry> geometry_;
   std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without rows
-  double lag_, time_ = 0, power_ = 0, power_time_ = 0;
+  double time_ = 0, power_ = 0, power_time_ = 0;
   Eigen::VectorXd g_, xi_, lambda_;
 };
 

@@ -20,26 +20,24 @@ class NodalQuadrature {
     times_ = times;
     differences_ = differences;
     ++count_;
-    if (count_ > kNodes) {
-      integral_ += over(0);
-      return;
-    }
-    integral_ = 0;  // again, with the polynomial through all of them
-    for (std::size_t i = 1; i < count_; ++i) first_[i] = integral_ += over(count_ - 1 - i);
+    if (count_ > kNodes) integral_ += over(times_[1], t);
+    else
+      integral_ =
+          count_ > 1 ? over(first_, t) : 0;  // again, with the polynomial through all of them
+    if (count_ == 1) first_ = t;
   }
-  /// From the first node to the last.
-  double value() const { return integral_; }
-  /// From the first node to node i < kNodes; final once there are kNodes.
-  double first(std::size_t i) const { return first_[i]; }
+  std::size_t count() const { return count_; }
+  /// From the first node to t, between the last two nodes; before there are kNodes + 1, to any t between the first and the last.
+  double value(double t) const { return integral_ - over(t, times_[0]); }
 
  private:
-  // Over the interval that ends at times_[i]: Gauss-Legendre, exact for the polynomial's degree.
-  double over(std::size_t i) const {
+  // Over the interval: Gauss-Legendre, exact for the polynomial's degree.
+  double over(double from, double to) const {
     constexpr std::array<double, 4> points = {-0.8611363115940526, -0.3399810435848563,
                                               0.3399810435848563, 0.8611363115940526};
     constexpr std::array<double, 4> weights = {0.3478548451374538, 0.6521451548625461,
                                                0.6521451548625461, 0.3478548451374538};
-    const double half = 0.5 * (times_[i] - times_[i + 1]), middle = times_[i] - half;
+    const double half = 0.5 * (to - from), middle = to - half;
     double sum = 0;
     for (std::size_t p = 0; p < points.size(); ++p) {
       double value = 0;
@@ -51,9 +49,9 @@ class NodalQuadrature {
   }
 
   // Newest first: t_n, t_{n-1}, ..., and P[t_n], P[t_n, t_{n-1}], ...; 0 where there are none yet.
-  std::array<double, kNodes> times_{}, differences_{}, first_{};
+  std::array<double, kNodes> times_{}, differences_{};
   std::size_t count_ = 0;
-  double integral_ = 0;
+  double first_ = 0, integral_ = 0;
 };
 
 }  // namespace hamel

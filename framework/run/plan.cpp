@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/run/data_system.hpp>
@@ -14,12 +13,6 @@ namespace hamel {
 namespace {
 
 constexpr double kMaxNumbers = 5e8;  // 4 GB of doubles
-
-std::vector<double> to_vector(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
-
-bool finite(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-}
 
 // "stop", "halve", "retry:<solver>"; returns what is wrong.
 std::vector<std::string> read_on_failure(const Config& config, const Registry& registry,
@@ -48,13 +41,13 @@ std::vector<std::string> read_on_failure(const Config& config, const Registry& r
 
 }  // namespace
 
-std::vector<std::string> unused_options(const SchemeInfo& scheme, const std::string& on_failure) {
+std::vector<std::string> unused_options(const SchemeInfo& scheme, const Config& config) {
   std::vector<std::string> out;
   if (!scheme.uses_s) out.emplace_back("s");
   if (!scheme.places_forces) out.emplace_back("force_at");
   if (!scheme.explicit_step) return out;
   out.insert(out.end(), {"solver", "tolerance"});
-  if (on_failure != "halve") out.emplace_back("on_failure");
+  if (config.on_failure != "halve" || config.chooses_steps()) out.emplace_back("on_failure");
   return out;
 }
 
@@ -71,7 +64,7 @@ Simulation::Plan Simulation::plan() const {
   } else {
     plan.config.scheme = scheme->name;  // config_ may name an alias
     plan.keeps_rows = scheme->adapted;
-    plan.unused = unused_options(*scheme, config_.on_failure);
+    plan.unused = unused_options(*scheme, config_);
     if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
   }
   const SolverInfo* solver = registry_->solver(config_.solver);
@@ -155,16 +148,27 @@ Simulation::Plan Simulation::plan() const {
     plan.kernel = own != nullptr ? *own : scheme->erased;
   }
 
-  if (scheme != nullptr && geometry != nullptr) plan.check_composition(*scheme, left_invariant);
+  if (scheme != nullptr && geometry != nullptr) {
+    plan.check_composition(*scheme, left_invariant);
+    if (config_.chooses_steps()) plan.choose_steps(*scheme, left_invariant);
+  }
 
   const double rows =
-      std::abs((config_.until - config_.from) / config_.step) / static_cast<double>(config_.every);
+      config_.output_step       ? std::abs(config_.until - config_.from) / *config_.output_step
+      : config_.chooses_steps() ? 0
+                                : std::abs((config_.until - config_.from) / config_.step) /
+                                      static_cast<double>(config_.every);
   const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
   if (rows < 9e15 && rows * width > kMaxNumbers) {
-    plan.add({fmt::format(
-        "every: {:.3g} rows would be recorded, more than memory holds; record "
-        "every {:.0f} steps or more",
-        rows, std::ceil(rows * static_cast<double>(config_.every) * width / kMaxNumbers))});
+    plan.add(
+        {config_.output_step
+             ? fmt::format("output_step: {:.3g} rows would be recorded, more than memory holds",
+                           rows)
+             : fmt::format(
+                   "every: {:.3g} rows would be recorded, more than memory holds; record "
+                   "every {:.0f} steps or more",
+                   rows,
+                   std::ceil(rows * static_cast<double>(config_.every) * width / kMaxNumbers))});
   }
   if (scheme != nullptr && !scheme->steps_admissible && plan.mistakes.empty() &&
       !is_definite(plan.inertia)) {
@@ -175,7 +179,10 @@ Simulation::Plan Simulation::plan() const {
   }
   if (!plan.mistakes.empty()) return plan;
   plan.project();
+  plan.watch();
+  if (!plan.mistakes.empty()) return plan;
   if (const double end = config_.from + static_cast<double>(config_.steps()) * config_.step;
+      !config_.chooses_steps() &&
       std::abs(end - config_.until) > 1e-9 * std::abs(config_.until - config_.from)) {
     plan.notes.push_back(
         fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}", end,
@@ -212,123 +219,24 @@ void Simulation::Plan::check_composition(const SchemeInfo& scheme, bool left_inv
                    config.compose, scheme.name, config.s, config.retraction)});
 }
 
-// The user's start, else the system's own, else rest at the identity.
-void Simulation::Plan::fill_start() {
-  Start& start = config.start;
-  if (!start.velocity.empty() && !start.momentum.empty()) {
-    add({"start: give velocity or momentum, not both"});
+// The tolerances, where the scheme can do with them.
+void Simulation::Plan::choose_steps(const SchemeInfo& scheme, bool left_invariant) {
+  setup.relative = config.relative();
+  setup.absolute = config.absolute();
+  setup.first_chosen = scheme.estimates_error && config.step == Config().step;
+  if (scheme.estimates_error || !scheme.defined(left_invariant)) return;
+  const ClaimedOrder claim =
+      scheme.claim(config.s, geometry->traits(), *mechanics, config.force_at);
+  setup.order = claim.order;
+  for (const Composition& c : compositions()) {
+    if (c.name == config.compose && c.coefficients.size() > 1) setup.order = c.order;
   }
-  if (start.velocity.empty() && start.momentum.empty()) {
-    start.velocity = system.start.velocity;
-    start.momentum = system.start.momentum;
-    if (start.velocity.empty() && start.momentum.empty()) {
-      add({fmt::format("start: {} has no default start; give velocity or momentum", system.name)});
-    }
-  }
-  if (start.configuration.empty()) start.configuration = system.start.configuration;
-  if (start.configuration.empty()) start.configuration = system.group.identity;
-  try {
-    start.configuration = system.group.element(start.configuration);
-  } catch (const std::invalid_argument& error) {
-    add({fmt::format("configuration: {}", error.what())});
-    start.configuration = system.group.identity;
-  }
-  const auto n = static_cast<size_t>(system.group.dim);
-  for (const auto& [name, values] :
-       {std::pair{"velocity", &start.velocity}, std::pair{"momentum", &start.momentum}}) {
-    if (values->empty()) continue;
-    if (values->size() != n) {
-      add({fmt::format("{}: got {} values, expected {} for {}", name, values->size(), n,
-                       system.group.name)});
-    } else if (!finite(*values)) {
-      add({fmt::format("{}: {} is not finite", name, join(*values))});
-    }
-  }
-}
-
-// I, A and b where the run starts, checked.
-void Simulation::Plan::look_at_start() {
-  const int n = system.group.dim;
-  mechanics = system.mechanics;
-  inertia = Eigen::MatrixXd::Identity(n, n);
-  constraints.resize(0, n);
-  Eigen::VectorXd g;
-  if (geometry != nullptr) {
-    g.resize(geometry->size());
-    geometry->from_coordinates(config.start.configuration, g.data());
-  } else if (!mechanics->left_invariant()) {
-    return;
-  }
-  constraints.resize(mechanics->rows(), mechanics->dim());
-  inertia.resize(mechanics->dim(), mechanics->dim());
-  drift.resize(mechanics->rows());
-  mechanics->inertia(g.data(), inertia);
-  mechanics->constraints(config.from, g.data(), constraints, drift);
-  Eigen::VectorXd phi(mechanics->holonomic_rows());
-  mechanics->holonomic(g.data(), phi);
-  if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
-  add(check_system_matrices(inertia, constraints, n));
-}
-
-// Onto phi(g) = 0 by Newton's method, g <- g tau(-I^-1 A^T (A I^-1 A^T)^-1 phi), A the rows of phi: the start may be the
-// last state of a run whose scheme keeps phi only to its order.
-void Simulation::Plan::satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g) {
-  constexpr double most = 0.01;
-  const Eigen::Index held = phi.size();
-  const double off = phi.lpNorm<Eigen::Infinity>();
-  for (int k = 0; k < 10 && off <= most && !(phi.lpNorm<Eigen::Infinity>() < 1e-15); ++k) {
-    const Eigen::MatrixXd a = constraints.bottomRows(held);
-    const Eigen::MatrixXd reach = inertia.ldlt().solve(a.transpose());
-    const Eigen::VectorXd move = -reach * (a * reach).ldlt().solve(phi);
-    Eigen::VectorXd turn(g.size());
-    geometry->tau(move.data(), turn.data());
-    geometry->compose(g.data(), turn.data(), g.data());
-    mechanics->inertia(g.data(), inertia);
-    mechanics->constraints(config.from, g.data(), constraints, drift);
-    mechanics->holonomic(g.data(), phi);
-  }
-  if (!(phi.lpNorm<Eigen::Infinity>() < 1e-12)) {
-    add({fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {:.3g}",
-                     join(config.start.configuration), off)});
-    return;
-  }
-  geometry->coordinates(g.data(), config.start.configuration.data());
-  if (off > 1e-9) {
-    notes.push_back(fmt::format(
-        "the start's configuration was moved onto the holonomic constraint: phi was {:.3g}", off));
-  }
-}
-
-// The admissible start, E^T I xi = E^T mu, and what the projection dropped.
-void Simulation::Plan::project() {
-  Start& start = config.start;
-  const Eigen::Index n = inertia.rows();
-  const Eigen::MatrixXd frame = hamel_frame(inertia, constraints);
-  const bool by_velocity = !start.velocity.empty();
-  const auto& given = by_velocity ? start.velocity : start.momentum;
-  const Eigen::VectorXd datum = Eigen::Map<const Eigen::VectorXd>(given.data(), n);
-  const Eigen::VectorXd mu = by_velocity ? Eigen::VectorXd(inertia * datum) : datum;
-  const Eigen::VectorXd mu_bar = frame.transpose() * mu;
-  Eigen::VectorXd velocity = frame * mu_bar;
-  if (drift.size() > 0) {  // E y + xi_b with A xi_b = b and E^T I xi_b = 0
-    const Eigen::VectorXd some =
-        constraints.transpose() * (constraints * constraints.transpose()).ldlt().solve(drift);
-    velocity += some - frame * (frame.transpose() * (inertia * some));
-  }
-  const Eigen::VectorXd dropped =
-      datum - (by_velocity ? velocity : Eigen::VectorXd(inertia * velocity));
-  if (dropped.norm() > 1e-12 * datum.norm()) {
-    notes.push_back(fmt::format("the start's {} was projected onto {}: dropped ({})",
-                                by_velocity ? "velocity" : "momentum", by_velocity ? "d" : "d*",
-                                join(to_vector(dropped))));
-  }
-  start.velocity = to_vector(velocity);
-  start.momentum.clear();
-
-  setup.geometry = geometry;
-  setup.mechanics = mechanics;
-  setup.velocity = velocity;
-  setup.configuration = start.configuration;
+  if (scheme.varies_steps && claim.reversible) return;
+  add(
+      {fmt::format("rtol: {}{} takes steps of one size; dopri5, tsit5 and dop853 choose theirs by "
+                   "the error, lift and "
+                   "balance where they are reversible, at s = 0.5",
+                   scheme.name, scheme.uses_s ? fmt::format(" with s = {}", config.s) : "")});
 }
 
 }  // namespace hamel

@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/run/events.hpp>
 #include <hamel/framework/run/simulation.hpp>
 
 namespace hamel {
 
 /// The options of a run that a scheme makes no use of: s; solver, tolerance and, but for "halve", on_failure of explicit
 /// ones, which solve no equation. Half an explicit step may succeed where the whole left the domain of tau.
-std::vector<std::string> unused_options(const SchemeInfo& scheme, const std::string& on_failure);
+std::vector<std::string> unused_options(const SchemeInfo& scheme, const Config& config);
 
 // Everything that a run needs, or all its mistakes.
 struct Simulation::Plan {
@@ -22,6 +23,7 @@ struct Simulation::Plan {
   std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
   std::shared_ptr<const Mechanics> mechanics;
   bool keeps_rows = true;  // the scheme does
+  std::shared_ptr<Events> events;
   KernelSetup setup;
   KernelFactory kernel;
 
@@ -30,9 +32,12 @@ struct Simulation::Plan {
   }
   void fill_start();
   void check_composition(const SchemeInfo& scheme, bool left_invariant);
+  void choose_steps(const SchemeInfo& scheme, bool left_invariant);
   void look_at_start();
   void satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g);
   void project();
+  void watch();
+  Eigen::VectorXd admissible(const EventState& state) const;
 };
 
 }  // namespace hamel

@@ -37,6 +37,8 @@ struct SchemeInfo {
   bool steps_admissible = true;
   bool left_invariant_only = false;
   bool explicit_step = false;
+  bool estimates_error = false;
+  bool varies_steps = false;
   bool places_forces = false;
   std::function<ClaimedOrder(double s, TauTraits tau, bool left_invariant)> claims;
   KernelFactory erased = {};

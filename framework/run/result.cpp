@@ -26,6 +26,7 @@ template <class Value>
 Json json_of(const Value& value) {
   return value;
 }
+Json json_of(std::optional<double> x) { return x ? json_of(*x) : Json(nullptr); }
 Json json_of(const std::vector<double>& values) {
   Json out = Json::array();
   for (double x : values) out.push_back(json_of(x));
@@ -42,8 +43,8 @@ Json matrix(const PlainMatrix& m) {
   return rows;
 }
 
-Json element(const Result& result) {
-  const auto matrices = result.system.group.matrices(result.last.coordinates);
+Json element(const GroupInfo& group, const std::vector<double>& coordinates) {
+  const auto matrices = group.matrices(coordinates);
   if (matrices.size() == 1) return matrix(matrices.front());
   Json out = Json::array();
   for (const auto& m : matrices) out.push_back(matrix(m));
@@ -58,6 +59,11 @@ Json fallbacks(const SolverStats& stats) {
   return out;
 }
 
+// What a record calls an option: its "events" are those that were met.
+std::string record_key(const Option& option) {
+  return std::string(option.name) == "events" ? "watched" : option.name;
+}
+
 Json record_of(const Result& r) {
   Json parameters = Json::object();
   for (const Field& field : r.system.fields) {
@@ -68,6 +74,14 @@ Json record_of(const Result& r) {
   for (const InvariantDrift& i : r.invariants) {
     invariants[i.name] = {{"start", json_of(i.start)}, {"drift_max", json_of(i.drift_max)}};
   }
+  Json events = Json::array();
+  for (const EventMet& e : r.events) {
+    events.push_back({{"name", e.name},
+                      {"time", e.time},
+                      {"element", element(r.system.group, e.coordinates)},
+                      {"configuration", json_of(e.coordinates)},
+                      {"velocity", json_of(e.velocity)}});
+  }
   const double steps = static_cast<double>(std::max(r.steps, 1L));
   Json diagnostics;
   Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
@@ -77,7 +91,7 @@ Json record_of(const Result& r) {
   Json out = {{"system", r.system.name}, {"group", r.system.group.name}};
   Config::fields([&](const Option& option, auto member) {
     const bool used = std::find(r.unused.begin(), r.unused.end(), option.name) == r.unused.end();
-    out[option.name] = used ? json_of(r.config.*member) : Json(nullptr);
+    out[record_key(option)] = used ? json_of(r.config.*member) : Json(nullptr);
   });
   out.update(Json{
       {"parameters", parameters},
@@ -94,7 +108,7 @@ Json record_of(const Result& r) {
                                      {"time", r.status.time},
                                      {"residual", json_of(r.status.residual)}}},
       {"final",
-       {{"element", element(r)},
+       {{"element", element(r.system.group, r.last.coordinates)},
         {"configuration", json_of(r.last.coordinates)},
         {"velocity", json_of(r.last.velocity)},
         {"momentum", json_of(r.last.momentum)},
@@ -103,8 +117,11 @@ Json record_of(const Result& r) {
       {"solver_stats",
        {{"iterations_mean", static_cast<double>(r.stats.iterations) / steps},
         {"iterations_max", r.stats.iterations_max},
+        {"rejected", r.stats.rejected},
+        {"evaluations", r.stats.evaluations},
         {"evaluations_mean", static_cast<double>(r.stats.evaluations) / steps},
         {"residual_max", json_of(r.stats.residual_max)}}},
+      {"events", events},
       {"fallbacks", {{"count", r.stats.fallbacks}, {"first", fallbacks(r.stats)}}},
       {"timing", {{"seconds", r.seconds}, {"nanoseconds_per_step", r.seconds * 1e9 / steps}}},
       {"version", version()},
@@ -140,9 +157,12 @@ Config Config::continued(const std::string& record, const std::string& origin) {
     const Json json = Json::parse(record);
     config.system = json.at("system").get<std::string>();
     fields([&](const Option& option, auto member) {
-      const auto it = json.find(option.name);
-      if (it == json.end() || it->is_null()) return;
-      read_text(option.name, it->is_string() ? it->get<std::string>() : it->dump(), config.*member);
+      const auto it = json.find(record_key(option));
+      if (it == json.end() || it->is_null() || (it->is_array() && it->empty())) return;
+      std::vector<std::string> texts;
+      for (const Json& entry : it->is_array() ? *it : Json::array({*it}))
+        texts.push_back(entry.is_string() ? entry.get<std::string>() : entry.dump());
+      read_text(option.name, text_of(texts), config.*member);
     });
     for (const auto& [name, value] : json.at("parameters").items()) {
       config.parameters[name] = value.is_array() ? value.get<std::vector<double>>()
@@ -172,17 +192,26 @@ std::string Result::method() const {
          (config.compose == "none" ? "" : ", composed by " + config.compose);
 }
 
+std::string Result::steps_in_words() const {
+  if (!config.chooses_steps()) return fmt::format("h = {}", config.step);
+  std::string out = config.rtol ? fmt::format("rtol = {}", *config.rtol) : "";
+  if (config.atol) out += fmt::format("{}atol = {}", config.rtol ? ", " : "", *config.atol);
+  return out;
+}
+
 std::string Result::report() const {
   std::string out =
-      fmt::format("{} on {}: {}, h = {}\n", system.name, system.group.name, method(), config.step);
+      fmt::format("{} on {}: {}, {}\n", system.name, system.group.name, method(), steps_in_words());
   const double count = static_cast<double>(std::max(steps, 1L));
   const auto line = [&](const std::string& name, const std::string& value) {
     out += fmt::format("  {:<22} {}\n", name, value);
   };
   if (status.ok) {
     line("status",
-         fmt::format("ok{}, {} steps to t = {:.6g}",
-                     status.reason.empty() ? "" : " (" + status.reason + ")", steps, last.time));
+         fmt::format("ok{}, {} steps{} to t = {:.6g}",
+                     status.reason.empty() ? "" : " (" + status.reason + ")", steps,
+                     stats.rejected > 0 ? fmt::format(" ({} more rejected)", stats.rejected) : "",
+                     last.time));
   } else {
     line("status", fmt::format("FAILED in step {} (t = {:.6g}): {}, residual {:.2e}", status.step,
                                status.time, status.reason, status.residual));
@@ -208,6 +237,9 @@ std::string Result::report() const {
          fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
                      member == &Result::constraint_max ? ", " + constraints_in_words(system) : ""));
   });
+  for (size_t i = 0; i < events.size() && i < 10; ++i)
+    line("event", fmt::format("{} at t = {:.10g}", events[i].name, events[i].time));
+  if (events.size() > 10) line("event", fmt::format("and {} more", events.size() - 10));
   for (const InvariantDrift& i : invariants) {
     line(i.name, fmt::format("{:.6g}, drift {:.2e}", i.start, i.drift_max));
   }

@@ -36,6 +36,13 @@ class Trajectory {
   std::vector<double> values_;
 };
 
+/// An event that was met, and the state there.
+struct EventMet {
+  std::string name;
+  double time = 0;
+  std::vector<double> coordinates, velocity;
+};
+
 struct Result : Measurements {
   Config config;  // as it was run: start and parameters filled in
   SystemModel system;
@@ -45,12 +52,16 @@ struct Result : Measurements {
   Snapshot last;  // the last good state
   long steps = 0;
   Trajectory trajectory;
+  std::vector<EventMet> events;
+  bool stopped_by_event = false;
   SolverStats stats;
   double seconds = 0;  // of the time loop, recording included
 
   explicit operator bool() const { return status.ok; }
   /// "lift (s = 0.5), cayley, newton": the method, without what the scheme makes no use of.
   std::string method() const;
+  /// "h = 0.01", or the tolerances that chose the steps.
+  std::string steps_in_words() const;
   /// The record of tools/README.md as JSON; indent < 0 for one line.
   std::string record(int indent = 2) const;
   /// One screen of text: status, iterations, drifts, error against the exact solution.

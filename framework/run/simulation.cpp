@@ -1,21 +1,38 @@
 #include <hamel/framework/run/simulation.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
-#include <hamel/framework/run/meter.hpp>
 #include <hamel/framework/run/plan.hpp>
+#include <hamel/framework/run/run_loop.hpp>
 
 namespace hamel {
-Integration::Integration(std::unique_ptr<Kernel> kernel, Config config, SystemModel system,
-                         std::vector<std::string> notes)
+Integration::Integration(std::unique_ptr<Kernel> kernel, KernelFactory factory, KernelSetup setup,
+                         Config config, SystemModel system, std::vector<std::string> notes)
     : kernel_(std::move(kernel)),
+      dense_(std::make_unique<DenseOutput>(*kernel_, std::move(factory), std::move(setup))),
       config_(std::move(config)),
       system_(std::move(system)),
       notes_(std::move(notes)) {}
+
+Status Integration::advance_to(double t) {
+  if (config_.chooses_steps()) {
+    kernel_->limit(t);
+    return kernel_->advance(std::numeric_limits<long>::max());
+  }
+  kernel_->state(state_);
+  const double h = kernel_->next_step();
+  return kernel_->advance(std::max(0L, std::lround((t - state_.time) / h)));
+}
+
+const Snapshot& Integration::at(double t) {
+  const Status status = dense_->at(t, state_);
+  if (!status.ok) throw std::runtime_error(fmt::format("no state at t = {}: {}", t, status.reason));
+  return state_;
+}
 
 const Snapshot& Integration::state() {
   kernel_->measure(state_);
@@ -45,14 +62,14 @@ std::vector<std::string> Simulation::mistakes() const { return plan().mistakes; 
 Integration Simulation::build() const {
   Plan plan = this->plan();
   if (!plan.mistakes.empty()) throw ConfigError(plan.mistakes);
-  return {plan.kernel(plan.setup), plan.config, plan.system, plan.notes};
+  return {plan.kernel(plan.setup), plan.kernel, plan.setup, plan.config, plan.system, plan.notes};
 }
 
 namespace {
 
 void add_notes(Result& result) {
   constexpr double far = 0.3;
-  if (result.rotation_per_step_max > far) {
+  if (result.rotation_per_step_max > far && !result.config.chooses_steps()) {
     result.notes.push_back(fmt::format(
         "a step turns by up to {:.2g} rad: more than {} rarely follows the motion, whatever "
         "the diagnostics say; take a smaller step, or check",
@@ -77,63 +94,11 @@ Result Simulation::run() const {
   result.system = plan.system;
   result.unused = plan.unused;
   result.notes = plan.notes;
-  const std::unique_ptr<Kernel> kernel = plan.kernel(plan.setup);
-  const long steps = config_.steps(), every = config_.every;
-  const double lag = (1 - plan.setup.s) * plan.setup.composition.back() * plan.setup.step;
-  const std::shared_ptr<const Mechanics> acting =
-      plan.keeps_rows ? plan.mechanics : std::make_shared<UnconstrainedMechanics>(plan.mechanics);
-  Meter meter(result.system, result.config.start, plan.geometry, plan.mechanics, acting, lag);
-  using Clock = std::chrono::steady_clock;
-  Clock::duration comparing{};  // is no part of the time of a run
-  Snapshot& state = result.last;
-  const auto record = [&] {
-    const long recorded = result.trajectory.rows() == 0 ? -1 : state.step;
-    kernel->measure(state);
-    if (state.step == recorded) return true;  // nothing new: a chunk failed in its first step
-    meter.take(state);
-    const auto begin = Clock::now();
-    meter.compare(state);
-    comparing += Clock::now() - begin;
-    if (recorded < 0) {
-      result.trajectory = Trajectory(meter.columns());
-      result.trajectory.reserve(static_cast<size_t>(steps / every + 2));
-    }
-    result.trajectory.append(meter.row());
-    return !observer_ || observer_(state);
-  };
-  Snapshot node;
-  const auto look = [&] {
-    kernel->state(node);
-    meter.node(node);
-  };
-  const auto advance = [&](long count) {
-    if (!meter.wants_nodes()) return kernel->advance(count);
-    Status status;
-    for (long i = 0; i < count && (status = kernel->advance(1)).ok; ++i) look();
-    return status;
-  };
-  if (meter.wants_nodes()) look();
-  const auto begin = Clock::now();
-  auto next_progress = begin + std::chrono::milliseconds(200);
-  bool go_on = record();
-  for (long done = 0; go_on && done < steps; done += every) {
-    result.status = advance(std::min(every, steps - done));
-    const bool wanted = record();
-    if (!result.status.ok) break;
-    if (!wanted) {
-      result.status.reason = to_string(Reason::stopped);
-      break;
-    }
-    if (progress_ && Clock::now() >= next_progress) {
-      progress_(static_cast<double>(done) / static_cast<double>(steps));
-      next_progress = Clock::now() + std::chrono::milliseconds(200);
-    }
-  }
-  result.seconds = std::chrono::duration<double>(Clock::now() - begin - comparing).count();
-  result.steps = state.step;
-  result.stats = kernel->stats();
-  static_cast<Measurements&>(result) = meter.finish(result.trajectory);
-  result.notes.insert(result.notes.end(), meter.notes().begin(), meter.notes().end());
+  RunLoop loop(plan, result);
+  loop.observer = observer_;
+  loop.progress = progress_;
+  loop.impacts = &impacts_;
+  loop.run();
   add_notes(result);
   if (config_.check && result.status.ok) estimate_error(result);
   return result;
@@ -141,24 +106,35 @@ Result Simulation::run() const {
 
 // Richardson: with the ends x(h), x(h/2), x(h/4) the order is p = log2(|x(h) - x(h/2)| / |x(h/2) - x(h/4)|), the error of
 // x(h) is |x(h) - x(h/2)| 2^p / (2^p - 1). Nothing is said where p is no order (below 0.5), unless the ends agree to
-// round-off.
+// round-off. Where steps are chosen, the same with a tenth and a hundredth of the tolerance in place of h/2, h/4, and p the
+// power of the tolerance.
 void Simulation::estimate_error(Result& result) const {
+  const bool chosen = config_.chooses_steps();
+  const double factor = chosen ? 10 : 2;
   std::vector<double> ends[3] = {result.last.coordinates, {}, {}};
-  for (const int parts : {2, 4}) {
+  for (const int k : {1, 2}) {
+    const double parts = std::pow(factor, k);
     Simulation finer = *this;
-    finer.step(config_.step / parts).every(config_.every * parts);  // as many rows as were allowed
+    if (chosen) {
+      if (config_.rtol) finer.config_.rtol = *config_.rtol / parts;
+      if (config_.atol) finer.config_.atol = *config_.atol / parts;
+    } else {
+      finer.step(config_.step / parts);
+      finer.every(config_.every * std::lround(parts));  // as many rows as were allowed
+    }
     Integration run = finer.build();
-    if (!run.step(parts * result.steps)) return;
-    ends[parts / 2] = run.state().coordinates;
+    if (!(chosen ? run.advance_to(result.last.time) : run.step(std::lround(parts) * result.steps)))
+      return;
+    ends[k] = run.state().coordinates;
   }
-  const double half = euclidean_distance(ends[0], ends[1]);
-  const double quarter = euclidean_distance(ends[1], ends[2]);
+  const double first = euclidean_distance(ends[0], ends[1]);
+  const double second = euclidean_distance(ends[1], ends[2]);
   const double size = euclidean_distance(ends[2], std::vector<double>(ends[2].size(), 0.0));
-  const double order = std::log2(half / quarter);
-  if (half <= 1e-12 * (1 + size)) {
-    result.estimated_error = half;
+  const double order = std::log(first / second) / std::log(factor);
+  if (first <= 1e-12 * (1 + size)) {
+    result.estimated_error = first;
   } else if (order > 0.5) {
-    result.estimated_error = half / (1 - std::exp2(-order));
+    result.estimated_error = first / (1 - std::pow(factor, -order));
     result.observed_order = order;
   }
 }

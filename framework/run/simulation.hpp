@@ -9,13 +9,16 @@
 
 #include <functional>
 #include <initializer_list>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <hamel/framework/run/config.hpp>
+#include <hamel/framework/run/dense_output.hpp>
 #include <hamel/framework/run/registry.hpp>
 #include <hamel/framework/run/result.hpp>
 
@@ -25,13 +28,36 @@ struct SolverOptions {
   double tolerance = Config().tolerance;  // on |F| / scale
 };
 
+/// Of the error of a step (framework/schemes/munthe_kaas.hpp), each in (0, 1). Without an absolute one both are the same.
+struct StepTolerance {
+  std::optional<double> relative = {}, absolute = {};
+};
+
+/// The state at an event, for an impact to change; the velocity is then projected onto the constraints.
+struct EventState {
+  double time;
+  std::vector<double> coordinates, velocity;
+};
+using Impact = std::function<void(EventState&)>;
+
 /// A run that is stepped by hand.
 class Integration {
  public:
-  Integration(std::unique_ptr<Kernel> kernel, Config config, SystemModel system,
-              std::vector<std::string> notes);
+  Integration(std::unique_ptr<Kernel> kernel, KernelFactory factory, KernelSetup setup,
+              Config config, SystemModel system, std::vector<std::string> notes);
   /// One step (or count of them); the status of the first that failed.
   Status step(long count = 1) { return kernel_->advance(count); }
+  /// One step; a chosen one ends at t at the latest.
+  Status step_towards(double t) {
+    if (config_.chooses_steps()) kernel_->limit(t);
+    return kernel_->advance(1);
+  }
+  /// Time runs the other way from here; steps chosen by the reversible control are taken back as they came.
+  void turn_back() { kernel_->turn_back(); }
+  /// Steps to time t: chosen ones end there, others at the node nearest to it.
+  Status advance_to(double t);
+  /// The state at a time within the last step, by dense output. Throws std::runtime_error where there is none.
+  const Snapshot& at(double t);
   /// The current state with its measurements.
   const Snapshot& state();
   const SolverStats& stats() const { return kernel_->stats(); }
@@ -41,6 +67,7 @@ class Integration {
 
  private:
   std::unique_ptr<Kernel> kernel_;
+  std::unique_ptr<DenseOutput> dense_;
   Config config_;
   SystemModel system_;
   std::vector<std::string> notes_;
@@ -88,12 +115,36 @@ class Simulation {
   Simulation& compose(std::string name) { return with(&Config::compose, std::move(name)); }
   /// The step h in seconds, of either sign.
   Simulation& step(double h) { return with(&Config::step, h); }
+  /// Steps chosen by the error; h is then the first one. Explicit pairs (dopri5, tsit5, dop853), and lift and balance at
+  /// s = 1/2 by a reversible control.
+  Simulation& tolerance(StepTolerance tolerance) {
+    return with(&Config::rtol, tolerance.relative).with(&Config::atol, tolerance.absolute);
+  }
   /// The start time in seconds.
   Simulation& from(double t) { return with(&Config::from, t); }
   /// The end time in seconds, beyond the start in the direction of h.
   Simulation& until(double t) { return with(&Config::until, t); }
   /// Record every this many steps (the first and the last state always).
   Simulation& every(long steps) { return with(&Config::every, steps); }
+  /// Rows at these times, or this distance in time, by dense output, instead of nodes.
+  Simulation& output(std::vector<double> times) {
+    return with(&Config::output_times, std::move(times));
+  }
+  Simulation& output(double step) { return with(&Config::output_step, step); }
+  /// Events to locate and record: the system's own by name, or "column=value".
+  Simulation& events(std::vector<std::string> names) {
+    return with(&Config::events, std::move(names));
+  }
+  /// Ends the run at the first of these.
+  Simulation& stop_at(std::vector<std::string> names) {
+    return with(&Config::stop_at, std::move(names));
+  }
+  /// Locates an event, and lets the caller change the state there.
+  Simulation& on_event(const std::string& name, Impact impact) {
+    config_.events.push_back(name);
+    impacts_[name] = std::move(impact);
+    return *this;
+  }
   /// Everything at once; system and parameters too.
   Simulation& config(Config config) {
     config_ = std::move(config);
@@ -121,6 +172,7 @@ class Simulation {
   Result run() const;
 
  private:
+  friend class RunLoop;
   struct Plan;
   Plan plan() const;
   void estimate_error(Result& result) const;
@@ -133,6 +185,7 @@ class Simulation {
   RetractionInfo kernel_retraction_;
   std::function<bool(const Snapshot&)> observer_;
   std::function<void(double)> progress_;
+  std::map<std::string, Impact> impacts_;
 };
 
 }  // namespace hamel

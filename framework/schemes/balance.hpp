@@ -215,6 +215,7 @@ struct Balance : SchemeDefaults {
     return "Vivek, Martin de Diego, Banavar: the printed inverse map, both equations on d";
   }
   static constexpr bool uses_s = true;
+  static constexpr bool varies_steps = true;
   static constexpr bool reduced = true;
   static ClaimedOrder claim(double s, TauTraits /*tau*/, bool /*left_invariant*/) {
     return {s == 0.5 ? 2 : 1, s == 0.5};

@@ -91,10 +91,13 @@ class LeftInvariant : public GroupOperations<Tau> {
   }
   static constexpr bool force_depends_on_velocity() { return false; }
   static double potential(const Element& /*g*/) { return 0; }
-  /// y' = E^T ad*_xi I xi.
+  /// y' = E^T ad*_xi I xi, contracted: y'_c = sum_{a <= b} Gamma_c^{ab} y_a y_b.
   void acceleration(const State& y, State& rate) const {
-    const Vector xi = frame_.lazyProduct(y), mu = momentum_frame_.lazyProduct(y);
-    rate = reduce(Group::coad(mu) * xi);
+    Vec<kPairs> products;
+    for (int a = 0, i = 0; a < M; ++a) {
+      for (int b = a; b < M; ++b) products[i++] = y[a] * y[b];
+    }
+    rate = gamma_.lazyProduct(products);
   }
 
   /// The frame, the same everywhere.
@@ -119,11 +122,22 @@ class LeftInvariant : public GroupOperations<Tau> {
   void set_frame() {
     frame_ = hamel_frame(inertia_, rows_);
     momentum_frame_ = inertia_.lazyProduct(frame_);
+    // E^T ad*_{E_a} I E_b + E^T ad*_{E_b} I E_a; half of it where a = b.
+    for (int a = 0, i = 0; a < M; ++a) {
+      for (int b = a; b < M; ++b, ++i) {
+        const Vector x = frame_.col(a), z = frame_.col(b);
+        const Vector ix = momentum_frame_.col(a), iz = momentum_frame_.col(b);
+        const Vector half = Group::coad(iz) * x, other = Group::coad(ix) * z;
+        gamma_.col(i) = reduce(a == b ? half : Vector(half + other));
+      }
+    }
   }
 
   Matrix inertia_;
   Rows rows_;
   Frame frame_, momentum_frame_;  // E, I E
+  static constexpr int kPairs = M * (M + 1) / 2;
+  Mat<M, kPairs> gamma_;
 };
 
 }  // namespace hamel

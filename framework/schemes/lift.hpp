@@ -30,6 +30,7 @@ struct Lift : SchemeDefaults {
   }
   static std::string source() { return "Vivek, Martin de Diego, Banavar: D^{D*}, read literally"; }
   static constexpr bool uses_s = true;
+  static constexpr bool varies_steps = true;
   static constexpr bool places_forces = true;
   static constexpr bool reduced = true;
   /// Left-invariant: a symmetric tau gives order 2 for every s. The step is reversible at s = 1/2, and at s = 0 and 1
@@ -88,6 +89,8 @@ class Lift::General {
   int size() const { return problem_.dim(); }
   /// f - dV at the base point instead of the nodes.
   void take_forces_at_base() { nodal_ = false; }
+  /// The forces may have changed.
+  void forget() { place_time_ = kNothing; }
   void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;

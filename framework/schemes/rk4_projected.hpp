@@ -12,7 +12,7 @@
 
 namespace hamel {
 
-struct Rk4Projected : RungeKutta4Defaults {
+struct Rk4Projected : ExplicitDefaults {
   static std::string name() { return "rk4_projected"; }
   static std::string formula() {
     return "RK4 for (q, xi)' in the coordinates q of the element, then projected to group and rows";
@@ -21,15 +21,22 @@ struct Rk4Projected : RungeKutta4Defaults {
     return "what a user would write by hand; Hairer, Lubich, Wanner IV.4";
   }
 
+  static ClaimedOrder claim(double /*s*/, TauTraits /*tau*/, bool /*left_invariant*/) {
+    return {4, false};
+  }
+  static const Tableau& tableau() { return classical_rk4(); }
+
   template <class P>
-  class Step : public RungeKutta4<Step<P>, P, Eigen::VectorXd> {
-    using Base = RungeKutta4<Step<P>, P, Eigen::VectorXd>;
+  class Step : public RungeKutta<Step<P>, P, Eigen::VectorXd> {
+    using Base = RungeKutta<Step<P>, P, Eigen::VectorXd>;
     using typename Base::Element, typename Base::Vector;
     using Coordinates = Eigen::VectorXd;
 
    public:
-    Step(const P& problem, double /*s*/)
-        : Base(problem, problem.columns()),
+    static constexpr bool rate_in_algebra = false;
+    static constexpr bool keeps_rows() { return false; }
+    Step(const P& problem, const Tableau& table)
+        : Base(problem, table, problem.columns()),
           shift_(P::Vector::Zero(problem.dim())),
           moved_(problem.element()),
           q_(problem.columns()) {}

@@ -1,25 +1,29 @@
-// What explicit schemes on the equations of motion share: the classical Runge-Kutta method of order 4.
+// What explicit schemes on the equations of motion share: a Runge-Kutta method given by its tableau.
 //
 // In coordinates q of the element of its own choice, a scheme integrates
-//   q' = rate(q, xi),   x' = a(t, g, x)   (mechanics/equations_of_motion.hpp),   g = element(q),
-// with the stages at 0, 1/2, 1/2, 1 and the weights 1/6, 1/3, 1/3, 1/6. Then g goes to the group and xi onto
-// A xi = b, orthogonally in the metric I: that is all that is kept.
-// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.
+//   q' = rate(q, xi),   x' = a(t, g, x)   (mechanics/equations_of_motion.hpp),   g = element(q).
+// At the end of a step g goes to the group and xi onto A xi = b, orthogonally in the metric I. A scheme that
+// keeps the holonomic rows (Derived::keeps_rows) moves g onto phi = 0 before, g <- g tau(v) with the smallest v in that metric
+// that has A v = (0, -phi): the change is of the size of the step's error, so that the order stays.
+// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.1 to II.6; Hairer, Lubich, Wanner, IV.4.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include <hamel/framework/lie/types.hpp>
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
+#include <hamel/framework/schemes/tableau.hpp>
 
 namespace hamel {
 
-/// Derived gives start(g, q), element(q, g) -> bool (false outside the domain of the coordinates) and
-/// rate(q, g, xi, out). Q: the type of the coordinates.
+/// Derived gives start(g, q), element(q, g) -> bool (false outside the domain of the coordinates), rate(q, g, xi, out),
+/// keeps_rows(), and rate_in_algebra: rate does not look at g. Q: the type of the coordinates.
 template <class Derived, class P, class Q>
-class RungeKutta4 {
+class RungeKutta {
  public:
   using Problem = P;
   using Unknown = Eigen::Matrix<double, 0, 1>;  // no equation
@@ -27,123 +31,184 @@ class RungeKutta4 {
   using Node = hamel::Node<P>;
   using Element = typename P::Element;
   using Vector = typename P::Vector;
+  using State = typename P::State;
 
   static constexpr int size() { return 0; }
   void guess(Unknown& /*x*/) const {}
   static double scale_squared() { return 1; }
   void residual(const Unknown& /*x*/, Unknown& /*f*/) const {}
+  /// Evaluations of the equations of motion in the last step.
+  int evaluations() const { return evaluations_; }
 
   HAMEL_FLATTEN void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
+    evaluations_ = table_.stages;
     self().start(node.g, q0_);
+    problem_.velocity(node.x, xi_);
+    self().rate(q0_, node.g, xi_, q_rates_[0]);
+    if (is(end_, node)) {
+      x_rates_[0] = x_rates_[at(last())];
+    } else if (!is(begin_, node)) {  // else the step is taken again with another size
+      motion_(node.t, node.g, node.x, x_rates_[0]);
+      ++evaluations_;
+    }
+    begin_ = node;
+    end_.t = kNever;
+    extended_ = false;
   }
 
   HAMEL_FLATTEN bool finish(const Unknown& /*x*/, Node& next) const {
-    constexpr double at[] = {0, 0.5, 0.5, 1}, weight[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-    q_sum_.setZero();
-    x_sum_.setZero();
-    for (int i = 0; i < 4; ++i) {
-      q_ = q0_;
-      x_ = from_->x;
-      if (i > 0) {
-        q_ += (at[i] * h_) * q_rate_;
-        x_ += (at[i] * h_) * x_rate_;
-      }
-      if (!self().element(q_, g_)) return false;
-      problem_.velocity(x_, xi_);
-      self().rate(q_, g_, xi_, q_rate_);
-      motion_(from_->t + at[i] * h_, g_, x_, x_rate_);
-      q_sum_ += weight[i] * q_rate_;
-      x_sum_ += weight[i] * x_rate_;
+    for (int i = 1; i < last(); ++i) {
+      if (!stage(i)) return false;
     }
-    q_ = q0_ + h_ * q_sum_;
+    sum(last());
     if (!self().element(q_, next.g)) return false;
     next.t = from_->t + h_;
-    next.x = from_->x + h_ * x_sum_;
+    next.x = x_;
     if constexpr (!P::left_invariant) {
-      place_.set(problem_, next.t, next.g);
-      if (!holds(next)) return false;
-      problem_.momentum(place_.inertia, next.x, xi_);
-      place_.admissible(xi_, next.x);
+      if (!settle(next)) return false;
     }
+    if (table_.estimates()) {
+      problem_.velocity(next.x, xi_);
+      self().rate(q_, next.g, xi_, q_rates_[at(last())]);
+    }
+    motion_(next.t, next.g, next.x, x_rates_[at(last())]);
+    end_ = next;
     return next.x.allFinite();
   }
+  /// Forgets the rates at the last nodes.
+  void forget() { begin_.t = end_.t = kNever; }
   /// Was the last step refused because the constraints do not hold at its end?
   bool lost_constraints() const { return lost_; }
 
  protected:
   /// coordinates: how many numbers q has.
-  RungeKutta4(const P& problem, int coordinates)
+  RungeKutta(const P& problem, const Tableau& table, int coordinates)
       : problem_(problem),
+        table_(table),
         motion_(problem),
-        place_(problem),
+        begin_(problem),
+        end_(problem),
         q0_(coordinates),
         g_(problem.element()),
         q_(q0_),
-        q_rate_(q0_),
-        q_sum_(q0_),
-        x_(P::State::Zero(problem.state_size())),
-        x_rate_(x_),
-        x_sum_(x_),
-        xi_(P::Vector::Zero(problem.dim())),
+        x_(State::Zero(problem.state_size())),
+        q_rates_(static_cast<size_t>(table.all_stages()), q0_),
+        x_rates_(static_cast<size_t>(table.all_stages()), x_),
+        xi_(Vector::Zero(problem.dim())),
+        move_(xi_),
         phi_(problem.held()),
-        phi_before_(problem.held()) {}
+        gaps_(problem.rows()) {
+    forget();
+  }
 
+  static size_t at(int i) { return static_cast<size_t>(i); }
+  int last() const { return table_.stages; }
+  bool is(const Node& one, const Node& other) const {
+    return one.t == other.t && one.x == other.x && problem_.same(one.g, other.g);
+  }
+  // q_ and x_ at stage i.
+  void sum(int i) const {
+    q_ = q0_;
+    x_ = from_->x;
+    for (int j = 0; j < i; ++j) {
+      const double weight = h_ * table_.at(i, j);
+      if (weight == 0) continue;
+      q_ += weight * q_rates_[at(j)];
+      x_ += weight * x_rates_[at(j)];
+    }
+  }
+  bool stage(int i) const {
+    sum(i);
+    if constexpr (P::left_invariant && Derived::rate_in_algebra) {
+      if (!problem_.in_domain(q_)) return false;
+    } else if (!self().element(q_, g_)) {
+      return false;
+    }
+    problem_.velocity(x_, xi_);
+    self().rate(q_, g_, xi_, q_rates_[at(i)]);
+    motion_(from_->t + table_.c[at(i)] * h_, g_, x_, x_rates_[at(i)]);
+    return true;
+  }
+  // Onto the constraints. They must hold to a percent of the velocity before they are imposed: the error of a sound
+  // step is a small part of that. It is not where the equations of motion are nearly singular.
+  bool settle(Node& node) const {
+    constexpr double most = 0.01;
+    double off = 0;  // squared, of the rows of phi, in the metric
+    if (const int held = problem_.held(); held > 0) {
+      gaps_.setZero();
+      problem_.holonomic(from_->g, phi_);
+      gaps_.tail(held) = phi_;
+      problem_.holonomic(node.g, phi_);
+      gaps_.tail(held) = (gaps_.tail(held) - phi_) / h_;
+      off = motion_.smallest(gaps_, move_);
+      if (self().keeps_rows() && !onto_rows(node.g)) return false;
+    }
+    motion_.set(node.t, node.g);
+    const auto [added, size] = motion_.project(node.x);
+    lost_ = !(std::max(off, added) <= most * most * size);
+    return !lost_;
+  }
+  // By Newton's method with the rows of the last stage.
+  bool onto_rows(Element& g) const {
+    const int held = problem_.held();
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 20; ++k) {
+      problem_.holonomic(g, phi_);
+      double now = 0;
+      for (int i = 0; i < held; ++i) now = std::max(now, std::abs(phi_[i]));
+      if (!(now < before)) break;
+      before = now;
+      if (now == 0) break;
+      gaps_.setZero();
+      gaps_.tail(held) = -phi_;
+      motion_.smallest(gaps_, move_);
+      problem_.tau(move_, g_);
+      problem_.compose(g, g_, g);
+    }
+    lost_ = !(before <= 1e-12);
+    return !lost_;
+  }
+
+  static constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
   P problem_;
+  Tableau table_;
+  mutable EquationsOfMotion<P> motion_;
+  const Node* from_ = nullptr;
+  mutable Node begin_, end_;  // whose rates are those of the first and the last stage
+  double h_ = 0;
+  int evaluations_ = 0;
+  Q q0_;
+  mutable Element g_;
+  mutable Q q_;
+  mutable State x_;
+  mutable std::vector<Q> q_rates_;
+  mutable std::vector<State> x_rates_;
+  mutable Vector xi_, move_;
+  mutable typename P::Held phi_;
+  mutable typename P::Few gaps_;
+  mutable bool lost_ = false, extended_ = false;  // by the stages of the dense output
 
  private:
   Derived& self() { return static_cast<Derived&>(*this); }
   const Derived& self() const { return static_cast<const Derived&>(*this); }
-
-  // A x = b and phi = const to a percent of the velocity, in the units of (M39), before they are imposed again: the error of
-  // a sound step is a small part of that. It is not where the equations of motion are nearly singular.
-  bool holds(const Node& next) const {
-    constexpr double most = 0.01;
-    const int n = problem_.dim(), k = problem_.rows(), held = problem_.held();
-    problem_.holonomic(from_->g, phi_before_);
-    problem_.holonomic(next.g, phi_);
-    double off = 0, size = 0;
-    for (int j = 0; j < n; ++j) size += place_.inertia(j, j) * next.x[j] * next.x[j];
-    for (int i = 0; i < k; ++i) {
-      double sum = -place_.b[i], weight = 0;
-      for (int j = 0; j < n; ++j) {
-        sum += place_.a(i, j) * next.x[j];
-        weight += place_.a(i, j) * place_.a(i, j) / place_.inertia(j, j);
-      }
-      if (i >= k - held) {
-        const int row = i - (k - held);
-        sum = std::max(std::abs(sum), std::abs((phi_[row] - phi_before_[row]) / h_));
-      }
-      off = std::max(off, sum * sum / weight);
-    }
-    lost_ = !(off <= most * most * size);
-    return !lost_;
-  }
-
-  mutable EquationsOfMotion<P> motion_;
-  mutable typename P::Place place_;
-  const Node* from_ = nullptr;
-  double h_ = 0;
-  Q q0_;
-  mutable Element g_;
-  mutable Q q_, q_rate_, q_sum_;
-  mutable typename P::State x_, x_rate_, x_sum_;
-  mutable Vector xi_;
-  mutable typename P::Held phi_, phi_before_;
-  mutable bool lost_ = false;
 };
 
 /// What they say of themselves.
-struct RungeKutta4Defaults : SchemeDefaults {
+struct ExplicitDefaults : SchemeDefaults {
   static constexpr double fixed_s = 0.5;
   static constexpr bool steps_admissible = false;
   static constexpr bool explicit_step = true;
   static constexpr bool reduced = true;
-  static constexpr int stages = 4;
-  static ClaimedOrder claim(double /*s*/, TauTraits /*tau*/, bool /*left_invariant*/) {
-    return {4, false};
-  }
 };
+
+/// The classical method of order 4.
+inline const Tableau& classical_rk4() {
+  static constexpr double c[] = {0, 0.5, 0.5, 1, 1};
+  static constexpr double a[] = {0.5, 0, 0.5, 0, 0, 1, 1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  static constexpr Tableau table = {.order = 4, .stages = 4, .c = c, .a = a};
+  return table;
+}
 
 }  // namespace hamel

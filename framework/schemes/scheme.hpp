@@ -8,7 +8,8 @@
 //   };
 // A Step takes the node it starts from to the next one. In between it is an equation F(x) = 0:
 //   Step(problem, s), size(), begin(node, h), guess(x), scale_squared(), residual(x, f), finish(x, next).
-// An explicit step has size() = 0 and no residual.
+// An explicit step has size() = 0, no residual, and evaluations(): of the equations of motion in the last step.
+// One that is given by a Tableau is made as Step(problem, tableau).
 #pragma once
 
 #include <concepts>
@@ -37,8 +38,9 @@ struct SchemeDefaults {
   /// The velocity of a step, not of its ends only, satisfies A xi = b.
   static constexpr bool steps_admissible = true;
   static constexpr bool explicit_step = false;
-  static constexpr int stages =
-      0;  // of an explicit step: how often it evaluates the equations of motion
+  // Steps chosen by the error: explicit ones estimate it, symmetric ones follow a reversible control
+  // (loop/step_control.hpp).
+  static constexpr bool estimates_error = false, varies_steps = false;
 };
 
 /// The step of a scheme for one problem.

@@ -14,6 +14,7 @@ namespace {
 // The order that the scheme claims here. A composition reaches its own over a reversible step of order 2.
 int claim(const Registry& registry, const StudyCell& cell, const SystemModel& system) {
   const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
+  if (cell.config.chooses_steps()) return 1;  // of the tolerance
   if (!scheme->adapted) return 0;  // of the free motion only: here it approximates nothing
   const TauTraits tau = registry.geometry(system.group.name, cell.config.retraction)->traits();
   const ClaimedOrder plain =
@@ -33,7 +34,14 @@ void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, 
     axes[axis] = "";
     run.set(axis, Config().text(axis));
   };
-  for (const std::string& option : unused_options(scheme, run.on_failure)) {
+  const bool chooses = scheme.estimates_error || (scheme.varies_steps && run.s == 0.5);
+  if (!chooses) {
+    leave("rtol");
+    leave("atol");
+  } else if (run.chooses_steps() && scheme.estimates_error) {
+    leave("step");
+  }
+  for (const std::string& option : unused_options(scheme, run)) {
     leave(option.c_str());
     if (option == "on_failure" && halving) axes[option] = run.on_failure;
   }

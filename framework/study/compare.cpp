@@ -27,14 +27,25 @@ std::vector<std::vector<size_t>> groups(const std::vector<StudyCell>& cells, con
 void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
              const std::vector<std::vector<bool>>& angles,
              const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics) {
-  for (auto& group : groups(cells, "step")) {
-    std::sort(group.begin(), group.end(),
-              [&](size_t a, size_t b) { return cells[a].config.step > cells[b].config.step; });
+  // Over the step; where steps are chosen over the tolerance.
+  const auto size = [&](size_t i) {
+    const Config& c = cells[i].config;
+    return c.chooses_steps() ? c.relative() + c.absolute() : c.step;
+  };
+  std::vector<std::vector<size_t>> over;
+  for (const bool chosen : {false, true}) {
+    for (auto& group : groups(cells, chosen ? "rtol" : "step")) {
+      std::erase_if(group, [&](size_t i) { return cells[i].config.chooses_steps() != chosen; });
+      over.push_back(std::move(group));
+    }
+  }
+  for (auto& group : over) {
+    std::sort(group.begin(), group.end(), [&](size_t a, size_t b) { return size(a) > size(b); });
     std::vector<double> steps, errors;
     for (const size_t i : group) {
       const StudyMetrics& m = metrics[i];
       if (m.ok && m.error > m.floor && m.error < kAsymptotic * references[cells[i].system].extent) {
-        steps.push_back(std::log(cells[i].config.step));
+        steps.push_back(std::log(size(i)));
         errors.push_back(std::log(m.error));
       }
     }

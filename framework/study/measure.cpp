@@ -52,12 +52,18 @@ class Meter {
       balance_.node(run.state());
     return status;
   }
+  // A step that ends at t at the latest.
+  Status step_towards(Integration& run, double t) {
+    const Status status = run.step_towards(t);
+    if (status.ok && balance_.active()) balance_.node(run.state());
+    return status;
+  }
   void start(const Snapshot& state) {
     if (balance_.active()) balance_.node(state);
     row(state);
   }
   void row(const Snapshot& state) {
-    if (balance_.active()) balance_.row();
+    if (balance_.active()) balance_.row(state);
     if (times_.empty()) energy_start_ = state.energy;
     times_.push_back(state.time);
     energy_.push_back(all_.take(state, energy_start_));
@@ -144,13 +150,40 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
   return xx > 0 && std::isfinite(xy) ? xy / xx : kNotMeasured;
 }
 
+static Status follow(Integration& run, Meter& meter, const StudyReference& reference,
+                     const std::atomic<bool>* stop) {
+  const long steps = run.config().steps();
+  const long intervals = static_cast<long>(reference.times.size()) - 1;
+  const long rows = rows_each(steps / intervals, intervals), every = steps / (intervals * rows);
+  for (long row = 1; row <= intervals * rows && !stopped(stop); ++row) {
+    const Status status = meter.advance(run, every, stop);
+    const Snapshot& state = run.state();
+    meter.row(state);
+    if (!status.ok) return status;
+    if (row % rows == 0) meter.compare(state, static_cast<size_t>(row / rows));
+  }
+  return {};
+}
+// Steps that are chosen are not cut at the common times: there the dense output is compared.
+static Status follow_chosen(Integration& run, Meter& meter, const StudyReference& reference,
+                            const std::atomic<bool>* stop) {
+  const double until = run.config().until;
+  for (size_t next = 1; next < reference.times.size() && !stopped(stop);) {
+    const Status status = meter.step_towards(run, until);
+    const Snapshot& state = run.state();
+    const double reached = state.time;
+    meter.row(state);
+    if (!status.ok) return status;
+    for (; next < reference.times.size() && reference.times[next] <= reached * (1 + 1e-12); ++next)
+      meter.compare(run.at(std::min(reference.times[next], reached)), next);
+  }
+  return {};
+}
+
 StudyMetrics measure(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const StudyReference& reference, const std::atomic<bool>* stop) {
   StudyMetrics out;
   Integration run = simulation(registry, system, cell.config).build();
-  const long steps = cell.config.steps();
-  const long intervals = static_cast<long>(reference.times.size()) - 1;
-  const long rows = rows_each(steps / intervals, intervals), every = steps / (intervals * rows);
   const SystemModel& model = run.system();
   const auto geometry = registry.geometry(model.group.name, cell.config.retraction);
   const bool adapted = registry.scheme(cell.config.scheme)->adapted;
@@ -160,18 +193,13 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
   out.ok = true;
   meter.start(run.state());
   meter.compare(run.state(), 0);
-  for (long row = 1; row <= intervals * rows; ++row) {
-    const Status status = meter.advance(run, every, stop);
-    if (stopped(stop)) return out;
-    const Snapshot& state = run.state();
-    meter.row(state);
-    if (!status.ok) {
-      out.ok = false;
-      out.reason = status.reason;
-      out.failure_residual = status.residual;
-      break;
-    }
-    if (row % rows == 0) meter.compare(state, static_cast<size_t>(row / rows));
+  const Status status = cell.config.chooses_steps() ? follow_chosen(run, meter, reference, stop)
+                                                    : follow(run, meter, reference, stop);
+  if (stopped(stop)) return out;
+  if (!status.ok) {
+    out.ok = false;
+    out.reason = status.reason;
+    out.failure_residual = status.residual;
   }
   meter.finish(run);
   return out;
@@ -186,7 +214,8 @@ double time_per_step(const Registry& registry, const StudySystem& system, const 
   for (int i = 0; i < 100 && nanoseconds < kShortest; ++i) {
     Integration run = simulation.build();
     const double begin = processor_time();
-    advance(run, cell.config.steps(), stop);
+    if (cell.config.chooses_steps()) run.advance_to(cell.config.until);
+    else advance(run, cell.config.steps(), stop);
     if (stopped(stop)) return kNotMeasured;
     nanoseconds += processor_time() - begin;
     steps += run.state().step;

@@ -29,7 +29,7 @@ void Runner::list() {
   for (size_t i = 0; i < result_.cells.size(); ++i) {
     const StudyCell& cell = result_.cells[i];
     if (!cell.runs()) continue;
-    all_ += static_cast<long>(rounds + 1) * cell.config.steps();
+    all_ += static_cast<long>(rounds + 1) * expected_steps(cell.config);
     const bool there = !result_.references[cell.system].times.empty();
     if (!used[cell.system]) {
       used[cell.system] = true;
@@ -42,13 +42,13 @@ void Runner::list() {
     }
     if (result_.metrics[i].done) continue;
     (there ? ready_ : waiting_[cell.system]).push_back({Kind::measure, i});
-    left += cell.config.steps();
+    left += expected_steps(cell.config);
   }
   for (size_t round = 0; round < rounds; ++round) {
     for (size_t i = 0; i < result_.cells.size(); ++i) {
       if (!result_.cells[i].runs() || result_.metrics[i].nanoseconds[round] != kPending) continue;
       timings_.push_back({Kind::time, i, round});
-      left += result_.cells[i].config.steps();
+      left += expected_steps(result_.cells[i].config);
     }
   }
   finished_ = all_ - left;
@@ -121,7 +121,7 @@ bool Runner::done(const Piece& piece) {
   if (piece.kind == Kind::reference) return make_reference(piece.index);
   if (!(piece.kind == Kind::measure ? measure(piece.index) : time(piece.index, piece.round)))
     return false;
-  finished(result_.cells[piece.index].config.steps());
+  finished(expected_steps(result_.cells[piece.index].config));
   return true;
 }
 

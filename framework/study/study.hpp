@@ -105,6 +105,11 @@ constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 /// An error above this part of the motion's extent tells nothing of the order.
 constexpr double kAsymptotic = 0.1;
 
+/// For the progress of a study; of steps that are chosen the number is not known before.
+inline long expected_steps(const Config& config) {
+  return config.chooses_steps() ? 1000 : config.steps();
+}
+
 /// What one cell left. NaN: not measured, or nothing finite.
 struct StudyMetrics {
   bool done = false;  // false: the study was stopped before

@@ -59,6 +59,10 @@ class StudyReader {
       found = true;
       StudyValues& out = config_.axes[key];
       const auto take = [&](const toml::node& entry) {
+        if (is_fixed(key, entry)) {
+          out.emplace_back();
+          return;
+        }
         auto value = Config().*member;
         const size_t before = read_.mistakes.size();
         read_.value(entry, key, value);
@@ -141,7 +145,8 @@ class StudyReader {
       return read_.unknown_key(node, key, known);
     }
     const auto take = [&](const toml::node& entry) {
-      if (auto word = entry.value<std::string>(); word && entry.is_string())
+      if (is_fixed(key, entry)) out.values[key].emplace_back();
+      else if (auto word = entry.value<std::string>(); word && entry.is_string())
         out.values[key].push_back(*word);
       else if (auto number = entry.value<double>(); number && entry.is_number())
         out.values[key].push_back(text_of(*number));
@@ -150,6 +155,11 @@ class StudyReader {
     if (const toml::array* array = node.as_array())
       for (const toml::node& entry : *array) take(entry);
     else take(node);
+  }
+
+  // rtol = ["fixed", 1e-6]: steps of one size.
+  static bool is_fixed(const std::string& key, const toml::node& node) {
+    return (key == "rtol" || key == "atol") && node.value<std::string>() == "fixed";
   }
 
   TomlReader read_;

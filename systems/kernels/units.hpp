@@ -4,9 +4,12 @@
 #include <hamel/framework/schemes/balance.hpp>
 #include <hamel/framework/schemes/boxed.hpp>
 #include <hamel/framework/schemes/boxed_literal.hpp>
+#include <hamel/framework/schemes/dop853.hpp>
+#include <hamel/framework/schemes/dopri5.hpp>
 #include <hamel/framework/schemes/lift.hpp>
 #include <hamel/framework/schemes/rk4_projected.hpp>
 #include <hamel/framework/schemes/rkmk4.hpp>
+#include <hamel/framework/schemes/tsit5.hpp>
 #include <hamel/framework/schemes/unadapted.hpp>
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/exp.hpp>
@@ -31,7 +34,8 @@ void add_vehicles(Registry& registry);
 template <class G, int M>
 void add_left_invariant_on(Registry& registry) {
   add_left_invariant_kernels<G, M, Exp<G>, Lift, Balance>(registry);
-  add_left_invariant_kernels<G, M, Cayley<G>, Lift, Balance, Rkmk4>(registry);
+  add_left_invariant_kernels<G, M, Cayley<G>, Lift, Balance, Rkmk4, Dopri5, Tsit5, Dop853>(
+      registry);
 }
 
 /// A registered system with its kernels.
@@ -39,7 +43,8 @@ template <class S>
 void add_compiled(Registry& registry) {
   add_system<S>(registry);
   add_typed_kernels<S, Exp<typename S::Group>, Lift, Balance>(registry);
-  add_typed_kernels<S, Cayley<typename S::Group>, Lift, Balance, Rkmk4>(registry);
+  add_typed_kernels<S, Cayley<typename S::Group>, Lift, Balance, Rkmk4, Dopri5, Tsit5, Dop853>(
+      registry);
 }
 
 }  // namespace hamel

@@ -60,6 +60,8 @@ void expect_contract(const Json& r) {
               {{"iterations_mean", 'n'},
                {"iterations_max", 'i'},
                {"evaluations_mean", 'n'},
+               {"evaluations", 'i'},
+               {"rejected", 'i'},
                {"residual_max", 'n'}},
               "solver_stats.");
   expect_keys(r["timing"], {{"seconds", 'n'}, {"nanoseconds_per_step", 'n'}}, "timing.");
@@ -77,7 +79,8 @@ TEST_F(Record, HasExactlyTheseKeys) {
                         "solver_stats", "timing", "version", "git", "host",
                         // later keys:
                         "tolerance", "on_failure", "from", "until", "every", "check", "force",
-                        "force_at", "no_exact", "start", "notes", "failure", "fallbacks"));
+                        "force_at", "no_exact", "rtol", "atol", "output_step", "output_times",
+                        "watched", "stop_at", "events", "start", "notes", "failure", "fallbacks"));
 }
 
 TEST_F(Record, OfEverySystem) {

@@ -125,8 +125,9 @@ TEST(StudyCells, AnUnusedValueIsTheDefault) {
 
 /// The axes are the options that Config::fields lets a study vary; a program may misname one.
 TEST(StudyCells, AxesGoByName) {
-  EXPECT_THAT(study_axes(), ElementsAre("system", "scheme", "retraction", "s", "solver", "force_at",
-                                        "compose", "on_failure", "tolerance", "step"));
+  EXPECT_THAT(study_axes(),
+              ElementsAre("system", "scheme", "retraction", "s", "solver", "force_at", "compose",
+                          "on_failure", "tolerance", "step", "rtol", "atol"));
   StudyConfig config = small();
   EXPECT_THAT(config.values("tolerance"), ElementsAre(Config().text("tolerance")));
   config.axes["schme"] = {"lift"};

@@ -11,7 +11,6 @@ struct MyScheme : SchemeDefaults {
   static std::string source() { return "Euler 1768"; }
   static constexpr bool explicit_step = true;
   static constexpr bool steps_admissible = false;
-  static constexpr int stages = 1;
   static ClaimedOrder claim(double, TauTraits, bool) { return {1, false}; }
 
   template <class P>
@@ -33,6 +32,7 @@ struct MyScheme : SchemeDefaults {
     void guess(Unknown&) const {}
     static double scale_squared() { return 1; }
     void residual(const Unknown&, Unknown&) const {}
+    static int evaluations() { return 1; }
     void begin(const Node& node, double h) {
       from_ = &node;
       h_ = h;

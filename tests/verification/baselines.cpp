@@ -113,15 +113,22 @@ TEST(EnergyPreserving, KeepsTheEnergyAndNothingElse) {
 }
 
 /// rkmk4 without dL tau^-1.
-struct WithoutDtau : Rkmk4 {
+struct WithoutDtau : ExplicitDefaults {
   static std::string name() { return "without_dtau"; }
+  static std::string formula() { return "RK4 for (eta, xi)' = (xi, a)"; }
+  static std::string source() { return "a mistake"; }
+  static ClaimedOrder claim(double, TauTraits, bool) { return {4, false}; }
+  static const Tableau& tableau() { return classical_rk4(); }
   template <class P>
-  class Step : public RungeKutta4<Step<P>, P, typename P::Vector> {
-    using Base = RungeKutta4<Step<P>, P, typename P::Vector>;
+  class Step : public RungeKutta<Step<P>, P, typename P::Vector> {
+    using Base = RungeKutta<Step<P>, P, typename P::Vector>;
     using typename Base::Element, typename Base::Vector;
 
    public:
-    Step(const P& problem, double /*s*/) : Base(problem, problem.dim()), g0_(problem.element()) {}
+    static constexpr bool rate_in_algebra = true;
+    static constexpr bool keeps_rows() { return false; }
+    Step(const P& problem, const Tableau& table)
+        : Base(problem, table, problem.dim()), g0_(problem.element()) {}
     void start(const Element& g, Vector& eta) {
       g0_ = g;
       eta.setZero();

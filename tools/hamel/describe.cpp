@@ -6,6 +6,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/events.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 
@@ -33,6 +34,18 @@ Json start_of(const SystemModel& model) {
   return out;
 }
 
+Json events(const SystemModel& model) {
+  Json out = Json::array();
+  for (const Event& event : events_of(model, nullptr)) {
+    out.push_back({{"name", event.name},
+                   {"direction", event.direction > 0   ? "upwards"
+                                 : event.direction < 0 ? "downwards"
+                                                       : "both ways"},
+                   {"meaning", event.meaning}});
+  }
+  return out;
+}
+
 Json describe_system(const SystemInfo& info, const Parameters& given) {
   Json parameters = Json::array();
   for (const Field& field : info.fields) {
@@ -50,6 +63,7 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
           {"formula", info.formula},
           {"parameters", parameters},
           {"start", start_of(info.make(given))},
+          {"events", events(info.make(given))},
           {"known", info.known},
           {"source", info.source}};
 }
@@ -123,6 +137,10 @@ Json describe_scheme(const SchemeInfo& info) {
                          ? "kept at the nodes, and by the velocity of each step"
                          : "kept at the nodes; the velocity of a step satisfies "
                            "it up to the error of the step only"},
+      {"steps", info.estimates_error ? "of one size, or chosen by the estimated error (rtol)"
+                : info.varies_steps
+                    ? "of one size, or at s = 1/2 chosen by a reversible control (rtol)"
+                    : "of one size"},
       {"general_systems", !info.left_invariant_only},
       {"claims", claims(info, true)},
       {"claims_on_general_systems", info.left_invariant_only ? Json(nullptr) : claims(info, false)},

@@ -33,7 +33,7 @@ class Comparison {
       for (const auto& [system, cells] : view_.groups({"system"})) best(system[0], cells);
       orders();
     }
-    for (const std::string& axis : view_.varying_without({"system", "step"})) worse(axis);
+    for (const std::string& axis : view_.varying_without({"system", "step", "rtol"})) worse(axis);
   }
 
  private:
@@ -74,7 +74,7 @@ class Comparison {
   }
 
   void best(const std::string& system, const std::vector<size_t>& of_system) {
-    const std::vector<std::string> axes = view_.varying_without({"system", "step"});
+    const std::vector<std::string> axes = view_.varying_without({"system", "step", "rtol"});
     if (axes.empty()) return;
     std::map<std::string, std::vector<size_t>> methods;
     for (const size_t i : of_system) methods[view_.words(i, axes)].push_back(i);
@@ -141,7 +141,7 @@ class Comparison {
 
   void orders() {
     std::vector<std::string> axes = study_axes(), short_of, late, unsettled;
-    std::erase(axes, "step");
+    std::erase_if(axes, [](const std::string& axis) { return axis == "step" || axis == "rtol"; });
     size_t measured = 0, reach = 0;
     std::vector<std::string> unknown;
     double worst = std::numeric_limits<double>::infinity();

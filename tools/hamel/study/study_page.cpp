@@ -50,7 +50,7 @@ class StudyPage {
     for (const std::string& axis : study_axes())
       if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
     for (const std::string& axis : axes) {
-      if (!view_.varies(axis) || axis == "system" || axis == "step") continue;
+      if (!view_.varies(axis) || axis == "system" || axis == "step" || axis == "rtol") continue;
       std::vector<std::string> longer = names_;
       longer.emplace_back(axis);
       if (names_.empty() || view_.groups(longer).size() <= kMostNames) names_ = longer;
@@ -127,9 +127,25 @@ class StudyPage {
     page_.section("Orders");
     plot("Error against step",
          {.x = "step h [s]", .y = "trajectory error", .log_x = true, .log_y = true},
-         curves([&](size_t i) { return view_.cell(i).config.step; }, true),
+         curves(
+             [&](size_t i) {
+               const Config& c = view_.cell(i).config;
+               return c.chooses_steps() ? kNotMeasured : c.step;
+             },
+             true),
          "In the legend the slope by least squares, and of how many steps: those whose error is "
          "above the floor and below 0.1 of the motion.");
+    if (view_.varies("rtol")) {
+      plot("Error against tolerance",
+           {.x = "rtol", .y = "trajectory error", .log_x = true, .log_y = true},
+           curves(
+               [&](size_t i) {
+                 const Config& c = view_.cell(i).config;
+                 return c.chooses_steps() ? c.relative() + c.absolute() : kNotMeasured;
+               },
+               true),
+           "Where steps are chosen by the error; the slope should be 1.");
+    }
     add_orders(page_, view_);
   }
 
@@ -177,7 +193,7 @@ class StudyPage {
       const StudyCell& cell = result_.cells[i];
       bool here = true;
       for (size_t k = 0; k < panels.size(); ++k) here = here && cell.axes.at(panels[k]) == key[k];
-      if (!here || cell.skipped == "duplicate") continue;
+      if (!here || cell.skipped == "duplicate" || cell.config.chooses_steps()) continue;
       const std::string name = view_.words(i, rows);
       size_t row = static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
       if (row == names.size()) {

@@ -29,8 +29,8 @@ void add_references(Page& page, const StudyResult& result) {
 
 void add_orders(Page& page, const StudyView& view) {
   std::vector<std::string> axes = study_axes();
-  std::erase(axes, "step");
-  std::vector<std::string> columns = view.varying_without({"step"});
+  std::erase_if(axes, [](const std::string& axis) { return axis == "step" || axis == "rtol"; });
+  std::vector<std::string> columns = view.varying_without({"step", "rtol"});
   const std::vector<std::string> shown = columns;
   for (const char* more : {"order", "finest", "claimed", "verdict", "points", "of", "least error"})
     columns.emplace_back(more);

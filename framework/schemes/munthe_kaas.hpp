@@ -1,0 +1,155 @@
+// Runge-Kutta-Munthe-Kaas methods on the equations of motion: what rkmk4, dopri5, tsit5 and dop853 share, a step given by
+// its tableau (runge_kutta.hpp), (M44).
+//
+// The coordinates are those of the algebra at the start of the step, g = g_0 tau(eta), in which
+//   eta' = dL tau_eta^-1 xi.
+// With the exact dL tau^-1 every tableau keeps its order with every tau; without it the order would be 2.
+// Error of a step: e_eta, one unit of a coordinate being of size 1 (a displacement has no origin), and e_xi beside
+// |xi_i|, in one norm,
+//   |e|^2 = 1/2n sum (e_eta,i / (atol + rtol))^2 + (e_xi,i / (atol + rtol max |xi_i|))^2.
+// Dense output: that of the tableau in (eta, x), then onto the constraints as a node.
+// Source: Munthe-Kaas, High order Runge-Kutta methods on manifolds (1999); Hairer, Lubich, Wanner, IV.8.
+#pragma once
+
+#include <hamel/framework/schemes/runge_kutta.hpp>
+
+namespace hamel {
+
+struct MuntheKaas : ExplicitDefaults {
+  using Family = MuntheKaas;  // what is compiled, for all tableaus
+  template <class P>
+  class Step;
+};
+
+/// A pair with an estimate of its error, whose steps keep the holonomic rows.
+struct ExplicitPair : MuntheKaas {
+  static constexpr bool estimates_error = true;
+};
+
+template <class P>
+class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
+  using Base = RungeKutta<Step<P>, P, typename P::Vector>;
+  using Base::at, Base::last;
+
+ public:
+  using typename Base::Element, typename Base::Node, typename Base::State, typename Base::Vector;
+  static constexpr bool rate_in_algebra = true;
+  /// Pairs keep the holonomic rows.
+  bool keeps_rows() const { return this->table_.estimates(); }
+
+  Step(const P& problem, const Tableau& table)
+      : Base(problem, table, problem.dim()),
+        g0_(problem.element()),
+        error_(P::Vector::Zero(problem.dim())),
+        after_(error_),
+        x_error_(P::State::Zero(problem.state_size())) {}
+
+  void start(const Element& g, Vector& eta) {
+    g0_ = g;
+    eta.setZero();
+  }
+  bool element(const Vector& eta, Element& g) const {
+    if (!this->problem_.in_domain(eta)) return false;
+    this->problem_.tau(eta, g);
+    this->problem_.compose(g0_, g, g);
+    return true;
+  }
+  void rate(const Vector& eta, const Element& /*g*/, const Vector& xi, Vector& out) const {
+    this->problem_.dtau_left_inverse(eta, xi, out);
+  }
+
+  /// Does the tableau estimate the error, O(h^k)?
+  int estimated_order() const {
+    return this->table_.estimates() ? this->table_.estimated_order : 0;
+  }
+  /// Of the step that was just finished; it is good up to 1.
+  double error(const Node& next, double rtol, double atol) const {
+    const double square = estimate(this->table_.e, next, rtol, atol);
+    if (this->table_.e3.empty() || square == 0) return std::sqrt(square);
+    return square / std::sqrt(square + 0.01 * estimate(this->table_.e3, next, rtol, atol));
+  }
+
+  /// A first step from a node: an Euler step and the change of the rates along it, as in dopri5.f.
+  double first_step(const Node& node, double rtol, double atol) {
+    const int n = this->problem_.dim();
+    this->begin(node, 1);
+    const auto size = [&](const Vector& eta_rate, const State& x_rate) {
+      this->problem_.velocity(x_rate, error_);
+      double sum = eta_rate.squaredNorm() / ((atol + rtol) * (atol + rtol));
+      for (int i = 0; i < n; ++i) {
+        const double part = error_[i] / (atol + rtol * std::abs(after_[i]));
+        sum += part * part;
+      }
+      return std::sqrt(sum / (2 * n));
+    };
+    this->problem_.velocity(node.x, after_);
+    const Vector one = Vector::Ones(n);
+    const double value = size(one, node.x), rate = size(this->q_rates_[0], this->x_rates_[0]);
+    double h = rate > 1e-5 && value > 1e-5 ? 0.01 * value / rate : 1e-6;
+    this->q_ = h * this->q_rates_[0];
+    this->x_ = node.x + h * this->x_rates_[0];
+    Vector eta_rate = this->q_rates_[0];
+    State x_rate = this->x_rates_[0];
+    if (element(this->q_, this->g_)) {
+      this->problem_.velocity(this->x_, this->xi_);
+      this->rate(this->q_, this->g_, this->xi_, eta_rate);
+      this->motion_(node.t + h, this->g_, this->x_, x_rate);
+    }
+    eta_rate -= this->q_rates_[0];
+    x_rate -= this->x_rates_[0];
+    const double most = std::max(rate, size(eta_rate, x_rate) / h);
+    const double order = this->table_.estimated_order;
+    const double next = most <= 1e-15 ? std::max(1e-6, h * 1e-3) : std::pow(0.01 / most, 1 / order);
+    return std::min(100 * h, next);
+  }
+
+  /// The node at t + theta h within the step that was just finished.
+  bool interpolate(double theta, Node& out) const {
+    for (int i = last() + 1; !this->extended_ && i < this->table_.all_stages(); ++i) {
+      if (!this->stage(i)) return false;
+    }
+    this->extended_ = true;
+    this->q_.setZero();
+    this->x_ = this->from_->x;
+    for (int i = 0; i < this->table_.all_stages(); ++i) {
+      const double weight = this->h_ * this->table_.weight(i, theta);
+      this->q_ += weight * this->q_rates_[at(i)];
+      this->x_ += weight * this->x_rates_[at(i)];
+    }
+    if (!element(this->q_, out.g)) return false;
+    out.t = this->from_->t + theta * this->h_;
+    out.x = this->x_;
+    if constexpr (!P::left_invariant) return this->settle(out);
+    return true;
+  }
+
+ private:
+  double estimate(std::span<const double> weights, const Node& next, double rtol,
+                  double atol) const {
+    error_.setZero();
+    x_error_.setZero();
+    for (int i = 0; i <= last(); ++i) {
+      const double weight = this->h_ * weights[at(i)];
+      if (weight == 0) continue;
+      error_ += weight * this->q_rates_[at(i)];
+      x_error_ += weight * this->x_rates_[at(i)];
+    }
+    double sum = error_.squaredNorm() / ((atol + rtol) * (atol + rtol));
+    this->problem_.velocity(this->from_->x, this->xi_);
+    this->problem_.velocity(next.x, after_);
+    this->problem_.velocity(x_error_, error_);
+    const int n = this->problem_.dim();
+    for (int i = 0; i < n; ++i) {
+      const double size = std::max(std::abs(this->xi_[i]), std::abs(after_[i]));
+      const double part = error_[i] / (atol + rtol * size);
+      sum += part * part;
+    }
+    return sum / (2 * n);
+  }
+
+  Element g0_;
+  mutable Vector error_, after_;
+  mutable State x_error_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,178 @@
+// Steps of lift and balance chosen by the reversible control: they come back, and their error follows the tolerance.
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+#include <hamel/hamel.hpp>
+
+namespace hamel {
+namespace {
+
+Simulation suslov() { return simulate("suslov_in_potential"); }
+
+// Forwards, and back by the same steps: to the start, but for round-off, which a motion that is not chaotic leaves small.
+TEST(ReversibleControl, ReturnsToItsStart) {
+  for (const std::string system : {"falling_disk", "contact_oscillator"}) {
+    for (const std::string scheme : {"lift", "balance"}) {
+      Integration run =
+          simulate(system).scheme(scheme).step(0.01).tolerance({.relative = 1e-5}).build();
+      const Snapshot start = run.state();
+      ASSERT_TRUE(run.step(10000));
+      const Snapshot there = run.state();
+      EXPECT_GT(euclidean_distance(start.coordinates, there.coordinates), 0.1);
+      run.turn_back();
+      ASSERT_TRUE(run.step(10000));
+      const Snapshot back = run.state();
+      EXPECT_NEAR(back.time, start.time, 1e-10);
+      EXPECT_LT(euclidean_distance(start.coordinates, back.coordinates), 1e-10) << scheme;
+      EXPECT_LT(euclidean_distance(start.velocity, back.velocity), 1e-10) << scheme;
+    }
+  }
+}
+
+// Its error is proportional to the tolerance: eps^p = tolerance.
+TEST(ReversibleControl, FollowsTheTolerance) {
+  const Result exact = suslov().scheme("dop853").tolerance({.relative = 1e-13}).until(10).run();
+  for (const auto& [scheme, compose] :
+       {std::pair{"lift", "none"}, {"balance", "none"}, {"lift", "suzuki4"}}) {
+    double before = 0;
+    for (const double rtol : {1e-4, 1e-5, 1e-6}) {
+      const Result r =
+          suslov().scheme(scheme).compose(compose).tolerance({.relative = rtol}).until(10).run();
+      ASSERT_TRUE(r) << r.status.reason;
+      EXPECT_DOUBLE_EQ(r.last.time, 10);
+      const double error = euclidean_distance(r.last.coordinates, exact.last.coordinates);
+      if (before > 0) {
+        EXPECT_NEAR(std::log10(before / error), 1, 0.25) << scheme << " " << compose << " " << rtol;
+      }
+      before = error;
+    }
+  }
+}
+
+// The energy over 10^5 steps: of one size, by the reversible control, and by the usual one, h = eps / r at the node where a step
+// begins, which is not symmetric. Prints the least-squares slopes of the energy error with their own errors.
+struct Drift {
+  double largest = 0, slope = 0, slope_error = 0;
+};
+Drift drift_of(const std::vector<double>& t, const std::vector<double>& e) {
+  const auto n = static_cast<double>(t.size());
+  double mt = 0, me = 0, tt = 0, te = 0;
+  Drift out;
+  for (size_t i = 0; i < t.size(); ++i) {
+    mt += t[i] / n;
+    me += e[i] / n;
+    out.largest = std::fmax(out.largest, std::abs(e[i] - e[0]));
+  }
+  for (size_t i = 0; i < t.size(); ++i) {
+    tt += (t[i] - mt) * (t[i] - mt);
+    te += (t[i] - mt) * (e[i] - me);
+  }
+  out.slope = te / tt;
+  // Of the means of 20 blocks, since the error oscillates.
+  constexpr size_t blocks = 20;
+  const size_t length = t.size() / blocks;
+  std::vector<double> bt(blocks), be(blocks);
+  for (size_t b = 0; b < blocks; ++b) {
+    for (size_t i = b * length; i < (b + 1) * length; ++i) {
+      bt[b] += t[i] / static_cast<double>(length);
+      be[b] += e[i] / static_cast<double>(length);
+    }
+  }
+  double rest = 0, spread = 0;
+  for (size_t b = 0; b < blocks; ++b) {
+    const double off = be[b] - me - out.slope * (bt[b] - mt);
+    rest += off * off;
+    spread += (bt[b] - mt) * (bt[b] - mt);
+  }
+  out.slope_error = std::sqrt(rest / (blocks - 2) / spread);
+  return out;
+}
+
+class UsualControl {
+ public:
+  UsualControl(const std::string& name, double tolerance) : epsilon_(std::sqrt(tolerance)) {
+    Integration run = simulate(name).build();
+    state_ = run.state();
+    KernelSetup setup;
+    setup.mechanics = run.system().mechanics;
+    setup.geometry = registry().geometry(run.system().group.name, "cayley");
+    setup.configuration = state_.coordinates;
+    setup.velocity = Eigen::Map<const Eigen::VectorXd>(
+        state_.velocity.data(), static_cast<Eigen::Index>(state_.velocity.size()));
+    geometry_ = setup.geometry;
+    motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, setup.mechanics));
+    const KernelFactory* own =
+        registry().kernel(run.system().group.name, *setup.mechanics, "cayley", "lift");
+    kernel_ = own != nullptr ? (*own)(setup) : registry().scheme("lift")->erased(setup);
+  }
+  const Snapshot& step() {
+    Eigen::VectorXd g(geometry_->size());
+    geometry_->from_coordinates(state_.coordinates, g.data());
+    const Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(
+        state_.velocity.data(), static_cast<Eigen::Index>(state_.velocity.size()));
+    motion_->solve(state_.time, g, xi);
+    const double r = std::sqrt(xi.squaredNorm() + motion_->acceleration().norm());
+    kernel_->restart(state_.time, state_.coordinates, xi, epsilon_ / r);
+    EXPECT_TRUE(kernel_->advance(1));
+    kernel_->state(state_);
+    return state_;
+  }
+
+ private:
+  double epsilon_;
+  Snapshot state_;
+  std::shared_ptr<const Geometry> geometry_;
+  std::unique_ptr<EquationsOfMotion<Erased>> motion_;
+  std::unique_ptr<Kernel> kernel_;
+};
+
+TEST(ReversibleControl, KeepsTheEnergyOfALongMotion) {
+  constexpr int steps = 100000, every = 20;
+  std::printf("%-22s %-12s %10s %12s %12s %10s\n", "system", "steps", "time [s]", "largest",
+              "slope [1/s]", "+-");
+  for (const auto& [name, rtol] :
+       {std::pair{"falling_disk", 1e-3}, {"suslov_in_potential", 1e-4}}) {
+    Drift drifts[3];
+    double end = 0;
+    for (const int kind : {1, 2, 0}) {  // reversible, usual, of one size
+      std::vector<double> t, e;
+      std::vector<double> energies;
+      const auto keep = [&](const Snapshot& s) {
+        t.push_back(s.time);
+        energies.push_back(s.energy);
+      };
+      if (kind == 2) {
+        UsualControl run(name, rtol);
+        for (int i = 0; i < steps; ++i)
+          if (const Snapshot& s = run.step(); i % every == 0) keep(s);
+      } else {
+        Simulation simulation = simulate(name);
+        if (kind == 1) simulation.tolerance({.relative = rtol});
+        else simulation.step(end / steps);
+        Integration run = simulation.build();
+        for (int i = 0; i < steps; i += every) {
+          ASSERT_TRUE(run.step(every)) << name << " " << kind;
+          keep(run.state());
+        }
+        if (kind == 1) end = t.back();
+      }
+      e.clear();
+      for (const double energy : energies) e.push_back(energy / std::abs(energies.front()));
+      drifts[kind] = drift_of(t, e);
+      std::printf("%-22s %-12s %10.1f %12.2e %12.2e %10.1e\n", name,
+                  kind == 0   ? "one size"
+                  : kind == 1 ? "reversible"
+                              : "usual",
+                  t.back(), drifts[kind].largest, drifts[kind].slope, drifts[kind].slope_error);
+    }
+    if (std::string(name) == "falling_disk") {
+      EXPECT_LT(std::abs(drifts[1].slope), 3 * drifts[1].slope_error);
+      EXPECT_GT(std::abs(drifts[2].slope), 3 * drifts[2].slope_error);
+      EXPECT_LT(drifts[1].largest, drifts[2].largest);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hamel
