@@ -1,9 +1,9 @@
-// differential_drive: a cart on two driven wheels, the motors off.
+// differential_drive: a cart on two driven wheels, the motors off where no input drives them.
 //
 //   SE(2) x T^2, xi = (omega, v1, v2, right', left'), axle centre as origin, mass centre a ahead of it:
 //   l = 1/2 J w^2 + 1/2 m (v1^2 + (v2 + a w)^2) + 1/2 J_w (right'^2 + left'^2),
 //   v2 = 0,  v1 + c w = R right',  v1 - c w = R left'.
-// On d it is the Chaplygin sleigh with m and J + m a^2 replaced by M = m + 2 J_w/R^2 and
+// A motor turns its wheel: inputs u = (right, left), force (0, 0, 0, u1, u2). Without them, on d it is the Chaplygin sleigh with m and J + m a^2 replaced by M = m + 2 J_w/R^2 and
 // K = J + m a^2 + 2 J_w c^2/R^2:  M v1' = m a w^2,  K w' = -m a v1 w.
 // Source: Campion, Bastin, d'Andrea-Novel 1996; Bloch 2003.
 #pragma once
@@ -11,7 +11,7 @@
 #include <cmath>
 #include <string>
 
-#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
@@ -48,6 +48,15 @@ struct DifferentialDrive {
     f("wheel_radius", wheel_radius, "m", "radius of the wheels", positive);
     f("half_track", half_track, "m", "centre to wheel, along the axle", positive);
     f("wheel_inertia", wheel_inertia, "kg m^2", "moment of a wheel about the axle", non_negative);
+  }
+  void inputs(auto& u) const {
+    u("right_torque", "N m", "of the motor on the right wheel");
+    u("left_torque", "N m", "of the motor on the left wheel");
+  }
+  Vec<5> force(double /*t*/, const auto& /*g*/, const Vec<5>& /*xi*/, const InputValues& u) const {
+    Vec<5> f;
+    f << 0, 0, 0, u[0], u[1];
+    return f;
   }
   Mat<5, 5> inertia() const {
     Mat<5, 5> i = Mat<5, 5>::Zero();

@@ -4,7 +4,7 @@
 //   the front body, whose axle trails the hinge by b; its mass is left out, its moment is I_f:
 //   l = 1/2 m (v1^2 + v2^2) + 1/2 I omega^2 + 1/2 I_f (omega + phi')^2 - 1/2 k phi^2,
 //   v2 = 0,   -sin phi v1 + cos phi (v2 + a omega) - b (omega + phi') = 0,
-// with the torque T cos(Omega t) on phi. Neither wheel is driven, and no symmetry points forwards: the momentum is
+// with the torque T cos(Omega t) on phi, and that of the input. Neither wheel is driven, and no symmetry points forwards: the momentum is
 // not conserved, and swinging the handlebar propels the racer. Without torque the energy is conserved.
 // Source: Krishnaprasad and Tsakiris, Oscillations, SE(2)-snakes and motion control: a study of the
 // roller racer, Dynamical Systems 16 (2001).
@@ -53,6 +53,13 @@ struct RollerRacer {
     f("stiffness", stiffness, "N m", "spring that centres the handlebar", non_negative);
     f("torque", torque, "N m", "amplitude of the torque on the handlebar");
     f("frequency", frequency, "rad/s", "of the torque");
+  }
+  void inputs(auto& u) const {
+    u("handlebar_torque", "N m", "on the handlebar, beside T cos(Omega t)");
+  }
+  Vec<4> force(double /*t*/, const Element& /*g*/, const Vec<4>& /*xi*/,
+               const InputValues& u) const {
+    return {0, 0, 0, u[0]};
   }
   Mat<4, 4> inertia() const {
     Mat<4, 4> i = Vec<4>(moment + front_moment, mass, mass, front_moment).asDiagonal();

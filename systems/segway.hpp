@@ -1,4 +1,4 @@
-// segway: a body that stands on two wheels with a common axle, the motors off.
+// segway: a body that stands on two wheels with a common axle, the motors off where no input drives them.
 //
 //   SE(2) x T^3, xi = (omega, v1, v2, right', left', pitch'), axle centre as origin, mass centre of the body
 //   b above it, b (sin pitch, 0, cos pitch). With M_0 = m + 2 m_w, principal moments I1, I2, I3 of the body,
@@ -7,6 +7,7 @@
 //     + 1/2 ((I1 + m b^2) sin^2 + I3 cos^2 + 2 m_w c^2 + 2 J_d) omega^2 + 1/2 J_w (right'^2 + left'^2)
 //     - m g b cos pitch,
 //   v2 = 0,  v1 + c omega = R right',  v1 - c omega = R left'  (wheel angles against the vertical).
+// A motor turns a wheel by its torque and the body back: inputs u = (right, left), force (0, 0, 0, u1, u2, -u1 - u2).
 // The metric depends on the pitch. Upright rolling straight on, at any speed, is unstable at the rate
 //   lambda^2 = m g b M / (M (I2 + m b^2) - m^2 b^2),   M = M_0 + 2 J_w / R^2,
 // from M v1' + m b pitch'' = 0, m b v1' + (I2 + m b^2) pitch'' = m g b pitch.
@@ -59,6 +60,13 @@ struct Segway {
     f("wheel_diameter_inertia", wheel_diameter, "kg m^2", "moment of a wheel about a diameter",
       non_negative);
     f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
+  }
+  void inputs(auto& u) const {
+    u("right_torque", "N m", "of the motor on the right wheel, against the body");
+    u("left_torque", "N m", "of the motor on the left wheel, against the body");
+  }
+  Vec<6> force(double /*t*/, const auto& /*g*/, const Vec<6>& /*xi*/, const InputValues& u) const {
+    return {0, 0, 0, u[0], u[1], -u[0] - u[1]};
   }
   auto inertia(const auto& g) const {
     const auto& pitch = g.template part<3>();

@@ -53,7 +53,9 @@ Simulation simulate(const S& system) {
   using R = Tau<typename S::Group>;
   using P = typename decltype(detail::problem_of<Scheme, S, R>())::type;
   Simulation simulation(registry(), erase_words(system).name, maker(system));
-  simulation.kernel(compile<Scheme, P>(), scheme_info<Scheme>(), retraction_info<R>());
+  KernelFactory driven;
+  if constexpr (has_inputs<S>()) driven = compile<Scheme, Typed<Driven<S>, R>>();
+  simulation.kernel(compile<Scheme, P>(), scheme_info<Scheme>(), retraction_info<R>(), driven);
   return simulation;
 }
 

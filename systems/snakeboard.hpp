@@ -6,7 +6,8 @@
 //   -sin(front) v1 + cos(front) (v2 + l omega) = 0,   -sin(back) v1 + cos(back) (v2 - l omega) = 0,
 // and the rider's motion prescribes the rotor and the axles (affine rows):
 //   psi = psi_a sin(Omega t),   front = front_0 + phi_a sin(Omega t),   back = back_0 - phi_a sin(Omega t).
-// The rows of the axles leave one direction X(front, back) in se(2). With N = diag(J + J_0 + 2 J_1, m, m) and
+// and whatever rates the inputs add to these three. Without them:
+// the rows of the axles leave one direction X(front, back) in se(2). With N = diag(J + J_0 + 2 J_1, m, m) and
 // X^T N X = 1 the motion is (omega, v) = sigma X and, as [X, X] = 0, a quadrature:
 //   sigma' = -X_omega q',   q = J_0 psi' + J_1 (front' + back').
 // For front = -back = phi and J + J_0 + 2 J_1 = m l^2, X sqrt(m) = (sin(phi)/l, cos(phi), 0): the equations
@@ -60,6 +61,16 @@ struct Snakeboard {
     f("rotor_amplitude", rotor_amplitude, "rad", "swing of the rotor");
     f("steering_amplitude", steering_amplitude, "rad", "swing of the axles, against each other");
     f("frequency", frequency, "rad/s", "of both");
+  }
+  void inputs(auto& u) const {
+    u("rotor_rate", "rad/s", "of the rotor, beside its swing");
+    u("front_rate", "rad/s", "of the front axle, beside its swing");
+    u("back_rate", "rad/s", "of the back axle, beside its swing");
+  }
+  Vec<5> drift(double /*t*/, const Element& /*g*/, const InputValues& u) const {
+    Vec<5> b;
+    b << 0, 0, u[0], u[1], u[2];
+    return b;
   }
   Mat<6, 6> inertia() const {
     Mat<6, 6> i = Mat<6, 6>::Zero();

@@ -60,6 +60,7 @@ Registry make_registry() {
   add_balls(registry);
   add_disk_and_rattleback(registry);
   add_vehicles(registry);
+  add_driven_vehicles(registry);
   add_system<NTrailer>(registry);
   return registry;
 }

@@ -10,6 +10,44 @@
 #include <hamel/framework/run/simulation.hpp>
 
 namespace hamel {
+namespace check {
+namespace {
+
+// Inputs that are zero change neither f nor b; each that is one changes f or b somewhere near the start.
+void inputs_of_zero(const SystemModel& model, const Geometry& geometry, const Start& start,
+                    LawReport& report) {
+  Eigen::VectorXd g(geometry.size());
+  geometry.from_coordinates(start.configuration, g.data());
+  const Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(
+      start.velocity.data(), static_cast<Eigen::Index>(start.velocity.size()));
+  // F and b, one below the other.
+  const auto acting = [&](const Mechanics& mechanics) {
+    const Eigen::Index n = mechanics.dim(), k = mechanics.rows();
+    Eigen::VectorXd force(n), b(k), out(n + k);
+    Eigen::MatrixXd a(k, n);
+    mechanics.force(0.3, g.data(), xi, force);
+    mechanics.constraints(0.3, g.data(), a, b);
+    out << force, b;
+    return out;
+  };
+  std::vector<InputTable> tables(model.inputs.size(), {{}, {0}});
+  const auto driven = [&] {
+    return acting(*model.drive(std::make_shared<Inputs>(model.inputs, tables)));
+  };
+  const Eigen::VectorXd zero = driven();
+  report.push_back(
+      {"inputs of zero add nothing", (zero - acting(*model.mechanics)).norm(), algebraic});
+  double idle = 0;
+  for (InputTable& table : tables) {
+    table.values = {1};
+    if ((driven() - zero).norm() == 0) ++idle;
+    table.values = {0};
+  }
+  report.push_back({"every input acts", idle, 0});
+}
+
+}  // namespace
+}  // namespace check
 
 LawReport check_system(const SystemModel& model, double until, const Geometry* geometry) {
   LawReport report;
@@ -40,6 +78,7 @@ LawReport check_system(const SystemModel& model, double until, const Geometry* g
       {"the default configuration is an element",
        check::difference(model.group.element(start.configuration), start.configuration),
        check::algebraic});
+  if (model.drive && geometry != nullptr) check::inputs_of_zero(model, *geometry, start, report);
   if (!model.exact) return report;
 
   for (const double sign : {1.0, -1.0}) {

@@ -11,6 +11,7 @@
 
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/loop/solver.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/schemes/tableau.hpp>
 
@@ -24,6 +25,7 @@ enum class OnFailure { stop, retry, halve };
 struct KernelSetup {
   std::shared_ptr<const Geometry> geometry;    // null: not registered, and the kernel knows its own
   std::shared_ptr<const Mechanics> mechanics;  // with its parameters
+  std::shared_ptr<Inputs> inputs;              // that drive it; null where there are none
   double s = 0.5;
   double step = 0.01;  // h, of either sign
   double tolerance = 1e-13;

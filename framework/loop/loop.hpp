@@ -182,6 +182,8 @@ class Loop final : public TimeLoop {
   }
 
   [[gnu::always_inline]] SolveReport one_step() {
+    if (setup_.inputs != nullptr) [[unlikely]]
+      enter_inputs();
     if (stages_.size() > 1) [[unlikely]]
       return composed_step();
     const SolveReport report =
@@ -189,10 +191,17 @@ class Loop final : public TimeLoop {
     beginning_ = previous_;
     return report;
   }
+  // Forces that are remembered from the end of the last step are those of its inputs.
+  [[gnu::noinline, gnu::cold]] void enter_inputs() {
+    setup_.inputs->enter(now_->t, h_);
+    if (setup_.inputs->changes() == inputs_changed_) return;
+    inputs_changed_ = setup_.inputs->changes();
+    if constexpr (requires { step_.forget(); }) step_.forget();
+  }
   // A step of a size chosen by the error: explicit pairs take one again that is too large.
   [[gnu::noinline]] SolveReport chosen_step() {
     if constexpr (kEstimates) return error_controlled_step();
-    const double left = limit_ - now_->t;
+    const double end = end_of_step(now_->t), left = end - now_->t;
     if constexpr (Scheme::varies_steps) {
       const double epsilon = std::pow(setup_.relative + setup_.absolute, 1.0 / setup_.order);
       h_ = reversible_->next(*now_, epsilon, h_);
@@ -203,14 +212,14 @@ class Loop final : public TimeLoop {
       forget();
     }
     const SolveReport report = one_step();
-    if (cut && report.ok()) now_->t = limit_;
+    if (cut && report.ok()) now_->t = end;
     return report;
   }
   SolveReport error_controlled_step() {
     constexpr int most = 100;
     SolveReport total;
     for (int tries = 0; tries < most; ++tries) {
-      const double left = limit_ - now_->t, wanted = h_;
+      const double end = end_of_step(now_->t), left = end - now_->t, wanted = h_;
       const bool cut = std::abs(h_) >= std::abs(left);
       if (cut) h_ = left;
       error_ = std::numeric_limits<double>::infinity();  // of a step that fails
@@ -218,7 +227,7 @@ class Loop final : public TimeLoop {
       total.evaluations += report.evaluations;
       if (errors_->accept(error_, h_)) {
         if (cut) {
-          now_->t = limit_;
+          now_->t = end;
           if (std::abs(h_) < std::abs(wanted)) h_ = wanted;
         }
         return total;

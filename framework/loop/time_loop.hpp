@@ -28,6 +28,13 @@ class TimeLoop : public Kernel {
   double time() const {
     return chooses_steps() ? time_ : from_ + static_cast<double>(steps_ - first_) * h_;
   }
+  /// Where the next step ends at the latest: at the limit, or where an input jumps.
+  double end_of_step(double t) const {
+    if (setup_.inputs == nullptr) [[likely]]
+      return limit_;
+    const double jump = setup_.inputs->next_jump(t, h_);
+    return (h_ > 0) == (jump < limit_) ? jump : limit_;
+  }
   /// Above it a chosen step is worth trying.
   double smallest_step(double t) const {
     const double span = std::isfinite(limit_) ? limit_ - from_ : std::fmax(t - from_, setup_.step);
@@ -55,6 +62,7 @@ class TimeLoop : public Kernel {
   double limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
   double from_, time_;  // where steps were first counted; of the last node
   long first_ = 0;
+  long inputs_changed_ = 0;  // seen
   SolveReport last_;
   long steps_ = 0;
   SolverStats stats_;

@@ -30,6 +30,7 @@
     invriants, ivariants, ivnariants)                                                             \
   X(contacts, contact, contacs, contatcs, cotnacts, normal_reactions)                             \
   X(events, eents, eevnts, evens, evenst, event, evetns, evets, evnets, evnts, vents)             \
+  X(inputs, input, inpts, inptus, inpus, inpust, intputs, iputs)                                  \
   X(fields, feilds, felds, fiedls, fieds, fiels, fielsd, filds, fileds)                           \
   X(potential_differential, potential_diferential, potential_differental,                         \
     potential_differentials)                                                                      \

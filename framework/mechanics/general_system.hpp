@@ -7,6 +7,7 @@
 //   holonomic(g)                                 phi, r entries: phi = 0; its differential joins A
 //   potential(g)                                 V, a number
 //   force(g, xi) or force(t, g, xi)              f, n entries in the dual (controls, friction)
+//   force(t, g, xi, u), drift(t, g, u)           what inputs add to them (inputs.hpp)
 // Written as templates on the element (`const auto& g`), potential, holonomic and inertia are differentiated
 // automatically (ceres::Jet, seeded along g tau(eta)). By hand, where speed counts:
 //   potential_differential(g)   n entries, <dV, eta> = d/de V(g tau(e eta))
@@ -28,6 +29,7 @@
 
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
+#include <hamel/framework/mechanics/driven.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 
@@ -307,6 +309,11 @@ class TypedMechanics final : public Mechanics {
 template <class S>
 std::shared_ptr<const Mechanics> MechanicsOf<S>::make(const S& system) {
   return std::make_shared<TypedMechanics<S>>(system);
+}
+template <class S>
+std::shared_ptr<const Mechanics> MechanicsOf<S>::drive(const S& system,
+                                                       std::shared_ptr<const Inputs> inputs) {
+  return std::make_shared<TypedMechanics<Driven<S>>>(Driven<S>(system, std::move(inputs)));
 }
 
 }  // namespace hamel

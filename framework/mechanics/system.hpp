@@ -7,6 +7,7 @@
 // (inertia(g), constraints(g), holonomic(g), potential(g), ... for those that are not left-invariant:
 // general_system.hpp) and, where it has them,
 //   void fields(auto& f);              f("mass", mass, "kg", "what it is", positive): parameters (fields.hpp)
+//   void inputs(auto& u) const;        u("torque", "N m", "what it is", range): what a run may be driven by (inputs.hpp)
 //   Start start() const;               the default start
 //   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
 //   bool has_exact() const;            where the exact motion depends on the parameters
@@ -31,6 +32,7 @@
 #include <hamel/framework/mechanics/close_names.hpp>
 #include <hamel/framework/mechanics/drawing.hpp>
 #include <hamel/framework/mechanics/fields.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/system_members.hpp>
 
@@ -75,6 +77,9 @@ struct SystemModel {
   std::vector<Event> events;
   std::vector<int> contacts;  // the rows whose multiplier is a normal reaction
   Drawing drawing;
+  std::vector<InputField> inputs;
+  /// The mechanics that these inputs drive; empty where there are none.
+  std::function<std::shared_ptr<const Mechanics>(std::shared_ptr<const Inputs>)> drive;
 };
 
 /// A registered system: its words, its parameters, and how to make it.
@@ -82,6 +87,7 @@ struct SystemInfo {
   std::string name, summary, formula, known, source;
   GroupInfo group;
   std::vector<Field> fields;
+  std::vector<InputField> inputs;
   /// Throws ConfigError naming every parameter that does not fit.
   std::function<SystemModel(const Parameters&)> make;
 };
@@ -131,6 +137,13 @@ std::vector<Field> fields_of(S system) {
   return reader.fields;
 }
 
+template <class S>
+std::vector<InputField> inputs_of(const S& system) {
+  InputReader reader;
+  if constexpr (has_inputs<S>()) system.inputs(reader);
+  return reader.inputs;
+}
+
 }  // namespace detail
 
 /// How a system that is not left-invariant becomes Mechanics; defined in general_system.hpp, which its
@@ -138,6 +151,8 @@ std::vector<Field> fields_of(S system) {
 template <class S>
 struct MechanicsOf {
   static std::shared_ptr<const Mechanics> make(const S& system);
+  static std::shared_ptr<const Mechanics> drive(const S& system,
+                                                std::shared_ptr<const Inputs> inputs);
 };
 
 /// The name, group and fields of a system; nothing that its parameters could break.
@@ -172,6 +187,12 @@ SystemModel erase(const S& system) {
     model.mechanics = std::make_shared<LeftInvariantMechanics>(system.inertia(), rows);
   } else {
     model.mechanics = MechanicsOf<S>::make(system);
+  }
+  if constexpr (has_inputs<S>()) {
+    model.inputs = detail::inputs_of(system);
+    model.drive = [system](std::shared_ptr<const Inputs> inputs) {
+      return MechanicsOf<S>::drive(system, std::move(inputs));
+    };
   }
   if constexpr (requires { system.start(); }) {
     model.start = system.start();
@@ -290,6 +311,7 @@ SystemInfo system_info() {
   else static_assert(!named::source<S>, "expected static std::string source()");
   info.group = erase_words(S{}).group;
   info.fields = detail::fields_of(S{});
+  if constexpr (System<S>) info.inputs = detail::inputs_of(S{});
   info.make = maker(S{});
   return info;
 }

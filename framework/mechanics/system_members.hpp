@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <hamel/framework/lie/concepts.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
 
 namespace hamel {
 namespace named {
@@ -17,7 +18,7 @@ namespace named {
 struct Names {
   int constraints, drift, holonomic, potential, force, start, exact, has_exact, invariants, fields,
       draw, name, summary, formula, known, source, potential_differential, holonomic_differential,
-      inertia_differential, contacts, events;
+      inertia_differential, contacts, events, inputs;
 };
 template <class S, bool = std::is_final_v<S>>
 struct Both : S, Names {};
@@ -56,6 +57,7 @@ HAMEL_NAMED(holonomic_differential)
 HAMEL_NAMED(inertia_differential)
 HAMEL_NAMED(contacts)
 HAMEL_NAMED(events)
+HAMEL_NAMED(inputs)
 #undef HAMEL_NAMED
 
 }  // namespace named
@@ -109,6 +111,28 @@ constexpr bool has_potential() {
   return has;
 }
 
+/// What inputs add to the force and to b.
+template <class S>
+constexpr bool has_input_force() {
+  return requires(const S& s, const ElementOf<S>& g, const Vec<S::Group::dim>& xi, InputValues u) {
+    s.force(0.0, g, xi, u);
+  };
+}
+template <class S>
+constexpr bool has_input_drift() {
+  return requires(const S& s, const ElementOf<S>& g, InputValues u) { s.drift(0.0, g, u); };
+}
+/// Does a system state inputs?
+template <class S>
+constexpr bool has_inputs() {
+  constexpr bool states = requires(const S& s, detail::InputReader& u) { s.inputs(u); };
+  static_assert(states || !named::inputs<S>,
+                "inputs of this system cannot be called: expected a const member inputs(u)");
+  static_assert(states == (has_input_force<S>() || has_input_drift<S>()),
+                "inputs(u) goes with force(t, g, xi, u) or drift(t, g, u), which use them");
+  return states;
+}
+
 /// b of A xi = b.
 template <class S>
 constexpr bool has_constant_drift() {
@@ -120,9 +144,9 @@ constexpr bool has_drift() {
     s.drift(g);
   }
   || requires(const S& s, const ElementOf<S>& g) { s.drift(0.0, g); };
-  static_assert(has || !named::drift<S>,
-                "drift of this system cannot be called: expected a const member drift(), drift(g) "
-                "or drift(t, g)");
+  static_assert(has || has_input_drift<S>() || !named::drift<S>,
+                "drift of this system cannot be called: expected a const member drift(), drift(g), "
+                "drift(t, g) or, with inputs, drift(t, g, u)");
   return has;
 }
 template <class S>
@@ -138,9 +162,9 @@ constexpr bool has_force() {
   using Xi = const Vec<S::Group::dim>&;
   constexpr bool has = requires(const S& s, const ElementOf<S>& g, Xi xi) { s.force(0.0, g, xi); }
   || requires(const S& s, const ElementOf<S>& g, Xi xi) { s.force(g, xi); };
-  static_assert(has || !named::force<S>,
-                "force of this system cannot be called: expected a const member force(g, xi) or "
-                "force(t, g, xi)");
+  static_assert(has || has_input_force<S>() || !named::force<S>,
+                "force of this system cannot be called: expected a const member force(g, xi), "
+                "force(t, g, xi) or, with inputs, force(t, g, xi, u)");
   return has;
 }
 template <class S, class Xi>

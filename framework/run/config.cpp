@@ -1,5 +1,6 @@
 #include <hamel/framework/run/config.hpp>
 
+#include <algorithm>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/run/toml_inputs.hpp>
 
 namespace hamel {
 namespace {
@@ -52,6 +54,15 @@ std::string toml_of(const Value& value) {
 template <class Value>
 constexpr bool is_text(const Value&) {
   return std::is_same_v<Value, std::string>;
+}
+
+// An input: a number, the name of a file, or {t = [...], value = [...], hold = true}.
+std::string toml_of_signal(const InputSignal& signal) {
+  if (const double* value = std::get_if<double>(&signal)) return toml_of(*value);
+  const InputTable* table = std::get_if<InputTable>(&signal);
+  if (table == nullptr) return quoted(text_of(signal));
+  return fmt::format("{{t = {}, value = {}, hold = {}}}", toml_of(table->times),
+                     toml_of(table->values), table->hold);
 }
 
 // f(member pointer) for the option of that name.
@@ -157,10 +168,11 @@ Config Config::from_toml(const std::string& text, const std::string& origin) {
   Config config;
   for (const auto& [name, node] : table) {
     const std::string key(name.str());
-    std::vector<std::string> known = {"system", "set"};
-    bool found = key == "system" || key == "set";
+    std::vector<std::string> known = {"system", "set", "inputs"};
+    bool found = std::find(known.begin(), known.end(), key) != known.end();
     if (key == "system") read.value(node, key, config.system);
     if (key == "set") read.lists(node, key, config.parameters);
+    if (key == "inputs") read_inputs(read, node, config.inputs);
     const auto take = [&, &entry = node](const Option& option, auto& value) {
       known.emplace_back(option.name);
       if (option.name != key) return;
@@ -188,6 +200,9 @@ std::string Config::to_toml() const {
   if (!parameters.empty()) out += "[set]\n";
   for (const auto& [name, values] : parameters)
     out += fmt::format("{} = {}\n", key_of(name), toml_of(values));
+  if (!inputs.empty()) out += "[inputs]\n";
+  for (const auto& [name, signal] : inputs)
+    out += fmt::format("{} = {}\n", key_of(name), toml_of_signal(signal));
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/input_signals.hpp>
 
 namespace hamel {
 
@@ -27,6 +28,7 @@ struct Option {
 struct Config {
   std::string system;
   Parameters parameters;
+  InputSignals inputs;
   Start start;
   std::string scheme = "lift";
   std::string retraction = "cayley";

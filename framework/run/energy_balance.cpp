@@ -6,11 +6,14 @@
 namespace hamel {
 
 EnergyBalance::EnergyBalance(std::shared_ptr<const Geometry> geometry,
-                             const std::shared_ptr<const Mechanics>& mechanics)
+                             const std::shared_ptr<const Mechanics>& mechanics,
+                             std::shared_ptr<const Inputs> inputs)
     : geometry_(std::move(geometry)),
       mechanics_(mechanics),
-      active_(geometry_ != nullptr && (mechanics->has_force() || mechanics->has_drift())) {
+      active_(geometry_ != nullptr && (mechanics->has_force() || mechanics->has_drift())),
+      inputs_(std::move(inputs)) {
   if (!active_) return;
+  if (inputs_ != nullptr) changes_ = inputs_->changes();
   g_.resize(geometry_->size());
   if (!mechanics->has_drift()) return;
   motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, mechanics));
@@ -32,8 +35,14 @@ double EnergyBalance::power(const Snapshot& state) {
 }
 
 void EnergyBalance::node(const Snapshot& state) {
+  if (inputs_ != nullptr) {
+    if (inputs_->changes() != changes_ && started_) break_off();
+    changes_ = inputs_->changes();
+    last_ = state;
+  }
   work_.add(state.time, power(state));
-  if (work_.count() == 1) energy_start_ = state.energy;
+  if (!started_) energy_start_ = state.energy;
+  started_ = true;
   raise(energy_max_, state.energy);
   if (work_.count() == NodalQuadrature::kNodes) settle();
 }
@@ -45,7 +54,14 @@ void EnergyBalance::row(const Snapshot& state) {
 
 void EnergyBalance::settle() {
   for (; settled_ < recorded_.size(); ++settled_)
-    recorded_[settled_].work = work_.value(recorded_[settled_].time);
+    recorded_[settled_].work = done_ + work_.value(recorded_[settled_].time);
+}
+
+void EnergyBalance::break_off() {
+  settle();
+  done_ += work_.value(last_.time);
+  work_ = NodalQuadrature();
+  work_.add(last_.time, power(last_));
 }
 
 std::vector<BalancedState> EnergyBalance::rows() {

@@ -14,9 +14,11 @@ namespace hamel {
 
 class EnergyBalance {
  public:
-  /// geometry: null for a group that is not registered; then, and where the energy is kept, it is not active.
+  /// geometry: null for a group that is not registered; then, and where the energy is kept, it is not active. inputs:
+  /// those of the run, null without.
   EnergyBalance(std::shared_ptr<const Geometry> geometry,
-                const std::shared_ptr<const Mechanics>& mechanics);
+                const std::shared_ptr<const Mechanics>& mechanics,
+                std::shared_ptr<const Inputs> inputs);
   bool active() const { return active_; }
 
   /// Of each node, from the start on: its step, time, coordinates, velocity and energy.
@@ -37,7 +39,15 @@ class EnergyBalance {
   bool active_;
   // The work at the recorded states that wait for the first nodes.
   void settle();
-  NodalQuadrature work_;
+  // The quadrature begins anew at the last node: an input jumps or has a kink there, and so has the power.
+  void break_off();
+
+  std::shared_ptr<const Inputs> inputs_;
+  long changes_ = 0;      // of the inputs, seen
+  Snapshot last_;         // node, where there are inputs
+  NodalQuadrature work_;  // since the quadrature began, when done_ was done
+  double done_ = 0;
+  bool started_ = false;
   double energy_start_ = 0, energy_max_ = 0;
   struct Recorded {
     double time, energy, work;

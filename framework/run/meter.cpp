@@ -8,10 +8,10 @@ namespace hamel {
 
 Meter::Meter(const SystemModel& system, const Start& start,
              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
-             const std::shared_ptr<const Mechanics>& acting)
+             const std::shared_ptr<const Mechanics>& acting, std::shared_ptr<const Inputs> inputs)
     : system_(system),
       start_(start),
-      balance_(geometry, acting),
+      balance_(geometry, acting, std::move(inputs)),
       pulls_(system.contacts.size()),
       geometry_(std::move(geometry)) {
   if (balance_.active()) {

@@ -21,7 +21,8 @@ class Meter {
   /// geometry: null for a group that is not registered. acting: mechanics,
   /// without its rows where the scheme does not keep them.
   Meter(const SystemModel& system, const Start& start, std::shared_ptr<const Geometry> geometry,
-        std::shared_ptr<const Mechanics> mechanics, const std::shared_ptr<const Mechanics>& acting);
+        std::shared_ptr<const Mechanics> mechanics, const std::shared_ptr<const Mechanics>& acting,
+        std::shared_ptr<const Inputs> inputs);
 
   /// Does it want every node, not the recorded states only?
   bool wants_nodes() const { return balance_.active(); }

@@ -109,6 +109,7 @@ Simulation::Plan Simulation::plan() const {
   }
   plan.add(out_of_range(plan.system.name, plan.system.fields));
   plan.notes = no_rigid_body(plan.system.name, plan.system.fields);
+  plan.drive();
   if (plan.system.group.dim == 0) {  // a product by name alone
     const std::string name = plan.system.group.name;
     if (auto group = registry_->group_or_product(name)) plan.system.group = *group;
@@ -141,7 +142,8 @@ Simulation::Plan Simulation::plan() const {
                      "offered here",
                      scheme->name)});
   } else if (compiled) {
-    plan.kernel = kernel_;
+    plan.kernel = plan.setup.inputs == nullptr ? kernel_ : driven_kernel_;
+    if (!plan.kernel) plan.add({"inputs: the kernel of this run is compiled without them"});
   } else if (scheme != nullptr && geometry != nullptr) {
     const KernelFactory* own =
         registry_->kernel(group, *system.mechanics, config_.retraction, scheme->name);
@@ -237,6 +239,14 @@ void Simulation::Plan::choose_steps(const SchemeInfo& scheme, bool left_invarian
                    "the error, lift and "
                    "balance where they are reversible, at s = 0.5",
                    scheme.name, scheme.uses_s ? fmt::format(" with s = {}", config.s) : "")});
+}
+
+void Simulation::Plan::drive() {
+  if (config.inputs.empty()) return;
+  setup.inputs = make_inputs(system, config.inputs, {config.from, config.until}, mistakes);
+  if (setup.inputs == nullptr) return;
+  setup.inputs->enter(config.from, config.step);
+  hamel::drive(system, setup.inputs);
 }
 
 }  // namespace hamel

@@ -30,6 +30,7 @@ struct Simulation::Plan {
   void add(const std::vector<std::string>& more) {
     mistakes.insert(mistakes.end(), more.begin(), more.end());
   }
+  void drive();
   void fill_start();
   void check_composition(const SchemeInfo& scheme, bool left_invariant);
   void choose_steps(const SchemeInfo& scheme, bool left_invariant);

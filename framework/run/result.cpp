@@ -33,6 +33,19 @@ Json json_of(const std::vector<double>& values) {
   return out;
 }
 
+Json json_of(const InputSignal& signal) {
+  if (const double* value = std::get_if<double>(&signal)) return *value;
+  if (const InputTable* table = std::get_if<InputTable>(&signal))
+    return {{"t", table->times}, {"value", table->values}, {"hold", table->hold}};
+  return text_of(signal);
+}
+InputSignal signal_of(const Json& json) {
+  if (json.is_number()) return json.get<double>();
+  if (json.is_string()) return input_signal(json.get<std::string>());
+  return InputTable{json.at("t").get<std::vector<double>>(),
+                    json.at("value").get<std::vector<double>>(), json.at("hold").get<bool>()};
+}
+
 Json matrix(const PlainMatrix& m) {
   Json rows = Json::array();
   for (long i = 0; i < m.rows; ++i) {
@@ -70,6 +83,8 @@ Json record_of(const Result& r) {
     parameters[field.name] =
         field.value.size() == 1 ? json_of(field.value[0]) : json_of(field.value);
   }
+  Json inputs = Json::object();
+  for (const auto& [name, signal] : r.config.inputs) inputs[name] = json_of(signal);
   Json invariants = Json::object();
   for (const InvariantDrift& i : r.invariants) {
     invariants[i.name] = {{"start", json_of(i.start)}, {"drift_max", json_of(i.drift_max)}};
@@ -95,6 +110,7 @@ Json record_of(const Result& r) {
   });
   out.update(Json{
       {"parameters", parameters},
+      {"inputs", inputs},
       {"start",
        {{"configuration", json_of(r.config.start.configuration)},
         {"velocity", json_of(r.config.start.velocity)}}},
@@ -167,6 +183,9 @@ Config Config::continued(const std::string& record, const std::string& origin) {
     for (const auto& [name, value] : json.at("parameters").items()) {
       config.parameters[name] = value.is_array() ? value.get<std::vector<double>>()
                                                  : std::vector<double>{value.get<double>()};
+    }
+    if (const auto given = json.find("inputs"); given != json.end()) {
+      for (const auto& [name, signal] : given->items()) config.inputs[name] = signal_of(signal);
     }
     const Json& last = json.at("final");
     config.start.configuration = last.at("configuration").get<std::vector<double>>();

@@ -15,7 +15,8 @@ RunLoop::RunLoop(Simulation::Plan& plan, Result& result)
       kernel_(plan.kernel(plan.setup)),
       acting_(plan.keeps_rows ? plan.mechanics
                               : std::make_shared<UnconstrainedMechanics>(plan.mechanics)),
-      meter_(result.system, result.config.start, plan.geometry, plan.mechanics, acting_),
+      meter_(result.system, result.config.start, plan.geometry, plan.mechanics, acting_,
+             plan.setup.inputs),
       dense_(*kernel_, plan.kernel, plan.setup),
       times_(config_.rows()),
       every_node_(meter_.wants_nodes() || !times_.empty() || plan.events->any()),

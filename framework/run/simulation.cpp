@@ -10,15 +10,53 @@
 #include <hamel/framework/run/run_loop.hpp>
 
 namespace hamel {
-Integration::Integration(std::unique_ptr<Kernel> kernel, KernelFactory factory, KernelSetup setup,
-                         Config config, SystemModel system, std::vector<std::string> notes)
-    : kernel_(std::move(kernel)),
-      dense_(std::make_unique<DenseOutput>(*kernel_, std::move(factory), std::move(setup))),
+Integration::Integration(KernelFactory factory, KernelSetup setup, Config config,
+                         SystemModel system, std::vector<std::string> notes, Begin begin)
+    : factory_(std::move(factory)),
+      setup_(std::move(setup)),
+      begin_(std::move(begin)),
+      kernel_(factory_(setup_)),
+      dense_(std::make_unique<DenseOutput>(*kernel_, factory_, setup_)),
       config_(std::move(config)),
       system_(std::move(system)),
       notes_(std::move(notes)) {}
 
+Status Integration::step(long count) {
+  if (setup_.inputs != nullptr) {
+    kernel_->state(state_);
+    const double end = state_.time + (static_cast<double>(count) - 1e-6) * kernel_->next_step();
+    if (const Status status = covered(end); !status.ok && !config_.chooses_steps()) return status;
+  }
+  return kernel_->advance(count);
+}
+
+Status Integration::covered(double t) {
+  if (setup_.inputs == nullptr || setup_.inputs->covers(t)) return {};
+  kernel_->state(state_);
+  return {false, state_.step + 1, state_.time, 0,
+          fmt::format("the table of an input does not cover t = {:.10g}", t)};
+}
+
+void Integration::input(const std::string& name, double value) {
+  const size_t i = input_index(system_.name, system_.inputs, name);
+  if (setup_.inputs == nullptr) {
+    throw ConfigError(
+        {fmt::format("input '{0}': this run was built without inputs: give one a first value, "
+                     ".input(\"{0}\", 0)",
+                     name)});
+  }
+  check_input(system_.name, system_.inputs[i], value);
+  setup_.inputs->set(i, value);
+}
+
+void Integration::restart(const Start& start) {
+  config_.start = begin_(start, setup_);
+  kernel_ = factory_(setup_);
+  dense_ = std::make_unique<DenseOutput>(*kernel_, factory_, setup_);
+}
+
 Status Integration::advance_to(double t) {
+  if (const Status status = covered(t); !status.ok) return status;
   if (config_.chooses_steps()) {
     kernel_->limit(t);
     return kernel_->advance(std::numeric_limits<long>::max());
@@ -47,11 +85,12 @@ Simulation::Simulation(const Registry& registry, std::string name, Maker make)
   config_.system = std::move(name);
 }
 
-Simulation& Simulation::kernel(KernelFactory factory, SchemeInfo scheme,
-                               RetractionInfo retraction) {
+Simulation& Simulation::kernel(KernelFactory factory, SchemeInfo scheme, RetractionInfo retraction,
+                               KernelFactory driven) {
   config_.scheme = scheme.name;
   config_.retraction = retraction.name;
   kernel_ = std::move(factory);
+  driven_kernel_ = std::move(driven);
   kernel_scheme_ = std::move(scheme);
   kernel_retraction_ = std::move(retraction);
   return *this;
@@ -62,7 +101,20 @@ std::vector<std::string> Simulation::mistakes() const { return plan().mistakes; 
 Integration Simulation::build() const {
   Plan plan = this->plan();
   if (!plan.mistakes.empty()) throw ConfigError(plan.mistakes);
-  return {plan.kernel(plan.setup), plan.kernel, plan.setup, plan.config, plan.system, plan.notes};
+  const auto kept = std::make_shared<Plan>(std::move(plan));
+  const auto begin = [kept](const Start& start, KernelSetup& setup) {
+    kept->config.start = start;
+    kept->mistakes.clear();
+    kept->notes.clear();
+    kept->fill_start();
+    kept->look_at_start();
+    if (!kept->mistakes.empty()) throw ConfigError(kept->mistakes);
+    kept->project();
+    setup.configuration = kept->setup.configuration;
+    setup.velocity = kept->setup.velocity;
+    return kept->config.start;
+  };
+  return {kept->kernel, kept->setup, kept->config, kept->system, kept->notes, begin};
 }
 
 namespace {

@@ -43,10 +43,12 @@ using Impact = std::function<void(EventState&)>;
 /// A run that is stepped by hand.
 class Integration {
  public:
-  Integration(std::unique_ptr<Kernel> kernel, KernelFactory factory, KernelSetup setup,
-              Config config, SystemModel system, std::vector<std::string> notes);
+  /// Projects a start and puts it into the setup; the start as it is then.
+  using Begin = std::function<Start(const Start&, KernelSetup&)>;
+  Integration(KernelFactory factory, KernelSetup setup, Config config, SystemModel system,
+              std::vector<std::string> notes, Begin begin);
   /// One step (or count of them); the status of the first that failed.
-  Status step(long count = 1) { return kernel_->advance(count); }
+  Status step(long count = 1);
   /// One step; a chosen one ends at t at the latest.
   Status step_towards(double t) {
     if (config_.chooses_steps()) kernel_->limit(t);
@@ -56,6 +58,12 @@ class Integration {
   void turn_back() { kernel_->turn_back(); }
   /// Steps to time t: chosen ones end there, others at the node nearest to it.
   Status advance_to(double t);
+  /// An input from now on, in the unit that the system states; the builder must have given the run a first value of some
+  /// input. ConfigError where there is no such input, or the value is out of its range.
+  void input(const std::string& name, double value);
+  /// Again from another start (projected as by the builder), at the start time: what a new build() gives, in less time.
+  /// Inputs keep their values. ConfigError as from build().
+  void restart(const Start& start);
   /// The state at a time within the last step, by dense output. Throws std::runtime_error where there is none.
   const Snapshot& at(double t);
   /// The current state with its measurements.
@@ -64,8 +72,16 @@ class Integration {
   const Config& config() const { return config_; }
   const SystemModel& system() const { return system_; }
   const std::vector<std::string>& notes() const { return notes_; }
+  /// Null for a run without inputs.
+  const std::shared_ptr<Inputs>& inputs() const { return setup_.inputs; }
 
  private:
+  // Not ok where a table of an input ends before t.
+  Status covered(double t);
+
+  KernelFactory factory_;
+  KernelSetup setup_;
+  Begin begin_;
   std::unique_ptr<Kernel> kernel_;
   std::unique_ptr<DenseOutput> dense_;
   Config config_;
@@ -91,6 +107,15 @@ class Simulation {
     return set(name, std::vector<double>(value));
   }
   Simulation& set(const std::string& name, double value) { return set(name, {value}); }
+  /// An input of the system: a constant, or InputTable{times, values, hold}, or InputFile{"table.csv"}. A run that is
+  /// driven by Integration::input says so by a first value.
+  Simulation& input(const std::string& name, double value) {
+    return input(name, InputSignal(value));
+  }
+  Simulation& input(const std::string& name, InputSignal signal) {
+    config_.inputs[name] = std::move(signal);
+    return *this;
+  }
   /// Where to start. Velocity and momentum are projected onto d and d*, and a note says what was lost.
   Simulation& start(Start start) { return with(&Config::start, std::move(start)); }
   /// Any option (Config::fields); below those that have a name of their own.
@@ -160,8 +185,9 @@ class Simulation {
     progress_ = std::move(report);
     return *this;
   }
-  /// A kernel compiled for the user's own types, in place of the registered one.
-  Simulation& kernel(KernelFactory factory, SchemeInfo scheme, RetractionInfo retraction);
+  /// A kernel compiled for the user's own types, in place of the registered one; and one for the same with inputs.
+  Simulation& kernel(KernelFactory factory, SchemeInfo scheme, RetractionInfo retraction,
+                     KernelFactory driven = {});
 
   const Config& config() const { return config_; }
   /// Everything that is wrong; empty when run() can start.
@@ -180,7 +206,7 @@ class Simulation {
   const Registry* registry_;
   Maker make_;
   Config config_;
-  KernelFactory kernel_;
+  KernelFactory kernel_, driven_kernel_;
   SchemeInfo kernel_scheme_;
   RetractionInfo kernel_retraction_;
   std::function<bool(const Snapshot&)> observer_;

@@ -132,6 +132,7 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     cell.config.system = system.name;
     cell.config.parameters = system.parameters;
     cell.config.start = system.start;
+    cell.config.inputs = system.inputs;
     cell.config.until = config.until;
     for (size_t k = 0; k < at.size(); ++k) {
       const std::string& axis = study_axes()[k];

@@ -75,6 +75,8 @@ class Checks {
     config.system = system.name;
     config.parameters = system.parameters;
     config.start = system.start;
+    config.inputs = system.inputs;
+    if (!system.inputs.empty()) config.until = study_.until;  // which their tables cover
     if (const std::string group = group_of(system); !group.empty()) {
       const auto known = registry_.retractions_or_common(group);
       if (!known.empty() && registry_.geometry(group, config.retraction) == nullptr)
@@ -107,6 +109,8 @@ class Checks {
         if (mistake.find("'" + parameter + "'") != std::string::npos ||
             mistake.find(parameter + ":") != std::string::npos)
           key = prefix + ".set." + parameter;
+      if (mistake.starts_with("input '") || mistake.starts_with("unknown input"))
+        key = prefix + ".inputs";
       add(key, mistake);
     }
   }
@@ -253,6 +257,11 @@ std::string StudyConfig::fingerprint() const {
                        join(system.start.velocity), join(system.start.momentum));
     for (const auto& [name, value] : system.parameters)
       out += fmt::format(", {} ({})", name, join(value));
+    for (const auto& [name, signal] : system.inputs) {
+      out += fmt::format(", input {} = {}", name, text_of(signal));
+      if (const InputTable* table = std::get_if<InputTable>(&signal))
+        out += fmt::format(" ({}) ({})", join(table->times), join(table->values));
+    }
     out += '\n';
     std::istringstream lines(system.data);
     for (std::string line; std::getline(lines, line);)

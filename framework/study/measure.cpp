@@ -189,7 +189,7 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
   const bool adapted = registry.scheme(cell.config.scheme)->adapted;
   const std::shared_ptr<const Mechanics> acting =
       adapted ? model.mechanics : std::make_shared<UnconstrainedMechanics>(model.mechanics);
-  Meter meter(model.group, reference, EnergyBalance(geometry, acting), out);
+  Meter meter(model.group, reference, EnergyBalance(geometry, acting, run.inputs()), out);
   out.ok = true;
   meter.start(run.state());
   meter.compare(run.state(), 0);

@@ -30,7 +30,8 @@ struct StudySystem {
   std::string label, name;
   Parameters parameters = {};
   Start start = {};
-  std::string data = {};  // the file's text: a study reads it once, at its beginning
+  InputSignals inputs = {};  // their files are read once, at the study's beginning
+  std::string data = {};     // the file's text: a study reads it once, at its beginning
 };
 
 /// Combinations that are left out: one entry per axis named, any of its values; axes not named match all.

@@ -3,6 +3,7 @@
 
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/run/toml_inputs.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel {
@@ -94,11 +95,12 @@ class StudyReader {
     for (const auto& [name, node] : table) {
       const std::string key(name.str());
       at(prefix + "." + key, node);
-      std::vector<std::string> known = {"name", "label", "set"};
+      std::vector<std::string> known = {"name", "label", "set", "inputs"};
       bool found = true;
       if (key == "name") read_.value(node, key, out.name);
       else if (key == "label") read_.value(node, key, out.label);
       else if (key == "set") set(node, prefix, out.parameters);
+      else if (key == "inputs") read_inputs(read_, node, out.inputs);
       else found = false;
       Config::start_fields([&, &entry = node](const Option& option, auto member) {
         known.emplace_back(option.name);

@@ -19,6 +19,13 @@ Simulation::Maker maker(const Registry& registry, const StudySystem& system) {
 
 void read_data(StudyConfig& config) {
   for (StudySystem& system : config.systems) {
+    for (auto& [name, signal] : system.inputs) {
+      try {
+        if (const InputFile* file = std::get_if<InputFile>(&signal))
+          signal = read_input_table("input", *file);
+      } catch (const ConfigError&) {  // the checks say so
+      }
+    }
     if (!system.name.ends_with(".toml") || !system.data.empty()) continue;
     try {
       system.data = read_text_file("system", system.name);
@@ -39,6 +46,8 @@ SystemModel model(const Registry& registry, const StudySystem& system) {
   if (out.group.dim == 0) {  // a product by name alone
     if (const auto group = registry.group_or_product(out.group.name)) out.group = *group;
   }
+  if (std::vector<std::string> mistakes; !system.inputs.empty() && out.drive)
+    drive(out, make_inputs(out, {}, {0, 0}, mistakes));  // of what orders hold there
   return out;
 }
 

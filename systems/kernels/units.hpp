@@ -29,6 +29,7 @@ void add_particles(Registry& registry);
 void add_balls(Registry& registry);
 void add_disk_and_rattleback(Registry& registry);
 void add_vehicles(Registry& registry);
+void add_driven_vehicles(Registry& registry);
 
 /// The problem of left-invariant systems on G with m = M.
 template <class G, int M>
@@ -36,6 +37,12 @@ void add_left_invariant_on(Registry& registry) {
   add_left_invariant_kernels<G, M, Exp<G>, Lift, Balance>(registry);
   add_left_invariant_kernels<G, M, Cayley<G>, Lift, Balance, Rkmk4, Dopri5, Tsit5, Dop853>(
       registry);
+}
+
+/// The kernels of a system with inputs.
+template <class S>
+void add_driven(Registry& registry) {
+  add_typed_kernels<Driven<S>, Cayley<typename S::Group>, Lift, Rkmk4>(registry);
 }
 
 /// A registered system with its kernels.

@@ -18,6 +18,7 @@ namespace {
 // Held upright by its motors, which push the wheels forwards and the body back.
 struct BalancedSegway : Segway {
   static std::string name() { return "balanced_segway"; }
+  using Segway::force;
   Vec<6> force(const auto& g, const Vec<6>& xi) const {
     const double torque = 300 * g.template part<3>().s + 80 * xi[5];
     return {0, 0, 0, torque, torque, -2 * torque};

@@ -56,12 +56,20 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
          {"range", words_of(field.range)},
          {"meaning", field.meaning}});
   }
+  Json inputs = Json::array();
+  for (const InputField& input : info.inputs) {
+    inputs.push_back({{"name", input.name},
+                      {"unit", input.unit},
+                      {"range", words_of(input.range)},
+                      {"meaning", input.meaning}});
+  }
   return {{"kind", "system"},
           {"name", info.name},
           {"summary", info.summary},
           {"group", info.group.name},
           {"formula", info.formula},
           {"parameters", parameters},
+          {"inputs", inputs},
           {"start", start_of(info.make(given))},
           {"events", events(info.make(given))},
           {"known", info.known},

@@ -45,10 +45,22 @@ void read_sets(const std::vector<std::string>& sets, Parameters& parameters) {
   if (!mistakes.empty()) throw ConfigError(mistakes);
 }
 
+// name=value, name=table.csv or name=table.csv:hold, each as --input has it.
+void read_inputs(const std::vector<std::string>& given, InputSignals& inputs) {
+  std::vector<std::string> mistakes;
+  for (const std::string& input : given) {
+    const size_t equal = input.find('=');
+    if (equal == std::string::npos || equal == 0 || equal + 1 == input.size())
+      mistakes.push_back(fmt::format("--input: '{}' is not name=value or name=table.csv", input));
+    else inputs[input.substr(0, equal)] = input_signal(input.substr(equal + 1));
+  }
+  if (!mistakes.empty()) throw ConfigError(mistakes);
+}
+
 // The options of `hamel run` as given; the file first, then what the command line says.
 struct RunLine {
   std::string system, config_file, record_file;
-  std::vector<std::string> sets;
+  std::vector<std::string> sets, inputs;
   std::vector<std::function<void(Config&)>> overrides;  // of what is given, in its order
   RunOptions options;
 
@@ -88,6 +100,10 @@ struct RunLine {
         ->excludes(config);
     app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
         ->allow_extra_args(false);
+    app.add_option("--input", inputs,
+                   "an input, name=value or name=table.csv (columns t,value; linear, or held from "
+                   "row to row with :hold behind the file) (repeatable)")
+        ->allow_extra_args(false);
     Config::start_fields([&]<class Value>(const Option& field, Value Start::*member) {
       option<Value>(app, field, {}, [member](Config& c) -> Value& { return c.start.*member; });
     });
@@ -107,6 +123,7 @@ struct RunLine {
         "  hamel run suslov --set inertia=2,0.3,0.5,3,0.4,4 --velocity 1,0.5,0 --retraction exp\n"
         "  hamel run chaplygin_sleigh --scheme balance --step 0.05 -o sleigh.csv --json\n"
         "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv\n"
+        "  hamel run segway --input right_torque=2 --input left_torque=torque.csv:hold\n"
         "  hamel run roller_racer -o first.json && hamel run --continue first.json --until 60");
   }
 
@@ -117,8 +134,10 @@ struct RunLine {
     if (!record_file.empty()) config = Config::continued(read_file(record_file), record_file);
     if (!system.empty() && system != config.system) {
       config.system = system;
-      if (!record_file.empty())
-        config.parameters.clear();  // another system's, or a file's, which has none
+      if (!record_file.empty()) {  // another system's, or a file's, which has none
+        config.parameters.clear();
+        config.inputs.clear();
+      }
     }
     if (config.system.empty()) mistakes.push_back("system: name one, or give --config with one");
     if (app.count("--velocity") + app.count("--momentum") > 0)
@@ -132,6 +151,7 @@ struct RunLine {
     };
     for (const auto& override : overrides) collect([&] { override(config); });
     collect([&] { read_sets(sets, config.parameters); });
+    collect([&] { read_inputs(inputs, config.inputs); });
     if (!mistakes.empty()) throw ConfigError(mistakes);
     return options;
   }

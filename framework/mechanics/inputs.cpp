@@ -1,0 +1,98 @@
+#include <hamel/framework/mechanics/inputs.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace hamel {
+namespace {
+
+// The piece of a table at t; before and behind it the first and the last.
+std::size_t piece_at(const InputTable& table, double t) {
+  const auto after = std::upper_bound(table.times.begin(), table.times.end(), t);
+  const auto piece = std::max<std::ptrdiff_t>(after - table.times.begin() - 1, 0);
+  const auto last = static_cast<std::ptrdiff_t>(table.times.size()) - (table.hold ? 1 : 2);
+  return static_cast<std::size_t>(std::min(piece, std::max<std::ptrdiff_t>(last, 0)));
+}
+
+double linear(const InputTable& table, double t) {
+  if (table.times.size() == 1) return table.values.front();
+  const std::size_t i = piece_at(table, t);
+  const double part =
+      std::clamp((t - table.times[i]) / (table.times[i + 1] - table.times[i]), 0.0, 1.0);
+  return table.values[i] + part * (table.values[i + 1] - table.values[i]);
+}
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+Inputs::Inputs(std::vector<InputField> fields, std::vector<InputTable> tables)
+    : fields_(std::move(fields)),
+      tables_(std::move(tables)),
+      pieces_(tables_.size()),
+      now_(static_cast<Eigen::Index>(tables_.size())) {
+  assert(tables_.size() == fields_.size() && fields_.size() <= kMostInputs);
+  for (std::size_t i = 0; i < tables_.size(); ++i)
+    now_[static_cast<Eigen::Index>(i)] = tables_[i].values.front();
+  find_cover();
+}
+
+void Inputs::enter(double t, double h) {
+  for (std::size_t i = 0; i < tables_.size(); ++i) {
+    const InputTable& table = tables_[i];
+    if (table.times.empty()) continue;
+    const std::size_t piece = piece_at(table, t + h / 2);
+    if (piece == pieces_[i]) continue;
+    pieces_[i] = piece;
+    ++changes_;
+    if (table.hold) now_[static_cast<Eigen::Index>(i)] = table.values[piece];
+  }
+}
+
+InputValues Inputs::at(double t) const {
+  InputValues out = now_;
+  for (std::size_t i = 0; i < tables_.size(); ++i) {
+    const InputTable& table = tables_[i];
+    if (!table.times.empty() && !table.hold) out[static_cast<Eigen::Index>(i)] = linear(table, t);
+  }
+  return out;
+}
+
+void Inputs::set(std::size_t input, double value) {
+  tables_[input] = {{}, {value}};
+  now_[static_cast<Eigen::Index>(input)] = value;
+  ++changes_;
+  find_cover();
+}
+
+double Inputs::next_jump(double t, double h) const {
+  const double sign = h < 0 ? -1 : 1;
+  const double beyond =
+      t + sign * 1e-12 * (1 + std::abs(t));  // t itself, as round-off has it, is past
+  double next = sign * infinite;
+  for (const InputTable& table : tables_) {
+    if (!table.hold || table.times.size() < 2) continue;
+    const auto first = table.times.begin() + 1, last = table.times.end();  // where it jumps
+    if (h < 0) {
+      const auto at = std::lower_bound(first, last, beyond);
+      if (at != first) next = std::max(next, *(at - 1));
+    } else {
+      const auto at = std::upper_bound(first, last, beyond);
+      if (at != last) next = std::min(next, *at);
+    }
+  }
+  return next;
+}
+
+void Inputs::find_cover() {
+  first_ = -infinite, last_ = infinite;
+  for (const InputTable& table : tables_) {
+    if (table.times.empty()) continue;
+    first_ = std::max(first_, table.times.front());
+    last_ = std::min(last_, table.times.back());
+  }
+}
+
+}  // namespace hamel

@@ -1,0 +1,87 @@
+// The inputs of a run: torques and rates that a user gives as constants, as tables over time, or while it runs.
+//
+// A system states its inputs like its parameters, and what they add to its forces and drifts; where all are zero, nothing:
+//   void inputs(auto& u) const;        u("torque", "N m", "on the handlebar", between(-5, 5));  name, unit, meaning, range
+//   force(t, g, xi, u)                 n entries in the dual, added to force(t, g, xi)
+//   drift(t, g, u)                     k entries, added to b of A xi = b
+// u[i] is the value of the i-th. A run without inputs is that of the system without them (driven.hpp).
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hamel/framework/mechanics/fields.hpp>
+
+namespace hamel {
+
+/// One input of a system, as its inputs() states it.
+struct InputField {
+  std::string name, unit, meaning;
+  Range range;
+};
+
+constexpr int kMostInputs = 8;
+/// One value for each input, in the order of inputs(u), without heap.
+using InputValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostInputs, 1>;
+
+/// An input over time: linear between its times, or held from each time to the next. Times increase.
+struct InputTable {
+  std::vector<double> times, values;
+  bool hold = false;
+  bool operator==(const InputTable&) const = default;
+};
+
+/// The inputs of one run, which owns them.
+class Inputs {
+ public:
+  /// tables: one for each field; no times and one value where it is constant.
+  Inputs(std::vector<InputField> fields, std::vector<InputTable> tables);
+
+  const std::vector<InputField>& fields() const { return fields_; }
+  /// A step from t to t + h begins. A table that is held has the value of the middle of the step all through it, so that
+  /// round-off in the times of the nodes does not decide on which side of a jump they lie.
+  void enter(double t, double h);
+  /// The values at a time of the step.
+  InputValues at(double t) const;
+  /// From now on constant.
+  void set(std::size_t input, double value);
+  /// The first time beyond t, in the direction of h, at which a held value jumps; infinite where there is none.
+  double next_jump(double t, double h) const;
+  /// Do the tables cover t, up to round-off?
+  bool covers(double t) const {
+    const double close = 1e-9 * (1 + std::abs(t));
+    return t >= first_ - close && t <= last_ + close;
+  }
+  /// How often a value jumped or a table went on to another of its pieces.
+  long changes() const { return changes_; }
+
+ private:
+  void find_cover();
+
+  std::vector<InputField> fields_;
+  std::vector<InputTable> tables_;
+  std::vector<std::size_t> pieces_;  // of each table, between times piece and piece + 1
+  InputValues now_;                  // of constants and held tables
+  double first_ = 0, last_ = 0;      // covered
+  long changes_ = 0;
+};
+
+namespace detail {
+
+// The visitor that a system's inputs() meets.
+struct InputReader {
+  std::vector<InputField> inputs;
+  void operator()(const char* name, const char* unit, const char* meaning = "",
+                  const Range& range = {}) {
+    inputs.push_back({name, unit, meaning, range});
+  }
+};
+
+}  // namespace detail
+}  // namespace hamel
