@@ -24,7 +24,7 @@ Integration::Integration(KernelFactory factory, KernelSetup setup, Config config
 Status Integration::step(long count) {
   if (setup_.inputs != nullptr) {
     kernel_->state(state_);
-    const double end = state_.time + (static_cast<double>(count) - 1e-6) * kernel_->next_step();
+    const double end = state_.time + static_cast<double>(count) * kernel_->next_step();
     if (const Status status = covered(end); !status.ok && !config_.chooses_steps()) return status;
   }
   return kernel_->advance(count);
