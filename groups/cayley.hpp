@@ -98,6 +98,12 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
         xz + h[1], yz - h[0], 1.0 + h[2] * h[2];
     return m;
   }
+  /// dL^-1 eta = eta + omega x eta/2 + omega (omega.eta)/4.
+  template <class T>
+  static VecT<T, 3> dtau_left_inverse(const VecT<T, 3>& xi, const VecT<T, 3>& eta) {
+    return dtau_right_inverse_transpose(xi, eta);
+  }
+  using CayleyDefaults<SO3>::dtau_left_inverse;
   /// p + omega x p/2 + omega (omega.p)/4.
   template <class T>
   static VecT<T, 3> dtau_right_inverse_transpose(const VecT<T, 3>& xi, const VecT<T, 3>& p) {
@@ -230,6 +236,18 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     m.template bottomRightCorner<3, 3>() = last;
     return m;
   }
+  /// dL^-1 eta, eta = (a, b), without forming the matrix; w and v are halves of omega and v:
+  /// (a + w x a + w (w.a), b + w x b + v x a + v (w.a) - (w.v) a).
+  template <class T>
+  static VecT<T, 6> dtau_left_inverse(const VecT<T, 6>& xi, const VecT<T, 6>& eta) {
+    const VecT<T, 3> w = 0.5 * xi.template head<3>(), v = 0.5 * xi.template tail<3>(),
+                     a = eta.template head<3>(), b = eta.template tail<3>();
+    const T wa = w.dot(a);
+    VecT<T, 6> out;
+    out << a + w.cross(a) + wa * w, b + w.cross(b) + v.cross(a) + wa * v - w.dot(v) * a;
+    return out;
+  }
+  using CayleyDefaults<SE3>::dtau_left_inverse;
   /// The transpose of that, applied to p without forming it.
   template <class T>
   static VecT<T, 6> dtau_right_inverse_transpose(const VecT<T, 6>& xi, const VecT<T, 6>& p) {

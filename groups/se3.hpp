@@ -97,6 +97,15 @@ struct SE3 {
     m.template bottomRightCorner<3, 3>().setZero();
     return m;
   }
+  /// (ad_xi)^T mu.
+  template <class T>
+  static VecT<T, 6> ad_transpose(const VecT<T, 6>& xi, const VecT<T, 6>& mu) {
+    const VecT<T, 3> omega = xi.template head<3>(), v = xi.template tail<3>(),
+                     m = mu.template head<3>(), f = mu.template tail<3>();
+    VecT<T, 6> out;
+    out << m.cross(omega) + f.cross(v), f.cross(omega);
+    return out;
+  }
   template <class T>
   static Element<T> normalise(const SE3Element<T>& g) {
     return {SO3::normalise(g.rotation), g.translation};

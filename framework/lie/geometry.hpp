@@ -139,7 +139,9 @@ class TypedGeometry final : public Geometry {
     put(Tau::dtau_right_inverse_transpose(vec(xi), vec(p)), out);
   }
   void dtau_left_inverse(const double* xi, const double* eta, double* out) const override {
-    put(Tau::dtau_left_inverse(vec(xi)) * vec(eta), out);
+    Vec<n> image;
+    GroupOperations<Tau>::dtau_left_inverse(vec(xi), vec(eta), image);
+    put(image, out);
   }
   HAMEL_FLATTEN void base_momentum(double s, const double* xi, const double* p, const double* nu,
                                    double* m0) const override {

@@ -54,7 +54,8 @@ struct GroupOperations {
     out = G::Ad_transpose(g, mu);
   }
   static void ad_transpose(const Vector& xi, const Vector& mu, Vector& out) {
-    out = (G::coad(mu) * xi).eval();
+    if constexpr (requires { G::ad_transpose(xi, mu); }) out = G::ad_transpose(xi, mu);
+    else out = (G::coad(mu) * xi).eval();
   }
   static void tau(const Vector& xi, Element& out) { out = Tau::tau(xi); }
   /// (dR tau_xi)^T m.
@@ -67,7 +68,11 @@ struct GroupOperations {
   }
   /// (dL tau_xi)^-1 eta.
   static void dtau_left_inverse(const Vector& xi, const Vector& eta, Vector& out) {
-    out = (Tau::dtau_left_inverse(xi) * eta).eval();
+    if constexpr (requires { Tau::dtau_left_inverse(xi, eta); }) {
+      out = Tau::dtau_left_inverse(xi, eta);
+    } else {
+      out = (Tau::dtau_left_inverse(xi) * eta).eval();
+    }
   }
   /// base_momentum of trivialised.hpp.
   static void base_momentum(double s, const Vector& xi, const Vector& p, const Vector& nu,

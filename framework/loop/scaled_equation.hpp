@@ -1,6 +1,6 @@
 // F/scale as solvers see it: every evaluation counted, the best point kept, and the certificate made once.
 //
-// A library's own word ("converged", "round-off limited") is not asked. A solve is judged by the
+// What a library reports ("converged", "round-off limited") does not count. A solve is judged by the
 // residual |F(x)|/scale that was evaluated at the x it leaves. Its target is that of Newton
 // (solvers/newton.hpp): two digits below the tolerance, and at least one point other than the guess, whose
 // extrapolation error, always of one sign, would else stay in every step.

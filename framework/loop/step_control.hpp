@@ -1,7 +1,7 @@
 // Steps chosen by the error.
 //
 // Explicit pairs: a step of size h whose estimate err (1 at the tolerance, O(h^k)) is above 1 is taken again; the next one is
-//   h clip(0.9 err^-(1/k - 3/4 b) err_before^b, 0.2, 10),   b = 0.2/k,
+//   h clip(0.85 err^-a err_before^b, 0.2, 5),   a = 0.7/k,  b = 0.4/k,
 // which does not grow after a rejection, (M45). Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
 // II.4 (PI control: Gustafsson).
 //
@@ -23,25 +23,26 @@ namespace hamel {
 class ErrorControl {
  public:
   explicit ErrorControl(int estimated_order)
-      : beta_(0.2 / estimated_order), alpha_(1.0 / estimated_order - 0.75 * beta_) {}
+      : alpha_(0.7 / estimated_order), beta_(0.4 / estimated_order) {}
 
   /// Is a step of size h with this error good? Changes h to the next one, or to that of the repetition.
   bool accept(double error, double& h) {
     if (!(error <= 1)) {
       rejected_ = true;
-      h *= std::isfinite(error) ? std::fmax(0.2, 0.9 * std::pow(error, -alpha_)) : 0.2;
+      h *= std::isfinite(error) ? std::fmax(0.2, 0.85 * std::pow(error, -alpha_)) : 0.2;
       return false;
     }
     error = std::fmax(error, 1e-10);
-    const double most = rejected_ ? 1 : 10;
-    h *= std::fmin(most, std::fmax(0.2, 0.9 * std::pow(error, -alpha_) * std::pow(before_, beta_)));
+    const double most = rejected_ ? 1 : 5;
+    h *=
+        std::fmin(most, std::fmax(0.2, 0.85 * std::pow(error, -alpha_) * std::pow(before_, beta_)));
     before_ = std::fmax(error, 1e-4);
     rejected_ = false;
     return true;
   }
 
  private:
-  double beta_, alpha_, before_ = 1e-4;
+  double alpha_, beta_, before_ = 1e-4;
   bool rejected_ = false;
 };
 

@@ -63,7 +63,7 @@ struct CloseNames {
 template <class S, bool = std::is_final_v<S>>
 struct WithClose : S, CloseNames {};
 template <class S>
-struct WithClose<S, true> : CloseNames {};  // cannot be asked
+struct WithClose<S, true> : CloseNames {};  // nothing can derive from it
 
 }  // namespace named
 

@@ -55,9 +55,14 @@ class EquationsOfMotion {
   }
   /// xi' and lambda (k entries, N or N m as the rows have it) at (t, g, xi).
   void solve(double t, const Element& g, const Vector& xi) {
-    set(t, g);
-    find_rates(t, g, xi);
-    momentum_ = inertia_.lazyProduct(xi);
+    if (has_dual_rates() && known_) {
+      evaluate_with_rates(g, xi);
+      factor(t, g);
+    } else {
+      set(t, g);
+      find_rates(t, g, xi);
+    }
+    apply_inertia(xi, momentum_);
     problem_.force(t, g, xi, change_);
     if (!problem_.constant_inertia()) change_ -= inertia_rate_.lazyProduct(xi);
     problem_.ad_transpose(xi, momentum_, work_);
@@ -75,22 +80,10 @@ class EquationsOfMotion {
   /// What depends on (t, g) alone. With W^T W = I^-1 (W lower triangular), Y = W A^T and c = W change:
   /// Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
   void set(double t, const Element& g) {
-    const bool inertia_changes = !known_ || !problem_.constant_inertia();
-    const bool rows_change = problem_.rows() > 0 && (!known_ || !problem_.constant_constraints());
-    if (inertia_changes) {
-      problem_.inertia(g, inertia_);
-      find_root(inertia_);
-    }
-    if (singular_) [[unlikely]]
-      find_stiff_root(t, g);
-    if (rows_change) problem_.constraints(t, g, a_, b_);
-    if (problem_.rows() == 0 || !(inertia_changes || rows_change)) return;
-    for (int j = 0; j < problem_.rows(); ++j) {
-      momentum_ = a_.row(j).transpose();
-      apply_root(momentum_, work_);
-      y_.col(j) = work_;
-    }
-    factor_gram();
+    if (!known_ || !problem_.constant_inertia()) problem_.inertia(g, inertia_);
+    if (problem_.rows() > 0 && (!known_ || !problem_.constant_constraints()))
+      problem_.constraints(t, g, a_, b_);
+    factor(t, g);
   }
   /// The smallest v in the metric I with A v = c, A and I those of the last set(); returns its size, v . I v.
   double smallest(const Few& c, Vector& v) {
@@ -103,7 +96,7 @@ class EquationsOfMotion {
   /// Moves xi onto A xi = b in the metric I (A, b, I those of the last set()); returns the squared sizes of what was added, and
   /// of xi.
   std::pair<double, double> project(Vector& xi) {
-    momentum_ = inertia_.lazyProduct(xi);
+    apply_inertia(xi, momentum_);
     const double size = momentum_.dot(xi);
     if (problem_.rows() == 0) return {0, size};
     b_rate_ = b_ - a_.lazyProduct(xi);
@@ -115,18 +108,43 @@ class EquationsOfMotion {
   const Few& reaction() const { return reaction_; }
 
  private:
+  static constexpr bool has_dual_rates() {
+    if constexpr (requires { Problem::has_dual_rates(); }) return Problem::has_dual_rates();
+    else return false;
+  }
+  // By one dual number; b is constant.
+  void evaluate_with_rates(const Element& g, const Vector& xi) {
+    if constexpr (has_dual_rates())
+      problem_.dual_rates(g, xi, a_, a_rate_, inertia_, inertia_rate_);
+    b_rate_.setZero();
+  }
+  // What follows from inertia_ and a_.
+  void factor(double t, const Element& g) {
+    const bool inertia_changes = !known_ || !problem_.constant_inertia();
+    const bool rows_change = problem_.rows() > 0 && (!known_ || !problem_.constant_constraints());
+    if (inertia_changes) find_root(inertia_);
+    if (singular_) [[unlikely]]
+      find_stiff_root(t, g);
+    if (problem_.rows() == 0 || !(inertia_changes || rows_change)) return;
+    for (int j = 0; j < problem_.rows(); ++j) {
+      momentum_ = a_.row(j).transpose();
+      apply_root(momentum_, work_);
+      y_.col(j) = work_;
+    }
+    factor_gram();
+  }
+  void apply_inertia(const Vector& xi, Vector& mu) const {
+    if (diagonal_) mu = inertia_.diagonal().cwiseProduct(xi);
+    else mu = inertia_.lazyProduct(xi);
+  }
+
   void find_rates(double t, const Element& g, const Vector& xi) {
     b_rate_.setZero();
     a_rate_.setZero();
     if (problem_.rows() == 0 && problem_.constant_inertia()) return;
     const bool moves = !problem_.constant_constraints(), varies = !problem_.constant_inertia();
     if (!moves && !varies) return;
-    if constexpr (requires { problem_.dual_rates(g, xi, a_rate_, inertia_rate_); }) {
-      if constexpr (Problem::has_dual_rates()) {
-        problem_.dual_rates(g, xi, a_rate_, inertia_rate_);
-        return;
-      }
-    }
+    if constexpr (has_dual_rates()) return evaluate_with_rates(g, xi);
     inertia_rate_.setZero();
     differentiate_along(problem_, g, xi, work_, moved_, [&](double shift, double weight) {
       if (moves) {

@@ -173,22 +173,26 @@ class Formulas {
     return rows && (r == 0 || dual_differential()) && (constant_inertia() || dual_inertia()) &&
            (!has_drift<S>() || has_constant_drift<S>());
   }
-  /// dA/dt and dI/dt along the curve g tau(e xi), of which `moving` is the first-order jet.
-  void dual_rates(const DualElement& moving, Mat<k, n>& a_rate, Mat<n, n>& inertia_rate) const {
-    const auto rates = [](const auto& from, auto&& to) {
+  /// A and I with dA/dt and dI/dt along the curve g tau(e xi), of which `moving` is the first-order jet; what is constant
+  /// is left as it is.
+  void dual_rates(const DualElement& moving, Mat<k, n>& a, Mat<k, n>& a_rate, Mat<n, n>& inertia,
+                  Mat<n, n>& inertia_rate) const {
+    const auto split = [](const auto& from, auto&& to, auto&& rate) {
       for (int j = 0; j < n; ++j) {
-        for (int i = 0; i < from.rows(); ++i) to(i, j) = from(i, j).v[0];
+        for (int i = 0; i < from.rows(); ++i) {
+          to(i, j) = from(i, j).a;
+          rate(i, j) = from(i, j).v[0];
+        }
       }
     };
-    a_rate.setZero();
-    inertia_rate.setZero();
     if constexpr (own > 0 && !requires(const S& s) { s.constraints(); }) {
-      rates(system_.constraints(moving), a_rate.template topRows<own>());
+      split(system_.constraints(moving), a.template topRows<own>(), a_rate.template topRows<own>());
     }
     if constexpr (r > 0) {
-      rates(system_.holonomic_differential(moving), a_rate.template bottomRows<r>());
+      split(system_.holonomic_differential(moving), a.template bottomRows<r>(),
+            a_rate.template bottomRows<r>());
     }
-    if constexpr (!constant_inertia()) rates(system_.inertia(moving), inertia_rate);
+    if constexpr (!constant_inertia()) split(system_.inertia(moving), inertia, inertia_rate);
   }
 #else
   static constexpr bool has_dual_rates() { return false; }

@@ -82,7 +82,7 @@ struct SystemModel {
   std::function<std::shared_ptr<const Mechanics>(std::shared_ptr<const Inputs>)> drive;
 };
 
-/// A registered system: its words, its parameters, and how to make it.
+/// A registered system: its descriptions, its parameters, and how to make it.
 struct SystemInfo {
   std::string name, summary, formula, known, source;
   GroupInfo group;

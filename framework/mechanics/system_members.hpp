@@ -23,7 +23,7 @@ struct Names {
 template <class S, bool = std::is_final_v<S>>
 struct Both : S, Names {};
 template <class S>
-struct Both<S, true> : Names {};  // cannot be asked
+struct Both<S, true> : Names {};  // nothing can derive from it
 
 // Data may have any name: `double force`.
 template <class Address>

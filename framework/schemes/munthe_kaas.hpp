@@ -4,9 +4,9 @@
 // The coordinates are those of the algebra at the start of the step, g = g_0 tau(eta), in which
 //   eta' = dL tau_eta^-1 xi.
 // With the exact dL tau^-1 every tableau keeps its order with every tau; without it the order would be 2.
-// Error of a step: e_eta, one unit of a coordinate being of size 1 (a displacement has no origin), and e_xi beside
-// |xi_i|, in one norm,
-//   |e|^2 = 1/2n sum (e_eta,i / (atol + rtol))^2 + (e_xi,i / (atol + rtol max |xi_i|))^2.
+// Error of a step: the largest of
+//   |e_eta,i| / (atol + rtol),   |e_xi,i| / (atol + rtol max |xi_i|):
+// a unit of a coordinate is of size 1, since a displacement has no origin.
 // Dense output: that of the tableau in (eta, x), then onto the constraints as a node.
 // Source: Munthe-Kaas, High order Runge-Kutta methods on manifolds (1999); Hairer, Lubich, Wanner, IV.8.
 #pragma once
@@ -64,9 +64,10 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
   }
   /// Of the step that was just finished; it is good up to 1.
   double error(const Node& next, double rtol, double atol) const {
-    const double square = estimate(this->table_.e, next, rtol, atol);
-    if (this->table_.e3.empty() || square == 0) return std::sqrt(square);
-    return square / std::sqrt(square + 0.01 * estimate(this->table_.e3, next, rtol, atol));
+    const double e = estimate(this->table_.e, next, rtol, atol);
+    if (this->table_.e3.empty() || e == 0) return e;
+    const double e3 = estimate(this->table_.e3, next, rtol, atol);
+    return e * e / std::sqrt(e * e + 0.01 * e3 * e3);
   }
 
   /// A first step from a node: an Euler step and the change of the rates along it, as in dopri5.f.
@@ -134,17 +135,16 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
       error_ += weight * this->q_rates_[at(i)];
       x_error_ += weight * this->x_rates_[at(i)];
     }
-    double sum = error_.squaredNorm() / ((atol + rtol) * (atol + rtol));
+    double most = error_.cwiseAbs().maxCoeff() / (atol + rtol);
     this->problem_.velocity(this->from_->x, this->xi_);
     this->problem_.velocity(next.x, after_);
     this->problem_.velocity(x_error_, error_);
-    const int n = this->problem_.dim();
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < this->problem_.dim(); ++i) {
       const double size = std::max(std::abs(this->xi_[i]), std::abs(after_[i]));
-      const double part = error_[i] / (atol + rtol * size);
-      sum += part * part;
+      const double part = std::abs(error_[i]) / (atol + rtol * size);
+      if (!(part <= most)) most = part;
     }
-    return sum / (2 * n);
+    return most;
   }
 
   Element g0_;

@@ -82,19 +82,20 @@ class Typed : public GroupOperations<Tau> {
   }
   static constexpr bool force_depends_on_velocity() { return has_force<System>(); }
   double potential(const Element& g) const { return formulas_->potential(g); }
-  /// dA/dt and dI/dt along g tau(e xi), by one dual number (where has_dual_rates()).
-  void dual_rates(const Element& g, const Vector& xi, Rows& a_rate, Matrix& inertia_rate) const {
+  /// A and I with dA/dt and dI/dt along g tau(e xi), by one dual number (where has_dual_rates()).
+  void dual_rates(const Element& g, const Vector& xi, Rows& a, Rows& a_rate, Matrix& inertia,
+                  Matrix& inertia_rate) const {
     using Dual = typename F::Dual;
     if constexpr (requires { Group::template along<Dual>(g, xi); }) {
-      formulas_->dual_rates(Group::template along<Dual>(g, xi), a_rate, inertia_rate);
+      formulas_->dual_rates(Group::template along<Dual>(g, xi), a, a_rate, inertia, inertia_rate);
     } else {
       VecT<Dual, n> eta;
       for (int i = 0; i < n; ++i) {
         eta[i].a = 0;
         eta[i].v[0] = xi[i];
       }
-      formulas_->dual_rates(Group::compose(constant_element<Dual, Group>(g), Tau::tau(eta)), a_rate,
-                            inertia_rate);
+      formulas_->dual_rates(Group::compose(constant_element<Dual, Group>(g), Tau::tau(eta)), a,
+                            a_rate, inertia, inertia_rate);
     }
   }
 

@@ -68,6 +68,7 @@ class Convergence {
     config_.on_failure = "stop";
     config_.compose = kTable;
     config_.tolerance = 1e-14;
+    config_.rtol = config_.atol = std::nullopt;
   }
 
   // Halves the step until two motions agree to round-off, or there agree no better than the pair before.

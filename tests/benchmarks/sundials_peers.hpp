@@ -245,9 +245,9 @@ class Multipliers {
       const auto g = At::element(y);
       own.formulas_.constraints(t, g, own.a_, own.b_);
       own.formulas_.force(t, g, xi, force);
-      Mat<k, n> a_rate;
+      Mat<k, n> a_rate = Mat<k, n>::Zero();
       Mat<n, n> inertia_rate;
-      own.rates_.problem.dual_rates(g, xi, a_rate, inertia_rate);
+      own.rates_.problem.dual_rates(g, xi, own.a_, a_rate, own.inertia_, inertia_rate);
       rows = a_rate * xi;
     }
     Eigen::Map<Vec<n>>(f + p) =

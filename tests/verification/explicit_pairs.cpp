@@ -191,6 +191,8 @@ TEST(ExplicitPairs, HaveConsistentTableaus) {
 TEST(ExplicitPairs, FollowTheTolerance) {
   for (Case c : cases()) {
     c.until *= 4;
+    // A circle and a motion of few steps leave the asymptotic range.
+    const bool strict = c.system != "ball_on_turntable" && c.system != "twisted";
     const Result exact = reference(c);
     for (const std::string scheme : {"dopri5", "tsit5", "dop853"}) {
       std::vector<double> x, y;
@@ -198,9 +200,7 @@ TEST(ExplicitPairs, FollowTheTolerance) {
         const Result r = run_of(c, scheme).step(0.01).tolerance({.relative = rtol}).run();
         ASSERT_TRUE(r) << r.status.reason;
         const double error = distance(r, exact);
-        if (c.system != "ball_on_turntable") {  // 16 s of a circle: 1400
-          EXPECT_LT(error, 400 * rtol) << c.system << " " << scheme << " " << rtol;
-        }
+        EXPECT_LT(error, (strict ? 100 : 1000) * rtol) << c.system << " " << scheme << " " << rtol;
         EXPECT_DOUBLE_EQ(r.last.time, c.until);
         EXPECT_LT(r.constraint_max, 1e-13) << c.system;
         EXPECT_LT(r.group_defect_max, 1e-14) << c.system;
@@ -210,9 +210,7 @@ TEST(ExplicitPairs, FollowTheTolerance) {
         x.push_back(std::log(rtol));
         y.push_back(std::log(error));
       }
-      // The estimate of dop853, e5^2 / sqrt(e5^2 + 0.01 e3^2), falls faster than the error at loose tolerances.
-      if (c.system == "ball_on_turntable" && scheme == "tsit5") continue;  // 1.22 on its circle
-      EXPECT_NEAR(slope(x, y), 1, scheme == "dop853" ? 0.3 : 0.15) << c.system << " " << scheme;
+      EXPECT_NEAR(slope(x, y), 1, strict ? 0.2 : 0.3) << c.system << " " << scheme;
     }
   }
 }
@@ -224,7 +222,7 @@ TEST(ExplicitPairs, HaveADenseOutputOfTheirOrder) {
     c.until *= 2;
     std::uniform_real_distribution<double> in(0, c.until);
     std::vector<double> times;
-    for (int i = 0; i < 300; ++i) times.push_back(in(random));
+    for (int i = 0; i < 1000; ++i) times.push_back(in(random));
     std::sort(times.begin(), times.end());
     const Result exact =
         run_of(c, "dop853").every(1).tolerance({.relative = 1e-13}).output(times).run();

@@ -1,0 +1,143 @@
+// The step of lift on a left-invariant problem: m unknowns, (M17), in the Hamel form where that exists. Part of lift.hpp.
+#pragma once
+
+#include <hamel/framework/schemes/hamel_form.hpp>
+#include <hamel/framework/schemes/lift.hpp>
+
+namespace hamel {
+
+/// y in R^m, contracted where the Hamel form exists.
+template <class P>
+class Lift::Reduced {
+  using Form = HamelForm<P>;
+  using Tau = typename P::Tau;
+  using G = typename P::Group;
+  using Element = typename P::Element;
+  static constexpr int n = P::n;
+
+ public:
+  using Problem = P;
+  using Unknown = typename P::State;
+  using Jacobian = typename P::StateMatrix;
+  using Node = hamel::Node<P>;
+
+  Reduced(const P& problem, double s)
+      : problem_(problem),
+        s_(s),
+        one_sided_(s == 0 || Tau::one_parameter || (s == 1 && Tau::symmetric)),
+        mirrored_(s == 0.5 && Tau::symmetric),
+        form_(problem, [this](const Vec<n>& xi, const Vec<n>& p) { return end_momentum(xi, p); }) {
+    if constexpr (Form::exists()) contracted_ = Form::exists(s);
+  }
+
+  /// Small enough to be inlined whole?
+  static constexpr bool inlined = Form::exists();
+  static constexpr int size() { return P::m; }
+  void begin(const Node& node, double h) {
+    from_ = &node;
+    h_ = h;
+  }
+  void guess(Unknown& y) const { y = from_->x; }
+  /// (|mu_bar| + |I xi/h|)^2, both of one length in the Hamel frame.
+  double scale_squared() const { return 4 * from_->x.squaredNorm(); }
+
+  /// F(y) = E^T mu0 - mu_bar.
+  [[gnu::always_inline]] void residual(const Unknown& y, Unknown& f) const {
+    if constexpr (Form::exists()) {
+      if (contracted_) [[likely]] {
+        f = form_(y, h_) - from_->x;
+        return;
+      }
+    }
+    full_residual(y, f);
+  }
+
+  /// F and dF/dy.
+  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f,
+                                              Jacobian& j) const requires HasJacobians<P> {
+    residual(y, f);
+    const Vec<n> p = momentum(y), step = xi(y);
+    if (one_sided_) {
+      j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
+          problem_.reduce_momentum(Tau::dtau_right_inverse(step).transpose());
+      return;
+    }
+    // dm = C^-1 (I E dy - dC m),  dmu0 = Ad_{f0}^T dm + K(mu0) dL_{z0} dz0.
+    const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
+    const Mat<n, n> c = (s_ * z0.right + (1 - s_) * z1.right).transpose();
+    const Mat<n, n> c_inverse = inverse_of(c);
+    const Vec<n> m = c_inverse * p;
+    const Mat<n, n> dc_m = (1 - s_) * (1 - s_) * z1.right_transpose_derivative(m) -
+                           s_ * s_ * z0.right_transpose_derivative(m);
+    const Mat<n, n> pull = G::Ad(z0.f).transpose() * c_inverse;
+    j = problem_.reduce_momentum(pull) -
+        h_ * problem_.reduce_both(pull * dc_m + s_ * z0.pull_derivative(z0.pull(m)));
+  }
+
+  [[gnu::always_inline]] bool finish(const Unknown& y, Node& next) const {
+    const Vec<n> step = xi(y);
+    if (!Tau::in_domain(step)) return false;
+    Element increment;
+    if (one_sided_) {
+      increment = Tau::tau(step);
+    } else {
+      const Element f1 = Tau::tau(Vec<n>((1 - s_) * step));
+      increment =
+          mirrored_ ? G::compose(f1, f1) : G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), f1);
+    }
+    next.t = from_->t + h_;
+    next.g = G::compose(from_->g, increment);
+    if constexpr (Form::exists()) {
+      if (contracted_) [[likely]] {
+        next.x = form_(y, -h_);
+        return true;
+      }
+    }
+    full_finish(y, step, next.x);
+    return true;
+  }
+
+ private:
+  Vec<n> xi(const Unknown& y) const {
+    Vec<n> v;
+    problem_.velocity(y, v);
+    return h_ * v;
+  }
+  Vec<n> momentum(const Unknown& y) const {
+    Vec<n> p;
+    problem_.momentum({}, y, p);
+    return p;
+  }
+  // mu0 = Ad_{f0}^T m, m = C^-1 p.
+  Vec<n> end_momentum(const Vec<n>& step, const Vec<n>& p) const {
+    if (one_sided_) return Tau::dtau_right_inverse_transpose(step, p);
+    return G::Ad_transpose(Tau::tau(Vec<n>(-s_ * step)),
+                           base_momentum<Tau>(s_, step, p, Vec<n>::Zero()));
+  }
+  // Out of line, so that the contracted loop stays small.
+  [[gnu::noinline]] void full_residual(const Unknown& y, Unknown& f) const {
+    f = problem_.reduce(end_momentum(xi(y), momentum(y))) - from_->x;
+  }
+  [[gnu::noinline]] void full_finish(const Unknown& y, const Vec<n>& step, Unknown& next) const {
+    const Vec<n> p = momentum(y);
+    if (one_sided_) {
+      next = problem_.reduce(Tau::dtau_left_inverse_transpose(step, p));
+    } else {
+      next = problem_.reduce(G::Ad_transpose(Tau::tau(Vec<n>((1 - s_) * step)),
+                                             base_momentum<Tau>(s_, step, p, Vec<n>::Zero())));
+    }
+  }
+
+  struct NoForm {
+    template <class EndMomentum>
+    NoForm(const P& /*problem*/, const EndMomentum& /*mu0*/) {}
+  };
+
+  P problem_;
+  double s_, h_ = 0;
+  bool one_sided_, mirrored_, contracted_ = false;
+  const Node* from_ = nullptr;
+  [[no_unique_address]] std::conditional_t<Form::exists(), Form, NoForm> form_;
+};
+
+}  // namespace hamel
