@@ -24,15 +24,14 @@ Integration::Integration(KernelFactory factory, KernelSetup setup, Config config
 Status Integration::step(long count) {
   if (setup_.inputs != nullptr) {
     kernel_->state(state_);
-    const double h = kernel_->next_step();
-    const Status status = covered(state_.time + static_cast<double>(count) * h, 1e-6 * h);
-    if (!status.ok && !config_.chooses_steps()) return status;
+    const double end = state_.time + static_cast<double>(count) * kernel_->next_step();
+    if (const Status status = covered(end); !status.ok && !config_.chooses_steps()) return status;
   }
   return kernel_->advance(count);
 }
 
-Status Integration::covered(double t, double slack) {
-  if (setup_.inputs == nullptr || setup_.inputs->covers(t - slack)) return {};
+Status Integration::covered(double t) {
+  if (setup_.inputs == nullptr || setup_.inputs->covers(t)) return {};
   kernel_->state(state_);
   return {false, state_.step + 1, state_.time, 0,
           fmt::format("the table of an input does not cover t = {:.10g}", t)};

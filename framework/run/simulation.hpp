@@ -77,7 +77,7 @@ class Integration {
 
  private:
   // Not ok where a table of an input ends before t.
-  Status covered(double t, double slack = 0);
+  Status covered(double t);
 
   KernelFactory factory_;
   KernelSetup setup_;
