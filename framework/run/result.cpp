@@ -238,9 +238,13 @@ std::string Result::report() const {
   }
   for (const std::string& note : notes) line("note", note);
   line("final velocity", join(last.velocity));
-  line("solver", fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
-                             static_cast<double>(stats.iterations) / count, stats.iterations_max,
-                             stats.residual_max));
+  if (std::find(unused.begin(), unused.end(), "solver") == unused.end()) {
+    line("solver", fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
+                               static_cast<double>(stats.iterations) / count, stats.iterations_max,
+                               stats.residual_max));
+  } else {
+    line("evaluations", fmt::format("{} of the equations of motion", stats.evaluations));
+  }
   if (stats.fallbacks > 0) {
     const Fallback& first = stats.first_fallbacks.front();
     line("fallbacks", fmt::format("{} of {} steps; the first, step {} (t = {:.6g}): {}",

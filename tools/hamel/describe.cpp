@@ -208,6 +208,7 @@ Json description_of(const std::string& name, const Parameters& given) {
 // One line per member; lists of objects as indented lines.
 void print(const Json& json) {
   for (const auto& [key, value] : json.items()) {
+    if (value.is_array() && value.empty()) continue;
     if (value.is_string()) {
       if (!value.get<std::string>().empty())
         fmt::print("  {:<12} {}\n", key, value.get<std::string>());
