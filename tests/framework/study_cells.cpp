@@ -1,5 +1,6 @@
 // The cells of a study: systems from data files, and schemes that do not use an axis.
 #include <fstream>
+#include <map>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,6 +17,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Pair;
 
 constexpr const char* kSkate = R"(group = "se2"
 inertia = [0.1, 1.0, 1.0]
@@ -135,6 +137,40 @@ TEST(StudyCells, AxesGoByName) {
   EXPECT_THAT(mistakes_of(config), AllOf(Contains(HasSubstr("unknown axis 'schme'")),
                                          Contains(HasSubstr("did you mean 'scheme'?")),
                                          Contains(HasSubstr("s: 'half' is not a number"))));
+}
+
+/// Steps chosen by the error stand beside steps of one size: a pair uses its tolerance, rkmk4 its step, lift either; their order is
+/// the power of the tolerance, 1, and no group mixes the two.
+TEST(StudyCells, TolerancesStandBesideSteps) {
+  StudyConfig config = parse_study(R"(until = 4
+repeats = 1
+scheme = ["dopri5", "rkmk4", "lift"]
+step = [0.1, 0.05]
+rtol = ["fixed", 1e-5, 1e-6, 1e-7]
+[[system]]
+name = "chaplygin_sleigh"
+velocity = [0.9, -1, 0]
+[[exclude]]
+scheme = "dopri5"
+rtol = "fixed"
+why = "by tolerance"
+)",
+                                   "study.toml", registry());
+  const StudyResult study = run(config);
+  std::map<std::string, int> runs;
+  for (size_t i = 0; i < study.cells.size(); ++i) {
+    const StudyCell& cell = study.cells[i];
+    if (!cell.runs()) continue;
+    const StudyMetrics& m = study.metrics[i];
+    EXPECT_TRUE(m.ok) << m.reason;
+    const bool chosen = cell.config.chooses_steps();
+    ++runs[cell.config.scheme + (chosen ? " chosen" : " fixed")];
+    EXPECT_EQ(cell.claimed_order, chosen ? 1 : cell.config.scheme == "lift" ? 2 : 4);
+    EXPECT_NEAR(m.order, cell.claimed_order, chosen ? 0.3 : 0.35) << cell.config.scheme;
+    EXPECT_NEAR(m.time, 4, 1e-12);
+  }
+  EXPECT_THAT(runs, ElementsAre(Pair("dopri5 chosen", 3), Pair("lift chosen", 6),
+                                Pair("lift fixed", 2), Pair("rkmk4 fixed", 2)));
 }
 
 /// A cell that is not run keeps the values that were asked for, in the table too.
