@@ -117,6 +117,10 @@ struct FallingDisk {
               },
               {shapes::cylinder(radius, 0.04 * radius)})
         .trail();
+    const auto contact = [r = radius](const auto& g) {
+      return Placement{g.translation + g.rotation * Contact<double>(g, r).r, Mat<3, 3>::Identity()};
+    };
+    scene.body("contact", contact, {shapes::sphere(0.05 * radius, {.color = "dark"})}).trail();
   }
 };
 

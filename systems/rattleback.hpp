@@ -124,6 +124,10 @@ struct Rattleback {
               {shapes::ellipsoid({a, b, semi_axes[2]}, {.at = {0, 0, depth}}),
                shapes::line({{-a, 0, depth}, {a, 0, depth}}, {.color = "accent"})})
         .trail({a, 0, depth});
+    const auto at = [body = *this](const auto& g) {
+      return Placement{g.translation + g.rotation * body.contact(g), Mat<3, 3>::Identity()};
+    };
+    scene.body("contact", at, {shapes::sphere(0.03 * a, {.color = "dark"})}).trail();
   }
 };
 

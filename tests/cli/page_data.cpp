@@ -72,6 +72,31 @@ TEST(PageData, PlotWithFitsMarkersAndFilters) {
   EXPECT_EQ(b["log_y"], true);
 }
 
+TEST(PageData, PlotWithFloorSlopesAndMarks) {
+  const Json b = block([](Page& page) {
+    Series omega{"omega [rad/s]", {0, 1}, {1, 2}};
+    omega.key = "omega";
+    page.plot("Velocity",
+              {.x = "t", .y = "y", .floor = 2.2e-16, .slopes = {1, 2}, .marks = {{0.5, "stop"}}},
+              {omega});
+  });
+  EXPECT_EQ(b["floor"], 2.2e-16);
+  EXPECT_EQ(b["slopes"], Json::parse("[1, 2]"));
+  EXPECT_EQ(b["marks"], Json::parse(R"([{"x": 0.5, "text": "stop"}])"));
+  EXPECT_EQ(b["series"][0]["key"], "omega");
+}
+
+// Of each window the largest, and the last window like the others: a small last value is no fall of the curve.
+TEST(PageData, MaximaOverWindows) {
+  std::vector<double> x, y;
+  for (int i = 0; i < 1000; ++i) {
+    x.push_back(i);
+    y.push_back(i % 10 == 9 ? 1e-20 : 1);
+  }
+  const Series s = thinned("error", x, y, true, 100);
+  EXPECT_EQ(s.y, std::vector<double>(50, 1.0));
+}
+
 TEST(PageData, TableWithFilter) {
   const Json b = block([](Page& page) {
     page.table("Runs", {"name", "error"}, {{"lift", 1.5}, {"boxed", kNaN}}, "note", true);

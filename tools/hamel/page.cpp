@@ -39,6 +39,7 @@ Json curves(const std::vector<Series>& series) {
     if (s.markers) curve["markers"] = true;
     if (s.fit) curve["fit"] = {{"slope", number(s.fit->slope)}, {"text", s.fit->text}};
     if (!s.tags.empty()) curve["tags"] = s.tags;
+    if (!s.key.empty()) curve["key"] = s.key;
   }
   return out;
 }
@@ -130,15 +131,20 @@ void Page::plot(const std::string& title, const Axes& axes, const std::vector<Se
                 const std::string& note, const std::vector<Filter>& filters) {
   Json selectors = Json::array();
   for (const Filter& f : filters) selectors.push_back({{"name", f.name}, {"values", f.values}});
-  data_->blocks().push_back({{"kind", "plot"},
-                             {"title", title},
-                             {"x", axes.x},
-                             {"y", axes.y},
-                             {"log_x", axes.log_x},
-                             {"log_y", axes.log_y},
-                             {"series", curves(series)},
-                             {"filters", selectors},
-                             {"note", note}});
+  Json block = {{"kind", "plot"},
+                {"title", title},
+                {"x", axes.x},
+                {"y", axes.y},
+                {"log_x", axes.log_x},
+                {"log_y", axes.log_y},
+                {"series", curves(series)},
+                {"filters", selectors},
+                {"note", note}};
+  if (axes.floor > 0) block["floor"] = number(axes.floor);
+  if (!axes.slopes.empty()) block["slopes"] = axes.slopes;
+  for (const Mark& mark : axes.marks)
+    block["marks"].push_back({{"x", number(mark.x)}, {"text", mark.text}});
+  data_->blocks().push_back(std::move(block));
 }
 void Page::path(const std::string& title, const Axes& axes, const std::vector<Series>& series) {
   data_->blocks().push_back({{"kind", "path"},
@@ -224,8 +230,6 @@ Series thinned(std::string name, const std::vector<double>& x, const std::vector
       if (low == high) break;
     }
   }
-  out.x.push_back(x.back());
-  out.y.push_back(y.back());
   return out;
 }
 

@@ -28,6 +28,13 @@ struct Series {
   bool markers = false;  // in a plot up to 48 points have them anyway
   std::optional<Fit> fit = {};
   std::map<std::string, std::string> tags = {};  // what the plot's filters choose by
+  std::string key = "";  // series with one key have one colour on the whole page; empty: the name
+};
+
+/// A moment on the x axis, drawn as a line with this text.
+struct Mark {
+  double x = 0;
+  std::string text;
 };
 
 /// A selector over a plot: only series whose tag `name` has the chosen value (the first, at the start)
@@ -37,10 +44,13 @@ struct Filter {
   std::vector<std::string> values;
 };
 
-/// Axis labels; logarithmic where it helps.
+/// Axis labels, logarithmic where it helps, and what is drawn beside the curves.
 struct Axes {
   std::string x, y;
   bool log_x = false, log_y = false;
+  double floor = 0;  // round-off: a line there, and a fixed axis while the curves stay near it
+  std::vector<int> slopes = {};  // triangles of these slopes, on two logarithmic axes
+  std::vector<Mark> marks = {};  // events
 };
 
 class Page {
@@ -74,8 +84,8 @@ class Page {
   std::unique_ptr<Data> data_;
 };
 
-/// At most about `points` points: of each bucket those with the smallest and the largest y, or only
-/// the largest (peaks, for errors on a logarithmic axis). NaN is never dropped.
+/// At most about `points` points: of each of equal windows those with the smallest and the largest y, or only
+/// the largest (peaks, for errors on a logarithmic axis), the last window like the others. NaN is never dropped.
 Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
                bool peaks, size_t points = 1200);
 

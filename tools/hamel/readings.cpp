@@ -1,6 +1,7 @@
 #include "readings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <future>
 #include <iterator>
 #include <stdexcept>
@@ -35,6 +36,11 @@ const std::vector<Figure>& figures() {
   return all;
 }
 
+double Figure::floor(double step) const {
+  constexpr double kRoundOff = 2.2e-16;
+  return !magnitude ? 0 : column == "constraint" ? kRoundOff / std::abs(step) : kRoundOff;
+}
+
 namespace {
 
 Outcome run_reading(const StudyCell& cell) {
@@ -47,6 +53,7 @@ Outcome run_reading(const StudyCell& cell) {
   out.status = result.status;
   out.measured = result;
   out.nanoseconds = result.seconds * 1e9 / static_cast<double>(std::max(result.steps, 1L));
+  out.windows = windows_note(result);
   for (const Figure& figure : figures())
     out.curves.push_back(curve(result, out.name, figure.column, figure.magnitude));
   return out;
@@ -105,9 +112,12 @@ void add_figures(Page& page, const std::vector<Outcome>& outcomes,
     }
     if (figure.column == "mu1" && !exact.empty()) series.push_back(exact[0]);
     if (figure.column == "mu2" && !exact.empty()) series.push_back(exact[1]);
-    page.plot(figure.title,
-              {.x = "time t [s]", .y = figure.label, .log_x = false, .log_y = figure.magnitude},
-              series, figure.note);
+    Axes axes{.x = "time t [s]", .y = figure.label, .log_x = false, .log_y = figure.magnitude};
+    axes.floor = figure.floor(outcomes.front().cell.config.step);
+    const std::string& windows = outcomes.front().windows;
+    page.plot(
+        figure.title, axes, series,
+        !figure.magnitude ? figure.note : figure.note + (figure.note.empty() ? "" : " ") + windows);
   }
 }
 

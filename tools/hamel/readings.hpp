@@ -23,6 +23,7 @@ struct Outcome {
   Measurements measured;
   double nanoseconds = 0;
   std::vector<Series> curves;  // in the order of figures()
+  std::string windows;         // what their points are the largest of
 };
 
 /// A column of the trajectory and how a figure shows it.
@@ -30,6 +31,8 @@ struct Figure {
   std::string column, title, label;
   bool magnitude;
   std::string note;
+  /// Round-off of this quantity in a run of step h; 0: none is drawn.
+  double floor(double step) const;
 };
 const std::vector<Figure>& figures();
 

@@ -64,6 +64,8 @@ class Story {
     page_.verdict(status, words);
     text_ += "[" + status + "] " + words + "\n";
   }
+  /// For summary.txt alone: the page shows it as a figure.
+  void summarise(const std::string& words) { text_ += words + "\n"; }
   const std::string& text() const { return text_; }
 
  private:
@@ -179,6 +181,7 @@ class Report {
         runs.push_back(with(with(all, "system", system.label), "step", h));
       keep(runs.front());
       std::vector<std::vector<Cell>> rows;
+      std::vector<Series> convergence;
       std::string orders;
       for (size_t i = 0; i < runs[0].size(); ++i) {
         const double e0 = runs[0][i].measured.exact_error_final,
@@ -188,13 +191,27 @@ class Report {
         rows.push_back({finest.name, e0, e1, e2, std::log2(e0 / e1), std::log2(e1 / e2),
                         finest.measured.exact_velocity_error_max,
                         finest.measured.energy_error_max});
-        orders += fmt::format("{}`{}` {:.2e} ({:.2f})", i == 0 ? "" : ", ", finest.name, e2,
-                              std::log2(e1 / e2));
+        Series& line = convergence.emplace_back(Series{
+            finest.name,
+            {runs[0][i].cell.config.step, runs[1][i].cell.config.step, finest.cell.config.step},
+            {e0, e1, e2}});
+        const double order = std::log2(e1 / e2);
+        line.fit = Fit{order, fmt::format("order {:.2f}", order)};
+        orders += fmt::format("{}`{}` {:.2e} ({:.2f})", i == 0 ? "" : ", ", finest.name, e2, order);
       }
-      story_.say(
-          {fmt::format("{} s with Cayley at h = {}. Configuration error at the end for the "
-                       "finest step, and the order measured: {}.",
-                       study.until, join(steps), orders)});
+      page_.plot(
+          "Order of convergence",
+          {.x = "step h [s]",
+           .y = "configuration error at the end",
+           .log_x = true,
+           .log_y = true,
+           .slopes = {1, 2}},
+          convergence,
+          fmt::format("{} s with Cayley; the order between the two finer steps.", study.until));
+      story_.summarise(
+          fmt::format("{} s with Cayley at h = {}. Configuration error at the end for the finest "
+                      "step, and the order measured: {}.",
+                      study.until, join(steps), orders));
       add_figures(page_, runs.front(), exact_momentum(runs.front().front().cell.config));
       page_.table(
           system.label + ", errors and measured order",

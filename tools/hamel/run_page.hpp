@@ -10,18 +10,17 @@
 
 namespace hamel::tools {
 
-/// Verdict, energy error, constraint residual, group defect, momentum, trajectory error, the path in
-/// the plane or the axes on the sphere, and the record.
+/// Verdict, motion, physics, accuracy, and the record; events and inputs where the record has them.
 Page run_page(const Result& result);
 
-/// One column of a run against time, thinned; magnitude for a logarithmic axis.
+/// One column of a run against time, thinned; as magnitude, for a logarithmic axis, the largest over windows.
 Series curve(const Result& result, const std::string& name, const std::string& column,
              bool magnitude = true);
 
-/// x and y of the plane, where the group has them; an empty series otherwise.
-Series plane_path(const Result& result, const std::string& name);
+/// What windows those are; "" where every state is shown.
+std::string windows_note(const Result& result);
 
-/// The columns of R as curves on the sphere, where the group has a rotation; empty otherwise.
-std::vector<SphereCurve> axes_on_sphere(const Result& result);
+/// Round-off in coordinates as large as those of this run.
+double round_off(const Result& result);
 
 }  // namespace hamel::tools

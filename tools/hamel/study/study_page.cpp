@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -100,6 +101,18 @@ class StudyPage {
     return out;
   }
 
+  // The whole orders that fits come close to, for triangles beside the curves.
+  static std::vector<int> slopes(const std::vector<Series>& series) {
+    std::set<int> out;
+    for (const Series& s : series) {
+      if (!s.fit) continue;
+      const double order = std::round(s.fit->slope);
+      if (order >= 1 && order <= 6 && std::abs(s.fit->slope - order) < kShortOfClaim)
+        out.insert(static_cast<int>(order));
+    }
+    return {out.begin(), out.end()};
+  }
+
   void diagrams() {
     const size_t failed = static_cast<size_t>(std::count_if(
         view_.run().begin(), view_.run().end(), [&](size_t i) { return !view_.metrics(i).ok; }));
@@ -125,14 +138,19 @@ class StudyPage {
         "Does not depend on the machine. What an evaluation costs differs between schemes; "
         "explicit ones make none.");
     page_.section("Orders");
+    const std::vector<Series> by_step = curves(
+        [&](size_t i) {
+          const Config& c = view_.cell(i).config;
+          return c.chooses_steps() ? kNotMeasured : c.step;
+        },
+        true);
     plot("Error against step",
-         {.x = "step h [s]", .y = "trajectory error", .log_x = true, .log_y = true},
-         curves(
-             [&](size_t i) {
-               const Config& c = view_.cell(i).config;
-               return c.chooses_steps() ? kNotMeasured : c.step;
-             },
-             true),
+         {.x = "step h [s]",
+          .y = "trajectory error",
+          .log_x = true,
+          .log_y = true,
+          .slopes = slopes(by_step)},
+         by_step,
          "In the legend the slope by least squares, and of how many steps: those whose error is "
          "above the floor and below 0.1 of the motion.");
     if (view_.varies("rtol")) {

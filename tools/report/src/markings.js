@@ -32,9 +32,8 @@ function triangles(slopes, shown, { x, y }) {
   const [from, to] = [0.55, 0.8].map((part) => left + part * (right - left));
   return slopes.map((slope, i) => {
     const low = Math.min(...points.filter((p) => p[0] >= from - 0.01).map((p) => p[1])) - 0.6 * (i + 1);
-    const corners = [[from, low], [to, low + slope * (to - from)], [to, low], [from, low]];
-    return { id: `slope ${slope}`, name: '', type: 'line', data: corners, silent: true, showSymbol: false, tooltip: { show: false },
-      lineStyle: { color: 'var(--soft)', width: 1 }, markPoint: { silent: true, symbol: 'none', data: [{ coord: [to, low + slope * (to - from) / 2] }],
-        label: { ...TEXT, fontSize: 11, formatter: `slope ${slope}`, position: 'right', offset: [2, 0] } } };
+    const [middle, top] = [0.5, 1].map((part) => low + part * slope * (to - from));
+    return { id: `slope ${slope}`, name: '', type: 'line', data: [[to, middle], [to, top], [from, low], [to, low], [to, middle]], silent: true, showSymbol: false,
+      tooltip: { show: false }, lineStyle: { color: 'var(--soft)', width: 1 }, endLabel: { ...TEXT, show: true, fontSize: 11, formatter: `slope ${slope}`, distance: 4 } };
   });
 }

@@ -1,0 +1,53 @@
+// Names and units of the components of xi, and the coordinates that are their integrals.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include <hamel/framework/mechanics/components.hpp>
+#include <hamel/systems/simulate.hpp>
+
+namespace {
+
+using namespace hamel;
+
+TEST(Components, EverySystemHasOneNameForEachComponent) {
+  for (const std::string& name : registry().systems()) {
+    const SystemModel system = simulate(name).build().system();
+    std::set<std::string> names;
+    for (const Component& c : components_of(system.group)) {
+      EXPECT_FALSE(c.name.empty()) << name;
+      EXPECT_FALSE(c.unit.empty()) << name << ": " << c.name;
+      EXPECT_TRUE(names.insert(c.name).second) << name << ": " << c.name << " twice";
+    }
+    EXPECT_EQ(names.size(), static_cast<size_t>(system.group.dim)) << name;
+  }
+}
+
+TEST(Components, ThoseOfAProductAreToldApart) {
+  const auto names = [](const std::string& system) {
+    std::string out;
+    for (const Component& c : components_of(simulate(system).build().system().group))
+      out += c.name + " ";
+    return out;
+  };
+  EXPECT_EQ(names("rolling_ball"), "omega1 omega2 omega3 x' y' ");
+  EXPECT_EQ(names("differential_drive"), "omega v1 v2 angle_2' angle_3' ");
+}
+
+// A shape coordinate is the integral of its component: over one small step of the exact flow of the segway's
+// wheels, theta(h) - theta(0) = h theta' + O(h^2).
+TEST(Components, ShapeCoordinatesAreIntegrals) {
+  const Result run = simulate("segway").step(1e-4).until(1e-4).run();
+  const auto shape = shape_of(run.system.group, components_of(run.system.group));
+  ASSERT_EQ(shape.size(), 3);
+  EXPECT_EQ(shape[2].name, "angle_4");
+  EXPECT_EQ(shape[2].unit, "rad");
+  for (const ShapeCoordinate& s : shape) {
+    const auto column = static_cast<size_t>(s.column) + 1;
+    const double moved = run.trajectory.at(1, column) - run.trajectory.at(0, column);
+    const double rate = run.trajectory.column("xi" + std::to_string(s.component + 1))[0];
+    EXPECT_NEAR(moved / 1e-4, rate, 1e-2) << s.name;
+  }
+}
+
+}  // namespace

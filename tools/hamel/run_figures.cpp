@@ -1,0 +1,284 @@
+#include "run_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <hamel/framework/mechanics/components.hpp>
+
+namespace hamel::tools {
+namespace {
+
+constexpr double kRoundOff = 2.2e-16;
+constexpr size_t kWindows = 240;  // maxima of errors: as many as a figure shows apart
+
+// The first column that is called name or ends in _name (a factor of a product); -1 when none is.
+int find_column(const Result& result, const std::string& name) {
+  const auto& columns = result.system.group.columns;
+  for (size_t j = 0; j < columns.size(); ++j) {
+    if (columns[j] == name || columns[j].ends_with("_" + name)) return static_cast<int>(j) + 1;
+  }
+  return -1;
+}
+
+std::vector<size_t> thin_rows(const Result& result, size_t points) {
+  const size_t rows = result.trajectory.rows(), step = std::max<size_t>(rows / points, 1);
+  std::vector<size_t> out;
+  for (size_t i = 0; i < rows; i += step) out.push_back(i);
+  if (!out.empty() && out.back() != rows - 1) out.push_back(rows - 1);
+  return out;
+}
+
+std::span<const double> element(const Result& result, size_t row) {
+  return result.trajectory.row(row).subspan(1, result.system.group.columns.size());
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+}
+
+// The points of bodies whose way is drawn, seen from above; else x and y of the group, where it has them.
+std::vector<Series> paths(const Result& result) {
+  std::vector<Series> out;
+  const std::vector<size_t> rows = thin_rows(result, 3000);
+  for (const DrawnBody& body : result.system.drawing.bodies) {
+    if (!body.has_trail) continue;
+    Series& series = out.emplace_back(Series{body.name, {}, {}});
+    for (size_t i : rows) {
+      const Placement place = body.place(element(result, i));
+      const Vec<3> at =
+          place.position + place.rotation * Eigen::Map<const Vec<3>>(body.trail_point.data());
+      series.x.push_back(at[0]);
+      series.y.push_back(at[1]);
+    }
+  }
+  const int x = find_column(result, "x"), y = find_column(result, "y");
+  if (!out.empty() || x < 0 || y < 0) return out;
+  Series& series = out.emplace_back(Series{"x, y", {}, {}});
+  for (size_t i : rows) {
+    series.x.push_back(result.trajectory.at(i, static_cast<size_t>(x)));
+    series.y.push_back(result.trajectory.at(i, static_cast<size_t>(y)));
+  }
+  return out;
+}
+
+// The paths do not all stand still: a body that only turns about a fixed point of its way has none.
+bool moves(const std::vector<Series>& paths) {
+  return std::any_of(paths.begin(), paths.end(), [](const Series& s) {
+    const auto [x0, x1] = std::minmax_element(s.x.begin(), s.x.end());
+    const auto [y0, y1] = std::minmax_element(s.y.begin(), s.y.end());
+    return !s.x.empty() && (*x1 > *x0 || *y1 > *y0);
+  });
+}
+
+std::vector<SphereCurve> axes_on_sphere(const Result& result) {
+  const int first = find_column(result, "R11");
+  if (first < 0) return {};
+  std::vector<SphereCurve> out;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    SphereCurve curve{fmt::format("body axis e{}", axis + 1), {}};
+    for (size_t i : thin_rows(result, 2000)) {
+      const size_t at = static_cast<size_t>(first) + axis;  // row-major: column `axis` of R
+      curve.points.push_back({result.trajectory.at(i, at), result.trajectory.at(i, at + 3),
+                              result.trajectory.at(i, at + 6)});
+    }
+    out.push_back(std::move(curve));
+  }
+  return out;
+}
+
+std::optional<Animation> animation_of(const Result& result) {
+  const Drawing& drawing = result.system.drawing;
+  if (drawing.bodies.empty()) return {};
+  Animation out;
+  out.title = "Motion";
+  out.from_above = drawing.from_above;
+  out.floor = drawing.has_floor;
+  const std::vector<size_t> rows = thin_rows(result, 900);
+  for (size_t i : rows) out.times.push_back(result.trajectory.at(i, 0));
+  for (const DrawnBody& drawn : drawing.bodies) {
+    MovingBody body{drawn.name, {}, drawn.shapes, drawn.has_trail, drawn.trail_point};
+    for (size_t i : rows) {
+      const Placement at = drawn.place(element(result, i));
+      const Eigen::Quaterniond q(at.rotation);
+      body.poses.push_back(
+          {{at.position[0], at.position[1], at.position[2]}, {q.w(), q.x(), q.y(), q.z()}});
+    }
+    out.bodies.push_back(std::move(body));
+  }
+  return out;
+}
+
+// Curves that are measured in the same unit stand in one figure.
+class ByUnit {
+ public:
+  void add(const std::string& unit, Series series) {
+    if (!figures_.contains(unit)) order_.push_back(unit);
+    figures_[unit].push_back(std::move(series));
+  }
+  void plot(Page& page, const std::map<std::string, std::string>& titles, const std::string& other,
+            const std::vector<Mark>& marks) const {
+    for (const std::string& unit : order_) {
+      const auto title = titles.find(unit);
+      Axes axes{.x = "time t [s]", .y = unit.empty() ? "" : "[" + unit + "]"};
+      axes.marks = marks;
+      page.plot(title == titles.end() ? other : title->second, axes, figures_.at(unit));
+    }
+  }
+
+ private:
+  std::vector<std::string> order_;
+  std::map<std::string, std::vector<Series>> figures_;
+};
+
+Series component(const Result& r, const std::string& name, const std::string& column,
+                 const std::string& key) {
+  Series series = curve(r, name, column, false);
+  series.key = key;
+  return series;
+}
+
+void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) {
+  std::vector<Series> reactions;
+  Axes axes{.x = "time t [s]", .y = "lambda"};
+  axes.marks = marks;
+  std::string note = fmt::format(
+      "Multipliers of the rows A xi = b, from the equations of motion at the recorded "
+      "states. Their work over the run: {:.2e}, with A xi measured on the "
+      "configurations; where b = 0 it is zero but for round-off.",
+      r.reaction_work);
+  for (int i = 1; r.trajectory.has(fmt::format("lambda{}", i)); ++i) {
+    const std::string column = fmt::format("lambda{}", i);
+    const auto& contacts = r.system.contacts;
+    const bool contact = std::find(contacts.begin(), contacts.end(), i - 1) != contacts.end();
+    reactions.push_back(curve(r, contact ? column + " [N], contact" : column, column, false));
+    if (!contact) continue;
+    const std::vector<double> force = r.trajectory.column(column);
+    const auto pull = std::find_if(force.begin(), force.end(), [](double f) { return f < 0; });
+    const double least = *std::min_element(force.begin(), force.end());
+    if (pull == force.end()) {
+      note += fmt::format(
+          " `{}` is a normal reaction: the contact pushes all along, by {:.3g} N "
+          "at least.",
+          column, least);
+    } else {
+      const double t = r.trajectory.at(static_cast<size_t>(pull - force.begin()), 0);
+      axes.marks.push_back({t, "contact pulls"});
+      note += fmt::format(
+          " `{}` is a normal reaction: from t = {:.4g} on the contact would have "
+          "to **pull** (least {:.3g} N), where a real body lifts off.",
+          column, t, least);
+    }
+  }
+  if (!reactions.empty()) page.plot("Reaction forces", axes, reactions, note);
+}
+
+void add_energy_balance(Page& page, const Result& r, const std::vector<Mark>& marks) {
+  std::vector<double> rest = r.trajectory.column("energy");
+  const std::vector<double> work = r.trajectory.column("work");
+  for (size_t i = 0; i < rest.size(); ++i) rest[i] -= work[i];
+  Axes axes{.x = "time t [s]", .y = "[J]"};
+  axes.marks = marks;
+  page.plot("Energy balance", axes,
+            {curve(r, "energy E [J]", "energy", false), curve(r, "work W [J]", "work", false),
+             thinned("E - W [J]", r.trajectory.column("t"), rest, false)},
+            "W is the work of forces and moving constraints, by a quadrature over all steps; E - W "
+            "is constant but for the error of the scheme.");
+}
+
+}  // namespace
+
+bool does_work(const Result& r) { return std::isfinite(r.work); }
+
+Series curve(const Result& result, const std::string& name, const std::string& column,
+             bool magnitude) {
+  std::vector<double> y = result.trajectory.column(column);
+  return magnitude ? thinned(name, result.trajectory.column("t"), magnitudes(y), true, 2 * kWindows)
+                   : thinned(name, result.trajectory.column("t"), y, false);
+}
+
+std::string windows_note(const Result& result) {
+  const size_t rows = result.trajectory.rows();
+  if (rows <= 2 * kWindows) return "";
+  return fmt::format("Each point is the largest of {} recorded states.", rows / kWindows);
+}
+
+double round_off(const Result& result) {
+  double size = 1;
+  for (size_t i : thin_rows(result, 500))
+    for (double v : element(result, i)) size = std::max(size, std::abs(v));
+  return kRoundOff * size;
+}
+
+void add_motion(Page& page, const Result& r) {
+  if (const auto animation = animation_of(r)) page.animation(*animation);
+  if (r.system.drawing.has_floor || r.system.drawing.bodies.empty()) {
+    const std::vector<Series> ways = paths(r);
+    if (moves(ways)) page.path("Path in the plane", {.x = "x [m]", .y = "y [m]"}, ways);
+  }
+  if (const auto axes = axes_on_sphere(r); !axes.empty())
+    page.sphere("Motion of the body axes", axes, "Columns of R; drag to turn.");
+}
+
+void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
+  const std::vector<Component> names = components_of(r.system.group);
+  ByUnit velocity, momentum, shape;
+  for (size_t i = 0; i < names.size(); ++i) {
+    const auto& [name, unit] = names[i];
+    velocity.add(unit, component(r, with_unit(name, unit), fmt::format("xi{}", i + 1), name));
+    const std::string dual = unit == "rad/s" ? "N m s" : unit == "m/s" ? "N s" : "";
+    momentum.add(dual,
+                 component(r, with_unit("mu of " + name, dual), fmt::format("mu{}", i + 1), name));
+  }
+  for (const ShapeCoordinate& s : shape_of(r.system.group, names))
+    shape.add(s.unit, component(r, with_unit(s.name, s.unit),
+                                r.trajectory.columns()[static_cast<size_t>(s.column) + 1],
+                                names[static_cast<size_t>(s.component)].name));
+  velocity.plot(page, {{"rad/s", "Angular velocity"}, {"m/s", "Velocity"}}, "Body velocity xi",
+                marks);
+  shape.plot(page, {{"rad", "Angles of the shape"}, {"m", "Places"}}, "Shape", marks);
+  if (r.system.mechanics->rows() > 0) add_reactions(page, r, marks);
+  if (does_work(r)) add_energy_balance(page, r, marks);
+  momentum.plot(page, {{"N m s", "Angular momentum in the body"}, {"N s", "Momentum in the body"}},
+                "Body momentum mu", marks);
+}
+
+void add_accuracy(Page& page, const Result& r) {
+  const std::string windows = windows_note(r);
+  const double floor = round_off(r);
+  const auto plot = [&](const char* title, const char* y, double at, std::vector<Series> series,
+                        const std::string& note = "") {
+    Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true};
+    axes.floor = at;
+    if (series.size() == 1) {  // its name is the title: the page leaves out the legend
+      series[0].name = title;
+      series[0].key = "accuracy";
+    }
+    page.plot(title, axes, series,
+              note.empty() || windows.empty() ? note + windows : windows + " " + note);
+  };
+  if (r.trajectory.columns().back() == "exact_velocity_error") {
+    plot("Error against the exact motion", "|difference|", floor,
+         {curve(r, "configuration", "exact_error"), curve(r, "velocity", "exact_velocity_error")},
+         "Euclidean distance of the element's columns, and of the body velocities.");
+  }
+  if (does_work(r)) {
+    plot("Defect of the energy balance", "|E - E0 - W| / max E", kRoundOff,
+         {curve(r, "energy_error", "energy_error")});
+  } else {
+    plot("Energy error", "|E - E0| / E0", kRoundOff, {curve(r, "energy_error", "energy_error")});
+  }
+  plot("Constraint residual", "|A xi/h|", floor / std::abs(r.config.step),
+       {curve(r, "constraint", "constraint")},
+       "The step's velocity is recovered from consecutive configurations; its floor is about "
+       "2e-16/h times the size of the coordinates.");
+  if (r.trajectory.has("holonomic"))
+    plot("Holonomic residual", "|phi(g)|", floor, {curve(r, "holonomic", "holonomic")});
+  plot("Group defect", "defect", kRoundOff, {curve(r, "group_defect", "group_defect")});
+}
+
+}  // namespace hamel::tools
