@@ -33,9 +33,11 @@ std::string headline(const Result& r) {
   }
   out += fmt::format(
       "; {} at most {:.1e}, constraint residual at most {:.1e}, group defect at most {:.1e}. {} "
-      "steps of h = {} to t = {:.6g}.",
+      "steps {} to t = {:.6g}.",
       does_work(r) ? "defect of the energy balance" : "energy error", r.energy_error_max,
-      r.constraint_max, r.group_defect_max, r.steps, r.config.step, r.last.time);
+      r.constraint_max, r.group_defect_max, r.steps,
+      r.config.chooses_steps() ? "chosen by the error" : fmt::format("of h = {}", r.config.step),
+      r.last.time);
   if (r.stats.fallbacks > 0) {
     const Fallback& first = r.stats.first_fallbacks.front();
     out += fmt::format(" {} steps failed and were rescued, the first at t = {:.6g}: {}.",
@@ -58,7 +60,8 @@ void add_list(Page& page, const Json& record, const char* member, const std::str
   for (const Json& entry : record[member]) {
     if (!entry.is_object()) return;
     if (columns.empty())
-      for (const auto& [key, value] : entry.items()) columns.push_back(key);
+      for (const auto& [key, value] : entry.items())
+        if (value.is_primitive()) columns.push_back(key);
     rows.emplace_back();
     for (const std::string& key : columns)
       rows.back().push_back(entry.contains(key) ? cell(entry[key]) : Cell(""));

@@ -28,8 +28,12 @@ export function lines(solid, positions, color, width, { opacity = 1, renderOrder
   object.place = (numbers) => {
     object.visible = numbers.length > 0;
     if (!object.visible) return;
-    if (solid) object.geometry.setPositions(numbers);
-    else object.geometry.setAttribute('position', new Float32BufferAttribute(numbers, 3));
+    if (solid) {  // (a geometry never draws more segments than it had at first)
+      object.geometry.dispose();
+      object.geometry = new LineSegmentsGeometry().setPositions(numbers);
+    } else {
+      object.geometry.setAttribute('position', new Float32BufferAttribute(numbers, 3));
+    }
   };
   object.place(positions);
   return Object.assign(object, { renderOrder, frustumCulled: false });
