@@ -126,7 +126,7 @@ function build(motion, grid, solid, poses, now) {
     if (!way) return null;
     const colour = styled(TRAILS[b % TRAILS.length]);
     const past = lines(solid, [], colour, 2.2);
-    scene.add(lines(solid, pairs(way), new Color(colour).lerp(styled('--paper'), 0.5), 1.3, { renderOrder: -1 }), past);
+    scene.add(lines(solid, pairs(way), new Color(colour).lerp(styled('--paper'), 0.5), 1.3, { renderOrder: -1, depthWrite: false }), past);
     return (pose, { i }) => past.place(pairs([...way.slice(0, i + 1), pose ? placed(pose, point) : null]));
   });
   const update = (camera) => {

@@ -21,8 +21,8 @@ export function pairs(points) {
 }
 
 /** Segments, six numbers each, of a width in pixels; its `place(positions)` takes others. */
-export function lines(solid, positions, color, width, { opacity = 1, renderOrder = 0, depthTest = true } = {}) {
-  const more = { color, linewidth: width, opacity, transparent: opacity < 1, depthTest };
+export function lines(solid, positions, color, width, { opacity = 1, renderOrder = 0, depthTest = true, depthWrite = true } = {}) {
+  const more = { color, linewidth: width, opacity, transparent: opacity < 1, depthTest, depthWrite };
   const object = solid ? new LineSegments2(new LineSegmentsGeometry(), new LineMaterial(more))
     : new LineSegments(new BufferGeometry(), new LineBasicMaterial({ ...more, linecap: 'round' }));
   object.place = (numbers) => {
