@@ -73,7 +73,7 @@ void add_list(Page& page, const Json& record, const char* member, const std::str
 
 Page run_page(const Result& r) {
   Page page(fmt::format("{}: {} with {}", r.system.name, r.config.scheme, r.config.retraction),
-            fmt::format("{}: {}, h = {}", r.system.group.name, r.method(), r.config.step));
+            fmt::format("{}: {}, {}", r.system.group.name, r.method(), r.steps_in_words()));
   const std::string record = r.record();
   const Json values = Json::parse(record);
   std::vector<Mark> events;

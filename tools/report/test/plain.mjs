@@ -35,7 +35,10 @@ function picturesAndCurves(pdf) {
 
 /** Every figure of the page, open in `page`, shows its curves in a plain screenshot; `expected`: whether it has any. */
 export async function lookPlainly(page, file, expected, check, keep) {
+  // As it opens: what the other checks folded or scrolled moves the figures.
   await page.setViewportSize({ width: 1280, height: 800 });
+  await page.reload();
+  await page.waitForFunction(() => document.documentElement.dataset.ready === 'true');
   const tall = Math.min(TALLEST, await page.evaluate(() => document.documentElement.scrollHeight));
   await page.setViewportSize({ width: 1280, height: tall });
   await page.waitForTimeout(250);
