@@ -35,13 +35,11 @@ function picturesAndCurves(pdf) {
 
 /** Every figure of the page, open in `page`, shows its curves in a plain screenshot; `expected`: whether it has any. */
 export async function lookPlainly(page, file, expected, check, keep) {
-  // As it opens: what the other checks folded or scrolled moves the figures.
   await page.setViewportSize({ width: 1280, height: 800 });
-  await page.reload();
-  await page.waitForFunction(() => document.documentElement.dataset.ready === 'true');
   const tall = Math.min(TALLEST, await page.evaluate(() => document.documentElement.scrollHeight));
   await page.setViewportSize({ width: 1280, height: tall });
   await page.waitForTimeout(250);
+  await page.evaluate(() => scrollTo(0, 0));  // a page taller than the picture is where the other checks left it
   const figures = (await page.evaluate(() => [...document.querySelectorAll('[data-block]')].map((block) => {
     const box = block.querySelector('.drawing')?.getBoundingClientRect();
     return box ? { title: block.querySelector('.title').textContent, box: { x: box.x, y: box.y, width: box.width, height: box.height } } : null;
