@@ -71,6 +71,28 @@ export function niceTicks(min, max, count) {
   return { at, read: (value) => labels[at.findIndex((v) => Math.abs(v - value) < 1e-6 * step)] ?? '' };
 }
 
+const FEWEST = 3;  // ticks from which a reader sees a scale
+
+/** Ticks of an axis of logarithms, about `count`: powers of ten; where these are few, 1, 2 and 5 times them; where these are few, even steps. */
+export function logTicks(min, max, count) {
+  const step = Math.max(1, Math.ceil((max - min) / count));
+  const decades = Array.from({ length: Math.ceil(max) - Math.floor(min) + 1 }, (_, i) => Math.floor(min) + i);
+  const inside = (list) => list.filter((v) => v >= min - 1e-9 && v <= max + 1e-9);
+  const powers = inside(decades.filter((n) => n % step === 0));
+  const at = powers.length >= FEWEST ? powers : inside(decades.flatMap((n) => [1, 2, 5].map((factor) => n + Math.log10(factor))));
+  if (at.length >= FEWEST) return { at, read: (coordinate) => powerLabel(10 ** coordinate) };
+  let even = niceTicks(10 ** min, 10 ** max, count);
+  for (let more = count; even.at.length < FEWEST; ) even = niceTicks(10 ** min, 10 ** max, ++more);
+  return { at: even.at.map(Math.log10), read: (coordinate) => even.read(10 ** coordinate) };
+}
+
+/** 10⁻⁷, 2·10⁻⁷. */
+function powerLabel(value) {
+  const n = Math.floor(Math.log10(value) + 1e-9);
+  const factor = Math.round(value / 10 ** n);
+  return `${factor === 1 ? '' : `${factor}·`}${power(n)}`;
+}
+
 const [TYPED, MOST_DECIMALS] = [6, 6];  // a number of so few digits was typed by a person
 
 /** The one notation of a column of numbers: whole, with equal decimals, or m.mm·10ⁿ -> a function from number to text. */

@@ -4,7 +4,7 @@ import { axisOptions, makeChart, TEXT, TOOLTIP, widest } from './chart.js';
 import { h } from './dom.js';
 import { figure, remark } from './figure.js';
 import { makeFilters } from './filters.js';
-import { formatNumber, formatShort, MISSING, niceTicks, power } from './format.js';
+import { formatNumber, formatShort, logTicks, MISSING, niceTicks } from './format.js';
 import { readByKeys } from './keys.js';
 import { makeLegend, MANY } from './legend.js';
 import { markings } from './markings.js';
@@ -16,8 +16,8 @@ const MARGIN = { left: 74, right: 18, top: 12, bottom: 46 };
 const BESIDE = 36;  // pixels left of the numbers of the y axis: its name
 const LEGEND_ROW = 20;
 const [LONG, MOST_READ] = [2000, 14];  // longer curves are drawn by their least and greatest values, so many are read out
-const [NARROW, FLAT] = [2, 0.4];       // decades of a logarithmic axis: over fewer it names 1, 2 and 5 in each, or even steps
 const SAVED = [720, 420];              // pixels of a figure that is saved
+const DECADES = 2;                     // so many on a logarithmic axis y: it ends at powers of ten
 
 export const plot = (block) => chartFigure(block, readSeries(block, true), false);
 export const path = (block) => chartFigure(block, readSeries(block, false), true);
@@ -127,7 +127,7 @@ function rangeOf(shown, k, axis) {
   const markers = shown.some((curve) => curve.markers);
   const [min, max] = extent(shown.flatMap((curve) => curve.points.filter(isPoint).map((p) => p[k])));
   if (!(min <= max)) return [0, 1];
-  if (axis.log) return max - min >= NARROW && k === 1 ? [Math.floor(min), Math.ceil(max)] : [min - 0.1, max + 0.1];
+  if (axis.log) return max - min >= DECADES && k === 1 ? [Math.floor(min), Math.ceil(max)] : [min - 0.1, max + 0.1];
   const air = max > min ? (k === 1 ? 0.05 : markers ? 0.03 : 0) * (max - min) : (Math.abs(min) || 1) * 0.1;
   return [min - air, max + air];
 }
@@ -148,28 +148,6 @@ function oneAxis(axis, [min, max], gap, { at, read }) {
   const custom = { customValues: at };
   return axisOptions(axis.label, gap, { type: 'value', min, max, axisLabel: { ...custom, formatter: read },
     axisTick: { ...custom, lineStyle: { color: 'var(--rule)' } }, splitLine: { ...custom, lineStyle: { color: 'var(--grid)' } } });
-}
-
-/** Of an axis of logarithms: powers of ten, 1-2-5 between them where these are few, even steps where they are none. */
-function logTicks(min, max, count) {
-  if (max - min < FLAT) {
-    const { at, read } = niceTicks(10 ** min, 10 ** max, count);
-    return { at: at.map(Math.log10), read: (coordinate) => read(10 ** coordinate) };
-  }
-  const step = Math.max(1, Math.ceil((max - min) / count));
-  const at = [];
-  for (let n = Math.floor(min); n <= Math.ceil(max); ++n) {
-    if (max - min < NARROW) at.push(...[1, 2, 5].map((factor) => n + Math.log10(factor)));
-    else if (n % step === 0) at.push(n);
-  }
-  return { at: at.filter((v) => v >= min - 1e-9 && v <= max + 1e-9), read: (coordinate) => powerLabel(10 ** coordinate) };
-}
-
-/** 10⁻⁷, 2·10⁻⁷. */
-function powerLabel(value) {
-  const n = Math.floor(Math.log10(value) + 1e-9);
-  const factor = Math.round(value / 10 ** n);
-  return `${factor === 1 ? '' : `${factor}·`}${power(n)}`;
 }
 
 /** What the curves are at the place of the pointer. */

@@ -1,7 +1,7 @@
 // What can be checked without a browser: [what, whether it is so].
 
 import { luminance, sequential } from '../src/colours.js';
-import { niceTicks } from '../src/format.js';
+import { logTicks, niceTicks } from '../src/format.js';
 import { floorGrid, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/motion.js';
 import { columnsToCsv } from '../src/save.js';
 import { covered, readSeries } from '../src/series.js';
@@ -22,6 +22,8 @@ const grid = floorGrid([[0, 0, 0], [10, 3, 1]]);
 const x = [0, 1, 2, 3];
 const over = (a, b) => covered(readSeries({ series: [{ name: 'a', x, y: a }, { name: 'b', x, y: b }] }, true)).length;
 const ticks = niceTicks(-0.31, 0.42, 5);
+const spans = [0.02, 0.1, 0.3, 0.399, 0.401, 0.5, 0.7, 0.9, 1, 1.3, 1.99, 2.01, 3, 7, 14];  // decades, each from many places
+const counts = spans.flatMap((span) => Array.from({ length: 100 }, (_, i) => logTicks(-4 + i / 100, -4 + i / 100 + span, 5).at.length));
 
 export const units = [
   ['the colour scale gets darker throughout', lights.every((light, i) => i === 0 || light < lights[i - 1])],
@@ -41,5 +43,6 @@ export const units = [
   ['curves that cover each other are found', over([0, 1, 0, 1], [0, 1.001, 0, 1]) === 1 && over([0, 1, 0, 1], [0, 1, 0, 0.9]) === 0],
   ['a logarithm leaves out what is not above zero', readSeries({ log_y: true, series: [{ name: 'a', x, y: [1, 0, -1, null] }] }, true).hidden === 2],
   ['ticks at round numbers with equal decimals', near(ticks.at, [-0.2, 0, 0.2, 0.4]) && ticks.read(0) === '0.0' && ticks.read(-0.2) === '−0.2'],
+  ['an axis of logarithms has ticks, however far it is zoomed', Math.min(...counts) >= 3 && Math.max(...counts) <= 12],
   ['a saved table', columnsToCsv([{ name: 't', values: [0, 1] }, { name: 'a "b"', values: [2] }]) === '"t","a ""b"""\n0,2\n1,\n'],
 ];
