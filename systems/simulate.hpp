@@ -15,6 +15,7 @@
 #include <hamel/framework/schemes/rkmk4.hpp>
 #include <hamel/framework/schemes/unadapted.hpp>
 #include <hamel/systems/kernels.hpp>
+#include <hamel/systems/mechanisms/mechanism.hpp>
 
 namespace hamel {
 
@@ -31,6 +32,11 @@ requires(!std::convertible_to<const S&, std::string>) Simulation simulate(const 
   static_assert(System<S> || RunTimeSystem<S>,
                 "this type does not satisfy hamel::System: Group, inertia(), constraints()");
   return {registry(), erase_words(system).name, maker(system)};
+}
+
+/// A mechanism by parts.
+inline Simulation simulate(const Mechanism& mechanism) {
+  return {registry(), mechanism.name(), maker(mechanism)};
 }
 
 namespace detail {

@@ -1,10 +1,13 @@
 // The composition root: the one file that links everything by name.
+#include <hamel/framework/run/data_system.hpp>
 #include <hamel/groups/heisenberg.hpp>
 #include <hamel/solvers/ceres.hpp>
 #include <hamel/solvers/ceres_tiny.hpp>
 #include <hamel/solvers/hybrid.hpp>
 #include <hamel/solvers/nlopt.hpp>
 #include <hamel/systems/kernels/units.hpp>
+#include <hamel/systems/mechanisms/library.hpp>
+#include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/simulate.hpp>
 
@@ -43,6 +46,15 @@ void add_solvers(Registry& registry) {
 #endif
 }
 
+// Files with bodies are mechanisms; those of the library go by name.
+void add_mechanisms() {
+  FileKind kind{"body", mechanism_from, {}};
+  for (const auto& [name, text] : mechanisms::library()) {
+    kind.library.push_back(mechanism_info(text, name + ".toml"));
+  }
+  add_file_kind(std::move(kind));
+}
+
 Registry make_registry() {
   Registry registry;
   add_rotations(registry);
@@ -62,6 +74,7 @@ Registry make_registry() {
   add_vehicles(registry);
   add_driven_vehicles(registry);
   add_system<NTrailer>(registry);
+  add_mechanisms();
   return registry;
 }
 

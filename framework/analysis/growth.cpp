@@ -50,7 +50,8 @@ Reach reach_of(const std::vector<Generation>& generations) {
     const Eigen::JacobiSVD<Matrix> svd(outside, Eigen::ComputeThinU);
     Eigen::Index fresh = 0;
     const Vector& sizes = svd.singularValues();
-    while (fresh < sizes.size() && sizes[fresh] > 10 * error + kNew * size) ++fresh;
+    const Eigen::Index most = std::min(sizes.size(), rows - span.cols());
+    while (fresh < most && sizes[fresh] > 10 * error + kNew * size) ++fresh;
     // A generation at round-off decides nothing, unless no direction is left.
     if (span.cols() + fresh < rows && !(10 * error < kDecided * size)) {
       out.round_off = true;

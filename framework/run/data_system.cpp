@@ -283,6 +283,16 @@ class File {
 
 }  // namespace
 
+namespace {
+std::vector<FileKind>& kinds() {
+  static std::vector<FileKind> all;
+  return all;
+}
+}  // namespace
+
+const std::vector<FileKind>& file_kinds() { return kinds(); }
+void add_file_kind(FileKind kind) { kinds().push_back(std::move(kind)); }
+
 SystemModel data_system(const Registry& registry, const std::string& text,
                         const std::string& origin) {
   return File(registry, origin).read(text);
@@ -299,6 +309,10 @@ std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& 
                                                                 const std::string& path,
                                                                 const std::string& text) {
   return [&registry, path, text](const Parameters& given) {
+    const toml::table table = TomlReader(path).parse(text);
+    for (const FileKind& kind : file_kinds()) {
+      if (table.contains(kind.key)) return kind.read(text, path, given);
+    }
     if (!given.empty()) {
       throw ConfigError({fmt::format("set: {} is a file with no parameters, got '{}'", path,
                                      given.begin()->first)});

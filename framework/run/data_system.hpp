@@ -17,16 +17,32 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/run/registry.hpp>
 
 namespace hamel {
 
+/// Another kind of file that describes a system, told by a key that it has and others do not: "body" of mechanisms.
+struct FileKind {
+  std::string key;
+  /// Throws ConfigError with every mistake, file, line and column.
+  std::function<SystemModel(const std::string& text, const std::string& origin,
+                            const Parameters& given)>
+      read;
+  std::vector<SystemInfo>
+      library;  // files that go by name as systems do (Registry::system), listed apart
+};
+const std::vector<FileKind>& file_kinds();
+/// Not thread-safe.
+void add_file_kind(FileKind kind);
+
 /// The system of a TOML text. Throws ConfigError with every mistake, file, line and column.
 SystemModel data_system(const Registry& registry, const std::string& text,
                         const std::string& origin);
 
-/// A maker of a file's system; it reads the file when called. The system has no parameters to set.
+/// A maker of a file's system; it reads the file when called. A file of another kind (file_kinds) is read as
+/// that; a system by data has no parameters to set.
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path);
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/mechanics/motion_words.hpp>
+
 namespace hamel {
 
 Meter::Meter(const SystemModel& system, const Start& start,
@@ -116,11 +118,16 @@ void Meter::react(const Snapshot& state) {
     if (pulls_[i] || !(now[row] < -1e-9 * now.lpNorm<Eigen::Infinity>())) continue;
     pulls_[i] = true;
     notes_.push_back(
-        fmt::format("the contact pulls from t = {:.6g} on, lambda{} < 0: a body that is not held "
+        fmt::format("the contact pulls from t = {:.6g} on, {} < 0: a body that is not held "
                     "would lift off",
-                    state.time, row + 1));
+                    state.time,
+                    words_of(system_).reactions.empty()
+                        ? fmt::format("lambda{}", row + 1)
+                        : words_of(system_).reactions[static_cast<size_t>(row)]));
   }
-  add_numbered("lambda", {lambda_.data(), static_cast<size_t>(lambda_.size())});
+  const std::span<const double> lambda(lambda_.data(), static_cast<size_t>(lambda_.size()));
+  if (words_of(system_).reactions.empty()) add_numbered("lambda", lambda);
+  else add(words_of(system_).reactions, lambda);
   add(kReactionPower.name, power);
 }
 

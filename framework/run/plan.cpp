@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 
@@ -110,6 +111,8 @@ Simulation::Plan Simulation::plan() const {
   plan.add(out_of_range(plan.system.name, plan.system.fields));
   plan.notes = no_rigid_body(plan.system.name, plan.system.fields);
   plan.drive();
+  const std::vector<std::string>& said = words_of(plan.system).notes;
+  plan.notes.insert(plan.notes.end(), said.begin(), said.end());
   if (plan.system.group.dim == 0) {  // a product by name alone
     const std::string name = plan.system.group.name;
     if (auto group = registry_->group_or_product(name)) plan.system.group = *group;

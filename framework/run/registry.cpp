@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/run/data_system.hpp>
+
 #include <hamel/framework/loop/scaled_equation.hpp>
 #include <hamel/framework/schemes/problem.hpp>
 
@@ -100,7 +102,15 @@ const SolverInfo* Registry::solver(const std::string& name) const { return find(
 const SolverInfo* Registry::absent_solver(const std::string& name) const {
   return find(absent_solvers_, name);
 }
-const SystemInfo* Registry::system(const std::string& name) const { return find(systems_, name); }
+const SystemInfo* Registry::system(const std::string& name) const {
+  if (const SystemInfo* info = find(systems_, name)) return info;
+  for (const FileKind& kind : file_kinds()) {
+    for (const SystemInfo& info : kind.library) {
+      if (info.name == name) return &info;
+    }
+  }
+  return nullptr;
+}
 const KernelFactory* Registry::kernel(const std::string& group, const Mechanics& mechanics,
                                       const std::string& retraction,
                                       const std::string& scheme) const {

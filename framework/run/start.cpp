@@ -7,6 +7,7 @@
 
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/framework/run/plan.hpp>
 #include <hamel/framework/schemes/erased.hpp>
 
@@ -17,6 +18,20 @@ std::vector<double> to_vector(const Eigen::VectorXd& v) { return {v.begin(), v.e
 
 bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+// Fewer numbers than velocities stand for the start that the system makes of them. Returns the mistakes.
+std::vector<std::string> fill_from_few(const SystemModel& system, Start& start) {
+  const size_t given = start.velocity.size();
+  const MotionWords& words = words_of(system);
+  if (given == 0 || given >= static_cast<size_t>(system.group.dim)) return {};
+  if (given > words.start_parameters.size() || !start.configuration.empty()) return {};
+  try {
+    start = words.start_from(start.velocity);
+  } catch (const ConfigError& error) {
+    return error.mistakes();
+  }
+  return {};
 }
 
 }  // namespace
@@ -47,6 +62,7 @@ Eigen::VectorXd Simulation::Plan::admissible(const EventState& state) const {
 // The user's start, else the system's own, else rest at the identity.
 void Simulation::Plan::fill_start() {
   Start& start = config.start;
+  add(fill_from_few(system, start));
   if (!start.velocity.empty() && !start.momentum.empty()) {
     add({"start: give velocity or momentum, not both"});
   }
@@ -70,8 +86,12 @@ void Simulation::Plan::fill_start() {
        {std::pair{"velocity", &start.velocity}, std::pair{"momentum", &start.momentum}}) {
     if (values->empty()) continue;
     if (values->size() != n) {
-      add({fmt::format("{}: got {} values, expected {} for {}", name, values->size(), n,
-                       system.group.name)});
+      const std::string few = words_of(system).start_parameters.empty() || values == &start.momentum
+                                  ? ""
+                                  : fmt::format(", or {} without a configuration",
+                                                join(words_of(system).start_parameters));
+      add({fmt::format("{}: got {} values, expected {} for {}{}", name, values->size(), n,
+                       system.group.name, few)});
     } else if (!finite(*values)) {
       add({fmt::format("{}: {} is not finite", name, join(*values))});
     }

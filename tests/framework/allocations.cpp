@@ -108,6 +108,18 @@ TEST_F(Allocations, NoneOnSO3Free) { expect_none(test::FreeBody<SO3>{}); }  // m
 TEST_F(Allocations, NoneOnSE2) { expect_none(test::Body<SE2, 1>{}); }
 TEST_F(Allocations, NoneOnSE3) { expect_none(test::Body<SE3, 2>{}); }
 TEST_F(Allocations, NoneOnAProduct) { expect_none(test::Body<Product<SE2, SO2>, 2>{}); }
+/// Mechanisms by parts: recursions over a tree of any size.
+TEST_F(Allocations, NoneOnMechanisms) {
+  for (const std::string system : {"bicycle", "kick_scooter", "skateboard"}) {
+    for (const char* scheme : {"lift", "balance", "rkmk4"}) {
+      Integration run = simulate(system).scheme(scheme).step(0.002).build();
+      run.step(3);
+      Status status;
+      EXPECT_EQ(counted(run, 20, status), 0) << system << " " << scheme;
+      EXPECT_TRUE(status.ok) << system << " " << scheme << ": " << status.reason;
+    }
+  }
+}
 /// General systems: fixed n (falling_disk, 6) and n at run time (differential_drive with lift: 5).
 TEST_F(Allocations, NoneOnGeneralSystems) {
   for (const std::string& system : registry().systems()) {

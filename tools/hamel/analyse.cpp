@@ -5,6 +5,7 @@
 #include <hamel/framework/analysis/analysis.hpp>
 #include <hamel/systems/simulate.hpp>
 
+#include "analyse.hpp"
 #include "commands.hpp"
 
 namespace hamel::tools {
@@ -29,6 +30,8 @@ void print_rows(const Eigen::MatrixXd& m) {
     fmt::print("\n");
   }
 }
+
+}  // namespace
 
 std::string verdict(const Analysis& a) {
   if (a.rows == 0) return "no constraint";
@@ -66,8 +69,6 @@ std::string verdict(const Analysis& a) {
       "combinations, can be integrated",
       drift, reached, possible, left, growth, possible - reached);
 }
-
-}  // namespace
 
 int analyse(const DescribeOptions& options) {
   const Analysis a = hamel::analyse(registry(), options.name, options.parameters);

@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/run/events.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 
+#include "analyse.hpp"
 #include "commands.hpp"
 
 namespace hamel::tools {
@@ -46,9 +48,9 @@ Json events(const SystemModel& model) {
   return out;
 }
 
-Json describe_system(const SystemInfo& info, const Parameters& given) {
+Json parameters_of(const std::vector<Field>& fields) {
   Json parameters = Json::array();
-  for (const Field& field : info.fields) {
+  for (const Field& field : fields) {
     parameters.push_back(
         {{"name", field.name},
          {"default", field.value.size() == 1 ? Json(field.value[0]) : Json(field.value)},
@@ -56,6 +58,27 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
          {"range", words_of(field.range)},
          {"meaning", field.meaning}});
   }
+  return parameters;
+}
+
+// Of a mechanism: its parts, freedoms and rows by name, and whether it is truly nonholonomic.
+void add_parts(Json& out, const std::string& name, const SystemModel& model,
+               const Parameters& given) {
+  const Mechanics& mechanics = *model.mechanics;
+  const MotionWords& words = words_of(model);
+  out["parts"] = Json::array();
+  for (const DrawnBody& body : model.drawing.bodies) out["parts"].push_back(body.name);
+  out["rates"] = words.rates;
+  out["reactions"] = words.reactions;
+  out["dimension"] = mechanics.dim();
+  out["holonomic_rows"] = mechanics.holonomic_rows();
+  out["directions"] = mechanics.dim() - mechanics.rows();
+  out["verdict"] = verdict(hamel::analyse(registry(), name, given));
+  out["start_parameters"] = words.start_parameters;
+  if (!words.notes.empty()) out["notes"] = words.notes;
+}
+
+Json describe_system(const SystemInfo& info, const Parameters& given) {
   Json inputs = Json::array();
   for (const InputField& input : info.inputs) {
     inputs.push_back({{"name", input.name},
@@ -63,33 +86,34 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
                       {"range", words_of(input.range)},
                       {"meaning", input.meaning}});
   }
-  return {{"kind", "system"},
-          {"name", info.name},
-          {"summary", info.summary},
-          {"group", info.group.name},
-          {"formula", info.formula},
-          {"parameters", parameters},
-          {"inputs", inputs},
-          {"start", start_of(info.make(given))},
-          {"events", events(info.make(given))},
-          {"known", info.known},
-          {"source", info.source}};
+  const SystemModel model = info.make(given);
+  Json out = {{"kind", "system"},        {"name", info.name},
+              {"summary", info.summary}, {"group", info.group.name},
+              {"formula", info.formula}, {"parameters", parameters_of(info.fields)},
+              {"inputs", inputs},        {"start", start_of(model)},
+              {"events", events(model)}, {"known", info.known},
+              {"source", info.source}};
+  if (!words_of(model).rates.empty()) add_parts(out, info.name, model, given);
+  return out;
 }
 
 // A system by data.
 Json describe_file(const std::string& path, const Parameters& given) {
   const SystemModel model = data_system_maker(registry(), path)(given);
   const Mechanics& mechanics = *model.mechanics;
-  return {{"kind", "system"},
-          {"name", model.name},
-          {"file", path},
-          {"group", model.group.name},
-          {"columns", model.group.columns},
-          {"constraints", constraints_in_words(model)},
-          {"left_invariant", mechanics.left_invariant()},
-          {"forces", mechanics.has_force()},
-          {"drift", mechanics.has_drift()},
-          {"start", start_of(model)}};
+  Json out = {{"kind", "system"},
+              {"name", model.name},
+              {"file", path},
+              {"group", model.group.name},
+              {"columns", model.group.columns},
+              {"constraints", constraints_in_words(model)},
+              {"left_invariant", mechanics.left_invariant()},
+              {"forces", mechanics.has_force()},
+              {"drift", mechanics.has_drift()},
+              {"parameters", parameters_of(model.fields)},
+              {"start", start_of(model)}};
+  if (!words_of(model).rates.empty()) add_parts(out, path, model, given);
+  return out;
 }
 
 Json describe_group(const GroupInfo& info) {
@@ -201,6 +225,9 @@ Json description_of(const std::string& name, const Parameters& given) {
   for (const auto& names :
        {all.systems(), all.groups(), all.retractions(), all.schemes(), all.solvers()}) {
     known.insert(known.end(), names.begin(), names.end());
+  }
+  for (const FileKind& kind : file_kinds()) {
+    for (const SystemInfo& info : kind.library) known.push_back(info.name);
   }
   throw ConfigError({unknown_name("name", name, known)});
 }

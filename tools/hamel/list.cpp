@@ -7,6 +7,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 
@@ -14,6 +15,15 @@
 
 namespace hamel::tools {
 namespace {
+
+// Systems of files that go by name.
+std::vector<std::string> library_files() {
+  std::vector<std::string> out;
+  for (const FileKind& kind : file_kinds()) {
+    for (const SystemInfo& info : kind.library) out.push_back(info.name);
+  }
+  return out;
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -146,7 +156,9 @@ std::vector<Table> tables() {
         {name, fmt::format("not built (needs {}): {}", info.package, info.summary)});
   }
   Table systems{"systems", {"name", "group", "parameters", "summary"}, {}};
-  for (const std::string& name : all.systems()) {
+  std::vector<std::string> both = all.systems();
+  for (const std::string& name : library_files()) both.push_back(name);
+  for (const std::string& name : both) {
     const SystemInfo& info = *all.system(name);
     std::vector<std::string> fields;
     for (const Field& field : info.fields) fields.push_back(field.name);
@@ -225,6 +237,7 @@ std::vector<Table> markdown_tables() {
   for (const std::string& name : all.systems()) {
     of_systems.add(kind_in_words(*all.system(name)), name);
   }
+  for (const std::string& name : library_files()) of_systems.add("mechanisms by parts", name);
   const auto package = [](const SolverInfo& info) {
     return info.package.empty() ? "always" : "with " + info.package;
   };

@@ -13,6 +13,7 @@
 #include <hamel/framework/io/version.hpp>
 
 #include "commands.hpp"
+#include "steady.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -231,6 +232,50 @@ int program(int argc, char** argv) {
       "  hamel study tools/studies/readings.toml -o readings\n"
       "  hamel study tools/studies/solvers.toml -o solvers --threads 1   # quieter times");
   study_command->callback([&] { command = [&] { return study(studying); }; });
+
+  SteadyOptions steadying;
+  std::vector<std::string> steady_sets;
+  std::string steady_configuration, steady_velocity;
+  double steady_speed = 0;
+  CLI::App* steady_command = app.add_subcommand(
+      "steady", "A steady motion near a guess, its eigenvalues; along a parameter");
+  steady_command
+      ->add_option("SYSTEM", steadying.config.system,
+                   "a system (hamel list systems) or a file my_system.toml")
+      ->required();
+  steady_command
+      ->add_option("--set", steady_sets, "a parameter, name=value[,value...] (repeatable)")
+      ->allow_extra_args(false);
+  CLI::Option* steady_speed_option = steady_command->add_option(
+      "--speed", steady_speed, "straight ahead at this speed, in m/s, for systems that know one");
+  steady_command->add_option("--configuration", steady_configuration, "the guess, as for hamel run")
+      ->type_name("A,B,...");
+  steady_command->add_option("--velocity", steady_velocity, "the guess, as for hamel run")
+      ->type_name("A,B,...");
+  steady_command->add_option(
+      "--vary", steadying.vary,
+      "name=from:to:count: along a parameter, or speed; where stability changes");
+  steady_command->add_option("--report", steadying.report,
+                             "write a self-contained HTML page, with --vary");
+  steady_command->add_flag("--json", steadying.json, "as JSON");
+  steady_command->footer(
+      "Exit status: 0 done, 1 none found, 2 bad input.\n"
+      "Examples:\n"
+      "  hamel steady bicycle --speed 5\n"
+      "  hamel steady bicycle --vary speed=1:8:71 --report bicycle.html\n"
+      "  hamel steady falling_disk --speed 1 --set gravity=1.62\n"
+      "  hamel steady segway --speed 0 --vary height=0.2:1.2:11 --json");
+  steady_command->callback([&] {
+    command = [&] {
+      read_sets(steady_sets, steadying.config.parameters);
+      if (!steady_configuration.empty())
+        read_text("--configuration", steady_configuration, steadying.config.start.configuration);
+      if (!steady_velocity.empty())
+        read_text("--velocity", steady_velocity, steadying.config.start.velocity);
+      if (steady_speed_option->count() > 0) steadying.speed = steady_speed;
+      return steady(steadying);
+    };
+  });
 
   ReproduceOptions reproduction;
   CLI::App* reproduce_command =

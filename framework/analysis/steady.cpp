@@ -1,0 +1,305 @@
+#include <hamel/framework/analysis/steady.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+#include <hamel/framework/analysis/reduced_flow.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
+
+namespace hamel {
+namespace {
+
+using namespace reduced;
+using Complex = std::complex<double>;
+
+constexpr double kGood = 1e-9;  // residual of a steady motion
+
+Vector least_norm(const Matrix& a, const Vector& b) {
+  Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(a.rows(), a.cols());
+  decomposition.setThreshold(1e-10);
+  return decomposition.compute(a).solve(b);
+}
+
+Vector to_vector(const std::vector<double>& v) {
+  return Eigen::Map<const Vector>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+// The point (g, xi) and the symmetry that carries it.
+class Finder {
+ public:
+  Finder(const Flow& flow, Vector g, Vector xi)
+      : flow_(flow), g_(std::move(g)), xi_(std::move(xi)), symmetries_(flow.symmetries(g_)) {
+    settle();
+    carrier_ = least_norm(flow_.orbit(symmetries_, g_, xi_), field());
+  }
+  const Vector& g() const { return g_; }
+  const Vector& xi() const { return xi_; }
+
+  /// Newton's method; the residual reached. It ends where it gets no better. hold: the momentum along the guess stays,
+  /// where steady motions of all speeds form a family.
+  double find(bool hold) {
+    const int n = flow_.dim(), count = 2 * n + flow_.held() + flow_.rows();
+    const Vector guess = xi_, along = flow_.momentum(g_, xi_).normalized();
+    double residual = settle(), reach = 1;
+    for (int k = 0; k < 60 && residual > 1e-14 && reach > 1e-3; ++k) {
+      const Vector g = g_, xi = xi_;
+      Matrix slope = Matrix::Zero(count + 1, 2 * n + symmetries_.cols());
+      Vector left = Vector::Zero(count + 1);
+      slope.topLeftCorner(count, 2 * n) = derivative();
+      slope.topRightCorner(2 * n, symmetries_.cols()) = -flow_.orbit(symmetries_, g_, xi_);
+      left.head(count) = equations(carrier_, g_, xi_);
+      if (hold) {
+        slope.block(count, n, 1, n) = along.transpose();
+        left[count] = along.dot(xi_ - guess);
+      }
+      Vector step = -least_norm(slope, left);
+      const double most = 0.5 * (1 + xi_.norm());
+      step *= reach * std::min(1.0, most / std::max(1e-300, step.norm()));
+      g_ = flow_.moved(g_, step.head(n));
+      xi_ += step.segment(n, n);
+      const double now = settle();
+      if (now < residual) {
+        residual = now;
+        reach = std::min(1.0, 2 * reach);
+        continue;
+      }
+      g_ = g;
+      xi_ = xi;
+      settle();
+      reach = residual < kGood ? 0 : reach / 2;
+    }
+    return residual;
+  }
+
+  SteadyMotion linearise(const std::vector<std::string>& names, int family) {
+    const int n = flow_.dim();
+    const Matrix orbit = range_of(flow_.orbit(symmetries_, g_, xi_), 1e-9);
+    const Matrix whole = derivative();  // of W, phi, A xi - b
+    Matrix bounds(flow_.held() + flow_.rows() + orbit.cols(), 2 * n);
+    bounds << whole.bottomRows(flow_.held() + flow_.rows()), orbit.transpose();
+    const Matrix basis = kernel_of(bounds, 1e-11);
+    const Matrix reduced = basis.transpose() * whole.topRows(2 * n) * basis;
+    const Eigen::EigenSolver<Matrix> solver(reduced);
+    std::vector<Eigen::Index> order;
+    for (Eigen::Index i = 0; i < reduced.cols(); ++i) order.push_back(i);
+    const auto& values = solver.eigenvalues();
+    const auto magnitude = [&](Eigen::Index i) { return std::abs(values[i]); };
+    std::sort(order.begin(), order.end(),
+              [&](auto i, auto j) { return magnitude(i) < magnitude(j); });
+    SteadyMotion out;
+    if (family < 0) {
+      const double size = order.empty() ? 0 : magnitude(order.back());
+      while (out.family < static_cast<int>(order.size()) &&
+             magnitude(order[static_cast<size_t>(out.family)]) < 1e-7 * std::max(1.0, size)) {
+        ++out.family;
+      }
+    } else {
+      out.family = std::min(family, static_cast<int>(order.size()));
+    }
+    order.erase(order.begin(), order.begin() + out.family);
+    std::sort(order.begin(), order.end(), [&](auto i, auto j) {
+      return std::pair(values[i].real(), values[i].imag()) >
+             std::pair(values[j].real(), values[j].imag());
+    });
+    out.neutral = static_cast<int>(orbit.cols()) + out.family;
+    for (const Eigen::Index i : order) {
+      out.eigenvalues.push_back(values[i]);
+      const Eigen::VectorXcd mode = basis.topRows(n).cast<Complex>() * solver.eigenvectors().col(i);
+      out.modes.push_back(parts_of(mode, names));
+    }
+    return out;
+  }
+
+ private:
+  Vector field() const {
+    Vector z(2 * flow_.dim());
+    z << xi_, flow_.acceleration(g_, xi_);
+    return z;
+  }
+  // The best symmetry to carry it, and what is left.
+  double settle() {
+    carrier_ = least_norm(flow_.orbit(symmetries_, g_, xi_), field());
+    const Vector left = equations(carrier_, g_, xi_);
+    return left.norm() / (1 + field().norm());
+  }
+  // W, phi, A xi - b.
+  Vector equations(const Vector& carrier, const Vector& g, const Vector& xi) const {
+    const int n = flow_.dim();
+    Vector out(2 * n + flow_.held() + flow_.rows());
+    Vector z(2 * n);
+    z << xi, flow_.acceleration(g, xi);
+    out << z - flow_.orbit(symmetries_, g, xi) * carrier, flow_.holonomic(g), flow_.slip(g, xi);
+    return out;
+  }
+  // By (delta, nu), the carrier held.
+  Matrix derivative() const {
+    const int n = flow_.dim();
+    Matrix out = Matrix::Zero(2 * n + flow_.held() + flow_.rows(), 2 * n);
+    for (int j = 0; j < 2 * n; ++j) {
+      const Vector unit = Vector::Unit(n, j % n);
+      const bool velocity = j >= n;
+      // Accelerations are quadratic in xi, so that the step may grow with it.
+      const double step = velocity ? kStep * std::max(1.0, xi_.norm()) : kStep;
+      differentiate(step, [&](double e, double weight) {
+        out.col(j) += weight * (velocity ? equations(carrier_, g_, xi_ + e * unit)
+                                         : equations(carrier_, flow_.moved(g_, e * unit), xi_));
+      });
+    }
+    return out;
+  }
+  static std::vector<ModePart> parts_of(const Eigen::VectorXcd& mode,
+                                        const std::vector<std::string>& names) {
+    std::vector<ModePart> out;
+    const double size = mode.cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < mode.size(); ++i) {
+      const double part = std::abs(mode[i]) / size;
+      if (part > 0.05) out.push_back({names[static_cast<size_t>(i)], part});
+    }
+    std::stable_sort(out.begin(), out.end(),
+                     [](const auto& a, const auto& b) { return a.size > b.size; });
+    return out;
+  }
+
+  const Flow& flow_;
+  Vector g_, xi_;
+  Matrix symmetries_;
+  Vector carrier_;
+};
+
+SteadyMotion finish(const SystemModel& model, const Flow& flow, const Geometry& geometry,
+                    Finder& finder, double residual, int family) {
+  std::vector<std::string> names = words_of(model).rates;
+  for (int i = static_cast<int>(names.size()); i < flow.dim(); ++i)
+    names.push_back(fmt::format("xi{}", i + 1));
+  SteadyMotion out;
+  if (residual < kGood) out = finder.linearise(names, family);
+  out.found = residual < kGood;
+  out.residual = residual;
+  out.velocity.assign(finder.xi().begin(), finder.xi().end());
+  out.element.resize(model.group.columns.size());
+  geometry.coordinates(finder.g().data(), out.element.data());
+  return out;
+}
+
+}  // namespace
+
+SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, const Start& guess,
+                           int family) {
+  if (!model.mechanics->autonomous())
+    throw ConfigError({fmt::format("{}: depends on time: it has no steady motion", model.name)});
+  const auto geometry = registry.geometry(model.group.name, "exp");
+  if (geometry == nullptr)
+    throw ConfigError(
+        {fmt::format("{}: group '{}' has no retraction exp", model.name, model.group.name)});
+  const Flow flow(geometry, model.mechanics);
+  Vector g(geometry->size());
+  geometry->from_coordinates(
+      guess.configuration.empty() ? model.group.identity : guess.configuration, g.data());
+  const Finder at_guess(flow, g, to_vector(guess.velocity));
+  Finder finder = at_guess;
+  double residual = finder.find(true);
+  if (!(residual < kGood)) {
+    Finder other = at_guess;
+    if (const double found = other.find(false); found < residual)
+      return finish(model, flow, *geometry, other, found, family);
+  }
+  return finish(model, flow, *geometry, finder, residual, family);
+}
+
+SteadyMotion steady_motion(const Registry& registry, const Simulation& run, int family) {
+  const Integration built = run.build();
+  return steady_motion(registry, built.system(), built.config().start, family);
+}
+
+namespace {
+
+constexpr double kStable = 1e-9;  // a real part that counts as positive
+
+int unstable(const SteadyMotion& motion) {
+  return static_cast<int>(std::count_if(motion.eigenvalues.begin(), motion.eigenvalues.end(),
+                                        [](const Complex& x) { return x.real() > kStable; }));
+}
+
+// Between values with different numbers of unstable eigenvalues: halved until one crossing is left, then the real part
+// that changes its sign by the Illinois method. Where it is zero on one side, as an imaginary pair of a system without
+// damping, by halving.
+class Crossings {
+ public:
+  Crossings(const std::function<SteadyMotion(double)>& at, std::vector<SteadySweep::Crossing>& out)
+      : at_(at), out_(out) {}
+
+  void look(double a, const SteadyMotion& left, double b, const SteadyMotion& right,
+            int depth = 0) {
+    if (left.eigenvalues.size() != right.eigenvalues.size()) return;  // not found at one of them
+    const int jump = std::abs(unstable(right) - unstable(left));
+    if (jump == 0) return;
+    const size_t index = static_cast<size_t>(std::min(unstable(left), unstable(right)));
+    const bool pair =
+        jump == 2 && left.eigenvalues[index].imag() != 0 && right.eigenvalues[index].imag() != 0;
+    if (jump > 1 && !pair && depth < 40) {
+      const double middle = 0.5 * (a + b);
+      const SteadyMotion there = at_(middle);
+      look(a, left, middle, there, depth + 1);
+      look(middle, there, b, right, depth + 1);
+      return;
+    }
+    out_.push_back(
+        {root(a, left.eigenvalues[index].real(), b, right.eigenvalues[index].real(), index), pair});
+  }
+
+ private:
+  double root(double a, double fa, double b, double fb, size_t index) {
+    int side = 0;
+    const bool touches = std::min(std::abs(fa), std::abs(fb)) < kStable;
+    for (int k = 0; k < 80 && std::abs(b - a) > 1e-12 * (1 + std::abs(a) + std::abs(b)); ++k) {
+      double x = (fb * a - fa * b) / (fb - fa);
+      if (touches || k % 8 == 7 || !(x > std::min(a, b) && x < std::max(a, b))) x = 0.5 * (a + b);
+      const SteadyMotion there = at_(x);
+      if (!there.found) return x;
+      const double fx = there.eigenvalues[index].real();
+      if (!touches && std::abs(fx) < 1e-14) return x;
+      const double zero = touches ? kStable : 0;
+      if ((fx > zero) == (fb > zero)) {
+        b = x;
+        fb = fx;
+        if (side == 1) fa /= 2;
+        side = 1;
+      } else {
+        a = x;
+        fa = fx;
+        if (side == -1) fb /= 2;
+        side = -1;
+      }
+    }
+    return touches ? 0.5 * (a + b) : std::abs(fa) < std::abs(fb) ? a : b;
+  }
+
+  const std::function<SteadyMotion(double)>& at_;
+  std::vector<SteadySweep::Crossing>& out_;
+};
+
+}  // namespace
+
+SteadySweep sweep_steady(const std::vector<double>& values,
+                         const std::function<SteadyMotion(double value, int family)>& at) {
+  SteadySweep out;
+  out.values = values;
+  std::vector<int> families;
+  for (const double value : values) {
+    if (const SteadyMotion motion = at(value, -1); motion.found) families.push_back(motion.family);
+  }
+  const int family = families.empty() ? 0 : *std::min_element(families.begin(), families.end());
+  for (const double value : values) out.motions.push_back(at(value, family));
+  const std::function<SteadyMotion(double)> there = [&](double value) { return at(value, family); };
+  Crossings crossings(there, out.crossings);
+  for (size_t i = 1; i < values.size(); ++i) {
+    crossings.look(values[i - 1], out.motions[i - 1], values[i], out.motions[i]);
+  }
+  return out;
+}
+
+}  // namespace hamel

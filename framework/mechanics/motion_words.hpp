@@ -1,0 +1,47 @@
+// What a Mechanics may say of its motions beside the equations: names, starts from a few numbers, notes.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/mechanics/system.hpp>
+
+namespace hamel {
+
+struct MotionWords {
+  std::vector<std::string> rates, reactions;  // of the velocities and of the multipliers
+  /// A start from a few numbers, at least one and at most as many as start_parameters names.
+  /// Throws ConfigError where there is no such motion.
+  std::vector<std::string> start_parameters;  // "speed", in m/s
+  std::function<Start(std::span<const double>)> start_from;
+  std::vector<std::string> notes;  // what the user should know
+};
+
+class Worded {
+ public:
+  virtual ~Worded() = default;
+  virtual const MotionWords& words() const = 0;
+};
+
+/// A Mechanics with its words.
+template <class Base>
+class WithWords final : public Base, public Worded {
+ public:
+  WithWords(const Base& mechanics, MotionWords words) : Base(mechanics), words_(std::move(words)) {}
+  const MotionWords& words() const override { return words_; }
+
+ private:
+  MotionWords words_;
+};
+
+/// Of a system; all empty where it says nothing.
+inline const MotionWords& words_of(const SystemModel& model) {
+  static const MotionWords none;
+  const auto* worded = dynamic_cast<const Worded*>(model.mechanics.get());
+  return worded == nullptr ? none : worded->words();
+}
+
+}  // namespace hamel

@@ -1,0 +1,65 @@
+// From the parts of a mechanism to a system, all of them checked. Not installed: the builder's own.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/systems/mechanisms/mechanism.hpp>
+#include <hamel/systems/mechanisms/multibody.hpp>
+
+namespace hamel {
+
+class Assembly {
+ public:
+  explicit Assembly(const Mechanism& parts) : parts_(parts) {}
+  /// Throws ConfigError with all mistakes.
+  SystemModel model();
+  std::pair<SystemModel, MotionWords> outline();
+
+ private:
+  using Part = Mechanism::Part;
+  void wrong(const Part& part, const std::string& kind, const std::string& text);
+  void unknown(const Part& part, const std::string& kind, const std::string& what,
+               const std::string& name, const std::vector<std::string>& known);
+  void stop_at_mistakes() const;
+
+  // Bodies and joints: the tree.
+  void make_tree();
+  void check_names();
+  void check_body(const Mechanism::BodyPart& body);
+  mechanisms::Inertia inertia_of(const Mechanism::BodyPart& body);
+  void link_bodies();
+  void link(const Mechanism::JointPart& joint);
+  void add_link(int parent, mechanisms::JointKind kind, const Mechanism::JointPart& joint,
+                const Point& axis, const std::string& suffix);
+  void name_columns();
+  void check_masses(const mechanisms::Tree& tree);
+
+  // What acts on it.
+  /// The link of a body; kGround, with a mistake, where there is none of this name.
+  int link_of(const Part& part, const std::string& kind, const std::string& body);
+  /// The link of a hinge or slider; -1, with a mistake, where there is none of this name.
+  int joint_of(const Part& part, const std::string& kind);
+  mechanisms::Vec3 direction(const Part& part, const std::string& kind, const std::string& what,
+                             const Point& given);
+  mechanisms::Rows rows();
+  mechanisms::Forces forces();
+  void check_contacts(const mechanisms::Multibody& system);
+  std::vector<std::string> body_names() const;
+
+  void draw(const std::shared_ptr<mechanisms::Multibody>& system);
+
+  const Mechanism& parts_;
+  std::vector<std::string> mistakes_;
+  SystemModel model_;
+  MotionWords words_;
+  std::vector<mechanisms::Link> links_;
+  std::vector<std::string> link_names_;    // of their joints
+  std::map<std::string, int> body_links_;  // the ground is kWorld
+};
+
+}  // namespace hamel

@@ -1,0 +1,67 @@
+// Assembly: every part has a shape from its data.
+#include <algorithm>
+
+#include <hamel/systems/mechanisms/assembly.hpp>
+
+namespace hamel {
+namespace {
+
+using namespace mechanisms;
+
+Point point(const Vec3& v) { return {v[0], v[1], v[2]}; }
+}  // namespace
+
+// Bodies are seen in the axes of the drawn pose, their mass centres as origins.
+void Assembly::draw(const std::shared_ptr<Multibody>& system) {
+  Drawing& drawing = model_.drawing;
+  drawing.has_floor = true;
+  drawing.from_above = std::none_of(links_.begin(), links_.end(), [](const Link& link) {
+    return link.kind == JointKind::free || link.kind == JointKind::ball;
+  });
+  for (const auto& body : parts_.bodies_) {
+    const int link = body_links_.at(body.name);
+    std::vector<BodyShape> shapes;
+    const auto from_centre = [&](const Point& at) { return point(vec(at) - vec(body.at)); };
+    if (body.sphere > 0) shapes.push_back(shapes::sphere(body.sphere));
+    if (body.cylinder.size() == 2) {
+      shapes.push_back(shapes::cylinder(body.cylinder[0], body.cylinder[1], {.axis = body.axis}));
+    }
+    if (!vec(body.box).isZero(0)) shapes.push_back(shapes::box(body.box));
+    double size = 0.1;
+    for (const auto& contact : parts_.contacts_) {
+      if (contact.body != body.name) continue;
+      const Point at = from_centre(contact.at);
+      if (contact.kind == "ball") {
+        shapes.push_back(shapes::sphere(contact.radius, {.at = at}));
+      } else if (contact.kind == "blade") {
+        const Vec3 half = 0.1 * vec(contact.axle).normalized();
+        shapes.push_back(
+            shapes::line({point(vec(at) - half), point(vec(at) + half)}, {.color = "accent"}));
+      } else {
+        shapes.push_back(shapes::cylinder(contact.radius, 0.1 * contact.radius,
+                                          {.at = at, .axis = contact.axle, .color = "dark"}));
+      }
+      size = std::max(size, contact.radius);
+    }
+    // Rods from the mass centre to its joints.
+    for (const auto& joint : parts_.joints_) {
+      if ((joint.child != body.name && joint.parent != body.name) || joint.parent == kWorld)
+        continue;
+      if (joint.kind == "weld" || (vec(joint.at) - vec(body.at)).isZero(1e-12)) continue;
+      shapes.push_back(shapes::line({{0, 0, 0}, from_centre(joint.at)}));
+    }
+    if (shapes.empty()) shapes.push_back(shapes::sphere(0.3 * size));
+    DrawnBody drawn{body.name,
+                    [system, link, centre = vec(body.at)](std::span<const double> coordinates) {
+                      std::vector<double> g(system->drawn().size());
+                      system->geometry().from_coordinates(coordinates, g.data());
+                      const Rigid place = system->tree(g.data()).in_world(link);
+                      return Placement{place.apply(centre), place.rotation};
+                    },
+                    std::move(shapes)};
+    if (link >= 0 && links_[static_cast<size_t>(link)].parent == mechanisms::kGround) drawn.trail();
+    drawing.bodies.push_back(std::move(drawn));
+  }
+}
+
+}  // namespace hamel

@@ -1,0 +1,249 @@
+// Assembly: bodies and joints, the tree.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+#include <hamel/systems/mechanisms/assembly.hpp>
+
+namespace hamel {
+namespace {
+
+using namespace mechanisms;
+
+const std::vector<std::string>& joint_kinds() {
+  static const std::vector<std::string> all = {"ball",   "free",      "hinge", "planar",
+                                               "slider", "universal", "weld"};
+  return all;
+}
+
+}  // namespace
+
+void Assembly::check_names() {
+  const auto unique = [&](const auto& parts, const std::string& kind,
+                          std::set<std::string>& taken) {
+    for (const auto& part : parts) {
+      if (part.name.empty()) wrong(part, kind, "expected a name");
+      else if (part.name == kWorld) wrong(part, kind, "is the name of what rests in the world");
+      else if (!taken.insert(part.name).second) wrong(part, kind, "this name is taken");
+    }
+  };
+  std::set<std::string> bodies, joints, rows, springs, forces;
+  unique(parts_.bodies_, "body", bodies);
+  unique(parts_.joints_, "joint", joints);
+  unique(parts_.contacts_, "contact", rows);
+  unique(parts_.loops_, "loop", rows);
+  unique(parts_.springs_, "spring", springs);
+  unique(parts_.forces_, "force", forces);
+}
+
+Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
+  const std::vector<double>& given = body.inertia;
+  Mat<3, 3> central = Mat<3, 3>::Zero();
+  const Vec3 edges = vec(body.box);
+  if (given.size() == 3) {
+    central = vec({given[0], given[1], given[2]}).asDiagonal();
+  } else if (given.size() == 6) {
+    central << given[0], given[1], given[2], given[1], given[3], given[4], given[2], given[4],
+        given[5];
+  } else if (given.size() == 9) {
+    for (int i = 0; i < 9; ++i) central(i / 3, i % 3) = given[static_cast<size_t>(i)];
+    if (!(central - central.transpose()).isZero(1e-12 * central.norm()))
+      wrong(body, "body", "inertia: expected a symmetric matrix");
+  } else if (!given.empty()) {
+    wrong(body, "body", fmt::format("inertia: got {} numbers, expected 3, 6 or 9", given.size()));
+  } else if (body.sphere > 0) {
+    central = 0.4 * body.mass * body.sphere * body.sphere * Mat<3, 3>::Identity();
+  } else if (body.cylinder.size() == 2) {
+    const double r2 = body.cylinder[0] * body.cylinder[0], l2 = body.cylinder[1] * body.cylinder[1];
+    const Vec3 e = direction(body, "body", "axis", body.axis);
+    const double across = body.mass * (3 * r2 + l2) / 12;
+    central = across * Mat<3, 3>::Identity() + (0.5 * body.mass * r2 - across) * e * e.transpose();
+  } else {
+    const Vec3 squares = edges.cwiseAbs2();
+    central = (body.mass / 12 * (Vec3::Constant(squares.sum()) - squares)).asDiagonal();
+  }
+  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat<3, 3>>(central).eigenvalues();
+  const double size = moments.cwiseAbs().maxCoeff();
+  if (!(moments[0] >= -1e-12 * size)) {
+    wrong(
+        body, "body",
+        fmt::format("inertia: a moment of {} about some axis, expected none below 0", moments[0]));
+  } else if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1])) {
+    words_.notes.push_back(
+        fmt::format("body '{}': no rigid body has the principal moments {}, since {} > {} + {}",
+                    body.name, join(std::vector<double>(moments.begin(), moments.end())),
+                    moments[2], moments[1], moments[0]));
+  }
+  return inertia_at(body.mass, vec(body.at), central);
+}
+
+void Assembly::check_body(const Mechanism::BodyPart& body) {
+  if (!(body.mass >= 0) || !std::isfinite(body.mass))
+    wrong(body, "body", fmt::format("mass: got {}, expected at least 0", body.mass));
+  const int shapes = (vec(body.box).isZero(0) ? 0 : 1) + (body.cylinder.empty() ? 0 : 1) +
+                     (body.sphere != 0 ? 1 : 0);
+  if (shapes > 1) wrong(body, "body", "expected one of box, cylinder and sphere");
+  if (!body.cylinder.empty() && body.cylinder.size() != 2)
+    wrong(
+        body, "body",
+        fmt::format("cylinder: got {} numbers, expected radius and length", body.cylinder.size()));
+}
+
+// A link for each joint, two for a universal one, none for a weld; parents first.
+void Assembly::link_bodies() {
+  const std::vector<std::string> names = body_names();
+  std::map<std::string, const Mechanism::JointPart*> hangs_on;
+  std::vector<const Mechanism::JointPart*> waiting;
+  for (const auto& joint : parts_.joints_) {
+    bool known = true;
+    const auto check = [&](const std::string& what, const std::string& body) {
+      if (body == kWorld || std::find(names.begin(), names.end(), body) != names.end()) return;
+      unknown(joint, "joint", what, body, names);
+      known = false;
+    };
+    check("parent", joint.parent);
+    check("child", joint.child);
+    if (std::find(joint_kinds().begin(), joint_kinds().end(), joint.kind) == joint_kinds().end()) {
+      unknown(joint, "joint", "kind", joint.kind, joint_kinds());
+      known = false;
+    }
+    if (!known) continue;
+    if (joint.child == kWorld) {
+      wrong(joint, "joint", "child: expected a body, the ground hangs on nothing");
+    } else if (const auto [other, is_new] = hangs_on.emplace(joint.child, &joint); !is_new) {
+      wrong(joint, "joint",
+            fmt::format(
+                "body '{}' hangs on joint '{}' already: a joint that closes a chain is a loop",
+                joint.child, other->second->name));
+    } else {
+      waiting.push_back(&joint);
+    }
+  }
+  for (const auto& body : parts_.bodies_) {
+    if (!hangs_on.contains(body.name) && mistakes_.empty())
+      wrong(body, "body", "hangs on no joint; a root hangs on the ground by a planar or free one");
+  }
+  stop_at_mistakes();
+  body_links_[kWorld] = mechanisms::kGround;
+  for (bool found = true; found && !waiting.empty();) {
+    found = false;
+    for (auto it = waiting.begin(); it != waiting.end();) {
+      if (body_links_.contains((*it)->parent)) {
+        link(**it);
+        it = waiting.erase(it);
+        found = true;
+      } else {
+        ++it;
+      }
+    }
+  }
+  std::string circle;
+  for (const auto* joint : waiting)
+    circle += fmt::format("{}'{}'", circle.empty() ? "" : ", ", joint->name);
+  if (!circle.empty()) {
+    wrong(*waiting.front(), "joint",
+          fmt::format("{} go round in a circle that does not reach the ground", circle));
+  }
+  stop_at_mistakes();
+}
+
+void Assembly::link(const Mechanism::JointPart& joint) {
+  const int parent = body_links_.at(joint.parent);
+  if (joint.kind == "weld") {
+    body_links_[joint.child] = parent;
+  } else {
+    using enum JointKind;
+    if (joint.kind == "universal") {
+      add_link(parent, hinge, joint, joint.axis, "1");
+      add_link(static_cast<int>(links_.size()) - 1, hinge, joint, joint.axis2, "2");
+    } else {
+      const JointKind kind = joint.kind == "free"     ? free
+                             : joint.kind == "planar" ? planar
+                             : joint.kind == "hinge"  ? hinge
+                             : joint.kind == "slider" ? slider
+                                                      : ball;
+      add_link(parent, kind, joint, joint.axis, "");
+    }
+    body_links_[joint.child] = static_cast<int>(links_.size()) - 1;
+  }
+  const int here = body_links_.at(joint.child);
+  for (const auto& body : parts_.bodies_) {
+    if (body.name == joint.child && here != mechanisms::kGround)
+      links_[static_cast<size_t>(here)].inertia += inertia_of(body);
+  }
+}
+
+// The frame of a joint has its third axis along `axis`; that of a free or planar one on the parent is the parent's
+// own, at the height of the joint for a planar one.
+void Assembly::add_link(int parent, JointKind kind, const Mechanism::JointPart& joint,
+                        const Point& axis, const std::string& suffix) {
+  const bool turned = kind != JointKind::free && kind != JointKind::ball;
+  const Vec3 e = turned ? direction(joint, "joint", "axis", axis) : Vec3(Vec3::UnitZ());
+  Link link;
+  link.parent = parent;
+  link.kind = kind;
+  link.on_child = {frame_along(e), vec(joint.at)};
+  link.on_parent = link.on_child;
+  if (kind == JointKind::free) link.on_parent = {};
+  if (kind == JointKind::planar) link.on_parent.position = e.dot(link.on_child.position) * e;
+  links_.push_back(link);
+  const bool one = kind == JointKind::hinge || kind == JointKind::slider;
+  if (!one && (joint.stiffness != 0 || joint.damping != 0))
+    wrong(joint, "joint",
+          fmt::format("stiffness and damping: expected a hinge or slider, got {}", joint.kind));
+  link_names_.push_back(joint.name + suffix);
+}
+
+// A lone root joint's numbers go by their own names: x, theta, v1.
+void Assembly::name_columns() {
+  const auto roots = std::count_if(links_.begin(), links_.end(),
+                                   [](const Link& l) { return l.parent == mechanisms::kGround; });
+  std::vector<GroupInfo> factors;
+  std::string group, last;
+  int power = 0;
+  const auto write = [&] {
+    if (power > 0)
+      group += (group.empty() ? "" : "*") + last + (power > 1 ? fmt::format("^{}", power) : "");
+  };
+  for (size_t j = 0; j < links_.size(); ++j) {
+    const JointType& type = type_of(links_[j].kind);
+    factors.push_back(type.group);
+    if (type.group.name != last) {
+      write();
+      power = 0;
+      last = type.group.name;
+    }
+    ++power;
+    const bool wide = links_[j].kind == JointKind::free || links_[j].kind == JointKind::planar;
+    const bool alone = wide && roots == 1 && links_[j].parent == mechanisms::kGround;
+    const std::string front = alone ? "" : link_names_[j] + ".";
+    for (const std::string& name : type.columns) model_.group.columns.push_back(front + name);
+    for (const std::string& name : type.rates) words_.rates.push_back(front + name);
+  }
+  write();
+  GroupInfo info = product_info(group, factors);
+  info.columns = std::move(model_.group.columns);
+  model_.group = std::move(info);
+}
+
+// A body that can be moved for nothing has no equation of motion.
+void Assembly::check_masses(const Tree& tree) {
+  Eigen::MatrixXd inertia(tree.dim(), tree.dim());
+  tree.inertia(inertia);
+  for (const auto& joint : parts_.joints_) {
+    const int link = body_links_.at(joint.child);
+    if (joint.kind == "weld" || link == mechanisms::kGround) continue;
+    for (int i = 0; i < tree.count(link); ++i) {
+      if (inertia(tree.first(link) + i, tree.first(link) + i) > 0) continue;
+      wrong(joint, "joint",
+            fmt::format("body '{}' and all that it carries have no inertia against its motion",
+                        joint.child));
+      break;
+    }
+  }
+}
+
+}  // namespace hamel

@@ -1,0 +1,66 @@
+// The forces of a mechanism: gravity, springs, dampers, motors, given forces.
+//
+//   gravity   V = -sum m a . x                        a the acceleration of gravity, of any direction
+//   spring    V = 1/2 k (l - l_0)^2, f = -c l'        l: the distance of two points, or the coordinate of a hinge
+//             or slider; c its damper
+//   motor     f on one velocity of a joint, a signal
+//   force     three signals, at a point of a body, along the axes of the world or of the body as drawn
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <hamel/systems/mechanisms/tree.hpp>
+
+namespace hamel::mechanisms {
+
+/// What a signal may depend on.
+struct Now {
+  double t = 0;
+  std::span<const double> coordinates;  // of the element, as in the CSV
+  std::span<const double> velocity;     // xi
+};
+/// A number that changes: a torque, a force.
+using Signal = std::function<double(const Now&)>;
+
+struct Spring {
+  std::string name;
+  int joint = -1;  // a link, whose hinge or slider it acts on; else between two points
+  int a = kGround, b = kGround;
+  Vec3 at_a = Vec3::Zero(), at_b = Vec3::Zero();  // as drawn
+  double stiffness = 0, rest = 0, damping = 0;    // N/m, m, N s/m; N m/rad, rad, N m s/rad
+};
+struct Motor {
+  std::string name;
+  int dof = 0;
+  Signal effort;  // N m or N
+};
+struct Force {
+  std::string name;
+  int link = 0;
+  Vec3 at = Vec3::Zero();  // as drawn
+  bool of_body = false;    // along the axes of the body
+  Signal along[3];         // N
+};
+
+struct Forces {
+  Vec3 gravity = {0, 0, -9.81};  // m/s^2
+  std::vector<Spring> springs;
+  std::vector<Motor> motors;
+  std::vector<Force> forces;
+
+  /// Is there a force beside the potential?
+  bool any() const;
+  bool damped() const;
+  bool has_signals() const { return !motors.empty() || !forces.empty(); }
+  double potential(const Tree& tree, const double* g) const;
+  /// out -= dV.
+  void add_potential_force(const Tree& tree, const double* g,
+                           Eigen::Ref<Eigen::VectorXd> out) const;
+  /// out += f; the tree placed and moving.
+  void add_force(const Tree& tree, const Now& now, Eigen::Ref<Eigen::VectorXd> out) const;
+};
+
+}  // namespace hamel::mechanisms

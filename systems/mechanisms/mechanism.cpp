@@ -1,0 +1,83 @@
+#include <hamel/systems/mechanisms/mechanism.hpp>
+
+#include <utility>
+
+#include <hamel/systems/mechanisms/assembly.hpp>
+
+namespace hamel {
+
+std::string Mechanism::body(const std::string& name, const BodyOptions& options) {
+  bodies_.push_back({part(name), options});
+  return name;
+}
+
+void Mechanism::joint(const std::string& kind, const std::string& name, const std::string& parent,
+                      const std::string& child, const JointOptions& options) {
+  joints_.push_back({part(name), options, kind, parent, child});
+}
+
+void Mechanism::contact(const std::string& kind, const std::string& name, const std::string& body,
+                        const WheelOptions& options) {
+  contacts_.push_back({part(name), options, kind, body});
+}
+void Mechanism::wheel(const std::string& name, const std::string& body,
+                      const WheelOptions& options) {
+  contact("wheel", name, body, options);
+}
+void Mechanism::roller(const std::string& name, const std::string& body,
+                       const WheelOptions& options) {
+  contact("roller", name, body, options);
+}
+void Mechanism::blade(const std::string& name, const std::string& body,
+                      const BladeOptions& options) {
+  contact("blade", name, body, {.at = options.at, .axle = options.along});
+}
+void Mechanism::ball(const std::string& name, const std::string& body,
+                     const WheelOptions& options) {
+  contact("ball", name, body, options);
+}
+
+void Mechanism::loop(const std::string& name, const std::string& a, const std::string& b,
+                     const LoopOptions& options) {
+  loops_.push_back({part(name), options, a, b});
+}
+void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate) {
+  rates_.push_back({part(joint), std::move(rate)});
+}
+void Mechanism::ground(double rate, Point velocity) {
+  ground_rate_ = rate;
+  ground_velocity_ = velocity;
+}
+
+void Mechanism::spring(const std::string& name, const std::string& a, const std::string& b,
+                       const SpringOptions& options) {
+  springs_.push_back({part(name), options, a, b});
+}
+void Mechanism::motor(const std::string& joint, Signal effort) {
+  motors_.push_back({part(joint), std::move(effort)});
+}
+void Mechanism::force(const std::string& name, const std::string& body,
+                      const ForceOptions& options) {
+  forces_.push_back({part(name), options, body});
+}
+
+SystemModel Mechanism::model() const { return Assembly(*this).model(); }
+std::pair<SystemModel, MotionWords> Mechanism::outline() const { return Assembly(*this).outline(); }
+
+std::function<SystemModel(const Parameters&)> maker(const Mechanism& mechanism) {
+  return [mechanism](const Parameters& given) {
+    detail::check_parameters(mechanism.name(), {}, given);
+    return mechanism.model();
+  };
+}
+
+SystemInfo system_info(const Mechanism& mechanism) {
+  SystemInfo info;
+  info.name = mechanism.name();
+  info.summary = "mechanism by parts";
+  info.group = mechanism.outline().first.group;
+  info.make = maker(mechanism);
+  return info;
+}
+
+}  // namespace hamel

@@ -1,0 +1,212 @@
+// A mechanism: bodies, joints, wheels, blades and balls put together, with nothing derived by hand.
+//
+//   hamel::Mechanism m("scooter");
+//   const auto deck = m.body("deck", {.mass = 5, .at = {0.3, 0, 0.1}, .box = {0.8, 0.2, 0.05}});
+//   const auto fork = m.body("fork", {.mass = 2, .at = {0.7, 0, 0.4}, .inertia = {0.1, 0.1, 0.01}});
+//   m.planar("ground", deck, {.at = {0, 0, 0}});
+//   m.hinge("steer", deck, fork, {.at = {0.7, 0, 0}, .axis = {0, 0, 1}});
+//   m.blade("rear", deck, {.at = {0, 0, 0}});
+//   m.blade("front", fork, {.at = {0.7, 0, 0}});
+//   hamel::simulate(m).set(...).run();
+//
+// All points and directions are those of one pose of the whole mechanism, as drawn: x ahead, z up, the ground z = 0.
+// That pose is the default start. Moments of inertia are about the mass centre, along the axes of that pose.
+// Parts are named; names are checked when the mechanism is used (model()), all mistakes at once.
+// The same parts in a file: mechanism_file.hpp. What is computed: tree.hpp, rows.hpp, forces.hpp.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/systems/mechanisms/forces.hpp>
+#include <hamel/systems/mechanisms/joint.hpp>
+
+namespace hamel {
+
+using mechanisms::Now;     // t, coordinates, velocity
+using mechanisms::Signal;  // Now -> number
+
+/// What rests in the world: a name where a body's is expected.
+inline const std::string kWorld = "ground";
+
+struct BodyOptions {
+  double mass = 0;       // kg
+  Point at = {0, 0, 0};  // m, the mass centre
+  std::vector<double> inertia =
+      {};  // kg m^2: 3 moments, or 6 of the upper triangle, or 9; left out: of the shape
+  Point box = {0, 0, 0};              // m, edges; at most one shape
+  std::vector<double> cylinder = {};  // m, radius and length, about `axis`
+  double sphere = 0;                  // m, radius
+  Point axis = {0, 0, 1};             // of the cylinder
+};
+struct JointOptions {
+  Point at = {0, 0, 0};  // m, a point of the joint
+  Point axis = {0, 0, 1};
+  Point axis2 = {0, 1, 0};  // of a universal joint, on the child
+  double stiffness = 0, rest = 0,
+         damping = 0;  // N m/rad, rad, N m s/rad; of a slider N/m, m, N s/m
+};
+struct WheelOptions {
+  Point at = {0, 0, 0};    // m, its centre
+  Point axle = {0, 1, 0};  // to the left, so that it rolls ahead at positive rates
+  double radius = 0;       // m
+  double angle = 0;        // rad, of a roller's rollers against the plane of the wheel
+};
+struct BladeOptions {
+  Point at = {0, 0, 0};     // m
+  Point along = {1, 0, 0};  // the direction in which it slides
+};
+struct LoopOptions {
+  Point at = {0, 0, 0};    // m
+  Point axis = {0, 0, 0};  // of a hinge; 0: a ball joint
+};
+struct SpringOptions {
+  Point from = {0, 0, 0}, to = {0, 0, 0};  // m, its ends as drawn
+  double stiffness = 0;                    // N/m
+  std::optional<double> rest = {};         // m; left out: its length as drawn
+  double damping = 0;                      // N s/m
+};
+struct ForceOptions {
+  Point at = {0, 0, 0};  // m
+  Signal along[3] = {};  // N, along x, y, z of the world
+  bool of_body = false;  // along those of the body as drawn
+};
+
+class Mechanism {
+ public:
+  explicit Mechanism(std::string name) : name_(std::move(name)) {}
+
+  /// A body; what it returns is its name.
+  std::string body(const std::string& name, const BodyOptions& options);
+
+  // Joints. Each body hangs on one; those of parent kWorld carry all others.
+  void free(const std::string& name, const std::string& child, const JointOptions& o = {}) {
+    joint("free", name, kWorld, child, o);
+  }
+  void planar(const std::string& name, const std::string& child, const JointOptions& o = {}) {
+    joint("planar", name, kWorld, child, o);
+  }
+  void hinge(const std::string& name, const std::string& parent, const std::string& child,
+             const JointOptions& o) {
+    joint("hinge", name, parent, child, o);
+  }
+  void slider(const std::string& name, const std::string& parent, const std::string& child,
+              const JointOptions& o) {
+    joint("slider", name, parent, child, o);
+  }
+  void ball_joint(const std::string& name, const std::string& parent, const std::string& child,
+                  const JointOptions& o) {
+    joint("ball", name, parent, child, o);
+  }
+  /// Two hinges, axis on the parent and axis2 on the child, that meet at a point.
+  void universal(const std::string& name, const std::string& parent, const std::string& child,
+                 const JointOptions& o) {
+    joint("universal", name, parent, child, o);
+  }
+  void weld(const std::string& name, const std::string& parent, const std::string& child) {
+    joint("weld", name, parent, child, {});
+  }
+  /// By the name of its kind, one of those above.
+  void joint(const std::string& kind, const std::string& name, const std::string& parent,
+             const std::string& child, const JointOptions& options);
+
+  // Contacts with the ground.
+  void wheel(const std::string& name, const std::string& body, const WheelOptions& options);
+  void roller(const std::string& name, const std::string& body, const WheelOptions& options);
+  void blade(const std::string& name, const std::string& body, const BladeOptions& options);
+  void ball(const std::string& name, const std::string& body, const WheelOptions& options);
+  /// A joint that closes a chain: its points, and axes, coincide.
+  void loop(const std::string& name, const std::string& a, const std::string& b,
+            const LoopOptions& options);
+  /// The rate of a hinge or slider, as a function of time.
+  void prescribe(const std::string& joint, std::function<double(double t)> rate);
+  /// The ground turns about the origin [rad/s] and moves [m/s].
+  void ground(double rate, Point velocity = {0, 0, 0});
+  /// "refuse", or "drop": what becomes of rows that say what others say already.
+  void redundant(const std::string& policy) { redundant_ = policy; }
+
+  // Forces.
+  /// m/s^2; an incline is a direction of gravity that is not -z.
+  void gravity(Point acceleration) { gravity_ = acceleration; }
+  void spring(const std::string& name, const std::string& a, const std::string& b,
+              const SpringOptions& options);
+  /// A torque [N m] or force [N] in a hinge or slider.
+  void motor(const std::string& joint, Signal effort);
+  void force(const std::string& name, const std::string& body, const ForceOptions& options);
+
+  /// The start: coordinates and velocities by name, and "speed", that of the first root joint ahead. Those that are
+  /// not given follow from the rows: coordinates stay near the drawn pose, velocities have the least energy.
+  void start(const std::map<std::string, double>& values) { start_ = values; }
+  /// What a few numbers for a start mean (`--velocity`): names as those of start(). Left out: speed.
+  void asks(std::vector<std::string> names) { asks_ = std::move(names); }
+
+  const std::string& name() const { return name_; }
+  /// The system. Throws ConfigError with all mistakes, each with the name of its part.
+  SystemModel model() const;
+
+  /// Of model(): name and group, and the names of velocities, which bodies and joints alone say. Throws ConfigError
+  /// where they make no tree.
+  std::pair<SystemModel, MotionWords> outline() const;
+
+  /// Where the next parts stand in a file, for messages.
+  void place(std::string where) { where_ = std::move(where); }
+
+ private:
+  friend class Assembly;
+  struct Part {
+    std::string name, where;
+  };
+  struct BodyPart : Part, BodyOptions {};
+  struct JointPart : Part, JointOptions {
+    std::string kind, parent, child;
+  };
+  struct ContactPart : Part, WheelOptions {
+    std::string kind, body;
+  };
+  struct LoopPart : Part, LoopOptions {
+    std::string a, b;
+  };
+  struct SpringPart : Part, SpringOptions {
+    std::string a, b;
+  };
+  struct ForcePart : Part, ForceOptions {
+    std::string body;
+  };
+  struct RatePart : Part {
+    std::function<double(double)> rate;
+  };
+  struct MotorPart : Part {
+    Signal effort;
+  };
+  Part part(const std::string& name) const { return {name, where_}; }
+  void contact(const std::string& kind, const std::string& name, const std::string& body,
+               const WheelOptions& options);
+
+  std::string name_, where_, redundant_ = "refuse";
+  std::vector<BodyPart> bodies_;
+  std::vector<JointPart> joints_;
+  std::vector<ContactPart> contacts_;
+  std::vector<LoopPart> loops_;
+  std::vector<SpringPart> springs_;
+  std::vector<ForcePart> forces_;
+  std::vector<RatePart> rates_;
+  std::vector<MotorPart> motors_;
+  Point gravity_ = {0, 0, -9.81}, ground_velocity_ = {0, 0, 0};
+  double ground_rate_ = 0;
+  std::map<std::string, double> start_;
+  std::vector<std::string> asks_;
+};
+
+/// A mechanism has no parameters to set.
+std::function<SystemModel(const Parameters&)> maker(const Mechanism& mechanism);
+/// What a registry keeps of it: registry().add(system_info(mechanism)).
+SystemInfo system_info(const Mechanism& mechanism);
+
+}  // namespace hamel

@@ -1,0 +1,45 @@
+// A mechanism in a file: hamel run scooter.toml.
+//
+//   name = "scooter"                          # left out: the file's
+//   gravity = 9.81                            # or three numbers, m/s^2 (left out: 9.81)
+//   slope = 0.1                               # rad: x points downhill (left out: level)
+//   redundant = "drop"                        # rows that say what others say (left out: "refuse")
+//   [parameters]                              # to set, study and sweep; they may stand in every number
+//   wheelbase = 0.8                           # or { value = 0.8, unit = "m", meaning = "...", least = 0 }
+//   [[body]]                                  # mass [kg]; at: its mass centre [m]
+//   name = "deck"                             # inertia: 3, 6 (upper triangle) or 9 numbers [kg m^2], or the shape's:
+//   mass = 5                                  # box = [x, y, z], cylinder = [radius, length] with axis, sphere = radius
+//   at = ["wheelbase/2", 0, 0.1]
+//   [[joint]]                                 # kind: free planar hinge slider ball universal weld
+//   kind = "planar"                           # parent (left out: the ground), child, at, axis, axis2,
+//   child = "deck"                            # stiffness, rest, damping
+//   [[wheel]] [[roller]] [[blade]] [[ball]]   # body, at; axle, radius, angle; along
+//   [[loop]]                                  # a, b, at, axis
+//   [[prescribed]]                            # joint; rate or angle = "0.3*sin(2*t)"
+//   [[spring]]                                # a, b, from, to, stiffness, rest, damping
+//   [[motor]]                                 # joint; effort = "-2*steer.angle - 0.1*steer.rate"
+//   [[force]]                                 # body, at; along = ["1", 0, 0]; of_body = true
+//   [ground]                                  # rate [rad/s], velocity [m/s]: the ground turns and moves
+//   [start]                                   # coordinates and velocities by name, and speed
+//   speed = 2
+//   asks = ["speed"]                          # what the numbers of --velocity mean, fewer than velocities
+//
+// Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also of t, those of motors
+// and forces of coordinates (steer.angle, x) and velocities (steer.rate, v1).
+#pragma once
+
+#include <string>
+
+#include <hamel/framework/run/registry.hpp>
+#include <hamel/systems/mechanisms/mechanism.hpp>
+
+namespace hamel {
+
+/// The system of a TOML text. Throws ConfigError with every mistake, file, line and column.
+SystemModel mechanism_from(const std::string& text, const std::string& origin,
+                           const Parameters& given = {});
+
+/// What a registry keeps of such a text: its words, its parameters.
+SystemInfo mechanism_info(const std::string& text, const std::string& origin);
+
+}  // namespace hamel

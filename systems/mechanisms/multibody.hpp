@@ -1,0 +1,72 @@
+// A tree of bodies with its rows and forces as Mechanics: what the schemes step.
+//
+// Nothing here takes memory once it is built. Work space and the last placement are kept, so that an object serves one
+// run at a time.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/systems/mechanisms/forces.hpp>
+#include <hamel/systems/mechanisms/rows.hpp>
+
+namespace hamel::mechanisms {
+
+class Multibody : public Mechanics {
+ public:
+  /// All rows of `rows`; keep() drops some.
+  Multibody(Tree tree, Rows rows, Forces forces, std::shared_ptr<const Geometry> geometry);
+  /// Only these rows of each(), of which the holonomic ones go last.
+  void keep(const std::vector<int>& rows);
+  /// Is I(g) the same for all g, are A and V? Read off a few poses that share nothing.
+  void look_for_constants(const std::vector<std::vector<double>>& poses);
+
+  int dim() const override { return tree_.dim(); }
+  int rows() const override { return static_cast<int>(kept_.size()); }
+  int holonomic_rows() const override { return holonomic_; }
+  bool constant_inertia() const override { return constant_inertia_; }
+  bool constant_constraints() const override { return constant_rows_; }
+  bool autonomous() const override { return rows_.prescribed.empty() && !forces_.has_signals(); }
+  bool has_force() const override { return forces_.any(); }
+  bool has_drift() const override { return rows_.ground.moves() || !rows_.prescribed.empty(); }
+  bool constant_potential() const { return constant_potential_; }
+
+  void inertia(const double* g, Matrix out) const override;
+  void constraints(double t, const double* g, Matrix a, Vector b) const override;
+  void holonomic(const double* g, Vector out) const override;
+  void force(double t, const double* g, ConstVector xi, Vector out) const override;
+  void inertial_force(const double* g, ConstVector xi, Vector out) const override;
+  bool force_depends_on_velocity() const override { return forces_.any(); }
+  double power(double t, const double* g, ConstVector xi) const override;
+  double potential(const double* g) const override;
+
+  const Rows& all_rows() const { return rows_; }
+  const std::vector<int>& kept() const { return kept_; }
+  const Geometry& geometry() const { return *geometry_; }
+  /// The element of the drawn pose.
+  const std::vector<double>& drawn() const { return tree_.drawn(); }
+  /// The tree at g.
+  const Tree& tree(const double* g) const;
+  /// phi of all rows of each(), 0 where it is none, and their A.
+  void look(double t, const double* g, Matrix a, Vector b, Vector phi) const;
+
+ private:
+  void add_force(double t, const double* g, ConstVector xi, Vector out) const;
+  void write(const Row& row, Matrix a, int to) const;
+
+  mutable Tree tree_;
+  Rows rows_;
+  Forces forces_;
+  std::shared_ptr<const Geometry> geometry_;
+  std::vector<int> slots_;  // of each(): the row of A, or -1
+  std::vector<int> kept_;   // their inverse
+  int holonomic_ = 0;
+  bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;
+  Eigen::MatrixXd inertia_;  // where it is constant
+  mutable std::vector<double> placed_, coordinates_;
+  mutable Eigen::VectorXd work_;
+};
+
+}  // namespace hamel::mechanisms

@@ -1,0 +1,252 @@
+#include <hamel/systems/mechanisms/poses.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+namespace hamel::mechanisms {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Numbers in [-1, 1] without a pattern, the same in every run.
+VectorXd scattered(int n, int seed) {
+  VectorXd out(n);
+  for (int i = 0; i < n; ++i) out[i] = std::sin(12.9898 * (i + 1) + 78.233 * seed);
+  return out;
+}
+
+std::vector<double> move(const Multibody& system, const std::vector<double>& g,
+                         const VectorXd& eta) {
+  std::vector<double> out(g.size());
+  system.geometry().tau(eta.data(), out.data());
+  system.geometry().compose(g.data(), out.data(), out.data());
+  return out;
+}
+
+// Rows, b and phi of each().
+struct Looked {
+  MatrixXd a;
+  VectorXd b, phi;
+  Looked(const Multibody& system, const std::vector<double>& g) {
+    const auto rows = static_cast<Eigen::Index>(system.all_rows().words().size());
+    a.resize(rows, system.dim());
+    b.resize(rows);
+    phi = VectorXd::Zero(rows);
+    system.look(0, g.data(), a, b, phi);
+  }
+};
+
+VectorXd least(const MatrixXd& a, const VectorXd& b) {
+  if (a.size() == 0) return VectorXd::Zero(a.cols());
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition(a.rows(), a.cols());
+  decomposition.setThreshold(1e-9);
+  return decomposition.compute(a).solve(b);
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> poses_around(const Multibody& system,
+                                              const std::vector<double>& g) {
+  std::vector<std::vector<double>> out{g};
+  for (int seed = 1; seed <= 4; ++seed)
+    out.push_back(move(system, g, 0.7 * scattered(system.dim(), seed)));
+  return out;
+}
+
+double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g) {
+  const std::vector<RowWords> words = system.all_rows().words();
+  for (int k = 0;; ++k) {
+    Looked looked(system, g);
+    for (Eigen::Index i = 0; i < looked.a.rows(); ++i) {
+      if (!words[static_cast<size_t>(i)].holonomic) looked.a.row(i).setZero();
+    }
+    const double off = looked.phi.size() == 0 ? 0 : looked.phi.lpNorm<Eigen::Infinity>();
+    if (k == 30 || off < 1e-15 || !std::isfinite(off)) return off;
+    for (int j = 0; j < system.dim(); ++j) {
+      if (fixed[static_cast<size_t>(j)]) looked.a.col(j).setZero();
+    }
+    VectorXd step = -least(looked.a, looked.phi);
+    if (step.norm() > 0.3) step *= 0.3 / step.norm();
+    g = move(system, g, step);
+  }
+}
+
+std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
+                                               const std::vector<double>& g) {
+  std::vector<std::vector<double>> out{g};
+  const std::vector<bool> fixed(static_cast<size_t>(system.dim()), false);
+  for (int seed = 1; seed <= 3; ++seed) {
+    const VectorXd any = 0.2 * scattered(system.dim(), seed);
+    const MatrixXd a = Looked(system, g).a;
+    std::vector<double> pose = move(system, g, any - least(a, VectorXd(a * any)));
+    if (satisfy(system, fixed, pose) < 1e-12) out.push_back(std::move(pose));
+  }
+  return out;
+}
+
+// Gram-Schmidt on the rows of unit length, those of phi first: what is left of a row below 1e-9 is none.
+Redundancy look_for_redundancy(const Multibody& system, const std::vector<double>& drawn) {
+  const std::vector<RowWords> words = system.all_rows().words();
+  std::vector<int> order;
+  for (const bool holonomic : {true, false}) {
+    for (size_t i = 0; i < words.size(); ++i) {
+      if (words[i].holonomic == holonomic) order.push_back(static_cast<int>(i));
+    }
+  }
+  // A row of phi that is zero in all poses says nothing: in the plane no contact changes its height.
+  std::vector<bool> speaks(words.size(), false);
+  for (const auto& pose : poses_around(system, drawn)) {
+    const Looked looked(system, pose);
+    for (size_t i = 0; i < words.size(); ++i) {
+      if (!words[i].holonomic || looked.a.row(static_cast<Eigen::Index>(i)).norm() > 1e-11)
+        speaks[i] = true;
+    }
+  }
+  Redundancy out;
+  std::map<int, int> dependent;
+  const auto poses = poses_on_rows(system, drawn);
+  for (const auto& pose : poses) {
+    const MatrixXd a = Looked(system, pose).a;
+    MatrixXd basis(0, system.dim());
+    std::vector<int> taken;
+    for (const int i : order) {
+      if (!speaks[static_cast<size_t>(i)]) continue;
+      const VectorXd row = a.row(i).transpose() / std::max(a.row(i).norm(), 1e-300);
+      const VectorXd parts = least(basis.transpose(), row);
+      if ((row - basis.transpose() * parts).norm() > 1e-9) {
+        basis.conservativeResize(basis.rows() + 1, Eigen::NoChange);
+        basis.bottomRows(1) = row.transpose();
+        taken.push_back(i);
+        continue;
+      }
+      ++dependent[i];
+      auto& repeats = out.repeats[i];
+      for (Eigen::Index j = 0; j < parts.size(); ++j) {
+        const int other = taken[static_cast<size_t>(j)];
+        if (std::abs(parts[j]) > 1e-6 &&
+            std::find(repeats.begin(), repeats.end(), other) == repeats.end())
+          repeats.push_back(other);
+      }
+    }
+  }
+  const int all = static_cast<int>(poses.size());
+  std::erase_if(out.repeats, [&](const auto& entry) { return dependent[entry.first] < all; });
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (speaks[i] && !out.repeats.contains(static_cast<int>(i)))
+      out.rows.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
+Starts::Starts(std::shared_ptr<const Multibody> system, std::string name,
+               std::vector<std::string> columns, std::vector<std::string> rates)
+    : system_(std::move(system)),
+      name_(std::move(name)),
+      columns_(std::move(columns)),
+      rates_(std::move(rates)) {}
+
+int Starts::rate(const std::string& name) const {
+  const auto index = [&](const std::string& wanted) {
+    const auto it = std::find(rates_.begin(), rates_.end(), wanted);
+    return it == rates_.end() ? -1 : static_cast<int>(it - rates_.begin());
+  };
+  return index(name == "speed" ? "v1" : name);
+}
+
+std::vector<std::string> Starts::mistakes(const std::vector<std::string>& names) const {
+  std::vector<std::string> known = columns_, out;
+  known.insert(known.end(), rates_.begin(), rates_.end());
+  if (rate("speed") >= 0) known.emplace_back("speed");
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      out.push_back(unknown_name("number of the start of " + name_, name, known));
+  }
+  return out;
+}
+
+// The given coordinates hold; the others follow from phi = 0.
+std::vector<double> Starts::configuration(const std::map<std::string, double>& values) const {
+  const Tree& tree = system_->tree(system_->drawn().data());
+  std::vector<double> g = tree.drawn(), coordinates(columns_.size());
+  system_->geometry().coordinates(g.data(), coordinates.data());
+  std::vector<bool> fixed(rates_.size(), false);
+  size_t column = 0;
+  for (int link = 0; link < tree.links(); ++link) {
+    for (const std::string& name : type_of(tree.kind(link)).columns) {
+      (void)name;
+      const auto given = values.find(columns_[column]);
+      if (given != values.end()) {
+        coordinates[column] = given->second;
+        for (int i = 0; i < tree.count(link); ++i)
+          fixed[static_cast<size_t>(tree.first(link) + i)] = true;
+      }
+      ++column;
+    }
+  }
+  try {
+    system_->geometry().from_coordinates(coordinates, g.data());
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError({fmt::format("{}: start: {}", name_, error.what())});
+  }
+  const double off = satisfy(*system_, fixed, g);
+  if (!(off < 1e-12)) {
+    throw ConfigError(
+        {fmt::format("{}: start: these coordinates cannot be reached with all contacts and loops "
+                     "closed, {:.3g} m is left",
+                     name_, off)});
+  }
+  system_->geometry().coordinates(g.data(), coordinates.data());
+  return coordinates;
+}
+
+// Least 1/2 xi^T I xi with A xi = b and the given velocities.
+Start Starts::solve(const std::map<std::string, double>& values) const {
+  if (const auto wrong = mistakes([&] {
+        std::vector<std::string> names;
+        for (const auto& [name, value] : values) names.push_back(name);
+        return names;
+      }());
+      !wrong.empty()) {
+    throw ConfigError(wrong);
+  }
+  Start start;
+  start.configuration = configuration(values);
+  std::vector<double> g(system_->drawn().size());
+  system_->geometry().from_coordinates(start.configuration, g.data());
+  const int n = system_->dim(), k = system_->rows();
+  std::vector<std::pair<int, double>> stated;
+  for (const auto& [name, value] : values) {
+    if (const int i = rate(name); i >= 0) stated.emplace_back(i, value);
+  }
+  MatrixXd inertia(n, n), a = MatrixXd::Zero(k + static_cast<int>(stated.size()), n);
+  VectorXd b = VectorXd::Zero(a.rows()), b_rows(k);
+  MatrixXd a_rows(k, n);
+  system_->inertia(g.data(), inertia);
+  system_->constraints(0, g.data(), a_rows, b_rows);
+  a.topRows(k) = a_rows;
+  b.head(k) = b_rows;
+  for (size_t i = 0; i < stated.size(); ++i) {
+    const Eigen::Index row = k + static_cast<Eigen::Index>(i);
+    a(row, stated[i].first) = 1;
+    b[row] = stated[i].second;
+  }
+  const VectorXd some = least(a, b);
+  if (!((a * some - b).norm() <= 1e-9 * (1 + b.norm()))) {
+    throw ConfigError({fmt::format("{}: start: the rows forbid these velocities together", name_)});
+  }
+  // some + N z, N a basis of what is free: least energy where N^T I (some + N z) = 0.
+  const MatrixXd free = Eigen::FullPivLU<MatrixXd>(a).kernel();
+  const MatrixXd reduced = free.transpose() * inertia * free;
+  const VectorXd z = least(reduced, VectorXd(-(free.transpose() * (inertia * some))));
+  const VectorXd velocity = some + free * z;
+  start.velocity.assign(velocity.begin(), velocity.end());
+  return start;
+}
+
+}  // namespace hamel::mechanisms

@@ -1,0 +1,145 @@
+#include <hamel/systems/mechanisms/rows.hpp>
+
+#include <cmath>
+
+namespace hamel::mechanisms {
+namespace {
+
+// Where a contact touches, its first horizontal direction, and the vertical: seen from the root.
+struct Touch {
+  Vec3 gamma, q, along;
+  Touch(const Contact& contact, const Tree& tree) {
+    const Rigid& here = tree.from_root(contact.link);
+    gamma = tree.root_in_world(contact.link).rotation.row(2).transpose();
+    q = here.apply(contact.at);
+    const Vec3 axis = here.rotation.lazyProduct(contact.axis);
+    switch (contact.kind) {
+      case ContactKind::wheel:
+      case ContactKind::roller: {
+        const Vec3 up = gamma - gamma.dot(axis) * axis;
+        q -= contact.radius / up.norm() * up;
+        along = axis.cross(gamma).normalized();
+        break;
+      }
+      case ContactKind::blade: along = axis; break;
+      case ContactKind::ball:
+        q -= contact.radius * gamma;
+        along = tree.root_in_world(contact.link).rotation.row(0).transpose();
+        break;
+    }
+  }
+};
+
+// A force along u at x, both of the world, on a link.
+Wrench on_link(const Tree& tree, int link, const Vec3& x, const Vec3& u) {
+  const Rigid root = tree.root_in_world(link);
+  return force_at(root.inverse().apply(x), root.rotation.transpose() * u);
+}
+Wrench moment_on_link(const Tree& tree, int link, const Vec3& u) {
+  return stack(tree.root_in_world(link).rotation.transpose() * u, Vec3::Zero());
+}
+
+}  // namespace
+
+std::vector<RowWords> Rows::words() const {
+  std::vector<RowWords> out;
+  const auto add = [&](const std::string& part, int number, std::string meaning, bool holonomic,
+                       bool height = false) {
+    out.push_back(
+        {part, part + ".reaction" + std::to_string(number), std::move(meaning), holonomic, height});
+  };
+  for (const Contact& contact : contacts) {
+    int number = 0;
+    switch (contact.kind) {
+      case ContactKind::wheel:
+        add(contact.name, ++number, "rolls without slipping", false);
+        add(contact.name, ++number, "does not slip sideways", false);
+        break;
+      case ContactKind::roller:
+        add(contact.name, ++number, "does not slip along the axes of its rollers", false);
+        break;
+      case ContactKind::blade:
+        add(contact.name, ++number, "does not slip across its edge", false);
+        break;
+      case ContactKind::ball:
+        add(contact.name, ++number, "rolls without slipping, along x", false);
+        add(contact.name, ++number, "rolls without slipping, along y", false);
+        break;
+    }
+    add(contact.name, ++number, "touches the ground", true, true);
+  }
+  for (const Loop& loop : loops) {
+    for (int i = 1; i <= 3; ++i) add(loop.name, i, "the points of the joint coincide", true);
+    for (int i = 4; i <= 5 && !loop.axis.isZero(0); ++i) {
+      add(loop.name, i, "the axes of the joint coincide", true);
+    }
+  }
+  for (const Prescribed& p : prescribed) add(p.name, 1, "moves as prescribed", false);
+  return out;
+}
+
+double Rows::height(const Contact& contact, const Tree& tree) const {
+  return tree.root_in_world(contact.link).apply(Touch(contact, tree).q)[2];
+}
+
+int Rows::look(const Contact& contact, const Tree& tree, Row* rows) const {
+  const Touch touch(contact, tree);
+  const Vec3 across = touch.gamma.cross(touch.along);
+  int count = 0;
+  const auto slips_not = [&](const Vec3& u) {
+    Row& row = rows[count++] = Row{};
+    row.link = contact.link;
+    row.wrench = force_at(touch.q, u);
+    if (ground.moves()) {
+      const Rigid& root = tree.root_in_world(contact.link);
+      const Vec3 x = root.apply(touch.q), v = ground.velocity + ground.rate * Vec3(-x[1], x[0], 0);
+      row.drift = v.dot(root.rotation.lazyProduct(u));
+    }
+  };
+  switch (contact.kind) {
+    case ContactKind::wheel:
+    case ContactKind::ball:
+      slips_not(touch.along);
+      slips_not(across);
+      break;
+    case ContactKind::roller:
+      slips_not(std::cos(contact.angle) * touch.along + std::sin(contact.angle) * across);
+      break;
+    case ContactKind::blade: slips_not(across.normalized()); break;
+  }
+  Row& row = rows[count++] = Row{};
+  row.link = contact.link;
+  row.wrench = force_at(touch.q, touch.gamma);
+  row.phi = tree.root_in_world(contact.link).apply(touch.q)[2];
+  return count;
+}
+
+int Rows::look(const Loop& loop, const Tree& tree, Row* rows) {
+  const Rigid a = tree.in_world(loop.a), b = tree.in_world(loop.b);
+  const Vec3 x = b.apply(loop.at), apart = x - a.apply(loop.at);
+  const bool hinge = !loop.axis.isZero(0);
+  const Mat<3, 3> frame =
+      a.rotation * (hinge ? frame_along(loop.axis) : Mat<3, 3>(Mat<3, 3>::Identity()));
+  for (int i = 0; i < 3; ++i) {
+    Row& row = rows[i] = Row{};
+    row.link = loop.b;
+    row.other = loop.a;
+    row.wrench = on_link(tree, loop.b, x, frame.col(i));
+    row.other_wrench = on_link(tree, loop.a, x, frame.col(i));
+    row.phi = frame.col(i).dot(apart);
+  }
+  if (!hinge) return 3;
+  const Vec3 axis = b.rotation * loop.axis;
+  for (int i = 0; i < 2; ++i) {
+    Row& row = rows[3 + i] = Row{};
+    const Vec3 moment = axis.cross(Vec3(frame.col(i)));
+    row.link = loop.b;
+    row.other = loop.a;
+    row.wrench = moment_on_link(tree, loop.b, moment);
+    row.other_wrench = moment_on_link(tree, loop.a, moment);
+    row.phi = frame.col(i).dot(axis);
+  }
+  return 5;
+}
+
+}  // namespace hamel::mechanisms

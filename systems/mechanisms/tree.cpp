@@ -1,0 +1,108 @@
+#include <hamel/systems/mechanisms/tree.hpp>
+
+namespace hamel::mechanisms {
+namespace {
+
+// The element with this motion in the joint's frame: of a joint that is drawn at rest the identity, of one against
+// the ground's own frame the place of the body.
+std::vector<double> element_of(JointKind kind, const Rigid& x) {
+  const JointType& type = type_of(kind);
+  std::vector<double> values = type.group.identity;
+  if (kind == JointKind::free) {
+    for (int i = 0; i < 9; ++i) values[static_cast<size_t>(i)] = x.rotation(i / 3, i % 3);
+    for (int i = 0; i < 3; ++i) values[static_cast<size_t>(9 + i)] = x.position[i];
+  } else if (kind == JointKind::planar) {
+    values = {0, x.position[0], x.position[1]};
+  }
+  std::vector<double> element(static_cast<size_t>(type.geometry->size()));
+  type.geometry->from_coordinates(values, element.data());
+  return element;
+}
+
+}  // namespace
+
+Tree::Tree(const std::vector<Link>& links) : links_(links), momenta_(links.size()) {
+  for (const Link& link : links) {
+    Node node;
+    const int j = static_cast<int>(nodes_.size());
+    node.link = link;
+    node.root = link.parent == kGround ? j : at(link.parent).root;
+    node.dof = dim_;
+    node.element = size_;
+    const auto s = hamel::mechanisms::directions(link.kind);
+    node.directions.resize(6, s.cols());
+    for (Eigen::Index i = 0; i < s.cols(); ++i)
+      node.directions.col(i) = link.on_child.move(s.col(i));
+    node.columns = node.directions;
+    node.after = link.on_child.inverse();
+    dim_ += static_cast<int>(s.cols());
+    size_ += type_of(link.kind).geometry->size();
+    const auto drawn = element_of(link.kind, link.on_parent.inverse() * link.on_child);
+    drawn_.insert(drawn_.end(), drawn.begin(), drawn.end());
+    nodes_.push_back(std::move(node));
+  }
+  place(drawn_.data());
+}
+
+void Tree::place(const double* g) {
+  for (Node& node : nodes_) {
+    const Rigid across =
+        node.link.on_parent * motion(node.link.kind, g + node.element) * node.after;
+    if (node.link.parent == kGround) {
+      node.world = across;
+      node.carried = node.own = node.link.inertia;
+      continue;
+    }
+    node.place = at(node.link.parent).place * across;
+    for (Eigen::Index i = 0; i < node.columns.cols(); ++i) {
+      node.columns.col(i) = node.place.move(node.directions.col(i));
+    }
+    node.carried = node.own = moved(node.place, node.link.inertia);
+  }
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
+    if (node->link.parent != kGround) at(node->link.parent).carried += node->carried;
+  }
+}
+
+void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
+  for (Node& node : nodes_) {
+    node.twist.setZero();
+    if (node.link.parent != kGround) node.twist = at(node.link.parent).twist;
+    for (Eigen::Index i = 0; i < node.columns.cols(); ++i) {
+      node.twist += xi[node.dof + i] * node.columns.col(i);
+    }
+  }
+}
+
+void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> out) const {
+  out.setZero();
+  for (const Node& node : nodes_) {
+    for (Eigen::Index b = 0; b < node.columns.cols(); ++b) {
+      const Wrench momentum = node.carried * node.columns.col(b);
+      const Eigen::Index column = node.dof + b;
+      for (const Node* on_the_way = &node;;) {
+        for (Eigen::Index a = 0; a < on_the_way->columns.cols(); ++a) {
+          const Eigen::Index row = on_the_way->dof + a;
+          out(row, column) = out(column, row) = on_the_way->columns.col(a).dot(momentum);
+        }
+        if (on_the_way->link.parent == kGround) break;
+        on_the_way = &at(on_the_way->link.parent);
+      }
+    }
+  }
+}
+
+void Tree::add_inertial_force(Eigen::Ref<Eigen::VectorXd> out) const {
+  for (size_t j = 0; j < nodes_.size(); ++j) momenta_[j] = nodes_[j].own * nodes_[j].twist;
+  for (size_t j = nodes_.size(); j-- > 0;) {
+    const Node& node = nodes_[j];
+    if (node.link.parent == kGround) continue;  // its own velocity is left-trivialised
+    const Wrench force = ad_transpose(at(node.link.parent).twist, momenta_[j]);
+    for (Eigen::Index i = 0; i < node.columns.cols(); ++i) {
+      out[node.dof + i] += node.columns.col(i).dot(force);
+    }
+    momenta_[static_cast<size_t>(node.link.parent)] += momenta_[j];
+  }
+}
+
+}  // namespace hamel::mechanisms

@@ -1,0 +1,168 @@
+// Mechanisms in files: hamel run, describe and steady.
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace hamel::test;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class MechanismFile : public CommandLine {
+ protected:
+  std::string write(const std::string& text) {
+    std::ofstream(file("parts.toml")) << text;
+    return file("parts.toml");
+  }
+  json answer(std::vector<std::string> arguments) {
+    arguments.emplace_back("--json");
+    const Outcome o = run(arguments);
+    EXPECT_EQ(o.status, 0) << o.err;
+    return json::parse(o.out);
+  }
+  void refused(const std::string& text, const std::string& message) {
+    const Outcome o = run({"run", write(text)});
+    EXPECT_EQ(o.status, 2) << text;
+    EXPECT_THAT(o.err, HasSubstr(message)) << text;
+  }
+};
+
+constexpr const char* kSleigh = R"(name = "sleigh"
+[parameters]
+offset = { value = 0.2, unit = "m", meaning = "blade to mass centre" }
+[[body]]
+name = "body"
+mass = 1
+at = ["offset", 0, 0]
+inertia = [0, 0, 0.1]
+[[joint]]
+kind = "planar"
+child = "body"
+[[blade]]
+body = "body"
+[start]
+speed = -1
+omega = 0.9
+)";
+
+/// The sleigh of the registry, from parts; its parameter is set by name.
+TEST_F(MechanismFile, RunsAsTheSystem) {
+  for (const std::string offset : {"0.2", "0.35"}) {
+    const json parts = answer({"run", write(kSleigh), "--set", "offset=" + offset});
+    const json system =
+        answer({"run", "chaplygin_sleigh", "--set", "offset=" + offset, "--velocity", "0.9,-1,0"});
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(parts["final"]["velocity"][i], system["final"]["velocity"][i], 1e-11);
+    }
+    EXPECT_EQ(parts["parameters"]["offset"], std::stod(offset));
+  }
+}
+
+/// Every file of the library runs a second and keeps its energy or its balance; its columns carry the parts' names.
+TEST_F(MechanismFile, OfTheLibraryRun) {
+  int seen = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::string(std::getenv("HAMEL_SOURCE")) + "/systems/mechanisms")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++seen;
+    const json record = answer(
+        {"run", entry.path().string(), "--until", "1", "--step", "0.002", "--compose", "suzuki4"});
+    EXPECT_EQ(record["status"], "ok") << entry.path();
+    EXPECT_LT(record["diagnostics"]["energy_error_max"].get<double>(), 1e-6) << entry.path();
+    EXPECT_LT(record["diagnostics"]["constraint_max"].get<double>(), 1e-10) << entry.path();
+    EXPECT_EQ(entry.path().stem().string(),
+              json::parse(run({"describe", entry.path().string(), "--json"}).out)["name"]
+                  .get<std::string>());
+  }
+  EXPECT_EQ(seen, 9);
+  const Outcome o =
+      run({"run", "bicycle", "--velocity", "5", "--until", "0.1", "-o", file("x.csv"), "--quiet"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  const std::string head = lines(contents(file("x.csv")))[0];
+  for (const char* column : {"steer.angle", "rear.reaction1", "front.reaction3", "R33,x,y,z"}) {
+    EXPECT_THAT(head, HasSubstr(column));
+  }
+}
+
+TEST_F(MechanismFile, DescribesItself) {
+  const json d = answer({"describe", "bicycle"});
+  EXPECT_EQ(d["group"], "se3*so2^3");
+  EXPECT_EQ(d["directions"], 3);
+  EXPECT_EQ(d["rates"][6], "steer.rate");
+  EXPECT_EQ(d["reactions"].size(), 6u);
+  EXPECT_EQ(d["parts"][0], "rear frame");
+  EXPECT_EQ(d["parameters"][0]["name"], "front_radius");
+  EXPECT_THAT(d["verdict"].get<std::string>(), HasSubstr("nonholonomic"));
+}
+
+TEST_F(MechanismFile, SaysWhereItIsWrong) {
+  const std::string body =
+      "[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 1]\n[[joint]]\nkind = \"planar\"\nchild "
+      "= \"a\"\n";
+  refused(body + "[[wheel]]\nbody = \"b\"\nradius = 1\n",
+          "parts.toml:8:1: wheel 'b': unknown body 'b': expected one of a");
+  refused(body + "[[motor]]\njoint = \"a\"\neffort = \"1\"\n",
+          "motor 'a': unknown hinge or slider 'a'");
+  refused(body + "[[force]]\nname = \"f\"\nbody = \"a\"\nalong = [\"2*omeg\", 0, 0]\n",
+          "parts.toml:11:13: along: unknown name 'omeg': expected one of t, theta, x, y, omega, "
+          "v1, v2; did you mean 'omega'?");
+  refused(body + "[[blade]]\nbody = \"a\"\nallong = [1, 0, 0]\n",
+          "parts.toml:10:10: unknown key 'allong'");
+  refused("[[body]]\nname = \"a\"\nmass = \"1/0\"\n",
+          "parts.toml:3:8: mass: expected a finite number, got inf");
+  refused(body + "[start]\nspeeed = 1\n", "did you mean 'speed'?");
+  refused(body + "wheels = 3\n", "unknown key 'wheels'");
+  const Outcome o = run({"run", write(kSleigh), "--set", "ofset=1"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("did you mean 'offset'?"));
+}
+
+/// By name, and as a file.
+TEST_F(MechanismFile, OfTheLibraryGoByName) {
+  EXPECT_THAT(run({"list", "systems"}).out, HasSubstr("two_trailer_truck"));
+  const json by_name = answer({"run", "kick_scooter", "--until", "0.1"});
+  const json file = answer(
+      {"run", std::string(std::getenv("HAMEL_SOURCE")) + "/systems/mechanisms/kick_scooter.toml",
+       "--until", "0.1"});
+  EXPECT_EQ(by_name["final"]["velocity"], file["final"]["velocity"]);
+}
+
+/// The contract's record; speeds of the published bicycle.
+TEST_F(MechanismFile, SteadyBicycle) {
+  const json s = answer({"steady", "bicycle", "--speed", "5"});
+  EXPECT_EQ(s["neutral"], 6);
+  ASSERT_EQ(s["eigenvalues"].size(), 4u);
+  EXPECT_NEAR(s["eigenvalues"][0][0], -0.32286642900409, 1e-8);
+  EXPECT_NEAR(s["eigenvalues"][1][0], -0.77534188219585, 1e-8);
+  EXPECT_NEAR(s["eigenvalues"][1][1], 4.46486771378823, 1e-8);
+  EXPECT_NEAR(s["motion"]["velocity"][3], 5, 1e-12);
+  EXPECT_EQ(s["parameters"]["wheelbase"][0], 1.02);
+  const json v = answer({"steady", "bicycle", "--vary", "speed=1:8:8"});
+  EXPECT_EQ(v["vary"].size(), 8u);
+  ASSERT_EQ(v["crossings"].size(), 2u);
+  EXPECT_NEAR(v["crossings"][0]["value"], 4.29238253634111, 1e-9);
+  EXPECT_EQ(v["crossings"][0]["kind"], "pair");
+  EXPECT_NEAR(v["crossings"][1]["value"], 6.02426201538837, 1e-9);
+  EXPECT_EQ(v["crossings"][1]["kind"], "real");
+  const Outcome o = run({"steady", "bicycle", "--speed", "5"});
+  EXPECT_THAT(o.out, HasSubstr("no growing mode"));
+  EXPECT_THAT(o.out, HasSubstr("steer.rate"));
+}
+
+TEST_F(MechanismFile, SteadySaysWhatItCannotDo) {
+  EXPECT_THAT(run({"steady", "suslov", "--speed", "1"}).err,
+              HasSubstr("knows no motion by its speed"));
+  EXPECT_THAT(run({"steady", "segway", "--vary", "height=1"}).err,
+              HasSubstr("expected name=from:to:count"));
+  EXPECT_THAT(run({"steady", "segway", "--speed", "1", "--vary", "hight=1:2:3"}).err,
+              HasSubstr("did you mean 'height'?"));
+  EXPECT_THAT(run({"steady", "snakeboard"}).err, HasSubstr("depends on time"));
+  EXPECT_EQ(run({"steady", "snakeboard"}).status, 2);
+}
+
+}  // namespace

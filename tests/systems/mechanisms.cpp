@@ -1,0 +1,321 @@
+// Mechanisms by parts: their recursions against differences, and against the registered systems along trajectories.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include <Eigen/Eigenvalues>
+
+#include <hamel/framework/check/system_laws.hpp>
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/systems/mechanisms/library.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "mechanism_systems.hpp"
+
+namespace hamel {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using testing::HasSubstr;
+
+// The order-6 composition makes the schemes agree to round-off also where the groups are not the same.
+Result run(Simulation simulation, const Start& start, double h, double until) {
+  simulation.start(start).compose("kahan_li6").step(h).until(until);
+  Result result = simulation.run();
+  EXPECT_TRUE(result.status.ok) << result.status.reason;
+  return result;
+}
+
+// What the rows do on xi, A^T lambda, whatever the rows are.
+VectorXd reaction(const Result& result) {
+  const SystemModel& system = result.system;
+  const auto geometry = registry().geometry(system.group.name, "exp");
+  const Mechanics& mechanics = *system.mechanics;
+  EquationsOfMotion<Erased> motion(Erased(geometry, system.mechanics));
+  VectorXd g(geometry->size()), b(mechanics.rows());
+  MatrixXd a(mechanics.rows(), mechanics.dim());
+  geometry->from_coordinates(result.last.coordinates, g.data());
+  const VectorXd xi = Eigen::Map<const VectorXd>(result.last.velocity.data(), mechanics.dim());
+  motion.solve(result.last.time, g, xi);
+  mechanics.constraints(result.last.time, g.data(), a, b);
+  return a.transpose() * motion.reaction();
+}
+
+double apart(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = a.size() == b.size() ? 0 : 1e300;
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+// Same group and coordinates.
+template <class S>
+void same(const S& system, const Mechanism& parts, double h = 0.01, double until = 2) {
+  SCOPED_TRACE(parts.name());
+  const Result hers = run(simulate(system), {}, h, until);
+  const Result ours = run(simulate(parts), hers.config.start, h, until);
+  EXPECT_LT(apart(hers.last.coordinates, ours.last.coordinates), 1e-10);
+  EXPECT_LT(apart(hers.last.velocity, ours.last.velocity), 1e-10);
+  const auto energy = [](const Result& r) {
+    const auto column = r.trajectory.column("energy");
+    return column.back() - column.front();
+  };
+  EXPECT_NEAR(energy(hers), energy(ours), 1e-10 * (1 + std::abs(hers.last.energy)));
+  const VectorXd there = reaction(hers);
+  EXPECT_LT((there - reaction(ours)).norm(), 1e-9 * (1 + there.norm()));
+}
+
+TEST(Mechanisms, AreTheRegisteredSystems) {
+  same(ChaplyginSleigh{}, by_parts::sleigh({}));
+  same(DifferentialDrive{}, by_parts::drive({}));
+  same(Segway{}, by_parts::segway({}), 0.005, 1.5);
+  same(RollerRacer{}, by_parts::racer({}));
+  same(Snakeboard{}, by_parts::snakeboard({}));
+}
+
+// The system measures the headings of its trailers against the car, the mechanism against the one before.
+TEST(Mechanisms, AreTheTrain) {
+  const NTrailer system;
+  const auto against_the_last = [](std::vector<double> values, size_t first) {
+    for (size_t i = values.size() - 1; i > first; --i) values[i] -= values[i - 1];
+    return values;
+  };
+  const Result hers = run(simulate(system), {}, 0.01, 2);
+  Start start = hers.config.start;
+  start.configuration = against_the_last(start.configuration, 3);
+  start.velocity = against_the_last(start.velocity, 3);
+  const Result ours = run(simulate(by_parts::train(system)), start, 0.01, 2);
+  EXPECT_LT(apart(against_the_last(hers.last.coordinates, 3), ours.last.coordinates), 1e-10);
+  EXPECT_LT(apart(against_the_last(hers.last.velocity, 3), ours.last.velocity), 1e-10);
+  EXPECT_NEAR(hers.last.energy, ours.last.energy, 1e-10);
+  for (int i = 1; i <= 4; ++i) {  // the forces across the axles
+    EXPECT_NEAR(hers.trajectory.column("lambda" + std::to_string(i)).back(),
+                ours.trajectory.column(fmt::format("axle {}.reaction1", i - 1)).back(), 1e-9);
+  }
+}
+
+// A body in space: its rotation, drawn as the identity, times r is that of the system; positions the same.
+std::vector<double> turned(const std::vector<double>& coordinates, const Mat<3, 3>& r) {
+  Mat<3, 3> g;
+  for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = coordinates[static_cast<size_t>(i)];
+  g *= r;
+  std::vector<double> out = coordinates;
+  for (int i = 0; i < 9; ++i) out[static_cast<size_t>(i)] = g(i / 3, i % 3);
+  return out;
+}
+
+TEST(Mechanisms, AreTheDiskThatFalls) {
+  const FallingDisk disk;
+  const double theta = 1.3;
+  const Mat<3, 3> r = body_on_plane::leaning(theta).rotation;
+  const Result hers = run(simulate(disk), disk.start(), 0.0025, 1);
+  const Vec<3> omega = r * Vec<3>(0.1, 0.4, 5);
+  Start start = by_parts::disk(disk, theta).model().start;
+  const double height = start.configuration[11];
+  const Vec<3> v = -omega.cross(r * Vec<3>(0, -disk.radius, 0));
+  EXPECT_NEAR(height, disk.radius * std::sin(theta), 1e-15);
+  start.velocity = {omega[0], omega[1], omega[2], v[0], v[1], v[2]};
+  const Result ours = run(simulate(by_parts::disk(disk, theta)), start, 0.0025, 1);
+  EXPECT_LT(apart(hers.last.coordinates, turned(ours.last.coordinates, r)), 1e-10);
+  EXPECT_NEAR(hers.last.energy, ours.last.energy, 1e-10);
+  for (int i = 1; i <= 3; ++i) {
+    EXPECT_NEAR(hers.trajectory.column("lambda" + std::to_string(i)).back(),
+                ours.trajectory.column("disk.reaction" + std::to_string(i)).back(), 1e-9);
+  }
+}
+
+// The system has the group so3*r2 and its mass centre, the mechanism se3 and the centre of the ball.
+template <class S>
+void same_ball(const S& system, const Mechanism& parts) {
+  const Result hers = run(simulate(system), {}, 0.002, 1);
+  const auto& v = hers.config.start.velocity;
+  const auto& g = hers.config.start.configuration;
+  Start start = parts.model().start;
+  std::copy_n(g.begin(), 9, start.configuration.begin());
+  const Vec<3> space(v[3], v[4], 0);
+  Mat<3, 3> r;
+  for (int i = 0; i < 9; ++i) r(i / 3, i % 3) = g[static_cast<size_t>(i)];
+  const Vec<3> body = r.transpose() * space;
+  start.velocity = {v[0], v[1], v[2], body[0], body[1], body[2]};
+  const Result ours = run(simulate(parts), start, 0.002, 1);
+  std::vector<double> place(ours.last.coordinates.begin(), ours.last.coordinates.begin() + 11);
+  EXPECT_LT(apart(hers.last.coordinates, place), 1e-10) << parts.name();
+  const auto gain = [](const Result& result) {
+    const auto column = result.trajectory.column("energy");
+    return column.back() - column.front();
+  };
+  EXPECT_NEAR(gain(hers), gain(ours), 1e-10);
+  // lambda1 belongs to x' = rho w_y, lambda2 to y' = -rho w_x: horizontal forces at the contact.
+  for (int i = 1; i <= 2; ++i) {
+    EXPECT_NEAR(std::abs(hers.trajectory.column("lambda" + std::to_string(i)).back()),
+                std::abs(ours.trajectory.column("ball.reaction" + std::to_string(i)).back()), 1e-8);
+  }
+}
+
+TEST(Mechanisms, AreTheBallsThatRoll) {
+  same_ball(RollingBall{}, by_parts::ball({}));
+  same_ball(RouthSphere{}, by_parts::routh({}));
+}
+
+// All kinds of joints, contacts and forces at once; nothing has to make sense but the calculus.
+Mechanism zoo() {
+  Mechanism m("zoo");
+  m.body("a", {.mass = 2, .at = {0.1, 0.2, 0.6}, .inertia = {0.3, 0.4, 0.5}});
+  m.body("b", {.mass = 1, .at = {0.5, 0.1, 0.7}, .inertia = {0.1, 0.02, 0, 0.2, 0.01, 0.15}});
+  m.body("c", {.mass = 0.5, .at = {0.9, 0, 0.4}, .cylinder = {0.1, 0.3}, .axis = {1, 1, 0}});
+  m.body("d", {.mass = 0.7, .at = {0, -0.4, 0.3}, .sphere = 0.3});
+  m.body("e", {.mass = 0.4, .at = {-0.4, 0, 0.5}, .box = {0.1, 0.2, 0.3}});
+  m.body("f", {.mass = 0.3, .at = {-0.6, 0.1, 0.5}, .inertia = {0.01, 0.01, 0.015}});
+  m.body("g", {.mass = 0.6, .at = {0.3, 0.5, 0.35}, .inertia = {0.02, 0.03, 0.02}});
+  m.free("space", "a", {.at = {0, 0, 0.5}});
+  m.hinge("h", "a", "b", {.at = {0.3, 0, 0.5}, .axis = {0.3, 0.1, 1}, .stiffness = 3, .rest = 0.1});
+  m.slider("s", "b", "c", {.at = {0.7, 0, 0.5}, .axis = {1, 0.2, 0}, .stiffness = 5});
+  m.ball_joint("j", "a", "d", {.at = {0, -0.2, 0.4}});
+  m.universal("u", "a", "e", {.at = {-0.2, 0, 0.5}, .axis = {0, 0, 1}, .axis2 = {0, 1, 0}});
+  m.joint("planar", "p", "e", "f", {.at = {-0.5, 0, 0.5}, .axis = {0, 1, 1}});
+  m.hinge("w", "a", "g", {.at = {0.3, 0.5, 0.35}, .axis = {0, 1, 0}});
+  m.wheel("w", "g", {.at = {0.3, 0.5, 0.35}, .radius = 0.35});
+  m.ball("d", "d", {.at = {0, -0.4, 0.3}, .radius = 0.3});
+  m.spring("between", "b", "f",
+           {.from = {0.5, 0, 0.7}, .to = {-0.6, 0, 0.5}, .stiffness = 2, .rest = 0.8});
+  m.spring("to the wall", "ground", "d",
+           {.from = {0, -1, 0.5}, .to = {0, -0.4, 0.5}, .stiffness = 4});
+  m.gravity({0.3, 0.1, -9.7});
+  return m;
+}
+
+TEST(Mechanisms, DifferentiateAsDifferencesDo) {
+  const SystemModel model = zoo().model();
+  const Mechanics& mechanics = *model.mechanics;
+  const auto geometry = registry().geometry(model.group.name, "exp");
+  const int n = mechanics.dim();
+  ASSERT_EQ(n, 6 + 1 + 1 + 3 + 2 + 3 + 1);
+  EXPECT_EQ(mechanics.holonomic_rows(), 2);
+  VectorXd g(geometry->size()), xi(n), direction(n), shift(n), step(n);
+  geometry->from_coordinates(model.start.configuration, g.data());
+  for (int i = 0; i < n; ++i) {
+    xi[i] = std::sin(3.0 * i + 1);
+    direction[i] = std::cos(2.0 * i);
+    shift[i] = 0.4 * std::sin(5.0 * i + 2);
+  }
+  VectorXd moved(g.size()), work(n);
+  geometry->tau(shift.data(), moved.data());
+  geometry->compose(g.data(), moved.data(), g.data());
+  VectorXd phi(2), b(mechanics.rows()), force(n), inertial(n), phi_slope = VectorXd::Zero(2);
+  MatrixXd inertia(n, n), a(mechanics.rows(), n);
+  double slope = 0, kinetic_slope = 0;
+  const Erased problem(geometry, model.mechanics);
+  differentiate_along(problem, g, direction, step, moved, [&](double, double weight) {
+    slope += weight * mechanics.potential(moved.data());
+    mechanics.inertia(moved.data(), inertia);
+    kinetic_slope += weight * 0.5 * xi.dot(inertia * xi);
+    mechanics.holonomic(moved.data(), phi);
+    phi_slope += weight * phi;
+  });
+  mechanics.force(0, g.data(), xi, force);
+  mechanics.inertial_force(g.data(), xi, inertial);
+  mechanics.constraints(0, g.data(), a, b);
+  EXPECT_NEAR(inertial.dot(direction), kinetic_slope, 1e-9);
+  EXPECT_NEAR((force - inertial).dot(direction), -slope, 1e-9);
+  EXPECT_LT((a.bottomRows(2) * direction - phi_slope).norm(), 1e-9);
+  mechanics.inertia(g.data(), inertia);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(inertia).eigenvalues().minCoeff(), 0);
+}
+
+TEST(Mechanisms, OfTheLibraryObeyTheLawsOfSystems) {
+  registry();
+  EXPECT_GE(mechanisms::library().size(), 9u);
+  for (const auto& [name, text] : mechanisms::library()) {
+    for (const LawResult& law : check_system(registry(), name)) {
+      EXPECT_TRUE(law.passed()) << name << ": " << law;
+    }
+  }
+}
+
+// A mechanism of one's own is added and found like a system.
+TEST(Mechanisms, AreAddedByName) {
+  Registry mine = registry();
+  mine.add(system_info(by_parts::sleigh({})));
+  const Result by_name = Simulation(mine, "sleigh").start({.velocity = {-1}}).until(1).run();
+  EXPECT_TRUE(by_name.status.ok);
+  EXPECT_EQ(by_name.config.start.velocity, (std::vector<double>{0, -1, 0}));
+  EXPECT_EQ(by_name.trajectory.columns()[1], "theta");
+}
+
+std::string refused(const Mechanism& mechanism) {
+  try {
+    mechanism.model();
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(Mechanisms, SayWhatIsWrongWithTheirParts) {
+  Mechanism m("cart");
+  m.body("cart", {.mass = 1, .inertia = {1, 1, 1}});
+  m.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
+  m.planar("floor", "cart");
+  m.hinge("axle", "cart", "wheeel", {.axis = {0, 1, 0}});
+  EXPECT_THAT(refused(m), HasSubstr("joint 'axle': unknown child 'wheeel': expected one of cart, "
+                                    "wheel; did you mean 'wheel'?"));
+  Mechanism loose("loose");
+  loose.body("a", {.mass = 1, .inertia = {1, 1, 1}});
+  EXPECT_THAT(refused(loose), HasSubstr("body 'a': hangs on no joint"));
+  Mechanism circle("circle");
+  circle.body("a", {.mass = 1, .inertia = {1, 1, 1}});
+  circle.body("b", {.mass = 1, .inertia = {1, 1, 1}});
+  circle.hinge("ab", "a", "b", {});
+  circle.hinge("ba", "b", "a", {});
+  EXPECT_THAT(refused(circle), HasSubstr("'ab', 'ba' go round in a circle"));
+  Mechanism high("high");
+  high.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
+  high.free("space", "wheel", {.at = {0, 0, 0.3}});
+  high.wheel("wheel", "wheel", {.at = {0, 0, 0.32}, .radius = 0.3});
+  EXPECT_THAT(refused(high),
+              HasSubstr("does not touch the ground z = 0 as drawn: its lowest point is at 0.02 m"));
+  Mechanism flat("flat");
+  flat.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
+  flat.free("space", "wheel");
+  flat.wheel("wheel", "wheel", {.at = {0, 0, 0.3}, .axle = {0, 0, 1}, .radius = 0.3});
+  EXPECT_THAT(refused(flat), HasSubstr("wheel 'wheel': axle: is vertical"));
+  Mechanism light("light");
+  light.body("a", {.mass = 1, .inertia = {1, 1, 1}});
+  light.body("tip", {});
+  light.planar("floor", "a");
+  light.hinge("end", "a", "tip", {.at = {1, 0, 0}});
+  EXPECT_THAT(refused(light), HasSubstr("body 'tip' and all that it carries have no inertia"));
+  Mechanism bar("bar");
+  bar.body("a", {.mass = 1, .inertia = {1, 1, 3}});
+  bar.planar("floor", "a");
+  EXPECT_THAT(words_of(bar.model()).notes,
+              testing::Contains(HasSubstr("no rigid body has the principal moments 1,1,3")));
+}
+
+TEST(Mechanisms, FindRowsThatSayNothingNew) {
+  const Mechanism dropping = by_parts::drive({});
+  EXPECT_EQ(dropping.model().mechanics->rows(), 3);
+  EXPECT_THAT(words_of(dropping.model()).notes,
+              testing::Contains(HasSubstr(
+                  "row dropped: 'left' (does not slip sideways) says nothing beyond 'right' "
+                  "(does not slip sideways)")));
+  Mechanism refusing = dropping;
+  refusing.redundant("refuse");
+  EXPECT_THAT(refused(refusing), HasSubstr("redundant row: 'left' (does not slip sideways)"));
+  // Four wheels under a stiff cart in space: three contacts hold it.
+  Mechanism table("table");
+  table.body("top", {.mass = 1, .at = {0, 0, 0.5}, .inertia = {1, 1, 1}});
+  table.free("space", "top", {.at = {0, 0, 0.5}});
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      table.ball(fmt::format("leg {} {}", x, y), "top", {.at = {x, y, 0.1}, .radius = 0.1});
+    }
+  }
+  table.redundant("drop");
+  EXPECT_EQ(table.model().mechanics->holonomic_rows(), 3);
+}
+
+}  // namespace
+}  // namespace hamel

@@ -1,0 +1,228 @@
+// hamel steady: a steady motion near a guess, its eigenvalues; along a parameter, with the points where stability changes.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hamel/framework/analysis/steady.hpp>
+#include <hamel/framework/run/data_system.hpp>
+#include <hamel/systems/at_speed.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "page.hpp"
+#include "steady.hpp"
+
+namespace hamel::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kMostValues = 100000;
+
+// name=from:to:count, or name=from:to for 101 values.
+struct Vary {
+  std::string name;
+  std::vector<double> values;
+
+  explicit Vary(const std::string& text) {
+    const auto wrong = [&] {
+      return ConfigError({fmt::format("--vary: got '{}', expected name=from:to:count", text)});
+    };
+    const size_t equal = text.find('=');
+    if (equal == std::string::npos || equal == 0) throw wrong();
+    name = text.substr(0, equal);
+    std::vector<double> numbers;
+    const char *at = text.data() + equal + 1, *const end = text.data() + text.size();
+    while (true) {
+      double x = 0;
+      const auto [next, error] = std::from_chars(at, end, x);
+      if (error != std::errc() || !std::isfinite(x)) throw wrong();
+      numbers.push_back(x);
+      if (next == end) break;
+      if (*next != ':') throw wrong();
+      at = next + 1;
+    }
+    if (numbers.size() == 2) numbers.push_back(101);
+    if (numbers.size() != 3) throw wrong();
+    const double count = numbers[2];
+    if (count != std::floor(count) || count < 2 || count > kMostValues) {
+      throw ConfigError({fmt::format("--vary: got {} values, expected a whole number from 2 to {}",
+                                     count, kMostValues)});
+    }
+    for (int i = 0; i < count; ++i) {
+      values.push_back(numbers[0] + (numbers[1] - numbers[0]) * i / (count - 1));
+    }
+  }
+};
+
+// ConfigError for a system that has no motion by its speed; unknown systems are the run's to refuse.
+void set_speed(Config& config, double speed) {
+  const SystemInfo* info = registry().system(config.system);
+  if (info == nullptr && !config.system.ends_with(".toml")) return;
+  const SystemModel model = info != nullptr
+                                ? info->make(config.parameters)
+                                : data_system_maker(registry(), config.system)(config.parameters);
+  const auto start = start_at_speed(model, speed);
+  if (!start) {
+    throw ConfigError(
+        {fmt::format("--speed: {} knows no motion by its speed; give --velocity", model.name)});
+  }
+  config.start = *start;
+}
+
+Simulation at(const SteadyOptions& options, const std::string& name, double value) {
+  Config config = options.config;
+  if (!name.empty() && name != "speed") config.parameters[name] = {value};
+  if (name == "speed") set_speed(config, value);
+  else if (options.speed) set_speed(config, *options.speed);
+  Simulation out(registry(), config.system);
+  return out.config(config);
+}
+
+Json eigenvalues_of(const SteadyMotion& motion) {
+  Json out = Json::array();
+  for (const auto& x : motion.eigenvalues) out.push_back({x.real(), x.imag()});
+  return out;
+}
+
+std::string modes(const std::vector<ModePart>& parts) {
+  std::string out;
+  for (const ModePart& part : parts) {
+    out += fmt::format("{}{} {:.2f}", out.empty() ? "" : ", ", part.name, part.size);
+  }
+  return out;
+}
+
+void print(const std::string& system, const SteadyMotion& motion) {
+  fmt::print("{}: steady motion, residual {:.1e}\n", system, motion.residual);
+  fmt::print("  configuration {}\n  velocity      {}\n", join(motion.element),
+             join(motion.velocity));
+  fmt::print("  neutral       {}, of them {} along the family of steady motions\n", motion.neutral,
+             motion.family);
+  const auto unstable = std::count_if(motion.eigenvalues.begin(), motion.eigenvalues.end(),
+                                      [](const auto& x) { return x.real() > 1e-9; });
+  fmt::print("  {}\n",
+             unstable > 0 ? fmt::format("unstable: {} growing", unstable) : "no growing mode");
+  fmt::print("  eigenvalues [1/s], and what moves\n");
+  for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
+    const auto x = motion.eigenvalues[i];
+    if (x.imag() < 0) continue;  // told with its conjugate
+    const std::string imaginary = x.imag() > 0 ? fmt::format("+- {:.12f}i", x.imag()) : "";
+    fmt::print("    {:>18.12f} {:<21} {}\n", x.real(), imaginary, modes(motion.modes[i]));
+  }
+}
+
+void print(const Vary& vary, const SteadySweep& sweep) {
+  fmt::print("  {:>12}  growing  largest real part [1/s]\n", vary.name);
+  for (size_t i = 0; i < sweep.values.size(); ++i) {
+    const SteadyMotion& motion = sweep.motions[i];
+    if (!motion.found) {
+      fmt::print("  {:>12.6g}  no steady motion found\n", sweep.values[i]);
+      continue;
+    }
+    const auto growing = std::count_if(motion.eigenvalues.begin(), motion.eigenvalues.end(),
+                                       [](const auto& x) { return x.real() > 1e-9; });
+    const double most = motion.eigenvalues.empty() ? 0 : motion.eigenvalues[0].real();
+    fmt::print("  {:>12.6g}  {:>7}  {:.9g}\n", sweep.values[i], growing, most);
+  }
+  for (const auto& crossing : sweep.crossings) {
+    fmt::print("  stability changes at {} = {:.14g}, {}\n", vary.name, crossing.value,
+               crossing.pair ? "a pair of complex eigenvalues" : "a real eigenvalue");
+  }
+}
+
+// Real and imaginary parts as points: branches meet and part.
+void add_plots(Page& page, const Vary& vary, const SteadySweep& sweep) {
+  Series real{.name = "real parts", .x = {}, .y = {}, .markers = true};
+  Series imaginary{.name = "imaginary parts", .x = {}, .y = {}, .markers = true};
+  std::vector<Series> reals, imaginaries;
+  size_t most = 0;
+  for (const SteadyMotion& motion : sweep.motions) most = std::max(most, motion.eigenvalues.size());
+  for (size_t j = 0; j < most; ++j) {
+    real = {.name = fmt::format("{}", j + 1), .x = {}, .y = {}};
+    imaginary = real;
+    for (size_t i = 0; i < sweep.values.size(); ++i) {
+      if (j >= sweep.motions[i].eigenvalues.size()) continue;
+      const auto x = sweep.motions[i].eigenvalues[j];
+      real.x.push_back(sweep.values[i]);
+      real.y.push_back(x.real());
+      imaginary.x.push_back(sweep.values[i]);
+      imaginary.y.push_back(x.imag());
+    }
+    reals.push_back(real);
+    imaginaries.push_back(imaginary);
+  }
+  std::string note;
+  for (const auto& crossing : sweep.crossings) {
+    note += fmt::format("{}stability changes at {} = {:.10g} ({})", note.empty() ? "" : "; ",
+                        vary.name, crossing.value, crossing.pair ? "complex pair" : "real");
+  }
+  page.plot("Real parts of the eigenvalues", {.x = vary.name, .y = "real part [1/s]"}, reals, note);
+  page.plot("Imaginary parts of the eigenvalues", {.x = vary.name, .y = "imaginary part [rad/s]"},
+            imaginaries);
+}
+
+}  // namespace
+
+int steady(const SteadyOptions& given) {
+  SteadyOptions options = given;
+  if (options.speed) {
+    if (!options.config.start.velocity.empty())
+      throw ConfigError({"--speed: give it or --velocity, not both"});
+  }
+  std::optional<Vary> vary;
+  if (!options.vary.empty()) vary.emplace(options.vary);
+  const bool by_speed = vary && vary->name == "speed";
+  const Simulation first = at(options, by_speed ? "speed" : "", by_speed ? vary->values[0] : 0);
+  const Integration built = first.build();
+  const SystemModel& system = built.system();
+  const SteadyMotion motion = steady_motion(registry(), first);
+  SteadySweep sweep;
+  if (vary) {
+    sweep = sweep_steady(vary->values, [&](double value, int family) {
+      return steady_motion(registry(), at(options, vary->name, value), family);
+    });
+  }
+  if (options.json) {
+    Json out = {{"system", options.config.system},
+                {"parameters", Json::object()},
+                {"motion", {{"element", motion.element}, {"velocity", motion.velocity}}},
+                {"residual", motion.residual},
+                {"eigenvalues", eigenvalues_of(motion)},
+                {"neutral", motion.neutral}};
+    for (const Field& field : system.fields) out["parameters"][field.name] = field.value;
+    if (vary) {
+      out["vary"] = out["crossings"] = Json::array();
+      for (size_t i = 0; i < sweep.values.size(); ++i) {
+        out["vary"].push_back(
+            {{"value", sweep.values[i]}, {"eigenvalues", eigenvalues_of(sweep.motions[i])}});
+      }
+      for (const auto& crossing : sweep.crossings) {
+        out["crossings"].push_back(
+            {{"value", crossing.value}, {"kind", crossing.pair ? "pair" : "real"}});
+      }
+    }
+    fmt::print("{}\n", out.dump(2));
+  } else if (!motion.found && !vary) {
+    fmt::print("{}: no steady motion was found near this start\n", system.name);
+  } else {
+    if (motion.found) print(system.name, motion);
+    if (vary) print(*vary, sweep);
+  }
+  if (!options.report.empty()) {
+    if (!vary)
+      throw ConfigError({"--report: the page shows eigenvalues along a parameter; give --vary"});
+    Page page(fmt::format("{}: steady motions", system.name), "eigenvalues along " + vary->name);
+    page.section("Stability");
+    add_plots(page, *vary, sweep);
+    page.write(options.report);
+  }
+  if (motion.found) return 0;
+  fmt::print(stderr, "hamel: no steady motion near this start: a residual of {:.2e} is left\n",
+             motion.residual);
+  return 1;
+}
+
+}  // namespace hamel::tools
