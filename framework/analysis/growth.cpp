@@ -72,6 +72,8 @@ Reach reach_of(const std::vector<Generation>& generations) {
     out.dimensions.push_back(static_cast<int>(span.cols()));
     if (span.cols() == rows) break;
   }
+  if (out.dimensions.empty())  // not even the rank of the fields is decided
+    out.dimensions.push_back(static_cast<int>(std::min(generations.front().brackets.cols(), rows)));
   return out;
 }
 
