@@ -2,12 +2,6 @@
 // measurements. Compiled for (scheme, problem, solver): with fixed sizes there is no heap and no virtual call in a step.
 // What does not depend on the types is in time_loop.hpp; what is seldom done with a step's equation goes through
 // step_equation.hpp.
-//
-// A root is taken for the principal one (principal_root.hpp)
-//   - if a correction or two with the kept Jacobian gave it, or it is within a percent of the extrapolation, and the
-//     roots before it were principal;
-//   - else if the path from h = 0 leads to it.
-// Otherwise it is refused, as is a root outside the domain (measured by tests/solvers/large_steps.cpp).
 #pragma once
 
 #include <algorithm>
@@ -19,11 +13,10 @@
 #include <vector>
 
 #include <hamel/framework/loop/denormals.hpp>
-#include <hamel/framework/loop/extrapolation.hpp>
 #include <hamel/framework/loop/measure.hpp>
-#include <hamel/framework/loop/principal_root.hpp>
 #include <hamel/framework/loop/step_control.hpp>
 #include <hamel/framework/loop/time_loop.hpp>
+#include <hamel/framework/loop/unknown.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
@@ -33,7 +26,6 @@ class Loop final : public TimeLoop {
  public:
   using Step = typename Scheme::template Step<Whole>;
   using P = typename Step::Problem;  // Whole, or Whole without its rows
-  using Unknown = typename Step::Unknown;
   using Node = hamel::Node<P>;
   static_assert(SchemeStep<Step>, "the scheme's Step does not satisfy hamel::SchemeStep");
 
@@ -42,14 +34,11 @@ class Loop final : public TimeLoop {
         whole_(setup.geometry, setup.mechanics),
         step_(step_of(whole_, setup)),
         problem_(problem_of(whole_)),
-        symmetric_(whole_.symmetric()),
         nodes_{Node(problem_), Node(problem_), Node(problem_)},
         start_of_step_{*now_, *previous_, last_h_},
         start_of_rescue_(start_of_step_),
-        x_(Unknown::Zero(step_.size())),
-        guess_(x_),
-        root_(x_),
-        stages_(setup.composition.size(), {1, Extrapolation<Unknown>(x_), Memory(x_)}) {
+        unknown_(setup_, step_.size(), has_order()),
+        stages_(setup.composition.size(), {1, Memory(unknown_.x)}) {
     if constexpr (requires { step_.take_forces_at_base(); }) {
       if (setup.forces_at_base) step_.take_forces_at_base();
     }
@@ -126,15 +115,13 @@ class Loop final : public TimeLoop {
     }
   }
   [[gnu::cold]] void forget() override {
-    for (Stage& stage : stages_) {
-      stage.extrapolation.forget();
-      stage.trusted = stage.memory.valid = false;
-    }
+    for (Stage& stage : stages_) stage.memory.forget();
     if constexpr (requires { step_.forget(); }) step_.forget();
   }
 
  private:
-  using Memory = typename Newton::template Memory<Unknown>;
+  using StepUnknown = hamel::StepUnknown<Scheme, Step, Newton>;
+  using Memory = typename StepUnknown::Memory;
   static constexpr bool kEstimates = requires(const Step& step) { step.estimated_order(); };
 
   static Step step_of(const Whole& whole, const KernelSetup& setup) {
@@ -168,12 +155,10 @@ class Loop final : public TimeLoop {
     out.residual = last_.residual;
   }
 
-  // One substep of the composition, with what it remembers of its own last solves.
+  // One substep of the composition.
   struct Stage {
     double coefficient;
-    Extrapolation<Unknown> extrapolation;
     Memory memory;
-    bool trusted = false;  // the last solution was the principal root
   };
 
   static P problem_of(const Whole& whole) {
@@ -216,29 +201,16 @@ class Loop final : public TimeLoop {
     return report;
   }
   SolveReport error_controlled_step() {
-    constexpr int most = 100;
+    const double end = end_of_step(now_->t);
     SolveReport total;
-    for (int tries = 0; tries < most; ++tries) {
-      const double end = end_of_step(now_->t), left = end - now_->t, wanted = h_;
-      const bool cut = std::abs(h_) >= std::abs(left);
-      if (cut) h_ = left;
+    const auto taken = errors_->take(h_, end - now_->t, smallest_step(now_->t), [&] {
       error_ = std::numeric_limits<double>::infinity();  // of a step that fails
-      const SolveReport report = one_step();
-      total.evaluations += report.evaluations;
-      if (errors_->accept(error_, h_)) {
-        if (cut) {
-          now_->t = end;
-          if (std::abs(h_) < std::abs(wanted)) h_ = wanted;
-        }
-        return total;
-      }
-      ++stats_.rejected;
-      if (std::abs(h_) < smallest_step(now_->t)) {
-        total.reason = Reason::too_small;
-        return total;
-      }
-    }
-    total.reason = Reason::too_many;
+      total.evaluations += one_step().evaluations;
+      return error_;
+    });
+    if (taken.whole) now_->t = end;
+    stats_.rejected += taken.rejected;
+    total.reason = taken.reason;
     return total;
   }
   [[gnu::cold]] void choose_first() {
@@ -276,16 +248,9 @@ class Loop final : public TimeLoop {
     if constexpr (Scheme::explicit_step) {
       report.evaluations = step_.evaluations();
     } else {
-      if (stage.extrapolation.count() == 0) step_.guess(x_);
-      else stage.extrapolation(x_);
-      report = solve(stage);
-      if (!report.ok()) [[unlikely]]
-        return report;
-      if (!(stage.trusted && setup_.solver == nullptr && report.iterations <= kSure)) [[unlikely]] {
-        if (!is_principal(stage, h)) report.reason = Reason::not_principal;
-      }
+      report = unknown_.solve(step_, *now_, h, stage.memory);
     }
-    if (report.ok() && !step_.finish(x_, *next_)) report.reason = why_not_finished();
+    if (report.ok() && !step_.finish(unknown_.x, *next_)) report.reason = why_not_finished();
     if constexpr (kEstimates) {
       if (errors_ && report.ok()) {
         error_ = step_.error(*next_, setup_.relative, setup_.absolute);
@@ -295,7 +260,7 @@ class Loop final : public TimeLoop {
     if (!report.ok()) [[unlikely]]
       return report;
     last_h_ = h;
-    if constexpr (!Scheme::explicit_step) stage.extrapolation.push(x_);
+    if constexpr (!Scheme::explicit_step) stage.memory.extrapolation.push(unknown_.x);
     // A product of elements is off the group by some eps: eight of them stay well below 1e-14.
     if (++products_ == 8) {
       problem_.normalise(next_->g);
@@ -315,34 +280,11 @@ class Loop final : public TimeLoop {
     return Reason::outside_domain;
   }
 
-  // So many corrections with a kept Jacobian do not change the root; those by differences are kept longer.
-  static constexpr int kSure = HasJacobian<Step> ? 1 : 2;
-
-  // Whether x_ is the principal root (top of this file).
-  [[gnu::noinline, gnu::cold]] bool is_principal(Stage& stage, double h) {
-    if (Scheme::claim(setup_.s, symmetric_, setup_.mechanics->left_invariant()).order == 0) {
-      return true;  // no limit, no principal root
-    }
-    if (stage.trusted && stage.extrapolation.count() > 0) {
-      stage.extrapolation(guess_);
-      if ((x_ - guess_).squaredNorm() <= 1e-4 * x_.squaredNorm()) return true;
-    }
-    const ErasedStep<Step> equation(step_);
-    const StepOnPath<Unknown> path = {equation, [this](double size) { step_.begin(*now_, size); },
-                                      [this](Unknown& x) { step_.guess(x); }};
-    stage.trusted = root_.leads_to(x_, path, h, setup_.tolerance);
-    return stage.trusted;
-  }
-
-  [[gnu::always_inline]] SolveReport solve(Stage& stage) {
-    if (setup_.solver == nullptr) [[likely]]
-      return Newton::solve(step_, x_, setup_.tolerance, stage.memory);
-    return solve_outside();
-  }
-  [[gnu::noinline, gnu::cold]] SolveReport solve_outside() {
-    const ErasedStep<Step> equation(step_);
-    return setup_.solver->solve(OutsideEquation<Unknown>(equation, x_),
-                                {x_.data(), static_cast<size_t>(x_.size())}, setup_.tolerance);
+  bool has_order() const {
+    if constexpr (Scheme::explicit_step) return true;
+    else
+      return Scheme::claim(setup_.s, whole_.symmetric(), setup_.mechanics->left_invariant()).order >
+             0;
   }
 
   // A state between steps; a composed or rescued step that fails goes back to it.
@@ -368,14 +310,12 @@ class Loop final : public TimeLoop {
   Step step_;
   P problem_;
   double last_h_ = 0;  // of the last substep; 0 before the first
-  bool symmetric_;
   int products_ = 0;
   Node nodes_[3];
   Node *now_ = &nodes_[0], *previous_ = &nodes_[1], *next_ = &nodes_[2];
   const Node* beginning_ = &nodes_[0];  // of the last step
   State start_of_step_, start_of_rescue_;
-  Unknown x_, guess_;
-  PrincipalRoot<Unknown, Newton> root_;
+  StepUnknown unknown_;
   std::vector<Stage> stages_;
   // Where steps are chosen.
   std::optional<ErrorControl> errors_;

@@ -15,6 +15,7 @@
 
 #include <cmath>
 
+#include <hamel/framework/loop/status.hpp>
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/schemes/problem.hpp>
 
@@ -25,7 +26,31 @@ class ErrorControl {
   explicit ErrorControl(int estimated_order)
       : alpha_(0.7 / estimated_order), beta_(0.4 / estimated_order) {}
 
-  /// Is a step of size h with this error good? Changes h to the next one, or to that of the repetition.
+  struct Taken {
+    Reason reason;
+    long rejected;  // steps before it
+    bool whole;     // it ends at the limit
+  };
+  /// A step of size h, and of the time left at most: taken again, smaller, until its error is good. h is then the size of the
+  /// next. take_step() says the error of a step of size h; one above 1 leaves the state alone.
+  template <class TakeStep>
+  Taken take(double& h, double left, double smallest, TakeStep&& take_step) {
+    constexpr int most = 100;
+    for (int tries = 0; tries < most; ++tries) {
+      const double wanted = h;
+      const bool whole = std::abs(h) >= std::abs(left);
+      if (whole) h = left;
+      if (accept(take_step(), h)) {
+        if (whole && std::abs(h) < std::abs(wanted)) h = wanted;
+        return {Reason::converged, tries, whole};
+      }
+      if (std::abs(h) < smallest) return {Reason::too_small, tries + 1, false};
+    }
+    return {Reason::too_many, most, false};
+  }
+
+ private:
+  // Is a step of size h with this error good? Changes h to the next one, or to that of the repetition.
   bool accept(double error, double& h) {
     if (!(error <= 1)) {
       rejected_ = true;
@@ -41,7 +66,6 @@ class ErrorControl {
     return true;
   }
 
- private:
   double alpha_, beta_, before_ = 1e-4;
   bool rejected_ = false;
 };
@@ -68,7 +92,8 @@ class ReversibleControl {
       density_ += epsilon * growth(node);
     }  // else the last step is taken back
     direction_ = direction;
-    return epsilon / density_;
+    if (!(density_ > 0)) density_ = rate(node);  // (a rate that falls faster than the steps see)
+    return density_ > 0 ? epsilon / density_ : direction;  // at rest: of the last size
   }
   void forget() { started_ = false; }
 

@@ -12,19 +12,7 @@ using namespace hamel::test;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-class InputsOfTheProgram : public CommandLine {
- protected:
-  Json record(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "run");
-    arguments.push_back("--json");
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return outcome.status == 0 ? Json::parse(outcome.out) : Json();
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(file(name)) << text;
-  }
-};
+class InputsOfTheProgram : public CommandLine {};
 
 // M v' = 2 u / R, M = 7 kg, R = 0.1 m: 0.5 m/s and an impulse of 0.14 N m s later 0.9 m/s.
 const std::vector<std::string> kCart = {"differential_drive", "--velocity", "0,0.5,0,5,5",

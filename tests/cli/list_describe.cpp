@@ -123,12 +123,10 @@ TEST_F(Describe, AnAliasOfAScheme) {
 
   // On a left-invariant system and on a general one.
   for (const std::string system : {"suslov", "falling_disk"}) {
-    const auto record = [&](const std::string& scheme) {
-      const Outcome o = run({"run", system, "--scheme", scheme, "--until", "1", "--json"});
-      EXPECT_EQ(o.status, 0) << o.err;
-      return Json::parse(o.out);
+    const auto by = [&](const std::string& scheme) {
+      return record({system, "--scheme", scheme, "--until", "1"});
     };
-    const Json by_alias = record("dla"), by_name = record("lift"), other = record("balance");
+    const Json by_alias = by("dla"), by_name = by("lift"), other = by("balance");
     EXPECT_EQ(by_alias["scheme"], "lift");
     EXPECT_EQ(by_alias["final"], by_name["final"]);
     EXPECT_NE(by_alias["final"], other["final"]);

@@ -13,6 +13,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace hamel::test {
 
@@ -81,6 +82,17 @@ class CommandLine : public testing::Test {
     std::filesystem::remove(out);
     std::filesystem::remove(err);
     return result;
+  }
+  /// The record of `run` with these arguments.
+  nlohmann::json record(std::vector<std::string> arguments, int status = 0) const {
+    arguments.insert(arguments.begin(), "run");
+    arguments.emplace_back("--json");
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, status) << outcome.err;
+    return nlohmann::json::parse(outcome.out.empty() ? "{}" : outcome.out);
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(file(name)) << text;
   }
 
  private:

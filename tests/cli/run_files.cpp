@@ -130,15 +130,11 @@ every = 5
 mass = 2
 offset = 0.4
 )";
-  const auto record = [&](std::vector<std::string> more) {
-    std::vector<std::string> arguments = {"run"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    arguments.insert(arguments.end(), {"--config", "run.toml", "--json"});
-    const Outcome o = run(arguments);
-    EXPECT_EQ(o.status, 0) << o.err;
-    return Json::parse(o.out);
+  const auto with = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--config", "run.toml"});
+    return record(arguments);
   };
-  const Json plain = record({});
+  const Json plain = with({});
   EXPECT_EQ(plain["system"], "chaplygin_sleigh");
   EXPECT_EQ(plain["scheme"], "balance");
   EXPECT_EQ(plain["s"], 0.25);
@@ -148,7 +144,7 @@ offset = 0.4
   EXPECT_EQ(plain["parameters"]["offset"], 0.4);
   EXPECT_EQ(plain["parameters"]["inertia"], 0.1);
   const Json over =
-      record({"--scheme", "lift", "--set", "mass=3", "--step", "0.1", "--momentum", "1,2,0"});
+      with({"--scheme", "lift", "--set", "mass=3", "--step", "0.1", "--momentum", "1,2,0"});
   EXPECT_EQ(over["scheme"], "lift");
   EXPECT_EQ(over["s"], 0.25);
   EXPECT_EQ(over["steps"], 10);

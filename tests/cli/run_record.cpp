@@ -11,16 +11,7 @@ using namespace hamel::test;
 using Json = nlohmann::json;
 using testing::HasSubstr;
 
-class Record : public CommandLine {
- protected:
-  Json record(std::vector<std::string> arguments, int status = 0) const {
-    arguments.insert(arguments.begin(), "run");
-    arguments.emplace_back("--json");
-    const Outcome o = run(arguments);
-    EXPECT_EQ(o.status, status) << o.err;
-    return Json::parse(o.out);
-  }
-};
+class Record : public CommandLine {};
 
 /// Keys of the record (tools/README.md) and their types: s string, n number, i integer, o object, a array, ? null too.
 void expect_keys(const Json& object, const std::vector<std::pair<std::string, char>>& keys,

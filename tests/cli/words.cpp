@@ -15,16 +15,6 @@ using testing::Not;
 
 class Words : public CommandLine {
  protected:
-  Json record(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "run");
-    arguments.emplace_back("--json");
-    const Outcome o = run(arguments);
-    EXPECT_EQ(o.status, 0) << o.err;
-    return Json::parse(o.out.empty() ? "{}" : o.out);
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(file(name)) << text;
-  }
   static constexpr const char* kSkate =
       "group = \"se2\"\ninertia = [0.1, 1, 1]\nconstraints = [[0, 0, 1]]\n"
       "configuration = [0.3, 1, 2]\nvelocity = [1, 0.5, 0]\n[damping]\n1 = 0.1\n";

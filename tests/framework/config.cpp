@@ -8,6 +8,8 @@
 
 #include <hamel/systems/simulate.hpp>
 
+#include "refusal.hpp"
+
 namespace {
 
 using namespace hamel;
@@ -122,12 +124,7 @@ TEST(Config, OfAResultRunsAgain) {
 }
 
 std::string message(const std::string& toml) {
-  try {
-    (void)Config::from_toml(toml, "run.toml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refusal([&] { (void)Config::from_toml(toml, "run.toml"); });
 }
 
 TEST(Config, MistakesNameLineAndColumn) {

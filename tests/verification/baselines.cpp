@@ -10,6 +10,8 @@
 #include <hamel/framework/schemes/rkmk4.hpp>
 #include <hamel/hamel.hpp>
 
+#include "without_dtau.hpp"
+
 namespace hamel {
 namespace {
 
@@ -112,44 +114,11 @@ TEST(EnergyPreserving, KeepsTheEnergyAndNothingElse) {
   expect_within(coarse.exact_error_max / lift.exact_error_max, 0.8, 1.25, "against lift's motion");
 }
 
-/// rkmk4 without dL tau^-1.
-struct WithoutDtau : ExplicitDefaults {
-  static std::string name() { return "without_dtau"; }
-  static std::string formula() { return "RK4 for (eta, xi)' = (xi, a)"; }
-  static std::string source() { return "a mistake"; }
-  static ClaimedOrder claim(double, TauTraits, bool) { return {4, false}; }
-  static const Tableau& tableau() { return classical_rk4(); }
-  template <class P>
-  class Step : public RungeKutta<Step<P>, P, typename P::Vector> {
-    using Base = RungeKutta<Step<P>, P, typename P::Vector>;
-    using typename Base::Element, typename Base::Vector;
-
-   public:
-    static constexpr bool rate_in_algebra = true;
-    static constexpr bool keeps_rows() { return false; }
-    Step(const P& problem, const Tableau& table)
-        : Base(problem, table, problem.dim()), g0_(problem.element()) {}
-    void start(const Element& g, Vector& eta) {
-      g0_ = g;
-      eta.setZero();
-    }
-    bool element(const Vector& eta, Element& g) const {
-      this->problem_.tau(eta, g);
-      this->problem_.compose(g0_, g, g);
-      return true;
-    }
-    void rate(const Vector&, const Element&, const Vector& xi, Vector& out) const { out = xi; }
-
-   private:
-    Element g0_;
-  };
-};
-
 /// On a motion that settles in a steady rotation the explicit schemes have their full order, by the correction with
 /// dL tau^-1.
 TEST(RungeKutta, HasOrderFourAndTwoWithoutTheCorrection) {
   Registry mine = registry();
-  add_scheme<WithoutDtau>(mine);
+  add_scheme<verification::WithoutDtau<Rkmk4>>(mine);
   for (const std::string retraction : {"exp", "cayley"}) {
     for (const auto& [scheme, claim] :
          {std::pair{"rkmk4", 4.0}, {"rk4_projected", 4.0}, {"without_dtau", 2.0}}) {

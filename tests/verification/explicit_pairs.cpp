@@ -11,6 +11,9 @@
 #include <hamel/framework/schemes/dop853.hpp>
 #include <hamel/framework/schemes/dopri5.hpp>
 #include <hamel/framework/schemes/tsit5.hpp>
+#include <hamel/framework/study/parts.hpp>
+
+#include "without_dtau.hpp"
 
 namespace hamel {
 namespace {
@@ -53,20 +56,6 @@ Simulation run_of(const Case& c, const std::string& scheme, const Registry& know
   return out.start(c.start).scheme(scheme).step(c.step).until(c.until).every(1000000);
 }
 
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
-  const double n = static_cast<double>(x.size());
-  double mx = 0, my = 0, xy = 0, xx = 0;
-  for (size_t i = 0; i < x.size(); ++i) {
-    mx += x[i] / n;
-    my += y[i] / n;
-  }
-  for (size_t i = 0; i < x.size(); ++i) {
-    xy += (x[i] - mx) * (y[i] - my);
-    xx += (x[i] - mx) * (x[i] - mx);
-  }
-  return xy / xx;
-}
-
 double distance(const Result& a, const Result& b) {
   return euclidean_distance(a.last.coordinates, b.last.coordinates) +
          euclidean_distance(a.last.velocity, b.last.velocity);
@@ -91,7 +80,7 @@ double order_of(const Case& c, const std::string& scheme, double h,
     x.push_back(std::log(step));
     y.push_back(std::log(distance(r, exact)));
   }
-  return slope(x, y);
+  return study::slope(x, y);
 }
 
 TEST(ExplicitPairs, HaveTheOrderOfTheirTableauOnEveryGroup) {
@@ -119,42 +108,9 @@ TEST(ExplicitPairs, HaveItWithEveryRetraction) {
   }
 }
 
-/// dopri5 without dL tau^-1.
-struct WithoutDtau : ExplicitDefaults {
-  static std::string name() { return "without_dtau"; }
-  static std::string formula() { return "(eta, xi)' = (xi, a)"; }
-  static std::string source() { return "a mistake"; }
-  static ClaimedOrder claim(double, TauTraits, bool) { return {5, false}; }
-  static const Tableau& tableau() { return Dopri5::tableau(); }
-  template <class P>
-  class Step : public RungeKutta<Step<P>, P, typename P::Vector> {
-    using Base = RungeKutta<Step<P>, P, typename P::Vector>;
-    using typename Base::Element, typename Base::Vector;
-
-   public:
-    static constexpr bool rate_in_algebra = true;
-    static constexpr bool keeps_rows() { return true; }
-    Step(const P& problem, const Tableau& table)
-        : Base(problem, table, problem.dim()), g0_(problem.element()) {}
-    void start(const Element& g, Vector& eta) {
-      g0_ = g;
-      eta.setZero();
-    }
-    bool element(const Vector& eta, Element& g) const {
-      this->problem_.tau(eta, g);
-      this->problem_.compose(g0_, g, g);
-      return true;
-    }
-    void rate(const Vector&, const Element&, const Vector& xi, Vector& out) const { out = xi; }
-
-   private:
-    Element g0_;
-  };
-};
-
 TEST(ExplicitPairs, LoseItWithoutTheDerivativeOfTheRetraction) {
   Registry mine = systems();
-  add_scheme<WithoutDtau>(mine);
+  add_scheme<verification::WithoutDtau<Dopri5>>(mine);
   for (const Case& c : cases()) {
     if (c.system == "ball_on_turntable") continue;  // its fields commute
     EXPECT_LT(order_of(c, "without_dtau", c.step / 4, mine), 3) << c.system;
@@ -210,7 +166,7 @@ TEST(ExplicitPairs, FollowTheTolerance) {
         x.push_back(std::log(rtol));
         y.push_back(std::log(error));
       }
-      EXPECT_NEAR(slope(x, y), 1, strict ? 0.2 : 0.3) << c.system << " " << scheme;
+      EXPECT_NEAR(study::slope(x, y), 1, strict ? 0.2 : 0.3) << c.system << " " << scheme;
     }
   }
 }
