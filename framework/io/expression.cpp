@@ -1,50 +1,240 @@
 #include <hamel/framework/io/expression.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 #include <muParser.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/expression_rules.hpp>
 
 namespace hamel {
 
-struct Expression::Compiled {
-  mu::Parser parser;
-  std::vector<double> values;
-  std::vector<std::string> used;
+namespace {
+
+using namespace rules;
+
+// What muParser knows of these; the instructions call the rules themselves.
+double call_one(void* rule, double x) { return static_cast<const Rule*>(rule)->value(x, 0); }
+double call_two(void* rule, double x, double y) {
+  return static_cast<const Rule*>(rule)->value(x, y);
+}
+double minus(double x) { return -x; }
+double plus(double x) { return x; }
+
+constexpr const char* kLetters =
+    "0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.'";
+
+}  // namespace
+
+// From muParser's byte code, which is in reverse Polish notation, to instructions.
+class Expression::Reader {
+ public:
+  Reader(Expression& out, const std::string& text, const std::vector<std::string>& variables,
+         const std::map<std::string, double>& constants)
+      : out_(out),
+        text_(text),
+        values_(variables.size() + 1, 0.0),
+        variable_slot_(variables.size()) {
+    names_ = variables;
+    for (const auto& [name, value] : constants) names_.push_back(name);
+    parser_.EnableOptimizer(false);
+    parser_.DefineNameChars(kLetters);
+    parser_.ClearFun();
+    parser_.ClearConst();
+    parser_.ClearInfixOprt();
+    parser_.DefineInfixOprt("-", minus);
+    parser_.DefineInfixOprt("+", plus);
+    for (const Rule& rule : kFunctions) {
+      void* data = const_cast<Rule*>(&rule);
+      if (rule.arguments == 1) parser_.DefineFunUserData(rule.name, call_one, data);
+      else parser_.DefineFunUserData(rule.name, call_two, data);
+    }
+    parser_.DefineConst("pi", std::numbers::pi);
+    for (const auto& [name, value] : constants) parser_.DefineConst(name, value);
+    for (size_t i = 0; i < variables.size(); ++i) parser_.DefineVar(variables[i], &values_[i]);
+  }
+
+  void read() {
+    if (text_.size() > kMostCharacters)
+      throw ExpressionError(
+          fmt::format("{} characters, more than {}", text_.size(), kMostCharacters), 0);
+    try {
+      parser_.SetExpr(text_);
+      parser_.Eval();  // compiles
+    } catch (const mu::Parser::exception_type& error) {
+      refuse(error);
+    }
+    const mu::ParserByteCode& code = parser_.GetByteCode();
+    for (size_t i = 0; i < code.GetSize(); ++i) take(code.GetBase()[i]);
+    if (stack_.size() != 1) throw ExpressionError("expected one value", 0);
+    out_.result_ = stack_.back();
+    leave_out_unused();
+    out_.slopes_.resize(out_.slots_.size());
+  }
+
+ private:
+  [[noreturn]] void refuse(const mu::Parser::exception_type& error) const {
+    const size_t at =
+        std::min(text_.size(), static_cast<size_t>(std::max(0, static_cast<int>(error.GetPos()))));
+    if (error.GetCode() != mu::ecUNASSIGNABLE_TOKEN) throw ExpressionError(error.GetMsg(), at);
+    const size_t end = std::min(text_.size(), text_.find_first_not_of(kLetters, at));
+    if (end == at)
+      throw ExpressionError(fmt::format("'{}' has no meaning here", text_.substr(at, 1)), at);
+    std::vector<std::string> known = names_;
+    if (end < text_.size() && text_[end] == '(') known = functions();
+    throw ExpressionError(unknown_name("name", text_.substr(at, end - at), known), at);
+  }
+
+  void leave_out_unused() {
+    std::vector<bool> needed(out_.slots_.size(), false);
+    needed[out_.result_] = true;
+    for (size_t k = out_.instructions_.size(); k-- > 0;) {
+      const Instruction& i = out_.instructions_[k];
+      if (needed[i.to]) needed[i.a] = needed[i.b] = needed[i.c] = true;
+    }
+    std::erase_if(out_.instructions_, [&](const Instruction& i) { return !needed[i.to]; });
+    std::erase_if(out_.inputs_, [&](const auto& input) { return !needed[input.first]; });
+  }
+
+  void take(const mu::SToken& token) {
+    switch (token.Cmd) {
+      case mu::cmVAL: push(constant(token.Val.data2)); return;
+      case mu::cmVAR: push(variable(static_cast<size_t>(token.Val.ptr - values_.data()))); return;
+      case mu::cmFUNC: call(token); return;
+      case mu::cmIF: conditions_.push_back({pop(), 0}); return;
+      case mu::cmELSE: conditions_.back().second = pop(); return;
+      case mu::cmENDIF: {
+        const size_t no = pop();
+        const auto [condition, yes] = conditions_.back();
+        conditions_.pop_back();
+        push(emit(nullptr, condition, yes, no));
+        return;
+      }
+      case mu::cmEND: return;
+      default: break;
+    }
+    const Rule* rule = rule_of(token.Cmd);
+    if (rule == nullptr)
+      throw ExpressionError("'=' gives no value; '==' compares",
+                            std::min(text_.size(), text_.find('=')));
+    const size_t y = pop(), x = pop();
+    if (token.Cmd == mu::cmPOW && out_.fixed_[y] && out_.slots_[y] == 2)
+      push(emit(&kSquare, x, x, x));
+    else push(emit(rule, x, y, y));
+  }
+  void call(const mu::SToken& token) {
+    if (token.Fun.cb._pRawFun == reinterpret_cast<mu::erased_fun_type>(&plus)) return;
+    const auto* rule = static_cast<const Rule*>(token.Fun.cb._pUserData);
+    if (rule == nullptr) rule = &kMinus;
+    const size_t y = pop(), x = rule->arguments == 2 ? pop() : y;
+    push(emit(rule, x, y, y));
+  }
+
+  void push(size_t slot) { stack_.push_back(slot); }
+  size_t pop() {
+    if (stack_.empty()) throw ExpressionError("a value is missing", 0);
+    const size_t slot = stack_.back();
+    stack_.pop_back();
+    return slot;
+  }
+  size_t slot(double value, bool fixed) {
+    out_.slots_.push_back(value);
+    out_.fixed_.push_back(fixed);
+    return out_.slots_.size() - 1;
+  }
+  size_t constant(double value) { return slot(value, true); }
+  size_t variable(size_t i) {
+    if (!variable_slot_[i]) {
+      variable_slot_[i] = slot(0, false);
+      out_.inputs_.emplace_back(*variable_slot_[i], i);
+    }
+    return *variable_slot_[i];
+  }
+  // The value of constants at once; what was computed already not again.
+  size_t emit(const Rule* rule, size_t a, size_t b, size_t c) {
+    if (rule == nullptr && out_.fixed_[a]) return out_.slots_[a] != 0 ? b : c;
+    if (out_.fixed_[a] && out_.fixed_[b] && out_.fixed_[c])
+      return constant(rule->value(out_.slots_[a], out_.slots_[b]));
+    for (const size_t factor : {a, b}) {  // nothing that an input of zero is a factor of
+      if (rule == rule_of(mu::cmMUL) && out_.fixed_[factor] && out_.slots_[factor] == 0)
+        return constant(0);
+    }
+    for (const Instruction& i : out_.instructions_) {
+      if (i.rule == rule && i.a == a && i.b == b && i.c == c) return i.to;
+    }
+    const size_t to = slot(0, false);
+    out_.instructions_.push_back({rule, a, b, c, to});
+    return to;
+  }
+
+  Expression& out_;
+  const std::string& text_;
+  mu::Parser parser_;
+  std::vector<double> values_;
+  std::vector<std::optional<size_t>> variable_slot_;
+  std::vector<std::string> names_;
+  std::vector<size_t> stack_;
+  std::vector<std::pair<size_t, size_t>> conditions_;
 };
 
-Expression::Expression(const std::string& text, const std::vector<std::string>& names)
-    : compiled_(std::make_shared<Compiled>()) {
-  mu::Parser& parser = compiled_->parser;
-  compiled_->values.resize(std::max<size_t>(1, names.size()));
-  try {
-    parser.DefineNameChars("0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.");
-    parser.DefineConst("pi", std::numbers::pi);
-    for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &compiled_->values[i]);
-    parser.SetExpr(text);
-    for (const auto& [name, place] : parser.GetUsedVar()) compiled_->used.push_back(name);
-    parser.Eval();
-  } catch (const mu::Parser::exception_type& error) {
-    const auto at = static_cast<size_t>(std::max(0, static_cast<int>(error.GetPos())));
-    const std::string token = error.GetToken();
-    if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty())
-      throw ExpressionError(unknown_name("name", token, names), at);
-    throw ExpressionError(error.GetMsg(), at);
-  }
-  for (const std::string& name : compiled_->used) {
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      throw ExpressionError(unknown_name("name", name, names), text.find(name));
-  }
+Expression::Expression(const std::string& text, const std::vector<std::string>& variables,
+                       const std::map<std::string, double>& constants) {
+  Reader(*this, text, variables, constants).read();
 }
 
 double Expression::operator()(std::span<const double> values) const {
-  std::copy(values.begin(), values.end(), compiled_->values.begin());
-  return compiled_->parser.Eval();
+  for (const auto& [slot, variable] : inputs_) slots_[slot] = values[variable];
+  for (const Instruction& i : instructions_) {
+    slots_[i.to] = i.rule != nullptr  ? i.rule->value(slots_[i.a], slots_[i.b])
+                   : slots_[i.a] != 0 ? slots_[i.b]
+                                      : slots_[i.c];
+  }
+  return slots_[result_];
 }
 
-const std::vector<std::string>& Expression::used() const { return compiled_->used; }
+double Expression::differentiate(std::span<const double> values, double factor,
+                                 std::span<double> out) const {
+  const double value = (*this)(values);
+  std::fill(slopes_.begin(), slopes_.end(), 0.0);
+  slopes_[result_] = factor;
+  for (size_t k = instructions_.size(); k-- > 0;) {
+    const Instruction& i = instructions_[k];
+    const double slope = slopes_[i.to];
+    if (slope == 0) continue;
+    if (i.rule == nullptr) {
+      slopes_[slots_[i.a] != 0 ? i.b : i.c] += slope;
+      continue;
+    }
+    const double x = slots_[i.a], y = slots_[i.b];
+    if (!fixed_[i.a]) slopes_[i.a] += slope * i.rule->by_first(x, y);
+    if (i.rule->arguments == 2 && !fixed_[i.b]) slopes_[i.b] += slope * i.rule->by_second(x, y);
+  }
+  for (const auto& [slot, variable] : inputs_) out[variable] += slopes_[slot];
+  return value;
+}
+
+std::vector<size_t> Expression::used() const {
+  std::vector<size_t> out;
+  for (const auto& [slot, variable] : inputs_) out.push_back(variable);
+  return out;
+}
+
+bool Expression::allows(const std::string& name) {
+  const auto known = functions();
+  return !name.empty() && name.size() <= 100 &&
+         name.find_first_not_of(kLetters) == std::string::npos &&
+         (std::isalpha(static_cast<unsigned char>(name[0])) != 0) && name != "pi" &&
+         std::find(known.begin(), known.end(), name) == known.end();
+}
+
+std::vector<std::string> Expression::functions() {
+  std::vector<std::string> out;
+  for (const Rule& rule : kFunctions) out.emplace_back(rule.name);
+  return out;
+}
 
 }  // namespace hamel

@@ -1,16 +1,20 @@
-// Numbers that stand as a formula in a file: "m*g*sin(slope)", over named values.
+// Numbers that stand as a formula in a file: "m*g*sin(slope)", over named variables and constants.
 //
-// The language is muParser's: + - * / ^, comparisons, a ? b : c, sin cos tan asin acos atan atan2 sinh cosh tanh exp ln
-// sqrt abs sign rint min max, and pi. Names may have dots: steer.angle.
+// The language is muParser's: + - * / ^, comparisons, && ||, a ? b : c, the functions of expression.cpp, and pi. Names may
+// have dots (steer.angle) and end in ' (theta'). muParser reads the text; what it read is kept as a list of instructions,
+// which is evaluated, and differentiated exactly by reverse accumulation.
 #pragma once
 
-#include <memory>
+#include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hamel {
+
+constexpr size_t kMostCharacters = 2000;  // of a formula
 
 /// What is wrong with a formula, and behind how many of its characters.
 class ExpressionError : public std::invalid_argument {
@@ -23,19 +27,40 @@ class ExpressionError : public std::invalid_argument {
   size_t position_;
 };
 
-/// One object serves one thread at a time; copies share it. Evaluation takes no memory.
+/// One object serves one thread at a time. Evaluation takes no memory.
 class Expression {
  public:
-  /// A formula over these names. Throws ExpressionError, with the nearest name for one that is unknown.
-  Expression(const std::string& text, const std::vector<std::string>& names);
-  /// Its value; values in the order of the names.
+  /// A formula over these variables. Throws ExpressionError, with the nearest name for one that is unknown.
+  Expression(const std::string& text, const std::vector<std::string>& variables,
+             const std::map<std::string, double>& constants = {});
+  /// Its value; values in the order of the variables.
   double operator()(std::span<const double> values) const;
-  /// The names that stand in it.
-  const std::vector<std::string>& used() const;
+  /// Adds factor times its derivatives by the variables to out; its value.
+  double differentiate(std::span<const double> values, double factor, std::span<double> out) const;
+  /// The variables that stand in it, by their places.
+  std::vector<size_t> used() const;
+  bool constant() const { return inputs_.empty(); }
+
+  /// May a variable or constant have this name?
+  static bool allows(const std::string& name);
+  /// The names of its functions.
+  static std::vector<std::string> functions();
+
+  struct Rule;  // of an operator or a function: value and slopes
 
  private:
-  struct Compiled;
-  std::shared_ptr<Compiled> compiled_;
+  // slots[to] = rule(slots[a], slots[b]), or of no rule slots[a] ? slots[b] : slots[c].
+  struct Instruction {
+    const Rule* rule;
+    size_t a, b, c, to;
+  };
+  class Reader;
+
+  std::vector<std::pair<size_t, size_t>> inputs_;  // slot, variable
+  std::vector<Instruction> instructions_;
+  size_t result_ = 0;
+  mutable std::vector<double> slots_, slopes_;
+  std::vector<bool> fixed_;  // slots that hold a constant
 };
 
 }  // namespace hamel

@@ -5,14 +5,7 @@
 namespace hamel {
 namespace {
 
-/// A simple factor of a product.
-struct Factor {
-  std::string name;
-  int dim = 0, columns = 0;
-  bool shape = false;  // its coordinates are the integrals of its components
-};
-
-Factor factor_of(const std::string& name) {
+SimpleFactor factor_of(const std::string& name) {
   if (name == "so2") return {name, 1, 1, true};
   if (name == "so3") return {name, 3, 9};
   if (name == "se2") return {name, 3, 3};
@@ -26,25 +19,28 @@ Factor factor_of(const std::string& name) {
   return {name};
 }
 
-/// The factors of "se2*so2^5"; none where one of them is no group of these.
-std::vector<Factor> factors_of(const GroupInfo& group) {
-  std::vector<Factor> out;
+}  // namespace
+
+std::vector<SimpleFactor> simple_factors(const GroupInfo& group) {
+  std::vector<SimpleFactor> out;
   int dim = 0;
   for (size_t at = 0; at <= group.name.size();) {
     const size_t end = std::min(group.name.find('*', at), group.name.size());
     const std::string part = group.name.substr(at, end - at);
     const size_t power = part.find('^');
     const int count = power == std::string::npos ? 1 : std::stoi(part.substr(power + 1));
-    const Factor factor = factor_of(part.substr(0, power));
+    const SimpleFactor factor = factor_of(part.substr(0, power));
     if (factor.dim == 0) return {};
     for (int i = 0; i < count; ++i) out.push_back(factor);
     dim += count * factor.dim;
     at = end + 1;
   }
-  return dim == group.dim ? out : std::vector<Factor>{};
+  return dim == group.dim ? out : std::vector<SimpleFactor>{};
 }
 
-std::vector<Component> components_of(const Factor& factor) {
+namespace {
+
+std::vector<Component> components_of(const SimpleFactor& factor) {
   const std::vector<Component> turns = {
       {"omega1", "rad/s"}, {"omega2", "rad/s"}, {"omega3", "rad/s"}};
   if (factor.name == "so2") return {{"angle'", "rad/s"}};
@@ -67,12 +63,12 @@ std::vector<Component> components_of(const Factor& factor) {
 }  // namespace
 
 std::vector<Component> components_of(const GroupInfo& group) {
-  const std::vector<Factor> factors = factors_of(group);
+  const std::vector<SimpleFactor> factors = simple_factors(group);
   std::vector<Component> out;
   for (size_t f = 0; f < factors.size(); ++f) {
-    const bool several = std::count_if(factors.begin(), factors.end(), [&](const Factor& other) {
-                           return other.name == factors[f].name;
-                         }) > 1;
+    const bool several =
+        std::count_if(factors.begin(), factors.end(),
+                      [&](const SimpleFactor& other) { return other.name == factors[f].name; }) > 1;
     for (Component c : components_of(factors[f])) {
       const bool rate = c.name.back() == '\'';
       if (several) {
@@ -91,7 +87,7 @@ std::vector<ShapeCoordinate> shape_of(const GroupInfo& group,
                                       const std::vector<Component>& components) {
   std::vector<ShapeCoordinate> out;
   int column = 0, component = 0;
-  for (const Factor& factor : factors_of(group)) {
+  for (const SimpleFactor& factor : simple_factors(group)) {
     for (int i = 0; factor.shape && i < factor.dim; ++i) {
       Component c = components.at(static_cast<size_t>(component + i));
       if (c.name.back() == '\'') c.name.pop_back();

@@ -11,6 +11,16 @@
 
 namespace hamel {
 
+/// A factor of a product that is none itself.
+struct SimpleFactor {
+  std::string name;  // "se2"
+  int dim = 0, columns = 0;
+  bool shape = false;  // its coordinates are the integrals of its components
+};
+
+/// The factors of "se2*so2^5"; none where one of them is not so2, so3, se2, se3, heisenberg or rn.
+std::vector<SimpleFactor> simple_factors(const GroupInfo& group);
+
 struct Component {
   std::string name;  // "omega"; the rate of a coordinate ends in ': "pitch'"
   std::string unit;  // "rad/s"

@@ -17,13 +17,19 @@ struct MotionWords {
   /// Throws ConfigError where there is no such motion.
   std::vector<std::string> start_parameters;  // "speed", in m/s
   std::function<Start(std::span<const double>)> start_from;
-  std::vector<std::string> notes;  // what the user should know
+  std::vector<std::string> notes;                             // what the user should know
+  std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
 };
 
 class Worded {
  public:
   virtual ~Worded() = default;
   virtual const MotionWords& words() const = 0;
+  /// What is wrong with a state that a run starts from.
+  virtual std::vector<std::string> mistakes_at(double /*t*/, const double* /*g*/,
+                                               Mechanics::ConstVector /*xi*/) const {
+    return {};
+  }
 };
 
 /// A Mechanics with its words.

@@ -1,284 +1,262 @@
 #include <hamel/framework/run/data_system.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include <hamel/framework/io/text_file.hpp>
-#include <hamel/framework/io/toml_reader.hpp>
-#include <hamel/framework/lie/differences.hpp>
-#include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/run/data_drawing.hpp>
+#include <hamel/framework/run/data_formulas.hpp>
+#include <hamel/framework/run/toml_parameters.hpp>
 
 namespace hamel {
 namespace {
 
-// V = sum weight x + 1/2 stiffness (x - rest)^2 over columns x of the element; f_i = -damping_i xi_i.
-struct Terms {
-  Eigen::VectorXd weight, stiffness, rest;  // a number for each column
-  Eigen::VectorXd damping;                  // n
-  explicit Terms(Eigen::Index columns = 0, Eigen::Index n = 0)
-      : weight(Eigen::VectorXd::Zero(columns)),
-        stiffness(weight),
-        rest(weight),
-        damping(Eigen::VectorXd::Zero(n)) {}
-  bool potential() const { return (weight.array() != 0).any() || (stiffness.array() != 0).any(); }
-};
-
-class DataMechanics final : public Mechanics {
-  struct Operations {  // for differentiate_along
-    const Geometry& geometry;
-    void tau(const Eigen::VectorXd& xi, Eigen::VectorXd& out) const {
-      geometry.tau(xi.data(), out.data());
-    }
-    void compose(const double* g, const Eigen::VectorXd& h, Eigen::VectorXd& out) const {
-      geometry.compose(g, h.data(), out.data());
-    }
-  };
-
- public:
-  DataMechanics(Eigen::MatrixXd inertia, Eigen::MatrixXd a, Eigen::VectorXd b, Terms terms,
-                std::shared_ptr<const Geometry> geometry)
-      : inertia_(std::move(inertia)),
-        a_(std::move(a)),
-        b_(std::move(b)),
-        terms_(std::move(terms)),
-        geometry_(std::move(geometry)),
-        columns_(geometry_->columns()),
-        moved_(geometry_->size()),
-        step_(dim()),
-        axis_(dim()) {}
-  int dim() const override { return static_cast<int>(inertia_.rows()); }
-  int rows() const override { return static_cast<int>(a_.rows()); }
-  bool constant_constraints() const override { return true; }
-  bool has_force() const override { return !terms_.damping.isZero(0); }
-  bool has_drift() const override { return !b_.isZero(0); }
-  void inertia(const double* /*g*/, Matrix out) const override { out = inertia_; }
-  void constraints(double /*t*/, const double* /*g*/, Matrix a, Vector b) const override {
-    a = a_;
-    b = b_;
-  }
-  double potential(const double* g) const override {
-    geometry_->coordinates(g, columns_.data());
-    const auto off = (columns_ - terms_.rest).array();
-    return terms_.weight.dot(columns_) + 0.5 * (terms_.stiffness.array() * off * off).sum();
-  }
-  bool force_depends_on_velocity() const override { return !terms_.damping.isZero(0); }
-  double power(double /*t*/, const double* /*g*/, ConstVector xi) const override {
-    return -terms_.damping.dot(xi.cwiseAbs2());
-  }
-  void force(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
-    out = -terms_.damping.cwiseProduct(xi);
-    if (!terms_.potential()) return;
-    for (Eigen::Index i = 0; i < out.size(); ++i) {
-      axis_ = Eigen::VectorXd::Unit(dim(), i);
-      differentiate_along(
-          Operations{*geometry_}, g, axis_, step_, moved_,
-          [&](double, double weight) { out[i] -= weight * potential(moved_.data()); });
-    }
-  }
-
- private:
-  Eigen::MatrixXd inertia_, a_;
-  Eigen::VectorXd b_;
-  Terms terms_;
-  std::shared_ptr<const Geometry> geometry_;
-  mutable Eigen::VectorXd columns_, moved_, step_, axis_;
-};
+using Node = toml::node;
+using Names = std::vector<std::string>;
 
 class File {
  public:
   File(const Registry& registry, const std::string& origin)
-      : registry_(registry), origin_(origin), read_(origin) {}
+      : registry_(registry), origin_(origin), read_(origin), formulas_(read_) {}
 
-  SystemModel read(const std::string& text) {
-    const toml::table table = read_.parse(text);
-    if (const toml::node* other = table.get("system")) {
-      throw ConfigError({fmt::format(
-          "{}: this file is {}, no system by data", origin_,
-          other->is_array()
-              ? fmt::format("a study (hamel study {})", origin_)
-              : fmt::format("the configuration of a run (hamel run --config {})", origin_))});
+  SystemModel read(const std::string& text, const Parameters& given) {
+    table_ = read_.parse(text);
+    refuse_other_kinds();
+    model_.name = origin_;
+    if (const Node* node = table_.get("name")) read_.value(*node, "name", model_.name);
+    model_.group = group_of();
+    model_.inputs = read_input_fields(read_, table_);
+    model_.fields = read_parameters(read_, formulas_, table_, model_.name, given);
+    name_all();
+    check_keys();
+    DataFormulasReader matrices(read_, formulas_, table_, names_);
+    DataFormulas driven = matrices.read(names_.inputs);
+    words_.formulas = matrices.texts();
+    stop_at_mistakes();
+    rest();
+    stop_at_mistakes();
+    const std::shared_ptr<const Geometry> geometry = registry_.geometry(model_.group.name, "exp");
+    if (names_.inputs.empty()) {
+      model_.mechanics = mechanics(std::move(driven), geometry);
+      return std::move(model_);
     }
-    SystemModel model;
-    model.name = origin_;
-    model.group = group_of(table);
-    n_ = model.group.dim;
-    terms_ = Terms(static_cast<Eigen::Index>(model.group.columns.size()), n_);
-    Eigen::MatrixXd inertia = Eigen::MatrixXd::Identity(n_, n_), a(0, n_);
-    if (const auto* node = table.get("constraints")) rows(*node, "constraints", a);
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(a.rows());
-    if (!table.contains("inertia")) {
-      read_.mistakes.push_back(
-          fmt::format("{}: inertia: missing, expected {} entries", origin_, n_));
-    }
-    for (const auto& [name, node] : table) {
-      const std::string key(name.str());
-      if (key == "name") read_.value(node, key, model.name);
-      else if (key == "inertia") square(node, key, inertia);
-      else if (key == "drift") b = numbers(node, key, a.rows());
-      else if (key == "configuration")
-        start(node, key, terms_.rest.size(), model.start.configuration);
-      else if (key == "velocity") start(node, key, n_, model.start.velocity);
-      else if (key == "momentum") start(node, key, n_, model.start.momentum);
-      else if (key == "linear") linear(node, model.group);
-      else if (key == "spring") springs(node, model.group);
-      else if (key == "damping") damping(node);
-      else if (key != "group" && key != "constraints") read_.unknown_key(node, key, keys());
-    }
-    if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
-    const bool invariant = !terms_.potential() && b.isZero(0) && terms_.damping.isZero(0);
-    if (invariant) {
-      model.mechanics = std::make_shared<LeftInvariantMechanics>(inertia, a);
-    } else {
-      model.mechanics = std::make_shared<DataMechanics>(
-          inertia, a, b, terms_, registry_.geometry(model.group.name, "exp"));
-    }
-    return model;
+    for (const std::string& input : names_.inputs)
+      formulas_.set(input, 0);  // where nothing drives it
+    model_.mechanics = mechanics(matrices.read({}), geometry);
+    model_.drive = [driven, geometry, group = model_.group,
+                    words = words_](std::shared_ptr<const Inputs> inputs) {
+      return std::make_shared<DataMechanics>(driven, group, geometry, std::move(inputs), words);
+    };
+    return std::move(model_);
   }
 
  private:
-  static const std::vector<std::string>& keys() {
-    static const std::vector<std::string> all = {
-        "configuration", "constraints", "damping", "drift",  "group",   "inertia",
-        "linear",        "momentum",    "name",    "spring", "velocity"};
-    return all;
+  void stop_at_mistakes() const {
+    if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
+  }
+
+  void refuse_other_kinds() const {
+    const Node* other = table_.get("system");
+    if (other == nullptr) return;
+    throw ConfigError({fmt::format(
+        "{}: this file is {}, no system by data", origin_,
+        other->is_array()
+            ? fmt::format("a study (hamel study {})", origin_)
+            : fmt::format("the configuration of a run (hamel run --config {})", origin_))});
   }
 
   // All else depends on the group.
-  GroupInfo group_of(const toml::table& table) {
+  GroupInfo group_of() {
     std::string name;
-    const toml::node* node = table.get("group");
+    const Node* node = table_.get("group");
     if (node == nullptr) {
       read_.mistakes.push_back(
           fmt::format("{}: group: missing, expected the name of a group", origin_));
     } else {
       read_.value(*node, "group", name);
     }
-    if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
+    stop_at_mistakes();
     const auto info = registry_.group_or_product(name);
     if (!info)
       read_.mistakes.push_back(
           fmt::format("{}: {}", read_.place(*node), registry_.missing_group(name)));
     else if (registry_.geometry(name, "exp") == nullptr)
       read_.wrong(*node, "group", "a group with the retraction exp");
-    if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
+    stop_at_mistakes();
     return *info;
   }
 
-  double number(const toml::node& node, const std::string& key) {
-    double out = 0;
-    if (const auto value = node.value<double>(); value && std::isfinite(*value)) out = *value;
-    else read_.wrong(node, key, "a finite number");
-    return out;
-  }
-  Eigen::VectorXd numbers(const toml::node& node, const std::string& key, Eigen::Index count) {
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(count);
-    const toml::array* array = node.as_array();
-    if (array == nullptr || static_cast<Eigen::Index>(array->size()) != count) {
-      read_.wrong(node, key, fmt::format("{} numbers", count));
-    } else {
-      for (Eigen::Index i = 0; i < count; ++i)
-        out[i] = number((*array)[static_cast<size_t>(i)], key);
+  // The names of coordinates, rates and inputs, each its own.
+  void name_all() {
+    const std::vector<Component> components = components_of(model_.group);
+    const auto shape = shape_of(model_.group, components);
+    for (const std::string& column : model_.group.columns) {
+      const size_t digits = column.find_first_not_of("0123456789");
+      const bool numbered = digits > 0 && digits != std::string::npos && column[digits] == '_';
+      names_.coordinates.push_back(
+          numbered ? column.substr(digits + 1) + "_" + column.substr(0, digits) : column);
     }
-    return out;
-  }
-  void start(const toml::node& node, const std::string& key, Eigen::Index count,
-             std::vector<double>& out) {
-    const Eigen::VectorXd values = numbers(node, key, count);
-    out.assign(values.begin(), values.end());
-  }
-  void rows(const toml::node& node, const std::string& key, Eigen::MatrixXd& out) {
-    const toml::array* array = node.as_array();
-    if (array == nullptr) {
-      read_.wrong(node, key, fmt::format("rows of {} numbers", n_));
-      return;
+    if (names("coordinates", names_.coordinates)) model_.group.columns = names_.coordinates;
+    for (const Component& component : components) names_.rates.push_back(component.name);
+    for (const ShapeCoordinate& s : shape)
+      names_.rates[static_cast<size_t>(s.component)] =
+          names_.coordinates[static_cast<size_t>(s.column)] + "'";
+    const Names usual = names_.rates;
+    for (size_t i = 0; i < usual.size(); ++i) {  // se2*se3 has two v1
+      if (std::count(usual.begin(), usual.end(), usual[i]) > 1)
+        names_.rates[i] = fmt::format("xi{}", i + 1);
     }
-    out.resize(static_cast<Eigen::Index>(array->size()), n_);
-    for (Eigen::Index i = 0; i < out.rows(); ++i) {
-      out.row(i) = numbers((*array)[static_cast<size_t>(i)], key, n_).transpose();
-    }
+    names("rates", names_.rates);
+    for (const InputField& input : model_.inputs) names_.inputs.push_back(input.name);
+    Names all{"t"};
+    all = all + names_.coordinates + names_.rates + names_.inputs;
+    for (const auto& [name, value] : formulas_.constants()) all.push_back(name);
+    std::sort(all.begin(), all.end());
+    const auto twice = std::adjacent_find(all.begin(), all.end());
+    if (twice != all.end())
+      read_.mistakes.push_back(fmt::format("{}: two things are called '{}'", origin_, *twice));
+    stop_at_mistakes();
+    words_.rates = names_.rates;
   }
-  // n rows, or n numbers, the diagonal.
-  void square(const toml::node& node, const std::string& key, Eigen::MatrixXd& out) {
-    const toml::array* array = node.as_array();
-    if (array == nullptr || static_cast<Eigen::Index>(array->size()) != n_) {
-      read_.wrong(node, key, fmt::format("{} numbers or {} rows", n_, n_));
-    } else if (array->front().is_array()) {
-      rows(node, key, out);
-    } else {
-      out = numbers(node, key, n_).asDiagonal();
+  // The names that the file gives in place of these.
+  bool names(const std::string& key, Names& out) {
+    const Node* node = table_.get(key);
+    if (node == nullptr) return false;
+    Names given;
+    const size_t before = read_.mistakes.size();
+    read_.value(*node, key, given);
+    if (read_.mistakes.size() > before) return false;
+    if (given.size() != out.size()) {
+      read_.wrong(*node, key, fmt::format("{} names, got {}", out.size(), given.size()));
+      return false;
+    }
+    for (const std::string& name : given) {
+      if (!Expression::allows(name))
+        read_.wrong(*node, key, fmt::format("names that may stand in a formula, got '{}'", name));
+    }
+    out = given;
+    return true;
+  }
+
+  void check_keys() {
+    static const Names known = {
+        "configuration", "constraints", "contacts",   "coordinates", "draw",  "drift",
+        "events",        "floor",       "force",      "from_above",  "group", "holonomic",
+        "inertia",       "inputs",      "invariants", "momentum",    "name",  "parameters",
+        "potential",     "rates",       "velocity"};
+    for (const auto& [name, node] : table_) {
+      const std::string key(name.str());
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        read_.unknown_key(node, key, known);
+    }
+    if (!table_.contains("inertia"))
+      read_.mistakes.push_back(
+          fmt::format("{}: inertia: missing, expected {} entries", origin_, model_.group.dim));
+  }
+
+  // Start, events, invariants, contacts and drawing.
+  void rest() {
+    const auto start = [&](const std::string& key, size_t count, std::vector<double>& out) {
+      if (const Node* node = table_.get(key))
+        out = formulas_.numbers(*node, key, static_cast<long>(count));
+    };
+    start("configuration", names_.coordinates.size(), model_.start.configuration);
+    start("velocity", names_.rates.size(), model_.start.velocity);
+    start("momentum", names_.rates.size(), model_.start.momentum);
+    each("events", [&](const std::string& name, const Node& node) { event(name, node); });
+    each("invariants", [&](const std::string& name, const Node& node) {
+      if (auto f =
+              formulas_.expression(node, "invariants." + name, names_.coordinates + names_.rates))
+        model_.invariants.push_back({name, of_state(std::move(*f))});
+    });
+    if (const Node* node = table_.get("contacts")) contacts(*node);
+    if (const Node* node = table_.get("floor"))
+      read_.value(*node, "floor", model_.drawing.has_floor);
+    if (const Node* node = table_.get("from_above")) {
+      read_.value(*node, "from_above", model_.drawing.from_above);
+      model_.drawing.has_floor |= model_.drawing.from_above;
+    }
+    if (const Node* node = table_.get("draw"))
+      DataDrawing(read_, formulas_, names_.coordinates).read(*node, model_.drawing);
+  }
+  template <class Visit>
+  void each(const std::string& key, const Visit& visit) {
+    const Node* node = table_.get(key);
+    if (node == nullptr) return;
+    const toml::table* entries = node->as_table();
+    if (entries == nullptr) return read_.wrong(*node, key, "a table");
+    for (const auto& [name, value] : *entries) visit(std::string(name.str()), value);
+  }
+  // A formula of coordinates and rates.
+  static std::function<double(std::span<const double>, std::span<const double>)> of_state(
+      Expression formula) {
+    return [formula = std::move(formula), values = std::vector<double>()](
+               std::span<const double> g, std::span<const double> xi) mutable {
+      values.assign(g.begin(), g.end());
+      values.insert(values.end(), xi.begin(), xi.end());
+      return formula(values);
+    };
+  }
+  void event(const std::string& name, const Node& node) {
+    Event out{name, "", 0, {}};
+    const std::string key = "events." + name;
+    const Node* value = &node;
+    if (const toml::table* table = node.as_table()) {
+      value = table->get("value");
+      for (const auto& [word, entry] : *table) {
+        if (word == "meaning") read_.value(entry, key + ".meaning", out.meaning);
+        else if (word == "direction") read_.value(entry, key + ".direction", out.direction);
+        else if (word != "value")
+          read_.unknown_key(entry, std::string(word.str()), {"value", "meaning", "direction"});
+      }
+      if (value == nullptr) return read_.wrong(node, key, "a formula, value = ...");
+    }
+    auto formula =
+        formulas_.expression(*value, key, Names{"t"} + names_.coordinates + names_.rates);
+    if (!formula) return;
+    out.value = [formula = std::move(*formula), values = std::vector<double>()](
+                    double t, std::span<const double> g, std::span<const double> xi) mutable {
+      values.assign(1, t);
+      values.insert(values.end(), g.begin(), g.end());
+      values.insert(values.end(), xi.begin(), xi.end());
+      return formula(values);
+    };
+    model_.events.push_back(std::move(out));
+  }
+  void contacts(const Node& node) {
+    const std::vector<double> rows = formulas_.numbers(node, "contacts");
+    const auto count = [&](const char* key) {
+      const Node* list = table_.get(key);
+      return list == nullptr ? 0.0 : static_cast<double>(list->as_array()->size());
+    };
+    const double most = count("constraints") + count("holonomic");
+    for (const double row : rows) {
+      if (row >= 1 && row <= most && row == std::floor(row))
+        model_.contacts.push_back(static_cast<int>(row) - 1);
+      else
+        read_.wrong(node, "contacts", fmt::format("numbers of rows, 1 to {}, got {}", most, row));
     }
   }
 
-  // visit(name, full key, value) for each entry of a table.
-  template <class Visit>
-  void each(const toml::node& node, const std::string& key, const Visit& visit) {
-    const toml::table* entries = node.as_table();
-    if (entries == nullptr) {
-      read_.wrong(node, key, "a table");
-      return;
-    }
-    for (const auto& [name, value] : *entries) {
-      const std::string word(name.str());
-      visit(word, key + "." + word, value);
-    }
-  }
-  // -1 for a name that the group does not have.
-  Eigen::Index column(const toml::node& node, const GroupInfo& group, const std::string& name) {
-    const auto it = std::find(group.columns.begin(), group.columns.end(), name);
-    if (it != group.columns.end()) return it - group.columns.begin();
-    read_.unknown(node, "column of " + group.name, name, group.columns);
-    return -1;
-  }
-  void linear(const toml::node& table, const GroupInfo& group) {
-    each(table, "linear", [&](const std::string& name, const std::string& key, const auto& node) {
-      const Eigen::Index j = column(node, group, name);
-      const double weight = number(node, key);
-      if (j >= 0) terms_.weight[j] = weight;
-    });
-  }
-  void springs(const toml::node& table, const GroupInfo& group) {
-    each(table, "spring", [&](const std::string& name, const std::string& key, const auto& node) {
-      const Eigen::Index j = column(node, group, name);
-      const toml::table* spring = node.as_table();
-      if (spring == nullptr || !spring->contains("stiffness")) {
-        read_.wrong(node, key, "{ stiffness = ..., rest = ... }");
-        return;
-      }
-      for (const auto& [word, value] : *spring) {
-        const std::string what(word.str());
-        Eigen::VectorXd* to = what == "stiffness" ? &terms_.stiffness
-                              : what == "rest"    ? &terms_.rest
-                                                  : nullptr;
-        if (to == nullptr) {
-          read_.unknown_key(value, what, {"stiffness", "rest"});
-          continue;
-        }
-        const double x = number(value, key + "." + what);
-        if (j >= 0) (*to)[j] = x;
-      }
-    });
-  }
-  void damping(const toml::node& table) {
-    each(table, "damping", [&](const std::string& name, const std::string& key, const auto& node) {
-      int i = 0;
-      const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), i);
-      if (error != std::errc() || end != name.data() + name.size() || i < 1 || i > n_) {
-        read_.wrong(node, "damping",
-                    fmt::format("the number of a velocity, 1 to {}, got '{}'", n_, name));
-        return;
-      }
-      terms_.damping[i - 1] = number(node, key);
-    });
+  std::shared_ptr<const Mechanics> mechanics(DataFormulas f,
+                                             std::shared_ptr<const Geometry> geometry) {
+    if (f.left_invariant())
+      return std::make_shared<WithWords<LeftInvariantMechanics>>(
+          LeftInvariantMechanics(f.inertia.constant, f.rows.constant), words_);
+    return std::make_shared<DataMechanics>(std::move(f), model_.group, std::move(geometry), nullptr,
+                                           words_);
   }
 
   const Registry& registry_;
   std::string origin_;
   TomlReader read_;
-  Eigen::Index n_ = 0;
-  Terms terms_;
+  TomlFormulas formulas_;
+  toml::table table_;
+  SystemModel model_;
+  DataNames names_;
+  MotionWords words_;
 };
 
 }  // namespace
@@ -294,8 +272,8 @@ const std::vector<FileKind>& file_kinds() { return kinds(); }
 void add_file_kind(FileKind kind) { kinds().push_back(std::move(kind)); }
 
 SystemModel data_system(const Registry& registry, const std::string& text,
-                        const std::string& origin) {
-  return File(registry, origin).read(text);
+                        const std::string& origin, const Parameters& given) {
+  return File(registry, origin).read(text, given);
 }
 
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
@@ -313,11 +291,7 @@ std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& 
     for (const FileKind& kind : file_kinds()) {
       if (table.contains(kind.key)) return kind.read(text, path, given);
     }
-    if (!given.empty()) {
-      throw ConfigError({fmt::format("set: {} is a file with no parameters, got '{}'", path,
-                                     given.begin()->first)});
-    }
-    return data_system(registry, text, path);
+    return data_system(registry, text, path, given);
   };
 }
 

@@ -111,6 +111,12 @@ void Simulation::Plan::look_at_start() {
   } else if (!mechanics->left_invariant()) {
     return;
   }
+  if (const auto* worded = dynamic_cast<const Worded*>(mechanics.get())) {
+    Eigen::VectorXd xi = Eigen::VectorXd::Zero(n);
+    if (config.start.velocity.size() == static_cast<size_t>(n))
+      xi = Eigen::Map<const Eigen::VectorXd>(config.start.velocity.data(), n);
+    add(worded->mistakes_at(config.from, g.data(), xi));
+  }
   constraints.resize(mechanics->rows(), mechanics->dim());
   inertia.resize(mechanics->dim(), mechanics->dim());
   drift.resize(mechanics->rows());

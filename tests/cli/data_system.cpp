@@ -37,8 +37,7 @@ group = "se2"
 inertia = [0.1, 1, 1]
 constraints = [[0, 0, 1]]
 velocity = [1, 0, 0]
-[linear]
-x = -2.899053227347741
+potential = "-2.899053227347741*x"
 )";
 
 /// The knife edge on its incline, from data and compiled: m g sin(0.3) = 2.899053227347741.
@@ -69,16 +68,14 @@ velocity = [0.9, -1, 0]
   }
 }
 
-TEST_F(DataSystem, ProductsSpringsAndDamping) {
+TEST_F(DataSystem, ProductsPotentialAndFriction) {
   const json r = record({write(R"(
 name = "two oscillators"
 group = "r1*so2"
 inertia = [2, 3]
 velocity = [0, 1]
-[spring]
-1_x1 = { stiffness = 8, rest = 1 }
-[damping]
-2 = 0.6
+potential = "0.5*8*(x1_1 - 1)^2"
+force = [0, "-0.6*theta_2'"]
 )"),
                          "--until", "3", "--step", "0.002"});
   // 2 x'' = -8 (x - 1):  x = 1 - cos 2t;  3 w' = -0.6 w:  w = exp(-0.2 t).
@@ -97,24 +94,137 @@ TEST_F(DataSystem, MistakesAreNamed) {
   refused("group = \"se2\"\ninertia = [1, 2, 3]\nconstraints = [[0, 0]]", "constraints");
   refused("group = \"se2\"\ninertia = [1, 2, 3]\nconstrains = [[0, 0, 1]]",
           "did you mean 'constraints'?");
-  refused("group = \"se2\"\ninertia = [1, 2, 3]\nvelocity = [1, 0, 0]\n[linear]\nz = 1",
-          "unknown column of se2 'z'");
-  refused("group = \"se2\"\ninertia = [1, 2, 3]\nvelocity = [1, 0, 0]\n[spring]\nx = 1",
-          "spring.x: expected { stiffness");
-  refused("group = \"se2\"\ninertia = [1, 2, 3]\n[damping]\n4 = 1", "1 to 3, got '4'");
-  refused("group = \"se2\"\ninertia = [1, 2, 3]\n[spring]\nx = { stiffness = 1, rset = 2 }",
-          ":4:29: unknown key 'rset': expected one of stiffness, rest; did you mean 'rest'?");
-  refused("group = \"se2\"\ninertia = [1, 2, 3]\n[spring]\nx = { rest = 2 }",
-          ":4:5: spring.x: expected { stiffness");
+  const std::string se2 = "group = 'se2'\ninertia = [1, 2, 3]\nvelocity = [1, 0, 0]\n";
+  refused(se2 + "potential = 'x + z'",
+          ":4:18: potential: unknown name 'z': expected one of theta, x, y");
+  refused(se2 + "potential = 'omega*x'", ":4:14: potential: unknown name 'omega'");
+  refused(se2 + "potential = 'x +'", ":4:17: potential: ");
+  refused(se2 + "potential = true", ":4:13: potential: expected a number or a formula");
+  refused(se2 + "force = [0, 'cosh(x', 0]", ":4:19: force: ");
+  refused(se2 + "force = [0, 'omge']", ":4:9: force: expected 3 numbers or formulas");
+  refused(se2 + "force = [0, 'omge', 0]", "did you mean 'omega'?");
+  refused(se2 + "constraints = [[0, 0, 1], [1, 2]]",
+          ":4:27: constraints: expected 3 numbers or formulas in each row");
+  refused(se2 + "constraints = [[0, 'v1', 1]]", ":4:21: constraints: unknown name 'v1'");
+  refused(se2 + "drift = [1]", ":4:9: drift: expected 0 numbers or formulas");
+  refused(se2 + "coordinates = ['a', 'b']", ":4:15: coordinates: expected 3 names, got 2");
+  refused(se2 + "coordinates = ['a', 'b', '3c']", "names that may stand in a formula, got '3c'");
+  refused(se2 + "coordinates = ['a', 'b', 'omega']", "two things are called 'omega'");
+  refused(se2 + "[parameters]\nx = 1", "two things are called 'x'");
+  refused(se2 + "[parameters]\n2x = 1", "a name that may stand in a formula, got '2x'");
+  refused(se2 + "[parameters]\nm = { valu = 1 }", "did you mean 'value'?");
+  refused(se2 + "[parameters]\nm = { value = -1, least = 0 }",
+          "parameter 'm' of " + file("system.toml") + ": got -1, expected at least 0");
+  refused(se2 + "[inputs]\nu = 3", ":5:5: inputs.u: expected a table");
+  refused(se2 + "[inputs]\nu = { value = 3 }", "unknown key 'value'");
+  refused(se2 + "[events]\nturn = { meaning = 'x' }", ":5:8: events.turn: expected a formula");
+  refused(se2 + "[events]\nturn = 'v3'", "did you mean 'v1'?");
+  refused(se2 + "[invariants]\nenergy = 'u'", ":5:11: invariants.energy: unknown name 'u'");
+  refused(se2 + "contacts = [1]", ":4:12: contacts: expected numbers of rows, 1 to 0, got 1");
+  refused(se2 + "[[draw]]\nat = [0, 0]", "draw.at: expected 3 formulas");
+  refused(se2 + "[[draw]]\nat = ['x', 'y', 0]\nshapes = [{ bux = [1, 1, 1] }]",
+          "did you mean 'box'?");
+  refused(se2 + "[spring]\nx = { stiffness = 2 }", "unknown key 'spring'");
+  // At the start, which may be the command line's.
+  refused(se2 + "potential = 'sqrt(x - 1)'", ":4:13: potential: 'sqrt(x - 1)' is ");
+  refused(se2 + "potential = 'abs(x)^0.5'", "has no finite derivative at the start");
+  refused(se2 + "force = ['1/theta', 0, 0]", ":4:10: force: '1/theta' is inf at the start");
+  refused(se2 + "potential = '1/0'", ":4:13: potential: expected a finite number, got inf");
+  EXPECT_EQ(run({"run", write(se2 + "force = ['1/theta', 0, 0]"), "--configuration", "1,0,0",
+                 "--until", "1"})
+                .status,
+            0);
+  refused(se2 + "potential = '" + std::string(2001, '(') + "'", "2001 characters, more than 2000");
   refused("name = 3\ngroup = \"se2\"\ninertia = [1, 2, 3]", ":1:8: name: expected a string");
   refused("group = 3\ninertia = [1, 2, 3]", ":1:9: group: expected a string");
   refused("summary = \"a skate\"\ngroup = \"se2\"\ninertia = [1, 2, 3]",
           ":1:11: unknown key 'summary'");
-  refused("group = \"se2\"\ninertia = [1, 2, 3]\nlinear = 1", ":3:10: linear: expected a table");
+  refused("group = \"se2\"\ninertia = [1, 2, 3]\nevents = 1", ":3:10: events: expected a table");
   refused("group = [", ":1:");
   const Outcome o = run({"run", file("none.toml")});
   EXPECT_EQ(o.status, 2);
   EXPECT_THAT(o.err, HasSubstr("cannot read"));
+}
+
+constexpr const char* kSlide = R"(
+name = "sled"
+group = "r2"
+coordinates = ["x", "y"]
+inertia = ["m", "m"]
+potential = "-m*g*x"
+force = ["push", 0]
+velocity = ["v", 0]
+[parameters]
+m = { value = 2, unit = "kg", meaning = "mass", least = 0.5 }
+g = { value = 1.5, unit = "m/s^2" }
+v = 1
+[inputs]
+push = { unit = "N", meaning = "from behind", least = 0, most = 4 }
+[events]
+far = { value = "x - 3", meaning = "3 m away", direction = 1 }
+[invariants]
+across = "m*y'"
+)";
+
+/// Set, driven, watched and recorded like a registered system: x = v t + g t^2/2 + (push/m) t^2/2.
+TEST_F(DataSystem, ParametersInputsAndEvents) {
+  const std::string sled = write(kSlide);
+  const json plain = record({sled, "--until", "1"});
+  EXPECT_NEAR(plain["final"]["configuration"][0], 1 + 0.75, 1e-12);
+  EXPECT_EQ(plain["parameters"]["m"], 2.0);
+  EXPECT_EQ(plain["diagnostics"]["invariants"]["across"]["drift_max"], 0.0);
+  const json set = record({sled, "--until", "1", "--set", "g=4", "--set", "v=0.5", "--input",
+                           "push=2", "--stop-at", "far"});
+  EXPECT_NEAR(set["final"]["configuration"][0], 0.5 + 2 + 0.5, 1e-12);
+  EXPECT_EQ(set["parameters"]["v"], 0.5);
+  EXPECT_NEAR(set["diagnostics"]["work"].get<double>(), 2 * 2.5, 1e-10);
+  EXPECT_NEAR(record({sled, "--stop-at", "far"})["time"], (std::sqrt(1 + 2 * 1.5 * 3) - 1) / 1.5,
+              1e-10);
+  for (const auto& [arguments, message] :
+       std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--set", "M=1"}, "did you mean 'm'?"},
+           {{"--set", "m=0.1"}, "got 0.1, expected at least 0.5"},
+           {{"--input", "psh=1"}, "did you mean 'push'?"},
+           {{"--input", "push=5"}, "[0, 4]"},
+           {{"--stop-at", "fra"}, "did you mean 'far'?"}}) {
+    std::vector<std::string> all = {"run", sled};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome o = run(all);
+    EXPECT_EQ(o.status, 2) << message;
+    EXPECT_THAT(o.err, HasSubstr(message));
+  }
+}
+
+TEST_F(DataSystem, IsDescribed) {
+  const Outcome o = run({"describe", write(kSlide), "--json"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const json all = json::parse(o.out);
+  EXPECT_EQ(all["formulas"], (json{{"potential", "-m*g*x"}, {"force[1]", "push"}}));
+  EXPECT_EQ(all["columns"], (json{"x", "y"}));
+  EXPECT_EQ(all["rates"], (json{"x'", "y'"}));
+  EXPECT_EQ(all["inputs"][0]["range"], "in [0, 4]");
+  EXPECT_EQ(all["parameters"][1]["meaning"], "mass");
+  EXPECT_EQ(all["events"][0]["name"], "far");
+  EXPECT_EQ(all["invariants"], json{"across"});
+}
+
+/// A parameter of a file is swept in a study.
+TEST_F(DataSystem, IsStudied) {
+  const std::string sled = write(kSlide);
+  std::ofstream(file("study.toml"))
+      << "until = 1\nstep = [0.1, 0.05]\nscheme = ['lift']\n"
+      << "[[system]]\nname = '" << sled << "'\nset = { g = 1 }\n"
+      << "[[system]]\nname = '" << sled
+      << "'\nlabel = 'steep'\nset = { g = 3 }\ninputs = { push = 1 }\n";
+  const Outcome o = run({"study", file("study.toml"), "-o", file("out"), "--json", "--quiet"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const Outcome wrong = [&] {
+    std::ofstream(file("study.toml"), std::ios::app)
+        << "[[system]]\nname = '" << sled << "'\nset = { h = 3 }\n";
+    return run({"study", file("study.toml"), "-o", file("out2")});
+  }();
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("unknown parameter"));
 }
 
 TEST_F(DataSystem, AnalysisSeesWhatASystemIs) {

@@ -17,8 +17,7 @@ constexpr const char* kBowl = R"(group = "se2"
 inertia = [0.1, 1, 1]
 constraints = [[0, 0, 1]]
 velocity = [1.2, 0.5, 0]
-[linear]
-x = -0.5
+potential = "-0.5*x"
 )";
 
 /// An explicit scheme is compared with no solver, and named without one.

@@ -17,7 +17,7 @@ class Words : public CommandLine {
  protected:
   static constexpr const char* kSkate =
       "group = \"se2\"\ninertia = [0.1, 1, 1]\nconstraints = [[0, 0, 1]]\n"
-      "configuration = [0.3, 1, 2]\nvelocity = [1, 0.5, 0]\n[damping]\n1 = 0.1\n";
+      "configuration = [0.3, 1, 2]\nvelocity = [1, 0.5, 0]\nforce = [\"-0.1*omega\", 0, 0]\n";
 };
 
 // ---- describe --------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ void expect_equal(const Result& a, const Result& b, double tolerance, const std:
 
 /// v2 = 0: the mass in that direction does not move, in systems with constant rows and in others.
 TEST(Massless, IsTheMotionOfAMassThatDoesNotMove) {
-  for (const char* more : {"", "[linear]\nx = -0.5\n"}) {
+  for (const char* more : {"", "potential = '-0.5*x'\n"}) {
     for (const char* scheme : {"lift", "balance"}) {
       const auto run = [&](const char* mass) {
         return of(skate(mass) + more).scheme(scheme).step(0.01).until(2).run();

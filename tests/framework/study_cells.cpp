@@ -24,8 +24,7 @@ inertia = [0.1, 1.0, 1.0]
 constraints = [[0, 0, 1]]
 configuration = [0.4, 1.0, 0.0]
 velocity = [1.2, 0.5, 0.0]
-[spring]
-x = { stiffness = 2.0 }
+potential = "x^2"
 )";
 
 class DataFile : public testing::Test {

@@ -31,9 +31,7 @@ group = "se2"
 inertia = [0.1, 1, 1]
 constraints = [[0, 0, 1]]
 velocity = [1.2, 0.8, 0]
-[damping]
-1 = 0.02
-2 = 0.3
+force = ["-0.02*omega", "-0.3*v1", 0]
 )";
 
 Simulation skate() {

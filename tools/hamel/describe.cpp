@@ -78,20 +78,29 @@ void add_parts(Json& out, const std::string& name, const SystemModel& model,
   if (!words.notes.empty()) out["notes"] = words.notes;
 }
 
-Json describe_system(const SystemInfo& info, const Parameters& given) {
+Json inputs_of(const std::vector<InputField>& fields) {
   Json inputs = Json::array();
-  for (const InputField& input : info.inputs) {
+  for (const InputField& input : fields) {
     inputs.push_back({{"name", input.name},
                       {"unit", input.unit},
                       {"range", words_of(input.range)},
                       {"meaning", input.meaning}});
   }
+  return inputs;
+}
+
+Json describe_system(const SystemInfo& info, const Parameters& given) {
   const SystemModel model = info.make(given);
-  Json out = {{"kind", "system"},        {"name", info.name},
-              {"summary", info.summary}, {"group", info.group.name},
-              {"formula", info.formula}, {"parameters", parameters_of(info.fields)},
-              {"inputs", inputs},        {"start", start_of(model)},
-              {"events", events(model)}, {"known", info.known},
+  Json out = {{"kind", "system"},
+              {"name", info.name},
+              {"summary", info.summary},
+              {"group", info.group.name},
+              {"formula", info.formula},
+              {"parameters", parameters_of(info.fields)},
+              {"inputs", inputs_of(info.inputs)},
+              {"start", start_of(model)},
+              {"events", events(model)},
+              {"known", info.known},
               {"source", info.source}};
   if (!words_of(model).rates.empty()) add_parts(out, info.name, model, given);
   return out;
@@ -111,8 +120,19 @@ Json describe_file(const std::string& path, const Parameters& given) {
               {"forces", mechanics.has_force()},
               {"drift", mechanics.has_drift()},
               {"parameters", parameters_of(model.fields)},
-              {"start", start_of(model)}};
-  if (!words_of(model).rates.empty()) add_parts(out, path, model, given);
+              {"inputs", inputs_of(model.inputs)},
+              {"start", start_of(model)},
+              {"events", events(model)}};
+  const MotionWords& words = words_of(model);
+  if (!words.start_parameters.empty()) {
+    add_parts(out, path, model, given);
+    return out;
+  }
+  out["rates"] = words.rates;
+  out["formulas"] = Json::object();
+  for (const auto& [entry, text] : words.formulas) out["formulas"][entry] = text;
+  out["invariants"] = Json::array();
+  for (const Invariant& invariant : model.invariants) out["invariants"].push_back(invariant.name);
   return out;
 }
 

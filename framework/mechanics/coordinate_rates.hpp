@@ -1,0 +1,31 @@
+// From derivatives by the coordinates of an element to derivatives along the group.
+//
+// C(g) takes a body velocity xi to the rates of the coordinates (CSV columns): of so2 and rn the identity, of se2
+// theta' = omega, (x, y)' = R v, of so3 R' = R xi^, of se3 both. Other groups: differences of order 6.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/mechanics/components.hpp>
+
+namespace hamel {
+
+class CoordinateRates {
+ public:
+  CoordinateRates(const GroupInfo& group, std::shared_ptr<const Geometry> geometry);
+  /// out += C(g)^T slope; coordinates are those of g.
+  void add_pulled_back(const double* g, const double* coordinates, const double* slope,
+                       Eigen::Ref<Eigen::VectorXd> out) const;
+
+ private:
+  void by_differences(const double* g, const double* slope, Eigen::Ref<Eigen::VectorXd> out) const;
+
+  std::vector<SimpleFactor> factors_;  // none: differences
+  std::shared_ptr<const Geometry> geometry_;
+};
+
+}  // namespace hamel

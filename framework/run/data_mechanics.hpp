@@ -1,0 +1,89 @@
+// The mechanics of a system by data: matrices and vectors whose entries are formulas. Not installed.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/io/expression.hpp>
+#include <hamel/framework/mechanics/coordinate_rates.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
+
+namespace hamel {
+
+/// A matrix of numbers and formulas.
+struct FormulaMatrix {
+  struct Entry {
+    Eigen::Index row, column;
+    Expression value;
+    std::string text, where;  // "system.toml:4:9: potential"
+  };
+  Eigen::MatrixXd constant;  // 0 where a formula stands
+  std::vector<Entry> entries;
+
+  bool is_constant() const { return entries.empty(); }
+  bool is_zero() const { return is_constant() && constant.isZero(0); }
+  bool uses(size_t first, size_t last) const;  // variables first <= i < last
+  template <class Out>
+  void at(std::span<const double> values, Out&& out) const {
+    out = constant;
+    for (const Entry& e : entries) out(e.row, e.column) = e.value(values);
+  }
+};
+
+/// The formulas of a system. Their variables stand in this order: coordinates, t, inputs, rates.
+struct DataFormulas {
+  FormulaMatrix inertia, rows, drift, holonomic, potential, force;
+  size_t inputs = 0;
+
+  bool left_invariant() const;
+};
+
+class DataMechanics final : public Mechanics, public Worded {
+ public:
+  /// given: null where no input drives it, and its formulas have none.
+  DataMechanics(DataFormulas formulas, const GroupInfo& group,
+                std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Inputs> given,
+                MotionWords words);
+  int dim() const override { return n_; }
+  int rows() const override { return own_ + held_; }
+  int holonomic_rows() const override { return held_; }
+  bool constant_inertia() const override { return f_.inertia.is_constant(); }
+  bool constant_constraints() const override;
+  bool autonomous() const override { return autonomous_; }
+  bool has_force() const override { return !f_.force.is_zero(); }
+  bool has_drift() const override { return !f_.drift.is_zero(); }
+  bool force_depends_on_velocity() const override { return velocity_force_; }
+  void inertia(const double* g, Matrix out) const override;
+  void constraints(double t, const double* g, Matrix a, Vector b) const override;
+  void holonomic(const double* g, Vector out) const override;
+  void force(double t, const double* g, ConstVector xi, Vector out) const override;
+  void inertial_force(const double* g, ConstVector xi, Vector out) const override;
+  double power(double t, const double* g, ConstVector xi) const override;
+  double potential(const double* g) const override;
+
+  const MotionWords& words() const override { return words_; }
+  /// Formulas, or derivatives of them, that are not finite there.
+  std::vector<std::string> mistakes_at(double t, const double* g, ConstVector xi) const override;
+
+ private:
+  size_t time() const { return static_cast<size_t>(geometry_->columns()); }
+  void take(const double* g) const;
+  void take(double t) const;
+  void take(ConstVector xi) const;
+  void add_inertial_slopes(ConstVector xi) const;  // of 1/2 xi^T I xi by the coordinates
+
+  DataFormulas f_;
+  std::shared_ptr<const Geometry> geometry_;
+  CoordinateRates rates_;
+  std::shared_ptr<const Inputs> given_;
+  MotionWords words_;
+  int n_, own_, held_;
+  bool autonomous_, velocity_force_;
+  mutable std::vector<double> values_, slopes_;  // of the variables; of the coordinates
+  mutable Eigen::VectorXd now_;
+};
+
+}  // namespace hamel
