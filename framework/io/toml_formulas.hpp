@@ -51,6 +51,8 @@ class TomlFormulas {
   std::optional<Expression> expression(const Node& node, const std::string& key,
                                        const std::vector<std::string>& variables) {
     std::string text;
+    if (node.is_number() && !std::isfinite(*node.value<double>()))
+      return toml_.wrong(node, key, "a finite number"), std::nullopt;
     if (node.is_number()) text = fmt::format("{}", *node.value<double>());
     else if (const auto formula = node.value<std::string>()) text = *formula;
     else return toml_.wrong(node, key, "a number or a formula"), std::nullopt;

@@ -100,7 +100,7 @@ TEST_F(DataSystem, MistakesAreNamed) {
   refused(se2 + "potential = 'omega*x'", ":4:14: potential: unknown name 'omega'");
   refused(se2 + "potential = 'x +'", ":4:17: potential: ");
   refused(se2 + "potential = true", ":4:13: potential: expected a number or a formula");
-  refused(se2 + "force = [0, 'cosh(x', 0]", ":4:19: force: ");
+  refused(se2 + "force = [0, 'cosh(x', 0]", ":4:20: force: ");
   refused(se2 + "force = [0, 'omge']", ":4:9: force: expected 3 numbers or formulas");
   refused(se2 + "force = [0, 'omge', 0]", "did you mean 'omega'?");
   refused(se2 + "constraints = [[0, 0, 1], [1, 2]]",
@@ -177,12 +177,12 @@ TEST_F(DataSystem, ParametersInputsAndEvents) {
                            "push=2", "--stop-at", "far"});
   EXPECT_NEAR(set["final"]["configuration"][0], 0.5 + 2 + 0.5, 1e-12);
   EXPECT_EQ(set["parameters"]["v"], 0.5);
-  EXPECT_NEAR(set["diagnostics"]["work"].get<double>(), 2 * 2.5, 1e-10);
+  EXPECT_NEAR(set["diagnostics"]["work"].get<double>(), 2 * 3, 1e-10);
   EXPECT_NEAR(record({sled, "--stop-at", "far"})["time"], (std::sqrt(1 + 2 * 1.5 * 3) - 1) / 1.5,
               1e-10);
   for (const auto& [arguments, message] :
        std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"--set", "M=1"}, "did you mean 'm'?"},
+           {{"--set", "mm=1"}, "did you mean 'm'?"},
            {{"--set", "m=0.1"}, "got 0.1, expected at least 0.5"},
            {{"--input", "psh=1"}, "did you mean 'push'?"},
            {{"--input", "push=5"}, "[0, 4]"},

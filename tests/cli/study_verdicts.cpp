@@ -96,10 +96,10 @@ TEST_F(StudyCommand, SystemsMayBeFiles) {
   EXPECT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("2 cells run: 2 ok"));
   EXPECT_EQ(Json::parse(contents(file("out/record.json")))["data"]["bowl.toml"], kBowl);
-  std::ofstream(file("bowl.toml"), std::ios::app) << "y = -0.25\n";
+  std::ofstream(file("bowl.toml"), std::ios::app) << "contacts = [1]\n";
   o = run({"study", name, "-o", "out"});
   EXPECT_EQ(o.status, 2);
-  EXPECT_THAT(o.err, HasSubstr("here:  bowl.toml: y = -0.25"));
+  EXPECT_THAT(o.err, HasSubstr("here:  bowl.toml: contacts = [1]"));
 }
 
 /// A control that leaves the constraint alone is exact where the free motion keeps it; it never wins without a word.
