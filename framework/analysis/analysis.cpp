@@ -84,8 +84,8 @@ std::optional<bool> Analysis::integrable() const {
   return growth.decided() ? std::optional(true) : std::nullopt;
 }
 
-Analysis analyse(const Registry& registry, const std::string& system,
-                 const Parameters& parameters) {
+Analysis analyse(const Registry& registry, const std::string& system, const Parameters& parameters,
+                 AnalysisOf what) {
   Simulation simulation(registry, system);
   Config config;
   config.system = system;
@@ -119,7 +119,9 @@ Analysis analyse(const Registry& registry, const std::string& system,
   out.holonomic_rows = mechanics->holonomic_rows();
   out.frame = hamel_frame(inertia, a);
 
-  out.growth = growth_of(*geometry, *mechanics, g.data());
+  out.growth = growth_of(*geometry, *mechanics, g.data(),
+                         what == AnalysisOf::verdict ? kFewFields : kMostFields);
+  if (what == AnalysisOf::verdict) return out;
   Frame fields(*geometry, *mechanics, g, out.frame);
   out.structure.assign(static_cast<size_t>(out.m), Matrix::Zero(out.m, out.m));
   for (Eigen::Index i = 0; i < out.m; ++i) {

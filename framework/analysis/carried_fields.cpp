@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include <hamel/framework/mechanics/frame.hpp>
@@ -17,31 +18,38 @@ Fields::Fields(const Geometry& geometry, const Mechanics& mechanics, const Vecto
                bool with_drift)
     : geometry_(geometry),
       mechanics_(mechanics),
-      place_(mechanics),
       g_(g),
       at_(g.size()),
       n_(mechanics.dim()),
-      drift_(with_drift ? 1 : 0) {
-  place_.set(mechanics_, 0, g.data());
-  frame_ = hamel_frame(place_.inertia, place_.a);
-  momenta_ = place_.inertia * frame_;
-  for (Eigen::Index a = 0; a < frame_.cols(); ++a) {  // of one size, whatever the units of energy
-    momenta_.col(a) /= frame_.col(a).norm();
-  }
+      drift_(with_drift ? 1 : 0),
+      a_(mechanics.rows(), n_),
+      b_(mechanics.rows()) {
+  Matrix inertia(n_, n_);
+  mechanics.inertia(g.data(), inertia);
+  mechanics.constraints(0, g.data(), a_, b_);
+  frame_ = hamel_frame(inertia, a_).colwise().normalized();  // of one size, whatever the units
+  const Matrix rows = a_.transpose() * a_;
+  if (a_.rows() > 0)
+    inertia += inertia.trace() / rows.trace() * rows;  // definite with massless links, too
+  metric_.compute(inertia);
 }
+
 Matrix Fields::operator()(const Vector& x) {
   const double t = drift_ == 1 ? x[n_] : 0;
   geometry_.tau(x.data(), at_.data());
   geometry_.compose(g_.data(), at_.data(), at_.data());
-  place_.set(mechanics_, t, at_.data());
+  mechanics_.constraints(t, at_.data(), a_, b_);
+  raised_ = metric_.solve(a_.transpose());
+  lambda_.resize(a_.rows(), count());
+  lambda_.rightCols(frame_.cols()).noalias() = -a_ * frame_;
+  if (drift_ == 1) lambda_.col(0) = b_;
+  if (a_.rows() > 0) (a_ * raised_).llt().solveInPlace(lambda_);
   Matrix out = Matrix::Zero(coordinates(), count());
-  const Vector none = Vector::Zero(mechanics_.rows()), rest = Vector::Zero(n_);
-  Vector xi(n_);
-  for (Eigen::Index a = 0; a < count(); ++a) {
-    if (a < drift_) place_.velocity(rest, place_.b, xi);
-    else place_.velocity(momenta_.col(a - drift_), none, xi);
-    geometry_.dtau_left_inverse(x.data(), xi.data(), xi.data());
-    out.col(a).head(n_) = xi;
+  out.topRows(n_).noalias() = raised_ * lambda_;
+  out.topRows(n_).rightCols(frame_.cols()) += frame_;
+  for (Eigen::Index i = 0; i < count(); ++i) {
+    double* const xi = out.col(i).data();
+    geometry_.dtau_left_inverse(x.data(), xi, xi);
   }
   if (drift_ == 1) out(n_, 0) = 1;
   return out;
@@ -150,7 +158,7 @@ std::vector<Generation> generations(Fields& fields, const Vector& from, int dept
   std::vector<double> best(out.size(), never);
   std::vector<Matrix> before(out.size(), Matrix(rows, each * paths)), now = before;
   double last = 0, unit = 0.02;
-  for (const double radius : {2.0, 1.4, 1.0, 0.7, 0.5, 0.35}) {
+  for (const double radius : {2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.12}) {
     for (Eigen::Index w = 0; w < paths; ++w) {
       const auto fitted =
           coefficients(fields, words[static_cast<size_t>(w)], radius, degree, from, unit);

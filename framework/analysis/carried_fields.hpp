@@ -12,9 +12,10 @@
 
 #include <vector>
 
+#include <Eigen/Cholesky>
+
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
-#include <hamel/framework/mechanics/place.hpp>
 
 namespace hamel::carried {
 
@@ -24,7 +25,9 @@ using Vector = Eigen::VectorXd;
 /// Of the size of the fields: generations smaller than that are taken for zero.
 constexpr double kNothing = 1e-6;
 
-/// The fields X_0 (where there is one) and X_a at x, t, as columns; the coordinates are x or (x, t).
+/// The fields X_0 (where there is one) and X_a at x, t, as columns; the coordinates are x or (x, t). X_a is a vector of the
+/// frame at g, constant in the body, less what the rows forbid of it; X_0 is the least velocity that they ask for, both in
+/// the metric of the inertia at g.
 class Fields {
  public:
   Fields(const Geometry& geometry, const Mechanics& mechanics, const Vector& g, bool with_drift);
@@ -37,10 +40,12 @@ class Fields {
  private:
   const Geometry& geometry_;
   const Mechanics& mechanics_;
-  Place<> place_;
   Vector g_, at_;
   Eigen::Index n_, drift_;
-  Matrix frame_, momenta_;
+  Matrix a_, frame_;
+  Vector b_;
+  Eigen::LLT<Matrix> metric_;
+  Matrix raised_, lambda_;
 };
 
 /// A generation of brackets, those of j + 1 fields: the coefficients of order j of all paths, |(e/r)^j| = 1 at the radius

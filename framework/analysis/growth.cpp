@@ -18,7 +18,6 @@ constexpr double kNew = 1e-6;  // of the size of its generation: what is smaller
 constexpr double kSure =
     10;  // times its error, for a bracket that is too small to be a direction not to be zero
 constexpr double kDecided = 1e-3;  // ten times the error of a generation, for a rank to be believed
-constexpr int kMostFields = 8;     // in a bracket that is looked at
 
 // The dimensions that the generations reach one after another.
 struct Reach {
@@ -37,7 +36,9 @@ bool is_small_only(const Generation& generation, const Matrix& span) {
   return ((left - kSure * bound).array() > 0).any();
 }
 
-Reach reach_of(const std::vector<Generation>& generations) {
+// possible: the directions that holonomic rows leave.
+Reach reach_of(const std::vector<Generation>& generations, Eigen::Index fields,
+               Eigen::Index possible) {
   const Eigen::Index rows = generations.front().brackets.rows();
   Matrix span(rows, 0);
   double tilt = 0;  // of the span, by the errors of what is in it
@@ -50,14 +51,14 @@ Reach reach_of(const std::vector<Generation>& generations) {
     const Eigen::JacobiSVD<Matrix> svd(outside, Eigen::ComputeThinU);
     Eigen::Index fresh = 0;
     const Vector& sizes = svd.singularValues();
-    const Eigen::Index most = std::min(sizes.size(), rows - span.cols());
+    const Eigen::Index most = std::min(sizes.size(), possible - span.cols());
     while (fresh < most && sizes[fresh] > 10 * error + kNew * size) ++fresh;
     // A generation at round-off decides nothing, unless no direction is left.
-    if (span.cols() + fresh < rows && !(10 * error < kDecided * size)) {
+    if (span.cols() + fresh < possible && !(10 * error < kDecided * size)) {
       out.round_off = true;
       break;
     }
-    if (span.cols() + fresh < rows) {
+    if (span.cols() + fresh < possible) {
       Matrix known(rows, span.cols() + fresh);
       known << span, svd.matrixU().leftCols(fresh);
       out.near_zero = out.near_zero || is_small_only(generation, known);
@@ -70,18 +71,18 @@ Reach reach_of(const std::vector<Generation>& generations) {
           Eigen::HouseholderQR<Matrix>(wider).householderQ() * Matrix::Identity(rows, wider.cols());
     }
     out.dimensions.push_back(static_cast<int>(span.cols()));
-    if (span.cols() == rows) break;
+    if (span.cols() == possible) break;
   }
   if (out.dimensions.empty())  // not even the rank of the fields is decided
-    out.dimensions.push_back(static_cast<int>(std::min(generations.front().brackets.cols(), rows)));
+    out.dimensions.push_back(static_cast<int>(std::min(fields, possible)));
   return out;
 }
 
 // Where a generation adds nothing, brackets are closed (ranks are generic); -1: they may go on.
-int closed_at(const Reach& reach, int all) {
+int closed_at(const Reach& reach, int possible) {
   const auto& d = reach.dimensions;
   const auto same = std::adjacent_find(d.begin(), d.end());
-  return same != d.end() ? *same : d.back() == all ? all : -1;
+  return same != d.end() ? *same : d.back() == possible ? possible : -1;
 }
 
 // [x, y] of constant fields, left-invariant and constant in time: columns of n, or n + 1 with time.
@@ -144,39 +145,43 @@ bool has_drift(const Geometry& geometry, const Mechanics& mechanics, const Vecto
 
 }  // namespace
 
-Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* at) {
+Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* at, int most) {
   const Vector g = Eigen::Map<const Vector>(at, geometry.size());
   Growth out;
   out.with_drift = has_drift(geometry, mechanics, g);
   Fields fields(geometry, mechanics, g, out.with_drift);
-  const auto all = static_cast<int>(fields.coordinates());
+  const auto all = static_cast<int>(fields.coordinates()),
+             possible = all - mechanics.holonomic_rows();
   const Vector here = Vector::Zero(all);
   const int own = out.with_drift ? 1 : 0;
   Reach reach{{static_cast<int>(fields.count())}};
   int nearby = -1;
-  if (fields.count() == all || fields.count() == 0) {
+  if (fields.count() == possible || fields.count() == 0) {
     nearby = static_cast<int>(fields.count());
   } else if (mechanics.constant_constraints()) {
     reach = constant_reach(geometry, fields(here));
     nearby = reach.dimensions.back();
   } else {
-    const int deepest = std::min(std::max(all, 4), kMostFields);
+    const int deepest = std::min(std::max(all, 4), most);
     Vector there(all);
     for (int i = 0; i < all; ++i) there[i] = 0.3 * std::cos(1.0 + 2.0 * i);
-    for (const int depth : {3, std::min(5, deepest), deepest}) {
-      reach = reach_of(generations(fields, here, depth));
-      if (reach.dimensions.back() == all) nearby = all;
-      else if (nearby < 0) {
-        const Reach generic = reach_of(generations(fields, there, depth));
+    int looked = 0;
+    for (const int depth : {std::min(3, deepest), std::min(5, deepest), deepest}) {
+      if (depth == looked) break;
+      looked = depth;
+      reach = reach_of(generations(fields, here, depth), fields.count(), possible);
+      if (reach.dimensions.back() == possible) nearby = possible;
+      else if (nearby < 0 && (depth == deepest || closed_at(reach, possible) >= 0)) {
+        const Reach generic = reach_of(generations(fields, there, depth), fields.count(), possible);
         out.near_zero = generic.near_zero;
-        nearby = closed_at(generic, all);
+        nearby = closed_at(generic, possible);
       }
       if (reach.dimensions.back() == nearby) break;
     }
   }
   out.looked_at = static_cast<int>(reach.dimensions.size());
   out.round_off = reach.round_off;
-  out.near_zero = (out.near_zero || reach.near_zero) && nearby < all;
+  out.near_zero = (out.near_zero || reach.near_zero) && nearby < possible;
   if (out.near_zero) nearby = -1;
   auto& d = reach.dimensions;
   while (d.size() > 1 && d.back() == d[d.size() - 2]) d.pop_back();

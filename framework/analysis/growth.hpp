@@ -34,7 +34,11 @@ struct Growth {
   bool decided() const { return dimensions.back() == nearby; }
 };
 
-/// geometry: of a retraction with tau(x) for |x| < 3. Brackets of up to n fields are looked at, eight at most.
-Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* g);
+/// So many fields in a bracket: more drown in round-off; a few take a tenth of a second where these take ten.
+constexpr int kMostFields = 8, kFewFields = 3;
+
+/// geometry: of a retraction with tau(x) for |x| < 3. Brackets of up to n fields are looked at, `most` of them at most.
+Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* g,
+                 int most = kMostFields);
 
 }  // namespace hamel

@@ -112,6 +112,22 @@ TEST(Growth, AsDeepAsTrailersNeed) {
   }
 }
 
+// Few fields are enough to see that rows are not integrable, and holonomic rows leave fewer directions. The ball is small: its
+// fields turn fast.
+TEST(Growth, FewFieldsAndHolonomicRows) {
+  for (const auto& [name, directions] : {std::pair{"falling_disk", 5}, {"ballbot", 8}}) {
+    const Analysis quick = analyse(registry(), name, {}, AnalysisOf::verdict);
+    EXPECT_EQ(quick.growth.dimensions.back(), directions) << name;
+    EXPECT_TRUE(quick.growth.decided()) << name;
+    EXPECT_EQ(quick.integrable(), false) << name;
+    EXPECT_TRUE(quick.conserved.empty());
+  }
+  const Analysis trailers = analyse(registry(), "two_trailer_truck", {}, AnalysisOf::verdict);
+  EXPECT_THAT(trailers.growth.dimensions, ElementsAre(2, 3, 4));
+  EXPECT_FALSE(trailers.growth.decided());
+  EXPECT_EQ(trailers.integrable(), false);
+}
+
 TEST(Growth, IntegrableOnlyWhenDecided) {
   Analysis a;
   a.n = 3, a.rows = a.rank = 1, a.m = 2;

@@ -33,7 +33,7 @@ void print_rows(const Eigen::MatrixXd& m) {
 
 }  // namespace
 
-std::string verdict(const Analysis& a) {
+std::string verdict(const Analysis& a, const char* undecided) {
   if (a.rows == 0) return "no constraint";
   if (a.holonomic_rows == a.rows) return "holonomic: every row is the differential of a function";
   std::string growth;
@@ -50,7 +50,7 @@ std::string verdict(const Analysis& a) {
         possible, left, growth, nearby,
         a.growth.near_zero   ? "others are too small to tell from zero"
         : a.growth.round_off ? "stopped: deeper ones drown in round-off"
-                             : "stopped there");
+                             : undecided);
   }
   if (*a.integrable()) {
     return fmt::format(

@@ -7,7 +7,7 @@
 
 namespace hamel::tools {
 
-/// Is it nonholonomic? In a sentence.
-std::string verdict(const Analysis& a);
+/// Is it nonholonomic? In a sentence. undecided: its end, where the analysis could have looked deeper.
+std::string verdict(const Analysis& a, const char* undecided = "stopped there");
 
 }  // namespace hamel::tools

@@ -73,7 +73,8 @@ void add_parts(Json& out, const std::string& name, const SystemModel& model,
   out["dimension"] = mechanics.dim();
   out["holonomic_rows"] = mechanics.holonomic_rows();
   out["directions"] = mechanics.dim() - mechanics.rows();
-  out["verdict"] = verdict(hamel::analyse(registry(), name, given));
+  out["verdict"] = verdict(hamel::analyse(registry(), name, given, AnalysisOf::verdict),
+                           "--analyse looks at more");
   out["start_parameters"] = words.start_parameters;
   if (!words.notes.empty()) out["notes"] = words.notes;
 }
