@@ -12,6 +12,8 @@ foreach(package ceres nlopt)
 endforeach()
 if(TARGET hamel_program)
   install(TARGETS hamel_program)
+  get_target_property(schemas hamel_schemas hamel_files)
+  install(FILES ${schemas} DESTINATION ${CMAKE_INSTALL_DATADIR}/hamel/schema)
 endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hamel)

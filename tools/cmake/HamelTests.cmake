@@ -2,11 +2,19 @@
 
 # Headers of installed packages that single tests NEED beyond the library:
 #   hamel_jet      ceres::Jet                         hamel_mpreal   mpfr::mpreal, any number of digits
+#   hamel_valijson validation by JSON schema; without it that test is left out
 #   hamel_page     the program's report page in C++; the test brings its own report_page()
 find_path(HAMEL_CERES_INCLUDE ceres/jet.h REQUIRED)
 find_path(HAMEL_MPREAL_INCLUDE mpreal.h REQUIRED)
 find_library(HAMEL_MPFR mpfr REQUIRED)
 find_library(HAMEL_GMP gmp REQUIRED)
+find_path(HAMEL_VALIJSON_INCLUDE valijson/validator.hpp)
+if(HAMEL_VALIJSON_INCLUDE)
+  add_library(hamel_valijson INTERFACE)
+  target_include_directories(hamel_valijson SYSTEM INTERFACE ${HAMEL_VALIJSON_INCLUDE})
+else()
+  message(STATUS "hamel: test cli/schemas is left out: it needs libvalijson-dev (tools/setup)")
+endif()
 add_library(hamel_jet INTERFACE)
 target_include_directories(hamel_jet SYSTEM INTERFACE ${HAMEL_CERES_INCLUDE})
 add_library(hamel_mpreal INTERFACE)
