@@ -9,6 +9,7 @@
 #include <benchmark/benchmark.h>
 
 #include <hamel/hamel.hpp>
+#include <hamel/systems/contact_oscillator.hpp>
 
 #include "../systems/written_in_cpp.hpp"
 

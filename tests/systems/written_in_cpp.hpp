@@ -31,7 +31,7 @@ struct Particle {
 // scooter_by_rows.toml
 struct Scooter {
   using Group = Product<SE2, SO2>;
-  double m = 70, moment = 2, b = 0.35, w = 0.9, fork = 0.05, g = 9.81, slope = 0.02, k = 1.5,
+  double m = 70, moment = 2, b = 0.35, w = 0.9, fork = 0.05, gravity = 9.81, slope = 0.02, k = 1.5,
          c = 0.1, drag = 2;
   static std::string name() { return "scooter"; }
   Mat<4, 4> inertia() const {
@@ -46,14 +46,14 @@ struct Scooter {
   }
   Vec<4> potential_differential(const Group::Element<double>& q) const {
     const auto& deck = q.part<0>();
-    const double f = m * g * std::sin(slope), cos = std::cos(deck.angle()),
+    const double f = m * gravity * std::sin(slope), cos = std::cos(deck.angle()),
                  sin = std::sin(deck.angle());
     return {f * b * sin, -f * cos, f * sin, k * q.part<1>().angle()};
   }
   double potential(const Group::Element<double>& q) const {
     const auto& deck = q.part<0>();
     const double steer = q.part<1>().angle();
-    return -m * g * std::sin(slope) * (deck.translation[0] + b * std::cos(deck.angle())) +
+    return -m * gravity * std::sin(slope) * (deck.translation[0] + b * std::cos(deck.angle())) +
            0.5 * k * steer * steer;
   }
   Vec<4> force(const Group::Element<double>& /*q*/, const Vec<4>& xi) const {
