@@ -154,6 +154,13 @@ class Expression::Reader {
     }
     return *variable_slot_[i];
   }
+  static Op op_of(const Rule* rule) {
+    if (rule == nullptr) return Op::choose;
+    if (rule == rule_of(mu::cmADD)) return Op::add;
+    if (rule == rule_of(mu::cmSUB)) return Op::subtract;
+    if (rule == rule_of(mu::cmMUL)) return Op::multiply;
+    return rule == &kSquare ? Op::square : Op::rule;
+  }
   // The value of constants at once; what was computed already not again.
   size_t emit(const Rule* rule, size_t a, size_t b, size_t c) {
     if (rule == nullptr && out_.fixed_[a]) return out_.slots_[a] != 0 ? b : c;
@@ -167,7 +174,7 @@ class Expression::Reader {
       if (i.rule == rule && i.a == a && i.b == b && i.c == c) return i.to;
     }
     const size_t to = slot(0, false);
-    out_.instructions_.push_back({rule, a, b, c, to});
+    out_.instructions_.push_back({op_of(rule), rule, a, b, c, to});
     return to;
   }
 
@@ -188,12 +195,36 @@ Expression::Expression(const std::string& text, const std::vector<std::string>& 
 
 double Expression::operator()(std::span<const double> values) const {
   for (const auto& [slot, variable] : inputs_) slots_[slot] = values[variable];
-  for (const Instruction& i : instructions_) {
-    slots_[i.to] = i.rule != nullptr  ? i.rule->value(slots_[i.a], slots_[i.b])
-                   : slots_[i.a] != 0 ? slots_[i.b]
-                                      : slots_[i.c];
-  }
+  for (const Instruction& i : instructions_) slots_[i.to] = value_of(i);
   return slots_[result_];
+}
+
+double Expression::value_of(const Instruction& i) const {
+  const double x = slots_[i.a], y = slots_[i.b];
+  switch (i.op) {
+    case Op::add: return x + y;
+    case Op::subtract: return x - y;
+    case Op::multiply: return x * y;
+    case Op::square: return x * x;
+    case Op::rule: return i.rule->value(x, y);
+    case Op::choose: return x != 0 ? y : slots_[i.c];
+  }
+  return 0;
+}
+
+void Expression::pass_slope(const Instruction& i) const {
+  const double x = slots_[i.a], y = slots_[i.b], slope = slopes_[i.to];
+  double &by_first = slopes_[i.a], &by_second = slopes_[i.b];
+  switch (i.op) {
+    case Op::add: by_first += slope, by_second += slope; return;
+    case Op::subtract: by_first += slope, by_second -= slope; return;
+    case Op::multiply: by_first += slope * y, by_second += slope * x; return;
+    case Op::square: by_first += 2 * slope * x; return;
+    case Op::choose: (x != 0 ? by_second : slopes_[i.c]) += slope; return;
+    case Op::rule: break;
+  }
+  if (!fixed_[i.a]) by_first += slope * i.rule->by_first(x, y);
+  if (i.rule->arguments == 2 && !fixed_[i.b]) by_second += slope * i.rule->by_second(x, y);
 }
 
 double Expression::differentiate(std::span<const double> values, double factor,
@@ -202,16 +233,7 @@ double Expression::differentiate(std::span<const double> values, double factor,
   std::fill(slopes_.begin(), slopes_.end(), 0.0);
   slopes_[result_] = factor;
   for (size_t k = instructions_.size(); k-- > 0;) {
-    const Instruction& i = instructions_[k];
-    const double slope = slopes_[i.to];
-    if (slope == 0) continue;
-    if (i.rule == nullptr) {
-      slopes_[slots_[i.a] != 0 ? i.b : i.c] += slope;
-      continue;
-    }
-    const double x = slots_[i.a], y = slots_[i.b];
-    if (!fixed_[i.a]) slopes_[i.a] += slope * i.rule->by_first(x, y);
-    if (i.rule->arguments == 2 && !fixed_[i.b]) slopes_[i.b] += slope * i.rule->by_second(x, y);
+    if (slopes_[instructions_[k].to] != 0) pass_slope(instructions_[k]);
   }
   for (const auto& [slot, variable] : inputs_) out[variable] += slopes_[slot];
   return value;

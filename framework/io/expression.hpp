@@ -49,12 +49,16 @@ class Expression {
   struct Rule;  // of an operator or a function: value and slopes
 
  private:
-  // slots[to] = rule(slots[a], slots[b]), or of no rule slots[a] ? slots[b] : slots[c].
+  enum class Op { add, subtract, multiply, square, rule, choose };
+  // slots[to] = rule(slots[a], slots[b]), of the commonest rules without a call; choose: slots[a] ? slots[b] : slots[c].
   struct Instruction {
+    Op op;
     const Rule* rule;
     size_t a, b, c, to;
   };
   class Reader;
+  double value_of(const Instruction& i) const;
+  void pass_slope(const Instruction& i) const;  // its slope to what it was made of
 
   std::vector<std::pair<size_t, size_t>> inputs_;  // slot, variable
   std::vector<Instruction> instructions_;

@@ -17,16 +17,6 @@
 
 namespace hamel::mechanisms {
 
-/// By differences of order 6.
-inline std::function<double(double)> derivative(const std::function<double(double)>& f) {
-  return [f](double t) {
-    constexpr double weights[] = {45.0 / 60, -9.0 / 60, 1.0 / 60}, h = 2e-3;
-    double slope = 0;
-    for (int k = 1; k <= 3; ++k) slope += weights[k - 1] / h * (f(t + k * h) - f(t - k * h));
-    return slope;
-  };
-}
-
 class FileValues {
  public:
   using Node = toml::node;
@@ -79,14 +69,16 @@ class FileValues {
       return formula(values);
     };
   }
-  /// A formula of t and parameters.
-  std::function<double(double)> of_time(const Node& node, const std::string& key) {
-    if (node.is_number()) return [x = number(node, key)](double) { return x; };
+  /// A formula of t and parameters, or its derivative.
+  std::function<double(double)> of_time(const Node& node, const std::string& key, bool derivative) {
+    if (node.is_number()) return [x = derivative ? 0 : number(node, key)](double) { return x; };
     const auto formula = compile(node, key, with_time({}));
     if (!formula) return {};
-    return [formula = *formula, values = room(0)](double t) mutable {
+    return [formula = *formula, values = room(0), slopes = room(0), derivative](double t) mutable {
       values[0] = t;
-      return formula(values);
+      slopes[0] = 0;
+      const double value = formula.differentiate(values, 1, slopes);
+      return derivative ? slopes[0] : value;
     };
   }
 

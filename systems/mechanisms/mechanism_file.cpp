@@ -198,7 +198,7 @@ class File {
       std::function<double(double)> rate, angle;
       const auto of_time = [&](auto& to) {
         return [this, &to](const Node& node, const std::string& key) {
-          to = read_.of_time(node, key);
+          to = read_.of_time(node, key, key == "angle");
         };
       };
       read_.entries(
@@ -206,7 +206,7 @@ class File {
           {{"joint", read_.read(joint)}, {"rate", of_time(rate)}, {"angle", of_time(angle)}});
       if ((rate != nullptr) == (angle != nullptr) && read_.toml.mistakes.empty())
         read_.toml.wrong(table, "prescribed", "one of rate and angle");
-      m.prescribe(joint, rate ? rate : mechanisms::derivative(angle));
+      m.prescribe(joint, rate ? rate : angle);
     });
   }
   void forces(Mechanism& m) {
