@@ -26,3 +26,11 @@ write_basic_package_version_file(
 install(FILES ${PROJECT_BINARY_DIR}/hamelConfig.cmake ${PROJECT_BINARY_DIR}/hamelConfigVersion.cmake
         DESTINATION ${package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# The commands, and the four kinds of TOML files with an example of a system by data; folders as in the tree.
+foreach(page tools/README.md systems/README.md systems/mechanisms/README.md
+        systems/mechanisms/kick_scooter.toml tests/examples/scooter_by_rows.toml
+        tests/examples/skate_in_a_bowl.toml tests/examples/contact_oscillator.toml
+        tests/examples/particle_in_potential.toml)
+  cmake_path(GET page PARENT_PATH folder)
+  install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+endforeach()
