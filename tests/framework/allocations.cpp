@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
@@ -117,6 +118,34 @@ TEST_F(Allocations, NoneOnMechanisms) {
       Status status;
       EXPECT_EQ(counted(run, 20, status), 0) << system << " " << scheme;
       EXPECT_TRUE(status.ok) << system << " " << scheme << ": " << status.reason;
+    }
+  }
+}
+/// Formulas of every kind, on the run-time path.
+TEST_F(Allocations, NoneOnSystemsByData) {
+  const char* text = R"toml(
+group = "se2*so2"
+coordinates = ["theta", "x", "y", "steer"]
+inertia = [["2 + cos(steer)^2", 0, 0, 0.1], [0, 2, 0, 0], [0, 0, 2, 0], [0.1, 0, 0, 0.1]]
+constraints = [["0.9*cos(steer)", "-sin(steer)", "cos(steer)", 0]]
+drift = ["0.01*sin(t)"]
+holonomic = ["y - 0.1*sin(x)"]
+potential = "0.3*x + 0.5*steer^2"
+force = [0, "-0.1*v1", 0, "torque - 0.1*steer'"]
+velocity = [0.1, 0.5, 0, 0.2]
+[inputs]
+torque = {}
+)toml";
+  for (const char* scheme : {"lift", "balance", "rkmk4"}) {
+    for (const double torque : {0.0, 0.1}) {
+      Simulation simulation(registry(), "data", data_system_maker(registry(), "data.toml", text));
+      if (torque != 0) simulation.input("torque", torque);
+      Integration run = simulation.scheme(scheme).step(0.002).build();
+      (void)run.step(3);
+      Status status;
+      const long of_call = torque == 0 ? 0 : counted(run, 1, status);  // with inputs some a call
+      EXPECT_EQ(counted(run, 20, status), of_call) << scheme << " " << torque;
+      EXPECT_TRUE(status.ok) << scheme << ": " << status.reason;
     }
   }
 }
