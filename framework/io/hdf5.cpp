@@ -9,60 +9,13 @@
 
 #ifdef HAMEL_HAS_HDF5
 
-#include <hdf5.h>
+#include <hamel/framework/io/hdf5_handle.hpp>
 
 namespace hamel {
+
+using namespace hdf5;
+
 namespace {
-
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
-    if (id < 0) throw ConfigError({fmt::format("hdf5: {} failed", what)});
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-void check(herr_t status, const char* what) {
-  if (status < 0) throw ConfigError({fmt::format("hdf5: {} failed", what)});
-}
-
-void be_silent() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
-
-// A variable-length UTF-8 string.
-Handle text_type() {
-  const hid_t type = H5Tcopy(H5T_C_S1);
-  H5Tset_size(type, H5T_VARIABLE);
-  H5Tset_cset(type, H5T_CSET_UTF8);
-  return {type, H5Tclose, "H5Tcopy"};
-}
-
-void write_text(hid_t object, const std::string& name, const std::string& value) {
-  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose, "H5Screate");
-  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose, "H5Acreate2");
-  const char* text = value.c_str();
-  check(H5Awrite(attribute, type, &text), "H5Awrite");
-}
-
-std::string read_text(hid_t attribute) {
-  const Handle type = text_type();
-  char* text = nullptr;
-  check(H5Aread(attribute, type, &text), "H5Aread");
-  std::string out = text == nullptr ? "" : text;
-  H5free_memory(text);
-  return out;
-}
-
-std::string read_text(hid_t object, const std::string& name) {
-  return read_text(Handle(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "H5Aopen"));
-}
 
 void write_column(hid_t file, const TableColumn& column) {
   const hsize_t size = column.size();
@@ -124,13 +77,14 @@ TableColumn read_column(hid_t file, const std::string& name) {
 
 std::string hdf5_version() {
   unsigned major = 0, minor = 0, release = 0;
+  begin();
   H5get_libversion(&major, &minor, &release);
   return fmt::format("{}.{}.{}", major, minor, release);
 }
 
 void Table::write_hdf5(const std::string& path,
                        const std::map<std::string, std::string>& texts) const {
-  be_silent();
+  begin();
   const std::string part = path + ".part";
   try {
     // The order of creation is kept, so that the columns come back as they were written.
@@ -152,7 +106,7 @@ void Table::write_hdf5(const std::string& path,
 }
 
 Table read_hdf5(const std::string& path, std::map<std::string, std::string>* texts) {
-  be_silent();
+  begin();
   const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "H5Fopen");
   std::vector<std::string> names;
   const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {

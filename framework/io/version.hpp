@@ -1,6 +1,7 @@
 // The version of the library and the commit it was built from, for records and `hamel --version`.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace hamel {
@@ -17,5 +18,8 @@ std::string_view compiler();
 
 /// The build type and what the user added: "Release -O3 -DNDEBUG; kernels -O3".
 std::string_view build_flags();
+
+/// All of these: two builds with one name compute the same bits.
+std::string build_name();
 
 }  // namespace hamel

@@ -48,13 +48,18 @@ void EnergyBalance::node(const Snapshot& state) {
 }
 
 void EnergyBalance::row(const Snapshot& state) {
-  recorded_.push_back({state.time, state.energy, 0});
+  waiting_.push_back({state.time, state.energy});
   if (work_.count() >= NodalQuadrature::kNodes) settle();
 }
 
 void EnergyBalance::settle() {
-  for (; settled_ < recorded_.size(); ++settled_)
-    recorded_[settled_].work = done_ + work_.value(recorded_[settled_].time);
+  for (const Recorded& r : waiting_) {
+    work_done_ = done_ + work_.value(r.time);
+    const double defect = r.energy - energy_start_ - work_done_;
+    raise(defect_max_, defect);
+    settled_.push_back({work_done_, defect, scale()});
+  }
+  waiting_.clear();
 }
 
 void EnergyBalance::break_off() {
@@ -64,14 +69,9 @@ void EnergyBalance::break_off() {
   work_.add(last_.time, power(last_));
 }
 
-std::vector<BalancedState> EnergyBalance::rows() {
-  settle();
-  std::vector<BalancedState> out;
-  out.reserve(recorded_.size());
-  const double scale = energy_max_ == 0 ? 1 : energy_max_;
-  for (const Recorded& r : recorded_)
-    out.push_back({r.work, (r.energy - energy_start_ - r.work) / scale});
-  return out;
+void EnergyBalance::settled(std::vector<BalancedState>& out) {
+  out.clear();
+  out.swap(settled_);
 }
 
 }  // namespace hamel

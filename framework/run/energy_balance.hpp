@@ -26,8 +26,26 @@ class EnergyBalance {
   /// A recorded state, between the last two nodes or one of them.
   void row(const Snapshot& state);
 
-  /// After the last node: one for each recorded state.
-  std::vector<BalancedState> rows();
+  /// Those of the recorded states that are known by now and were not taken before, in their order: one waits for the
+  /// first nodes of the quadrature.
+  void settled(std::vector<BalancedState>& out);
+  /// After the last node: none waits.
+  void finish() { settle(); }
+  /// Over the recorded states that are settled, relative to the largest energy.
+  double error_max() const { return defect_max_ / scale(); }
+  /// Of the energies at the nodes so far.
+  double scale() const { return energy_max_ == 0 ? 1 : energy_max_; }
+  /// At the last recorded state.
+  double work() const { return work_done_; }
+
+  template <class Archive>
+  void carry(Archive& archive) {
+    // The inputs of a run that goes on have changed as often as it was told, and not as often as they were before.
+    bool changed = inputs_ != nullptr && inputs_->changes() != changes_;
+    archive(changed, last_, work_, done_, started_, energy_start_, energy_max_, defect_max_,
+            work_done_, waiting_, settled_);
+    if (inputs_ != nullptr) changes_ = inputs_->changes() - (changed ? 1 : 0);
+  }
 
  private:
   // <f, xi> + lambda . b.
@@ -37,7 +55,7 @@ class EnergyBalance {
   std::shared_ptr<const Mechanics> mechanics_;
   std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without a drift
   bool active_;
-  // The work at the recorded states that wait for the first nodes.
+  // The work at the recorded states that wait.
   void settle();
   // The quadrature begins anew at the last node: an input jumps or has a kink there, and so has the power.
   void break_off();
@@ -49,11 +67,16 @@ class EnergyBalance {
   double done_ = 0;
   bool started_ = false;
   double energy_start_ = 0, energy_max_ = 0;
+  double defect_max_ = 0, work_done_ = 0;
   struct Recorded {
-    double time, energy, work;
+    double time = 0, energy = 0;
+    template <class Archive>
+    void carry(Archive& archive) {
+      archive(time, energy);
+    }
   };
-  std::size_t settled_ = 0;
-  std::vector<Recorded> recorded_;
+  std::vector<Recorded> waiting_;
+  std::vector<BalancedState> settled_;
   Eigen::VectorXd g_, xi_, b_;
   Eigen::MatrixXd a_;
 };

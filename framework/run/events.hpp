@@ -38,6 +38,12 @@ class Events {
   };
   Status look(const Snapshot& state, DenseOutput& dense, std::vector<Found>& found);
 
+  template <class Archive>
+  void carry(Archive& archive) {
+    for (Watched& w : watched_) archive(w.before);
+    archive(time_);
+  }
+
  private:
   struct Watched {
     Event event;

@@ -23,8 +23,11 @@ struct Quantity {
 };
 
 // At each state.
+inline constexpr Quantity kTime = {"t", "s", "time"};
+inline constexpr Quantity kEnergy = {"energy", "J", "kinetic and potential"};
+inline constexpr Quantity kIterations = {"iterations", "1", "of the last step's solver"};
 inline constexpr Quantity kEnergyError = {
-    "energy_error", "1", "(E - E0) / |E0|; where work is done (E - E0 - work) / max |E|",
+    "energy_error", "1", "(E - E0) / |E0|; where work is done (E - E0 - work) / max |E| so far",
     "energy error"};
 inline constexpr Quantity kWork = {"work", "J", "of forces and moving constraints", "work done"};
 inline constexpr Quantity kConstraint = {
@@ -58,12 +61,21 @@ struct InvariantDrift {
   std::string name;
   double start = 0;
   double drift_max = 0;  // max |value - start|
+  template <class Archive>
+  void carry(Archive& archive) {
+    archive(name, start, drift_max);
+  }
 };
 
 /// The energy balance at a state, (M48).
 struct BalancedState {
-  double work;   // J, since the start
-  double error;  // (E - E0 - work) / max |E|
+  double work = 0;    // J, since the start
+  double defect = 0;  // J, E - E0 - work
+  double scale = 1;   // J, the largest |E| so far
+  template <class Archive>
+  void carry(Archive& archive) {
+    archive(work, defect, scale);
+  }
 };
 
 /// (E - E0) / |E0|; E where E0 = 0.
@@ -131,12 +143,15 @@ struct Measurements {
     }
     return error;
   }
-  /// After the last state, where work is done: the balance at the states in place of what take() saw.
-  void balance(const std::vector<BalancedState>& states) {
-    energy_error_max = 0;
-    for (const BalancedState& state : states) raise(energy_error_max, state.error);
-    energy_balance_error_max = energy_error_max;
-    work = states.back().work;
+  /// After the last state, where work is done: the balance in place of what take() saw.
+  void balance(double error_max, double work_done) {
+    energy_error_max = energy_balance_error_max = error_max;
+    work = work_done;
+  }
+  template <class Archive>
+  void carry(Archive& archive) {
+    fields([&](const Quantity&, const char*, auto member) { archive(this->*member); });
+    archive(invariants);
   }
   /// The distances of the element's columns and of the velocity.
   std::pair<double, double> compare(const Snapshot& state, std::span<const double> element,

@@ -4,9 +4,45 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
 
 namespace hamel {
+namespace {
+
+ColumnGroup numbered(const char* name, std::size_t count) {
+  ColumnGroup out{name, "", "", "", {}};
+  for (std::size_t i = 1; i <= count; ++i) out.columns.push_back(name + std::to_string(i));
+  return out;
+}
+
+ColumnGroup element_columns(const GroupInfo& group) {
+  return {"configuration", "", "the element g of " + group.name,
+          "g takes the body's frame to the frame in space", group.columns};
+}
+
+// Of the velocity, or of the momentum dual to it.
+ColumnGroup body_columns(const char* name, const GroupInfo& group, bool dual) {
+  ColumnGroup out = numbered(name, static_cast<std::size_t>(group.dim));
+  std::string names;
+  for (const Component& c : components_of(group)) {
+    const std::string unit = !dual               ? c.unit
+                             : c.unit == "rad/s" ? "N m s"
+                             : c.unit == "m/s"   ? "N s"
+                                                 : "";
+    if (!names.empty()) {
+      out.unit += ",";
+      names += ",";
+    }
+    out.unit += unit;
+    names += c.name;
+  }
+  out.meaning = (dual ? "nodal body momentum, of " : "nodal body velocity: ") + names;
+  out.frame = "the body's: left trivialisation, angular part first";
+  return out;
+}
+
+}  // namespace
 
 Meter::Meter(const SystemModel& system, const Start& start,
              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
@@ -33,44 +69,41 @@ Meter::Meter(const SystemModel& system, const Start& start,
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
 }
 
-void Meter::add(const char* name, double value) {
-  if (first_) columns_.push_back(name);
-  row_.push_back(value);
+void Meter::add(const Quantity& quantity, double value) {
+  if (first_)
+    columns_.push_back({quantity.name, quantity.unit, quantity.meaning, "", {quantity.name}});
+  rows_.push_back(value);
 }
-void Meter::add(const std::vector<std::string>& names, std::span<const double> values) {
-  if (first_) columns_.insert(columns_.end(), names.begin(), names.end());
-  row_.insert(row_.end(), values.begin(), values.end());
-}
-void Meter::add_numbered(const char* name, std::span<const double> values) {
-  for (size_t i = 1; first_ && i <= values.size(); ++i)
-    columns_.push_back(name + std::to_string(i));
-  row_.insert(row_.end(), values.begin(), values.end());
+template <class Group>
+void Meter::add(Group&& group, std::span<const double> values) {
+  if (first_) columns_.push_back(group());
+  rows_.insert(rows_.end(), values.begin(), values.end());
 }
 
 void Meter::take(const Snapshot& state) {
   if (first_) {
     energy_start_ = state.energy;
     time_start_ = state.time;
+    start_configuration_ = state.coordinates;
   }
   const double error = all_.take(state, energy_start_);
-  row_.clear();
-  add("t", state.time);
-  add(system_.group.columns, state.coordinates);
-  add_numbered("xi", state.velocity);
-  add("energy", state.energy);
-  add(kEnergyError.name, error);
-  add(kConstraint.name, state.constraint);
-  add(kGroupDefect.name, state.group_defect);
-  add("iterations", static_cast<double>(state.iterations));
-  add(kResidual.name, state.residual);
-  if (holonomic_) add(kHolonomic.name, state.holonomic);
-  add_numbered("mu", state.momentum);
+  add(kTime, state.time);
+  add([&] { return element_columns(system_.group); }, state.coordinates);
+  add([&] { return body_columns("xi", system_.group, false); }, state.velocity);
+  add(kEnergy, state.energy);
+  add(kEnergyError, error);
+  add(kConstraint, state.constraint);
+  add(kGroupDefect, state.group_defect);
+  add(kIterations, static_cast<double>(state.iterations));
+  add(kResidual, state.residual);
+  if (holonomic_) add(kHolonomic, state.holonomic);
+  add([&] { return body_columns("mu", system_.group, true); }, state.momentum);
 }
 
 void Meter::compare(const Snapshot& state) {
   if (balance_.active()) {
     balance_.row(state);
-    add(kWork.name, 0);  // until finish
+    add(kWork, 0);  // until it is settled
   }
   if (motion_ != nullptr) react(state);
   for (size_t i = 0; i < system_.invariants.size(); ++i) {
@@ -80,19 +113,57 @@ void Meter::compare(const Snapshot& state) {
     else raise(all_.invariants[i].drift_max, value - all_.invariants[i].start);
   }
   if (system_.exact) {
-    if (first_)
-      exact_ = system_.exact({.configuration = state.coordinates, .velocity = start_.velocity});
+    if (first_) exact_ = exact_from_start();
     const auto [element, velocity] = exact_(state.time - time_start_);
     const auto [error, velocity_error] = all_.compare(state, element, velocity);
-    add(kExactError.name, error);
-    add(kExactVelocityError.name, velocity_error);
+    add(kExactError, error);
+    add(kExactVelocityError, velocity_error);
     if (!exact_lost_ && !std::isfinite(error) && std::isfinite(state.energy)) {
       exact_lost_ = true;
       notes_.push_back(fmt::format(
           "the exact motion was not followed to t = {:.6g}: it turns too fast", state.time));
     }
   }
+  if (first_) {
+    width_ = rows_.size();
+    std::size_t at = 0;
+    for (const ColumnGroup& group : columns_) {
+      if (group.name == kEnergyError.name) energy_error_ = at;
+      if (group.name == kWork.name) work_ = at;
+      at += group.columns.size();
+    }
+  }
   first_ = false;
+  settle();
+}
+
+// Completes rows whose work is known.
+void Meter::settle() {
+  if (!balance_.active()) {
+    complete_ = rows_.size() / width_;
+    return;
+  }
+  balance_.settled(settled_);
+  for (const BalancedState& state : settled_) {
+    double* row = rows_.data() + width_ * complete_++;
+    row[energy_error_] = state.defect / state.scale;
+    row[work_] = state.work;
+  }
+}
+
+void Meter::drop_rows() {
+  rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(complete_ * width_));
+  complete_ = 0;
+}
+
+void Meter::follow_exact(double time) {
+  if (!system_.exact) return;
+  if (!exact_) exact_ = exact_from_start();
+  exact_(time - time_start_);
+}
+
+ExactFlow Meter::exact_from_start() const {
+  return system_.exact({.configuration = start_configuration_, .velocity = start_.velocity});
 }
 
 void Meter::react(const Snapshot& state) {
@@ -126,23 +197,22 @@ void Meter::react(const Snapshot& state) {
                         : words_of(system_).reactions[static_cast<size_t>(row)]));
   }
   const std::span<const double> lambda(lambda_.data(), static_cast<size_t>(lambda_.size()));
-  if (words_of(system_).reactions.empty()) add_numbered("lambda", lambda);
-  else add(words_of(system_).reactions, lambda);
-  add(kReactionPower.name, power);
+  const auto describe = [&] {
+    ColumnGroup out = numbered("lambda", lambda.size());
+    if (const auto& names = words_of(system_).reactions; !names.empty()) out.columns = names;
+    out.meaning = "multipliers of the rows A xi = b";
+    return out;
+  };
+  add(describe, lambda);
+  add(kReactionPower, power);
 }
 
-Measurements Meter::finish(Trajectory& rows) {
+void Meter::finish() {
   if (motion_ != nullptr) all_.reaction_work += power_ * (time_ - power_time_);
-  if (balance_.active()) {
-    const size_t error = rows.index(kEnergyError.name), work = rows.index(kWork.name);
-    const std::vector<BalancedState> balance = balance_.rows();
-    all_.balance(balance);
-    for (size_t i = 0; i < rows.rows(); ++i) {
-      rows.at(i, error) = balance[i].error;
-      rows.at(i, work) = balance[i].work;
-    }
-  }
-  return std::move(all_);
+  if (!balance_.active()) return;
+  balance_.finish();
+  settle();
+  all_.balance(balance_.error_max(), balance_.work());
 }
 
 }  // namespace hamel

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/row_file.hpp>
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/energy_balance.hpp>
@@ -31,25 +32,43 @@ class Meter {
   void take(const Snapshot& state);
   /// Ends it with what the equations of motion, the invariants and the exact motion say.
   void compare(const Snapshot& state);
-  /// The names of the row's columns, after the first.
-  const std::vector<std::string>& columns() const { return columns_; }
-  const std::vector<double>& row() const { return row_; }
-  /// After the last state; completes the columns of the rows.
-  Measurements finish(Trajectory& rows);
+  /// The columns of a row, after the first.
+  const std::vector<ColumnGroup>& columns() const { return columns_; }
+  /// The rows that are complete and were not dropped, one after the other. Where work is done the first few wait.
+  std::span<const double> rows() const { return std::span(rows_).first(complete_ * width_); }
+  void drop_rows();
+  /// After the last state: no row waits.
+  void finish();
+  const Measurements& all() const { return all_; }
   /// What the user should know.
   const std::vector<std::string>& notes() const { return notes_; }
 
+  template <class Archive>
+  void carry(Archive& archive) {
+    archive(all_, first_, energy_start_, time_start_, width_, energy_error_, work_, rows_,
+            exact_lost_, notes_, pulls_, time_, power_, power_time_, start_configuration_, lambda_,
+            balance_);
+  }
+  /// A run that goes on: the exact motion is followed to here through the times of the rows before.
+  void follow_exact(double time);
+
  private:
-  // Adds to the row, and to the names of its columns while it is the first.
-  void add(const char* name, double value);
-  void add(const std::vector<std::string>& names, std::span<const double> values);
-  void add_numbered(const char* name, std::span<const double> values);
+  void add(const Quantity& quantity, double value);
+  // group() describes the values, of the first row.
+  template <class Group>
+  void add(Group&& group, std::span<const double> values);
   void react(const Snapshot& state);
+  void settle();
+  ExactFlow exact_from_start() const;
 
   const SystemModel& system_;
   Start start_;
-  std::vector<std::string> columns_;
-  std::vector<double> row_;
+  std::vector<ColumnGroup> columns_;
+  std::vector<double> rows_;
+  std::size_t width_ = 0, complete_ = 0;
+  std::size_t energy_error_ = 0, work_ = 0;  // their columns
+  std::vector<BalancedState> settled_;
+  std::vector<double> start_configuration_;
   Measurements all_;
   bool first_ = true, holonomic_ = false;
   double energy_start_ = 0, time_start_ = 0;
@@ -57,7 +76,7 @@ class Meter {
   ExactFlow exact_;
   bool exact_lost_ = false;  // said already
   std::vector<std::string> notes_;
-  std::vector<bool> pulls_;  // of the contacts, said already
+  std::vector<char> pulls_;  // of the contacts, said already
   // The multipliers lambda of A xi = b, from the continuous equations at each state, and their power
   // lambda . A v in the last step before it, A v recovered from the configurations (Snapshot::row_rates) and
   // lambda interpolated to the same time, Snapshot::lag before the state: round-off where b = 0, the power that a

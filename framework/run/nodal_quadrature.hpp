@@ -30,6 +30,11 @@ class NodalQuadrature {
   /// From the first node to t, between the last two nodes; before there are kNodes + 1, to any t between the first and the last.
   double value(double t) const { return integral_ - over(t, times_[0]); }
 
+  template <class Archive>
+  void carry(Archive& archive) {
+    archive(times_, differences_, count_, first_, integral_);
+  }
+
  private:
   // Over the interval: Gauss-Legendre, exact for the polynomial's degree.
   double over(double from, double to) const {

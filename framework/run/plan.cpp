@@ -56,6 +56,11 @@ Simulation::Plan Simulation::plan() const {
   Plan plan;
   plan.config = config_;
   plan.add(config_.mistakes());
+  try {
+    add_outputs(plan);
+  } catch (const ConfigError& error) {
+    plan.add(error.mistakes());
+  }
 
   const bool compiled = kernel_ && config_.scheme == kernel_scheme_.name &&
                         config_.retraction == kernel_retraction_.name;
@@ -164,7 +169,8 @@ Simulation::Plan Simulation::plan() const {
                                 : std::abs((config_.until - config_.from) / config_.step) /
                                       static_cast<double>(config_.every);
   const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
-  if (rows < 9e15 && rows * width > kMaxNumbers) {
+  const bool in_memory = records_.empty();
+  if (in_memory && !rows_kept_ && rows < 9e15 && rows * width > kMaxNumbers) {
     plan.add(
         {config_.output_step
              ? fmt::format("output_step: {:.3g} rows would be recorded, more than memory holds",

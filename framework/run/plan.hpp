@@ -26,6 +26,8 @@ struct Simulation::Plan {
   std::shared_ptr<Events> events;
   KernelSetup setup;
   KernelFactory kernel;
+  // What a file keeps, so that the same run can be gone on with.
+  std::string request, files;
 
   void add(const std::vector<std::string>& more) {
     mistakes.insert(mistakes.end(), more.begin(), more.end());

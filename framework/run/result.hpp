@@ -1,10 +1,11 @@
 // What a run leaves behind: status, trajectory, record, and the ways to read or write them.
 #pragma once
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/row_file.hpp>
 #include <hamel/framework/loop/kernel.hpp>
 #include <hamel/framework/run/config.hpp>
 #include <hamel/framework/run/measures.hpp>
@@ -14,9 +15,12 @@ namespace hamel {
 /// The recorded rows: named columns, row-major numbers.
 class Trajectory {
  public:
-  explicit Trajectory(std::vector<std::string> columns = {}) : columns_(std::move(columns)) {}
+  explicit Trajectory(std::vector<ColumnGroup> groups = {});
+  /// The columns with their units, those of a vector together.
+  const std::vector<ColumnGroup>& groups() const { return groups_; }
   const std::vector<std::string>& columns() const { return columns_; }
   size_t rows() const { return columns_.empty() ? 0 : values_.size() / columns_.size(); }
+  std::span<const double> values() const { return values_; }
   std::span<const double> row(size_t i) const {
     return std::span(values_).subspan(i * columns_.size(), columns_.size());
   }
@@ -29,11 +33,17 @@ class Trajectory {
   void append(std::span<const double> row) {
     values_.insert(values_.end(), row.begin(), row.end());
   }
-  void reserve(size_t rows) { values_.reserve(rows * columns_.size()); }
+  /// Drops every second row.
+  void thin();
+  /// 1: every recorded row is here; else every so manyth, and the last.
+  size_t stride() const { return stride_; }
+  void stride(size_t stride) { stride_ = stride; }
 
  private:
+  std::vector<ColumnGroup> groups_;
   std::vector<std::string> columns_;
   std::vector<double> values_;
+  size_t stride_ = 1;
 };
 
 /// An event that was met, and the state there.
@@ -66,22 +76,23 @@ struct Result : Measurements {
   std::string record(int indent = 2) const;
   /// One screen of text: status, iterations, drifts, error against the exact solution.
   std::string report() const;
-  /// Writes by extension: .csv (rows, then the record in # lines) or .json (the record). The file
+  /// Writes by extension, output_formats(): the rows that are in memory and the record, or (.json) the record. The file
   /// appears whole or not at all. ConfigError when it cannot be written.
   void write(const std::string& path) const;
-  void write_csv(std::ostream& out) const;
 };
+
+/// A run in a file, .h5: how to go on with it. ConfigError where the file holds none.
+struct Recorded {
+  std::string path;  // without .part
+  bool finished;
+  Config config;  // unfinished: as it was given; finished: where it ended, for as long again
+};
+Recorded read_recorded(const std::string& path);
 
 /// The machine this runs on: node name, system, architecture.
 std::string host_name();
 
-/// The extensions that Result::write knows.
+/// The extensions that Result::write and Simulation::record_to know.
 const std::vector<std::string>& output_formats();
-
-/// Writes text to a temporary beside path and renames it into place; ConfigError on failure.
-void write_file(const std::string& path, const std::string& text);
-
-/// "" when a file can be created at path, else what is in the way. Leaves nothing behind.
-std::string unwritable(const std::string& path);
 
 }  // namespace hamel

@@ -8,6 +8,7 @@
 
 #include <hamel/framework/run/plan.hpp>
 #include <hamel/framework/run/run_loop.hpp>
+#include <hamel/framework/run/sink.hpp>
 
 namespace hamel {
 Integration::Integration(KernelFactory factory, KernelSetup setup, Config config,
@@ -146,13 +147,19 @@ Result Simulation::run() const {
   result.system = plan.system;
   result.unused = plan.unused;
   result.notes = plan.notes;
-  RunLoop loop(plan, result);
+  std::vector<std::unique_ptr<Sink>> sinks;
+  for (const std::string& path : records_) sinks.push_back(make_sink(path));
+  if (records_.empty() || rows_kept_)
+    sinks.push_back(std::make_unique<MemorySink>(result.trajectory, rows_kept_.value_or(0)));
+  RunLoop loop(plan, result, sinks);
   loop.observer = observer_;
   loop.progress = progress_;
   loop.impacts = &impacts_;
+  if (!resumed_.empty()) loop.resume(RunFile(resumed_));
   loop.run();
   add_notes(result);
   if (config_.check && result.status.ok) estimate_error(result);
+  for (const auto& sink : sinks) sink->finish(result);
   return result;
 }
 

@@ -180,6 +180,22 @@ class Simulation {
     observer_ = std::move(observer);
     return *this;
   }
+  /// Rows are written as they come, to a file by its extension, output_formats(), or "-" (CSV to standard output); repeatable.
+  /// The file is `path`.part until the run is done, whatever ends it. Then the Result has no trajectory.
+  Simulation& record_to(std::string path) {
+    records_.push_back(std::move(path));
+    return *this;
+  }
+  /// A trajectory of about so many rows beside the files: every second row is dropped, again and again.
+  Simulation& keep_rows(size_t most) {
+    rows_kept_ = most;
+    return *this;
+  }
+  /// Goes on with the unfinished run in a file, .h5, that this run was recorded to; the result is that of the undisturbed run.
+  Simulation& resume(std::string path) {
+    resumed_ = std::move(path);
+    return *this;
+  }
   /// Called now and then with the fraction done, in [0, 1].
   Simulation& progress(std::function<void(double)> report) {
     progress_ = std::move(report);
@@ -202,6 +218,7 @@ class Simulation {
   struct Plan;
   Plan plan() const;
   void estimate_error(Result& result) const;
+  void add_outputs(Plan& plan) const;
 
   const Registry* registry_;
   Maker make_;
@@ -212,6 +229,9 @@ class Simulation {
   std::function<bool(const Snapshot&)> observer_;
   std::function<void(double)> progress_;
   std::map<std::string, Impact> impacts_;
+  std::vector<std::string> records_;
+  std::optional<size_t> rows_kept_;
+  std::string resumed_;
 };
 
 }  // namespace hamel

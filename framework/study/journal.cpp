@@ -28,10 +28,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 std::string header(const StudyConfig& config) {
-  return Json{
-      {"journal", 1},
-      {"version", fmt::format("{} ({}; {}; {})", version(), git_hash(), compiler(), build_flags())},
-      {"study", lines_of(config.fingerprint())}}
+  return Json{{"journal", 1}, {"version", build_name()}, {"study", lines_of(config.fingerprint())}}
       .dump();
 }
 

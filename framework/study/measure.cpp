@@ -79,9 +79,11 @@ class Meter {
     const Snapshot& state = run.state();
     out_.done = true;
     if (balance_.active()) {
-      const std::vector<BalancedState> states = balance_.rows();
-      all_.balance(states);
-      for (size_t i = 0; i < states.size(); ++i) energy_[i] = states[i].error;
+      balance_.finish();
+      all_.balance(balance_.error_max(), balance_.work());
+      std::vector<BalancedState> states;
+      balance_.settled(states);
+      for (size_t i = 0; i < states.size(); ++i) energy_[i] = states[i].defect / balance_.scale();
     }
     out_.steps = state.step;
     out_.time = state.time;

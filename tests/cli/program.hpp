@@ -71,12 +71,14 @@ class CommandLine : public testing::Test {
     return out;
   }
 
-  /// Runs the program in its folder, where out and err go to files beside it.
-  Outcome run(const std::vector<std::string>& arguments) const {
+  /// Runs the program in its folder, where out and err go to files beside it. before: what the shell does first; behind: what the
+  /// output goes through.
+  Outcome run(const std::vector<std::string>& arguments, const std::string& before = "",
+              const std::string& behind = "") const {
     const std::string out = folder_.string() + ".out", err = folder_.string() + ".err";
-    std::string command = "cd " + quoted(folder_.string()) + " && " + quoted(program_);
+    std::string command = "cd " + quoted(folder_.string()) + " && " + before + quoted(program_);
     for (const std::string& argument : arguments) command += " " + quoted(argument);
-    command += " >" + quoted(out) + " 2>" + quoted(err) + " </dev/null";
+    command += " 2>" + quoted(err) + " </dev/null " + behind + " >" + quoted(out);
     const int status = std::system(command.c_str());
     Outcome result{WIFEXITED(status) ? WEXITSTATUS(status) : 128, contents(out), contents(err)};
     std::filesystem::remove(out);

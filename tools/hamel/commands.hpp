@@ -28,6 +28,7 @@ int analyse(const DescribeOptions& options);
 struct RunOptions {
   Config config;
   std::vector<std::string> outputs;  // -o, format by extension
+  std::string resumed;               // --continue of an unfinished run
   std::string report;                // --report
   bool json = false;
   bool quiet = false;

@@ -10,7 +10,9 @@
 #include <CLI/CLI.hpp>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
+#include <hamel/framework/run/result.hpp>
 
 #include "commands.hpp"
 #include "steady.hpp"
@@ -18,7 +20,7 @@
 namespace hamel::tools {
 namespace {
 
-constexpr int kBadInput = 2;
+constexpr int kUnfinished = 1, kBadInput = 2;
 
 std::string read_file(const std::string& path) {
   std::ifstream in(path);
@@ -96,8 +98,8 @@ struct RunLine {
                                          "a TOML file with the same names; the command line wins");
     app.add_option(
            "--continue", record_file,
-           "go on where the run of this record (-o x.json) ended, as it was run; the command "
-           "line wins")
+           "go on where the run of this record (-o x.json, x.h5) ended, as it was run, for as long "
+           "again; the command line wins. An unfinished .h5: with that run, bit for bit")
         ->excludes(config);
     app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
         ->allow_extra_args(false);
@@ -112,27 +114,33 @@ struct RunLine {
       option<Value>(app, field, Config().*member,
                     [member](Config& c) -> Value& { return c.*member; });
     });
-    app.add_option("-o,--output", options.outputs, "write .csv or .json (repeatable)")
+    app.add_option(
+           "-o,--output", options.outputs,
+           "write .csv, .csv.gz, .h5 or .json, as the rows come; - is CSV to standard output "
+           "(repeatable)")
         ->allow_extra_args(false);
     app.add_option("--report", options.report, "write a self-contained HTML page");
     app.add_flag("--json", options.json, "print the record as JSON");
     app.add_flag("--quiet", options.quiet, "print nothing but errors (and --json)");
     app.footer(
-        "Exit status: 0 done, 1 numerical failure (what was computed is written), 2 bad input.\n"
+        "Exit status: 0 done, 1 numerical failure (what was computed is written), or interrupted "
+        "or disk\n"
+        "full (it is in FILE.part), 2 bad input.\n"
         "Examples:\n"
         "  hamel run suslov --until 20 --report suslov.html\n"
         "  hamel run suslov --set inertia=2,0.3,0.5,3,0.4,4 --velocity 1,0.5,0 --retraction exp\n"
         "  hamel run chaplygin_sleigh --scheme balance --step 0.05 -o sleigh.csv --json\n"
         "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv\n"
         "  hamel run segway --input right_torque=2 --input left_torque=torque.csv:hold\n"
-        "  hamel run roller_racer -o first.json && hamel run --continue first.json --until 60");
+        "  hamel run roller_racer -o first.json && hamel run --continue first.json --until 60\n"
+        "  hamel run rolling_disk --until 1e5 -o disk.h5 || hamel run --continue disk.h5");
   }
 
   RunOptions resolve(const CLI::App& app) {
     Config& config = options.config;
     std::vector<std::string> mistakes;
     if (!config_file.empty()) config = read_config(config_file);
-    if (!record_file.empty()) config = Config::continued(read_file(record_file), record_file);
+    if (!record_file.empty()) go_on(config);
     if (!system.empty() && system != config.system) {
       config.system = system;
       if (!record_file.empty()) {  // another system's, or a file's, which has none
@@ -155,6 +163,21 @@ struct RunLine {
     collect([&] { read_inputs(inputs, config.inputs); });
     if (!mistakes.empty()) throw ConfigError(mistakes);
     return options;
+  }
+
+  // After the run of a record; or, of a file whose run is unfinished, with that run.
+  void go_on(Config& config) {
+    if (!record_file.ends_with(".h5") && !record_file.ends_with(".h5.part")) {
+      config = Config::continued(read_file(record_file), record_file);
+      return;
+    }
+    const Recorded file = read_recorded(record_file);
+    config = file.config;
+    if (file.finished) return;
+    options.resumed = file.path;
+    if (std::find(options.outputs.begin(), options.outputs.end(), file.path) ==
+        options.outputs.end())
+      options.outputs.push_back(file.path);
   }
 };
 
@@ -297,6 +320,9 @@ int program(int argc, char** argv) {
   } catch (const ConfigError& error) {
     for (const std::string& mistake : error.mistakes()) fmt::print(stderr, "hamel: {}\n", mistake);
     return kBadInput;
+  } catch (const Unfinished& error) {
+    fmt::print(stderr, "hamel: {}\n", error.what());
+    return kUnfinished;
   } catch (const std::exception& error) {
     fmt::print(stderr, "hamel: {}\n", error.what());
     return kBadInput;

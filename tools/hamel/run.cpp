@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
@@ -11,32 +12,40 @@
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "run_page.hpp"
 
 namespace hamel::tools {
 namespace {
 
-// What is wrong with the output files, found before anything runs.
-std::vector<std::string> output_mistakes(const RunOptions& options) {
+constexpr size_t kRowsOfPage = 100'000;
+
+std::vector<std::string> page_mistakes(const RunOptions& options) {
   std::vector<std::string> mistakes;
-  const auto check = [&](const std::string& path, const std::vector<std::string>& formats) {
-    const std::string extension = std::filesystem::path(path).extension();
-    if (std::find(formats.begin(), formats.end(), extension) == formats.end()) {
-      mistakes.push_back(unknown_name("output format", extension, formats) + " in '" + path + "'");
-    } else if (const std::string reason = unwritable(path); !reason.empty()) {
-      mistakes.push_back(reason);
-    }
-  };
-  for (const std::string& path : options.outputs) check(path, output_formats());
-  if (!options.report.empty()) {
-    check(options.report, {".html"});
-    if (report_page().empty()) {
-      mistakes.push_back(
-          "--report: this program was built without the page (node and npm were "
-          "missing at build time); run tools/setup and build again");
-    }
+  if (options.report.empty()) return mistakes;
+  if (const std::string extension = std::filesystem::path(options.report).extension();
+      extension != ".html")
+    mistakes.push_back(unknown_name("output format", extension, {".html"}) + " in '" +
+                       options.report + "'");
+  else if (const std::string reason = unwritable(options.report); !reason.empty())
+    mistakes.push_back(reason);
+  if (report_page().empty()) {
+    mistakes.push_back(
+        "--report: this program was built without the page (node and npm were "
+        "missing at build time); run tools/setup and build again");
   }
   return mistakes;
+}
+
+// Where the rows of an unfinished run are.
+std::string kept(const RunOptions& options) {
+  std::string out;
+  for (const std::string& path : options.outputs) {
+    if (path == "-" || path.ends_with(".json")) continue;
+    out += fmt::format("; the rows so far are in '{}'", part_of(path));
+    if (path.ends_with(".h5")) out += fmt::format(", and --continue {} goes on", path);
+  }
+  return out;
 }
 
 }  // namespace
@@ -72,21 +81,37 @@ void Progress::operator()(double fraction) {
 
 int run(const RunOptions& options) {
   Simulation simulation(registry(), options.config.system);
-  simulation.config(options.config);
+  simulation.config(options.config).resume(options.resumed);
+  for (const std::string& path : options.outputs) simulation.record_to(path);
+  simulation.keep_rows(options.report.empty() ? 1 : kRowsOfPage);
   std::vector<std::string> mistakes = simulation.mistakes();
-  const auto more = output_mistakes(options);
+  const auto more = page_mistakes(options);
   mistakes.insert(mistakes.end(), more.begin(), more.end());
+  const bool rows_to_screen =
+      std::find(options.outputs.begin(), options.outputs.end(), "-") != options.outputs.end();
+  if (rows_to_screen && options.json)
+    mistakes.emplace_back("output: rows and --json would both go to standard output");
   if (!mistakes.empty()) throw ConfigError(mistakes);
 
+  const std::atomic<bool>& stop = stop_when_asked();
+  std::signal(SIGPIPE, SIG_IGN);  // a pipe that was closed, and a limit on files: as a full disk
+  std::signal(SIGXFSZ, SIG_IGN);
   Result result;
   {
     Progress progress(options.config.system, options.quiet);
-    result = simulation.progress([&](double fraction) { progress(fraction); }).run();
+    simulation.progress([&](double fraction) {
+      progress(fraction);
+      if (stop) throw Unfinished("interrupted");
+    });
+    try {
+      result = simulation.run();
+    } catch (const Unfinished& reason) {
+      throw Unfinished(reason.what() + kept(options));
+    }
   }
-  for (const std::string& path : options.outputs) result.write(path);
   if (!options.report.empty()) run_page(result).write(options.report);
   if (options.json) fmt::print("{}\n", result.record());
-  else if (!options.quiet) fmt::print("{}", result.report());
+  else if (!options.quiet && !rows_to_screen) fmt::print("{}", result.report());
   if (!result.status.ok) {
     fmt::print(stderr, "hamel: failed in step {} at t = {:.6g}: {} (residual {:.2e})\n",
                result.status.step, result.status.time, result.status.reason,

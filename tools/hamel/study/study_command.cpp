@@ -1,5 +1,4 @@
 // hamel study: all cells of a study file, with a journal that an interrupted study goes on from.
-#include <csignal>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -8,19 +7,11 @@
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "study_page.hpp"
 
 namespace hamel::tools {
 namespace {
-
-std::atomic<bool> stop_asked = false;
-static_assert(std::atomic<bool>::is_always_lock_free);  // may be set by a signal handler
-
-// The first Ctrl-C finishes tidily; a second one ends the program at once.
-extern "C" void ask_to_stop(int signal) {
-  stop_asked = true;
-  std::signal(signal, SIG_DFL);
-}
 
 // Without the marks of Markdown, which the page understands.
 std::string plain(const std::string& text) {
@@ -84,10 +75,8 @@ int study(const StudyOptions& options) {
                                  ? fs::path(options.file).stem().string() + "-study"
                                  : options.directory;
   Study study(registry(), read_study(options.file, registry()));
-  study.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_asked);
+  study.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_when_asked());
   announce(study, folder, options.quiet);
-  std::signal(SIGINT, ask_to_stop);
-  std::signal(SIGTERM, ask_to_stop);
   StudyResult result;
   {
     Progress progress("study", options.quiet);

@@ -1,0 +1,26 @@
+// Files that appear whole under their name: written beside it, as name.part, and renamed when they are done.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace hamel {
+
+/// What was written is kept beside the file, as name.part, and is no whole: a full disk, a pipe that was closed.
+struct Unfinished : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Where `path` is written until it is done.
+inline std::string part_of(const std::string& path) { return path + ".part"; }
+
+/// Brings `part` to the disk and gives it its name; Unfinished on failure.
+void finish_file(const std::string& part, const std::string& path);
+
+/// Writes text as a whole; ConfigError on failure, and then nothing is left.
+void write_file(const std::string& path, const std::string& text);
+
+/// "" when a file can be created at path, else what is in the way. Leaves nothing behind.
+std::string unwritable(const std::string& path);
+
+}  // namespace hamel

@@ -1,0 +1,71 @@
+// Rows of numbers in an HDF5 file that is written as they come and can be read at any time, also after the writer was
+// killed (single writer, multiple readers: H5F_START_SWMR_WRITE).
+//
+// Each group of columns is a data set, rows x columns (rows alone where it is one number), with unit, meaning, frame and
+// columns as attributes; texts are attributes of the file. Its attribute `finished` is 0 until it is closed, and the data set
+// `record` (text, in bytes) empty. The data set `resume` holds marks, pieces of bytes that belong to the rows before them.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hamel {
+
+/// Columns of a row that belong together: a number, or the entries of a vector.
+struct ColumnGroup {
+  std::string name, unit, meaning, frame;
+  std::vector<std::string> columns;
+};
+
+class RowFileWriter {
+ public:
+  /// ConfigError where the file cannot be created, or without HDF5 in the build.
+  RowFileWriter(std::string path, const std::vector<ColumnGroup>& groups,
+                const std::map<std::string, std::string>& texts);
+  /// Leaves the file as it is, unfinished.
+  ~RowFileWriter();
+  /// Whole rows, one after the other. Unfinished on failure, here and below.
+  void append(std::span<const double> rows);
+  /// What belongs to the rows so far: readers see it when they see these.
+  void mark(std::string_view bytes);
+  /// Closes the file, with the text of its record.
+  void finish(const std::string& record);
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+class RowFileReader {
+ public:
+  /// ConfigError where it is no such file.
+  explicit RowFileReader(const std::string& path);
+  ~RowFileReader();
+  RowFileReader(RowFileReader&&) noexcept;
+
+  const std::vector<ColumnGroup>& groups() const;
+  /// "" where there is none of that name.
+  std::string text(const std::string& name) const;
+  bool finished() const;
+  std::string record() const;
+  std::size_t rows() const;
+  /// Whole rows, one after the other.
+  void read(std::size_t first, std::size_t count, std::vector<double>& out) const;
+  struct Mark {
+    std::size_t rows;
+    std::string bytes;
+  };
+  /// Those that are whole, in their order.
+  std::vector<Mark> marks() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,72 @@
+// The files of a run, checked before the first step.
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/text_file.hpp>
+#include <hamel/framework/io/version.hpp>
+#include <hamel/framework/run/plan.hpp>
+#include <hamel/framework/run/run_file.hpp>
+
+namespace hamel {
+namespace {
+
+// The lines of one text that the other has not.
+std::string difference(const std::string& there, const std::string& here) {
+  std::string out;
+  const auto list = [&](const char* where, const std::string& some, const std::string& other) {
+    std::istringstream lines(some);
+    for (std::string line; std::getline(lines, line);) {
+      if (("\n" + other).find("\n" + line + "\n") == std::string::npos)
+        out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", where, line);
+    }
+  };
+  list("there", there, here);
+  list("here", here, there);
+  return out;
+}
+
+}  // namespace
+
+// What is recorded, and what an earlier part of the run has recorded.
+void Simulation::add_outputs(Plan& plan) const {
+  for (size_t i = 0; i < records_.size(); ++i) {
+    const std::string& path = records_[i];
+    std::error_code error;
+    if (const std::string mistake = record_mistake(path); !mistake.empty()) plan.add({mistake});
+    else if (std::find(records_.begin(), records_.begin() + static_cast<long>(i), path) !=
+             records_.begin() + static_cast<long>(i))
+      plan.add({fmt::format("output: '{}' is given twice", path)});
+    else if (path.ends_with(".h5") && path != resumed_ &&
+             std::filesystem::exists(part_of(path), error))
+      plan.add(
+          {fmt::format("output: '{0}.part' is an unfinished run; go on with it (hamel run "
+                       "--continue {0}), or remove it",
+                       path)});
+  }
+  if (records_.empty() && resumed_.empty()) return;
+  plan.request = config_.to_toml();
+  if (config_.system.ends_with(".toml")) plan.files += read_text_file("system", config_.system);
+  for (const auto& [name, signal] : config_.inputs) {
+    if (const auto* file = std::get_if<InputFile>(&signal))
+      plan.files += read_text_file(name, file->path);
+  }
+  if (resumed_.empty()) return;
+  const RunFile file(resumed_);
+  const auto refuse = [&](const std::string& why) {
+    plan.add({fmt::format("continue: '{}': {}", resumed_, why)});
+  };
+  if (file.finished()) refuse("this run is finished");
+  else if (file.text("build") != build_name())
+    refuse(fmt::format("it was written by hamel {}, and this is {}: the bits would not be the same",
+                       file.text("build"), build_name()));
+  else if (file.text("config") != plan.request)
+    refuse("it is of a run with other options: " + difference(file.text("config"), plan.request));
+  else if (file.text("files") != plan.files)
+    refuse("the file of its system, or of an input, is not what it was");
+}
+
+}  // namespace hamel

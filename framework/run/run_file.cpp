@@ -1,0 +1,83 @@
+#include <hamel/framework/run/run_file.hpp>
+
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/version.hpp>
+#include <hamel/framework/run/checkpoint.hpp>
+
+namespace hamel {
+namespace {
+
+constexpr const char* kFormat = "hamel run 1";
+
+// Where there is an unfinished run of this file, that one.
+std::string existing(const std::string& path) {
+  std::error_code error;
+  const std::string part = part_of(path);
+  return std::filesystem::exists(part, error) ? part : path;
+}
+
+std::string whole(const std::string& path) {
+  const std::string part = part_of("");
+  return path.ends_with(part) ? path.substr(0, path.size() - part.size()) : path;
+}
+
+}  // namespace
+
+void RunFileSink::begin(const RunHead& head) {
+  out_ = std::make_unique<RowFileWriter>(part_of(path_) + ".new", head.columns,
+                                         std::map<std::string, std::string>{
+                                             {"format", kFormat},
+                                             {"build", build_name()},
+                                             {"config", head.config},
+                                             {"files", head.files},
+                                             {"start", head.record},
+                                         });
+}
+
+void RunFileSink::checkpoint(const std::string& state, const std::string& news) {
+  CheckpointWriter both;
+  std::string first = state, second = news;
+  both(first, second);
+  out_->mark(both.bytes());
+}
+
+void RunFileSink::flush() {
+  if (in_place_) return;
+  in_place_ = true;
+  const std::string part = part_of(path_);
+  if (std::rename((part + ".new").c_str(), part.c_str()) != 0)
+    throw Unfinished(fmt::format("output: cannot write '{}'", path_));
+}
+
+void RunFileSink::finish(const Result& result) {
+  flush();
+  out_->finish(result.record());
+  finish_file(part_of(path_), path_);
+}
+
+RunFile::RunFile(const std::string& path) : path_(whole(path)), rows_(existing(path_)) {
+  if (rows_.text("format") != kFormat)
+    throw ConfigError({fmt::format("'{}': it holds no run (hamel run … -o x.h5)", path_)});
+  for (const RowFileReader::Mark& mark : rows_.marks()) {
+    rows = mark.rows;
+    CheckpointReader both(mark.bytes);
+    both(state, news.emplace_back());
+  }
+  if (finished()) rows = rows_.rows();
+}
+
+Config RunFile::config() const { return Config::from_toml(rows_.text("config"), path_); }
+
+Recorded read_recorded(const std::string& path) {
+  const RunFile file(path);
+  return {file.path(), file.finished(),
+          file.finished() ? Config::continued(file.record(), path) : file.config()};
+}
+
+}  // namespace hamel

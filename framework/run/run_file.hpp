@@ -1,0 +1,56 @@
+// A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its page. Not installed.
+//
+// Attributes: config (TOML), files, start (the record before the first step), build, format. Data sets: the groups of
+// columns; record, the Result's, in the end; resume, checkpoints (run/checkpoint.hpp) until then.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/run/config.hpp>
+#include <hamel/framework/run/sink.hpp>
+
+namespace hamel {
+
+class RunFileSink final : public Sink {
+ public:
+  explicit RunFileSink(std::string path) : path_(std::move(path)) {}
+  void begin(const RunHead& head) override;
+  void rows(std::span<const double> values) override { out_->append(values); }
+  bool resumable() const override { return true; }
+  void checkpoint(const std::string& state, const std::string& news) override;
+  /// The first time its file takes the place of one that was there: a run that goes on has written its rows again by then.
+  void flush() override;
+  void finish(const Result& result) override;
+
+ private:
+  std::string path_;
+  bool in_place_ = false;
+  std::unique_ptr<RowFileWriter> out_;
+};
+
+/// What an unfinished run left.
+class RunFile {
+ public:
+  /// path: with or without .part. ConfigError where there is no run.
+  explicit RunFile(const std::string& path);
+  /// Of the whole file, without .part.
+  const std::string& path() const { return path_; }
+  bool finished() const { return rows_.finished(); }
+  std::string record() const { return rows_.record(); }
+  Config config() const;
+  std::string text(const std::string& name) const { return rows_.text(name); }
+  const RowFileReader& table() const { return rows_; }
+
+  /// The last checkpoint: its state, what came before it piece by piece, and its rows; 0 rows where there is none.
+  std::string state;
+  std::vector<std::string> news;
+  std::size_t rows = 0;
+
+ private:
+  std::string path_;
+  RowFileReader rows_;
+};
+
+}  // namespace hamel

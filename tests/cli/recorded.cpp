@@ -1,0 +1,155 @@
+// Rows are written as they come: every format, what is left of a run that was ended, and the run that goes on from there.
+#include "recorded.hpp"
+
+#include <chrono>
+#include <thread>
+
+namespace {
+
+using namespace hamel::test;
+using testing::AllOf;
+using testing::HasSubstr;
+using Words = std::vector<std::string>;
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST_F(Recorded, EveryFormatHasTheSameRows) {
+  const Words suslov = {"run", "suslov", "--until", "3"};
+  const Outcome o = run(with(suslov, {"-o", "a.csv", "-o", "a.csv.gz", "-o", "-", "-o", "a.json"}));
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(rows("a.csv").size(), 302u);
+  EXPECT_EQ(o.out, contents(file("a.csv"))) << "-o - is the CSV, and nothing else";
+  ASSERT_EQ(std::system(("gzip -dk " + file("a.csv.gz") + " -c > " + file("b.csv")).c_str()), 0);
+  EXPECT_EQ(contents(file("b.csv")), contents(file("a.csv")));
+  // A file to go on from is made of pieces that begin anew: the same to round-off, and the same each time.
+  ASSERT_EQ(run(with(suslov, {"--quiet", "-o", "a.h5", "-o", "c.csv"})).status, 0);
+  EXPECT_EQ(rows("c.csv"), rows("a.csv")) << "one piece";
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.csv", "a.csv.gz", "a.json", "b.csv",
+                                                     "c.csv", "a.h5"));
+}
+
+struct Case {
+  const char* name;
+  Words words;
+};
+
+// Each goes on from the middle of its run after its file became too large, and is then the undisturbed run, to the last bit.
+TEST_F(Recorded, GoesOnBitForBit) {
+  std::ofstream(file("torque.csv")) << "t,value\n0,0\n40,3\n41,-2\n300,1\n";
+  const std::vector<Case> cases = {
+      {"lift", {"suslov", "--until", "200"}},
+      {"balance", {"chaplygin_sleigh", "--scheme", "balance", "--until", "200"}},
+      {"boxed", {"suslov", "--scheme", "boxed", "--until", "200"}},
+      {"rkmk4", {"falling_disk", "--scheme", "rkmk4", "--step", "0.0005", "--until", "8"}},
+      {"energy_preserving", {"suslov", "--scheme", "energy_preserving", "--until", "200"}},
+      {"reversible",
+       {"falling_disk", "--scheme", "reversible", "--step", "0.001", "--until", "16"}},
+      {"chosen",
+       {"suslov_in_potential", "--scheme", "dopri5", "--rtol", "1e-10", "--until", "400"}},
+      {"chosen, reversible", {"suslov_in_potential", "--rtol", "1e-6", "--until", "200"}},
+      {"composed", {"rolling_disk", "--compose", "suzuki4", "--until", "200"}},
+      {"another solver", {"suslov", "--solver", "hybrid", "--until", "200"}},
+      {"halved", {"suslov", "--on-failure", "halve", "--until", "200"}},
+      {"forced", {"roller_racer", "--until", "200"}},
+      {"driven",
+       {"segway", "--input", "right_torque=torque.csv", "--step", "0.002", "--until", "30"}},
+      {"held", {"segway", "--input", "right_torque=torque.csv:hold", "--until", "200"}},
+      {"events", {"chaplygin_sleigh", "--events", "theta=1,cusp", "--until", "200"}},
+      {"rows between",
+       {"chaplygin_sleigh", "--scheme", "dop853", "--rtol", "1e-9", "--output-step", "0.02",
+        "--events", "cusp", "--until", "400"}},
+      {"rows of lift between", {"rolling_disk", "--output-step", "0.013", "--until", "200"}},
+      {"seldom", {"suslov", "--every", "20", "--until", "4000"}},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    const Words words = with({"run"}, with(c.words, {"--quiet"}));
+    const Outcome whole =
+        run(with(words, {"-o", "whole.h5", "-o", "whole.csv", "-o", "whole.json"}));
+    ASSERT_EQ(whole.status, 0) << whole.err;
+    const auto size = std::filesystem::file_size(file("whole.h5"));
+    const Outcome cut = run(with(words, {"-o", "cut.h5"}),
+                            "ulimit -f " + std::to_string(size * 7 / 10 / 512) + " && exec ");
+    ASSERT_EQ(cut.status, 1) << cut.err;
+    EXPECT_THAT(cut.err, AllOf(HasSubstr("File too large"), HasSubstr("--continue cut.h5")));
+    ASSERT_FALSE(exists("cut.h5"));
+    const Outcome on =
+        run({"run", "--continue", "cut.h5", "--quiet", "-o", "cut.csv", "-o", "cut.json"});
+    ASSERT_EQ(on.status, 0) << on.err;
+    EXPECT_FALSE(exists("cut.h5.part"));
+    EXPECT_TRUE(exists("cut.h5"));
+    EXPECT_TRUE(rows("cut.csv") == rows("whole.csv"));
+    EXPECT_TRUE(record("cut.json") == record("whole.json"));
+    for (const char* name : {"cut.h5", "whole.h5"}) std::filesystem::remove(file(name));
+  }
+}
+
+TEST_F(Recorded, CtrlCKeepsWhatThereIs) {
+  const Words words = {"run", "rolling_disk", "--until", "1e5",  "--quiet",
+                       "-o",  "a.h5",         "-o",      "a.csv"};
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const pid_t child = started(words);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    kill(child, signal);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 1);
+    EXPECT_THAT(files(), testing::UnorderedElementsAre("a.h5.part", "a.csv.part"));
+    EXPECT_GT(rows("a.csv.part").size(), 1000u);
+    std::filesystem::remove(file("a.h5.part"));
+  }
+}
+
+TEST_F(Recorded, APipeThatIsClosed) {
+  const Outcome o =
+      run({"run", "rolling_disk", "--until", "1e4", "-o", "-", "-o", "a.h5"}, "", "| head -3");
+  EXPECT_EQ(lines(o.out).size(), 3u);
+  EXPECT_THAT(o.err, HasSubstr("Broken pipe"));
+  EXPECT_THAT(files(), testing::ElementsAre("a.h5.part"));
+}
+
+TEST_F(Recorded, BadInput) {
+  const auto refused = [&](const Words& words, const std::string& why) {
+    const Outcome o = run(with({"run"}, words));
+    EXPECT_EQ(o.status, 2) << o.err;
+    EXPECT_THAT(o.err, HasSubstr(why));
+  };
+  std::filesystem::create_directory(file("folder.h5"));
+  std::ofstream(file("text.h5")) << "no HDF5\n";
+  refused({"suslov", "-o", "a.hdf5"}, "expected");
+  refused({"suslov", "-o", "folder.h5"}, "is a directory");
+  refused({"suslov", "-o", "none/a.h5"}, "cannot write 'none/a.h5'");
+  refused({"suslov", "-o", "a.csv", "-o", "a.csv"}, "'a.csv' is given twice");
+  refused({"suslov", "-o", "-", "--json"}, "standard output");
+  refused({"--continue", "text.h5"}, "no HDF5 file");
+  refused({"--continue", "none.h5"}, "there is no such file");
+  const Words disk = {"run", "rolling_disk", "--until", "1e4", "--quiet", "-o", "a.h5"};
+  ASSERT_EQ(run(disk, "ulimit -f 4000 && exec ").status, 1);
+  const std::string before = contents(file("a.h5.part"));
+  refused({"rolling_disk", "-o", "a.h5"}, "--continue a.h5");
+  refused({"--continue", "a.h5", "--step", "0.02"}, "step = 0.01; here: step = 0.02");
+  refused({"--continue", "a.h5", "--set", "mass=3"}, "other options");
+  refused({"suslov", "--continue", "a.h5"}, "other options");
+  EXPECT_TRUE(contents(file("a.h5.part")) == before) << "nothing was touched";
+  // Of a run that is finished the next one begins where it ended, as with a record.
+  ASSERT_EQ(run({"run", "suslov", "--until", "1", "--quiet", "-o", "b.h5"}).status, 0);
+  const Outcome next = run({"run", "--continue", "b.h5", "--json"});
+  ASSERT_EQ(next.status, 0) << next.err;
+  EXPECT_EQ(nlohmann::json::parse(next.out)["until"], 2.0);
+}
+
+// Rows take no memory: 10^6 of them, of 160 bytes and more, in a program that may have 50 MB.
+TEST_F(Recorded, MemoryDoesNotGrowWithTheRows) {
+  for (const char* name : {"a.h5", "a.csv", "a.json"}) {
+    const Outcome o =
+        run({"run", "suslov", "--no-exact", "--until", "10000", "--quiet", "-o", name},
+            "ulimit -d 50000 && exec ");
+    EXPECT_EQ(o.status, 0) << name << o.err;
+  }
+}
+
+}  // namespace

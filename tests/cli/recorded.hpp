@@ -1,0 +1,51 @@
+// Runs that are recorded as they go: what is left of one that was ended, and what it becomes.
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace hamel::test {
+
+class Recorded : public CommandLine {
+ protected:
+  /// The program at work, its output nowhere.
+  pid_t started(const std::vector<std::string>& arguments) const {
+    const pid_t child = fork();
+    EXPECT_GE(child, 0);
+    if (child != 0) return child;
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDERR_FILENO);
+    dup2(nowhere, STDOUT_FILENO);
+    std::vector<char*> words = {const_cast<char*>("hamel")};
+    for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
+    words.push_back(nullptr);
+    if (chdir(file("").c_str()) == 0) execv(std::getenv("HAMEL_PROGRAM"), words.data());
+    _exit(127);
+  }
+  /// The rows of a CSV, and its first line.
+  std::vector<std::string> rows(const std::string& name) const {
+    return rows_of(contents(file(name)));
+  }
+  static std::vector<std::string> rows_of(const std::string& text) {
+    std::vector<std::string> out = lines(text);
+    std::erase_if(out, [](const std::string& line) { return line.starts_with('#'); });
+    return out;
+  }
+  /// The record of a run without what differs from run to run.
+  nlohmann::json record(const std::string& name) const {
+    nlohmann::json out = nlohmann::json::parse(contents(file(name)));
+    out.erase("timing");
+    return out;
+  }
+  bool exists(const std::string& name) const { return std::filesystem::exists(file(name)); }
+};
+
+}  // namespace hamel::test
