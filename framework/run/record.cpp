@@ -9,7 +9,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/version.hpp>
-#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/run/run_file.hpp>
 
 namespace hamel {
 namespace {
@@ -176,6 +176,60 @@ Config Config::continued(const std::string& record, const std::string& origin) {
                                    origin, error.what())});
   }
   return config;
+}
+
+void read_record(const std::string& record, Result& out) {
+  const Json json = Json::parse(record);
+  const auto number = [](const Json& value) {
+    return value.is_null() ? Measurements::kNone : value.get<double>();
+  };
+  Config::fields([&](const Option& option, auto) {
+    constexpr std::string_view lists[] = {"output_times", "events", "stop_at"};
+    const bool may_be_none =
+        std::string_view(option.name) == "rtol" || std::string_view(option.name) == "atol" ||
+        std::string_view(option.name) == "output_step" ||
+        std::find(std::begin(lists), std::end(lists), option.name) != std::end(lists);
+    if (!may_be_none && json.at(record_key(option)).is_null()) out.unused.push_back(option.name);
+  });
+  out.notes = json.at("notes").get<std::vector<std::string>>();
+  out.status = {json.at("status") == "ok", 0, 0, 0, json.at("reason").get<std::string>()};
+  if (const Json& failure = json.at("failure"); !failure.is_null()) {
+    out.status.step = failure.at("step").get<long>();
+    out.status.time = failure.at("time").get<double>();
+    out.status.residual = number(failure.at("residual"));
+  }
+  out.steps = json.at("steps").get<long>();
+  const Json& last = json.at("final");
+  out.last.step = out.steps;
+  out.last.time = json.at("time").get<double>();
+  out.last.coordinates = last.at("configuration").get<std::vector<double>>();
+  out.last.velocity = last.at("velocity").get<std::vector<double>>();
+  out.last.momentum = last.at("momentum").get<std::vector<double>>();
+  out.last.energy = number(last.at("energy"));
+  const Json& diagnostics = json.at("diagnostics");
+  Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
+    out.*member = number(diagnostics.at(std::string(quantity.name) + suffix));
+  });
+  for (const auto& [name, drift] : diagnostics.at("invariants").items())
+    out.invariants.push_back({name, number(drift.at("start")), number(drift.at("drift_max"))});
+  for (const Json& event : json.at("events")) {
+    out.events.push_back({event.at("name").get<std::string>(), event.at("time").get<double>(),
+                          event.at("configuration").get<std::vector<double>>(),
+                          event.at("velocity").get<std::vector<double>>()});
+  }
+  const Json& stats = json.at("solver_stats");
+  out.stats.iterations = std::lround(stats.at("iterations_mean").get<double>() *
+                                     static_cast<double>(std::max(out.steps, 1L)));
+  out.stats.iterations_max = stats.at("iterations_max").get<int>();
+  out.stats.rejected = stats.at("rejected").get<long>();
+  out.stats.evaluations = stats.at("evaluations").get<long>();
+  out.stats.residual_max = number(stats.at("residual_max"));
+  const Json& fallbacks = json.at("fallbacks");
+  out.stats.fallbacks = fallbacks.at("count").get<long>();
+  for (const Json& f : fallbacks.at("first"))
+    out.stats.first_fallbacks.push_back(
+        {f.at("step").get<long>(), number(f.at("time")), f.at("action").get<std::string>()});
+  out.seconds = json.at("timing").at("seconds").get<double>();
 }
 
 std::string Result::record(int indent) const { return record_of(*this).dump(indent); }

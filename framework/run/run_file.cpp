@@ -1,5 +1,6 @@
 #include <hamel/framework/run/run_file.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -73,6 +74,20 @@ RunFile::RunFile(const std::string& path) : path_(whole(path)), rows_(existing(p
 }
 
 Config RunFile::config() const { return Config::from_toml(rows_.text("config"), path_); }
+
+Trajectory read_rows(const RunFile& file, std::size_t most) {
+  constexpr std::size_t piece = 4096;
+  Trajectory out;
+  MemorySink rows(out, most);
+  rows.begin({file.table().groups(), "", "", ""});
+  std::vector<double> values;
+  for (std::size_t at = 0; at < file.rows; at += piece) {
+    file.table().read(at, std::min(piece, file.rows - at), values);
+    rows.rows(values);
+  }
+  rows.finish(Result());
+  return out;
+}
 
 Recorded read_recorded(const std::string& path) {
   const RunFile file(path);

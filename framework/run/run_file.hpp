@@ -53,4 +53,10 @@ class RunFile {
   RowFileReader rows_;
 };
 
+/// The rows of a file, thinned to at most so many.
+Trajectory read_rows(const RunFile& file, std::size_t most);
+
+/// What a record says of a run, into a Result that has its system and config.
+void read_record(const std::string& record, Result& out);
+
 }  // namespace hamel

@@ -3,8 +3,8 @@
 //   auto result = hamel::simulate("suslov").set("inertia", {1, 10, 100}).start({.momentum = {1, 1, 0}})
 //                     .scheme("lift").s(0.5).retraction("cayley").step(0.01).until(1800).run();
 //
-// run() and build() check everything first and throw one ConfigError with all mistakes; after that
-// nothing throws: a numerical failure is result.status, and the good steps are kept.
+// run() and build() check everything first and throw one ConfigError with all mistakes; after that a numerical failure
+// is result.status, and the good steps are kept. What a full disk ends throws Unfinished, and its file keeps the rows.
 #pragma once
 
 #include <functional>

@@ -21,9 +21,9 @@ class RecordedKills : public Recorded {
     EXPECT_EQ(waitpid(child, &status, 0), child);
     return WIFSIGNALED(status);
   }
-  const std::vector<std::string> run_ = {"run",      "segway",    "--input", "right_torque=0.1",
-                                         "--step",   "0.0005",    "--until", "150",
-                                         "--events", "theta=0.5", "--quiet"};
+  const std::vector<std::string> run_ = {"run",      "segway",      "--input", "right_torque=0.1",
+                                         "--step",   "0.0005",      "--until", "150",
+                                         "--events", "1_theta=0.5", "--quiet"};
   std::vector<std::string> to(const std::string& name) const {
     std::vector<std::string> out = run_;
     out.insert(out.end(), {"-o", name});

@@ -12,7 +12,7 @@ set(HAMEL_REPORT_PAGE AUTO CACHE STRING
     "The report page needs node and npm: ON fails without them, AUTO builds the program without it")
 set_property(CACHE HAMEL_REPORT_PAGE PROPERTY STRINGS AUTO ON OFF)
 set(HAMEL_HDF5 AUTO CACHE STRING
-    "Studies also write HDF5 (libhdf5-dev): ON fails without it, AUTO builds without it")
+    "Runs and studies also write HDF5 (libhdf5-dev): ON fails without it, AUTO builds without it")
 set_property(CACHE HAMEL_HDF5 PROPERTY STRINGS AUTO ON OFF)
 if(HAMEL_HDF5 STREQUAL "OFF")
   unset(HAMEL_HDF5_LIBRARY CACHE)
@@ -24,7 +24,7 @@ else()  # CMake's FindHDF5 needs a C compiler, which this project does not
       message(FATAL_ERROR "HAMEL_HDF5 is ON, but HDF5 was not found: install libhdf5-dev")
     endif()
     unset(HAMEL_HDF5_LIBRARY CACHE)
-    message(STATUS "hamel: studies write no cells.h5 (libhdf5-dev is missing)")
+    message(STATUS "hamel: runs and studies write no HDF5 (libhdf5-dev is missing)")
   endif()
 endif()
 

@@ -35,6 +35,12 @@ struct RunOptions {
 };
 int run(const RunOptions& options);
 
+struct ReportOptions {
+  std::vector<std::string> files;
+  std::string output = "report.html";
+};
+int report(const ReportOptions& options);
+
 struct ReproduceOptions {
   std::string directory = "reproduce-output";
   bool quiet = false;

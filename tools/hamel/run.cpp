@@ -18,25 +18,6 @@
 namespace hamel::tools {
 namespace {
 
-constexpr size_t kRowsOfPage = 100'000;
-
-std::vector<std::string> page_mistakes(const RunOptions& options) {
-  std::vector<std::string> mistakes;
-  if (options.report.empty()) return mistakes;
-  if (const std::string extension = std::filesystem::path(options.report).extension();
-      extension != ".html")
-    mistakes.push_back(unknown_name("output format", extension, {".html"}) + " in '" +
-                       options.report + "'");
-  else if (const std::string reason = unwritable(options.report); !reason.empty())
-    mistakes.push_back(reason);
-  if (report_page().empty()) {
-    mistakes.push_back(
-        "--report: this program was built without the page (node and npm were "
-        "missing at build time); run tools/setup and build again");
-  }
-  return mistakes;
-}
-
 // Where the rows of an unfinished run are.
 std::string kept(const RunOptions& options) {
   std::string out;
@@ -85,8 +66,10 @@ int run(const RunOptions& options) {
   for (const std::string& path : options.outputs) simulation.record_to(path);
   simulation.keep_rows(options.report.empty() ? 1 : kRowsOfPage);
   std::vector<std::string> mistakes = simulation.mistakes();
-  const auto more = page_mistakes(options);
-  mistakes.insert(mistakes.end(), more.begin(), more.end());
+  if (!options.report.empty()) {
+    const auto more = page_mistakes(options.report);
+    mistakes.insert(mistakes.end(), more.begin(), more.end());
+  }
   const bool rows_to_screen =
       std::find(options.outputs.begin(), options.outputs.end(), "-") != options.outputs.end();
   if (rows_to_screen && options.json)
@@ -109,7 +92,7 @@ int run(const RunOptions& options) {
       throw Unfinished(reason.what() + kept(options));
     }
   }
-  if (!options.report.empty()) run_page(result).write(options.report);
+  if (!options.report.empty()) run_page(result, result.record()).write(options.report);
   if (options.json) fmt::print("{}\n", result.record());
   else if (!options.quiet && !rows_to_screen) fmt::print("{}", result.report());
   if (!result.status.ok) {

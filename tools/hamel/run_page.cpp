@@ -1,9 +1,12 @@
 #include "run_page.hpp"
 
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <hamel/framework/io/errors.hpp>
 
 #include "run_figures.hpp"
 
@@ -71,10 +74,22 @@ void add_list(Page& page, const Json& record, const char* member, const std::str
 
 }  // namespace
 
-Page run_page(const Result& r) {
+std::vector<std::string> page_mistakes(const std::string& path) {
+  std::vector<std::string> mistakes;
+  if (const std::string extension = std::filesystem::path(path).extension(); extension != ".html")
+    mistakes.push_back(unknown_name("output format", extension, {".html"}) + " in '" + path + "'");
+  else if (const std::string reason = unwritable(path); !reason.empty()) mistakes.push_back(reason);
+  if (report_page().empty()) {
+    mistakes.push_back(
+        "this program was built without the page (node and npm were "
+        "missing at build time); run tools/setup and build again");
+  }
+  return mistakes;
+}
+
+Page run_page(const Result& r, const std::string& record) {
   Page page(fmt::format("{}: {} with {}", r.system.name, r.config.scheme, r.config.retraction),
             fmt::format("{}: {}, {}", r.system.group.name, r.method(), r.steps_in_words()));
-  const std::string record = r.record();
   const Json values = Json::parse(record);
   std::vector<Mark> events;
   for (const Json& event : values.value("events", Json::array()))
@@ -83,6 +98,8 @@ Page run_page(const Result& r) {
   page.section("Result");
   page.verdict(r.status.ok ? "ok" : "failed", headline(r));
   if (!r.notes.empty()) page.text(r.notes);
+  if (const size_t stride = r.trajectory.stride(); stride > 1)
+    page.text({fmt::format("The figures show every {}th recorded row.", stride)});
   add_motion(page, r);
   add_list(page, values, "events", "Events");
   add_list(page, values, "inputs", "Inputs");

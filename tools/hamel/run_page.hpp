@@ -10,8 +10,14 @@
 
 namespace hamel::tools {
 
+/// So many rows of a run are kept for its page at most.
+constexpr size_t kRowsOfPage = 100'000;
+
 /// Verdict, motion, physics, accuracy, and the record; events and inputs where the record has them.
-Page run_page(const Result& result);
+Page run_page(const Result& result, const std::string& record);
+
+/// What is wrong with the file of a page, before anything runs.
+std::vector<std::string> page_mistakes(const std::string& path);
 
 /// One column of a run against time, thinned; as magnitude, for a logarithmic axis, the largest over windows.
 Series curve(const Result& result, const std::string& name, const std::string& column,

@@ -1,0 +1,66 @@
+"""A recorded run as h5py reads it: names, shapes, attributes, the same numbers as the CSV, finished or not."""
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy as np
+
+program = sys.argv[1]
+
+
+def hamel(*arguments):
+    subprocess.run([program, "run", *arguments, "--quiet"], check=True)
+
+
+def equal(actual, expected, what):
+    if actual != expected:
+        sys.exit(f"{what}: {actual!r} is not {expected!r}")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    hamel("rolling_disk", "--until", "50", "-o", "a.h5", "-o", "a.csv", "-o", "a.json")
+    with open("a.csv") as text:
+        table = list(csv.reader(line for line in text if not line.startswith("#")))
+    columns = {name: np.array([float(row[j]) for row in table[1:]]) for j, name in enumerate(table[0])}
+    with h5py.File("a.h5") as run:
+        equal(run.attrs["finished"], 1, "finished")
+        record = json.loads(bytes(run["record"][:]))
+        with open("a.json") as text:
+            equal(record, json.load(text), "record")
+        equal(record["system"], "rolling_disk", "system")
+        equal(json.loads(run.attrs["start"])["reason"], "unfinished", "the record at the start")
+        seen = []
+        for name, values in run.items():
+            if name in ("record", "resume"):
+                continue
+            names = values.attrs["columns"].split(",")
+            seen += names
+            for j, column in enumerate(names):
+                part = values[:] if len(names) == 1 else values[:, j]
+                if not np.array_equal(part, columns[column], equal_nan=True):
+                    sys.exit(f"{column} is not that of the CSV")
+        equal(sorted(seen), sorted(columns), "columns")
+        equal(run["configuration"].shape, (5001, 4), "shape")
+        equal(run["t"].attrs["unit"], "s", "unit of t")
+        equal(run["xi"].attrs["unit"], "rad/s,m/s,m/s,rad/s", "units of xi")
+        equal(run["mu"].attrs["unit"], "N m s,N s,N s,N m s", "units of mu")
+        equal("left trivialisation" in run["xi"].attrs["frame"], True, "frame of xi")
+
+    # While it runs, and when it was killed.
+    at_work = subprocess.Popen([program, "run", "rolling_disk", "--until", "1e6", "-o", "b.h5", "--quiet"])
+    while not os.path.exists("b.h5.part") or os.path.getsize("b.h5.part") < 5_000_000:
+        time.sleep(0.01)
+    for moment in ("while it runs", "when it was killed"):
+        with h5py.File("b.h5.part", swmr=True) as run:
+            equal(run.attrs["finished"], 0, "finished " + moment)
+            equal(len(run["t"]) >= 4096, True, "rows " + moment)
+            equal(np.all(np.diff(run["t"][:4096]) > 0), True, "times " + moment)
+        at_work.send_signal(signal.SIGKILL)
+        at_work.wait()

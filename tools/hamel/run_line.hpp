@@ -1,0 +1,58 @@
+// The command line of `hamel run`: its options, and the run that they ask for.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+
+namespace hamel::tools {
+
+/// name=value[,value...], each as --set has it, into parameters. Throws ConfigError with all that do not fit.
+void read_sets(const std::vector<std::string>& sets, Parameters& parameters);
+
+/// The options of `hamel run` as given; the file first, then what the command line says.
+struct RunLine {
+  std::string system, config_file, record_file;
+  std::vector<std::string> sets, inputs;
+  std::vector<std::function<void(Config&)>> overrides;  // of what is given, in its order
+  RunOptions options;
+
+  // The flag of an option, and what it does to a run when it is given.
+  template <class Value>
+  void option(CLI::App& app, const Option& option, const Value& usual,
+              const std::function<Value&(Config&)>& member) {
+    std::string flag = fmt::format("--{}", option.name), help = option.meaning;
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    if (const std::string text = text_of(usual); !text.empty())
+      help += fmt::format(" [{}{}]", text, std::string(option.unit) == "s" ? " s" : "");
+    const auto give = [this, member](const Value& value) {
+      overrides.emplace_back([member, value](Config& config) { member(config) = value; });
+    };
+    if constexpr (std::is_same_v<Value, bool>) {
+      app.add_flag_callback(
+          flag, [give] { give(true); }, option.meaning);
+    } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+      app.add_option_function<Value>(flag, give, help);
+    } else {
+      const auto read = [this, flag, member](const std::string& text) {
+        overrides.emplace_back([=](Config& config) { read_text(flag, text, member(config)); });
+      };
+      app.add_option_function<std::string>(flag, read, help)->type_name("A,B,...");
+    }
+  }
+
+  void define(CLI::App& app);
+  RunOptions resolve(const CLI::App& app);
+
+ private:
+  // After the run of a record; or, of a file whose run is unfinished, with that run.
+  void go_on(Config& config);
+};
+
+}  // namespace hamel::tools
