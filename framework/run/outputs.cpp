@@ -1,6 +1,7 @@
 // The files of a run, checked before the first step.
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -30,6 +31,18 @@ std::string difference(const std::string& there, const std::string& here) {
 }
 
 }  // namespace
+
+double numbers_that_fit(const std::vector<std::string>& files) {
+  double out = std::numeric_limits<double>::infinity();
+  for (const std::string& file : files) {
+    if (!file.ends_with(".h5") && !file.ends_with(".csv")) continue;
+    std::error_code error;
+    const auto folder = std::filesystem::absolute(file, error).parent_path();
+    const std::filesystem::space_info space = std::filesystem::space(folder, error);
+    if (!error) out = std::min(out, static_cast<double>(space.available) / sizeof(double));
+  }
+  return out;
+}
 
 // What is recorded, and what an earlier part of the run has recorded.
 void Simulation::add_outputs(Plan& plan) const {

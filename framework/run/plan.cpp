@@ -169,17 +169,17 @@ Simulation::Plan Simulation::plan() const {
                                 : std::abs((config_.until - config_.from) / config_.step) /
                                       static_cast<double>(config_.every);
   const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
-  const bool in_memory = records_.empty();
-  if (in_memory && !rows_kept_ && rows < 9e15 && rows * width > kMaxNumbers) {
+  const bool in_memory = records_.empty() && !rows_kept_;
+  const double most = in_memory ? kMaxNumbers : numbers_that_fit(records_);
+  const char* where = in_memory ? "memory holds" : "there is room for on the disk";
+  if (rows < 9e15 && rows * width > most) {
     plan.add(
         {config_.output_step
-             ? fmt::format("output_step: {:.3g} rows would be recorded, more than memory holds",
-                           rows)
-             : fmt::format(
-                   "every: {:.3g} rows would be recorded, more than memory holds; record "
-                   "every {:.0f} steps or more",
-                   rows,
-                   std::ceil(rows * static_cast<double>(config_.every) * width / kMaxNumbers))});
+             ? fmt::format("output_step: {:.3g} rows would be recorded, more than {}", rows, where)
+             : fmt::format("every: {:.3g} rows would be recorded, more than {}; record every "
+                           "{:.0f} steps or more",
+                           rows, where,
+                           std::ceil(rows * static_cast<double>(config_.every) * width / most))});
   }
   if (scheme != nullptr && !scheme->steps_admissible && plan.mistakes.empty() &&
       !is_definite(plan.inertia)) {

@@ -13,6 +13,9 @@ namespace hamel {
 /// ones, which solve no equation. Half an explicit step may succeed where the whole left the domain of tau.
 std::vector<std::string> unused_options(const SchemeInfo& scheme, const Config& config);
 
+/// What the disks of these files have room for; infinite for a pipe, and for files that are compressed or hold no rows.
+double numbers_that_fit(const std::vector<std::string>& files);
+
 // Everything that a run needs, or all its mistakes.
 struct Simulation::Plan {
   std::vector<std::string> mistakes, notes, unused;
