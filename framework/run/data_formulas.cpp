@@ -30,9 +30,19 @@ DataFormulas DataFormulasReader::read(const Names& inputs) {
 // One entry of a matrix that has the size already.
 void DataFormulasReader::entry(const Node& node, const std::string& key, const Names& variables,
                                FormulaMatrix& out, Eigen::Index i, Eigen::Index j) {
+  if (node.is_number()) {
+    out.constant(i, j) = formulas_.number(node, key);
+    return;
+  }
   const std::string where = fmt::format("{}: {}", read_.place(node), key);
   auto formula = formulas_.expression(node, key, variables);
   if (!formula) return;
+  const std::string text = node.value<std::string>().value_or("");
+  if (node.is_string())
+    texts_.emplace_back(out.constant.size() == 1   ? key
+                        : out.constant.cols() == 1 ? fmt::format("{}[{}]", key, i + 1)
+                                                   : fmt::format("{}[{}, {}]", key, i + 1, j + 1),
+                        text);
   if (formula->constant()) {
     out.constant(i, j) = (*formula)({});
     if (!std::isfinite(out.constant(i, j)))
@@ -40,12 +50,7 @@ void DataFormulasReader::entry(const Node& node, const std::string& key, const N
     return;
   }
   out.constant(i, j) = 0;
-  const std::string text = node.value<std::string>().value_or("");
   out.entries.push_back({i, j, std::move(*formula), text, where});
-  texts_.emplace_back(out.constant.size() == 1   ? key
-                      : out.constant.cols() == 1 ? fmt::format("{}[{}]", key, i + 1)
-                                                 : fmt::format("{}[{}, {}]", key, i + 1, j + 1),
-                      text);
 }
 // A column of `size` entries, any number where it is negative; zeros where the file has none.
 FormulaMatrix DataFormulasReader::vector(const std::string& key, Eigen::Index size,

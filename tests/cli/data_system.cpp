@@ -199,7 +199,10 @@ TEST_F(DataSystem, IsDescribed) {
   const Outcome o = run({"describe", write(kSlide), "--json"});
   ASSERT_EQ(o.status, 0) << o.err;
   const json all = json::parse(o.out);
-  EXPECT_EQ(all["formulas"], (json{{"potential", "-m*g*x"}, {"force[1]", "push"}}));
+  EXPECT_EQ(all["formulas"], (json{{"inertia[1, 1]", "m"},
+                                   {"inertia[2, 2]", "m"},
+                                   {"potential", "-m*g*x"},
+                                   {"force[1]", "push"}}));
   EXPECT_EQ(all["columns"], (json{"x", "y"}));
   EXPECT_EQ(all["rates"], (json{"x'", "y'"}));
   EXPECT_EQ(all["inputs"][0]["range"], "in [0, 4]");
