@@ -15,6 +15,8 @@
 
 namespace hamel {
 
+constexpr int kMostFormulas = 20000;  // of a file; a second to read
+
 class TomlFormulas {
  public:
   using Node = toml::node;
@@ -56,6 +58,9 @@ class TomlFormulas {
     if (node.is_number()) text = fmt::format("{}", *node.value<double>());
     else if (const auto formula = node.value<std::string>()) text = *formula;
     else return toml_.wrong(node, key, "a number or a formula"), std::nullopt;
+    if (++count_ > kMostFormulas)
+      throw ConfigError(
+          {fmt::format("{}: more than {} formulas", toml_.place(node), kMostFormulas)});
     try {
       return Expression(text, variables, constants_);
     } catch (const ExpressionError& error) {
@@ -70,6 +75,7 @@ class TomlFormulas {
  private:
   TomlReader& toml_;
   Constants constants_;
+  int count_ = 0;
 };
 
 }  // namespace hamel

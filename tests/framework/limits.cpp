@@ -131,6 +131,15 @@ TEST(Limits, OnlyRegularFilesAreRead) {
   }
 }
 
+/// Each takes 40 us to read.
+TEST(Limits, NumberOfFormulas) {
+  const std::string row = "[" + repeated("'t',", 150) + "],";
+  const std::string text = "group = 'so2^150'\ninertia = [" + repeated("1,", 150) +
+                           "]\nconstraints = [" + repeated(row.c_str(), 140) + "]";
+  EXPECT_THAT([&] { data_system(registry(), text, "file"); },
+              testing::ThrowsMessage<ConfigError>(HasSubstr(": more than 20000 formulas")));
+}
+
 /// Brackets take n^4 operations: so2^200 did not come back.
 TEST(Limits, DimensionOfAnAnalysis) {
   Registry all = registry();
