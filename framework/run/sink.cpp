@@ -100,7 +100,7 @@ class CsvSink final : public Sink {
   void rows(std::span<const double> values) override {
     std::size_t column = 0;
     for (const double value : values) {
-      fmt::format_to(std::back_inserter(text_), "{}", value);
+      fmt::format_to(std::back_inserter(text_), "{:.17g}", value);
       text_.push_back(++column == width_ ? '\n' : ',');
       if (column == width_) column = 0;
       if (text_.size() > 1 << 16) put();
