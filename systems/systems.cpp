@@ -10,6 +10,7 @@
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/simulate.hpp>
+#include <hamel/systems/straight_starts.hpp>
 
 namespace hamel {
 namespace {
@@ -75,6 +76,7 @@ Registry make_registry() {
   add_driven_vehicles(registry);
   add_system<NTrailer>(registry);
   add_mechanisms();
+  add_starts_at_speed();
   return registry;
 }
 

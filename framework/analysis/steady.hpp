@@ -43,7 +43,7 @@ struct SteadyMotion {
 /// zero to 1e-7. Throws ConfigError when the system depends on time.
 SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, const Start& guess,
                            int family = -1);
-/// The same near the start of a run: `start({.velocity = {5}})` is a speed of 5 m/s for systems that know one.
+/// The same near the start of a run: also `speed(5)`, of systems that know such a motion.
 SteadyMotion steady_motion(const Registry& registry, const Simulation& run, int family = -1);
 
 /// Steady motions along a parameter.

@@ -1,4 +1,4 @@
-// What a Mechanics may say of its motions beside the equations: names, starts from a few numbers, notes.
+// What a Mechanics may say of its motions beside the equations: names, starts from a few numbers, notes, arrows.
 #pragma once
 
 #include <functional>
@@ -11,6 +11,15 @@
 
 namespace hamel {
 
+/// A force of the multipliers of some rows, drawn as an arrow in the world.
+struct DrawnForce {
+  std::string name;
+  /// Where it acts [m], and the force [N].
+  std::function<std::pair<Vec<3>, Vec<3>>(std::span<const double> coordinates,
+                                          std::span<const double> reactions)>
+      value;
+};
+
 struct MotionWords {
   std::vector<std::string> rates, reactions;  // of the velocities and of the multipliers
   /// A start from a few numbers, at least one and at most as many as start_parameters names.
@@ -19,6 +28,7 @@ struct MotionWords {
   std::function<Start(std::span<const double>)> start_from;
   std::vector<std::string> notes;                             // what the user should know
   std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
+  std::vector<DrawnForce> forces;
 };
 
 class Worded {

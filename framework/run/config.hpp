@@ -30,6 +30,7 @@ struct Config {
   Parameters parameters;
   InputSignals inputs;
   Start start;
+  std::optional<double> speed;  // in place of a start
   std::string scheme = "lift";
   std::string retraction = "cayley";
   double s = 0.5;
@@ -84,6 +85,10 @@ struct Config {
     f(Option{"atol", "1", "absolute tolerance beside it; that of rtol where not given", true,
              tolerance, "a number in (0, 1)"},
       &Config::atol);
+    f(Option{"speed", "m/s",
+             "start, straight ahead at this speed, for systems that know such a motion", false,
+             [](double v) { return std::isfinite(v); }, "a finite number"},
+      &Config::speed);
     f(Option{"from", "s", "start time: that of a forced run which goes on", false,
              [](double x) { return std::isfinite(x); }, "a finite number"},
       &Config::from);

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <boost/math/tools/toms748_solve.hpp>
 
+#include <hamel/framework/mechanics/motion_words.hpp>
+
 namespace hamel {
 namespace {
 
@@ -69,11 +71,14 @@ bool plane(const SystemModel& system, const std::string& text, Event& out,
 std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Geometry> geometry) {
   std::vector<Event> out = system.events;
   for (const int row : system.contacts) {
-    Event event{
-        system.contacts.size() == 1 ? "contact_lost" : fmt::format("contact_lost{}", row + 1),
-        "the normal reaction ceases to push",
-        -1,
-        {}};
+    std::string name = "contact_lost";
+    if (!words_of(system).reactions.empty()) {  // front.reaction3 -> front.contact_lost
+      const std::string& reaction = words_of(system).reactions[static_cast<size_t>(row)];
+      name = reaction.substr(0, reaction.rfind('.') + 1) + name;
+    } else if (system.contacts.size() > 1) {
+      name += std::to_string(row + 1);
+    }
+    Event event{name, "the normal reaction ceases to push", -1, {}};
     if (geometry != nullptr) event.value = NormalReaction(geometry, system.mechanics, row);
     out.push_back(std::move(event));
   }

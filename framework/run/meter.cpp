@@ -10,6 +10,18 @@
 namespace hamel {
 namespace {
 
+// The rows of one part together, those of the part that is named first at first: rear.reaction1 is one of rear.
+std::vector<size_t> by_parts(const std::vector<std::string>& reactions) {
+  const auto part = [&](size_t row) { return reactions[row].substr(0, reactions[row].rfind('.')); };
+  std::vector<size_t> out;
+  for (size_t i = 0; i < reactions.size(); ++i) {
+    size_t at = out.size();
+    while (at > 0 && part(out[at - 1]) != part(i)) --at;
+    out.insert(out.begin() + static_cast<long>(at > 0 ? at : out.size()), i);
+  }
+  return out;
+}
+
 ColumnGroup numbered(const char* name, std::size_t count) {
   ColumnGroup out{name, "", "", "", {}};
   for (std::size_t i = 1; i <= count; ++i) out.columns.push_back(name + std::to_string(i));
@@ -51,6 +63,7 @@ Meter::Meter(const SystemModel& system, const Start& start,
       start_(start),
       balance_(geometry, acting, std::move(inputs)),
       pulls_(system.contacts.size()),
+      reactions_(by_parts(words_of(system).reactions)),
       geometry_(std::move(geometry)) {
   if (balance_.active()) {
     notes_.push_back(
@@ -64,6 +77,9 @@ Meter::Meter(const SystemModel& system, const Start& start,
     all_.reaction_work = 0;
     g_.resize(geometry_->size());
     lambda_.resize(mechanics->rows());
+    reactions_ = by_parts(words_of(system).reactions);
+    for (size_t i = reactions_.size(); i < static_cast<size_t>(lambda_.size()); ++i)
+      reactions_.push_back(i);
   }
   if (system.exact)
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
@@ -196,10 +212,12 @@ void Meter::react(const Snapshot& state) {
                         ? fmt::format("lambda{}", row + 1)
                         : words_of(system_).reactions[static_cast<size_t>(row)]));
   }
-  const std::span<const double> lambda(lambda_.data(), static_cast<size_t>(lambda_.size()));
+  std::vector<double> lambda;
+  for (const size_t row : reactions_) lambda.push_back(lambda_[static_cast<Eigen::Index>(row)]);
   const auto describe = [&] {
     ColumnGroup out = numbered("lambda", lambda.size());
-    if (const auto& names = words_of(system_).reactions; !names.empty()) out.columns = names;
+    const std::vector<std::string>& names = words_of(system_).reactions;
+    for (size_t i = 0; i < names.size(); ++i) out.columns[i] = names[reactions_[i]];
     out.meaning = "multipliers of the rows A xi = b";
     return out;
   };

@@ -76,7 +76,8 @@ class Meter {
   ExactFlow exact_;
   bool exact_lost_ = false;  // said already
   std::vector<std::string> notes_;
-  std::vector<char> pulls_;  // of the contacts, said already
+  std::vector<char> pulls_;        // of the contacts, said already
+  std::vector<size_t> reactions_;  // rows, in the order of their columns
   // The multipliers lambda of A xi = b, from the continuous equations at each state, and their power
   // lambda . A v in the last step before it, A v recovered from the configurations (Snapshot::row_rates) and
   // lambda interpolated to the same time, Snapshot::lag before the state: round-off where b = 0, the power that a

@@ -118,6 +118,8 @@ class Simulation {
   }
   /// Where to start. Velocity and momentum are projected onto d and d*, and a note says what was lost.
   Simulation& start(Start start) { return with(&Config::start, std::move(start)); }
+  /// The start in its place: straight ahead at v m/s, upright, of systems that know such a motion.
+  Simulation& speed(double v) { return with(&Config::speed, v); }
   /// Any option (Config::fields); below those that have a name of their own.
   template <class Value>
   Simulation& with(Value Config::*option, std::type_identity_t<Value> value) {

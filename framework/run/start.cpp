@@ -1,6 +1,7 @@
 // Where a run starts: the user's state or the system's own, onto the constraints, and the events there.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
@@ -8,6 +9,7 @@
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/run/at_speed.hpp>
 #include <hamel/framework/run/plan.hpp>
 #include <hamel/framework/schemes/erased.hpp>
 
@@ -20,14 +22,23 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
-// Fewer numbers than velocities stand for the start that the system makes of them. Returns the mistakes.
-std::vector<std::string> fill_from_few(const SystemModel& system, Start& start) {
-  const size_t given = start.velocity.size();
+// The speed, or fewer numbers than velocities, stand for the start that the system makes of them. Returns the mistakes.
+std::vector<std::string> fill_from_few(const SystemModel& system, Config& config) {
+  Start& start = config.start;
   const MotionWords& words = words_of(system);
-  if (given == 0 || given >= static_cast<size_t>(system.group.dim)) return {};
-  if (given > words.start_parameters.size() || !start.configuration.empty()) return {};
+  const size_t given = start.velocity.size();
   try {
-    start = words.start_from(start.velocity);
+    if (const auto speed = std::exchange(config.speed, {})) {
+      if (!start.configuration.empty() || given > 0 || !start.momentum.empty())
+        return {"speed: give it alone, or configuration with velocity or momentum"};
+      const auto straight = start_at_speed(system, *speed);
+      if (!straight)
+        return {fmt::format("speed: {} knows no motion by its speed; give velocity", system.name)};
+      start = *straight;
+    } else if (given > 0 && given < static_cast<size_t>(system.group.dim) &&
+               given <= words.start_parameters.size() && start.configuration.empty()) {
+      start = words.start_from(start.velocity);
+    }
   } catch (const ConfigError& error) {
     return error.mistakes();
   }
@@ -62,7 +73,7 @@ Eigen::VectorXd Simulation::Plan::admissible(const EventState& state) const {
 // The user's start, else the system's own, else rest at the identity.
 void Simulation::Plan::fill_start() {
   Start& start = config.start;
-  add(fill_from_few(system, start));
+  add(fill_from_few(system, config));
   if (!start.velocity.empty() && !start.momentum.empty()) {
     add({"start: give velocity or momentum, not both"});
   }

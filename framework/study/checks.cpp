@@ -103,7 +103,7 @@ class Checks {
     if (given.name.empty()) return add(prefix, "system: give each its name");
     for (const std::string& mistake : mistakes_of(given, sound(given))) {
       std::string key = prefix + ".name";
-      for (const char* start : {"configuration", "velocity", "momentum", "start"})
+      for (const char* start : {"configuration", "velocity", "momentum", "speed", "start"})
         if (mistake.starts_with(std::string(start) + ":")) key = prefix + "." + start;
       for (const auto& [parameter, value] : given.parameters)
         if (mistake.find("'" + parameter + "'") != std::string::npos ||

@@ -115,8 +115,9 @@ Rows Assembly::rows() {
       wrong(part, "loop", fmt::format("'{}' and '{}' are one body", part.a, part.b));
   }
   for (const auto& part : parts_.rates_) {
+    const auto rate = part.rate ? part.rate : [](double) { return 0.0; };
     if (const int link = joint_of(part, "prescribed"); link >= 0)
-      out.prescribed.push_back({part.name, link, part.rate});  // the number of the velocity follows
+      out.prescribed.push_back({part.name, link, rate});  // the number of the velocity follows
   }
   return out;
 }
@@ -148,7 +149,7 @@ Forces Assembly::forces() {
     out.springs.push_back(spring);
   }
   for (const auto& part : parts_.motors_) {
-    if (const int link = joint_of(part, "motor"); link >= 0)
+    if (const int link = joint_of(part, "motor"); link >= 0 && part.effort)
       out.motors.push_back({part.name, link, part.effort});
   }
   for (const auto& part : parts_.forces_) {
@@ -156,6 +157,16 @@ Forces Assembly::forces() {
     for (int i = 0; i < 3; ++i) force.along[i] = part.along[i];
     out.forces.push_back(std::move(force));
   }
+  return out;
+}
+
+// In the order of state_inputs().
+std::vector<Multibody::Driver> Assembly::drivers(const Tree& tree) {
+  std::vector<Multibody::Driver> out;
+  for (const auto& part : parts_.motors_)
+    if (!part.effort) out.push_back({tree.first(joint_of(part, "motor")), false});
+  for (const auto& part : parts_.rates_)
+    if (!part.rate) out.push_back({tree.first(joint_of(part, "prescribed")), true});
   return out;
 }
 
@@ -188,6 +199,7 @@ void Assembly::make_tree() {
   if (parts_.bodies_.empty()) mistakes_.push_back(fmt::format("{}: no body", parts_.name_));
   link_bodies();
   name_columns();
+  state_inputs();
 }
 
 std::pair<SystemModel, MotionWords> Assembly::outline() {
@@ -260,10 +272,18 @@ SystemModel Assembly::model() {
     for (size_t i = 0; i < given.size(); ++i) values[asks[i]] = given[i];
     return starts->solve(values);
   };
+  draw(system);
+  if (!model_.inputs.empty()) {
+    model_.drive = [system, words = words_,
+                    drivers = drivers(tree)](const std::shared_ptr<const Inputs>& inputs) {
+      Multibody driven = *system;
+      driven.drive(drivers, inputs);
+      return std::make_shared<WithWords<Multibody>>(driven, words);
+    };
+  }
   model_.mechanics = simplest(*system, std::move(words_));
   if (!system->has_force() && !system->has_drift())
     model_.invariants.push_back({"energy", energy_of(system)});
-  draw(system);
   return std::move(model_);
 }
 

@@ -37,6 +37,7 @@ class Assembly {
   void add_link(int parent, mechanisms::JointKind kind, const Mechanism::JointPart& joint,
                 const Point& axis, const std::string& suffix);
   void name_columns();
+  void state_inputs();
   void check_masses(const mechanisms::Tree& tree);
 
   // What acts on it.
@@ -50,6 +51,7 @@ class Assembly {
   mechanisms::Forces forces();
   void check_contacts(const mechanisms::Multibody& system);
   std::vector<std::string> body_names() const;
+  std::vector<mechanisms::Multibody::Driver> drivers(const mechanisms::Tree& tree);
 
   void draw(const std::shared_ptr<mechanisms::Multibody>& system);
 

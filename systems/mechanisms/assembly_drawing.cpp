@@ -15,9 +15,6 @@ Point point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 void Assembly::draw(const std::shared_ptr<Multibody>& system) {
   Drawing& drawing = model_.drawing;
   drawing.has_floor = true;
-  drawing.from_above = std::none_of(links_.begin(), links_.end(), [](const Link& link) {
-    return link.kind == JointKind::free || link.kind == JointKind::ball;
-  });
   for (const auto& body : parts_.bodies_) {
     const int link = body_links_.at(body.name);
     std::vector<BodyShape> shapes;
@@ -31,6 +28,12 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
     for (const auto& contact : parts_.contacts_) {
       if (contact.body != body.name) continue;
       const Point at = from_centre(contact.at);
+      const double drawn = body.cylinder.empty() ? body.sphere : body.cylinder[0];
+      size = std::max(size, contact.radius);
+      if (contact.radius > 0 && drawn == contact.radius) {
+        shapes.front().look.color = "dark";
+        continue;
+      }
       if (contact.kind == "ball") {
         shapes.push_back(shapes::sphere(contact.radius, {.at = at}));
       } else if (contact.kind == "blade") {
@@ -41,7 +44,6 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
         shapes.push_back(shapes::cylinder(contact.radius, 0.1 * contact.radius,
                                           {.at = at, .axis = contact.axle, .color = "dark"}));
       }
-      size = std::max(size, contact.radius);
     }
     // Rods from the mass centre to its joints.
     for (const auto& joint : parts_.joints_) {
@@ -61,6 +63,17 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
                     std::move(shapes)};
     if (link >= 0 && links_[static_cast<size_t>(link)].parent == mechanisms::kGround) drawn.trail();
     drawing.bodies.push_back(std::move(drawn));
+  }
+  for (size_t i = 0; i < parts_.contacts_.size(); ++i) {
+    words_.forces.push_back(
+        {parts_.contacts_[i].name,
+         [system, i](std::span<const double> coordinates, std::span<const double> reactions) {
+           std::vector<double> g(system->drawn().size());
+           system->geometry().from_coordinates(coordinates, g.data());
+           const Rows& rows = system->all_rows();
+           const Vec3 at = rows.touches(rows.contacts[i], system->tree(g.data()));
+           return std::pair{at, system->reaction(i, g.data(), reactions)};
+         }});
   }
 }
 

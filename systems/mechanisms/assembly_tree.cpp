@@ -229,6 +229,34 @@ void Assembly::name_columns() {
   model_.group = std::move(info);
 }
 
+// Motors and prescribed joints without a signal, in this order.
+void Assembly::state_inputs() {
+  const auto state = [&](const auto& part, const std::string& kind, bool rate) {
+    const auto at = std::find(link_names_.begin(), link_names_.end(), part.name);
+    if (at == link_names_.end()) return;  // said with the others
+    const bool slider =
+        links_[static_cast<size_t>(at - link_names_.begin())].kind == JointKind::slider;
+    const std::string of = slider ? "force" : "torque";
+    InputField field{part.name + "." + (rate ? "rate" : of), slider ? "N" : "N m",
+                     of + " of the motor in this joint", part.range};
+    if (rate) {
+      field.unit = slider ? "m/s" : "rad/s";
+      field.meaning = "rate of this joint";
+    }
+    for (const InputField& other : model_.inputs)
+      if (other.name == field.name) wrong(part, kind, "this joint is driven by an input already");
+    model_.inputs.push_back(std::move(field));
+  };
+  for (const auto& part : parts_.motors_)
+    if (!part.effort) state(part, "motor", false);
+  for (const auto& part : parts_.rates_)
+    if (!part.rate) state(part, "prescribed", true);
+  if (model_.inputs.size() > kMostInputs) {
+    mistakes_.push_back(fmt::format("{}: {} inputs, expected at most {}", parts_.name_,
+                                    model_.inputs.size(), kMostInputs));
+  }
+}
+
 // A body that can be moved for nothing has no equation of motion.
 void Assembly::check_masses(const Tree& tree) {
   Eigen::MatrixXd inertia(tree.dim(), tree.dim());

@@ -44,6 +44,9 @@ void Mechanism::loop(const std::string& name, const std::string& a, const std::s
 void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate) {
   rates_.push_back({part(joint), std::move(rate)});
 }
+void Mechanism::prescribe(const std::string& joint, const Range& range) {
+  rates_.push_back({part(joint), {}, range});
+}
 void Mechanism::ground(double rate, Point velocity) {
   ground_rate_ = rate;
   ground_velocity_ = velocity;
@@ -55,6 +58,9 @@ void Mechanism::spring(const std::string& name, const std::string& a, const std:
 }
 void Mechanism::motor(const std::string& joint, Signal effort) {
   motors_.push_back({part(joint), std::move(effort)});
+}
+void Mechanism::motor(const std::string& joint, const Range& range) {
+  motors_.push_back({part(joint), {}, range});
 }
 void Mechanism::force(const std::string& name, const std::string& body,
                       const ForceOptions& options) {
@@ -75,7 +81,9 @@ SystemInfo system_info(const Mechanism& mechanism) {
   SystemInfo info;
   info.name = mechanism.name();
   info.summary = "mechanism by parts";
-  info.group = mechanism.outline().first.group;
+  const SystemModel outline = mechanism.outline().first;
+  info.group = outline.group;
+  info.inputs = outline.inputs;
   info.make = maker(mechanism);
   return info;
 }

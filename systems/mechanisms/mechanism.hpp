@@ -125,8 +125,9 @@ class Mechanism {
   /// A joint that closes a chain: its points, and axes, coincide.
   void loop(const std::string& name, const std::string& a, const std::string& b,
             const LoopOptions& options);
-  /// The rate of a hinge or slider, as a function of time.
+  /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate".
   void prescribe(const std::string& joint, std::function<double(double t)> rate);
+  void prescribe(const std::string& joint, const Range& range = {});
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});
   /// "refuse", or "drop": what becomes of rows that say what others say already.
@@ -137,8 +138,9 @@ class Mechanism {
   void gravity(Point acceleration) { gravity_ = acceleration; }
   void spring(const std::string& name, const std::string& a, const std::string& b,
               const SpringOptions& options);
-  /// A torque [N m] or force [N] in a hinge or slider.
+  /// A torque [N m] or force [N] in a hinge or slider: a signal, or an input of the run, "steer.torque", "lift.force".
   void motor(const std::string& joint, Signal effort);
+  void motor(const std::string& joint, const Range& range = {});
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
 
   /// The start: coordinates and velocities by name, and "speed", that of the first root joint ahead. Those that are
@@ -151,8 +153,8 @@ class Mechanism {
   /// The system. Throws ConfigError with all mistakes, each with the name of its part.
   SystemModel model() const;
 
-  /// Of model(): name and group, and the names of velocities, which bodies and joints alone say. Throws ConfigError
-  /// where they make no tree.
+  /// Of model(): name, group and inputs, and the names of velocities, which bodies and joints alone say. Throws
+  /// ConfigError where they make no tree.
   std::pair<SystemModel, MotionWords> outline() const;
 
   /// Where the next parts stand in a file, for messages.
@@ -180,10 +182,12 @@ class Mechanism {
     std::string body;
   };
   struct RatePart : Part {
-    std::function<double(double)> rate;
+    std::function<double(double)> rate;  // empty: an input
+    Range range = {};
   };
   struct MotorPart : Part {
-    Signal effort;
+    Signal effort;  // empty: an input
+    Range range = {};
   };
   Part part(const std::string& name) const { return {name, where_}; }
   void contact(const std::string& kind, const std::string& name, const std::string& body,

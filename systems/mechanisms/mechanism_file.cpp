@@ -196,17 +196,20 @@ class File {
     tables(m, "prescribed", [&](const toml::table& table) {
       std::string joint;
       std::function<double(double)> rate, angle;
+      Range range;
       const auto of_time = [&](auto& to) {
         return [this, &to](const Node& node, const std::string& key) {
           to = read_.of_time(node, key, key == "angle");
         };
       };
-      read_.entries(
-          table,
-          {{"joint", read_.read(joint)}, {"rate", of_time(rate)}, {"angle", of_time(angle)}});
-      if ((rate != nullptr) == (angle != nullptr) && read_.toml.mistakes.empty())
-        read_.toml.wrong(table, "prescribed", "one of rate and angle");
-      m.prescribe(joint, rate ? rate : angle);
+      read_.entries(table, {{"joint", read_.read(joint)},
+                            {"rate", of_time(rate)},
+                            {"angle", of_time(angle)},
+                            {"least", read_.read(range.least)},
+                            {"most", read_.read(range.most)}});
+      if (rate && angle) read_.toml.wrong(table, "prescribed", "one of rate and angle");
+      if (rate || angle) m.prescribe(joint, rate ? rate : angle);
+      else m.prescribe(joint, range);
     });
   }
   void forces(Mechanism& m) {
@@ -226,8 +229,13 @@ class File {
     tables(m, "motor", [&](const toml::table& table) {
       std::string joint;
       Signal effort;
-      read_.entries(table, {{"joint", read_.read(joint)}, {"effort", read_.read(effort)}});
-      m.motor(joint, effort);
+      Range range;
+      read_.entries(table, {{"joint", read_.read(joint)},
+                            {"effort", read_.read(effort)},
+                            {"least", read_.read(range.least)},
+                            {"most", read_.read(range.most)}});
+      if (table.contains("effort")) m.motor(joint, effort);
+      else m.motor(joint, range);
     });
     tables(m, "force", [&](const toml::table& table) {
       std::string name, body;
@@ -312,6 +320,7 @@ SystemInfo mechanism_info(const std::string& text, const std::string& origin) {
   out.name = model.name;
   out.group = model.group;
   out.fields = model.fields;
+  out.inputs = model.inputs;
   out.summary = file.word("summary");
   out.formula = file.word("formula");
   out.known = file.word("known");

@@ -32,6 +32,20 @@ void Multibody::keep(const std::vector<int>& rows) {
   }
 }
 
+void Multibody::drive(const std::vector<Driver>& drivers,
+                      const std::shared_ptr<const Inputs>& inputs) {
+  for (size_t i = 0; i < drivers.size(); ++i) {
+    const auto at = [inputs, i](double t) { return inputs->at(t)[static_cast<Eigen::Index>(i)]; };
+    if (!drivers[i].rate) {
+      forces_.motors.push_back(
+          {inputs->fields()[i].name, drivers[i].dof, [at](const Now& now) { return at(now.t); }});
+      continue;
+    }
+    for (Prescribed& p : rows_.prescribed)
+      if (p.dof == drivers[i].dof) p.rate = at;
+  }
+}
+
 const Tree& Multibody::tree(const double* g) const {
   const size_t bytes = placed_.size() * sizeof(double);
   if (std::memcmp(placed_.data(), g, bytes) != 0) {
@@ -41,9 +55,15 @@ const Tree& Multibody::tree(const double* g) const {
   return tree_;
 }
 
+const Tree& Multibody::carrying(const double* g) const {
+  tree(g);
+  tree_.carry();
+  return tree_;
+}
+
 void Multibody::inertia(const double* g, Matrix out) const {
   if (constant_inertia_) out = inertia_;
-  else tree(g).inertia(out);
+  else carrying(g).inertia(out);
 }
 
 void Multibody::write(const Row& row, Matrix a, int to) const {
@@ -75,6 +95,21 @@ void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) 
   });
 }
 
+Vec3 Multibody::reaction(size_t contact, const double* g,
+                         std::span<const double> multipliers) const {
+  const std::string& part = rows_.contacts[contact].name;
+  const std::vector<RowWords> words = rows_.words();
+  Vec3 force = Vec3::Zero();
+  size_t i = 0;
+  rows_.each(tree(g), 0, [&](const Row& row) {
+    const int at = slots_[i];
+    if (words[i++].part == part && at >= 0 && row.dof < 0)
+      force += multipliers[static_cast<size_t>(at)] *
+               (tree_.root_in_world(row.link).rotation * lower(row.wrench));
+  });
+  return force;
+}
+
 void Multibody::holonomic(const double* g, Vector out) const {
   if (holonomic_ == 0) return;
   const int before = rows() - holonomic_;
@@ -96,7 +131,8 @@ void Multibody::add_force(double t, const double* g, ConstVector xi, Vector out)
 
 void Multibody::force(double t, const double* g, ConstVector xi, Vector out) const {
   out.setZero();
-  tree(g);
+  if (constant_inertia_ && constant_potential_) tree(g);
+  else carrying(g);
   const bool moves = !constant_inertia_ || forces_.any();
   if (moves) tree_.move(xi);
   if (!constant_potential_) forces_.add_potential_force(tree_, g, out);
@@ -107,7 +143,7 @@ void Multibody::force(double t, const double* g, ConstVector xi, Vector out) con
 void Multibody::inertial_force(const double* g, ConstVector xi, Vector out) const {
   out.setZero();
   if (constant_inertia_) return;
-  tree(g);
+  carrying(g);
   tree_.move(xi);
   tree_.add_inertial_force(out);
 }
@@ -121,7 +157,7 @@ double Multibody::power(double t, const double* g, ConstVector xi) const {
   return work_.dot(xi);
 }
 
-double Multibody::potential(const double* g) const { return forces_.potential(tree(g), g); }
+double Multibody::potential(const double* g) const { return forces_.potential(carrying(g), g); }
 
 void Multibody::look_for_constants(const std::vector<std::vector<double>>& poses) {
   const int n = dim(), k = rows();
@@ -129,10 +165,10 @@ void Multibody::look_for_constants(const std::vector<std::vector<double>>& poses
   Eigen::VectorXd b(k), slope(n);
   bool same_inertia = true, same_rows = holonomic_ == 0 && !has_drift(), level = true;
   inertia_.resize(n, n);
-  tree(poses.front().data()).inertia(inertia_);
+  carrying(poses.front().data()).inertia(inertia_);
   constraints(0, poses.front().data(), first_a, b);
   for (const auto& pose : poses) {
-    tree(pose.data()).inertia(inertia);
+    carrying(pose.data()).inertia(inertia);
     constraints(0, pose.data(), a, b);
     slope.setZero();
     forces_.add_potential_force(tree_, pose.data(), slope);

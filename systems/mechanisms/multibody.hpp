@@ -5,9 +5,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/systems/mechanisms/forces.hpp>
 #include <hamel/systems/mechanisms/rows.hpp>
@@ -20,6 +22,13 @@ class Multibody : public Mechanics {
   Multibody(Tree tree, Rows rows, Forces forces, std::shared_ptr<const Geometry> geometry);
   /// Only these rows of each(), of which the holonomic ones go last.
   void keep(const std::vector<int>& rows);
+  /// An input as the effort on a velocity of a joint, or as the rate prescribed there.
+  struct Driver {
+    int dof;
+    bool rate;
+  };
+  /// With the inputs of a run, one for each driver; without, they are zero.
+  void drive(const std::vector<Driver>& drivers, const std::shared_ptr<const Inputs>& inputs);
   /// Is I(g) the same for all g, are A and V? Read off a few poses that share nothing.
   void look_for_constants(const std::vector<std::vector<double>>& poses);
 
@@ -49,10 +58,14 @@ class Multibody : public Mechanics {
   const std::vector<double>& drawn() const { return tree_.drawn(); }
   /// The tree at g.
   const Tree& tree(const double* g) const;
+  /// The force of the kept rows of a contact (counted as in all_rows()) with these multipliers, in the world.
+  Vec3 reaction(size_t contact, const double* g, std::span<const double> multipliers) const;
   /// phi of all rows of each(), 0 where it is none, and their A.
   void look(double t, const double* g, Matrix a, Vector b, Vector phi) const;
 
  private:
+  /// The tree at g with its inertias.
+  const Tree& carrying(const double* g) const;
   void add_force(double t, const double* g, ConstVector xi, Vector out) const;
   void write(const Row& row, Matrix a, int to) const;
 

@@ -78,8 +78,8 @@ std::vector<RowWords> Rows::words() const {
   return out;
 }
 
-double Rows::height(const Contact& contact, const Tree& tree) const {
-  return tree.root_in_world(contact.link).apply(Touch(contact, tree).q)[2];
+Vec3 Rows::touches(const Contact& contact, const Tree& tree) const {
+  return tree.root_in_world(contact.link).apply(Touch(contact, tree).q);
 }
 
 int Rows::look(const Contact& contact, const Tree& tree, Row* rows) const {

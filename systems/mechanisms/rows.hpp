@@ -96,8 +96,11 @@ struct Rows {
       f(row);
     }
   }
-  /// The height of a contact above the ground.
-  double height(const Contact& contact, const Tree& tree) const;
+  /// Where a contact touches the ground, in the world; its height above it.
+  Vec3 touches(const Contact& contact, const Tree& tree) const;
+  double height(const Contact& contact, const Tree& tree) const {
+    return touches(contact, tree)[2];
+  }
 
  private:
   int look(const Contact& contact, const Tree& tree, Row* rows) const;

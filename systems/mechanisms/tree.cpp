@@ -42,22 +42,31 @@ Tree::Tree(const std::vector<Link>& links) : links_(links), momenta_(links.size(
     nodes_.push_back(std::move(node));
   }
   place(drawn_.data());
+  carry();
 }
 
 void Tree::place(const double* g) {
+  carries_ = false;
   for (Node& node : nodes_) {
     const Rigid across =
         node.link.on_parent * motion(node.link.kind, g + node.element) * node.after;
     if (node.link.parent == kGround) {
       node.world = across;
-      node.carried = node.own = node.link.inertia;
       continue;
     }
     node.place = at(node.link.parent).place * across;
     for (Eigen::Index i = 0; i < node.columns.cols(); ++i) {
       node.columns.col(i) = node.place.move(node.directions.col(i));
     }
-    node.carried = node.own = moved(node.place, node.link.inertia);
+  }
+}
+
+void Tree::carry() {
+  if (carries_) return;
+  carries_ = true;
+  for (Node& node : nodes_) {
+    const bool root = node.link.parent == kGround;
+    node.carried = node.own = root ? node.link.inertia : moved(node.place, node.link.inertia);
   }
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
     if (node->link.parent != kGround) at(node->link.parent).carried += node->carried;

@@ -51,6 +51,8 @@ class Tree {
 
   /// Places all links; must come before what follows.
   void place(const double* g);
+  /// Inertias, for inertia(), composite() and add_inertial_force(); place() first.
+  void carry();
   /// Link seen from its root (the ground: from the world), and its root in the world.
   const Rigid& from_root(int link) const { return link == kGround ? rest_ : at(link).place; }
   const Rigid& root_in_world(int link) const {
@@ -104,6 +106,7 @@ class Tree {
   mutable std::vector<Wrench> momenta_;
   Rigid rest_;
   int dim_ = 0, size_ = 0;
+  bool carries_ = false;
 };
 
 }  // namespace hamel::mechanisms

@@ -75,18 +75,60 @@ TEST_F(MechanismFile, OfTheLibraryRun) {
     EXPECT_EQ(record["status"], "ok") << entry.path();
     EXPECT_LT(record["diagnostics"]["energy_error_max"].get<double>(), 1e-6) << entry.path();
     EXPECT_LT(record["diagnostics"]["constraint_max"].get<double>(), 1e-10) << entry.path();
-    EXPECT_EQ(entry.path().stem().string(),
-              json::parse(run({"describe", entry.path().string(), "--json"}).out)["name"]
-                  .get<std::string>());
+    EXPECT_EQ(record["system"], entry.path().stem().string());
   }
   EXPECT_EQ(seen, 9);
   const Outcome o =
-      run({"run", "bicycle", "--velocity", "5", "--until", "0.1", "-o", file("x.csv"), "--quiet"});
+      run({"run", "bicycle", "--speed", "5", "--until", "0.1", "-o", file("x.csv"), "--quiet"});
   EXPECT_EQ(o.status, 0) << o.err;
   const std::string head = lines(contents(file("x.csv")))[0];
-  for (const char* column : {"steer.angle", "rear.reaction1", "front.reaction3", "R33,x,y,z"}) {
+  for (const char* column :
+       {"steer.angle", "rear.reaction1,rear.reaction2,rear.reaction3,front.reaction1",
+        "front.reaction3", "R33,x,y,z"}) {
     EXPECT_THAT(head, HasSubstr(column));
   }
+}
+
+/// A speed on the command line, in a file, as the few numbers of --velocity; the record has the start that it is.
+TEST_F(MechanismFile, StartsAtASpeed) {
+  const json by_speed = answer({"run", "bicycle", "--speed", "5", "--until", "0.02"});
+  EXPECT_NEAR(by_speed["start"]["velocity"][3], 5, 1e-12);
+  EXPECT_NEAR(by_speed["start"]["velocity"][7], 5 / 0.3, 1e-11);  // rear wheel
+  const json few = answer({"run", "bicycle", "--velocity", "5", "--until", "0.02"});
+  EXPECT_EQ(few["final"]["velocity"], by_speed["final"]["velocity"]);
+  const std::string config = write("system = \"bicycle\"\nspeed = 5\nuntil = 0.02\n");
+  EXPECT_EQ(answer({"run", "--config", config})["final"]["velocity"],
+            by_speed["final"]["velocity"]);
+  EXPECT_NEAR(answer({"run", "--config", config, "--speed", "4"})["start"]["velocity"][3], 4,
+              1e-12);
+  EXPECT_NEAR(
+      answer({"run", "falling_disk", "--speed", "2", "--until", "0.02"})["start"]["velocity"][2],
+      2 / 0.5, 1e-12);
+  EXPECT_NEAR(answer({"run", "segway", "--speed", "2", "--until", "0.02"})["start"]["velocity"][1],
+              2, 1e-12);
+  EXPECT_THAT(run({"run", "suslov", "--speed", "1"}).err,
+              HasSubstr("speed: suslov knows no motion by its speed; give velocity"));
+  EXPECT_THAT(run({"run", "segway", "--speed", "1", "--velocity", "0,1,0"}).err,
+              HasSubstr("speed: give it alone"));
+  EXPECT_EQ(run({"run", "bicycle", "--speed", "fast"}).status, 2);
+}
+
+/// A motor without an effort is an input; a contact's event carries the name of its part.
+TEST_F(MechanismFile, IsDrivenAndWatched) {
+  const json free = answer({"run", "bicycle", "--speed", "5", "--until", "0.1"});
+  const json steered =
+      answer({"run", "bicycle", "--speed", "5", "--until", "0.1", "--input", "steer.torque=0.5"});
+  EXPECT_NEAR(free["final"]["velocity"][6], 0, 1e-12);
+  EXPECT_GT(std::abs(steered["final"]["velocity"][6].get<double>()), 1e-3);
+  const json d = answer({"describe", "bicycle"});
+  EXPECT_EQ(d["inputs"][0]["name"], "steer.torque");
+  EXPECT_EQ(d["inputs"][0]["unit"], "N m");
+  EXPECT_EQ(d["events"][0]["name"], "rear.contact_lost");
+  EXPECT_EQ(d["events"][1]["name"], "front.contact_lost");
+  EXPECT_THAT(run({"run", "bicycle", "--input", "steer.torqe=1"}).err,
+              HasSubstr("did you mean 'steer.torque'?"));
+  EXPECT_THAT(run({"run", "bicycle", "--events", "frnt.contact_lost"}).err,
+              HasSubstr("did you mean 'front.contact_lost'?"));
 }
 
 TEST_F(MechanismFile, DescribesItself) {

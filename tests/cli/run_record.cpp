@@ -71,8 +71,8 @@ TEST_F(Record, HasExactlyTheseKeys) {
                   "solver_stats", "timing", "version", "git", "host",
                   // later keys:
                   "tolerance", "on_failure", "from", "until", "every", "check", "force", "force_at",
-                  "no_exact", "rtol", "atol", "output_step", "output_times", "watched", "stop_at",
-                  "events", "start", "inputs", "notes", "failure", "fallbacks"));
+                  "no_exact", "speed", "rtol", "atol", "output_step", "output_times", "watched",
+                  "stop_at", "events", "start", "inputs", "notes", "failure", "fallbacks"));
 }
 
 TEST_F(Record, OfEverySystem) {

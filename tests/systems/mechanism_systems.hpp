@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 
+#include <hamel/systems/ball_on_turntable.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
 #include <hamel/systems/differential_drive.hpp>
 #include <hamel/systems/falling_disk.hpp>
+#include <hamel/systems/knife_edge_on_incline.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/roller_racer.hpp>
@@ -153,6 +155,18 @@ inline Mechanism ball(const RollingBall& s) {
          {.mass = s.mass, .at = {0, 0, s.radius}, .inertia = {s.moment, s.moment, s.moment}});
   m.free("space", "ball", {.at = {0, 0, s.radius}});
   m.ball("ball", "ball", {.at = {0, 0, s.radius}, .radius = s.radius});
+  return m;
+}
+
+inline Mechanism turntable(const BallOnTurntable& s) {
+  Mechanism m = ball({.mass = s.mass, .radius = s.radius, .moment = s.moment});
+  m.ground(s.table_rate);
+  return m;
+}
+
+inline Mechanism incline(const KnifeEdgeOnIncline& s) {
+  Mechanism m = sleigh({.mass = s.mass, .moment = s.moment, .offset = 0});
+  m.gravity({s.gravity * std::sin(s.slope), 0, -s.gravity * std::cos(s.slope)});
   return m;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include <Eigen/Eigenvalues>
 
@@ -73,6 +74,7 @@ TEST(Mechanisms, AreTheRegisteredSystems) {
   same(Segway{}, by_parts::segway({}), 0.005, 1.5);
   same(RollerRacer{}, by_parts::racer({}));
   same(Snakeboard{}, by_parts::snakeboard({}));
+  same(KnifeEdgeOnIncline{}, by_parts::incline({}));
 }
 
 // The system measures the headings of its trailers against the car, the mechanism against the one before.
@@ -133,7 +135,7 @@ void same_ball(const S& system, const Mechanism& parts) {
   const auto& v = hers.config.start.velocity;
   const auto& g = hers.config.start.configuration;
   Start start = parts.model().start;
-  std::copy_n(g.begin(), 9, start.configuration.begin());
+  std::copy_n(g.begin(), 11, start.configuration.begin());
   const Vec<3> space(v[3], v[4], 0);
   Mat<3, 3> r;
   for (int i = 0; i < 9; ++i) r(i / 3, i % 3) = g[static_cast<size_t>(i)];
@@ -157,6 +159,7 @@ void same_ball(const S& system, const Mechanism& parts) {
 TEST(Mechanisms, AreTheBallsThatRoll) {
   same_ball(RollingBall{}, by_parts::ball({}));
   same_ball(RouthSphere{}, by_parts::routh({}));
+  same_ball(BallOnTurntable{}, by_parts::turntable({}));
 }
 
 // All kinds of joints, contacts and forces at once; nothing has to make sense but the calculus.
@@ -182,6 +185,8 @@ Mechanism zoo() {
            {.from = {0.5, 0, 0.7}, .to = {-0.6, 0, 0.5}, .stiffness = 2, .rest = 0.8});
   m.spring("to the wall", "ground", "d",
            {.from = {0, -1, 0.5}, .to = {0, -0.4, 0.5}, .stiffness = 4});
+  m.loop("hinge", "f", "d", {.at = {0, 0.3, 0.4}, .axis = {0.6, 0, 0.8}});
+  m.loop("ball", "c", "ground", {.at = {0.9, 0, 0.3}});
   m.gravity({0.3, 0.1, -9.7});
   return m;
 }
@@ -192,7 +197,8 @@ TEST(Mechanisms, DifferentiateAsDifferencesDo) {
   const auto geometry = registry().geometry(model.group.name, "exp");
   const int n = mechanics.dim();
   ASSERT_EQ(n, 6 + 1 + 1 + 3 + 2 + 3 + 1);
-  EXPECT_EQ(mechanics.holonomic_rows(), 2);
+  const int held = mechanics.holonomic_rows();
+  ASSERT_EQ(held, 2 + 5 + 3);
   VectorXd g(geometry->size()), xi(n), direction(n), shift(n), step(n);
   geometry->from_coordinates(model.start.configuration, g.data());
   for (int i = 0; i < n; ++i) {
@@ -203,7 +209,7 @@ TEST(Mechanisms, DifferentiateAsDifferencesDo) {
   VectorXd moved(g.size()), work(n);
   geometry->tau(shift.data(), moved.data());
   geometry->compose(g.data(), moved.data(), g.data());
-  VectorXd phi(2), b(mechanics.rows()), force(n), inertial(n), phi_slope = VectorXd::Zero(2);
+  VectorXd phi(held), b(mechanics.rows()), force(n), inertial(n), phi_slope = VectorXd::Zero(held);
   MatrixXd inertia(n, n), a(mechanics.rows(), n);
   double slope = 0, kinetic_slope = 0;
   const Erased problem(geometry, model.mechanics);
@@ -219,9 +225,59 @@ TEST(Mechanisms, DifferentiateAsDifferencesDo) {
   mechanics.constraints(0, g.data(), a, b);
   EXPECT_NEAR(inertial.dot(direction), kinetic_slope, 1e-9);
   EXPECT_NEAR((force - inertial).dot(direction), -slope, 1e-9);
-  EXPECT_LT((a.bottomRows(2) * direction - phi_slope).norm(), 1e-9);
+  EXPECT_LT((a.bottomRows(held) * direction - phi_slope).norm(), 1e-9);
   mechanics.inertia(g.data(), inertia);
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(inertia).eigenvalues().minCoeff(), 0);
+}
+
+// Wheels with rollers at +-45 degrees under a cart: r rate = v1 -+ v2 -+ (l + w) omega, as in Campion and others 1996.
+TEST(Mechanisms, RollAsMecanumWheelsDo) {
+  const double r = 0.05, l = 0.3, w = 0.2;
+  Mechanism m("mecanum");
+  m.body("cart", {.mass = 5, .at = {0, 0, 0.1}, .box = {0.6, 0.4, 0.1}});
+  m.planar("floor", "cart");
+  m.redundant("drop");
+  for (const double x : {l, -l}) {
+    for (const double y : {w, -w}) {
+      const std::string name =
+          fmt::format("{}{}", x > 0 ? "front " : "rear ", y > 0 ? "left" : "right");
+      m.body(name, {.mass = 0.5, .at = {x, y, r}, .cylinder = {r, 0.04}, .axis = {0, 1, 0}});
+      m.hinge(name, "cart", name, {.at = {x, y, r}, .axis = {0, 1, 0}});
+      m.roller(
+          name, name,
+          {.at = {x, y, r}, .radius = r, .angle = (x * y > 0 ? -1 : 1) * 0.25 * std::numbers::pi});
+    }
+  }
+  m.start({{"v1", 0.7}, {"v2", -0.4}, {"omega", 0.9}});
+  const SystemModel model = m.model();
+  EXPECT_TRUE(model.mechanics->left_invariant());
+  const auto& xi = model.start.velocity;
+  size_t i = 3;
+  for (const double x : {l, -l}) {
+    for (const double y : {w, -w}) {
+      const double side = x * y > 0 ? -1 : 1;
+      EXPECT_NEAR(r * xi[i++], 0.7 - y * 0.9 + side * (-0.4 + x * 0.9), 1e-14) << x << y;
+    }
+  }
+}
+
+// A damper takes out c l'^2, whichever way it is drawn.
+TEST(Mechanisms, AreDamped) {
+  Mechanism m("damped");
+  m.body("a", {.mass = 1, .sphere = 0.1});
+  m.body("b", {.mass = 1, .at = {1, 0, 0}, .sphere = 0.1});
+  m.free("a", "a");
+  m.free("b", "b", {.at = {1, 0, 0}});
+  m.spring("damper", "a", "b", {.from = {0, 0, 0}, .to = {1, 0, 0}, .damping = 3});
+  m.gravity({0, 0, 0});
+  const SystemModel model = m.model();
+  VectorXd g(24), xi = VectorXd::Zero(12);
+  registry()
+      .geometry(model.group.name, "exp")
+      ->from_coordinates(model.start.configuration, g.data());
+  xi[3] = 0.2;
+  xi[9] = 0.7;
+  EXPECT_NEAR(model.mechanics->power(0, g.data(), xi), -3 * 0.5 * 0.5, 1e-15);
 }
 
 TEST(Mechanisms, OfTheLibraryObeyTheLawsOfSystems) {
@@ -244,77 +300,41 @@ TEST(Mechanisms, AreAddedByName) {
   EXPECT_EQ(by_name.trajectory.columns()[1], "theta");
 }
 
-std::string refused(const Mechanism& mechanism) {
-  try {
-    mechanism.model();
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "nothing";
-}
-
-TEST(Mechanisms, SayWhatIsWrongWithTheirParts) {
-  Mechanism m("cart");
-  m.body("cart", {.mass = 1, .inertia = {1, 1, 1}});
-  m.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
-  m.planar("floor", "cart");
-  m.hinge("axle", "cart", "wheeel", {.axis = {0, 1, 0}});
-  EXPECT_THAT(refused(m), HasSubstr("joint 'axle': unknown child 'wheeel': expected one of cart, "
-                                    "wheel; did you mean 'wheel'?"));
-  Mechanism loose("loose");
-  loose.body("a", {.mass = 1, .inertia = {1, 1, 1}});
-  EXPECT_THAT(refused(loose), HasSubstr("body 'a': hangs on no joint"));
-  Mechanism circle("circle");
-  circle.body("a", {.mass = 1, .inertia = {1, 1, 1}});
-  circle.body("b", {.mass = 1, .inertia = {1, 1, 1}});
-  circle.hinge("ab", "a", "b", {});
-  circle.hinge("ba", "b", "a", {});
-  EXPECT_THAT(refused(circle), HasSubstr("'ab', 'ba' go round in a circle"));
-  Mechanism high("high");
-  high.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
-  high.free("space", "wheel", {.at = {0, 0, 0.3}});
-  high.wheel("wheel", "wheel", {.at = {0, 0, 0.32}, .radius = 0.3});
-  EXPECT_THAT(refused(high),
-              HasSubstr("does not touch the ground z = 0 as drawn: its lowest point is at 0.02 m"));
-  Mechanism flat("flat");
-  flat.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
-  flat.free("space", "wheel");
-  flat.wheel("wheel", "wheel", {.at = {0, 0, 0.3}, .axle = {0, 0, 1}, .radius = 0.3});
-  EXPECT_THAT(refused(flat), HasSubstr("wheel 'wheel': axle: is vertical"));
-  Mechanism light("light");
-  light.body("a", {.mass = 1, .inertia = {1, 1, 1}});
-  light.body("tip", {});
-  light.planar("floor", "a");
-  light.hinge("end", "a", "tip", {.at = {1, 0, 0}});
-  EXPECT_THAT(refused(light), HasSubstr("body 'tip' and all that it carries have no inertia"));
-  Mechanism bar("bar");
-  bar.body("a", {.mass = 1, .inertia = {1, 1, 3}});
-  bar.planar("floor", "a");
-  EXPECT_THAT(words_of(bar.model()).notes,
-              testing::Contains(HasSubstr("no rigid body has the principal moments 1,1,3")));
-}
-
-TEST(Mechanisms, FindRowsThatSayNothingNew) {
-  const Mechanism dropping = by_parts::drive({});
-  EXPECT_EQ(dropping.model().mechanics->rows(), 3);
-  EXPECT_THAT(words_of(dropping.model()).notes,
-              testing::Contains(HasSubstr(
-                  "row dropped: 'left' (does not slip sideways) says nothing beyond 'right' "
-                  "(does not slip sideways)")));
-  Mechanism refusing = dropping;
-  refusing.redundant("refuse");
-  EXPECT_THAT(refused(refusing), HasSubstr("redundant row: 'left' (does not slip sideways)"));
-  // Four wheels under a stiff cart in space: three contacts hold it.
-  Mechanism table("table");
-  table.body("top", {.mass = 1, .at = {0, 0, 0.5}, .inertia = {1, 1, 1}});
-  table.free("space", "top", {.at = {0, 0, 0.5}});
-  for (const double x : {-1.0, 1.0}) {
-    for (const double y : {-1.0, 1.0}) {
-      table.ball(fmt::format("leg {} {}", x, y), "top", {.at = {x, y, 0.1}, .radius = 0.1});
+// A motor and a prescribed joint whose signals are inputs of the run do what the same signals do in the mechanism.
+TEST(Mechanisms, AreDrivenByInputs) {
+  const auto make = [](bool inputs) {
+    Mechanism m = by_parts::racer({.stiffness = 0, .torque = 0});
+    m.body("flag", {.mass = 0.3, .at = {0.2, 0, 0}, .inertia = {0, 0, 0.01}});
+    m.hinge("turret", "rear", "flag", {});
+    if (inputs) {
+      m.motor("steer", between(-1, 1));
+      m.prescribe("turret");
+    } else {
+      m.motor("steer", [](const Now&) { return 0.2; });
+      m.prescribe("turret", [](double t) { return 3 * t; });
     }
-  }
-  table.redundant("drop");
-  EXPECT_EQ(table.model().mechanics->holonomic_rows(), 3);
+    return m;
+  };
+  const Simulation ours = simulate(make(true));
+  const Result driven = Simulation(ours)
+                            .input("steer.torque", 0.2)
+                            .input("turret.rate", InputTable{{-1, 3}, {-3, 9}})
+                            .until(2)
+                            .run();
+  const Result signals = simulate(make(false)).until(2).run();
+  ASSERT_TRUE(driven.status.ok);
+  EXPECT_LT(apart(driven.last.coordinates, signals.last.coordinates), 1e-12);
+  EXPECT_LT(apart(driven.last.velocity, signals.last.velocity), 1e-12);
+  EXPECT_NEAR(driven.last.velocity[4], 6, 1e-12);                        // the turret
+  EXPECT_NEAR(driven.energy_error_max, signals.energy_error_max, 1e-9);  // with the work of both
+  const Result at_rest =
+      Simulation(ours).start({.velocity = std::vector<double>(5)}).until(1).run();
+  EXPECT_NEAR(at_rest.last.velocity[4], 0, 1e-15);
+  EXPECT_EQ(ours.build().system().inputs[1].unit, "rad/s");
+  EXPECT_THAT(Simulation(ours).input("steer.torque", 2).mistakes(),
+              testing::Contains(HasSubstr("steer.torque")));
+  EXPECT_THAT(Simulation(ours).input("steer.force", 2).mistakes(),
+              testing::Contains(HasSubstr("did you mean 'steer.torque'?")));
 }
 
 }  // namespace

@@ -1,20 +1,20 @@
-// node tools/docs/picture.mjs PAGE BUILD      PAGE: a page of hamel run --report; BUILD: a build folder
-// Cuts tools/docs/motion.png out of the page: the motion beside its angular velocity. Uses the page's own test set-up
+// node tools/docs/picture.mjs PAGE BUILD NAME FIGURE      PAGE: a page of hamel run --report; BUILD: a build folder
+// Cuts a picture of that name, in this folder, out of the page: the motion beside the figure of that title. Uses the page's own test set-up
 // (BUILD/tools/report).
 
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [report, build = 'build'] = process.argv.slice(2);
+const [report, build, name, beside] = process.argv.slice(2);
 const { launch } = await import(pathToFileURL(resolve(build, 'tools/report/test/browser.mjs')));
 
 const browser = await launch();
 const page = await browser.newPage({ viewport: { width: 1240, height: 900 }, deviceScaleFactor: 1.5 });
 await page.goto(pathToFileURL(resolve(report)).href);
 await page.waitForSelector('html[data-ready=true]', { state: 'attached' });
-await page.evaluate(() => {
-  const wanted = ['Motion', 'Angular velocity'].map((title) => [...document.querySelectorAll('figure')]
+await page.evaluate((other) => {
+  const wanted = ['Motion', other].map((title) => [...document.querySelectorAll('figure')]
     .find((figure) => figure.querySelector('.title').textContent === title));
   const pair = document.querySelector('.figures');
   pair.replaceChildren(...wanted);
@@ -23,8 +23,8 @@ await page.evaluate(() => {
   bar.value = 0.62 * bar.max;
   bar.dispatchEvent(new Event('input'));
   document.querySelectorAll('.tools, .player').forEach((element) => element.remove());
-});
+}, beside);
 await page.setViewportSize({ width: 1200, height: 900 });  // drawn again for their new places
 await page.waitForTimeout(500);
-await page.locator('#pair').screenshot({ path: join(here, 'motion.png') });
+await page.locator('#pair').screenshot({ path: join(here, `${name}.png`) });
 await browser.close();

@@ -109,7 +109,6 @@ int program(int argc, char** argv) {
   SteadyOptions steadying;
   std::vector<std::string> steady_sets;
   std::string steady_configuration, steady_velocity;
-  double steady_speed = 0;
   CLI::App* steady_command = app.add_subcommand(
       "steady", "A steady motion near a guess, its eigenvalues; along a parameter");
   steady_command
@@ -119,8 +118,9 @@ int program(int argc, char** argv) {
   steady_command
       ->add_option("--set", steady_sets, "a parameter, name=value[,value...] (repeatable)")
       ->allow_extra_args(false);
-  CLI::Option* steady_speed_option = steady_command->add_option(
-      "--speed", steady_speed, "straight ahead at this speed, in m/s, for systems that know one");
+  steady_command->add_option(
+      "--speed", steadying.config.speed,
+      "the guess: straight ahead at this speed, in m/s, for systems that know such a motion");
   steady_command->add_option("--configuration", steady_configuration, "the guess, as for hamel run")
       ->type_name("A,B,...");
   steady_command->add_option("--velocity", steady_velocity, "the guess, as for hamel run")
@@ -145,7 +145,6 @@ int program(int argc, char** argv) {
         read_text("--configuration", steady_configuration, steadying.config.start.configuration);
       if (!steady_velocity.empty())
         read_text("--velocity", steady_velocity, steadying.config.start.velocity);
-      if (steady_speed_option->count() > 0) steadying.speed = steady_speed;
       return steady(steadying);
     };
   });

@@ -191,6 +191,11 @@ void Page::animation(const Animation& animation) {
                              {"floor", animation.floor},
                              {"bodies", bodies},
                              {"note", animation.note}});
+  for (const MovingForce& force : animation.forces) {
+    Json values = Json::array();
+    for (const auto& value : force.values) values.push_back(numbers(value));
+    data_->blocks().back()["forces"].push_back({{"name", force.name}, {"values", values}});
+  }
 }
 
 void Page::write(const std::string& path) const {

@@ -52,12 +52,19 @@ struct MovingBody {
   Point trail_point = {0, 0, 0};  // this point of the body
 };
 
+/// A force, drawn as an arrow from where it acts.
+struct MovingForce {
+  std::string name;
+  std::vector<std::array<double, 6>> values;  // one for each time: where it acts, the force
+};
+
 /// Bodies that move, interpolated between the times: two poses that follow each other should differ
 /// by less than half a turn.
 struct Animation {
   std::string title;
   std::vector<double> times;
   std::vector<MovingBody> bodies;
+  std::vector<MovingForce> forces = {};
   bool from_above = false;  // for motions in the plane: seen from above at first
   bool floor = false;       // a grid in the plane z = 0
   std::string note = "";

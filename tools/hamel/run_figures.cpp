@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
 
 namespace hamel::tools {
 namespace {
@@ -110,6 +111,20 @@ std::optional<Animation> animation_of(const Result& result) {
     }
     out.bodies.push_back(std::move(body));
   }
+  const MotionWords& words = words_of(result.system);
+  if (words.forces.empty()) return out;
+  std::vector<size_t> at;  // their columns
+  for (const std::string& name : words.reactions) at.push_back(result.trajectory.index(name));
+  std::vector<double> reactions(at.size());
+  for (const DrawnForce& drawn : words.forces) {
+    MovingForce force{drawn.name, {}};
+    for (size_t i : rows) {
+      for (size_t j = 0; j < at.size(); ++j) reactions[j] = result.trajectory.at(i, at[j]);
+      const auto [x, f] = drawn.value(element(result, i), reactions);
+      force.values.push_back({x[0], x[1], x[2], f[0], f[1], f[2]});
+    }
+    out.forces.push_back(std::move(force));
+  }
   return out;
 }
 
@@ -151,10 +166,13 @@ void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) 
       "states. Their work over the run: {:.2e}, with A xi measured on the "
       "configurations; where b = 0 it is zero but for round-off.",
       r.reaction_work);
-  for (int i = 1; r.trajectory.has(fmt::format("lambda{}", i)); ++i) {
-    const std::string column = fmt::format("lambda{}", i);
+  for (int i = 0; i < r.system.mechanics->rows(); ++i) {
+    const std::string column = words_of(r.system).reactions.empty()
+                                   ? fmt::format("lambda{}", i + 1)
+                                   : words_of(r.system).reactions[static_cast<size_t>(i)];
+    if (!r.trajectory.has(column)) continue;
     const auto& contacts = r.system.contacts;
-    const bool contact = std::find(contacts.begin(), contacts.end(), i - 1) != contacts.end();
+    const bool contact = std::find(contacts.begin(), contacts.end(), i) != contacts.end();
     reactions.push_back(curve(r, contact ? column + " [N], contact" : column, column, false));
     if (!contact) continue;
     const std::vector<double> force = r.trajectory.column(column);
@@ -225,7 +243,10 @@ void add_motion(Page& page, const Result& r) {
 }
 
 void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
-  const std::vector<Component> names = components_of(r.system.group);
+  const std::vector<std::string>&rates = words_of(r.system).rates,
+        &columns = r.system.group.columns;
+  std::vector<Component> names = components_of(r.system.group);
+  for (size_t i = 0; i < rates.size(); ++i) names[i].name = rates[i];
   ByUnit velocity, momentum, shape;
   for (size_t i = 0; i < names.size(); ++i) {
     const auto& [name, unit] = names[i];
@@ -235,9 +256,11 @@ void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
                  component(r, with_unit("mu of " + name, dual), fmt::format("mu{}", i + 1), name));
   }
   for (const ShapeCoordinate& s : shape_of(r.system.group, names))
-    shape.add(s.unit, component(r, with_unit(s.name, s.unit),
-                                r.trajectory.columns()[static_cast<size_t>(s.column) + 1],
-                                names[static_cast<size_t>(s.component)].name));
+    shape.add(
+        s.unit,
+        component(
+            r, with_unit(rates.empty() ? s.name : columns[static_cast<size_t>(s.column)], s.unit),
+            columns[static_cast<size_t>(s.column)], names[static_cast<size_t>(s.component)].name));
   velocity.plot(page, {{"rad/s", "Angular velocity"}, {"m/s", "Velocity"}}, "Body velocity xi",
                 marks);
   shape.plot(page, {{"rad", "Angles of the shape"}, {"m", "Places"}}, "Shape", marks);

@@ -86,6 +86,7 @@ void RunLine::define(CLI::App& app) {
       "  hamel run suslov --until 20 --report suslov.html\n"
       "  hamel run suslov --set inertia=2,0.3,0.5,3,0.4,4 --velocity 1,0.5,0 --retraction exp\n"
       "  hamel run chaplygin_sleigh --scheme balance --step 0.05 -o sleigh.csv --json\n"
+      "  hamel run bicycle --speed 5 --report bicycle.html\n"
       "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv\n"
       "  hamel run segway --input right_torque=2 --input left_torque=torque.csv:hold\n"
       "  hamel run roller_racer -o first.json && hamel run --continue first.json --until 60\n"
@@ -105,8 +106,11 @@ RunOptions RunLine::resolve(const CLI::App& app) {
     }
   }
   if (config.system.empty()) mistakes.push_back("system: name one, or give --config with one");
-  if (app.count("--velocity") + app.count("--momentum") > 0)
+  if (app.count("--velocity") + app.count("--momentum") > 0) {
     config.start.velocity = config.start.momentum = {};
+    config.speed.reset();
+  }
+  if (app.count("--speed") > 0) config.start = {};
   const auto collect = [&](const std::function<void()>& read) {
     try {
       read();

@@ -7,8 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/analysis/steady.hpp>
-#include <hamel/framework/run/data_system.hpp>
-#include <hamel/systems/at_speed.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "page.hpp"
@@ -57,26 +55,10 @@ struct Vary {
   }
 };
 
-// ConfigError for a system that has no motion by its speed; unknown systems are the run's to refuse.
-void set_speed(Config& config, double speed) {
-  const SystemInfo* info = registry().system(config.system);
-  if (info == nullptr && !config.system.ends_with(".toml")) return;
-  const SystemModel model = info != nullptr
-                                ? info->make(config.parameters)
-                                : data_system_maker(registry(), config.system)(config.parameters);
-  const auto start = start_at_speed(model, speed);
-  if (!start) {
-    throw ConfigError(
-        {fmt::format("--speed: {} knows no motion by its speed; give --velocity", model.name)});
-  }
-  config.start = *start;
-}
-
 Simulation at(const SteadyOptions& options, const std::string& name, double value) {
   Config config = options.config;
-  if (!name.empty() && name != "speed") config.parameters[name] = {value};
-  if (name == "speed") set_speed(config, value);
-  else if (options.speed) set_speed(config, *options.speed);
+  if (name == "speed") config.speed = value;
+  else if (!name.empty()) config.parameters[name] = {value};
   Simulation out(registry(), config.system);
   return out.config(config);
 }
@@ -166,12 +148,7 @@ void add_plots(Page& page, const Vary& vary, const SteadySweep& sweep) {
 
 }  // namespace
 
-int steady(const SteadyOptions& given) {
-  SteadyOptions options = given;
-  if (options.speed) {
-    if (!options.config.start.velocity.empty())
-      throw ConfigError({"--speed: give it or --velocity, not both"});
-  }
+int steady(const SteadyOptions& options) {
   std::optional<Vary> vary;
   if (!options.vary.empty()) vary.emplace(options.vary);
   const bool by_speed = vary && vary->name == "speed";

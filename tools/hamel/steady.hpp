@@ -1,7 +1,6 @@
 // hamel steady; main.cpp reads the command line into its options.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include <hamel/framework/run/config.hpp>
@@ -9,8 +8,7 @@
 namespace hamel::tools {
 
 struct SteadyOptions {
-  Config config;  // system, parameters, start
-  std::optional<double> speed;
+  Config config;       // system, parameters, start
   std::string vary;    // name=from:to:count
   std::string report;  // --report
   bool json = false;

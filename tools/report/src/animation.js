@@ -4,7 +4,7 @@ import { Color, Group, Matrix4, Mesh, MeshBasicMaterial, Scene, Vector3 } from '
 import { h } from './dom.js';
 import { figure, remark } from './figure.js';
 import { formatNumber, formatShort } from './format.js';
-import { floorGrid, placed, placeInTime, poseAt, readMotion } from './motion.js';
+import { arrowOf, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion } from './motion.js';
 import { columnsToCsv } from './save.js';
 import { addLight, lines, pairs, solids, stand, styled } from './shapes.js';
 import { ABOVE, HOME, Stage } from './stage.js';
@@ -14,37 +14,48 @@ const TICKS = 1000;       // of the bar
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 const PLEASANT = [4, 25]; // seconds that a motion may take as it is; others are brought near 10
 const TRAILS = ['--c2', '--c1', '--c3', '--c4', '--c6', '--c8'];
-const FAR = 40;           // so many times a body's reach is the room before it is followed at first
-const AROUND = 3.2;       // so many times its reach is seen around a body that is followed
+const ARROW = 1;          // so many times the reach of all bodies is the strongest force long
+// So many times this reach is the room before they are followed at first, and is seen around them then.
+const FAR = (bodies) => (bodies.length > 1 ? 5 : 40);
+const AROUND = (bodies) => (bodies.length > 1 ? 1.1 : 3.2);
 
 export function animation(block) {
   const motion = readMotion(block);
   const { times, bodies } = motion;
   const [start, end] = [times[0], times[times.length - 1]];
-  const long = Math.max(...motion.box[1].map((v, i) => v - motion.box[0][i])) > FAR * motion.reach;
-  const grid = block.floor ? floorGrid(motion.box, long ? 1.5 * motion.reach : 0) : null;
-  let [now, playing] = [start, false];
+  const long = Math.max(...motion.box[1].map((v, i) => v - motion.box[0][i])) > FAR(bodies) * motion.reach;
+  const grid = block.floor ? floorGrid(motion.box, long ? 0.47 * AROUND(bodies) * motion.reach : 0) : null;
+  let [now, playing, pushing] = [start, false, false];
   const poses = () => bodies.map((body) => poseAt(body, placeInTime(times, now)));
 
   const holder = h('div', { class: 'stage3d drawing', role: 'img', tabindex: 0, 'aria-label':
     `Animation: ${block.title ?? 'untitled'}; ${bodies.map((body) => body.name).join(', ')}; t from ${formatShort(start)} to ` +
     `${formatShort(end)}. Space plays, arrow keys turn the view, plus and minus zoom, 0 resets.` });
   const stage = new Stage(holder, { height: heightFor, box: motion.box, from: block.view === 'top' ? ABOVE : HOME, floor: Boolean(block.floor),
-    build: (solid) => build(motion, grid, solid, poses, () => placeInTime(times, now)) });
+    build: (solid) => build(motion, grid, solid, poses, () => placeInTime(times, now), () => pushing) });
   const bar = h('input', { type: 'range', class: 'bar', min: 0, max: TICKS, value: 0, 'aria-label': 'time',
     oninput: () => { pause(); seek(start + (bar.value / TICKS) * (end - start)); } });
   const clock = h('output', { class: 'clock' });
   const play = h('button', { type: 'button', class: 'play', onclick: () => (playing ? pause() : run()) });
   const speed = h('select', { 'aria-label': 'speed' }, SPEEDS.map((s) => h('option', { value: s }, `${s}×`)));
   speed.value = speedFor(end - start);
-  const where = () => new Vector3(...(poses()[0]?.at ?? [0, 0, 0]));
+  const where = () => new Vector3(...middleOf(poses().filter(Boolean)));
   const follow = (yes) => {
-    stage.follow(yes ? where : null, AROUND * motion.reach);
+    stage.follow(yes ? where : null, AROUND(bodies) * motion.reach);
     button.setAttribute('aria-pressed', String(yes));
   };
   const button = h('button', { type: 'button', onclick: () => follow(button.getAttribute('aria-pressed') !== 'true') }, 'follow');
   const tools = [h('button', { type: 'button', onclick: () => stage.goTo(ABOVE) }, 'from above'), button,
     h('button', { type: 'button', class: 'home', onclick: () => { follow(long); stage.goTo(stage.from); } }, 'reset view')];
+
+  if (motion.strongest > 0) {
+    const push = h('button', { type: 'button', 'aria-pressed': 'false', onclick: () => {
+      pushing = !pushing;
+      push.setAttribute('aria-pressed', String(pushing));
+      stage.paint();
+    } }, 'reactions');
+    tools.unshift(push);
+  }
 
   const seek = (t) => {
     now = Math.max(start, Math.min(end, t));
@@ -100,7 +111,7 @@ function speedFor(duration) {
 }
 
 /** The scene at the time `now`: grid, shadows straight down on it, bodies, and the ways of points: all thin, the past strong. */
-function build(motion, grid, solid, poses, now) {
+function build(motion, grid, solid, poses, now, pushing) {
   const scene = new Scene();
   const light = addLight(scene, solid);
   if (grid) scene.add(lines(solid, grid.lines.flat(2), styled('--mesh'), 0.9, { renderOrder: -3 }));
@@ -129,8 +140,12 @@ function build(motion, grid, solid, poses, now) {
     scene.add(lines(solid, pairs(way), new Color(colour).lerp(styled('--paper'), 0.5), 1.3, { renderOrder: -1, depthWrite: false }), past);
     return (pose, { i }) => past.place(pairs([...way.slice(0, i + 1), pose ? placed(pose, point) : null]));
   });
+  const scale = ARROW * motion.reach / motion.strongest;
+  const arrows = motion.forces.map(() => lines(solid, [], styled('--c2'), 3, { depthTest: false, renderOrder: 1 }));
+  if (arrows.length) scene.add(...arrows);
   const update = (camera) => {
     light(camera);
+    arrows.forEach((arrow, f) => arrow.place(pushing() ? arrowOf(motion.forces[f], now(), scale) : []));
     const at = poses();
     groups.forEach((body, b) => {
       body.visible = Boolean(at[b]);

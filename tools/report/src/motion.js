@@ -73,7 +73,18 @@ function hullOf(shape) {
   }
 }
 
-/** The block -> {times, bodies, box, reach, missing}; a body: {name, poses, shapes, hull, way: points or null, reach}. */
+/** The mean of where bodies are. */
+export const middleOf = (poses) => poses.reduce((sum, { at }) => add(sum, at.map((v) => v / poses.length)), [0, 0, 0]);
+
+function readForce(force, f, times) {
+  const { values } = force ?? {};
+  const where = `force ${f + 1} (${force?.name})`;
+  if (!Array.isArray(values) || values.length !== times.length) throw new Error(`${where} needs a list of ${times.length} values`);
+  return { name: String(force.name ?? ''), values: values.map((v) =>
+    (Array.isArray(v) && v.length === 6 && v.every(Number.isFinite) ? { at: v.slice(0, 3), force: v.slice(3) } : null)) };
+}
+
+/** The block -> {times, bodies, forces, strongest, box, reach, missing}; a body: {name, poses, shapes, hull, way: points or null, reach}. */
 export function readMotion(block) {
   const { times } = block;
   if (!Array.isArray(times) || times.length === 0) throw new Error('no list "times"');
@@ -105,7 +116,14 @@ export function readMotion(block) {
   }
   if (block.floor) [box[0][2], box[1][2]] = [Math.min(0, box[0][2]), Math.max(0, box[1][2])];
   if (!(box[0][0] < Infinity)) [box[0], box[1]] = [[-1, -1, -1], [1, 1, 1]];
-  return { times, bodies, box, reach: Math.max(1e-9, ...bodies.map((body) => body.reach)),
+  const forces = (block.forces ?? []).map((force, f) => readForce(force, f, times));
+  const strongest = Math.max(0, ...forces.flatMap(({ values }) => values.map((v) => (v ? Math.hypot(...v.force) : 0))));
+  const apart = times.map((_, i) => {
+    const here = bodies.filter(({ poses }) => poses[i]);
+    const middle = middleOf(here.map(({ poses }) => poses[i]));
+    return Math.max(0, ...here.map(({ poses, reach }) => reach + Math.hypot(...poses[i].at.map((v, k) => v - middle[k]))));
+  });
+  return { times, bodies, forces, strongest, box, reach: Math.max(1e-9, ...apart),
     missing: Math.max(...bodies.map((body) => body.poses.filter((pose) => !pose).length)) };
 }
 
@@ -126,6 +144,19 @@ export function poseAt({ poses }, { i, u }) {
   if (u === 0) return a;
   if (u === 1 || !a || !b) return u === 1 ? b : null;
   return { at: a.at.map((v, k) => v + u * (b.at[k] - v)), turn: slerp(a.turn, b.turn, u) };
+}
+
+/** A force at a time, as the segments of an arrow; `scale` metres a newton. */
+export function arrowOf({ values }, { i, u }, scale) {
+  const now = values[u > 0.5 && i + 1 < values.length ? i + 1 : i];
+  if (!now) return [];
+  const along = now.force.map((v) => v * scale);
+  const length = Math.hypot(...along);
+  if (!(length > 0)) return [];
+  const tip = add(now.at, along);
+  const turn = turnFromZ(along);
+  const barb = (x) => add(tip, turned(turn, [x, 0, -2 * Math.abs(x)]));
+  return [...now.at, ...tip, ...tip, ...barb(0.08 * length), ...tip, ...barb(-0.08 * length)];
 }
 
 /** The grid under the box, a hair below z = 0: {step, lines: [[from, to], …]}; its step about `wanted` or larger. */

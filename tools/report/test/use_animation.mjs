@@ -34,6 +34,14 @@ export async function useAnimation(page, check) {
     check(`${title}: the body has moved`, pixels > 300, `${pixels} differences`);
     await page.keyboard.press('Home');
     check(`${title}: and back to the start`, await differences(page, stands, await look()) < 200);
+    const push = figure.getByText('reactions', { exact: true });
+    check(`${title}: reactions are there to switch on where the data has forces`, await push.count() === (title.startsWith('Rolling disk') ? 1 : 0));
+    if (await push.count()) {
+      await push.click();
+      check(`${title}: arrows appear`, await differences(page, stands, await look()) > 60);
+      await push.click();
+      check(`${title}: and go`, await differences(page, stands, await look()) < 60);
+    }
     await stage.focus();
     await page.keyboard.press('ArrowLeft');
     const turned = await look();

@@ -1,8 +1,8 @@
-#include <hamel/systems/at_speed.hpp>
+#include <hamel/systems/straight_starts.hpp>
 
 #include <numbers>
 
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/run/at_speed.hpp>
 #include <hamel/systems/falling_disk.hpp>
 #include <hamel/systems/segway.hpp>
 
@@ -22,15 +22,14 @@ S typed(const SystemModel& model) {
 
 }  // namespace
 
-std::optional<Start> start_at_speed(const SystemModel& model, double speed) {
-  if (model.name == FallingDisk::name()) {
+void add_starts_at_speed() {
+  add_start_at_speed(FallingDisk::name(), [](const SystemModel& model, double speed) {
     const auto disk = typed<FallingDisk>(model);
     return disk.rolling(0.5 * std::numbers::pi, {0, 0, speed / disk.radius});
-  }
-  if (model.name == Segway::name()) return typed<Segway>(model).rolling(0, 0, speed);
-  const MotionWords& words = words_of(model);
-  if (words.start_parameters.empty() || words.start_parameters[0] != "speed") return {};
-  return words.start_from(std::vector<double>{speed});
+  });
+  add_start_at_speed(Segway::name(), [](const SystemModel& model, double speed) {
+    return typed<Segway>(model).rolling(0, 0, speed);
+  });
 }
 
 }  // namespace hamel

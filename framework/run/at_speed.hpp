@@ -1,0 +1,19 @@
+// Straight motions by their speed: what a run with `speed` starts from.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <hamel/framework/mechanics/system.hpp>
+
+namespace hamel {
+
+/// Straight ahead at v m/s: of mechanisms whose first number for a start is a speed, and of systems by these names.
+/// Empty where the system knows no such motion.
+std::optional<Start> start_at_speed(const SystemModel& model, double speed);
+
+using StartAtSpeed = std::function<Start(const SystemModel& model, double speed)>;
+void add_start_at_speed(const std::string& system, StartAtSpeed start);
+
+}  // namespace hamel

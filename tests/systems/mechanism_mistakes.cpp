@@ -1,0 +1,92 @@
+// What a mechanism says of parts that do not go together, before anything runs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "mechanism_systems.hpp"
+
+namespace hamel {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refused(const Mechanism& mechanism) {
+  try {
+    mechanism.model();
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(Mechanisms, SayWhatIsWrongWithTheirParts) {
+  Mechanism m("cart");
+  m.body("cart", {.mass = 1, .inertia = {1, 1, 1}});
+  m.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
+  m.planar("floor", "cart");
+  m.hinge("axle", "cart", "wheeel", {.axis = {0, 1, 0}});
+  EXPECT_THAT(refused(m), HasSubstr("joint 'axle': unknown child 'wheeel': expected one of cart, "
+                                    "wheel; did you mean 'wheel'?"));
+  Mechanism loose("loose");
+  loose.body("a", {.mass = 1, .inertia = {1, 1, 1}});
+  EXPECT_THAT(refused(loose), HasSubstr("body 'a': hangs on no joint"));
+  Mechanism circle("circle");
+  circle.body("a", {.mass = 1, .inertia = {1, 1, 1}});
+  circle.body("b", {.mass = 1, .inertia = {1, 1, 1}});
+  circle.hinge("ab", "a", "b", {});
+  circle.hinge("ba", "b", "a", {});
+  EXPECT_THAT(refused(circle), HasSubstr("'ab', 'ba' go round in a circle"));
+  Mechanism high("high");
+  high.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
+  high.free("space", "wheel", {.at = {0, 0, 0.3}});
+  high.wheel("wheel", "wheel", {.at = {0, 0, 0.32}, .radius = 0.3});
+  EXPECT_THAT(refused(high),
+              HasSubstr("does not touch the ground z = 0 as drawn: its lowest point is at 0.02 m"));
+  Mechanism flat("flat");
+  flat.body("wheel", {.mass = 1, .at = {0, 0, 0.3}, .inertia = {1, 1, 1}});
+  flat.free("space", "wheel");
+  flat.wheel("wheel", "wheel", {.at = {0, 0, 0.3}, .axle = {0, 0, 1}, .radius = 0.3});
+  EXPECT_THAT(refused(flat), HasSubstr("wheel 'wheel': axle: is vertical"));
+  Mechanism light("light");
+  light.body("a", {.mass = 1, .inertia = {1, 1, 1}});
+  light.body("tip", {});
+  light.planar("floor", "a");
+  light.hinge("end", "a", "tip", {.at = {1, 0, 0}});
+  EXPECT_THAT(refused(light), HasSubstr("body 'tip' and all that it carries have no inertia"));
+  Mechanism twice = by_parts::racer({});
+  twice.motor("steer");
+  twice.motor("steer");
+  EXPECT_THAT(refused(twice), HasSubstr("motor 'steer': this joint is driven by an input already"));
+  Mechanism bar("bar");
+  bar.body("a", {.mass = 1, .inertia = {1, 1, 3}});
+  bar.planar("floor", "a");
+  EXPECT_THAT(words_of(bar.model()).notes,
+              testing::Contains(HasSubstr("no rigid body has the principal moments 1,1,3")));
+}
+
+TEST(Mechanisms, FindRowsThatSayNothingNew) {
+  const Mechanism dropping = by_parts::drive({});
+  EXPECT_EQ(dropping.model().mechanics->rows(), 3);
+  EXPECT_THAT(words_of(dropping.model()).notes,
+              testing::Contains(HasSubstr(
+                  "row dropped: 'left' (does not slip sideways) says nothing beyond 'right' "
+                  "(does not slip sideways)")));
+  Mechanism refusing = dropping;
+  refusing.redundant("refuse");
+  EXPECT_THAT(refused(refusing), HasSubstr("redundant row: 'left' (does not slip sideways)"));
+  // Four wheels under a stiff cart in space: three contacts hold it.
+  Mechanism table("table");
+  table.body("top", {.mass = 1, .at = {0, 0, 0.5}, .inertia = {1, 1, 1}});
+  table.free("space", "top", {.at = {0, 0, 0.5}});
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      table.ball(fmt::format("leg {} {}", x, y), "top", {.at = {x, y, 0.1}, .radius = 0.1});
+    }
+  }
+  table.redundant("drop");
+  EXPECT_EQ(table.model().mechanics->holonomic_rows(), 3);
+}
+
+}  // namespace
+}  // namespace hamel
