@@ -17,9 +17,9 @@ namespace hamel {
 /// What is known before the first row.
 struct RunHead {
   std::vector<ColumnGroup> columns;
-  std::string config;       // as given, TOML: reads back to the same run
-  std::string files;  // the texts of the files that it reads: a system, inputs
-  std::string record;       // as it is at the start: everything resolved, nothing computed
+  std::string config;  // as given, TOML: reads back to the same run
+  std::string files;   // the texts of the files that it reads: a system, inputs
+  std::string record;  // as it is at the start: everything resolved, nothing computed
 };
 
 class Sink {
