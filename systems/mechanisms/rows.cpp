@@ -13,6 +13,7 @@ struct Touch {
     gamma = tree.root_in_world(contact.link).rotation.row(2).transpose();
     q = here.apply(contact.at);
     const Vec3 axis = here.rotation.lazyProduct(contact.axis);
+    along = axis;
     switch (contact.kind) {
       case ContactKind::wheel:
       case ContactKind::roller: {
@@ -21,7 +22,7 @@ struct Touch {
         along = axis.cross(gamma).normalized();
         break;
       }
-      case ContactKind::blade: along = axis; break;
+      case ContactKind::blade: break;
       case ContactKind::ball:
         q -= contact.radius * gamma;
         along = tree.root_in_world(contact.link).rotation.row(0).transpose();
@@ -82,7 +83,7 @@ Vec3 Rows::touches(const Contact& contact, const Tree& tree) const {
   return tree.root_in_world(contact.link).apply(Touch(contact, tree).q);
 }
 
-int Rows::look(const Contact& contact, const Tree& tree, Row* rows) const {
+HAMEL_FLATTEN int Rows::look(const Contact& contact, const Tree& tree, Row* rows) const {
   const Touch touch(contact, tree);
   const Vec3 across = touch.gamma.cross(touch.along);
   int count = 0;

@@ -24,7 +24,8 @@ inline Vec3 lower(const Vec<6>& v) { return v.tail<3>(); }
 inline Vec3 vec(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 inline Vec<6> stack(const Vec3& a, const Vec3& b) {
   Vec<6> out;
-  out << a, b;
+  out.head<3>() = a;
+  out.tail<3>() = b;
   return out;
 }
 

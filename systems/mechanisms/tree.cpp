@@ -1,5 +1,7 @@
 #include <hamel/systems/mechanisms/tree.hpp>
 
+#include <hamel/groups/so2.hpp>
+
 namespace hamel::mechanisms {
 namespace {
 
@@ -35,6 +37,17 @@ Tree::Tree(const std::vector<Link>& links) : links_(links), momenta_(links.size(
       node.directions.col(i) = link.on_child.move(s.col(i));
     node.columns = node.directions;
     node.after = link.on_child.inverse();
+    if (link.kind == JointKind::hinge) {
+      const Mat<3, 3>& p = link.on_parent.rotation;
+      const Mat<3, 3> along = p.col(2) * Vec3::UnitZ().transpose(), even = p - along,
+                      odd = p.col(1) * Vec3::UnitX().transpose() -
+                            p.col(0) * Vec3::UnitY().transpose();
+      const auto term = [&](const Mat<3, 3>& part) {
+        return Rigid{part * node.after.rotation, part * node.after.position};
+      };
+      node.turning = {term(along), term(even), term(odd)};
+      node.turning[0].position += link.on_parent.position;
+    }
     dim_ += static_cast<int>(s.cols());
     size_ += type_of(link.kind).geometry->size();
     const auto drawn = element_of(link.kind, link.on_parent.inverse() * link.on_child);
@@ -45,11 +58,17 @@ Tree::Tree(const std::vector<Link>& links) : links_(links), momenta_(links.size(
   carry();
 }
 
-void Tree::place(const double* g) {
+Rigid Tree::Node::across(const double* g) const {
+  if (link.kind != JointKind::hinge) return link.on_parent * motion(link.kind, g) * after;
+  const SO2::Element turn = Packing<SO2>::load(g);
+  return {turning[0].rotation + turn.c * turning[1].rotation + turn.s * turning[2].rotation,
+          turning[0].position + turn.c * turning[1].position + turn.s * turning[2].position};
+}
+
+HAMEL_FLATTEN void Tree::place(const double* g) {
   carries_ = false;
   for (Node& node : nodes_) {
-    const Rigid across =
-        node.link.on_parent * motion(node.link.kind, g + node.element) * node.after;
+    const Rigid across = node.across(g + node.element);
     if (node.link.parent == kGround) {
       node.world = across;
       continue;
@@ -61,7 +80,7 @@ void Tree::place(const double* g) {
   }
 }
 
-void Tree::carry() {
+HAMEL_FLATTEN void Tree::carry() {
   if (carries_) return;
   carries_ = true;
   for (Node& node : nodes_) {
@@ -73,7 +92,7 @@ void Tree::carry() {
   }
 }
 
-void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
+HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
   for (Node& node : nodes_) {
     node.twist.setZero();
     if (node.link.parent != kGround) node.twist = at(node.link.parent).twist;
@@ -83,7 +102,7 @@ void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
   }
 }
 
-void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> out) const {
+HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> out) const {
   out.setZero();
   for (const Node& node : nodes_) {
     for (Eigen::Index b = 0; b < node.columns.cols(); ++b) {
@@ -101,7 +120,7 @@ void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> out) const {
   }
 }
 
-void Tree::add_inertial_force(Eigen::Ref<Eigen::VectorXd> out) const {
+HAMEL_FLATTEN void Tree::add_inertial_force(Eigen::Ref<Eigen::VectorXd> out) const {
   for (size_t j = 0; j < nodes_.size(); ++j) momenta_[j] = nodes_[j].own * nodes_[j].twist;
   for (size_t j = nodes_.size(); j-- > 0;) {
     const Node& node = nodes_[j];

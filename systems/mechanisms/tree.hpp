@@ -14,6 +14,7 @@
 // robot dynamics, Int. J. Robotics Research 14 (1995).
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -91,11 +92,14 @@ class Tree {
     Link link;
     int root = 0, dof = 0, element = 0;
     Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> directions,
-        columns;         // Ad_C S; seen from the root
-    Rigid after;         // C^-1
+        columns;  // Ad_C S; seen from the root
+    Rigid after;  // C^-1
+    std::array<Rigid, 3>
+        turning;         // of a hinge, P Rot C^-1 = the first + cos the second + sin the third
     Rigid place, world;  // X; W of a root
     Twist twist = Twist::Zero();
-    Inertia own, carried;  // seen from the root; with all that the link carries
+    Inertia own, carried;                 // seen from the root; with all that the link carries
+    Rigid across(const double* g) const;  // from the parent
   };
   const Node& at(int link) const { return nodes_[static_cast<size_t>(link)]; }
   Node& at(int link) { return nodes_[static_cast<size_t>(link)]; }

@@ -29,7 +29,7 @@ endfunction()
 #     LINK_HEADERS_PRIVATE x::x      # header-only and used by the sources only: users never need it
 #     HEADERS so3.hpp ...            # public: installed, and each compiled alone
 #     SOURCES ...                    # neither SOURCES nor KERNELS: a header-only layer
-#     KERNELS ...)                   # sources with the time loops, compiled with -O3
+#     KERNELS ...)                   # sources of what a step calls, compiled with -O3
 #
 # build/include/groups/hamel/groups links to the folder, so that groups/so3.hpp is
 # <hamel/groups/so3.hpp>, and a layer that does not link this one cannot include it.
