@@ -11,8 +11,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/io/expression.hpp>
-#include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/io/toml_formulas.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
 
 namespace hamel::mechanisms {
@@ -26,42 +25,20 @@ class FileValues {
 
   explicit FileValues(const std::string& origin) : toml(origin) {}
 
-  /// The values that stand in formulas from now on.
-  void set_parameters(std::vector<std::string> names, std::vector<double> values) {
-    names_ = std::move(names);
-    values_ = std::move(values);
-  }
   /// Coordinates and velocities, for signals.
   void set_state(std::vector<std::string> names) { state_ = std::move(names); }
 
-  double number(const Node& node, const std::string& key) {
-    double out = 0;
-    if (node.is_number()) out = *node.value<double>();
-    else if (const auto formula = compile(node, key, names_)) out = (*formula)(values_);
-    if (!std::isfinite(out)) toml.wrong(node, key, fmt::format("a finite number, got {}", out));
-    return out;
-  }
-  std::vector<double> numbers(const Node& node, const std::string& key) {
-    std::vector<double> out;
-    if (const toml::array* array = node.as_array()) {
-      for (const Node& entry : *array) out.push_back(number(entry, key));
-    } else {
-      toml.wrong(node, key, "a list of numbers");
-    }
-    return out;
-  }
+  double number(const Node& node, const std::string& key) { return formulas.number(node, key); }
   Point point(const Node& node, const std::string& key) {
-    const auto values = numbers(node, key);
-    if (values.size() == 3) return {values[0], values[1], values[2]};
-    if (node.is_array()) toml.wrong(node, key, fmt::format("3 numbers, got {}", values.size()));
-    return {0, 0, 0};
+    const auto values = formulas.numbers(node, key, 3);
+    return {values[0], values[1], values[2]};
   }
   /// A formula of t, coordinates, velocities and parameters.
   Signal signal(const Node& node, const std::string& key) {
-    if (node.is_number()) return [x = number(node, key)](const Now&) { return x; };
-    const auto formula = compile(node, key, with_time(state_));
+    const auto formula = formulas.expression(node, key, with_time(state_));
     if (!formula) return {};
-    return [formula = *formula, values = room(state_.size())](const Now& now) mutable {
+    return [formula = *formula,
+            values = std::vector<double>(1 + state_.size())](const Now& now) mutable {
       values[0] = now.t;
       const auto next =
           std::copy(now.coordinates.begin(), now.coordinates.end(), values.begin() + 1);
@@ -71,14 +48,12 @@ class FileValues {
   }
   /// A formula of t and parameters, or its derivative.
   std::function<double(double)> of_time(const Node& node, const std::string& key, bool derivative) {
-    if (node.is_number()) return [x = derivative ? 0 : number(node, key)](double) { return x; };
-    const auto formula = compile(node, key, with_time({}));
+    const auto formula = formulas.expression(node, key, {"t"});
     if (!formula) return {};
-    return [formula = *formula, values = room(0), slopes = room(0), derivative](double t) mutable {
-      values[0] = t;
-      slopes[0] = 0;
-      const double value = formula.differentiate(values, 1, slopes);
-      return derivative ? slopes[0] : value;
+    return [formula = *formula, derivative](double t) {
+      double slope = 0;
+      const double value = formula.differentiate({&t, 1}, 1, {&slope, 1});
+      return derivative ? slope : value;
     };
   }
 
@@ -89,7 +64,8 @@ class FileValues {
     return [this, &to](const Node& node, const std::string& key) { to = number(node, key); };
   }
   Reader read(std::vector<double>& to) {
-    return [this, &to](const Node& node, const std::string& key) { to = numbers(node, key); };
+    return
+        [this, &to](const Node& node, const std::string& key) { to = formulas.numbers(node, key); };
   }
   Reader read(Point& to) {
     return [this, &to](const Node& node, const std::string& key) { to = point(node, key); };
@@ -118,39 +94,16 @@ class FileValues {
   }
 
   TomlReader toml;
+  TomlFormulas formulas{toml};
 
  private:
-  std::optional<Expression> compile(const Node& node, const std::string& key,
-                                    const std::vector<std::string>& names) {
-    const auto text = node.value<std::string>();
-    if (!text) {
-      toml.wrong(node, key, "a number or a formula");
-      return {};
-    }
-    try {
-      return Expression(*text, names);
-    } catch (const ExpressionError& error) {
-      toml::source_position at = node.source().begin;
-      at.column += static_cast<toml::source_index>(1 + error.position());
-      toml.mistakes.push_back(fmt::format("{}: {}: {}", toml.place(at), key, error.what()));
-      return {};
-    }
-  }
-  // t, the state, the parameters.
   std::vector<std::string> with_time(const std::vector<std::string>& state) const {
     std::vector<std::string> names{"t"};
     names.insert(names.end(), state.begin(), state.end());
-    names.insert(names.end(), names_.begin(), names_.end());
     return names;
   }
-  std::vector<double> room(size_t state) const {
-    std::vector<double> values(1 + state, 0.0);
-    values.insert(values.end(), values_.begin(), values_.end());
-    return values;
-  }
 
-  std::vector<std::string> names_, state_;
-  std::vector<double> values_;
+  std::vector<std::string> state_;
 };
 
 }  // namespace hamel::mechanisms

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <hamel/framework/run/toml_parameters.hpp>
 #include <hamel/systems/mechanisms/file_values.hpp>
 
 namespace hamel {
@@ -37,39 +38,9 @@ class File {
   }
 
   void parameters(const Parameters& given) {
-    if (const Node* node = table_.get("parameters")) {
-      if (const toml::table* table = node->as_table()) {
-        for (const auto& [name, entry] : *table) parameter(std::string(name.str()), entry);
-      } else {
-        read_.toml.wrong(*node, "parameters", "a table");
-      }
-    }
-    stop_at_mistakes();
     std::string name = word("name");
     if (name.empty()) name = origin_;
-    detail::check_parameters(name, fields_, given);
-    std::vector<std::string> names;
-    std::vector<double> values;
-    for (Field& field : fields_) {
-      if (const auto it = given.find(field.name); it != given.end()) field.value = it->second;
-      names.push_back(field.name);
-      values.push_back(field.value[0]);
-    }
-    if (const auto wrong = out_of_range(name, fields_); !wrong.empty()) throw ConfigError(wrong);
-    read_.set_parameters(std::move(names), std::move(values));
-  }
-  void parameter(const std::string& name, const Node& node) {
-    Field field{name, {0}, "", "", {}};
-    if (const toml::table* table = node.as_table()) {
-      read_.entries(*table, {{"value", read_.read(field.value[0])},
-                             {"unit", read_.read(field.unit)},
-                             {"meaning", read_.read(field.meaning)},
-                             {"least", read_.read(field.range.least)},
-                             {"most", read_.read(field.range.most)}});
-    } else {
-      field.value[0] = read_.number(node, "parameters." + name);
-    }
-    fields_.push_back(std::move(field));
+    fields_ = read_parameters(read_.toml, read_.formulas, table_, name, given);
   }
 
   // each(table) for the tables [[kind]]; their mistakes carry their place.
