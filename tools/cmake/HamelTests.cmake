@@ -123,7 +123,7 @@ function(hamel_compile_error stem)
     COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER} -DSOURCE=${source}
             "-DINCLUDES=$<TARGET_PROPERTY:compile_error_${stem},INCLUDE_DIRECTORIES>"
             -P ${PROJECT_SOURCE_DIR}/tools/cmake/expect_compile_error.cmake)
-  set_tests_properties(compile_errors/${stem} PROPERTIES LABELS compile_error TIMEOUT 120)
+  set_tests_properties(compile_errors/${stem} PROPERTIES LABELS compile_error TIMEOUT 600)
 endfunction()
 
 # tests/framework/rooms.cmake, with the include directories that the sources of each layer are compiled with.
