@@ -1,9 +1,51 @@
 #include <hamel/solvers/hybrid.hpp>
 
+#include <vector>
+
 #include <Eigen/Core>
 #include <unsupported/Eigen/NonLinearOptimization>
 
 #include <hamel/framework/loop/scaled_equation.hpp>
+
+// The update of a QR factorisation by u v^T, R in s: MINPACK's r1updt. Where a component of the spike w is zero, Eigen 3.4 puts
+// the identity into v_givens instead of w_givens, which then has no value there (uncoupled equations).
+template <>
+void Eigen::internal::r1updt<double>(MatrixXd& s, const VectorXd& u,
+                                     std::vector<JacobiRotation<double>>& v_givens,
+                                     std::vector<JacobiRotation<double>>& w_givens, VectorXd& v,
+                                     VectorXd& w, bool* singular) {
+  const Index last = s.cols() - 1;
+  const auto at = [](auto& list, Index j) -> auto& { return list[static_cast<size_t>(j)]; };
+  w[last] = s(last, last);
+  for (Index j = last - 1; j >= 0; --j) {  // v becomes a multiple of the last unit vector
+    w[j] = 0;
+    JacobiRotation<double>& turn = at(v_givens, j) = JacobiRotation<double>(1, 0);
+    if (v[j] == 0) continue;
+    turn.makeGivens(-v[last], v[j]);
+    v[last] = turn.s() * v[j] + turn.c() * v[last];
+    for (Index i = j; i <= last; ++i) {
+      const double kept = turn.c() * s(j, i) - turn.s() * w[i];
+      w[i] = turn.s() * s(j, i) + turn.c() * w[i];
+      s(j, i) = kept;
+    }
+  }
+  w += v[last] * u;
+  *singular = false;
+  for (Index j = 0; j < last; ++j) {  // the spike goes
+    JacobiRotation<double>& turn = at(w_givens, j) = JacobiRotation<double>(1, 0);
+    if (w[j] != 0) {
+      turn.makeGivens(-s(j, j), w[j]);
+      for (Index i = j; i <= last; ++i) {
+        const double kept = turn.c() * s(j, i) + turn.s() * w[i];
+        w[i] = -turn.s() * s(j, i) + turn.c() * w[i];
+        s(j, i) = kept;
+      }
+    }
+    *singular = *singular || s(j, j) == 0;
+  }
+  s(last, last) = w[last];
+  *singular = *singular || w[last] == 0;
+}
 
 namespace hamel {
 namespace {
