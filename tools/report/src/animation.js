@@ -14,7 +14,7 @@ const TICKS = 1000;       // of the bar
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 const PLEASANT = [4, 25]; // seconds that a motion may take as it is; others are brought near 10
 const TRAILS = ['--c2', '--c1', '--c3', '--c4', '--c6', '--c8'];
-const ARROW = 1;          // so many times the reach of all bodies is the strongest force long
+const ARROW = 0.15;       // of what is seen, and the reach of all bodies at least: the length of the strongest force
 // So many times this reach is the room before they are followed at first, and is seen around them then.
 const FAR = (bodies) => (bodies.length > 1 ? 5 : 40);
 const AROUND = (bodies) => (bodies.length > 1 ? 1.1 : 3.2);
@@ -23,7 +23,8 @@ export function animation(block) {
   const motion = readMotion(block);
   const { times, bodies } = motion;
   const [start, end] = [times[0], times[times.length - 1]];
-  const long = Math.max(...motion.box[1].map((v, i) => v - motion.box[0][i])) > FAR(bodies) * motion.reach;
+  const room = Math.max(...motion.box[1].map((v, i) => v - motion.box[0][i]));
+  const long = room > FAR(bodies) * motion.reach;
   const grid = block.floor ? floorGrid(motion.box, long ? 0.47 * AROUND(bodies) * motion.reach : 0) : null;
   let [now, playing, pushing] = [start, false, false];
   const poses = () => bodies.map((body) => poseAt(body, placeInTime(times, now)));
@@ -32,7 +33,7 @@ export function animation(block) {
     `Animation: ${block.title ?? 'untitled'}; ${bodies.map((body) => body.name).join(', ')}; t from ${formatShort(start)} to ` +
     `${formatShort(end)}. Space plays, arrow keys turn the view, plus and minus zoom, 0 resets.` });
   const stage = new Stage(holder, { height: heightFor, box: motion.box, from: block.view === 'top' ? ABOVE : HOME, floor: Boolean(block.floor),
-    build: (solid) => build(motion, grid, solid, poses, () => placeInTime(times, now), () => pushing) });
+    build: (solid) => build(motion, grid, solid, poses, () => placeInTime(times, now), () => pushing, long ? AROUND(bodies) * motion.reach : room) });
   const bar = h('input', { type: 'range', class: 'bar', min: 0, max: TICKS, value: 0, 'aria-label': 'time',
     oninput: () => { pause(); seek(start + (bar.value / TICKS) * (end - start)); } });
   const clock = h('output', { class: 'clock' });
@@ -111,7 +112,7 @@ function speedFor(duration) {
 }
 
 /** The scene at the time `now`: grid, shadows straight down on it, bodies, and the ways of points: all thin, the past strong. */
-function build(motion, grid, solid, poses, now, pushing) {
+function build(motion, grid, solid, poses, now, pushing, seen) {
   const scene = new Scene();
   const light = addLight(scene, solid);
   if (grid) scene.add(lines(solid, grid.lines.flat(2), styled('--mesh'), 0.9, { renderOrder: -3 }));
@@ -140,8 +141,8 @@ function build(motion, grid, solid, poses, now, pushing) {
     scene.add(lines(solid, pairs(way), new Color(colour).lerp(styled('--paper'), 0.5), 1.3, { renderOrder: -1, depthWrite: false }), past);
     return (pose, { i }) => past.place(pairs([...way.slice(0, i + 1), pose ? placed(pose, point) : null]));
   });
-  const scale = ARROW * motion.reach / motion.strongest;
-  const arrows = motion.forces.map(() => lines(solid, [], styled('--c2'), 3, { depthTest: false, renderOrder: 1 }));
+  const scale = Math.max(motion.reach, ARROW * seen) / motion.strongest;
+  const arrows = motion.forces.map(() => lines(solid, [], styled('--ink'), 3, { depthTest: false, renderOrder: 1 }));
   if (arrows.length) scene.add(...arrows);
   const update = (camera) => {
     light(camera);

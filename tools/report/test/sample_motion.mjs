@@ -62,6 +62,7 @@ export const body = () => {
 const far = () => {
   const one = disk();
   one.bodies[0].poses = one.bodies[0].poses.map(([, , z, ...turn], i) => [i * 0.25, 0, z, ...turn]);
+  one.forces[0].values = one.forces[0].values.map(([, , ...rest], i) => [i * 0.25, 0, ...rest]);
   return { ...one, title: 'Rolling far' };
 };
 

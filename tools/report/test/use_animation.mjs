@@ -46,7 +46,8 @@ export async function useAnimation(page, check) {
     check(`${title}: reactions are there to switch on where the data has forces`, await push.count() === (pushed[n] ? 1 : 0));
     if (await push.count()) {
       await push.click();
-      check(`${title}: arrows appear`, await differences(page, stands, await look()) > 60);
+      const seen = await differences(page, stands, await look());
+      check(`${title}: arrows appear`, seen > 60, `${seen} differences`);
       await push.click();
       check(`${title}: and go`, await differences(page, stands, await look()) < 60);
     }
