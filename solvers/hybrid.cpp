@@ -14,28 +14,28 @@ void Eigen::internal::r1updt<double>(MatrixXd& s, const VectorXd& u,
                                      std::vector<JacobiRotation<double>>& v_givens,
                                      std::vector<JacobiRotation<double>>& w_givens, VectorXd& v,
                                      VectorXd& w, bool* singular) {
-  const Index last = s.cols() - 1;
+  const Index end = s.cols() - 1;
   const auto at = [](auto& list, Index j) -> auto& { return list[static_cast<size_t>(j)]; };
-  w[last] = s(last, last);
-  for (Index j = last - 1; j >= 0; --j) {  // v becomes a multiple of the last unit vector
+  w[end] = s(end, end);
+  for (Index j = end - 1; j >= 0; --j) {  // v becomes a multiple of the end unit vector
     w[j] = 0;
     JacobiRotation<double>& turn = at(v_givens, j) = JacobiRotation<double>(1, 0);
     if (v[j] == 0) continue;
-    turn.makeGivens(-v[last], v[j]);
-    v[last] = turn.s() * v[j] + turn.c() * v[last];
-    for (Index i = j; i <= last; ++i) {
+    turn.makeGivens(-v[end], v[j]);
+    v[end] = turn.s() * v[j] + turn.c() * v[end];
+    for (Index i = j; i <= end; ++i) {
       const double kept = turn.c() * s(j, i) - turn.s() * w[i];
       w[i] = turn.s() * s(j, i) + turn.c() * w[i];
       s(j, i) = kept;
     }
   }
-  w += v[last] * u;
+  w += v[end] * u;
   *singular = false;
-  for (Index j = 0; j < last; ++j) {  // the spike goes
+  for (Index j = 0; j < end; ++j) {  // the spike goes
     JacobiRotation<double>& turn = at(w_givens, j) = JacobiRotation<double>(1, 0);
     if (w[j] != 0) {
       turn.makeGivens(-s(j, j), w[j]);
-      for (Index i = j; i <= last; ++i) {
+      for (Index i = j; i <= end; ++i) {
         const double kept = turn.c() * s(j, i) + turn.s() * w[i];
         w[i] = -turn.s() * s(j, i) + turn.c() * w[i];
         s(j, i) = kept;
@@ -43,8 +43,8 @@ void Eigen::internal::r1updt<double>(MatrixXd& s, const VectorXd& u,
     }
     *singular = *singular || s(j, j) == 0;
   }
-  s(last, last) = w[last];
-  *singular = *singular || w[last] == 0;
+  s(end, end) = w[end];
+  *singular = *singular || w[end] == 0;
 }
 
 namespace hamel {

@@ -60,7 +60,7 @@ Tree::Tree(const std::vector<Link>& links) : links_(links), momenta_(links.size(
 
 Rigid Tree::Node::across(const double* g) const {
   if (link.kind != JointKind::hinge) return link.on_parent * motion(link.kind, g) * after;
-  const SO2::Element turn = Packing<SO2>::load(g);
+  const auto turn = Packing<SO2>::load(g);
   return {turning[0].rotation + turn.c * turning[1].rotation + turn.s * turning[2].rotation,
           turning[0].position + turn.c * turning[1].position + turn.s * turning[2].position};
 }
