@@ -17,7 +17,7 @@ void Eigen::internal::r1updt<double>(MatrixXd& s, const VectorXd& u,
   const Index end = s.cols() - 1;
   const auto at = [](auto& list, Index j) -> auto& { return list[static_cast<size_t>(j)]; };
   w[end] = s(end, end);
-  for (Index j = end - 1; j >= 0; --j) {  // v becomes a multiple of the end unit vector
+  for (Index j = end - 1; j >= 0; --j) {  // v becomes a multiple of the last unit vector
     w[j] = 0;
     JacobiRotation<double>& turn = at(v_givens, j) = JacobiRotation<double>(1, 0);
     if (v[j] == 0) continue;
