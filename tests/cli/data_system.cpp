@@ -14,21 +14,8 @@ using testing::HasSubstr;
 
 class DataSystem : public CommandLine {
  protected:
-  std::string write(const std::string& text) {
-    std::ofstream(file("system.toml")) << text;
-    return file("system.toml");
-  }
-  json record(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "run");
-    arguments.insert(arguments.end(), {"--json", "--quiet"});
-    const Outcome o = run(arguments);
-    EXPECT_EQ(o.status, 0) << o.err;
-    return json::parse(o.out);
-  }
-  void refused(const std::string& text, const std::string& message) {
-    const Outcome o = run({"run", write(text)});
-    EXPECT_EQ(o.status, 2) << text;
-    EXPECT_THAT(o.err, HasSubstr(message)) << text;
+  std::string write(const std::string& text) const {
+    return CommandLine::write("system.toml", text);
   }
 };
 

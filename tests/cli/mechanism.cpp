@@ -15,20 +15,14 @@ using testing::HasSubstr;
 
 class MechanismFile : public CommandLine {
  protected:
-  std::string write(const std::string& text) {
-    std::ofstream(file("parts.toml")) << text;
-    return file("parts.toml");
+  std::string write(const std::string& text) const {
+    return CommandLine::write("system.toml", text);
   }
   json answer(std::vector<std::string> arguments) {
     arguments.emplace_back("--json");
     const Outcome o = run(arguments);
     EXPECT_EQ(o.status, 0) << o.err;
     return json::parse(o.out);
-  }
-  void refused(const std::string& text, const std::string& message) {
-    const Outcome o = run({"run", write(text)});
-    EXPECT_EQ(o.status, 2) << text;
-    EXPECT_THAT(o.err, HasSubstr(message)) << text;
   }
 };
 
@@ -147,16 +141,16 @@ TEST_F(MechanismFile, SaysWhereItIsWrong) {
       "[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 1]\n[[joint]]\nkind = \"planar\"\nchild "
       "= \"a\"\n";
   refused(body + "[[wheel]]\nbody = \"b\"\nradius = 1\n",
-          "parts.toml:8:1: wheel 'b': unknown body 'b': expected one of a");
+          "system.toml:8:1: wheel 'b': unknown body 'b': expected one of a");
   refused(body + "[[motor]]\njoint = \"a\"\neffort = \"1\"\n",
           "motor 'a': unknown hinge or slider 'a'");
   refused(body + "[[force]]\nname = \"f\"\nbody = \"a\"\nalong = [\"2*omeg\", 0, 0]\n",
-          "parts.toml:11:13: along: unknown name 'omeg': expected one of t, theta, x, y, omega, "
+          "system.toml:11:13: along: unknown name 'omeg': expected one of t, theta, x, y, omega, "
           "v1, v2; did you mean 'omega'?");
   refused(body + "[[blade]]\nbody = \"a\"\nallong = [1, 0, 0]\n",
-          "parts.toml:10:10: unknown key 'allong'");
+          "system.toml:10:10: unknown key 'allong'");
   refused("[[body]]\nname = \"a\"\nmass = \"1/0\"\n",
-          "parts.toml:3:8: mass: expected a finite number, got inf");
+          "system.toml:3:8: mass: expected a finite number, got inf");
   refused(body + "[start]\nspeeed = 1\n", "did you mean 'speed'?");
   refused(body + "wheels = 3\n", "unknown key 'wheels'");
   const Outcome o = run({"run", write(kSleigh), "--set", "ofset=1"});

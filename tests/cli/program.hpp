@@ -1,6 +1,7 @@
 // Runs the program whose path is in $HAMEL_PROGRAM, as a shell would: arguments, output, exit status.
 #pragma once
 
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -93,8 +94,30 @@ class CommandLine : public testing::Test {
     EXPECT_EQ(outcome.status, status) << outcome.err;
     return nlohmann::json::parse(outcome.out.empty() ? "{}" : outcome.out);
   }
-  void write(const std::string& name, const std::string& text) const {
+  /// The file's path.
+  std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(file(name)) << text;
+    return file(name);
+  }
+  /// `run` of a file with this text, system.toml, is bad input.
+  void refused(const std::string& text, const std::string& message) const {
+    const Outcome outcome = run({"run", write("system.toml", text)});
+    EXPECT_EQ(outcome.status, 2) << text;
+    EXPECT_THAT(outcome.err, testing::HasSubstr(message)) << text;
+  }
+  /// The program at work in its folder, its output nowhere.
+  pid_t started(const std::vector<std::string>& arguments) const {
+    const pid_t child = fork();
+    EXPECT_GE(child, 0);
+    if (child != 0) return child;
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDERR_FILENO);
+    dup2(nowhere, STDOUT_FILENO);
+    std::vector<char*> words = {const_cast<char*>("hamel")};
+    for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
+    words.push_back(nullptr);
+    if (chdir(folder_.c_str()) == 0) execv(program_.c_str(), words.data());
+    _exit(127);
   }
 
  private:

@@ -92,7 +92,9 @@ TEST_F(Recorded, CtrlCKeepsWhatThereIs) {
                        "-o",  "a.h5",         "-o",      "a.csv"};
   for (const int signal : {SIGINT, SIGTERM}) {
     const pid_t child = started(words);
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    // As soon as it has written something.
+    for (int i = 0; i < 6000 && !(exists("a.csv.part") && rows("a.csv.part").size() > 1001); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     kill(child, signal);
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);

@@ -1,7 +1,6 @@
 // Runs that are recorded as they go: what is left of one that was ended, and what it becomes.
 #pragma once
 
-#include <fcntl.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -16,20 +15,6 @@ namespace hamel::test {
 
 class Recorded : public CommandLine {
  protected:
-  /// The program at work, its output nowhere.
-  pid_t started(const std::vector<std::string>& arguments) const {
-    const pid_t child = fork();
-    EXPECT_GE(child, 0);
-    if (child != 0) return child;
-    const int nowhere = open("/dev/null", O_WRONLY);
-    dup2(nowhere, STDERR_FILENO);
-    dup2(nowhere, STDOUT_FILENO);
-    std::vector<char*> words = {const_cast<char*>("hamel")};
-    for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
-    if (chdir(file("").c_str()) == 0) execv(std::getenv("HAMEL_PROGRAM"), words.data());
-    _exit(127);
-  }
   /// The rows of a CSV, and its first line.
   std::vector<std::string> rows(const std::string& name) const {
     return rows_of(contents(file(name)));

@@ -107,7 +107,7 @@ TEST_F(StudyCommand, GoesOnAfterAKill) {
   longer.replace(longer.find("until = 2"), 9, "until = 40");
   const std::string name = study(longer);
   for (const int signal : {SIGKILL, SIGINT}) {
-    const pid_t child = started(name, "killed");
+    const pid_t child = started_study(name, "killed");
     // As soon as it has kept some cells more.
     const std::string journal = file("killed/journal.jsonl");
     const size_t before = lines(contents(journal)).size();

@@ -1,7 +1,6 @@
 // hamel study in a folder of its own, and the cells that it wrote.
 #pragma once
 
-#include <fcntl.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -18,18 +17,8 @@ class StudyCommand : public CommandLine {
     std::ofstream(file(name)) << text;
     return name;
   }
-  /// The program at work on a study, its output nowhere.
-  pid_t started(const std::string& name, const std::string& folder) const {
-    const pid_t child = fork();
-    EXPECT_GE(child, 0);
-    if (child != 0) return child;
-    const int nowhere = open("/dev/null", O_WRONLY);
-    dup2(nowhere, STDERR_FILENO);
-    dup2(nowhere, STDOUT_FILENO);
-    if (chdir(file("").c_str()) == 0)
-      execl(std::getenv("HAMEL_PROGRAM"), "hamel", "study", name.c_str(), "-o", folder.c_str(),
-            nullptr);
-    _exit(127);
+  pid_t started_study(const std::string& name, const std::string& folder) const {
+    return started({"study", name, "-o", folder});
   }
   /// The rows of cells.csv without the columns that are times.
   std::vector<std::string> cells(const std::string& folder) const {

@@ -31,7 +31,7 @@ name = "suslov_in_potential"
   int interrupted = 0;
   std::string kept;
   for (int i = 0; i < 50; ++i) {
-    const pid_t child = started(name, "killed");
+    const pid_t child = started_study(name, "killed");
     std::this_thread::sleep_for(std::chrono::milliseconds(moments(random)));
     kill(child, SIGKILL);
     int status = 0;
