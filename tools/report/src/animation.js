@@ -93,7 +93,7 @@ export function animation(block) {
     ({ name: `${name} ${axis}`, values: block.bodies[b].poses.map((pose) => pose?.[k]) })))]);
   const element = figure(block, [holder,
     h('div', { class: 'player' }, play, bar, clock, h('label', {}, 'speed ', speed), h('span', { class: 'views' }, tools)),
-    motion.missing ? remark(`${motion.missing} of ${times.length} poses are missing.`) : null, block.note ? remark(block.note) : null], { csv });
+    motion.missing ? remark(`${motion.missing} of ${times.length} poses are missing.`) : null, block.note ? remark(block.note) : null], { svg: () => stage.picture(false), png: () => stage.picture(true), csv });
   const draw = () => {
     say();
     const drawn = stage.draw();

@@ -7,6 +7,18 @@ export function onPaper(prepare, restore) {
   preparations.push({ prepare, restore });
 }
 
+/** Does what is drawn for paper, whatever the screen shows. */
+export function onPaperFor(draw) {
+  const { classList } = document.documentElement;
+  const already = classList.contains('paper');
+  classList.add('paper');
+  try {
+    draw();
+  } finally {
+    classList.toggle('paper', already);
+  }
+}
+
 export function preparePrinting() {
   addEventListener('beforeprint', () => {
     document.documentElement.classList.add('paper');

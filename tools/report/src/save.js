@@ -1,6 +1,6 @@
 // Files that a reader saves from the page: figures as SVG and PNG, their data as CSV.
 
-const SHARPER = 3;  // pixels of a PNG per pixel of the page
+export const SHARPER = 3;  // pixels of a PNG per pixel of the page
 
 function save(name, blob) {
   const link = Object.assign(document.createElement('a'), { download: name, href: URL.createObjectURL(blob) });

@@ -27,8 +27,9 @@ export function sphere(block) {
   });
   const far = Math.max(0, ...curves.map((curve) => curve.defect));
   const csv = () => columnsToCsv(curves.flatMap(({ name, points }) => ['x', 'y', 'z'].map((axis, k) => ({ name: `${name} ${axis}`, values: points.map((p) => p?.[k]) }))));
+  const names = () => curves.filter((curve) => curve.show).map(({ name, style }) => ({ name, colour: style.colour }));
   const element = figure(block, [holder, legend.element, far > 1e-3 ? remark(`Some points lie off the unit sphere, by up to ${far.toPrecision(2)}.`) : null,
-    block.note ? remark(block.note) : null], { csv });
+    block.note ? remark(block.note) : null], { svg: () => stage.picture(false, names()), png: () => stage.picture(true, names()), csv });
   return { element, draw: () => stage.draw() };
 }
 

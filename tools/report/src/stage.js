@@ -7,15 +7,20 @@ import { SVGRenderer } from 'three/examples/jsm/renderers/SVGRenderer.js';
 import { followWidth } from './chart.js';
 import { h } from './dom.js';
 import { remark } from './figure.js';
-import { onPaper } from './print.js';
+import { onPaper, onPaperFor } from './print.js';
+import { SHARPER } from './save.js';
 
 export const HOME = [0.76, -0.52, 0.42];  // from where the eye looks, at first
 export const ABOVE = [0, -1e-5, 1];       // x to the right, y up
 const AIR = 0.92;      // of the picture is filled
 const LOWEST = 0.03;   // radians over a floor
 const TURN = 0.12;     // radians by an arrow key
-const SHARPEST = 2;    // pixels per CSS pixel at least, so that print is sharp too
+const SCREEN = Math.max(2, devicePixelRatio);  // pixels per CSS pixel: print is sharp too
 const MOST_SOLID = 8;  // browsers allow some 16 WebGL contexts on a page
+const ROW = 18;        // pixels of a name below a saved picture
+// (In the elements, not in the style sheet: they go with a saved picture.)
+const AXES = 'stroke: var(--soft); stroke-width: 1.4; font: 12px/1 system-ui, sans-serif';
+const WORDS = 'fill: var(--ink); stroke: var(--paper); stroke-width: 3px; paint-order: stroke; text-anchor: middle; dominant-baseline: middle';
 
 let solid = 0;  // stages drawn by WebGL
 
@@ -26,7 +31,7 @@ function makeWebgl() {
   if (!context) return null;
   ++solid;
   const renderer = new WebGLRenderer({ canvas, context, ...options });
-  renderer.setPixelRatio(Math.max(SHARPEST, devicePixelRatio));
+  renderer.setPixelRatio(SCREEN);
   return renderer;
 }
 
@@ -50,7 +55,7 @@ export class Stage {
     this.camera.up.set(0, 0, 1);
     this.renderer = new SVGRenderer();
     this.renderer.setPrecision(1);
-    this.overlay = h('svg', { class: 'overlay', 'aria-hidden': 'true' });
+    this.overlay = h('svg', { class: 'overlay', style: AXES, 'aria-hidden': 'true' });
     holder.append(this.renderer.domElement, this.overlay);
     this.controls = new OrbitControls(this.camera, holder);
     Object.assign(this.controls, { enableDamping: false, maxPolarAngle: floor ? Math.PI / 2 - LOWEST : Math.PI });
@@ -127,10 +132,34 @@ export class Stage {
     holder.dataset.drawings = ++this.drawings;
   }
 
+  /**
+   * The picture as it stands -> SVG on paper, of lines and faces, or (solid) as WebGL draws it where that is there. Below it the
+   * names: [{name, colour}, …].
+   */
+  picture(solid, names = []) {
+    const { renderer, holder: { clientWidth: width } } = this;
+    const height = this.height(width);
+    const write = (element) => new XMLSerializer().serializeToString(element);
+    let drawn = '';
+    onPaperFor(() => {
+      if (!solid && renderer.isWebGLRenderer) this.renderer = new SVGRenderer();
+      if (this.renderer.isWebGLRenderer) renderer.setPixelRatio(SHARPER);
+      this.rebuild();
+      const { domElement } = this.renderer;
+      drawn = (this.renderer.isWebGLRenderer ? `<image width="${width}" height="${height}" href="${domElement.toDataURL()}"/>` : write(domElement)) + write(this.overlay);
+      if (this.renderer.isWebGLRenderer) renderer.setPixelRatio(SCREEN);
+      this.renderer = renderer;
+    });
+    this.rebuild();
+    const below = names.map(({ name, colour }, i) => write(h('text', { x: 14, y: height + (i + 0.5) * ROW, style: `fill: ${colour}; font: 12px/1 system-ui, sans-serif` }, name)));
+    const tall = height + names.length * ROW;
+    return `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${tall}" viewBox="0 0 ${width} ${tall}">${drawn}${below.join('')}</svg>`;
+  }
+
   /** The space axes in a corner, and the names of what is to be seen. */
   #label(width, height) {
-    this.overlay.setAttribute('viewBox', `0 0 ${width} ${height}`);
-    const text = (words, x, y) => h('text', { x, y }, words);
+    Object.entries({ width, height, viewBox: `0 0 ${width} ${height}` }).forEach(([name, value]) => this.overlay.setAttribute(name, value));
+    const text = (words, x, y) => h('text', { x, y, style: WORDS }, words);
     const [x, y] = [34, height - 34];
     const axes = ['x', 'y', 'z'].flatMap((name, k) => {
       const axis = new Vector3().setComponent(k, 1).transformDirection(this.camera.matrixWorldInverse);
@@ -141,7 +170,7 @@ export class Stage {
       const place = new Vector3(...at()).project(this.camera);
       return text(words, (1 + place.x) * width / 2, (1 - place.y) * height / 2 - up);
     });
-    this.overlay.replaceChildren(...axes, ...labels, this.shown.scale ? h('text', { x: 70, y: height - 12, class: 'left' }, this.shown.scale) : '');
+    this.overlay.replaceChildren(...axes, ...labels, this.shown.scale ? h('text', { x: 70, y: height - 12, style: `${WORDS}; text-anchor: start` }, this.shown.scale) : '');
   }
 
   #keys() {

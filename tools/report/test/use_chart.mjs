@@ -3,6 +3,7 @@
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { countPixels } from './pixels.mjs';
 
 export async function useChart(page, check) {
   const figure = page.locator('.figure.plot').first();
@@ -36,10 +37,14 @@ export async function useChart(page, check) {
   await page.keyboard.press('Escape');
 }
 
-/** The buttons of the first figure with curves: what they save is whole and stands alone. */
+/** The buttons of the first figure with curves, and of the first that stands in space: what they save is whole and stands alone. */
 export async function useSaving(page, check) {
-  const figure = page.locator('.figure:is(.plot, .path, .heatmap)').first();
+  for (const kinds of ['.plot, .path, .heatmap', '.animation', '.sphere']) await save(page, check, page.locator(`.figure:is(${kinds})`).first());
+}
+
+async function save(page, check, figure) {
   if (!(await figure.count())) return;
+  const title = await figure.locator('.title').textContent();
   const folder = mkdtempSync(join(tmpdir(), 'hamel-saved-'));
   const saved = async (name) => {
     const [download] = await Promise.all([page.waitForEvent('download', { timeout: 15000 }), figure.locator('.save', { hasText: name }).click({ timeout: 5000 })]);
@@ -47,10 +52,11 @@ export async function useSaving(page, check) {
     return readFileSync(join(folder, name));
   };
   const svg = (await saved('SVG')).toString();
-  check('SVG: colours of its own', /^<svg/.test(svg) && /<path/.test(svg) && !svg.includes('var('), svg.slice(0, 200));
+  check(`${title}: SVG: colours of its own`, /^<svg/.test(svg) && /<path/.test(svg) && !svg.includes('var('), svg.slice(0, 200));
   const png = await saved('PNG');
-  check('PNG: a picture', png.subarray(1, 4).toString() === 'PNG' && png.length > 4000, `${png.length} bytes`);
+  const { inked, colours } = png.subarray(1, 4).toString() === 'PNG' ? (await countPixels(page, [png]))[0] : { inked: 0, colours: 0 };
+  check(`${title}: PNG: a picture`, inked > 200 && colours > 20, `${png.length} bytes, ${inked} inked and ${colours} coloured pixels`);
   const rows = (await saved('CSV')).toString().trim().split('\n');
-  check('CSV: a head and rows', rows.length > 1 && rows[0].startsWith('"'), rows[0]);
+  check(`${title}: CSV: a head and rows`, rows.length > 1 && rows[0].startsWith('"'), rows[0]);
   rmSync(folder, { recursive: true });
 }
