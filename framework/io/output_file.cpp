@@ -25,6 +25,37 @@ void finish_file(const std::string& part, const std::string& path) {
                                std::strerror(on_disk ? errno : reason), part));
 }
 
+// (Of the open file, not of the process, and apart from those by which HDF5 keeps readers away from a file.)
+static struct flock whole_file() {
+  struct flock out = {};
+  out.l_type = F_WRLCK;
+  out.l_whence = SEEK_SET;
+  return out;
+}
+
+FileLock::FileLock(const std::string& path)
+    : file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  struct flock all = whole_file();
+  if (file_ < 0 || fcntl(file_, F_OFD_SETLK, &all) == 0)
+    return;                                        // (unwritable: said by who writes)
+  if (errno != EAGAIN && errno != EACCES) return;  // a file system without locks
+  close(file_);
+  throw ConfigError({fmt::format("output: another process is writing '{}'", path)});
+}
+
+FileLock::~FileLock() {
+  if (file_ >= 0) close(file_);
+}
+
+bool locked(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  struct flock all = whole_file();
+  const bool out = fcntl(file, F_OFD_GETLK, &all) == 0 && all.l_type != F_UNLCK;
+  close(file);
+  return out;
+}
+
 void write_file(const std::string& path, const std::string& text) {
   const std::string part = part_of(path);
   std::ofstream out(part, std::ios::binary);

@@ -17,6 +17,21 @@ inline std::string part_of(const std::string& path) { return path + ".part"; }
 /// Brings `part` to the disk and gives it its name; Unfinished on failure.
 void finish_file(const std::string& part, const std::string& path);
 
+/// This process writes the file: others that ask are told, until this object or the process ends.
+class FileLock {
+ public:
+  /// Creates the file where there is none. ConfigError where another has it.
+  explicit FileLock(const std::string& path);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int file_;
+};
+/// Has somebody a FileLock of it?
+bool locked(const std::string& path);
+
 /// Writes text as a whole; ConfigError on failure, and then nothing is left.
 void write_file(const std::string& path, const std::string& text);
 

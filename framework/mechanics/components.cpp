@@ -60,6 +60,12 @@ std::vector<Component> components_of(const SimpleFactor& factor) {
   return out;
 }
 
+// The unit of what this is the rate of.
+std::string integrated(std::string unit) {
+  if (unit.ends_with("/s")) unit.resize(unit.size() - 2);
+  return unit;
+}
+
 }  // namespace
 
 std::vector<Component> components_of(const GroupInfo& group) {
@@ -83,6 +89,20 @@ std::vector<Component> components_of(const GroupInfo& group) {
   return out;
 }
 
+std::vector<std::string> units_of_element(const GroupInfo& group) {
+  std::vector<std::string> out;
+  for (const SimpleFactor& factor : simple_factors(group)) {
+    const std::vector<Component> rates = components_of(factor);
+    const int matrix = factor.columns > factor.dim ? 9 : 0;  // entries, in place of three angles
+    for (int i = 0; i < factor.columns; ++i)
+      out.push_back(
+          i < matrix
+              ? ""
+              : integrated(rates[static_cast<size_t>(i - matrix + (matrix > 0 ? 3 : 0))].unit));
+  }
+  return out;
+}
+
 std::vector<ShapeCoordinate> shape_of(const GroupInfo& group,
                                       const std::vector<Component>& components) {
   std::vector<ShapeCoordinate> out;
@@ -91,8 +111,7 @@ std::vector<ShapeCoordinate> shape_of(const GroupInfo& group,
     for (int i = 0; factor.shape && i < factor.dim; ++i) {
       Component c = components.at(static_cast<size_t>(component + i));
       if (c.name.back() == '\'') c.name.pop_back();
-      if (c.unit.ends_with("/s")) c.unit.resize(c.unit.size() - 2);
-      out.push_back({column + i, component + i, c.name, c.unit});
+      out.push_back({column + i, component + i, c.name, integrated(c.unit)});
     }
     column += factor.columns;
     component += factor.dim;

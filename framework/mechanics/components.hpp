@@ -30,6 +30,9 @@ struct Component {
 /// without units.
 std::vector<Component> components_of(const GroupInfo& group);
 
+/// Units of the element's columns, as many, where they follow from the group; "" for the entries of a rotation matrix.
+std::vector<std::string> units_of_element(const GroupInfo& group);
+
 /// Coordinate `column` of the element is the integral of component `component`: its name without the ', its unit without
 /// the "/s".
 struct ShapeCoordinate {

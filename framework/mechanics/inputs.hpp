@@ -40,10 +40,11 @@ struct InputTable {
 /// The inputs of one run, which owns them.
 class Inputs {
  public:
-  /// tables: one for each field; no times and one value where it is constant.
   Inputs(std::vector<InputField> fields, std::vector<InputTable> tables);
 
   const std::vector<InputField>& fields() const { return fields_; }
+  /// One for each field; no times and one value where it is constant.
+  const std::vector<InputTable>& tables() const { return tables_; }
   /// A step from t to t + h begins. A table that is held has the value of the middle of the step all through it, so that
   /// round-off in the times of the nodes does not decide on which side of a jump they lie.
   void enter(double t, double h);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
@@ -29,8 +30,9 @@ ColumnGroup numbered(const char* name, std::size_t count) {
 }
 
 ColumnGroup element_columns(const GroupInfo& group) {
-  return {"configuration", "", "the element g of " + group.name,
-          "g takes the body's frame to the frame in space", group.columns};
+  return {"configuration", fmt::format("{}", fmt::join(units_of_element(group), ",")),
+          "the element g of " + group.name, "g takes the body's frame to the frame in space",
+          group.columns};
 }
 
 // Of the velocity, or of the momentum dual to it.

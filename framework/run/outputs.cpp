@@ -53,6 +53,8 @@ void Simulation::add_outputs(Plan& plan) const {
     else if (std::find(records_.begin(), records_.begin() + static_cast<long>(i), path) !=
              records_.begin() + static_cast<long>(i))
       plan.add({fmt::format("output: '{}' is given twice", path)});
+    else if (path.ends_with(".h5") && locked(part_of(path)))
+      plan.add({fmt::format("output: another process is writing '{}.part'", path)});
     else if (path.ends_with(".h5") && path != resumed_ &&
              std::filesystem::exists(part_of(path), error))
       plan.add(

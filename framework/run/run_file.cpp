@@ -31,7 +31,13 @@ std::string whole(const std::string& path) {
 }  // namespace
 
 void RunFileSink::begin(const RunHead& head) {
-  out_ = std::make_unique<RowFileWriter>(part_of(path_) + ".new", head.columns,
+  const std::string part = part_of(path_), fresh = part + ".new";
+  lock_ = std::make_unique<FileLock>(fresh);  // it stays with the file when that becomes x.part
+  if (locked(part)) {
+    std::remove(fresh.c_str());
+    throw ConfigError({fmt::format("output: another process is writing '{}'", part)});
+  }
+  out_ = std::make_unique<RowFileWriter>(fresh, head.columns,
                                          std::map<std::string, std::string>{
                                              {"format", kFormat},
                                              {"build", build_name()},

@@ -27,6 +27,7 @@ class RunFileSink final : public Sink {
  private:
   std::string path_;
   bool in_place_ = false;
+  std::unique_ptr<FileLock> lock_;
   std::unique_ptr<RowFileWriter> out_;
 };
 

@@ -30,6 +30,7 @@ RunLoop::RunLoop(Simulation::Plan& plan, Result& result, std::vector<std::unique
       times_(config_.rows()),
       every_node_(meter_.wants_nodes() || !times_.empty() || plan.events->any()),
       steps_(config_.chooses_steps() ? std::numeric_limits<long>::max() : config_.steps()) {
+  result_.inputs = plan.setup.inputs;
   if (config_.chooses_steps()) kernel_.limit(config_.until);
   for (const auto& sink : sinks_) resumable_ = resumable_ || sink->resumable();
 }

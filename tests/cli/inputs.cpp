@@ -38,6 +38,28 @@ TEST_F(InputsOfTheProgram, DriveARun) {
   EXPECT_NEAR(speed("ramp.csv"), 0.9, 1e-12);
 }
 
+/// As they act: a stair where a table is held, lines between the rows else, over the run.
+TEST_F(InputsOfTheProgram, StandOnThePage) {
+  write("held.csv", "t,value\n-1,0.1\n0.7,0\n2,0\n");
+  write("ramp.csv", "t,value\n-1,-0.1\n3,0.3\n");
+  std::vector<std::string> arguments = kCart;
+  for (const char* given :
+       {"--input", "right_torque=held.csv:hold", "--input", "left_torque=ramp.csv"})
+    arguments.emplace_back(given);
+  const Json page = page_of(arguments);
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  const Json figure = figure_of(page, "Inputs");
+  ASSERT_EQ(figure["series"].size(), 2) << figure;
+  const Json &right = figure["series"][0], &left = figure["series"][1];
+  EXPECT_EQ(right["name"], "right_torque [N m]");
+  EXPECT_EQ(right["x"], Json({0.0, 0.7, 0.7, 1.0}));
+  EXPECT_EQ(right["y"], Json({0.1, 0.1, 0.0, 0.0}));
+  EXPECT_EQ(left["x"], Json({0.0, 1.0}));
+  EXPECT_NEAR(left["y"][0].get<double>(), 0, 1e-15);
+  EXPECT_NEAR(left["y"][1].get<double>(), 0.1, 1e-15);
+  EXPECT_TRUE(figure_of(page_of(kCart), "Inputs").is_null());
+}
+
 TEST_F(InputsOfTheProgram, ComeFromAFileAndGoOn) {
   write("run.toml", R"(
 system = "differential_drive"

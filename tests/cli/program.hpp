@@ -51,6 +51,14 @@ inline std::string source_file(const std::string& path) {
   return contents(std::filesystem::path(root != nullptr ? root : "") / path);
 }
 
+/// The figure of that title on a page; null where there is none.
+inline nlohmann::json figure_of(const nlohmann::json& page, const std::string& title) {
+  for (const nlohmann::json& section : page["sections"])
+    for (const nlohmann::json& block : section["blocks"])
+      if (block.value("title", "") == title) return block;
+  return {};
+}
+
 /// A folder of its own for each test, gone afterwards.
 class CommandLine : public testing::Test {
  protected:
@@ -93,6 +101,17 @@ class CommandLine : public testing::Test {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.status, status) << outcome.err;
     return nlohmann::json::parse(outcome.out.empty() ? "{}" : outcome.out);
+  }
+  /// The data of the page of `run` with these arguments; null where the program has no page.
+  nlohmann::json page_of(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--quiet", "--report", "page.html"});
+    const Outcome outcome = run(arguments);
+    if (outcome.err.find("built without the page") != std::string::npos) return {};
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::string page = contents(file("page.html"));
+    const size_t from = page.find('>', page.find("id=\"hamel-data\"")) + 1;
+    return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
   }
   /// The file's path.
   std::string write(const std::string& name, const std::string& text) const {

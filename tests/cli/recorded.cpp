@@ -106,6 +106,25 @@ TEST_F(Recorded, CtrlCKeepsWhatThereIs) {
   }
 }
 
+/// A file has one writer: the second is refused while the first one lives.
+TEST_F(Recorded, IsWrittenByOne) {
+  const Words words = {"run", "rolling_disk", "--until", "2e4", "--quiet", "-o", "a.h5"};
+  const pid_t child = started(words);
+  for (int i = 0; i < 6000 && !exists("a.h5.part"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  kill(child, SIGSTOP);
+  ASSERT_TRUE(exists("a.h5.part"));
+  for (const Words& second : {words, Words{"run", "--continue", "a.h5"}}) {
+    const Outcome o = run(second);
+    EXPECT_EQ(o.status, 2);
+    EXPECT_THAT(o.err, HasSubstr("another process is writing 'a.h5.part'"));
+  }
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(run({"run", "--continue", "a.h5", "--quiet"}).status, 0);
+  EXPECT_THAT(files(), testing::ElementsAre("a.h5"));
+}
+
 TEST_F(Recorded, APipeThatIsClosed) {
   const Outcome o =
       run({"run", "rolling_disk", "--until", "1e4", "-o", "-", "-o", "a.h5"}, "", "| head -3");

@@ -49,6 +49,7 @@ with tempfile.TemporaryDirectory() as folder:
         equal(sorted(seen), sorted(columns), "columns")
         equal(run["configuration"].shape, (5001, 4), "shape")
         equal(run["t"].attrs["unit"], "s", "unit of t")
+        equal(run["configuration"].attrs["unit"], "rad,m,m,rad", "units of g")
         equal(run["xi"].attrs["unit"], "rad/s,m/s,m/s,rad/s", "units of xi")
         equal(run["mu"].attrs["unit"], "N m s,N s,N s,N m s", "units of mu")
         equal("left trivialisation" in run["xi"].attrs["frame"], True, "frame of xi")

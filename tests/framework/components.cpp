@@ -34,6 +34,22 @@ TEST(Components, ThoseOfAProductAreToldApart) {
   EXPECT_EQ(names("differential_drive"), "omega v1 v2 angle_2' angle_3' ");
 }
 
+TEST(Components, UnitsOfTheElement) {
+  for (const std::string& name : registry().systems()) {
+    const GroupInfo group = simulate(name).build().system().group;
+    EXPECT_EQ(units_of_element(group).size(), group.columns.size()) << name;
+  }
+  const auto units = [](const std::string& system) {
+    return units_of_element(simulate(system).build().system().group);
+  };
+  std::vector<std::string> ball(9), disk(9);  // rotations have no units
+  ball.insert(ball.end(), {"m", "m"});
+  disk.insert(disk.end(), {"m", "m", "m"});
+  EXPECT_EQ(units("rolling_ball"), ball);
+  EXPECT_EQ(units("falling_disk"), disk);
+  EXPECT_EQ(units("differential_drive"), (std::vector<std::string>{"rad", "m", "m", "rad", "rad"}));
+}
+
 // A shape coordinate is the integral of its component: over one small step of the exact flow of the segway's
 // wheels, theta(h) - theta(0) = h theta' + O(h^2).
 TEST(Components, ShapeCoordinatesAreIntegrals) {

@@ -37,6 +37,7 @@ ReadRun read_run(const std::string& path) {
   Result& r = out.result;
   r.system = run.system();
   r.config = run.config();
+  r.inputs = run.inputs();
   read_record(out.record, r);
   r.trajectory = read_rows(file, kRowsOfPage);
   return out;

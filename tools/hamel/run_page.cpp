@@ -104,6 +104,7 @@ Page run_page(const Result& r, const std::string& record) {
   add_list(page, values, "events", "Events");
   add_list(page, values, "inputs", "Inputs");
   page.section("Velocity, shape and reactions");
+  add_inputs(page, r, events);
   add_physics(page, r, events);
   page.section("Accuracy");
   add_accuracy(page, r);

@@ -6,6 +6,8 @@ const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', 
   '--disable-background-networking', '--disable-component-update', '--disable-sync'];
 const SOFTWARE_WEBGL = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 
+export const PATIENCE = 120000;  // milliseconds: a machine may have other work
+
 function skip(reason) {
   console.log(`skipped: ${reason}`);
   process.exit(77);

@@ -57,8 +57,8 @@ for (const [name, source] of Object.entries(LIBRARIES)) {
   const file = join(folder, 'page.html');
   writeFileSync(file, `<!doctype html><meta charset=utf-8><body><script>${text.replace(/<\/script/g, '<\\/script')}</script><script>${drive}</script>`);
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-  await page.goto(pathToFileURL(file).href);
-  await page.waitForFunction(() => window.spent, null, { timeout: 300000 }).catch(() => {});
+  await page.goto(pathToFileURL(file).href, { waitUntil: 'commit' });
+  await page.waitForFunction(() => window.spent, null, { timeout: 900000 }).catch(() => {});
   const spent = await page.evaluate(() => window.spent ?? NaN);
   const texts = await page.evaluate(() => document.querySelectorAll('svg text').length);
   const pdf = await page.pdf({ timeout: 120000 }).then((bytes) => `${Math.round(bytes.length / 1024)} KB`, () => 'none in 2 min');

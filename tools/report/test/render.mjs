@@ -5,7 +5,7 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { launch } from './browser.mjs';
+import { launch, PATIENCE } from './browser.mjs';
 import { lookPlainly } from './plain.mjs';
 import { countPixels } from './pixels.mjs';
 import { misfit } from './schema.mjs';
@@ -46,6 +46,7 @@ const STALL = /GPU stall due to ReadPixels/;  // by software WebGL, where a scre
 /** Opens the page and collects what it should not do. */
 async function open(browser, { webgl = true } = {}) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  page.setDefaultTimeout(PATIENCE);
   if (!webgl) await page.addInitScript(takeWebglAway);
   const complaints = [];
   page.on('console', (message) => {
@@ -56,7 +57,7 @@ async function open(browser, { webgl = true } = {}) {
     if (!/^(file|data|blob):/.test(request.url())) complaints.push(`request: ${request.url()}`);
   });
   await page.goto(pathToFileURL(resolve(file)).href);
-  await page.waitForSelector('html[data-ready=true]', { state: 'attached', timeout: 30000 })
+  await page.waitForSelector('html[data-ready=true]', { state: 'attached' })
     .catch(() => complaints.push('the page never got ready'));
   await page.waitForTimeout(150);
   return { page, complaints };

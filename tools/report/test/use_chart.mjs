@@ -47,7 +47,7 @@ async function save(page, check, figure) {
   const title = await figure.locator('.title').textContent();
   const folder = mkdtempSync(join(tmpdir(), 'hamel-saved-'));
   const saved = async (name) => {
-    const [download] = await Promise.all([page.waitForEvent('download', { timeout: 15000 }), figure.locator('.save', { hasText: name }).click({ timeout: 5000 })]);
+    const [download] = await Promise.all([page.waitForEvent('download'), figure.locator('.save', { hasText: name }).click()]);
     await download.saveAs(join(folder, name));
     return readFileSync(join(folder, name));
   };

@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/row_file.hpp>
+#include <hamel/framework/io/row_file_format.hpp>
+
+namespace hamel {
+
+using namespace hdf5;
+
+namespace {
+
+constexpr hsize_t kChunkRows = 4096, kChunkBytes = 1 << 16;
+
+void write_finished(hid_t file, unsigned char value) {
+  check(H5Awrite(finished_flag(file), H5T_NATIVE_UCHAR, &value), "H5Awrite");
+}
+
+Handle create(hid_t file, const std::string& name, hid_t type, hsize_t chunk, hsize_t width) {
+  const int rank = width > 1 ? 2 : 1;
+  const hsize_t now[] = {0, width}, most[] = {H5S_UNLIMITED, width}, chunks[] = {chunk, width};
+  const Handle space(H5Screate_simple(rank, now, most), H5Sclose, "H5Screate_simple"),
+      properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "H5Pcreate");
+  check(H5Pset_chunk(properties, rank, chunks), "H5Pset_chunk");
+  return {H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+          H5Dclose, "H5Dcreate2"};
+}
+
+void append_to(hid_t set, hid_t type, hsize_t at, hsize_t count, hsize_t width, const void* data) {
+  const int rank = width > 1 ? 2 : 1;
+  const hsize_t size[] = {at + count, width}, start[] = {at, 0}, block[] = {count, width};
+  check(H5Dset_extent(set, size), "H5Dset_extent");
+  const Handle there(H5Dget_space(set), H5Sclose, "H5Dget_space"),
+      here(H5Screate_simple(rank, block, nullptr), H5Sclose, "H5Screate_simple");
+  check(H5Sselect_hyperslab(there, H5S_SELECT_SET, start, nullptr, block, nullptr), "H5Sselect");
+  check(H5Dwrite(set, type, here, there, H5P_DEFAULT, data), "H5Dwrite");
+}
+
+}  // namespace
+
+struct RowFileWriter::Data {
+  std::string path;
+  std::vector<hsize_t> widths;
+  std::unique_ptr<Handle> file;
+  std::vector<std::unique_ptr<Handle>> sets;
+  std::unique_ptr<Handle> marks, record;
+  hsize_t width = 0, rows = 0, marked = 0;
+  std::vector<double> column;
+
+  // After a failed write the library cannot close the file; it stays as it was last flushed.
+  void abandon() {
+    for (auto& set : sets) static_cast<void>(set.release());
+    static_cast<void>(marks.release());
+    static_cast<void>(record.release());
+    static_cast<void>(file.release());
+  }
+  template <class F>
+  void attempt(F&& write) {
+    if (file == nullptr) throw Unfinished(fmt::format("output: '{}' was given up", path));
+    try {
+      errno = 0;
+      write();
+    } catch (const ConfigError& error) {
+      const std::string reason = errno != 0 ? std::strerror(errno) : error.what();
+      abandon();
+      throw Unfinished(fmt::format("output: cannot write '{}': {}", path, reason));
+    }
+  }
+};
+
+RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& groups,
+                             const std::map<std::string, std::string>& texts)
+    : data_(std::make_unique<Data>()) {
+  begin();
+  data_->path = std::move(path);
+  try {
+    const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "H5Pcreate");
+    check(H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED),
+          "H5Pset_link_creation_order");
+    data_->file = std::make_unique<Handle>(
+        H5Fcreate(data_->path.c_str(), H5F_ACC_TRUNC, properties, latest_format()), H5Fclose,
+        "H5Fcreate");
+    const hid_t file = *data_->file;
+    for (const auto& [name, value] : texts) write_text(file, name, value);
+    write_finished(file, 0);
+    for (const ColumnGroup& group : groups) {
+      const hsize_t width = group.columns.size();
+      auto set =
+          std::make_unique<Handle>(create(file, group.name, H5T_IEEE_F64LE, kChunkRows, width));
+      write_text(*set, "unit", group.unit);
+      write_text(*set, "meaning", group.meaning);
+      write_text(*set, "frame", group.frame);
+      write_text(*set, "columns", fmt::format("{}", fmt::join(group.columns, ",")));
+      data_->sets.push_back(std::move(set));
+      data_->widths.push_back(width);
+      data_->width += width;
+    }
+    data_->marks = std::make_unique<Handle>(create(file, kMarks, H5T_STD_U8LE, kChunkBytes, 1));
+    data_->record = std::make_unique<Handle>(create(file, kRecord, H5T_STD_U8LE, kChunkBytes, 1));
+    check(H5Fstart_swmr_write(file), "H5Fstart_swmr_write");
+  } catch (const ConfigError& error) {
+    throw ConfigError({fmt::format("output: cannot write '{}' ({})", data_->path, error.what())});
+  }
+}
+
+RowFileWriter::~RowFileWriter() = default;
+
+void RowFileWriter::append(std::span<const double> rows) {
+  Data& d = *data_;
+  const hsize_t count = rows.size() / d.width;
+  if (count == 0) return;
+  d.attempt([&] {
+    hsize_t first = 0;
+    for (std::size_t i = 0; i < d.sets.size(); ++i) {
+      const hsize_t width = d.widths[i];
+      d.column.resize(count * width);
+      double* to = d.column.data();
+      for (hsize_t r = 0; r < count; ++r) {
+        const double* from = rows.data() + r * d.width + first;
+        for (hsize_t j = 0; j < width; ++j) *to++ = from[j];
+      }
+      append_to(*d.sets[i], H5T_NATIVE_DOUBLE, d.rows, count, width, d.column.data());
+      first += width;
+    }
+    check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
+  });
+  d.rows += count;
+}
+
+void RowFileWriter::mark(std::string_view bytes) {
+  Data& d = *data_;
+  const MarkHead head = {d.rows, bytes.size(), checksum(bytes)};
+  std::string text(sizeof head, '\0');
+  std::memcpy(text.data(), head.data(), sizeof head);
+  text += bytes;
+  d.attempt([&] {
+    append_to(*d.marks, H5T_NATIVE_UINT8, d.marked, text.size(), 1, text.data());
+    check(H5Dflush(*d.marks), "H5Dflush");
+  });
+  d.marked += text.size();
+}
+
+void RowFileWriter::finish(const std::string& record) {
+  Data& d = *data_;
+  d.attempt([&] {
+    append_to(*d.record, H5T_NATIVE_UINT8, 0, record.size(), 1, record.data());
+    check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
+    write_finished(*d.file, 1);
+    check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
+    d.sets.clear();
+    d.marks.reset();
+    d.record.reset();
+    d.file.reset();
+  });
+}
+
+}  // namespace hamel

@@ -1,0 +1,57 @@
+// The figures of what drove a run.
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "run_figures.hpp"
+
+namespace hamel::tools {
+namespace {
+
+// The i-th input from t0 to t1 (t0 < t1) as it acts: a held table is a stair.
+Series drawn(const Inputs& inputs, size_t i, double t0, double t1) {
+  const InputField& field = inputs.fields()[i];
+  const InputTable& table = inputs.tables()[i];
+  std::vector<double> t = {t0}, value;
+  std::copy_if(table.times.begin(), table.times.end(), std::back_inserter(t),
+               [&](double at) { return at > t0 && at < t1; });
+  t.push_back(t1);
+  if (!table.hold) {
+    for (const double at : t) value.push_back(inputs.at(at)[static_cast<Eigen::Index>(i)]);
+  } else {
+    std::vector<double> corners;
+    for (size_t j = 0; j + 1 < t.size(); ++j) {
+      const auto piece = std::upper_bound(table.times.begin(), table.times.end(), t[j]);
+      const double held = table.values[static_cast<size_t>(piece - table.times.begin()) - 1];
+      corners.insert(corners.end(), {t[j], t[j + 1]});
+      value.insert(value.end(), {held, held});
+    }
+    t = std::move(corners);
+  }
+  return thinned(field.unit.empty() ? field.name : fmt::format("{} [{}]", field.name, field.unit),
+                 t, value, false);
+}
+
+}  // namespace
+
+void add_inputs(Page& page, const Result& r, const std::vector<Mark>& marks) {
+  if (r.inputs == nullptr) return;
+  const std::vector<InputField>& fields = r.inputs->fields();
+  const std::vector<InputTable>& tables = r.inputs->tables();
+  if (std::all_of(tables.begin(), tables.end(), [](const auto& t) { return t.times.empty(); }))
+    return;
+  const auto [t0, t1] = std::minmax(r.config.from, r.last.time);
+  std::map<std::string, std::vector<Series>> by_unit;
+  for (size_t i = 0; i < fields.size(); ++i)
+    if (r.config.inputs.contains(fields[i].name))
+      by_unit[fields[i].unit].push_back(drawn(*r.inputs, i, t0, t1));
+  for (const auto& [unit, series] : by_unit) {
+    Axes axes{.x = "time t [s]", .y = unit.empty() ? "" : "[" + unit + "]"};
+    axes.marks = marks;
+    page.plot("Inputs", axes, series);
+  }
+}
+
+}  // namespace hamel::tools
