@@ -13,6 +13,7 @@ use([HeatmapChart, LineChart, DataZoomComponent, GridComponent, LegendComponent,
 
 export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', 'DejaVu Sans', sans-serif";  // (in an attribute of the SVG)
 const PRINTED = 0.72;  // of its height on the screen is a chart on paper
+const [WHOLE, HALF] = [664, 313];  // pixels: its width on A4, alone and beside another (print.css); other paper scales it
 
 export const TEXT = { color: 'var(--soft)', fontFamily: FONT, fontSize: 12 };
 const BASE = { animation: false, textStyle: TEXT, legend: { show: false } };
@@ -51,6 +52,7 @@ export function makeChart(holder, height, option) {
     chart.resize({ width, height: tall });
     chart.setOption({ ...BASE, ...option(width, tall) }, { replaceMerge: ['series'] });
     chart.getZr().flush();
+    holder.querySelector('svg').setAttribute('viewBox', `0 0 ${width} ${tall}`);  // paper may be narrower
   };
   redraw();
   followWidth(holder, () => {
@@ -58,7 +60,7 @@ export function makeChart(holder, height, option) {
     redraw();
   });
   onPaper(() => {
-    width = holder.clientWidth;
+    width = holder.closest('.figure').matches('.wide, .heatmap, :only-child') ? WHOLE : HALF;
     redraw(PRINTED);
   }, () => {
     width = holder.clientWidth;

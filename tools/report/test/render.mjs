@@ -162,12 +162,13 @@ async function checkPrint(page) {
   const pdf = await page.pdf({ preferCSSPageSize: true, path: options.pdf });
   check('prints to PDF', pdf.length > 5000);
   await page.setViewportSize({ width: 700, height: 1000 });
+  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));  // while the page has the screen's layout
   await page.emulateMedia({ media: 'print' });
-  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
   const cut = await page.evaluate(() => [...document.querySelectorAll('.drawing')].filter((drawing) => {
     const frame = drawing.closest('figure').getBoundingClientRect();
-    const { left, right, width } = drawing.querySelector('svg, canvas').getBoundingClientRect();
-    return width < 100 || left < frame.left - 1 || right > frame.right + 1;
+    const inside = ({ left, right }) => left >= frame.left - 1 && right <= frame.right + 1;
+    const picture = drawing.querySelector('svg, canvas').getBoundingClientRect();
+    return picture.width < 100 || picture.height < 60 || frame.bottom < picture.bottom || !inside(picture) || ![...drawing.querySelectorAll('.chart svg text')].every((text) => inside(text.getBoundingClientRect()));
   }).length);
   check('every drawing fits the paper', cut === 0, `${cut} do not`);
   await page.emulateMedia({ media: null });
