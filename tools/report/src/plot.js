@@ -105,7 +105,7 @@ function option(block, data, equal, width, height, seen) {
   margin.left = labels + BESIDE;
   return {
     grid: { ...margin, outerBoundsMode: 'none' },
-    xAxis: oneAxis(data.x, ranges.x, 28, ticksOf(data.x, seen.x ?? ranges.x, width / 90)), yAxis: oneAxis(data.y, ranges.y, labels + 14, y),
+    xAxis: oneAxis(data.x, ranges.x, 28, ticksOf(data.x, seen.x ?? ranges.x, Math.max(4, width / 90))), yAxis: oneAxis(data.y, ranges.y, labels + 14, y),
     series: [...shown.map((curve) => oneSeries(curve, !equal)), ...(marked?.series ?? [])],
     tooltip: { ...TOOLTIP, trigger: 'axis', axisPointer: { type: equal ? 'cross' : 'line', label: { show: equal, backgroundColor: 'var(--ink)', color: 'var(--paper)',
       formatter: ({ value, axisDimension }) => formatNumber(data[axisDimension].from(value)) }, lineStyle: { color: 'var(--soft)' }, crossStyle: { color: 'var(--soft)' } },
