@@ -16,8 +16,8 @@ const PLEASANT = [4, 25]; // seconds that a motion may take as it is; others are
 const TRAILS = ['--c2', '--c1', '--c3', '--c4', '--c6', '--c8'];
 const ARROW = 0.15;       // of what is seen, and the reach of all bodies at least: the length of the strongest force
 // So many times this reach is the room before they are followed at first, and is seen around them then.
-const FAR = (bodies) => (bodies.length > 1 ? 5 : 40);
-const AROUND = (bodies) => (bodies.length > 1 ? 1.1 : 3.2);
+const FAR = (bodies) => (bodies.length > 1 ? 7 : 40);
+const AROUND = (bodies) => (bodies.length > 1 ? 1.2 : 3.2);
 
 export function animation(block) {
   const motion = readMotion(block);
@@ -40,7 +40,7 @@ export function animation(block) {
   const play = h('button', { type: 'button', class: 'play', onclick: () => (playing ? pause() : run()) });
   const speed = h('select', { 'aria-label': 'speed' }, SPEEDS.map((s) => h('option', { value: s }, `${s}×`)));
   speed.value = speedFor(end - start);
-  const where = () => new Vector3(...middleOf(poses().filter(Boolean)));
+  const where = () => new Vector3(...middleOf(bodies, poses()));
   const follow = (yes) => {
     stage.follow(yes ? where : null, AROUND(bodies) * motion.reach);
     button.setAttribute('aria-pressed', String(yes));

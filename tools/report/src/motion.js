@@ -73,8 +73,11 @@ function hullOf(shape) {
   }
 }
 
-/** The mean of where bodies are. */
-export const middleOf = (poses) => poses.reduce((sum, { at }) => add(sum, at.map((v) => v / poses.length)), [0, 0, 0]);
+/** The mean of where the middles of bodies are; one without a pose counts for nothing. */
+export function middleOf(bodies, poses) {
+  const here = bodies.flatMap((body, b) => (poses[b] ? [placed(poses[b], body.middle)] : []));
+  return here.reduce((sum, at) => add(sum, at.map((v) => v / here.length)), [0, 0, 0]);
+}
 
 function readForce(force, f, times) {
   const { values } = force ?? {};
@@ -84,7 +87,7 @@ function readForce(force, f, times) {
     (Array.isArray(v) && v.length === 6 && v.every(Number.isFinite) ? { at: v.slice(0, 3), force: v.slice(3) } : null)) };
 }
 
-/** The block -> {times, bodies, forces, strongest, box, reach, missing}; a body: {name, poses, shapes, hull, way: points or null, reach}. */
+/** The block -> {times, bodies, forces, strongest, box, reach, missing}; a body: {name, poses, shapes, hull, middle, way: points or null, reach}. */
 export function readMotion(block) {
   const { times } = block;
   if (!Array.isArray(times) || times.length === 0) throw new Error('no list "times"');
@@ -100,10 +103,11 @@ export function readMotion(block) {
       const { points, air } = hullOf(shape);
       return points.map((p) => ({ point: placed(shape.pose, p), air }));
     });
+    const middle = [0, 1, 2].map((k) => (Math.min(...hull.map((p) => p.point[k])) + Math.max(...hull.map((p) => p.point[k]))) / 2 || 0);
     const point = isPoint(body.trail_point) ? body.trail_point : [0, 0, 0];
-    return { name: String(body.name ?? ''), poses, shapes, point, hull,
+    return { name: String(body.name ?? ''), poses, shapes, point, hull, middle,
       way: body.trail ? poses.map((pose) => (pose ? placed(pose, point) : null)) : null,
-      reach: Math.max(0, ...hull.map((p) => Math.hypot(...p.point) + p.air)) };
+      reach: Math.max(0, ...hull.map((p) => Math.hypot(...p.point.map((v, k) => v - middle[k])) + p.air)) };
   });
   const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   const take = (point, air) => point.forEach((v, i) => {
@@ -119,9 +123,8 @@ export function readMotion(block) {
   const forces = (block.forces ?? []).map((force, f) => readForce(force, f, times));
   const strongest = Math.max(0, ...forces.flatMap(({ values }) => values.map((v) => (v ? Math.hypot(...v.force) : 0))));
   const apart = times.map((_, i) => {
-    const here = bodies.filter(({ poses }) => poses[i]);
-    const middle = middleOf(here.map(({ poses }) => poses[i]));
-    return Math.max(0, ...here.map(({ poses, reach }) => reach + Math.hypot(...poses[i].at.map((v, k) => v - middle[k]))));
+    const middle = middleOf(bodies, bodies.map(({ poses }) => poses[i]));
+    return Math.max(0, ...bodies.filter(({ poses }) => poses[i]).map((body) => body.reach + Math.hypot(...placed(body.poses[i], body.middle).map((v, k) => v - middle[k]))));
   });
   return { times, bodies, forces, strongest, box, reach: Math.max(1e-9, ...apart),
     missing: Math.max(...bodies.map((body) => body.poses.filter((pose) => !pose).length)) };

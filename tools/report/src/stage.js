@@ -4,7 +4,7 @@
 import { OrthographicCamera, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { SVGRenderer } from 'three/examples/jsm/renderers/SVGRenderer.js';
-import { followWidth } from './chart.js';
+import { followWidth, widthOf } from './chart.js';
 import { h } from './dom.js';
 import { remark } from './figure.js';
 import { onPaper, onPaperFor } from './print.js';
@@ -17,6 +17,7 @@ const LOWEST = 0.03;   // radians over a floor
 const TURN = 0.12;     // radians by an arrow key
 const SCREEN = Math.max(2, devicePixelRatio);  // pixels per CSS pixel: print is sharp too
 const MOST_SOLID = 8;  // browsers allow some 16 WebGL contexts on a page
+const TALL = 13;       // pixels of a name; one that would cover another is left out
 const ROW = 18;        // pixels of a name below a saved picture
 // (In the elements, not in the style sheet: they go with a saved picture.)
 const AXES = 'stroke: var(--soft); stroke-width: 1.4; font: 12px/1 system-ui, sans-serif';
@@ -166,9 +167,13 @@ export class Stage {
       if (Math.hypot(axis.x, axis.y) < 0.15) return [];  // it points at the eye
       return [h('line', { x1: x, y1: y, x2: x + 19 * axis.x, y2: y - 19 * axis.y }), text(name, x + 27 * axis.x, y - 27 * axis.y)];
     });
-    const labels = this.shown.labels.map(({ text: words, at, up = 0 }) => {
+    const taken = [];
+    const labels = this.shown.labels.flatMap(({ text: words, at, up = 0 }) => {
       const place = new Vector3(...at()).project(this.camera);
-      return text(words, (1 + place.x) * width / 2, (1 - place.y) * height / 2 - up);
+      const [across, down, half] = [(1 + place.x) * width / 2, (1 - place.y) * height / 2 - up, widthOf(words) / 2];
+      if (taken.some((other) => Math.abs(other.across - across) < other.half + half && Math.abs(other.down - down) < TALL)) return [];
+      taken.push({ across, down, half });
+      return [text(words, across, down)];
     });
     this.overlay.replaceChildren(...axes, ...labels, this.shown.scale ? h('text', { x: 70, y: height - 12, style: `${WORDS}; text-anchor: start` }, this.shown.scale) : '');
   }
