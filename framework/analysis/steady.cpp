@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 
 #include <hamel/framework/analysis/reduced_flow.hpp>
+#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
 
 namespace hamel {
@@ -170,11 +171,11 @@ class Finder {
   Vector carrier_;
 };
 
-SteadyMotion finish(const SystemModel& model, const Flow& flow, const Geometry& geometry,
-                    Finder& finder, double residual, int family) {
+SteadyMotion finish(const SystemModel& model, const Geometry& geometry, Finder& finder,
+                    double residual, int family) {
   std::vector<std::string> names = words_of(model).rates;
-  for (int i = static_cast<int>(names.size()); i < flow.dim(); ++i)
-    names.push_back(fmt::format("xi{}", i + 1));
+  if (names.empty())
+    for (const Component& component : components_of(model.group)) names.push_back(component.name);
   SteadyMotion out;
   if (residual < kGood) out = finder.linearise(names, family);
   out.found = residual < kGood;
@@ -205,9 +206,9 @@ SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, c
   if (!(residual < kGood)) {
     Finder other = at_guess;
     if (const double found = other.find(false); found < residual)
-      return finish(model, flow, *geometry, other, found, family);
+      return finish(model, *geometry, other, found, family);
   }
-  return finish(model, flow, *geometry, finder, residual, family);
+  return finish(model, *geometry, finder, residual, family);
 }
 
 SteadyMotion steady_motion(const Registry& registry, const Simulation& run, int family) {
