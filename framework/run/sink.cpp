@@ -57,7 +57,7 @@ class PlainBytes {
 class CompressedBytes {
  public:
   explicit CompressedBytes(const std::string& path)
-      : path_(path), file_(gzopen(part_of(path).c_str(), "wb")) {
+      : path_(path), file_(gzopen(part_of(path).c_str(), "wb1")) {
     if (file_ == nullptr) refuse(path_);
   }
   ~CompressedBytes() {
