@@ -175,8 +175,8 @@ velocity = [3, 1, 0]
 )");
   const Outcome o = run({"study", name, "-o", "out"});
   EXPECT_EQ(o.status, 0) << o.err;
-  EXPECT_THAT(o.out, AllOf(HasSubstr("1 failed"), HasSubstr("[note] 1 cell failed, newton"),
-                           HasSubstr("Where: h 6")));
+  EXPECT_THAT(o.out, AllOf(HasSubstr("1 failed"), HasSubstr("[note] 1 cell failed: "),
+                           HasSubstr("(newton 1). Where: h 6")));
   EXPECT_EQ(count(cells("out"), ",failed,"), 1u);
   if (std::filesystem::exists(file("out/report.html"))) {
     EXPECT_THAT(contents(file("out/report.html")), HasSubstr("\"marks\":[[\"failed\",\"\"]]"));

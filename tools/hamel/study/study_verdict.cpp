@@ -49,16 +49,21 @@ class Judge {
     say(ok == view_.run().size() ? "ok" : "note", text);
   }
 
-  // One sentence for each reason and solver, if one was used. A cell that fails is a result, and nothing wrong with the study.
+  // One sentence for each reason. A cell that fails is a result, and nothing wrong with the study.
   void failures() {
-    std::map<std::pair<std::string, std::string>, std::vector<size_t>> by_reason;
+    std::map<std::string, std::vector<size_t>> by_reason;
     for (const size_t i : view_.run())
-      if (!view_.metrics(i).ok)
-        by_reason[{view_.metrics(i).reason, view_.cell(i).axes.at("solver")}].push_back(i);
-    for (const auto& [key, cells] : by_reason)
-      say("note", fmt::format("{} failed{}: {}. Where: {}.", plural(cells.size(), "cell"),
-                              key.second.empty() ? "" : ", `" + key.second + "`", key.first,
-                              view_.where(cells)));
+      if (!view_.metrics(i).ok) by_reason[view_.metrics(i).reason].push_back(i);
+    for (const auto& [reason, cells] : by_reason) {
+      std::map<std::string, size_t> by_solver;
+      for (const size_t i : cells) ++by_solver[view_.cell(i).axes.at("solver")];
+      std::string solvers;
+      for (const auto& [solver, count] : by_solver)
+        if (!solver.empty())
+          solvers += fmt::format("{}`{}` {}", solvers.empty() ? " (" : ", ", solver, count);
+      say("note", fmt::format("{} failed: {}{}. Where: {}.", plural(cells.size(), "cell"), reason,
+                              solvers.empty() ? "" : solvers + ")", view_.where(cells)));
+    }
   }
 
   // Is the error no smaller than the motion itself?
