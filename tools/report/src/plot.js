@@ -29,7 +29,7 @@ function chartFigure(block, data, equal) {
   let drawn = null;
   const redraw = () => {
     drawn?.redraw();
-    const pairs = covered(data);
+    const pairs = covered(data, equal);
     cover.textContent = pairs.map(([a, b]) => `${a} lies on ${b}`).join('; ') + (pairs.length ? '.' : '');
     cover.hidden = pairs.length === 0;
   };

@@ -50,15 +50,13 @@ export function readSeries(block, sorted) {
   return { x, y, curves, hidden };
 }
 
-/** Of the curves shown, the pairs of names of which one covers the other all along. */
-export function covered({ curves }) {
+/** Of the curves shown, the pairs of names of which one covers the other all along; equal: the axes have one scale. */
+export function covered({ curves }, equal) {
   const shown = curves.filter((curve) => curve.show && curve.points.length > 2);
-  const [low, high] = extent(shown.flatMap((curve) => curve.points.map((p) => p[1])));
-  const pairs = [];
-  shown.forEach((a, i) => shown.slice(0, i).forEach((b) => {
-    const same = a.points.length === b.points.length && a.points.every(([x, v], k) => x === b.points[k][0] &&
-      (v === null ? b.points[k][1] === null : b.points[k][1] !== null && Math.abs(v - b.points[k][1]) <= ON_TOP * (high - low)));
-    if (same) pairs.push([a.name, b.name]);
-  }));
-  return pairs;
+  const size = [0, 1].map((axis) => extent(shown.flatMap((curve) => curve.points.map((p) => p[axis])))).map(([low, high]) => high - low);
+  const near = ON_TOP * (equal ? Math.max(...size) : size[1]);
+  const over = (v, w, most) => v === w || (v !== null && w !== null && Math.abs(v - w) <= most);
+  const same = (a, b) => a.points.length === b.points.length &&
+    a.points.every(([x, y], k) => over(x, b.points[k][0], equal ? near : 0) && over(y, b.points[k][1], near));
+  return shown.flatMap((a, i) => shown.slice(0, i).filter((b) => same(a, b)).map((b) => [a.name, b.name]));
 }

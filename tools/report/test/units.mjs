@@ -2,7 +2,7 @@
 
 import { luminance, sequential } from '../src/colours.js';
 import { logTicks, niceTicks } from '../src/format.js';
-import { floorGrid, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/motion.js';
+import { floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/motion.js';
 import { columnsToCsv } from '../src/save.js';
 import { covered, readSeries } from '../src/series.js';
 
@@ -16,11 +16,13 @@ const lights = Array.from({ length: 101 }, (_, i) => luminance(sequential(i / 10
 const quarter = about(Z, Math.PI / 2);
 const motion = readMotion({ times: [0, 1, 3], bodies: [{ name: 'b', trail: true, trail_point: [1, 0, 0], shapes: [{ shape: 'sphere', radius: 1 }],
   poses: [[0, 0, 0, 1, 0, 0, 0], [2, 0, 0, 2 * quarter[0], 0, 0, 2 * quarter[3]], [null, 0, 0, 1, 0, 0, 0]] }] });
+const aside = readMotion({ times: [0], bodies: [{ name: 'b', shapes: [{ shape: 'sphere', radius: 1, at: [5, 0, 0] }], poses: [[-1, 0, 0, 1, 0, 0, 0]] }] });
 const at = (t) => poseAt(motion.bodies[0], placeInTime(motion.times, t));
 const grid = floorGrid([[0, 0, 0], [10, 3, 1]]);
 
 const x = [0, 1, 2, 3];
 const over = (a, b) => covered(readSeries({ series: [{ name: 'a', x, y: a }, { name: 'b', x, y: b }] }, true)).length;
+const pathsOver = (shift) => covered(readSeries({ series: [0, shift].map((d) => ({ name: `${d}`, x: x.map((v) => v + d), y: x.map((v) => d * v) })) }, false), true).length;
 const ticks = niceTicks(-0.31, 0.42, 5);
 const spans = [0.02, 0.1, 0.3, 0.399, 0.401, 0.5, 0.7, 0.9, 1, 1.3, 1.99, 2.01, 3, 7, 14];  // decades, each from many places
 const counts = spans.flatMap((span) => Array.from({ length: 100 }, (_, i) => logTicks(-4 + i / 100, -4 + i / 100 + span, 5).at.length));
@@ -38,6 +40,8 @@ export const units = [
   ['half way between two poses', near(at(0.5).at, [1, 0, 0]) && near(at(0.5).turn, about(Z, Math.PI / 4))],
   ['a point of the body in space', near(placed(at(1), X), [2, 1, 0]) && near(motion.bodies[0].way[1], [2, 1, 0])],
   ['beyond the last good pose there is none', at(2) === null && at(3) === null && motion.missing === 1],
+  ['bodies are followed about their middles, not their frames', near(middleOf(aside.bodies, [poseAt(aside.bodies[0], placeInTime([0], 0))]), [4, 0, 0]) && aside.reach < 1.01],
+  ['paths that cover each other up to round-off', pathsOver(1e-15) === 1 && pathsOver(0.1) === 0],
   ['the room that a motion takes', near(motion.box[0], [-1, -1, -1]) && near(motion.box[1], [3, 1, 1])],
   ['the floor reaches under all of it', Math.max(...grid.lines.flat().map((p) => p[0])) >= 10 && grid.lines.length < 40],
   ['curves that cover each other are found', over([0, 1, 0, 1], [0, 1.001, 0, 1]) === 1 && over([0, 1, 0, 1], [0, 1, 0, 0.9]) === 0],
