@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/product.hpp>
@@ -40,6 +41,7 @@ struct DifferentialDrive {
            "energy";
   }
   static std::string source() { return "Campion, Bastin and d'Andrea-Novel 1996"; }
+  static std::vector<std::string> shape() { return {"right", "left"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "total mass", positive);

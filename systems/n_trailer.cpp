@@ -141,6 +141,12 @@ std::vector<double> NTrailer::each_length() const {
       fmt::format("length: got {} values, expected 1 or {}", lengths.size(), n));
 }
 
+std::vector<std::string> NTrailer::shape() const {
+  std::vector<std::string> out;
+  for (int i = 1; i <= count(); ++i) out.push_back("hitch" + std::to_string(i));
+  return out;
+}
+
 std::string NTrailer::group() const { return fmt::format("se2*so2^{}", count()); }
 
 std::shared_ptr<const Mechanics> NTrailer::mechanics() const {

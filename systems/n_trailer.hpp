@@ -57,6 +57,7 @@ struct NTrailer {
     f("trailer_inertia", trailer_moment, "kg m^2", "moment of a trailer", non_negative);
   }
   std::string group() const;
+  std::vector<std::string> shape() const;  // hitch1, ...
   std::shared_ptr<const Mechanics> mechanics() const;
   /// n, and its lengths, one for each trailer. Throws std::invalid_argument.
   int count() const;

@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/product.hpp>
@@ -43,6 +44,7 @@ struct RollerRacer {
     return "undulation propels; invariants: energy when the torque is 0";
   }
   static std::string source() { return "Krishnaprasad and Tsakiris 2001"; }
+  static std::vector<std::string> shape() { return {"steer"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "mass, at the rear axle", positive);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/product.hpp>
@@ -34,6 +35,7 @@ struct RollingDisk {
            "R phi'/omega";
   }
   static std::string source() { return "Bloch 2003, section 1.4"; }
+  static std::vector<std::string> shape() { return {"roll"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "total mass", positive);

@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/product.hpp>
@@ -47,6 +48,7 @@ struct Segway {
     return "upright rolling is unstable at a known rate; invariants: energy";
   }
   static std::string source() { return "Grasser, d'Arrigo, Colombi and Rufer 2002"; }
+  static std::vector<std::string> shape() { return {"right", "left", "pitch"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "mass of the body", positive);

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/product.hpp>
@@ -49,6 +50,7 @@ struct Snakeboard {
     return "(omega, v) by a quadrature, the path by another, both at round-off";
   }
   static std::string source() { return "Lewis, Ostrowski, Murray and Burdick 1994"; }
+  static std::vector<std::string> shape() { return {"rotor", "front", "back"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "total mass", positive);

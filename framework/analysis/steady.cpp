@@ -8,7 +8,6 @@
 #include <Eigen/QR>
 
 #include <hamel/framework/analysis/reduced_flow.hpp>
-#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
 
 namespace hamel {
@@ -173,9 +172,8 @@ class Finder {
 
 SteadyMotion finish(const SystemModel& model, const Geometry& geometry, Finder& finder,
                     double residual, int family) {
-  std::vector<std::string> names = words_of(model).rates;
-  if (names.empty())
-    for (const Component& component : components_of(model.group)) names.push_back(component.name);
+  std::vector<std::string> names;
+  for (const Component& component : components_of(model)) names.push_back(component.name);
   SteadyMotion out;
   if (residual < kGood) out = finder.linearise(names, family);
   out.found = residual < kGood;

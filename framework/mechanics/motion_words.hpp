@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 
 namespace hamel {
@@ -59,5 +60,8 @@ inline const MotionWords& words_of(const SystemModel& model) {
   const auto* worded = dynamic_cast<const Worded*>(model.mechanics.get());
   return worded == nullptr ? none : worded->words();
 }
+
+/// The components of xi by the names that the system states, else by those of its group (components.hpp).
+std::vector<Component> components_of(const SystemModel& model);
 
 }  // namespace hamel

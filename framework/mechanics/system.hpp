@@ -16,6 +16,7 @@
 //                                      pushes where it is positive (differentials of a height, counted from 0)
 //   void events(auto& add) const;      add("name", "what it is", direction, [](double t, const auto& g, const auto& xi) {
 //                                      return ...; }): zero at the event; direction +1, -1, or 0 for both ways
+//   static shape()                     names of the coordinates of the group's factors so2 and rn, in order: {"right", "left"}
 //   void draw(auto& scene) const;      how the report page shows it (drawing.hpp)
 //   static name(), summary(), formula(), known(), source()   words for `hamel describe`
 #pragma once
@@ -76,6 +77,8 @@ struct SystemModel {
   std::vector<Invariant> invariants;
   std::vector<Event> events;
   std::vector<int> contacts;  // the rows whose multiplier is a normal reaction
+  std::vector<std::string>
+      shape;  // names of the coordinates of so2 and rn; empty: those of the group
   Drawing drawing;
   std::vector<InputField> inputs;
   /// The mechanics that these inputs drive; empty where there are none.
@@ -100,6 +103,16 @@ void tell_fields(S& system, Visitor& visitor) {
   if constexpr (requires { system.fields(visitor); }) system.fields(visitor);
   else
     static_assert(!named::fields<S>, "fields of this system cannot be called: expected fields(f)");
+}
+template <class S>
+std::vector<std::string> shape_names(const S& system) {
+  if constexpr (requires { system.shape(); }) {
+    return system.shape();
+  } else {
+    static_assert(!named::shape<S>,
+                  "shape of this system cannot be called: expected static shape()");
+    return {};
+  }
 }
 template <class S, class Visitor>
 void tell_invariants(const S& system, Visitor& add) {
@@ -243,6 +256,7 @@ SystemModel erase(const S& system) {
     static_assert(!named::contacts<S>,
                   "contacts of this system cannot be called: expected a const member contacts()");
   }
+  model.shape = detail::shape_names(system);
   Scene<G> scene(model.drawing);
   detail::tell_drawing(system, scene);
   return model;
@@ -279,6 +293,7 @@ SystemModel erase(const S& system) {
     model.events.push_back({std::move(name), std::move(meaning), direction, value});
   };
   detail::tell_events(system, add_event);
+  model.shape = detail::shape_names(system);
   detail::tell_drawing(system, model.drawing);
   return model;
 }

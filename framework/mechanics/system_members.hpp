@@ -18,7 +18,7 @@ namespace named {
 struct Names {
   int constraints, drift, holonomic, potential, force, start, exact, has_exact, invariants, fields,
       draw, name, summary, formula, known, source, potential_differential, holonomic_differential,
-      inertia_differential, contacts, events, inputs;
+      inertia_differential, contacts, events, inputs, shape;
 };
 template <class S, bool = std::is_final_v<S>>
 struct Both : S, Names {};
@@ -58,6 +58,7 @@ HAMEL_NAMED(inertia_differential)
 HAMEL_NAMED(contacts)
 HAMEL_NAMED(events)
 HAMEL_NAMED(inputs)
+HAMEL_NAMED(shape)
 #undef HAMEL_NAMED
 
 }  // namespace named

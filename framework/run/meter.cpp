@@ -36,10 +36,10 @@ ColumnGroup element_columns(const GroupInfo& group) {
 }
 
 // Of the velocity, or of the momentum dual to it.
-ColumnGroup body_columns(const char* name, const GroupInfo& group, bool dual) {
-  ColumnGroup out = numbered(name, static_cast<std::size_t>(group.dim));
+ColumnGroup body_columns(const char* name, const SystemModel& system, bool dual) {
+  ColumnGroup out = numbered(name, static_cast<std::size_t>(system.group.dim));
   std::string names;
-  for (const Component& c : components_of(group)) {
+  for (const Component& c : components_of(system)) {
     const std::string unit = !dual               ? c.unit
                              : c.unit == "rad/s" ? "N m s"
                              : c.unit == "m/s"   ? "N s"
@@ -107,7 +107,7 @@ void Meter::take(const Snapshot& state) {
   const double error = all_.take(state, energy_start_);
   add(kTime, state.time);
   add([&] { return element_columns(system_.group); }, state.coordinates);
-  add([&] { return body_columns("xi", system_.group, false); }, state.velocity);
+  add([&] { return body_columns("xi", system_, false); }, state.velocity);
   add(kEnergy, state.energy);
   add(kEnergyError, error);
   add(kConstraint, state.constraint);
@@ -115,7 +115,7 @@ void Meter::take(const Snapshot& state) {
   add(kIterations, static_cast<double>(state.iterations));
   add(kResidual, state.residual);
   if (holonomic_) add(kHolonomic, state.holonomic);
-  add([&] { return body_columns("mu", system_.group, true); }, state.momentum);
+  add([&] { return body_columns("mu", system_, true); }, state.momentum);
 }
 
 void Meter::compare(const Snapshot& state) {

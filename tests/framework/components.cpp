@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/systems/simulate.hpp>
 
 namespace {
@@ -14,7 +14,7 @@ TEST(Components, EverySystemHasOneNameForEachComponent) {
   for (const std::string& name : registry().systems()) {
     const SystemModel system = simulate(name).build().system();
     std::set<std::string> names;
-    for (const Component& c : components_of(system.group)) {
+    for (const Component& c : components_of(system)) {
       EXPECT_FALSE(c.name.empty()) << name;
       EXPECT_FALSE(c.unit.empty()) << name << ": " << c.name;
       EXPECT_TRUE(names.insert(c.name).second) << name << ": " << c.name << " twice";
@@ -48,6 +48,20 @@ TEST(Components, UnitsOfTheElement) {
   EXPECT_EQ(units("rolling_ball"), ball);
   EXPECT_EQ(units("falling_disk"), disk);
   EXPECT_EQ(units("differential_drive"), (std::vector<std::string>{"rad", "m", "m", "rad", "rad"}));
+}
+
+TEST(Components, BySystemsThatNameTheirShape) {
+  const auto names = [](const std::string& system) {
+    std::string out;
+    for (const Component& c : components_of(simulate(system).build().system())) out += c.name + " ";
+    return out;
+  };
+  EXPECT_EQ(names("segway"), "omega v1 v2 right' left' pitch' ");
+  EXPECT_EQ(names("n_trailer"), "omega v1 v2 hitch1' hitch2' hitch3' ");
+  EXPECT_EQ(names("suslov"), "omega1 omega2 omega3 ");
+  SystemModel wrong = simulate("segway").build().system();
+  wrong.shape.pop_back();
+  EXPECT_THROW(components_of(wrong), ConfigError);
 }
 
 // A shape coordinate is the integral of its component: over one small step of the exact flow of the segway's

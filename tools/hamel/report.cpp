@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/framework/run/run_file.hpp>
 #include <hamel/systems/simulate.hpp>
 
@@ -103,7 +103,7 @@ Page compared(const std::vector<ReadRun>& runs) {
 
   page.section("Motion");
   const Result& first = runs.front().result;
-  const std::vector<Component> names = components_of(first.system.group);
+  const std::vector<Component> names = components_of(first.system);
   for (size_t i = 0; i < names.size(); ++i)
     add_figure(page, runs, names[i].name, "[" + names[i].unit + "]", fmt::format("xi{}", i + 1),
                false);
