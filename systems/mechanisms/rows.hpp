@@ -16,6 +16,7 @@
 // Robotics and Automation 12 (1996).
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -33,12 +34,23 @@ struct Contact {
   Vec3 at = Vec3::Zero();        // centre, or point of the blade, as drawn
   Vec3 axis = Vec3::UnitY();     // axle, or direction of the blade, of length 1
   double radius = 0, angle = 0;  // m, rad
+  // Found by Rows::look_at:
+  int carrier =
+      0;  // the link, or its parent where the link's own turning changes nothing (a wheel's)
+  bool fixed = false;  // its rows are the same wrenches in the carrier at all times
+  std::array<Wrench, 3> wrenches = {};
+  double height = 0;
+
+  /// How many rows, the last of them its height.
+  int rows() const { return kind == ContactKind::wheel || kind == ContactKind::ball ? 3 : 2; }
 };
 
 struct Loop {
   std::string name;
   int a = kGround, b = kGround;
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();  // axis 0: a ball joint
+
+  int rows() const { return axis.isZero(0) ? 3 : 5; }
 };
 
 struct Prescribed {
@@ -77,24 +89,42 @@ struct Rows {
 
   /// What there is, in the order of each().
   std::vector<RowWords> words() const;
-  /// f(row) for all rows at a tree that was placed.
+  /// Finds out what does not change; before the rest.
+  void look_at(const Tree& tree);
+  /// f(i, row) for the rows i that `wants` at a tree that was placed.
+  template <class Wants, class F>
+  void each(const Tree& tree, double t, Wants&& wants, F&& f) const {
+    size_t i = 0;
+    const auto some = [&](const auto& parts) {
+      for (const auto& part : parts) {
+        const size_t end = i + static_cast<size_t>(part.rows());
+        size_t first = i;
+        while (first < end && !wants(first)) ++first;
+        if (first < end)
+          look(part, tree, [&](int k, const Row& row) {
+            const size_t at = i + static_cast<size_t>(k);
+            if (wants(at)) f(at, row);
+          });
+        i = end;
+      }
+    };
+    some(contacts);
+    some(loops);
+    for (const Prescribed& p : prescribed) {
+      if (wants(i)) {
+        Row row;
+        row.dof = p.dof;
+        row.drift = p.rate(t);
+        f(i, row);
+      }
+      ++i;
+    }
+  }
+  /// All of them.
   template <class F>
   void each(const Tree& tree, double t, F&& f) const {
-    Row rows[5];
-    for (const Contact& contact : contacts) {
-      const int count = look(contact, tree, rows);
-      for (int i = 0; i < count; ++i) f(rows[i]);
-    }
-    for (const Loop& loop : loops) {
-      const int count = look(loop, tree, rows);
-      for (int i = 0; i < count; ++i) f(rows[i]);
-    }
-    for (const Prescribed& p : prescribed) {
-      Row row;
-      row.dof = p.dof;
-      row.drift = p.rate(t);
-      f(row);
-    }
+    each(
+        tree, t, [](size_t) { return true; }, f);
   }
   /// Where a contact touches the ground, in the world; its height above it.
   Vec3 touches(const Contact& contact, const Tree& tree) const;
@@ -103,8 +133,33 @@ struct Rows {
   }
 
  private:
-  int look(const Contact& contact, const Tree& tree, Row* rows) const;
-  static int look(const Loop& loop, const Tree& tree, Row* rows);
+  template <class F>
+  void look(const Contact& contact, const Tree& tree, F&& f) const {
+    if (contact.fixed) {
+      Row row;
+      row.link = contact.link;
+      const PlaneMotion& here = tree.in_plane_of_root(contact.carrier);
+      const bool on_root = tree.parent(contact.carrier) == kGround;
+      for (int k = 0; k < contact.rows(); ++k) {
+        const Wrench& wrench = contact.wrenches[static_cast<size_t>(k)];
+        row.wrench = on_root ? wrench : here.move_wrench(wrench);
+        row.phi = k + 1 == contact.rows() ? contact.height : 0;
+        f(k, row);
+      }
+      return;
+    }
+    Row rows[3];
+    look(contact, tree, rows);
+    for (int k = 0; k < contact.rows(); ++k) f(k, rows[k]);
+  }
+  template <class F>
+  void look(const Loop& loop, const Tree& tree, F&& f) const {
+    Row rows[5];
+    look(loop, tree, rows);
+    for (int k = 0; k < loop.rows(); ++k) f(k, rows[k]);
+  }
+  void look(const Contact& contact, const Tree& tree, Row* rows) const;
+  static void look(const Loop& loop, const Tree& tree, Row* rows);
 };
 
 }  // namespace hamel::mechanisms
