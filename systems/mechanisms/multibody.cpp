@@ -83,8 +83,8 @@ void write(const Row& row, const Tree& tree, Mechanics::Matrix a, int to) {
 }  // namespace
 
 void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const {
-  for (Eigen::Index j = 0; j < a.cols(); ++j)
-    std::copy_n(&fixed_rows_(0, j), a.rows(), a.data() + j * a.outerStride());
+  if (a.outerStride() == a.rows()) std::copy_n(fixed_rows_.data(), fixed_rows_.size(), a.data());
+  else a = fixed_rows_;
   b.setZero();
   if (constant_rows_) return;
   const Tree& at = placed(g);

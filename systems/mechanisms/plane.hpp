@@ -9,8 +9,10 @@
 namespace hamel::mechanisms {
 
 /// The entries in the plane of a twist or wrench in space.
-inline auto in_plane(const Vec<6>& v) { return v.segment<3>(2); }
-inline auto in_plane(Vec<6>& v) { return v.segment<3>(2); }
+template <class V>
+auto in_plane(V&& v) {
+  return v.template segment<3>(2);
+}
 
 /// x -> Rot x + (x, y), Rot = [c -s; s c].
 struct PlaneMotion {
@@ -40,7 +42,6 @@ inline PlaneMotion operator*(const PlaneMotion& a, const PlaneMotion& b) {
   return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s, a.x + a.c * b.x - a.s * b.y,
           a.y + a.s * b.x + a.c * b.y};
 }
-inline Rigid operator*(const PlaneMotion& a, const Rigid& b) { return a.in_space() * b; }
 
 /// Of an inertia only the mass, the first moment and the moment about the third axis take part.
 inline void move_in_plane(const PlaneMotion& x, const Inertia& from, Inertia& to) {

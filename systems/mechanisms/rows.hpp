@@ -42,7 +42,7 @@ struct Contact {
   double height = 0;
 
   /// How many rows, the last of them its height.
-  int rows() const { return kind == ContactKind::wheel || kind == ContactKind::ball ? 3 : 2; }
+  size_t rows() const { return kind == ContactKind::wheel || kind == ContactKind::ball ? 3 : 2; }
 };
 
 struct Loop {
@@ -50,7 +50,7 @@ struct Loop {
   int a = kGround, b = kGround;
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();  // axis 0: a ball joint
 
-  int rows() const { return axis.isZero(0) ? 3 : 5; }
+  size_t rows() const { return axis.isZero(0) ? 3 : 5; }
 };
 
 struct Prescribed {
@@ -95,27 +95,41 @@ struct Rows {
   template <class Wants, class F>
   void each(const Tree& tree, double t, Wants&& wants, F&& f) const {
     size_t i = 0;
-    const auto some = [&](const auto& parts) {
-      for (const auto& part : parts) {
-        const size_t end = i + static_cast<size_t>(part.rows());
-        size_t first = i;
-        while (first < end && !wants(first)) ++first;
-        if (first < end)
-          look(part, tree, [&](int k, const Row& row) {
-            const size_t at = i + static_cast<size_t>(k);
-            if (wants(at)) f(at, row);
-          });
-        i = end;
-      }
+    const auto look_all = [&](const auto& part) {
+      Row rows[5];
+      look(part, tree, rows);
+      for (size_t k = 0; k < part.rows(); ++k)
+        if (wants(i + k)) f(i + k, rows[k]);
     };
-    some(contacts);
-    some(loops);
+    const auto any = [&](size_t count) {
+      size_t k = 0;
+      while (k < count && !wants(i + k)) ++k;
+      return k < count;
+    };
+    Row row;
+    for (const Contact& contact : contacts) {
+      const size_t count = contact.rows();
+      if (contact.fixed) {
+        for (size_t k = 0; k < count; ++k) {
+          if (!wants(i + k)) continue;
+          take(contact, k, tree, row);
+          f(i + k, row);
+        }
+      } else if (any(count)) {
+        look_all(contact);
+      }
+      i += count;
+    }
+    for (const Loop& loop : loops) {
+      if (any(loop.rows())) look_all(loop);
+      i += loop.rows();
+    }
     for (const Prescribed& p : prescribed) {
       if (wants(i)) {
-        Row row;
-        row.dof = p.dof;
-        row.drift = p.rate(t);
-        f(i, row);
+        Row given;
+        given.dof = p.dof;
+        given.drift = p.rate(t);
+        f(i, given);
       }
       ++i;
     }
@@ -133,30 +147,13 @@ struct Rows {
   }
 
  private:
-  template <class F>
-  void look(const Contact& contact, const Tree& tree, F&& f) const {
-    if (contact.fixed) {
-      Row row;
-      row.link = contact.link;
-      const PlaneMotion& here = tree.in_plane_of_root(contact.carrier);
-      const bool on_root = tree.parent(contact.carrier) == kGround;
-      for (int k = 0; k < contact.rows(); ++k) {
-        const Wrench& wrench = contact.wrenches[static_cast<size_t>(k)];
-        row.wrench = on_root ? wrench : here.move_wrench(wrench);
-        row.phi = k + 1 == contact.rows() ? contact.height : 0;
-        f(k, row);
-      }
-      return;
-    }
-    Row rows[3];
-    look(contact, tree, rows);
-    for (int k = 0; k < contact.rows(); ++k) f(k, rows[k]);
-  }
-  template <class F>
-  void look(const Loop& loop, const Tree& tree, F&& f) const {
-    Row rows[5];
-    look(loop, tree, rows);
-    for (int k = 0; k < loop.rows(); ++k) f(k, rows[k]);
+  // Row k of a fixed contact.
+  static void take(const Contact& contact, size_t k, const Tree& tree, Row& row) {
+    const Wrench& wrench = contact.wrenches[k];
+    row.link = contact.link;
+    row.phi = k + 1 == contact.rows() ? contact.height : 0;
+    if (tree.parent(contact.carrier) == kGround) row.wrench = wrench;
+    else row.wrench = tree.in_plane_of_root(contact.carrier).move_wrench(wrench);
   }
   void look(const Contact& contact, const Tree& tree, Row* rows) const;
   static void look(const Loop& loop, const Tree& tree, Row* rows);

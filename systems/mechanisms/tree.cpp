@@ -63,6 +63,7 @@ Tree::Tree(const std::vector<Link>& links) {
     const int j = static_cast<int>(nodes_.size());
     const bool is_root = link.parent == kGround;
     node.link = link;
+    chain_ = chain_ && link.parent == j - 1;
     node.root = is_root ? j : at(link.parent).root;
     node.on_root = !is_root && at(link.parent).link.parent == kGround;
     node.dof = dim_;
@@ -136,7 +137,7 @@ std::array<double, 2> Tree::Node::numbers(const double* g) const {
 Rigid Tree::Node::across(const double* g) const {
   if (link.kind == JointKind::free || link.kind == JointKind::ball)
     return link.on_parent * motion(link.kind, g) * after;
-  const auto [a, b] = numbers(g);
+  const double a = numbers(g)[0], b = numbers(g)[1];
   Rigid out{terms[0].rotation + a * terms[1].rotation + b * terms[2].rotation,
             terms[0].position + a * terms[1].position + b * terms[2].position};
   if (link.kind == JointKind::planar) {
@@ -148,7 +149,7 @@ Rigid Tree::Node::across(const double* g) const {
 }
 
 PlaneMotion Tree::Node::across_in_plane(const double* g) const {
-  const auto [a, b] = numbers(g);
+  const double a = numbers(g)[0], b = numbers(g)[1];
   const auto sum = [&](auto entry) {
     return entry(terms[0]) + a * entry(terms[1]) + b * entry(terms[2]);
   };
@@ -190,8 +191,7 @@ HAMEL_FLATTEN void Tree::place(const double* g) {
         node.columns.col(i) = node.place.move(node.directions.col(i));
     } else if (!node.on_root) {
       if (node.planar) {
-        node.columns.col(0).segment<3>(2) =
-            parent.flat.move_in_plane(node.directions.col(0).segment<3>(2));
+        in_plane(node.columns.col(0)) = parent.flat.move_in_plane(in_plane(node.directions.col(0)));
       } else if (parent.planar) {
         node.columns.col(0) = parent.flat.move(node.directions.col(0));
       } else {

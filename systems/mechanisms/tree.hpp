@@ -119,8 +119,7 @@ class Tree {
     PlaneMotion across_in_plane(const double* g) const;
     /// What a wrench does on velocity i; of one on a planar link only its entries in the plane count.
     double along(int i, const Wrench& wrench) const {
-      return planar ? columns.col(i).segment<3>(2).dot(in_plane(wrench))
-                    : columns.col(i).dot(wrench);
+      return planar ? in_plane(columns.col(i)).dot(in_plane(wrench)) : columns.col(i).dot(wrench);
     }
   };
   const Node& at(int link) const { return nodes_[static_cast<size_t>(link)]; }
@@ -134,6 +133,7 @@ class Tree {
   std::vector<double> drawn_, placed_;
   Rigid rest_;
   int dim_ = 0, size_ = 0;
+  bool chain_ = true;  // each link carries the next one: I(g) has no entries that are always 0
   bool carries_ = false;
 };
 

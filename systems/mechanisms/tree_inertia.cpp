@@ -32,8 +32,7 @@ HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
     if (node.planar) {
       Vec3 v = Vec3::Zero();
       if (!is_root) v = in_plane(at(node.link.parent).twist);
-      for (int i = 0; i < node.count; ++i)
-        v += xi[node.dof + i] * node.columns.col(i).segment<3>(2);
+      for (int i = 0; i < node.count; ++i) v += xi[node.dof + i] * in_plane(node.columns.col(i));
       in_plane(node.twist) = v;
     } else {
       Twist v = Twist::Zero();
@@ -44,10 +43,10 @@ HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
   }
 }
 
-// Column `column` of I(g), and what is its mirror image: a momentum on `count` velocities of a link, and on all of those that
-// carry it.
-inline void Tree::write(const Node* from, int count, int column, const Wrench& momentum,
-                        double* out, Eigen::Index stride) const {
+// A column of I(g), and the row that mirrors it: what a momentum does on the first `count` velocities of a link and on
+// those of all that carry it.
+void Tree::write(const Node* from, int count, int column, const Wrench& momentum, double* out,
+                 Eigen::Index stride) const {
   for (;;) {
     for (int i = 0; i < count; ++i) {
       const int row = from->dof + i;
@@ -62,7 +61,10 @@ inline void Tree::write(const Node* from, int count, int column, const Wrench& m
 HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> to) const {
   const Eigen::Index stride = to.outerStride();
   double* out = to.data();
-  for (int j = 0; j < dim_; ++j) std::fill_n(out + j * stride, dim_, 0.0);
+  if (!chain_) {
+    if (stride == dim_) std::fill_n(out, dim_ * dim_, 0.0);
+    else to.setZero();
+  }
   for (const Node& node : nodes_) {
     if (node.rotor) {
       out[node.dof * (stride + 1)] = node.moment;
@@ -73,7 +75,7 @@ HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> to) const {
     for (int b = 0; b < node.count; ++b) {
       Wrench momentum = Wrench::Zero();
       if (node.planar)
-        in_plane(momentum) = momentum_in_plane(node.carried, node.columns.col(b).segment<3>(2));
+        in_plane(momentum) = momentum_in_plane(node.carried, in_plane(node.columns.col(b)));
       else momentum = node.carried * node.columns.col(b);
       write(&node, b + 1, node.dof + b, momentum, out, stride);
     }
@@ -94,7 +96,7 @@ HAMEL_FLATTEN void Tree::add_inertial_force(Eigen::Ref<Eigen::VectorXd> out) {
     Node& parent = at(node.link.parent);
     if (node.planar) {
       const Vec3 force = ad_transpose_in_plane(in_plane(parent.twist), in_plane(node.momentum));
-      out[node.dof] += node.columns.col(0).segment<3>(2).dot(force);
+      out[node.dof] += in_plane(node.columns.col(0)).dot(force);
     } else if (!node.rotor) {  // the inertia of a rotor is the same at all angles
       const Wrench force = ad_transpose(parent.twist, node.momentum);
       for (int i = 0; i < node.count; ++i) out[node.dof + i] += node.columns.col(i).dot(force);
