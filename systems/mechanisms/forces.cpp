@@ -52,7 +52,7 @@ double Forces::potential(const Tree& tree, const double* g) const {
   for (int j = 0; j < tree.links(); ++j) {
     if (tree.parent(j) != kGround) continue;
     const Rigid& root = tree.root_in_world(j);
-    const Inertia all = tree.composite(j);
+    const Inertia& all = tree.composite(j);
     v -= gravity.dot(root.rotation * all.first + all.mass * root.position);
   }
   for (const Spring& spring : springs) {
@@ -65,12 +65,7 @@ double Forces::potential(const Tree& tree, const double* g) const {
 
 void Forces::add_potential_force(const Tree& tree, const double* g,
                                  Eigen::Ref<Eigen::VectorXd> out) const {
-  for (int j = 0; j < tree.links(); ++j) {
-    const Inertia carried = tree.composite(j);
-    const Vec3 a = tree.root_in_world(j).rotation.transpose() * gravity;
-    const Wrench weight = stack(carried.first.cross(a), carried.mass * a);
-    tree.add_to_joint(j, weight, out);
-  }
+  tree.add_weight(gravity, out);
   for (const Spring& spring : springs) {
     if (spring.stiffness == 0) continue;
     if (spring.joint >= 0) {

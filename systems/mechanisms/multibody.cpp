@@ -5,14 +5,15 @@
 
 namespace hamel::mechanisms {
 
-Multibody::Multibody(Tree tree, Rows rows, Forces forces, std::shared_ptr<const Geometry> geometry)
-    : tree_(std::move(tree)),
+Multibody::Multibody(const Tree& tree, Rows rows, Forces forces,
+                     std::shared_ptr<const Geometry> geometry)
+    : trees_{tree, tree},
       rows_(std::move(rows)),
       forces_(std::move(forces)),
       geometry_(std::move(geometry)),
-      placed_(tree_.drawn()),
       coordinates_(static_cast<size_t>(geometry_->columns())),
-      work_(tree_.dim()) {
+      work_(tree.dim()) {
+  rows_.look_at(tree);
   std::vector<int> all(rows_.words().size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   keep(all);
@@ -30,6 +31,9 @@ void Multibody::keep(const std::vector<int>& rows) {
       holonomic_ = holonomic ? holonomic_ + 1 : 0;
     }
   }
+  varies_.assign(words.size(), 0);
+  for (const int row : kept_) varies_[static_cast<size_t>(row)] = 1;
+  fixed_rows_ = Eigen::MatrixXd::Zero(this->rows(), dim());
 }
 
 void Multibody::drive(const std::vector<Driver>& drivers,
@@ -46,19 +50,17 @@ void Multibody::drive(const std::vector<Driver>& drivers,
   }
 }
 
-const Tree& Multibody::tree(const double* g) const {
-  const size_t bytes = placed_.size() * sizeof(double);
-  if (std::memcmp(placed_.data(), g, bytes) != 0) {
-    std::memcpy(placed_.data(), g, bytes);
-    tree_.place(g);
-  }
-  return tree_;
+Tree& Multibody::placed(const double* g) const {
+  if (trees_[last_].placed_at(g)) return trees_[last_];
+  last_ = 1 - last_;
+  trees_[last_].place(g);
+  return trees_[last_];
 }
 
-const Tree& Multibody::carrying(const double* g) const {
-  tree(g);
-  tree_.carry();
-  return tree_;
+Tree& Multibody::carrying(const double* g) const {
+  Tree& tree = placed(g);
+  tree.carry();
+  return tree;
 }
 
 void Multibody::inertia(const double* g, Matrix out) const {
@@ -66,32 +68,42 @@ void Multibody::inertia(const double* g, Matrix out) const {
   else carrying(g).inertia(out);
 }
 
-void Multibody::write(const Row& row, Matrix a, int to) const {
-  a.row(to).setZero();
+namespace {
+
+// Onto row `to`, which is 0.
+void write(const Row& row, const Tree& tree, Mechanics::Matrix a, int to) {
   if (row.dof >= 0) {
     a(to, row.dof) = 1;
     return;
   }
-  tree_.add_wrench(row.link, row.wrench, a.row(to));
-  tree_.add_wrench(row.other, row.other_wrench, a.row(to), -1);
+  tree.add_wrench(row.link, row.wrench, a.row(to));
+  if (row.other != kGround) tree.add_wrench(row.other, row.other_wrench, a.row(to), -1);
 }
 
+}  // namespace
+
 void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const {
-  size_t i = 0;
-  rows_.each(tree(g), t, [&](const Row& row) {
-    const int to = slots_[i++];
-    if (to < 0) return;
-    write(row, a, to);
-    b[to] = row.drift;
-  });
+  if (a.outerStride() == a.rows()) std::copy_n(fixed_rows_.data(), fixed_rows_.size(), a.data());
+  else a = fixed_rows_;
+  b.setZero();
+  if (constant_rows_) return;
+  const Tree& at = placed(g);
+  rows_.each(
+      at, t, [&](size_t i) { return varies_[i] != 0; },
+      [&](size_t i, const Row& row) {
+        write(row, at, a, slots_[i]);
+        b[slots_[i]] = row.drift;
+      });
 }
 
 void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) const {
-  int i = 0;
-  rows_.each(tree(g), t, [&](const Row& row) {
-    write(row, a, i);
-    b[i] = row.drift;
-    phi[i++] = row.phi;
+  const Tree& at = placed(g);
+  a.setZero();
+  rows_.each(at, t, [&](size_t i, const Row& row) {
+    const auto to = static_cast<Eigen::Index>(i);
+    write(row, at, a, static_cast<int>(i));
+    b[to] = row.drift;
+    phi[to] = row.phi;
   });
 }
 
@@ -99,13 +111,13 @@ Vec3 Multibody::reaction(size_t contact, const double* g,
                          std::span<const double> multipliers) const {
   const std::string& part = rows_.contacts[contact].name;
   const std::vector<RowWords> words = rows_.words();
+  const Tree& at = placed(g);
   Vec3 force = Vec3::Zero();
-  size_t i = 0;
-  rows_.each(tree(g), 0, [&](const Row& row) {
-    const int at = slots_[i];
-    if (words[i++].part == part && at >= 0 && row.dof < 0)
-      force += multipliers[static_cast<size_t>(at)] *
-               (tree_.root_in_world(row.link).rotation * lower(row.wrench));
+  rows_.each(at, 0, [&](size_t i, const Row& row) {
+    const int slot = slots_[i];
+    if (words[i].part == part && slot >= 0 && row.dof < 0)
+      force += multipliers[static_cast<size_t>(slot)] *
+               (at.root_in_world(row.link).rotation * lower(row.wrench));
   });
   return force;
 }
@@ -113,47 +125,45 @@ Vec3 Multibody::reaction(size_t contact, const double* g,
 void Multibody::holonomic(const double* g, Vector out) const {
   if (holonomic_ == 0) return;
   const int before = rows() - holonomic_;
-  size_t i = 0;
-  rows_.each(tree(g), 0, [&](const Row& row) {
-    const int to = slots_[i++];
-    if (to >= before) out[to - before] = row.phi;
-  });
+  rows_.each(
+      placed(g), 0, [&](size_t i) { return slots_[i] >= before; },
+      [&](size_t i, const Row& row) { out[slots_[i] - before] = row.phi; });
 }
 
-void Multibody::add_force(double t, const double* g, ConstVector xi, Vector out) const {
+void Multibody::add_force(const Tree& tree, double t, const double* g, ConstVector xi,
+                          Vector out) const {
   Now now{t, {}, {xi.data(), static_cast<size_t>(xi.size())}};
   if (forces_.has_signals()) {
     geometry_->coordinates(g, coordinates_.data());
     now.coordinates = coordinates_;
   }
-  forces_.add_force(tree_, now, out);
+  forces_.add_force(tree, now, out);
 }
 
 void Multibody::force(double t, const double* g, ConstVector xi, Vector out) const {
   out.setZero();
-  if (constant_inertia_ && constant_potential_) tree(g);
-  else carrying(g);
-  const bool moves = !constant_inertia_ || forces_.any();
-  if (moves) tree_.move(xi);
-  if (!constant_potential_) forces_.add_potential_force(tree_, g, out);
-  if (!constant_inertia_) tree_.add_inertial_force(out);
-  if (forces_.any()) add_force(t, g, xi, out);
+  Tree& at = constant_inertia_ && constant_potential_ ? placed(g) : carrying(g);
+  const bool other = forces_.any();
+  if (!constant_inertia_ || other) at.move(xi);
+  if (!constant_potential_) forces_.add_potential_force(at, g, out);
+  if (!constant_inertia_) at.add_inertial_force(out);
+  if (other) add_force(at, t, g, xi, out);
 }
 
 void Multibody::inertial_force(const double* g, ConstVector xi, Vector out) const {
   out.setZero();
   if (constant_inertia_) return;
-  carrying(g);
-  tree_.move(xi);
-  tree_.add_inertial_force(out);
+  Tree& at = carrying(g);
+  at.move(xi);
+  at.add_inertial_force(out);
 }
 
 double Multibody::power(double t, const double* g, ConstVector xi) const {
   if (!forces_.any()) return 0;
-  tree(g);
-  tree_.move(xi);
+  Tree& at = placed(g);
+  at.move(xi);
   work_.setZero();
-  add_force(t, g, xi, work_);
+  add_force(at, t, g, xi, work_);
   return work_.dot(xi);
 }
 
@@ -163,23 +173,40 @@ void Multibody::look_for_constants(const std::vector<std::vector<double>>& poses
   const int n = dim(), k = rows();
   Eigen::MatrixXd inertia(n, n), a(k, n), first_a(k, n);
   Eigen::VectorXd b(k), slope(n);
-  bool same_inertia = true, same_rows = holonomic_ == 0 && !has_drift(), level = true;
+  bool same_inertia = true, level = true;
+  std::vector<bool> same_row(static_cast<size_t>(k), !rows_.ground.moves());
   inertia_.resize(n, n);
   carrying(poses.front().data()).inertia(inertia_);
   constraints(0, poses.front().data(), first_a, b);
   for (const auto& pose : poses) {
-    carrying(pose.data()).inertia(inertia);
+    const Tree& at = carrying(pose.data());
+    at.inertia(inertia);
     constraints(0, pose.data(), a, b);
     slope.setZero();
-    forces_.add_potential_force(tree_, pose.data(), slope);
+    forces_.add_potential_force(at, pose.data(), slope);
     const double size = inertia_.lpNorm<Eigen::Infinity>();
     same_inertia = same_inertia && (inertia - inertia_).lpNorm<Eigen::Infinity>() <= 1e-13 * size;
-    if (k > 0) same_rows = same_rows && (a - first_a).lpNorm<Eigen::Infinity>() <= 1e-13;
+    for (int i = 0; i < k; ++i) {
+      if (!((a.row(i) - first_a.row(i)).lpNorm<Eigen::Infinity>() <= 1e-13))
+        same_row[static_cast<size_t>(i)] = false;
+    }
     level = level && slope.lpNorm<Eigen::Infinity>() <= 1e-13 * size;
   }
   constant_inertia_ = same_inertia;
-  constant_rows_ = same_rows;
   constant_potential_ = level;
+  constant_rows_ = holonomic_ == 0;
+  const size_t prescribed =
+      varies_.size() - rows_.prescribed.size();  // a rate of time from here on
+  for (size_t i = 0; i < varies_.size(); ++i) {
+    if (varies_[i] == 0) continue;
+    const int row = slots_[i];
+    if (i < prescribed && same_row[static_cast<size_t>(row)]) {
+      varies_[i] = 0;
+      fixed_rows_.row(row) = first_a.row(row);
+    } else {
+      constant_rows_ = false;
+    }
+  }
 }
 
 }  // namespace hamel::mechanisms

@@ -1,9 +1,10 @@
 // A tree of bodies with its rows and forces as Mechanics: what the schemes step.
 //
-// Nothing here takes memory once it is built. Work space and the last placement are kept, so that an object serves one
-// run at a time.
+// Nothing here takes memory once it is built. Work space and the last two placements are kept (a step asks for its base
+// point and its end in turns), so that an object serves one run at a time.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,7 +20,7 @@ namespace hamel::mechanisms {
 class Multibody : public Mechanics {
  public:
   /// All rows of `rows`; keep() drops some.
-  Multibody(Tree tree, Rows rows, Forces forces, std::shared_ptr<const Geometry> geometry);
+  Multibody(const Tree& tree, Rows rows, Forces forces, std::shared_ptr<const Geometry> geometry);
   /// Only these rows of each(), of which the holonomic ones go last.
   void keep(const std::vector<int>& rows);
   /// An input as the effort on a velocity of a joint, or as the rate prescribed there.
@@ -32,7 +33,7 @@ class Multibody : public Mechanics {
   /// Is I(g) the same for all g, are A and V? Read off a few poses that share nothing.
   void look_for_constants(const std::vector<std::vector<double>>& poses);
 
-  int dim() const override { return tree_.dim(); }
+  int dim() const override { return trees_[0].dim(); }
   int rows() const override { return static_cast<int>(kept_.size()); }
   int holonomic_rows() const override { return holonomic_; }
   bool constant_inertia() const override { return constant_inertia_; }
@@ -55,30 +56,33 @@ class Multibody : public Mechanics {
   const std::vector<int>& kept() const { return kept_; }
   const Geometry& geometry() const { return *geometry_; }
   /// The element of the drawn pose.
-  const std::vector<double>& drawn() const { return tree_.drawn(); }
+  const std::vector<double>& drawn() const { return trees_[0].drawn(); }
   /// The tree at g.
-  const Tree& tree(const double* g) const;
+  const Tree& tree(const double* g) const { return placed(g); }
   /// The force of the kept rows of a contact (counted as in all_rows()) with these multipliers, in the world.
   Vec3 reaction(size_t contact, const double* g, std::span<const double> multipliers) const;
   /// phi of all rows of each(), 0 where it is none, and their A.
   void look(double t, const double* g, Matrix a, Vector b, Vector phi) const;
 
  private:
+  Tree& placed(const double* g) const;
   /// The tree at g with its inertias.
-  const Tree& carrying(const double* g) const;
-  void add_force(double t, const double* g, ConstVector xi, Vector out) const;
-  void write(const Row& row, Matrix a, int to) const;
+  Tree& carrying(const double* g) const;
+  void add_force(const Tree& tree, double t, const double* g, ConstVector xi, Vector out) const;
 
-  mutable Tree tree_;
+  mutable std::array<Tree, 2> trees_;
+  mutable size_t last_ = 0;  // of trees_
   Rows rows_;
   Forces forces_;
   std::shared_ptr<const Geometry> geometry_;
-  std::vector<int> slots_;  // of each(): the row of A, or -1
-  std::vector<int> kept_;   // their inverse
+  std::vector<int> slots_;    // of each(): the row of A, or -1
+  std::vector<int> kept_;     // their inverse
+  std::vector<char> varies_;  // of each(): is it kept, and may it be another one elsewhere?
   int holonomic_ = 0;
   bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;
-  Eigen::MatrixXd inertia_;  // where it is constant
-  mutable std::vector<double> placed_, coordinates_;
+  Eigen::MatrixXd inertia_;     // where it is constant
+  Eigen::MatrixXd fixed_rows_;  // A, but for the rows that vary, which are 0
+  mutable std::vector<double> coordinates_;
   mutable Eigen::VectorXd work_;
 };
 

@@ -9,7 +9,7 @@ namespace {
 struct Touch {
   Vec3 gamma, q, along;
   Touch(const Contact& contact, const Tree& tree) {
-    const Rigid& here = tree.from_root(contact.link);
+    const Rigid here = tree.from_root(contact.carrier);
     gamma = tree.root_in_world(contact.link).rotation.row(2).transpose();
     q = here.apply(contact.at);
     const Vec3 axis = here.rotation.lazyProduct(contact.axis);
@@ -79,16 +79,42 @@ std::vector<RowWords> Rows::words() const {
   return out;
 }
 
+// The rows are wrenches fixed in the carrier where that only turns about the vertical, but for those of a ball, which are
+// along the world's axes, and on ground that moves.
+void Rows::look_at(const Tree& tree) {
+  for (Contact& contact : contacts) {
+    contact.carrier = contact.link;
+    if (tree.rotor(contact.link) && contact.kind != ContactKind::blade) {
+      const Twist axis = tree.axis(contact.link);
+      const double near = 1e-14 * (1 + contact.at.norm());
+      const bool turns_about_itself =
+          contact.kind == ContactKind::ball || upper(axis).cross(contact.axis).norm() <= near;
+      if (turns_about_itself && velocity_at(axis, contact.at).norm() <= near)
+        contact.carrier = tree.parent(contact.link);
+    }
+  }
+  for (Contact& contact : contacts) {
+    if (ground.moves() || contact.kind == ContactKind::ball || !tree.planar(contact.carrier))
+      continue;
+    const Rigid back = tree.from_root(contact.carrier).inverse();
+    Row rows[3];
+    look(contact, tree, rows);
+    for (size_t k = 0; k < 3; ++k) contact.wrenches[k] = back.move_wrench(rows[k].wrench);
+    contact.height = rows[contact.rows() - 1].phi;
+    contact.fixed = true;
+  }
+}
+
 Vec3 Rows::touches(const Contact& contact, const Tree& tree) const {
   return tree.root_in_world(contact.link).apply(Touch(contact, tree).q);
 }
 
-HAMEL_FLATTEN int Rows::look(const Contact& contact, const Tree& tree, Row* rows) const {
+HAMEL_FLATTEN void Rows::look(const Contact& contact, const Tree& tree, Row* rows) const {
   const Touch touch(contact, tree);
   const Vec3 across = touch.gamma.cross(touch.along);
   int count = 0;
   const auto slips_not = [&](const Vec3& u) {
-    Row& row = rows[count++] = Row{};
+    Row& row = rows[count++];
     row.link = contact.link;
     row.wrench = force_at(touch.q, u);
     if (ground.moves()) {
@@ -108,31 +134,30 @@ HAMEL_FLATTEN int Rows::look(const Contact& contact, const Tree& tree, Row* rows
       break;
     case ContactKind::blade: slips_not(across.normalized()); break;
   }
-  Row& row = rows[count++] = Row{};
+  Row& row = rows[count++];
   row.link = contact.link;
   row.wrench = force_at(touch.q, touch.gamma);
   row.phi = tree.root_in_world(contact.link).apply(touch.q)[2];
-  return count;
 }
 
-int Rows::look(const Loop& loop, const Tree& tree, Row* rows) {
+void Rows::look(const Loop& loop, const Tree& tree, Row* rows) {
   const Rigid a = tree.in_world(loop.a), b = tree.in_world(loop.b);
   const Vec3 x = b.apply(loop.at), apart = x - a.apply(loop.at);
   const bool hinge = !loop.axis.isZero(0);
   const Mat<3, 3> frame =
       a.rotation * (hinge ? frame_along(loop.axis) : Mat<3, 3>(Mat<3, 3>::Identity()));
   for (int i = 0; i < 3; ++i) {
-    Row& row = rows[i] = Row{};
+    Row& row = rows[i];
     row.link = loop.b;
     row.other = loop.a;
     row.wrench = on_link(tree, loop.b, x, frame.col(i));
     row.other_wrench = on_link(tree, loop.a, x, frame.col(i));
     row.phi = frame.col(i).dot(apart);
   }
-  if (!hinge) return 3;
+  if (!hinge) return;
   const Vec3 axis = b.rotation * loop.axis;
   for (int i = 0; i < 2; ++i) {
-    Row& row = rows[3 + i] = Row{};
+    Row& row = rows[3 + i];
     const Vec3 moment = axis.cross(Vec3(frame.col(i)));
     row.link = loop.b;
     row.other = loop.a;
@@ -140,7 +165,6 @@ int Rows::look(const Loop& loop, const Tree& tree, Row* rows) {
     row.other_wrench = moment_on_link(tree, loop.a, moment);
     row.phi = frame.col(i).dot(axis);
   }
-  return 5;
 }
 
 }  // namespace hamel::mechanisms

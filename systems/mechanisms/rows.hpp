@@ -16,6 +16,7 @@
 // Robotics and Automation 12 (1996).
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -33,12 +34,23 @@ struct Contact {
   Vec3 at = Vec3::Zero();        // centre, or point of the blade, as drawn
   Vec3 axis = Vec3::UnitY();     // axle, or direction of the blade, of length 1
   double radius = 0, angle = 0;  // m, rad
+  // Found by Rows::look_at:
+  int carrier =
+      0;  // the link, or its parent where the link's own turning changes nothing (a wheel's)
+  bool fixed = false;  // its rows are the same wrenches in the carrier at all times
+  std::array<Wrench, 3> wrenches = {};
+  double height = 0;
+
+  /// How many rows, the last of them its height.
+  size_t rows() const { return kind == ContactKind::wheel || kind == ContactKind::ball ? 3 : 2; }
 };
 
 struct Loop {
   std::string name;
   int a = kGround, b = kGround;
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();  // axis 0: a ball joint
+
+  size_t rows() const { return axis.isZero(0) ? 3 : 5; }
 };
 
 struct Prescribed {
@@ -77,24 +89,56 @@ struct Rows {
 
   /// What there is, in the order of each().
   std::vector<RowWords> words() const;
-  /// f(row) for all rows at a tree that was placed.
-  template <class F>
-  void each(const Tree& tree, double t, F&& f) const {
-    Row rows[5];
+  /// Finds out what does not change; before the rest.
+  void look_at(const Tree& tree);
+  /// f(i, row) for the rows i that `wants` at a tree that was placed.
+  template <class Wants, class F>
+  void each(const Tree& tree, double t, Wants&& wants, F&& f) const {
+    size_t i = 0;
+    const auto look_all = [&](const auto& part) {
+      Row rows[5];
+      look(part, tree, rows);
+      for (size_t k = 0; k < part.rows(); ++k)
+        if (wants(i + k)) f(i + k, rows[k]);
+    };
+    const auto any = [&](size_t count) {
+      size_t k = 0;
+      while (k < count && !wants(i + k)) ++k;
+      return k < count;
+    };
+    Row row;
     for (const Contact& contact : contacts) {
-      const int count = look(contact, tree, rows);
-      for (int i = 0; i < count; ++i) f(rows[i]);
+      const size_t count = contact.rows();
+      if (contact.fixed) {
+        for (size_t k = 0; k < count; ++k) {
+          if (!wants(i + k)) continue;
+          take(contact, k, tree, row);
+          f(i + k, row);
+        }
+      } else if (any(count)) {
+        look_all(contact);
+      }
+      i += count;
     }
     for (const Loop& loop : loops) {
-      const int count = look(loop, tree, rows);
-      for (int i = 0; i < count; ++i) f(rows[i]);
+      if (any(loop.rows())) look_all(loop);
+      i += loop.rows();
     }
     for (const Prescribed& p : prescribed) {
-      Row row;
-      row.dof = p.dof;
-      row.drift = p.rate(t);
-      f(row);
+      if (wants(i)) {
+        Row given;
+        given.dof = p.dof;
+        given.drift = p.rate(t);
+        f(i, given);
+      }
+      ++i;
     }
+  }
+  /// All of them.
+  template <class F>
+  void each(const Tree& tree, double t, F&& f) const {
+    each(
+        tree, t, [](size_t) { return true; }, f);
   }
   /// Where a contact touches the ground, in the world; its height above it.
   Vec3 touches(const Contact& contact, const Tree& tree) const;
@@ -103,8 +147,16 @@ struct Rows {
   }
 
  private:
-  int look(const Contact& contact, const Tree& tree, Row* rows) const;
-  static int look(const Loop& loop, const Tree& tree, Row* rows);
+  // Row k of a fixed contact.
+  static void take(const Contact& contact, size_t k, const Tree& tree, Row& row) {
+    const Wrench& wrench = contact.wrenches[k];
+    row.link = contact.link;
+    row.phi = k + 1 == contact.rows() ? contact.height : 0;
+    if (tree.parent(contact.carrier) == kGround) row.wrench = wrench;
+    else row.wrench = tree.in_plane_of_root(contact.carrier).move_wrench(wrench);
+  }
+  void look(const Contact& contact, const Tree& tree, Row* rows) const;
+  static void look(const Loop& loop, const Tree& tree, Row* rows);
 };
 
 }  // namespace hamel::mechanisms

@@ -43,6 +43,11 @@ struct Rigid {
     const Vec3 omega = rotation.lazyProduct(upper(v));
     return stack(omega, Vec3(rotation.lazyProduct(lower(v))) + position.cross(omega));
   }
+  /// Of a wrench, the inverse of Ad_X^T.
+  Wrench move_wrench(const Wrench& f) const {
+    const Vec3 force = rotation.lazyProduct(lower(f));
+    return stack(Vec3(rotation.lazyProduct(upper(f))) + position.cross(force), force);
+  }
 };
 inline Rigid operator*(const Rigid& x, const Rigid& y) {
   return {x.rotation.lazyProduct(y.rotation), x.apply(y.position)};
@@ -93,8 +98,8 @@ inline Inertia moved(const Rigid& x, const Inertia& i) {
   const Vec3 first = x.rotation.lazyProduct(i.first);
   const Mat<3, 3> turned = x.rotation.lazyProduct(i.second);
   return {i.mass, first + i.mass * x.position,
-          turned.lazyProduct(x.rotation.transpose()) + 2 * parallel_axis(x.position, first) +
-              i.mass * parallel_axis(x.position, x.position)};
+          turned.lazyProduct(x.rotation.transpose()) +
+              parallel_axis(x.position, 2 * first + i.mass * x.position)};
 }
 
 }  // namespace hamel::mechanisms

@@ -1,5 +1,10 @@
 #include <hamel/systems/mechanisms/tree.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
 
 namespace hamel::mechanisms {
@@ -21,115 +26,182 @@ std::vector<double> element_of(JointKind kind, const Rigid& x) {
   return element;
 }
 
+// P iota C^-1 as a constant and what two numbers of the element are to be multiplied with: cos and sin of the angle, or
+// the way along the axis and nothing.
+std::array<Rigid, 3> terms_of(const Link& link) {
+  const Rigid& p = link.on_parent;
+  const Rigid after = link.on_child.inverse();
+  const auto term = [&](const Mat<3, 3>& part) {
+    return Rigid{part * after.rotation, part * after.position};
+  };
+  const Vec3 axis = p.rotation.col(2);
+  std::array<Rigid, 3> out;
+  if (link.kind == JointKind::slider) {
+    out = {p * after, {Mat<3, 3>::Zero(), axis}, {Mat<3, 3>::Zero(), Vec3::Zero()}};
+    return out;
+  }
+  const Mat<3, 3> along = axis * Vec3::UnitZ().transpose(),
+                  odd = p.rotation.col(1) * Vec3::UnitX().transpose() -
+                        p.rotation.col(0) * Vec3::UnitY().transpose();
+  out = {term(along), term(p.rotation - along), term(odd)};
+  out[0].position += p.position;
+  return out;
+}
+
+bool same(const Inertia& a, const Inertia& b) {
+  const double near = 1e-14 * a.second.lpNorm<Eigen::Infinity>();
+  return (a.second - b.second).lpNorm<Eigen::Infinity>() <= near &&
+         (a.first - b.first).squaredNorm() <= near * 1e-14 * a.mass;
+}
+
 }  // namespace
 
-Tree::Tree(const std::vector<Link>& links) : links_(links), momenta_(links.size()) {
+Tree::Tree(const std::vector<Link>& links) {
+  nodes_.reserve(links.size());
   for (const Link& link : links) {
     Node node;
     const int j = static_cast<int>(nodes_.size());
+    const bool is_root = link.parent == kGround;
     node.link = link;
-    node.root = link.parent == kGround ? j : at(link.parent).root;
+    chain_ = chain_ && link.parent == j - 1;
+    node.root = is_root ? j : at(link.parent).root;
+    node.on_root = !is_root && at(link.parent).link.parent == kGround;
     node.dof = dim_;
     node.element = size_;
     const auto s = hamel::mechanisms::directions(link.kind);
-    node.directions.resize(6, s.cols());
-    for (Eigen::Index i = 0; i < s.cols(); ++i)
-      node.directions.col(i) = link.on_child.move(s.col(i));
+    node.count = static_cast<int>(s.cols());
+    const Rigid& frame = node.count == 1 && !is_root ? link.on_parent : link.on_child;
+    for (int i = 0; i < node.count; ++i) node.directions.col(i) = frame.move(s.col(i));
     node.columns = node.directions;
     node.after = link.on_child.inverse();
-    if (link.kind == JointKind::hinge) {
-      const Mat<3, 3>& p = link.on_parent.rotation;
-      const Mat<3, 3> along = p.col(2) * Vec3::UnitZ().transpose(), even = p - along,
-                      odd = p.col(1) * Vec3::UnitX().transpose() -
-                            p.col(0) * Vec3::UnitY().transpose();
-      const auto term = [&](const Mat<3, 3>& part) {
-        return Rigid{part * node.after.rotation, part * node.after.position};
-      };
-      node.turning = {term(along), term(even), term(odd)};
-      node.turning[0].position += link.on_parent.position;
+    if (link.kind != JointKind::free && link.kind != JointKind::ball) {
+      node.terms = terms_of(link);
+      look_for_planar(node);
     }
-    dim_ += static_cast<int>(s.cols());
+    node.inertia = link.inertia;
+    dim_ += node.count;
     size_ += type_of(link.kind).geometry->size();
     const auto drawn = element_of(link.kind, link.on_parent.inverse() * link.on_child);
     drawn_.insert(drawn_.end(), drawn.begin(), drawn.end());
     nodes_.push_back(std::move(node));
   }
+  look_for_rotors();
+  for (Node& node : nodes_) node.own = node.inertia;
+  placed_.assign(drawn_.size(), std::numeric_limits<double>::quiet_NaN());
   place(drawn_.data());
   carry();
 }
 
+// Its parent planar, its axis vertical, or across that for a slider; no part of its motion leaves the plane.
+void Tree::look_for_planar(Node& node) const {
+  const bool is_root = node.link.parent == kGround;
+  if (!is_root && (!at(node.link.parent).planar || node.link.kind == JointKind::planar)) return;
+  double off = 0;
+  for (int i = 0; i < node.count; ++i) {
+    off = std::max({off, node.directions.col(i).head<2>().lpNorm<Eigen::Infinity>(),
+                    std::abs(node.directions(5, i))});
+  }
+  if (!is_root)
+    off = std::max(off, std::abs(node.terms[0].position[2] + node.terms[1].position[2]));
+  node.planar = off <= 1e-14 * (1 + node.link.on_parent.position.norm());
+}
+
+void Tree::look_for_rotors() {
+  for (Node& node : nodes_)
+    node.rotor = node.link.kind == JointKind::hinge && node.link.parent != kGround;
+  for (const Node& node : nodes_)
+    if (node.link.parent != kGround) at(node.link.parent).rotor = false;
+  for (Node& node : nodes_) {
+    if (!node.rotor) continue;
+    const auto turned = [&](double angle) {
+      std::array<double, Packing<SO2>::size> element;
+      Packing<SO2>::store({std::cos(angle), std::sin(angle)}, element.data());
+      return moved(node.across(element.data()), node.link.inertia);
+    };
+    const Inertia seen = turned(0);
+    node.rotor = same(seen, turned(1)) && same(seen, turned(2.5));
+    if (!node.rotor) continue;
+    at(node.link.parent).inertia += seen;
+    node.spin = node.spin_here = seen * node.directions.col(0);
+    node.moment = node.spin.dot(node.directions.col(0));
+  }
+}
+
+std::array<double, 2> Tree::Node::numbers(const double* g) const {
+  if (link.kind == JointKind::slider) return {g[0], 0};
+  const auto turn =
+      link.kind == JointKind::hinge ? Packing<SO2>::load(g) : Packing<SE2>::load(g).rotation;
+  return {turn.c, turn.s};
+}
+
 Rigid Tree::Node::across(const double* g) const {
-  if (link.kind != JointKind::hinge) return link.on_parent * motion(link.kind, g) * after;
-  const auto turn = Packing<SO2>::load(g);
-  return {turning[0].rotation + turn.c * turning[1].rotation + turn.s * turning[2].rotation,
-          turning[0].position + turn.c * turning[1].position + turn.s * turning[2].position};
+  if (link.kind == JointKind::free || link.kind == JointKind::ball)
+    return link.on_parent * motion(link.kind, g) * after;
+  const double a = numbers(g)[0], b = numbers(g)[1];
+  Rigid out{terms[0].rotation + a * terms[1].rotation + b * terms[2].rotation,
+            terms[0].position + a * terms[1].position + b * terms[2].position};
+  if (link.kind == JointKind::planar) {
+    const Vec<2> shift = Packing<SE2>::load(g).translation;
+    out.position +=
+        shift[0] * link.on_parent.rotation.col(0) + shift[1] * link.on_parent.rotation.col(1);
+  }
+  return out;
+}
+
+PlaneMotion Tree::Node::across_in_plane(const double* g) const {
+  const double a = numbers(g)[0], b = numbers(g)[1];
+  const auto sum = [&](auto entry) {
+    return entry(terms[0]) + a * entry(terms[1]) + b * entry(terms[2]);
+  };
+  return {sum([](const Rigid& x) { return x.rotation(0, 0); }),
+          sum([](const Rigid& x) { return x.rotation(1, 0); }),
+          sum([](const Rigid& x) { return x.position[0]; }),
+          sum([](const Rigid& x) { return x.position[1]; })};
+}
+
+Rigid Tree::from_root(int link) const {
+  if (link == kGround) return rest_;
+  const Node& node = at(link);
+  if (node.planar) return node.flat.in_space();
+  if (node.rotor) return from_root(node.link.parent) * node.across(placed_.data() + node.element);
+  return node.place;
 }
 
 HAMEL_FLATTEN void Tree::place(const double* g) {
+  if (placed_at(g)) return;
+  std::memcpy(placed_.data(), g, placed_.size() * sizeof(double));
   carries_ = false;
   for (Node& node : nodes_) {
-    const Rigid across = node.across(g + node.element);
+    const double* element = g + node.element;
     if (node.link.parent == kGround) {
-      node.world = across;
+      node.world = node.across(element);
       continue;
     }
-    node.place = at(node.link.parent).place * across;
-    for (Eigen::Index i = 0; i < node.columns.cols(); ++i) {
-      node.columns.col(i) = node.place.move(node.directions.col(i));
+    const Node& parent = at(node.link.parent);
+    if (node.planar) {
+      node.flat = node.across_in_plane(element);
+      if (!node.on_root) node.flat = parent.flat * node.flat;
+    } else if (!node.rotor) {
+      node.place = node.across(element);
+      if (!node.on_root)
+        node.place = (parent.planar ? parent.flat.in_space() : parent.place) * node.place;
     }
-  }
-}
-
-HAMEL_FLATTEN void Tree::carry() {
-  if (carries_) return;
-  carries_ = true;
-  for (Node& node : nodes_) {
-    const bool root = node.link.parent == kGround;
-    node.carried = node.own = root ? node.link.inertia : moved(node.place, node.link.inertia);
-  }
-  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
-    if (node->link.parent != kGround) at(node->link.parent).carried += node->carried;
-  }
-}
-
-HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
-  for (Node& node : nodes_) {
-    node.twist.setZero();
-    if (node.link.parent != kGround) node.twist = at(node.link.parent).twist;
-    for (Eigen::Index i = 0; i < node.columns.cols(); ++i) {
-      node.twist += xi[node.dof + i] * node.columns.col(i);
-    }
-  }
-}
-
-HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> out) const {
-  out.setZero();
-  for (const Node& node : nodes_) {
-    for (Eigen::Index b = 0; b < node.columns.cols(); ++b) {
-      const Wrench momentum = node.carried * node.columns.col(b);
-      const Eigen::Index column = node.dof + b;
-      for (const Node* on_the_way = &node;;) {
-        for (Eigen::Index a = 0; a < on_the_way->columns.cols(); ++a) {
-          const Eigen::Index row = on_the_way->dof + a;
-          out(row, column) = out(column, row) = on_the_way->columns.col(a).dot(momentum);
-        }
-        if (on_the_way->link.parent == kGround) break;
-        on_the_way = &at(on_the_way->link.parent);
+    if (node.count > 1) {
+      for (int i = 0; i < node.count; ++i)
+        node.columns.col(i) = node.place.move(node.directions.col(i));
+    } else if (!node.on_root) {
+      if (node.planar) {
+        in_plane(node.columns.col(0)) = parent.flat.move_in_plane(in_plane(node.directions.col(0)));
+      } else if (parent.planar) {
+        node.columns.col(0) = parent.flat.move(node.directions.col(0));
+      } else {
+        node.columns.col(0) = parent.place.move(node.directions.col(0));
+      }
+      if (node.rotor) {
+        node.spin_here = parent.planar ? parent.flat.move_wrench(node.spin)
+                                       : parent.place.move_wrench(node.spin);
       }
     }
-  }
-}
-
-HAMEL_FLATTEN void Tree::add_inertial_force(Eigen::Ref<Eigen::VectorXd> out) const {
-  for (size_t j = 0; j < nodes_.size(); ++j) momenta_[j] = nodes_[j].own * nodes_[j].twist;
-  for (size_t j = nodes_.size(); j-- > 0;) {
-    const Node& node = nodes_[j];
-    if (node.link.parent == kGround) continue;  // its own velocity is left-trivialised
-    const Wrench force = ad_transpose(at(node.link.parent).twist, momenta_[j]);
-    for (Eigen::Index i = 0; i < node.columns.cols(); ++i) {
-      out[node.dof + i] += node.columns.col(i).dot(force);
-    }
-    momenta_[static_cast<size_t>(node.link.parent)] += momenta_[j];
   }
 }
 

@@ -9,16 +9,22 @@
 // I_j the inertia and P_j the momentum of link j with all that it carries:
 //   I(g)_ab = s_a^T I_b s_b for a on the way from the root to b,     (composite bodies)
 //   1/2 d(xi^T I xi)_a = s_a^T ad_{V_parent}^T P_a.                 (from d V_j = -ad_{s_a} Ad^-1 V_parent)
+// The axis of a hinge or slider is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant on a root.
+// Less is left to do for
+//   planar links  that turn about the vertical of a root which does no more: plane.hpp;
+//   rotors        that carry nothing and whose inertia their own turning does not change (wheels): it is their
+//                 parent's, but for the momentum of their spin, and they need no place.
 // Cost: O(links * depth) for I(g), O(links) for all else.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 6; Park, Bobrow, Ploen, A Lie group formulation of
 // robot dynamics, Int. J. Robotics Research 14 (1995).
 #pragma once
 
 #include <array>
-#include <span>
+#include <cstring>
 #include <vector>
 
 #include <hamel/systems/mechanisms/joint.hpp>
+#include <hamel/systems/mechanisms/plane.hpp>
 
 namespace hamel::mechanisms {
 
@@ -38,78 +44,96 @@ class Tree {
 
   int dim() const { return dim_; }    // n
   int size() const { return size_; }  // doubles in an element
-  int links() const { return static_cast<int>(links_.size()); }
+  int links() const { return static_cast<int>(nodes_.size()); }
   /// Where the velocities of a link's joint start, and how many they are.
   int first(int link) const { return at(link).dof; }
-  int count(int link) const { return static_cast<int>(at(link).directions.cols()); }
+  int count(int link) const { return at(link).count; }
   int element(int link) const { return at(link).element; }
   JointKind kind(int link) const { return at(link).link.kind; }
   int parent(int link) const { return at(link).link.parent; }
-  /// The link that carries this one, on the ground.
-  int root(int link) const { return at(link).root; }
+  bool planar(int link) const { return at(link).planar; }
+  bool rotor(int link) const { return at(link).rotor; }
+  /// The axis of a hinge or slider, as drawn: a unit twist.
+  Twist axis(int link) const { return at(link).directions.col(0); }
   /// The element of the drawn pose.
   const std::vector<double>& drawn() const { return drawn_; }
 
   /// Places all links; must come before what follows.
   void place(const double* g);
+  bool placed_at(const double* g) const {
+    return std::memcmp(placed_.data(), g, placed_.size() * sizeof(double)) == 0;
+  }
   /// Inertias, for inertia(), composite() and add_inertial_force(); place() first.
   void carry();
   /// Link seen from its root (the ground: from the world), and its root in the world.
-  const Rigid& from_root(int link) const { return link == kGround ? rest_ : at(link).place; }
+  Rigid from_root(int link) const;
   const Rigid& root_in_world(int link) const {
     return link == kGround ? rest_ : at(at(link).root).world;
   }
   Rigid in_world(int link) const { return root_in_world(link) * from_root(link); }
+  /// Of a planar link, seen from its root.
+  const PlaneMotion& in_plane_of_root(int link) const { return at(link).flat; }
 
   /// Twists of all links, seen from their roots; place() first.
   void move(Eigen::Ref<const Eigen::VectorXd> xi);
   Twist twist(int link) const { return link == kGround ? Twist::Zero() : at(link).twist; }
 
   void inertia(Eigen::Ref<Eigen::MatrixXd> out) const;
-  /// out += 1/2 d(xi^T I xi); place() and move() first.
-  void add_inertial_force(Eigen::Ref<Eigen::VectorXd> out) const;
+  /// out += 1/2 d(xi^T I xi); carry() and move() first.
+  void add_inertial_force(Eigen::Ref<Eigen::VectorXd> out);
+  /// out += what the weights do on xi; carry() first.
+  void add_weight(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) const;
   /// out += sign * what a wrench on a link does on xi; seen from its root. On the ground nothing.
   template <class Out>
   void add_wrench(int link, const Wrench& wrench, Out&& out, double sign = 1) const {
     for (int j = link; j != kGround; j = parent(j)) {
       const Node& node = at(j);
-      for (int i = 0; i < count(j); ++i) {
-        out[node.dof + i] += sign * node.columns.col(i).dot(wrench);
-      }
+      for (int i = 0; i < node.count; ++i) out[node.dof + i] += sign * node.along(i, wrench);
     }
   }
-  /// out += what it does on the velocities of the link's own joint.
-  template <class Out>
-  void add_to_joint(int link, const Wrench& wrench, Out&& out) const {
-    const Node& node = at(link);
-    for (int i = 0; i < count(link); ++i) out[node.dof + i] += node.columns.col(i).dot(wrench);
-  }
-  /// The first moment of a tree, seen from its root, and its mass; of the link and what it carries.
-  Inertia composite(int link) const { return at(link).carried; }
+  /// Mass and first moment of all that a root carries, itself included, seen from it.
+  const Inertia& composite(int root) const { return at(root).carried; }
 
  private:
   struct Node {
     Link link;
-    int root = 0, dof = 0, element = 0;
-    Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> directions,
-        columns;  // Ad_C S; seen from the root
-    Rigid after;  // C^-1
-    std::array<Rigid, 3>
-        turning;         // of a hinge, P Rot C^-1 = the first + cos the second + sin the third
+    int root = 0, dof = 0, element = 0, count = 0;
+    bool planar = false, rotor = false, on_root = false;
+    Mat<6, 6> directions = Mat<6, 6>::Zero();  // Ad_C S; of a hinge or slider Ad_P S
+    Rigid after;                               // C^-1
+    // P iota C^-1 = the first + two numbers of the element times the others, and for a planar joint its shift.
+    std::array<Rigid, 3> terms;
+    Inertia inertia;               // with that of the rotors
+    Wrench spin = Wrench::Zero();  // momentum of a rotor at unit rate, seen from its parent
+    double moment = 0, rate = 0;   // of a rotor
+    // Seen from the root, at the last place:
+    Mat<6, 6> columns = Mat<6, 6>::Zero();
     Rigid place, world;  // X; W of a root
+    PlaneMotion flat;    // X of a planar link
     Twist twist = Twist::Zero();
-    Inertia own, carried;                 // seen from the root; with all that the link carries
+    Wrench spin_here = Wrench::Zero(), momentum = Wrench::Zero();
+    Inertia own, carried;  // with all that the link carries
+
+    std::array<double, 2> numbers(const double* g) const;
     Rigid across(const double* g) const;  // from the parent
+    PlaneMotion across_in_plane(const double* g) const;
+    /// What a wrench does on velocity i; of one on a planar link only its entries in the plane count.
+    double along(int i, const Wrench& wrench) const {
+      return planar ? in_plane(columns.col(i)).dot(in_plane(wrench)) : columns.col(i).dot(wrench);
+    }
   };
   const Node& at(int link) const { return nodes_[static_cast<size_t>(link)]; }
   Node& at(int link) { return nodes_[static_cast<size_t>(link)]; }
+  void look_for_planar(Node& node) const;
+  void look_for_rotors();
+  void write(const Node* from, int count, int column, const Wrench& momentum, double* out,
+             Eigen::Index stride) const;
 
   std::vector<Node> nodes_;
-  std::vector<Link> links_;
-  std::vector<double> drawn_;
-  mutable std::vector<Wrench> momenta_;
+  std::vector<double> drawn_, placed_;
   Rigid rest_;
   int dim_ = 0, size_ = 0;
+  bool chain_ = true;  // each link carries the next one: I(g) has no entries that are always 0
   bool carries_ = false;
 };
 

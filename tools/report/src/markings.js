@@ -17,7 +17,10 @@ export function markings(block, shown, data) {
     const floor = Math.log10(block.floor);
     lines.push(line({ yAxis: floor }, 'round-off'));
     const [, most] = extent(shown.flatMap((curve) => curve.points.map((p) => p[1])));
-    if (!(most > floor + NEAR)) range = [Math.floor(floor - UNDER), Math.ceil(floor + OVER)];
+    if (!(most > floor + NEAR)) {
+      const low = Number.isFinite(most) ? Math.min(floor - UNDER, most - 1) : floor - UNDER;  // also what stays far under it is seen
+      range = [Math.floor(low), Math.ceil(floor + OVER)];
+    }
   }
   const series = lines.length ? [{ id: 'marks', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markLine: { silent: true, symbol: 'none', data: lines } }] : [];
   return { series: [...series, ...triangles(block.slopes, shown, data)], range };
