@@ -86,22 +86,27 @@ class CommandLine : public testing::Test {
     std::filesystem::remove(err);
     return result;
   }
-  /// The record of `run` with these arguments.
-  nlohmann::json record(std::vector<std::string> arguments, int status = 0) const {
-    arguments.insert(arguments.begin(), "run");
+  /// What these arguments print with --json.
+  nlohmann::json answer(std::vector<std::string> arguments, int status = 0) const {
     arguments.emplace_back("--json");
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.status, status) << outcome.err;
     return nlohmann::json::parse(outcome.out.empty() ? "{}" : outcome.out);
   }
-  /// The file's path.
+  /// The record of `run` with these arguments.
+  nlohmann::json record(std::vector<std::string> arguments, int status = 0) const {
+    arguments.insert(arguments.begin(), "run");
+    return answer(std::move(arguments), status);
+  }
+  /// The path of system.toml, or of another file, with this text.
+  std::string write(const std::string& text) const { return write("system.toml", text); }
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(file(name)) << text;
     return file(name);
   }
   /// `run` of a file with this text, system.toml, is bad input.
   void refused(const std::string& text, const std::string& message) const {
-    const Outcome outcome = run({"run", write("system.toml", text)});
+    const Outcome outcome = run({"run", write(text)});
     EXPECT_EQ(outcome.status, 2) << text;
     EXPECT_THAT(outcome.err, testing::HasSubstr(message)) << text;
   }
