@@ -12,12 +12,7 @@ using namespace hamel::test;
 using nlohmann::json;
 using testing::HasSubstr;
 
-class DataSystem : public CommandLine {
- protected:
-  std::string write(const std::string& text) const {
-    return CommandLine::write("system.toml", text);
-  }
-};
+using DataSystem = CommandLine;
 
 constexpr const char* kKnife = R"(
 group = "se2"
