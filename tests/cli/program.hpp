@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -97,6 +98,23 @@ class CommandLine : public testing::Test {
   nlohmann::json record(std::vector<std::string> arguments, int status = 0) const {
     arguments.insert(arguments.begin(), "run");
     return answer(std::move(arguments), status);
+  }
+  /// The names of the curves in a run's figures, by their titles; none where the program was built without the page.
+  std::map<std::string, std::vector<std::string>> curves(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--quiet", "--report", "page.html"});
+    const Outcome outcome = run(arguments);
+    std::map<std::string, std::vector<std::string>> out;
+    if (outcome.err.find("without the page") != std::string::npos) return out;
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::string page = contents(file("page.html")), head = "id=\"hamel-data\">";
+    const size_t from = page.find(head) + head.size(), to = page.find("</script>", from);
+    for (const auto& section : nlohmann::json::parse(page.substr(from, to - from))["sections"]) {
+      for (const auto& block : section["blocks"])
+        for (const auto& series : block.value("series", nlohmann::json::array()))
+          out[block["title"]].push_back(series["name"]);
+    }
+    return out;
   }
   /// The path of system.toml, or of another file, with this text.
   std::string write(const std::string& text) const { return write("system.toml", text); }
