@@ -29,6 +29,7 @@ template <class T, class... Gs>
 struct ProductElement {
   std::tuple<typename Gs::template Element<T>...> parts;
 
+  bool operator==(const ProductElement&) const = default;
   /// The element of factor I = 0, 1, ...
   template <std::size_t I>
   auto& part() {

@@ -25,6 +25,8 @@ struct SE2Element {
   SO2Element<T> rotation;
   VecT<T, 2> translation = VecT<T, 2>::Zero();
 
+  bool operator==(const SE2Element&) const = default;
+
   /// The unwrapped angle [rad].
   T angle() const { return rotation.angle(); }
 };

@@ -29,6 +29,8 @@ template <class T>
 struct SE3Element {
   MatT<T, 3, 3> rotation = MatT<T, 3, 3>::Identity();
   VecT<T, 3> translation = VecT<T, 3>::Zero();
+
+  bool operator==(const SE3Element&) const = default;
 };
 
 struct SE3 {

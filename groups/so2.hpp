@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <hamel/framework/lie/coordinates.hpp>
 #include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
@@ -24,7 +25,9 @@ namespace hamel {
 template <class T>
 struct SO2Element {
   T c{1.0}, s{0.0};
-  int turns = 0;
+  std::int64_t turns = 0;  // as wide as a number, so that no byte of an element is unused
+
+  bool operator==(const SO2Element&) const = default;
 
   /// The unwrapped angle [rad]. (s + 0 makes -0 into +0, so that a half turn is always +pi.)
   T angle() const {

@@ -39,6 +39,7 @@ std::string shortened(const std::string& text) {
 std::string unknown_name(const std::string& kind, const std::string& given,
                          const std::vector<std::string>& known) {
   const std::string value = shortened(given);
+  if (known.empty()) return fmt::format("unknown {} '{}': there are none", kind, value);
   std::string text = fmt::format("unknown {} '{}': expected one of {}", kind, value, join(known));
   const auto nearest = std::min_element(known.begin(), known.end(), [&](auto& a, auto& b) {
     return edit_distance(value, a) < edit_distance(value, b);

@@ -122,8 +122,10 @@ class Expression::Reader {
       throw ExpressionError("'=' gives no value; '==' compares",
                             std::min(text_.size(), text_.find('=')));
     const size_t y = pop(), x = pop();
-    if (token.Cmd == mu::cmPOW && out_.fixed_[y] && out_.slots_[y] == 2)
-      push(emit(&kSquare, x, x, x));
+    const double power = token.Cmd == mu::cmPOW && out_.fixed_[y] ? out_.slots_[y] : 0;
+    const size_t square = power == 2 || power == 3 ? emit(&kSquare, x, x, x) : x;
+    if (power == 2) push(square);
+    else if (power == 3) push(emit(rule_of(mu::cmMUL), square, x, x));
     else push(emit(rule, x, y, y));
   }
   void call(const mu::SToken& token) {
@@ -237,6 +239,34 @@ double Expression::differentiate(std::span<const double> values, double factor,
   }
   for (const auto& [slot, variable] : inputs_) out[variable] += slopes_[slot];
   return value;
+}
+
+double Expression::rate_of(const Instruction& i) const {
+  const double x = slots_[i.a], y = slots_[i.b], of_x = slopes_[i.a], of_y = slopes_[i.b];
+  switch (i.op) {
+    case Op::add: return of_x + of_y;
+    case Op::subtract: return of_x - of_y;
+    case Op::multiply: return of_x * y + x * of_y;
+    case Op::square: return 2 * x * of_x;
+    case Op::choose: return x != 0 ? of_y : slopes_[i.c];
+    case Op::rule: break;
+  }
+  // No slope of what stands still, which may be infinite there.
+  const double by_first = of_x == 0 ? 0 : of_x * i.rule->by_first(x, y);
+  return i.rule->arguments == 1 || of_y == 0 ? by_first : by_first + of_y * i.rule->by_second(x, y);
+}
+
+double Expression::rate(std::span<const double> values, std::span<const double> rates) const {
+  std::fill(slopes_.begin(), slopes_.end(), 0.0);
+  for (const auto& [slot, variable] : inputs_) {
+    slots_[slot] = values[variable];
+    slopes_[slot] = rates[variable];
+  }
+  for (const Instruction& i : instructions_) {
+    slots_[i.to] = value_of(i);
+    slopes_[i.to] = rate_of(i);
+  }
+  return slopes_[result_];
 }
 
 std::vector<size_t> Expression::used() const {

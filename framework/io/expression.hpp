@@ -2,7 +2,7 @@
 //
 // The language is muParser's: + - * / ^, comparisons, && ||, a ? b : c, the functions of expression.cpp, and pi. Names may
 // have dots (steer.angle) and end in ' (theta'). muParser reads the text; what it read is kept as a list of instructions,
-// which is evaluated, and differentiated exactly by reverse accumulation.
+// which is evaluated, and differentiated exactly: by all variables backwards, along one direction forwards.
 #pragma once
 
 #include <map>
@@ -37,6 +37,8 @@ class Expression {
   double operator()(std::span<const double> values) const;
   /// Adds factor times its derivatives by the variables to out; its value.
   double differentiate(std::span<const double> values, double factor, std::span<double> out) const;
+  /// Its rate of change where the variables change at these rates.
+  double rate(std::span<const double> values, std::span<const double> rates) const;
   /// The variables that stand in it, by their places.
   std::vector<size_t> used() const;
   bool constant() const { return inputs_.empty(); }
@@ -59,12 +61,13 @@ class Expression {
   class Reader;
   double value_of(const Instruction& i) const;
   void pass_slope(const Instruction& i) const;  // its slope to what it was made of
+  double rate_of(const Instruction& i) const;   // from the rates of what it was made of
 
   std::vector<std::pair<size_t, size_t>> inputs_;  // slot, variable
   std::vector<Instruction> instructions_;
   size_t result_ = 0;
-  mutable std::vector<double> slots_, slopes_;
-  std::vector<bool> fixed_;  // slots that hold a constant
+  mutable std::vector<double> slots_, slopes_;  // slopes_: rates where those are asked for
+  std::vector<bool> fixed_;                     // slots that hold a constant
 };
 
 }  // namespace hamel

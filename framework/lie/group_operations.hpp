@@ -2,7 +2,7 @@
 // steps of schemes call where the types are known. geometry.hpp has the same operations with the type erased.
 #pragma once
 
-#include <cstring>
+#include <concepts>
 #include <limits>
 #include <type_traits>
 
@@ -43,11 +43,8 @@ struct GroupOperations {
   }
   /// The same numbers?
   static bool same(const Element& g, const Element& h) {
-    if constexpr (std::is_trivially_copyable_v<Element>) {
-      return std::memcmp(&g, &h, sizeof(Element)) == 0;
-    } else {
-      return G::coordinates(g) == G::coordinates(h);
-    }
+    if constexpr (std::equality_comparable<Element>) return g == h;
+    else return G::coordinates(g) == G::coordinates(h);
   }
   /// Ad_g^T mu and ad_xi^T mu.
   static void Ad_transpose(const Element& g, const Vector& mu, Vector& out) {

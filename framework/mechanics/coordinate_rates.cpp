@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include <hamel/framework/lie/differences.hpp>
 
 namespace hamel {
@@ -54,6 +56,29 @@ void CoordinateRates::add_pulled_back(const double* g, const double* x, const do
     slope += factor.columns;
     to += factor.dim;
   }
+}
+
+bool CoordinateRates::along(const double* x, const double* xi, double* out) const {
+  for (const SimpleFactor& factor : factors_) {
+    if (factor.shape) {
+      std::copy(xi, xi + factor.dim, out);
+    } else if (factor.name == "se2") {
+      const double c = std::cos(x[0]), s = std::sin(x[0]);
+      out[0] = xi[0];
+      out[1] = c * xi[1] - s * xi[2];
+      out[2] = s * xi[1] + c * xi[2];
+    } else {  // so3, se3
+      const Rows rotation(x);
+      const Three turn(xi);
+      for (int i = 0; i < 3; ++i)  // rows of R xi^
+        Eigen::Map<Eigen::Vector3d>(out + 3 * i) = Eigen::Vector3d(rotation.row(i)).cross(turn);
+      if (factor.dim == 6) Eigen::Map<Eigen::Vector3d>(out + 9) = rotation * Three(xi + 3);
+    }
+    x += factor.columns;
+    out += factor.columns;
+    xi += factor.dim;
+  }
+  return !factors_.empty();
 }
 
 void CoordinateRates::by_differences(const double* g, const double* slope,

@@ -20,6 +20,8 @@ class CoordinateRates {
   /// out += C(g)^T slope; coordinates are those of g.
   void add_pulled_back(const double* g, const double* coordinates, const double* slope,
                        Eigen::Ref<Eigen::VectorXd> out) const;
+  /// out = C(g) xi; false, and nothing, where C is known by differences only.
+  bool along(const double* coordinates, const double* xi, double* out) const;
 
  private:
   void by_differences(const double* g, const double* slope, Eigen::Ref<Eigen::VectorXd> out) const;

@@ -2,8 +2,8 @@
 //
 // Lagrange-d'Alembert with multipliers, d/dt along the motion:
 //   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,   A xi' = db/dt - (dA/dt) xi.
-// dI/dt, dA/dt, db/dt: by one dual number where the problem has its formulas over any scalar, else by
-// differences along g tau(e xi), t + e (lie/differences.hpp). A left-invariant problem has y' in closed form.
+// dI/dt, dA/dt, db/dt: by one dual number where the problem has its formulas over any scalar, its own where it has
+// them (Mechanics::rates), else by differences along g tau(e xi), t + e (lie/differences.hpp). A left-invariant problem has y' in closed form.
 #pragma once
 
 #include <cmath>
@@ -145,6 +145,9 @@ class EquationsOfMotion {
     const bool moves = !problem_.constant_constraints(), varies = !problem_.constant_inertia();
     if (!moves && !varies) return;
     if constexpr (has_dual_rates()) return evaluate_with_rates(g, xi);
+    if constexpr (requires { problem_.rates(t, g, xi, a_rate_, b_rate_, inertia_rate_); }) {
+      if (problem_.rates(t, g, xi, a_rate_, b_rate_, inertia_rate_)) return;
+    }
     inertia_rate_.setZero();
     differentiate_along(problem_, g, xi, work_, moved_, [&](double shift, double weight) {
       if (moves) {

@@ -39,6 +39,11 @@ class Mechanics {
   virtual void inertia(const double* g, Matrix out) const = 0;
   /// A(t, g), k x n, and b(t, g).
   virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
+  /// dA/dt, db/dt and dI/dt along (t, g) at g' = g xi, where a system knows them; false: it does not.
+  virtual bool rates(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Matrix /*a*/,
+                     Vector /*b*/, Matrix /*inertia*/) const {
+    return false;
+  }
   /// phi(g).
   virtual void holonomic(const double* /*g*/, Vector /*out*/) const {}
   /// F = f - dV + 1/2 d(xi^T I(g) xi) of (M3): the force on the momentum in the dual.

@@ -37,6 +37,8 @@ DataMechanics::DataMechanics(DataFormulas formulas, const GroupInfo& group,
   autonomous_ = !f_.rows.uses(t, first_rate) && !f_.drift.uses(t, first_rate) &&
                 !f_.force.uses(t, first_rate);
   velocity_force_ = f_.force.uses(first_rate, values_.size());
+  // Not the second derivatives of phi, nor the rates of inputs.
+  exact_rates_ = held_ == 0 && !f_.drift.uses(t + 1, first_rate);
 }
 
 bool DataMechanics::constant_constraints() const {
@@ -76,6 +78,20 @@ void DataMechanics::constraints(double t, const double* g, Matrix a, Vector b) c
     rates_.add_pulled_back(g, values_.data(), slopes_.data(), now_);
     a.row(own_ + i) = now_.transpose();
   }
+}
+
+bool DataMechanics::rates(double t, const double* g, ConstVector xi, Matrix a, Vector b,
+                          Matrix inertia) const {
+  if (!exact_rates_) return false;
+  take(g);
+  take(t);
+  std::fill(slopes_.begin(), slopes_.end(), 0.0);
+  if (!rates_.along(values_.data(), xi.data(), slopes_.data())) return false;
+  slopes_[time()] = 1;
+  f_.rows.rates(values_, slopes_, a);
+  f_.drift.rates(values_, slopes_, b);
+  f_.inertia.rates(values_, slopes_, inertia);
+  return true;
 }
 
 void DataMechanics::holonomic(const double* g, Vector out) const {

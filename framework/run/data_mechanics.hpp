@@ -27,8 +27,14 @@ struct FormulaMatrix {
   bool is_zero() const { return is_constant() && constant.isZero(0); }
   bool uses(size_t first, size_t last) const;  // variables first <= i < last
   template <class Out>
+  void rates(std::span<const double> values, std::span<const double> rates, Out&& out) const {
+    out.setZero();
+    for (const Entry& e : entries) out(e.row, e.column) = e.value.rate(values, rates);
+  }
+  template <class Out>
   void at(std::span<const double> values, Out&& out) const {
-    out = constant;
+    for (Eigen::Index j = 0; j < constant.cols(); ++j)
+      for (Eigen::Index i = 0; i < constant.rows(); ++i) out(i, j) = constant(i, j);
     for (const Entry& e : entries) out(e.row, e.column) = e.value(values);
   }
 };
@@ -58,6 +64,8 @@ class DataMechanics final : public Mechanics, public Worded {
   bool force_depends_on_velocity() const override { return velocity_force_; }
   void inertia(const double* g, Matrix out) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
+  bool rates(double t, const double* g, ConstVector xi, Matrix a, Vector b,
+             Matrix inertia) const override;
   void holonomic(const double* g, Vector out) const override;
   void force(double t, const double* g, ConstVector xi, Vector out) const override;
   void inertial_force(const double* g, ConstVector xi, Vector out) const override;
@@ -81,8 +89,9 @@ class DataMechanics final : public Mechanics, public Worded {
   std::shared_ptr<const Inputs> given_;
   MotionWords words_;
   int n_, own_, held_;
-  bool autonomous_, velocity_force_;
-  mutable std::vector<double> values_, slopes_;  // of the variables; of the coordinates
+  bool autonomous_, velocity_force_, exact_rates_;
+  mutable std::vector<double> values_,
+      slopes_;  // of the variables; of the coordinates, or their rates
   mutable Eigen::VectorXd now_;
 };
 

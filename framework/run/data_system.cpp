@@ -72,8 +72,11 @@ class File {
     std::string name;
     const Node* node = table_.get("group");
     if (node == nullptr) {
+      std::string others;
+      for (const FileKind& kind : file_kinds())
+        others += fmt::format(", or tables [[{}]]", kind.key);
       read_.mistakes.push_back(
-          fmt::format("{}: group: missing, expected the name of a group", origin_));
+          fmt::format("{}: group: missing, expected the name of a group{}", origin_, others));
     } else {
       read_.value(*node, "group", name);
     }

@@ -12,8 +12,6 @@ namespace {
 
 using namespace mechanisms;
 
-constexpr double kTouching = 1e-6;  // m
-
 // Reads a start as the drawn pose has it, for the energy.
 std::function<double(std::span<const double>, std::span<const double>)> energy_of(
     std::shared_ptr<const Multibody> system) {
@@ -27,17 +25,53 @@ std::function<double(std::span<const double>, std::span<const double>)> energy_o
   };
 }
 
-// With its words; without places and forces where nothing depends on the configuration.
-std::shared_ptr<const Mechanics> simplest(const Multibody& system, MotionWords words) {
-  const bool invariant = system.constant_inertia() && system.constant_constraints() &&
-                         system.constant_potential() && !system.has_force() && !system.has_drift();
-  if (!invariant) return std::make_shared<WithWords<Multibody>>(system, std::move(words));
+// A signal of a part, and how messages call it.
+struct Watched {
+  std::string what;
+  Signal value;
+};
+
+// With its words; a run starts where its signals have values.
+class Speaking final : public Multibody, public Worded {
+ public:
+  Speaking(const Multibody& system, MotionWords words, std::vector<Watched> signals,
+           std::shared_ptr<const Inputs> inputs)
+      : Multibody(system),
+        words_(std::move(words)),
+        signals_(std::move(signals)),
+        inputs_(std::move(inputs)) {}
+  const MotionWords& words() const override { return words_; }
+  std::vector<std::string> mistakes_at(double t, const double* g, ConstVector xi) const override {
+    std::vector<double> x(static_cast<size_t>(geometry().columns()));
+    geometry().coordinates(g, x.data());
+    const InputValues u = inputs_ == nullptr ? InputValues() : inputs_->at(t);
+    const auto count = [](const auto& v) { return static_cast<size_t>(v.size()); };
+    const Now now{t, x, {xi.data(), count(xi)}, {u.data(), count(u)}};
+    std::vector<std::string> out;
+    for (const Watched& signal : signals_) {
+      if (const double value = signal.value(now); !std::isfinite(value))
+        out.push_back(fmt::format("{} is {} at the start", signal.what, value));
+    }
+    return out;
+  }
+
+ private:
+  MotionWords words_;
+  std::vector<Watched> signals_;
+  std::shared_ptr<const Inputs> inputs_;
+};
+
+// Without places and forces where nothing depends on the configuration; else null.
+std::shared_ptr<const Mechanics> invariant(const Multibody& system, const MotionWords& words) {
+  if (!system.constant_inertia() || !system.constant_constraints() ||
+      !system.constant_potential() || system.has_force() || system.has_drift())
+    return nullptr;
   Eigen::MatrixXd inertia(system.dim(), system.dim()), a(system.rows(), system.dim());
   Eigen::VectorXd b(system.rows());
   system.inertia(system.drawn().data(), inertia);
   system.constraints(0, system.drawn().data(), a, b);
   return std::make_shared<WithWords<LeftInvariantMechanics>>(LeftInvariantMechanics(inertia, a),
-                                                             std::move(words));
+                                                             words);
 }
 
 }  // namespace
@@ -47,7 +81,9 @@ void Assembly::wrong(const Part& part, const std::string& kind, const std::strin
 }
 void Assembly::unknown(const Part& part, const std::string& kind, const std::string& what,
                        const std::string& name, const std::vector<std::string>& known) {
-  wrong(part, kind, unknown_name(what, name, known));
+  wrong(part, kind,
+        name.empty() ? fmt::format("{}: missing, expected one of {}", what, join(known))
+                     : unknown_name(what, name, known));
 }
 void Assembly::stop_at_mistakes() const {
   if (!mistakes_.empty()) throw ConfigError(mistakes_);
@@ -55,7 +91,8 @@ void Assembly::stop_at_mistakes() const {
 
 std::vector<std::string> Assembly::body_names() const {
   std::vector<std::string> out;
-  for (const auto& body : parts_.bodies_) out.push_back(body.name);
+  for (const auto& body : parts_.bodies_)
+    if (!body.name.empty()) out.push_back(body.name);
   return out;
 }
 
@@ -83,7 +120,7 @@ Vec3 Assembly::direction(const Part& part, const std::string& kind, const std::s
   const double length = v.norm();
   if (length > 0 && std::isfinite(length)) return v / length;
   wrong(part, kind, fmt::format("{}: got ({}), expected a direction", what, join(given)));
-  return Vec3::UnitZ();
+  return Vec3::UnitX();  // of a part that is refused
 }
 
 Rows Assembly::rows() {
@@ -100,7 +137,8 @@ Rows Assembly::rows() {
     const bool edge = contact.kind == ContactKind::blade;
     contact.axis = direction(part, part.kind, edge ? "along" : "axle", part.axle);
     if (contact.kind != ContactKind::ball && contact.axis.cross(Vec3::UnitZ()).norm() < 1e-6)
-      wrong(part, part.kind, fmt::format("{}: is vertical", edge ? "along" : "axle"));
+      wrong(part, part.kind,
+            fmt::format("{}: is vertical, expected a direction across z", edge ? "along" : "axle"));
     if (!edge && !(part.radius > 0 && std::isfinite(part.radius)))
       wrong(part, part.kind,
             fmt::format("radius: got {}, expected a positive number", part.radius));
@@ -116,6 +154,8 @@ Rows Assembly::rows() {
   }
   for (const auto& part : parts_.rates_) {
     const auto rate = part.rate ? part.rate : [](double) { return 0.0; };
+    for (const Prescribed& other : out.prescribed)
+      if (other.name == part.name) wrong(part, "prescribed", "this joint is prescribed already");
     if (const int link = joint_of(part, "prescribed"); link >= 0)
       out.prescribed.push_back({part.name, link, rate});  // the number of the velocity follows
   }
@@ -170,28 +210,6 @@ std::vector<Multibody::Driver> Assembly::drivers(const Tree& tree) {
   return out;
 }
 
-// Contacts touch the ground as drawn, loops are closed.
-void Assembly::check_contacts(const Multibody& system) {
-  const Rows& rows = system.all_rows();
-  const Tree& tree = system.tree(system.drawn().data());
-  for (size_t i = 0; i < rows.contacts.size(); ++i) {
-    const auto& part = parts_.contacts_[i];
-    const double height = rows.height(rows.contacts[i], tree);
-    if (!(std::abs(height) < kTouching)) {
-      wrong(part, part.kind,
-            fmt::format("does not touch the ground z = 0 as drawn: its lowest point is at {:.6g} m",
-                        height));
-    }
-  }
-  for (size_t i = 0; i < rows.loops.size(); ++i) {
-    const Loop& loop = rows.loops[i];
-    const double apart =
-        (tree.in_world(loop.b).apply(loop.at) - tree.in_world(loop.a).apply(loop.at)).norm();
-    if (!(apart < kTouching))
-      wrong(parts_.loops_[i], "loop", fmt::format("is open as drawn by {:.6g} m", apart));
-  }
-}
-
 void Assembly::make_tree() {
   model_.name = parts_.name_;
   check_names();
@@ -225,27 +243,9 @@ SystemModel Assembly::model() {
   stop_at_mistakes();
 
   const std::vector<RowWords> words = system->all_rows().words();
+  const std::vector<Said> said = rows_in_words(words);
   const Redundancy redundancy = look_for_redundancy(*system, system->drawn());
-  if (parts_.redundant_ != "drop" && parts_.redundant_ != "refuse") {
-    mistakes_.push_back(parts_.name_ + ": " +
-                        unknown_name("redundant", parts_.redundant_, {"drop", "refuse"}));
-  }
-  for (const auto& [row, others] : redundancy.repeats) {
-    const auto say = [&](int i) {
-      return "'" + words[static_cast<size_t>(i)].part + "' (" +
-             words[static_cast<size_t>(i)].meaning + ")";
-    };
-    std::string list;
-    for (const int other : others) list += (list.empty() ? "" : ", ") + say(other);
-    const std::string text = fmt::format("{} says nothing beyond {}", say(row), list);
-    if (parts_.redundant_ == "drop") words_.notes.push_back("row dropped: " + text);
-    else
-      mistakes_.push_back(fmt::format(
-          "{}: redundant row: {}; take a part with fewer rows (a roller for a wheel), or "
-          "redundant = \"drop\"",
-          parts_.name_, text));
-  }
-  stop_at_mistakes();
+  look_at_redundant(redundancy, said);
   system->keep(redundancy.rows);
   system->look_for_constants(poses_around(*system, system->drawn()));
   for (const int row : system->kept()) {
@@ -254,34 +254,26 @@ SystemModel Assembly::model() {
     words_.reactions.push_back(word.name);
   }
 
-  const auto starts =
-      std::make_shared<Starts>(system, parts_.name_, model_.group.columns, words_.rates);
-  std::vector<std::string> asks = parts_.asks_;
-  if (asks.empty() && starts->mistakes({"speed"}).empty()) asks = {"speed"};
-  if (const auto wrong = starts->mistakes(asks); !wrong.empty()) throw ConfigError(wrong);
-  model_.start = starts->solve(parts_.start_);
-  words_.start_parameters = asks;
-  // The stated coordinates hold there too, the stated velocities do not.
-  std::map<std::string, double> usual = parts_.start_;
-  std::erase_if(usual, [&](const auto& entry) {
-    const auto& columns = model_.group.columns;
-    return std::find(columns.begin(), columns.end(), entry.first) == columns.end();
-  });
-  words_.start_from = [starts, asks, usual](std::span<const double> given) {
-    std::map<std::string, double> values = usual;
-    for (size_t i = 0; i < given.size(); ++i) values[asks[i]] = given[i];
-    return starts->solve(values);
-  };
+  start(std::make_shared<Starts>(system, parts_.name_, model_.group.columns, words_.rates, said));
+  check_motions(*system, said);
+  stop_at_mistakes();
   draw(system);
-  if (!model_.inputs.empty()) {
-    model_.drive = [system, words = words_,
-                    drivers = drivers(tree)](const std::shared_ptr<const Inputs>& inputs) {
-      Multibody driven = *system;
-      driven.drive(drivers, inputs);
-      return std::make_shared<WithWords<Multibody>>(driven, words);
-    };
-  }
-  model_.mechanics = simplest(*system, std::move(words_));
+  std::vector<Watched> signals;
+  for (const auto& part : parts_.motors_)
+    signals.push_back({fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});
+  for (const auto& part : parts_.forces_)
+    for (const Signal& along : part.along)
+      signals.push_back({fmt::format("{}force '{}': along", part.where, part.name), along});
+  std::erase_if(signals, [](const Watched& signal) { return !signal.value; });
+  const auto driven = [system, signals, words = words_,
+                       drivers = drivers(tree)](const std::shared_ptr<const Inputs>& inputs) {
+    Multibody out = *system;
+    if (inputs != nullptr) out.drive(drivers, inputs);
+    return std::make_shared<Speaking>(out, words, signals, inputs);
+  };
+  if (!model_.inputs.empty()) model_.drive = driven;
+  model_.mechanics = invariant(*system, words_);
+  if (model_.mechanics == nullptr) model_.mechanics = driven(nullptr);
   if (!system->has_force() && !system->has_drift())
     model_.invariants.push_back({"energy", energy_of(system)});
   return std::move(model_);

@@ -10,6 +10,7 @@
 #include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
 #include <hamel/systems/mechanisms/multibody.hpp>
+#include <hamel/systems/mechanisms/poses.hpp>
 
 namespace hamel {
 
@@ -50,6 +51,12 @@ class Assembly {
   mechanisms::Rows rows();
   mechanisms::Forces forces();
   void check_contacts(const mechanisms::Multibody& system);
+  std::vector<mechanisms::Said> rows_in_words(const std::vector<mechanisms::RowWords>& rows) const;
+  void look_at_redundant(const mechanisms::Redundancy& redundancy,
+                         const std::vector<mechanisms::Said>& rows);
+  void start(const std::shared_ptr<const mechanisms::Starts>& starts);
+  void check_motions(const mechanisms::Multibody& system,
+                     const std::vector<mechanisms::Said>& rows);
   std::vector<std::string> body_names() const;
   std::vector<mechanisms::Multibody::Driver> drivers(const mechanisms::Tree& tree);
 
@@ -60,7 +67,8 @@ class Assembly {
   SystemModel model_;
   MotionWords words_;
   std::vector<mechanisms::Link> links_;
-  std::vector<std::string> link_names_;    // of their joints
+  std::vector<std::string> link_names_;  // of their joints
+  std::vector<const Mechanism::JointPart*> link_joints_;
   std::map<std::string, int> body_links_;  // the ground is kWorld
 };
 

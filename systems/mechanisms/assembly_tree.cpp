@@ -1,7 +1,6 @@
 // Assembly: bodies and joints, the tree.
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -20,24 +19,6 @@ const std::vector<std::string>& joint_kinds() {
 }
 
 }  // namespace
-
-void Assembly::check_names() {
-  const auto unique = [&](const auto& parts, const std::string& kind,
-                          std::set<std::string>& taken) {
-    for (const auto& part : parts) {
-      if (part.name.empty()) wrong(part, kind, "expected a name");
-      else if (part.name == kWorld) wrong(part, kind, "is the name of what rests in the world");
-      else if (!taken.insert(part.name).second) wrong(part, kind, "this name is taken");
-    }
-  };
-  std::set<std::string> bodies, joints, rows, springs, forces;
-  unique(parts_.bodies_, "body", bodies);
-  unique(parts_.joints_, "joint", joints);
-  unique(parts_.contacts_, "contact", rows);
-  unique(parts_.loops_, "loop", rows);
-  unique(parts_.springs_, "spring", springs);
-  unique(parts_.forces_, "force", forces);
-}
 
 Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
   const std::vector<double>& given = body.inertia;
@@ -72,24 +53,12 @@ Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
         body, "body",
         fmt::format("inertia: a moment of {} about some axis, expected none below 0", moments[0]));
   } else if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1])) {
-    words_.notes.push_back(
-        fmt::format("body '{}': no rigid body has the principal moments {}, since {} > {} + {}",
-                    body.name, join(std::vector<double>(moments.begin(), moments.end())),
-                    moments[2], moments[1], moments[0]));
+    words_.notes.push_back(fmt::format(
+        "{}body '{}': no rigid body has the principal moments {}, since {} > {} + {}", body.where,
+        body.name, join(std::vector<double>(moments.begin(), moments.end())), moments[2],
+        moments[1], moments[0]));
   }
   return inertia_at(body.mass, vec(body.at), central);
-}
-
-void Assembly::check_body(const Mechanism::BodyPart& body) {
-  if (!(body.mass >= 0) || !std::isfinite(body.mass))
-    wrong(body, "body", fmt::format("mass: got {}, expected at least 0", body.mass));
-  const int shapes = (vec(body.box).isZero(0) ? 0 : 1) + (body.cylinder.empty() ? 0 : 1) +
-                     (body.sphere != 0 ? 1 : 0);
-  if (shapes > 1) wrong(body, "body", "expected one of box, cylinder and sphere");
-  if (!body.cylinder.empty() && body.cylinder.size() != 2)
-    wrong(
-        body, "body",
-        fmt::format("cylinder: got {} numbers, expected radius and length", body.cylinder.size()));
 }
 
 // A link for each joint, two for a universal one, none for a weld; parents first.
@@ -145,7 +114,9 @@ void Assembly::link_bodies() {
     circle += fmt::format("{}'{}'", circle.empty() ? "" : ", ", joint->name);
   if (!circle.empty()) {
     wrong(*waiting.front(), "joint",
-          fmt::format("{} go round in a circle that does not reach the ground", circle));
+          fmt::format("{} go round in a circle that does not reach the ground; hang one of the "
+                      "bodies on it, and make one of the joints a loop",
+                      circle));
   }
   stop_at_mistakes();
 }
@@ -195,6 +166,7 @@ void Assembly::add_link(int parent, JointKind kind, const Mechanism::JointPart& 
     wrong(joint, "joint",
           fmt::format("stiffness and damping: expected a hinge or slider, got {}", joint.kind));
   link_names_.push_back(joint.name + suffix);
+  link_joints_.push_back(&joint);
 }
 
 // A lone root joint's numbers go by their own names: x, theta, v1.
@@ -229,49 +201,37 @@ void Assembly::name_columns() {
   model_.group = std::move(info);
 }
 
-// Motors and prescribed joints without a signal, in this order.
+// Motors and prescribed joints without a signal, then inputs by name.
 void Assembly::state_inputs() {
-  const auto state = [&](const auto& part, const std::string& kind, bool rate) {
+  const auto add = [&](const Part& part, const std::string& kind, InputField field) {
+    for (const InputField& other : model_.inputs) {
+      if (other.name != field.name) continue;
+      wrong(part, kind,
+            kind == "input" ? "this name is taken" : "this joint is driven by an input already");
+    }
+    model_.inputs.push_back(std::move(field));
+    if (model_.inputs.size() == kMostInputs + 1)
+      wrong(part, kind, fmt::format("expected at most {} inputs", kMostInputs));
+  };
+  const auto of_joint = [&](const auto& part, const std::string& kind, bool rate) {
     const auto at = std::find(link_names_.begin(), link_names_.end(), part.name);
     if (at == link_names_.end()) return;  // said with the others
     const bool slider =
         links_[static_cast<size_t>(at - link_names_.begin())].kind == JointKind::slider;
     const std::string of = slider ? "force" : "torque";
-    InputField field{part.name + "." + (rate ? "rate" : of), slider ? "N" : "N m",
-                     of + " of the motor in this joint", part.range};
-    if (rate) {
-      field.unit = slider ? "m/s" : "rad/s";
-      field.meaning = "rate of this joint";
-    }
-    for (const InputField& other : model_.inputs)
-      if (other.name == field.name) wrong(part, kind, "this joint is driven by an input already");
-    model_.inputs.push_back(std::move(field));
+    if (rate)
+      add(part, kind,
+          {part.name + ".rate", slider ? "m/s" : "rad/s", "rate of this joint", part.range});
+    else
+      add(part, kind,
+          {part.name + "." + of, slider ? "N" : "N m", of + " of the motor in this joint",
+           part.range});
   };
   for (const auto& part : parts_.motors_)
-    if (!part.effort) state(part, "motor", false);
+    if (!part.effort) of_joint(part, "motor", false);
   for (const auto& part : parts_.rates_)
-    if (!part.rate) state(part, "prescribed", true);
-  if (model_.inputs.size() > kMostInputs) {
-    mistakes_.push_back(fmt::format("{}: {} inputs, expected at most {}", parts_.name_,
-                                    model_.inputs.size(), kMostInputs));
-  }
-}
-
-// A body that can be moved for nothing has no equation of motion.
-void Assembly::check_masses(const Tree& tree) {
-  Eigen::MatrixXd inertia(tree.dim(), tree.dim());
-  tree.inertia(inertia);
-  for (const auto& joint : parts_.joints_) {
-    const int link = body_links_.at(joint.child);
-    if (joint.kind == "weld" || link == mechanisms::kGround) continue;
-    for (int i = 0; i < tree.count(link); ++i) {
-      if (inertia(tree.first(link) + i, tree.first(link) + i) > 0) continue;
-      wrong(joint, "joint",
-            fmt::format("body '{}' and all that it carries have no inertia against its motion",
-                        joint.child));
-      break;
-    }
-  }
+    if (!part.rate) of_joint(part, "prescribed", true);
+  for (const auto& part : parts_.inputs_) add(part, "input", part.field);
 }
 
 }  // namespace hamel

@@ -25,36 +25,67 @@ class FileValues {
 
   explicit FileValues(const std::string& origin) : toml(origin) {}
 
-  /// Coordinates and velocities, for signals.
-  void set_state(std::vector<std::string> names) { state_ = std::move(names); }
+  /// What signals may use beside t and parameters.
+  void set_names(const std::vector<std::string>& coordinates, const std::vector<std::string>& rates,
+                 const std::vector<InputField>& inputs) {
+    names_ = {"t"};
+    names_.insert(names_.end(), coordinates.begin(), coordinates.end());
+    names_.insert(names_.end(), rates.begin(), rates.end());
+    for (size_t i = 0; i < inputs.size(); ++i) {  // the rate of a prescribed joint is there already
+      if (std::find(names_.begin(), names_.end(), inputs[i].name) != names_.end()) continue;
+      names_.push_back(inputs[i].name);
+      inputs_.push_back(i);
+    }
+  }
+
+  /// Is this name that of an input, and of nothing else of the state?
+  bool names_input(const std::string& name) const {
+    const auto at = std::find(names_.begin(), names_.end(), name);
+    return at >= names_.end() - static_cast<std::ptrdiff_t>(inputs_.size()) && at != names_.end();
+  }
 
   double number(const Node& node, const std::string& key) { return formulas.number(node, key); }
   Point point(const Node& node, const std::string& key) {
     const auto values = formulas.numbers(node, key, 3);
     return {values[0], values[1], values[2]};
   }
-  /// A formula of t, coordinates, velocities and parameters.
+  /// A formula of t, coordinates, velocities, inputs and parameters.
   Signal signal(const Node& node, const std::string& key) {
-    const auto formula = formulas.expression(node, key, with_time(state_));
+    const auto formula = formulas.expression(node, key, names_);
     if (!formula) return {};
-    return [formula = *formula,
-            values = std::vector<double>(1 + state_.size())](const Now& now) mutable {
+    return [formula = *formula, inputs = inputs_,
+            values = std::vector<double>(names_.size())](const Now& now) mutable {
       values[0] = now.t;
-      const auto next =
-          std::copy(now.coordinates.begin(), now.coordinates.end(), values.begin() + 1);
-      std::copy(now.velocity.begin(), now.velocity.end(), next);
+      auto next = std::copy(now.coordinates.begin(), now.coordinates.end(), values.begin() + 1);
+      next = std::copy(now.velocity.begin(), now.velocity.end(), next);
+      for (const size_t i : inputs) *next++ = i < now.inputs.size() ? now.inputs[i] : 0;
       return formula(values);
     };
   }
   /// A formula of t and parameters, or its derivative.
   std::function<double(double)> of_time(const Node& node, const std::string& key, bool derivative) {
+    const auto any = formulas.expression(node, key, names_);
+    if (!any) return {};
+    for (const size_t i : any->used()) {
+      if (i == 0) continue;
+      toml.wrong(node, key,
+                 fmt::format("a formula of t and parameters, since its rate is needed too; '{}' is "
+                             "none of them",
+                             names_[i]));
+      return {};
+    }
     const auto formula = formulas.expression(node, key, {"t"});
-    if (!formula) return {};
-    return [formula = *formula, derivative](double t) {
+    const auto out = [formula = *formula, derivative](double t) {
       double slope = 0;
       const double value = formula.differentiate({&t, 1}, 1, {&slope, 1});
       return derivative ? slope : value;
     };
+    if (const double first = out(0); !std::isfinite(first)) {
+      toml.wrong(node, key,
+                 fmt::format("{} finite at t = 0, got {}",
+                             derivative ? "an angle whose rate is" : "a rate", first));
+    }
+    return out;
   }
 
   Reader read(double& to) {
@@ -97,13 +128,8 @@ class FileValues {
   TomlFormulas formulas{toml};
 
  private:
-  std::vector<std::string> with_time(const std::vector<std::string>& state) const {
-    std::vector<std::string> names{"t"};
-    names.insert(names.end(), state.begin(), state.end());
-    return names;
-  }
-
-  std::vector<std::string> state_;
+  std::vector<std::string> names_;
+  std::vector<size_t> inputs_;  // of those of the system, that names_ ends with
 };
 
 }  // namespace hamel::mechanisms

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/systems/mechanisms/forces.hpp>
@@ -30,7 +31,7 @@
 
 namespace hamel {
 
-using mechanisms::Now;     // t, coordinates, velocity
+using mechanisms::Now;     // t, coordinates, velocity, inputs
 using mechanisms::Signal;  // Now -> number
 
 /// What rests in the world: a name where a body's is expected.
@@ -131,7 +132,7 @@ class Mechanism {
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});
   /// "refuse", or "drop": what becomes of rows that say what others say already.
-  void redundant(const std::string& policy) { redundant_ = policy; }
+  void redundant(const std::string& policy) { redundant_ = part(policy); }
 
   // Forces.
   /// m/s^2; an incline is a direction of gravity that is not -z.
@@ -142,12 +143,18 @@ class Mechanism {
   void motor(const std::string& joint, Signal effort);
   void motor(const std::string& joint, const Range& range = {});
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
+  /// An input of the run that signals may use: Now::inputs, behind those of motors and prescribed joints.
+  void input(const InputField& field) { inputs_.push_back({part(field.name), field}); }
 
   /// The start: coordinates and velocities by name, and "speed", that of the first root joint ahead. Those that are
   /// not given follow from the rows: coordinates stay near the drawn pose, velocities have the least energy.
-  void start(const std::map<std::string, double>& values) { start_ = values; }
+  void start(const std::map<std::string, double>& values) {
+    start_.clear();
+    for (const auto& [name, value] : values) start(name, value);
+  }
+  void start(const std::string& name, double value) { start_.push_back({part(name), value}); }
   /// What a few numbers for a start mean (`--velocity`): names as those of start(). Left out: speed.
-  void asks(std::vector<std::string> names) { asks_ = std::move(names); }
+  void asks(std::vector<std::string> names) { asks_ = {part("asks"), std::move(names)}; }
 
   const std::string& name() const { return name_; }
   /// The system. Throws ConfigError with all mistakes, each with the name of its part.
@@ -157,7 +164,7 @@ class Mechanism {
   /// ConfigError where they make no tree.
   std::pair<SystemModel, MotionWords> outline() const;
 
-  /// Where the next parts stand in a file, for messages.
+  /// Where the next parts, and what else is said next, stand in a file, for messages.
   void place(std::string where) { where_ = std::move(where); }
 
  private:
@@ -189,11 +196,21 @@ class Mechanism {
     Signal effort;  // empty: an input
     Range range = {};
   };
+  struct InputPart : Part {
+    InputField field;
+  };
+  struct StartPart : Part {
+    double value = 0;
+  };
+  struct AsksPart : Part {
+    std::vector<std::string> names;
+  };
   Part part(const std::string& name) const { return {name, where_}; }
   void contact(const std::string& kind, const std::string& name, const std::string& body,
                const WheelOptions& options);
 
-  std::string name_, where_, redundant_ = "refuse";
+  std::string name_, where_;
+  Part redundant_ = {"refuse", ""};
   std::vector<BodyPart> bodies_;
   std::vector<JointPart> joints_;
   std::vector<ContactPart> contacts_;
@@ -202,10 +219,11 @@ class Mechanism {
   std::vector<ForcePart> forces_;
   std::vector<RatePart> rates_;
   std::vector<MotorPart> motors_;
+  std::vector<InputPart> inputs_;
   Point gravity_ = {0, 0, -9.81}, ground_velocity_ = {0, 0, 0};
   double ground_rate_ = 0;
-  std::map<std::string, double> start_;
-  std::vector<std::string> asks_;
+  std::vector<StartPart> start_;
+  AsksPart asks_;
 };
 
 /// A mechanism has no parameters to set.

@@ -20,13 +20,15 @@
 //   [[motor]]                                 # joint; effort = "-2*steer.angle - 0.1*steer.rate"; left out: an input,
 //   joint = "steer"                           # steer.torque, or lift.force of a slider, between `least` and `most`
 //   [[force]]                                 # body, at; along = ["1", 0, 0]; of_body = true
+//   [inputs]                                  # what a run may be driven by; efforts and forces may use them
+//   wind = { unit = "N", meaning = "...", least = -50, most = 50 }
 //   [ground]                                  # rate [rad/s], velocity [m/s]: the ground turns and moves
 //   [start]                                   # coordinates and velocities by name, and speed
 //   speed = 2
 //   asks = ["speed"]                          # what the numbers of --velocity mean, fewer than velocities
 //
 // Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also of t, those of motors
-// and forces of coordinates (steer.angle, x) and velocities (steer.rate, v1).
+// and forces of coordinates (steer.angle, x), velocities (steer.rate, v1) and inputs (wind, steer.torque).
 #pragma once
 
 #include <string>

@@ -38,6 +38,7 @@ void Multibody::keep(const std::vector<int>& rows) {
 
 void Multibody::drive(const std::vector<Driver>& drivers,
                       const std::shared_ptr<const Inputs>& inputs) {
+  inputs_ = inputs;
   for (size_t i = 0; i < drivers.size(); ++i) {
     const auto at = [inputs, i](double t) { return inputs->at(t)[static_cast<Eigen::Index>(i)]; };
     if (!drivers[i].rate) {
@@ -132,10 +133,13 @@ void Multibody::holonomic(const double* g, Vector out) const {
 
 void Multibody::add_force(const Tree& tree, double t, const double* g, ConstVector xi,
                           Vector out) const {
-  Now now{t, {}, {xi.data(), static_cast<size_t>(xi.size())}};
+  Now now{t, {}, {xi.data(), static_cast<size_t>(xi.size())}, {}};
+  InputValues u;
   if (forces_.has_signals()) {
     geometry_->coordinates(g, coordinates_.data());
     now.coordinates = coordinates_;
+    if (inputs_ != nullptr) u = inputs_->at(t);
+    now.inputs = {u.data(), static_cast<size_t>(u.size())};
   }
   forces_.add_force(tree, now, out);
 }

@@ -28,7 +28,7 @@ class Multibody : public Mechanics {
     int dof;
     bool rate;
   };
-  /// With the inputs of a run, one for each driver; without, they are zero.
+  /// With the inputs of a run, the first of them those of the drivers; without, they are zero.
   void drive(const std::vector<Driver>& drivers, const std::shared_ptr<const Inputs>& inputs);
   /// Is I(g) the same for all g, are A and V? Read off a few poses that share nothing.
   void look_for_constants(const std::vector<std::vector<double>>& poses);
@@ -78,6 +78,7 @@ class Multibody : public Mechanics {
   std::vector<int> slots_;    // of each(): the row of A, or -1
   std::vector<int> kept_;     // their inverse
   std::vector<char> varies_;  // of each(): is it kept, and may it be another one elsewhere?
+  std::shared_ptr<const Inputs> inputs_;
   int holonomic_ = 0;
   bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;
   Eigen::MatrixXd inertia_;     // where it is constant

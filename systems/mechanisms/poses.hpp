@@ -28,23 +28,36 @@ struct Redundancy {
 };
 Redundancy look_for_redundancy(const Multibody& system, const std::vector<double>& drawn);
 
+/// A row in words, for messages.
+struct Said {
+  std::string where,
+      what;  // of its part, "system.toml:3:1: "; "wheel 'rear' (rolls without slipping)"
+};
+
 /// Starts of a mechanism, by the names of coordinates and velocities.
 class Starts {
  public:
+  using Values = std::map<std::string, double>;
+  using Places = std::map<std::string, std::string>;
+
   Starts(std::shared_ptr<const Multibody> system, std::string name,
-         std::vector<std::string> columns, std::vector<std::string> rates);
+         std::vector<std::string> columns, std::vector<std::string> rates, std::vector<Said> rows);
   /// Mistakes in these names; "speed" is the first of the root's velocities ahead.
   std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
-  /// Throws ConfigError where the rows forbid these values.
-  Start solve(const std::map<std::string, double>& values) const;
+  /// Throws ConfigError where the rows forbid these values; places: where these stand in a file.
+  Start solve(const Values& values, const Places& places = {}) const;
 
  private:
   int rate(const std::string& name) const;  // -1: no velocity
-  std::vector<double> configuration(const std::map<std::string, double>& values) const;
+  std::vector<double> configuration(const Values& values, const Places& places) const;
+  /// Throws that these rows and values do not go together, and the text behind them.
+  [[noreturn]] void refuse(const std::vector<int>& rows, const Values& values, const Places& places,
+                           const std::string& text) const;
 
   std::shared_ptr<const Multibody> system_;
   std::string name_;
   std::vector<std::string> columns_, rates_;
+  std::vector<Said> rows_;
 };
 
 }  // namespace hamel::mechanisms

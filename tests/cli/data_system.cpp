@@ -12,12 +12,7 @@ using namespace hamel::test;
 using nlohmann::json;
 using testing::HasSubstr;
 
-class DataSystem : public CommandLine {
- protected:
-  std::string write(const std::string& text) const {
-    return CommandLine::write("system.toml", text);
-  }
-};
+using DataSystem = CommandLine;
 
 constexpr const char* kKnife = R"(
 group = "se2"
@@ -250,6 +245,27 @@ TEST_F(DataSystem, AnalysisSeesWhatASystemIs) {
                      "drift = [0.3]\nvelocity = [1, 0.3]"));
   EXPECT_TRUE(lift["integrable"]);
   EXPECT_THAT(lift["verdict"].get<std::string>(), HasSubstr("with time"));
+}
+
+/// The page calls coordinates and rates as the file does, and knows which of them are places all the same.
+TEST_F(DataSystem, NamesTheCurvesOfThePage) {
+  auto figures = curves({write(R"(
+group = "se2*so2"
+coordinates = ["heading", "east", "north", "wheel"]
+rates = ["spin", "ahead", "aside", "roll"]
+inertia = [0.1, 1, 1, 1]
+constraints = [[0, 0, 1, 0]]
+velocity = [0.5, 1, 0, 1]
+)"),
+                         "--until", "1"});
+  if (figures.empty()) GTEST_SKIP() << "the program has no page";
+  using testing::ElementsAre;
+  EXPECT_THAT(figures["Path in the plane"], ElementsAre("east, north"));
+  EXPECT_THAT(figures["Angular velocity"], ElementsAre("spin [rad/s]", "roll [rad/s]"));
+  EXPECT_THAT(figures["Velocity"], ElementsAre("ahead [m/s]", "aside [m/s]"));
+  EXPECT_THAT(figures["Angles of the shape"], ElementsAre("wheel [rad]"));
+  EXPECT_THAT(figures["Momentum in the body"],
+              ElementsAre("mu of ahead [N s]", "mu of aside [N s]"));
 }
 
 }  // namespace

@@ -102,12 +102,12 @@ TEST_F(InputsOfTheProgram, BadOnesAreRefused) {
 }
 
 TEST_F(InputsOfTheProgram, AreDescribed) {
-  const Json segway = Json::parse(run({"describe", "segway", "--json"}).out);
+  const Json segway = answer({"describe", "segway"});
   ASSERT_EQ(segway["inputs"].size(), 2u);
   EXPECT_EQ(segway["inputs"][0]["name"], "right_torque");
   EXPECT_EQ(segway["inputs"][0]["unit"], "N m");
   EXPECT_THAT(run({"describe", "roller_racer"}).out, HasSubstr("handlebar_torque"));
-  EXPECT_EQ(Json::parse(run({"describe", "suslov", "--json"}).out)["inputs"], Json::array());
+  EXPECT_EQ(answer({"describe", "suslov"})["inputs"], Json::array());
 }
 
 // Each system of a study has its own; both are the runs by themselves.

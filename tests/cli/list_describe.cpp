@@ -32,9 +32,9 @@ TEST_F(List, EveryKind) {
 }
 
 TEST_F(List, AllAtOnce) {
-  const Json all = Json::parse(run({"list", "--json"}).out);
+  const Json all = answer({"list"});
   for (const std::string& kind : kinds) {
-    EXPECT_EQ(all.at(kind), Json::parse(run({"list", kind, "--json"}).out)) << kind;
+    EXPECT_EQ(all.at(kind), answer({"list", kind})) << kind;
   }
   const Outcome text = run({"list"});
   for (const std::string& kind : kinds) EXPECT_THAT(text.out, HasSubstr(kind));
@@ -42,7 +42,7 @@ TEST_F(List, AllAtOnce) {
 
 /// The names that scripts rely on (tools/README.md).
 TEST_F(List, HasThePromisedNames) {
-  const Json all = Json::parse(run({"list", "--json"}).out);
+  const Json all = answer({"list"});
   const auto expect = [&](const char* kind, const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       EXPECT_TRUE(std::any_of(all[kind].begin(), all[kind].end(),
@@ -65,7 +65,7 @@ TEST_F(List, AnUnknownKind) {
 }
 
 TEST_F(Describe, EveryRegisteredName) {
-  const Json all = Json::parse(run({"list", "--json"}).out);
+  const Json all = answer({"list"});
   int count = 0;
   for (const std::string& kind : kinds) {
     for (const Json& row : all.at(kind)) {
@@ -84,7 +84,7 @@ TEST_F(Describe, EveryRegisteredName) {
 }
 
 TEST_F(Describe, ASystemSaysEverything) {
-  const Json suslov = Json::parse(run({"describe", "suslov", "--json"}).out);
+  const Json suslov = answer({"describe", "suslov"});
   for (const char* key : {"summary", "group", "formula", "parameters", "known", "source"}) {
     EXPECT_TRUE(suslov.contains(key)) << key;
   }
@@ -93,7 +93,7 @@ TEST_F(Describe, ASystemSaysEverything) {
   EXPECT_EQ(suslov["parameters"][0]["default"], Json({1.0, 10.0, 100.0}));
   EXPECT_EQ(suslov["parameters"][0]["unit"], "kg m^2");
   EXPECT_EQ(suslov["parameters"][1]["name"], "normal");
-  const Json disk = Json::parse(run({"describe", "rolling_disk", "--json"}).out);
+  const Json disk = answer({"describe", "rolling_disk"});
   std::vector<std::string> names;
   for (const Json& p : disk["parameters"]) names.push_back(p["name"]);
   EXPECT_THAT(names, testing::ElementsAre("mass", "radius", "spin_inertia", "yaw_inertia"));
@@ -103,7 +103,7 @@ TEST_F(Describe, ASystemSaysEverything) {
   EXPECT_THAT(run({"describe", "rolling_disk"}).out,
               testing::ContainsRegex("radius +=.*\\[m\\]  positive;  radius of the disk"));
   EXPECT_THAT(run({"describe", "n_trailer"}).out, HasSubstr("in [1, 60]"));
-  const Json sleigh = Json::parse(run({"describe", "chaplygin_sleigh", "--json"}).out);
+  const Json sleigh = answer({"describe", "chaplygin_sleigh"});
   names.clear();
   for (const Json& p : sleigh["parameters"]) names.push_back(p["name"]);
   EXPECT_THAT(names, testing::ElementsAre("mass", "inertia", "offset"));
@@ -111,8 +111,8 @@ TEST_F(Describe, ASystemSaysEverything) {
 
 /// dla, discrete Lagrange-d'Alembert, is lift: described as such, run as such, and the record says lift.
 TEST_F(Describe, AnAliasOfAScheme) {
-  Json dla = Json::parse(run({"describe", "dla", "--json"}).out);
-  const Json lift = Json::parse(run({"describe", "lift", "--json"}).out);
+  Json dla = answer({"describe", "dla"});
+  const Json lift = answer({"describe", "lift"});
   EXPECT_EQ(dla["name"], "dla");
   EXPECT_EQ(dla["alias_of"], "lift");
   EXPECT_FALSE(lift.contains("alias_of"));

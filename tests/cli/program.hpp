@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -94,33 +95,50 @@ class CommandLine : public testing::Test {
     std::filesystem::remove(err);
     return result;
   }
-  /// The record of `run` with these arguments.
-  nlohmann::json record(std::vector<std::string> arguments, int status = 0) const {
-    arguments.insert(arguments.begin(), "run");
+  /// What these arguments print with --json.
+  nlohmann::json answer(std::vector<std::string> arguments, int status = 0) const {
     arguments.emplace_back("--json");
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.status, status) << outcome.err;
     return nlohmann::json::parse(outcome.out.empty() ? "{}" : outcome.out);
   }
-  /// The data of the page of `run` with these arguments; null where the program has no page.
+  /// The record of `run` with these arguments.
+  nlohmann::json record(std::vector<std::string> arguments, int status = 0) const {
+    arguments.insert(arguments.begin(), "run");
+    return answer(std::move(arguments), status);
+  }
+  /// The data of the page of `run` with these arguments; null where the program was built without the page.
   nlohmann::json page_of(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "run");
     arguments.insert(arguments.end(), {"--quiet", "--report", "page.html"});
     const Outcome outcome = run(arguments);
-    if (outcome.err.find("built without the page") != std::string::npos) return {};
+    if (outcome.err.find("without the page") != std::string::npos) return {};
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    const std::string page = contents(file("page.html"));
-    const size_t from = page.find('>', page.find("id=\"hamel-data\"")) + 1;
+    const std::string page = contents(file("page.html")), head = "id=\"hamel-data\">";
+    const size_t from = page.find(head) + head.size();
     return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
   }
-  /// The file's path.
+  /// The names of the curves in a run's figures, by their titles; none without the page.
+  std::map<std::string, std::vector<std::string>> curves(std::vector<std::string> arguments) const {
+    std::map<std::string, std::vector<std::string>> out;
+    const nlohmann::json page = page_of(std::move(arguments));
+    if (page.is_null()) return out;
+    for (const auto& section : page["sections"]) {
+      for (const auto& block : section["blocks"])
+        for (const auto& series : block.value("series", nlohmann::json::array()))
+          out[block["title"]].push_back(series["name"]);
+    }
+    return out;
+  }
+  /// The path of system.toml, or of another file, with this text.
+  std::string write(const std::string& text) const { return write("system.toml", text); }
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(file(name)) << text;
     return file(name);
   }
   /// `run` of a file with this text, system.toml, is bad input.
   void refused(const std::string& text, const std::string& message) const {
-    const Outcome outcome = run({"run", write("system.toml", text)});
+    const Outcome outcome = run({"run", write(text)});
     EXPECT_EQ(outcome.status, 2) << text;
     EXPECT_THAT(outcome.err, testing::HasSubstr(message)) << text;
   }

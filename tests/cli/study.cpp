@@ -92,8 +92,7 @@ s = 0.25
 
 TEST_F(StudyCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
   std::string all = "solver = [";
-  for (const auto& solver : Json::parse(run({"list", "solvers", "--json"}).out))
-    all += solver["name"].dump() + ", ";
+  for (const auto& solver : answer({"list", "solvers"})) all += solver["name"].dump() + ", ";
   const std::string name = study(all + "]\n" + kSmall);
   ASSERT_EQ(run({"study", name, "-o", "one", "--threads", "1", "--quiet"}).status, 0);
   ASSERT_EQ(run({"study", name, "-o", "two", "--threads", "2", "--quiet"}).status, 0);

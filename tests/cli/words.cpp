@@ -23,15 +23,13 @@ class Words : public CommandLine {
 // ---- describe --------------------------------------------------------------------------------------
 
 TEST_F(Words, DescribeHasTheStartWithItsConfiguration) {
-  const Json disk = Json::parse(run({"describe", "falling_disk", "--json"}).out)["start"];
+  const Json disk = answer({"describe", "falling_disk"})["start"];
   EXPECT_EQ(disk["configuration"].size(), 12u);
   EXPECT_EQ(disk["velocity"].size(), 6u);
   EXPECT_GT(disk["configuration"][11], 0.4);  // its centre is up
-  const Json sleigh = Json::parse(run({"describe", "chaplygin_sleigh", "--json"}).out)["start"];
+  const Json sleigh = answer({"describe", "chaplygin_sleigh"})["start"];
   EXPECT_EQ(sleigh["configuration"], Json({0, 0, 0})) << "the identity where a system states none";
-  EXPECT_EQ(
-      Json::parse(run({"describe", "n_trailer", "--json"}).out)["start"]["configuration"].size(),
-      6u);
+  EXPECT_EQ(answer({"describe", "n_trailer"})["start"]["configuration"].size(), 6u);
   EXPECT_THAT(run({"describe", "falling_disk"}).out,
               AllOf(HasSubstr("start        configuration ["), HasSubstr("velocity [")));
 }
@@ -77,7 +75,7 @@ TEST_F(Words, DescribeClaimsWhatIsMeasured) {
     return std::log2(error("0.05") / error("0.025"));
   };
   for (const char* scheme : {"gni", "energy_preserving"}) {
-    const Json described = Json::parse(run({"describe", scheme, "--json"}).out);
+    const Json described = answer({"describe", scheme});
     for (const auto& [key, claim] : described["claims"].items()) {
       const char* retraction =
           key.find("other retraction") != std::string::npos ? "second_kind" : "exp";
@@ -86,12 +84,12 @@ TEST_F(Words, DescribeClaimsWhatIsMeasured) {
           << scheme << ", " << key;
     }
   }
-  const Json gni = Json::parse(run({"describe", "gni", "--json"}).out);
+  const Json gni = answer({"describe", "gni"});
   EXPECT_THAT(gni["constraint"].get<std::string>(), HasSubstr("up to the error of the step only"));
   EXPECT_GT(record({"suslov", "--set", "inertia=2,0.3,0.5,3,0.4,4", "--velocity", "1,0.5,0",
                     "--scheme", "gni", "--until", "4"})["diagnostics"]["constraint_max"],
             1e-4);
-  const Json kept = Json::parse(run({"describe", "energy_preserving", "--json"}).out);
+  const Json kept = answer({"describe", "energy_preserving"});
   EXPECT_EQ(kept["claims"].size(), 2u) << "it makes no use of s";
   EXPECT_NEAR(order("energy_preserving", "second_kind", "0.5", "exact_velocity_error_max"), 2, 0.1);
 }

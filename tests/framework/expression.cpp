@@ -66,6 +66,10 @@ TEST(Expression, HasExactDerivatives) {
           2e-3);
       EXPECT_NEAR(slopes[i], 1 + 3 * derivative, 1e-10) << text << " by " << kNames[i];
     }
+    const std::vector<double> rates = {0.3, -1.1, 0.7, 0.2};
+    double rate = 0;
+    for (size_t i = 0; i < rates.size(); ++i) rate += (slopes[i] - 1) / 3 * rates[i];
+    EXPECT_NEAR(formula.rate(kAt, rates), rate, 1e-14 * (1 + std::abs(rate))) << text;
   }
 }
 
@@ -75,6 +79,8 @@ TEST(Expression, DerivativesOfWhatIsNotTaken) {
     std::vector<double> slopes(2, 0.0);
     EXPECT_EQ(Expression(text, {"x", "y"}).differentiate(std::vector<double>{0, 0}, 1, slopes), 0);
     for (const double slope : slopes) EXPECT_EQ(slope, 0) << text;
+    const std::vector<double> still = {0, 0}, moves = {0, 1};
+    EXPECT_EQ(Expression(text, {"x", "y"}).rate(still, moves), 0) << text;
   }
 }
 
@@ -90,7 +96,28 @@ TEST(Expression, KnowsWhatStandsInIt) {
 }
 
 TEST(Expression, MistakesAreNamedWithTheirPlace) {
-  const auto refused = [](const std::string& text, const std::string& message, size_t position) {
+  struct Mistake {
+    std::string text;
+    const char* message;
+    size_t position;
+  };
+  const std::vector<Mistake> mistakes = {
+      {"2*mas*x", "did you mean 'mass'?", 2},
+      {"x + sine(y)", "did you mean 'sin'?", 4},
+      {"x + # y", "'#' has no meaning here", 4},
+      {"x +", "nexpected end", 3},
+      {"(x + y", "arenthes", 6},
+      {"x + )", "nexpected", 4},
+      {"", "mpty", 0},
+      {"x, y", "expected one value", 0},
+      {"x = 3", "'=' gives no value", 2},
+      {"sin(x, y)", "oo many", 8},
+      {"x y", "nexpected", 2},
+      {"\"x\"", "Strings", 3},
+      {std::string(2001, '('), "2001 characters, more than 2000", 0},
+      {std::string(2000, '('), "nexpected end", 2000},
+  };
+  for (const auto& [text, message, position] : mistakes) {
     try {
       Expression(text, kNames, {{"mass", 2}});
       ADD_FAILURE() << text << " is accepted";
@@ -98,21 +125,7 @@ TEST(Expression, MistakesAreNamedWithTheirPlace) {
       EXPECT_THAT(error.what(), HasSubstr(message)) << text;
       EXPECT_EQ(error.position(), position) << text << ": " << error.what();
     }
-  };
-  refused("2*mas*x", "did you mean 'mass'?", 2);
-  refused("x + sine(y)", "did you mean 'sin'?", 4);
-  refused("x + # y", "'#' has no meaning here", 4);
-  refused("x +", "nexpected end", 3);
-  refused("(x + y", "arenthes", 6);
-  refused("x + )", "nexpected", 4);
-  refused("", "mpty", 0);
-  refused("x, y", "expected one value", 0);
-  refused("x = 3", "'=' gives no value", 2);
-  refused("sin(x, y)", "oo many", 8);
-  refused("x y", "nexpected", 2);
-  refused("\"x\"", "Strings", 3);
-  refused(std::string(2001, '('), "2001 characters, more than 2000", 0);
-  refused(std::string(2000, '('), "nexpected end", 2000);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/lie/group_operations.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product.hpp>
 
@@ -79,6 +80,20 @@ TEST(Coordinates, NearestTakesWhatIsNoElement) {
   EXPECT_LT(G::defect(near), 1e-14);
   EXPECT_LT((near.part<0>() - g.part<0>()).norm(), 0.1);
   EXPECT_EQ(near.part<1>().translation[0], 7);
+}
+
+/// Elements are the same by their numbers, whatever stands between these in memory.
+TEST(Coordinates, SameElements) {
+  using G = Product<SE2, SO2>;
+  using Operations = GroupOperations<Exp<G>>;
+  const auto g = G::from_coordinates(std::vector<double>{7.5, -2, 3, 0.1});
+  auto h = g;
+  auto* bytes = reinterpret_cast<unsigned char*>(&h.part<0>());
+  const auto* behind = reinterpret_cast<unsigned char*>(&h.part<0>().translation);
+  for (unsigned char* gap = bytes + sizeof(SO2Element<double>); gap < behind; ++gap) *gap ^= 0xff;
+  EXPECT_TRUE(Operations::same(g, h));
+  ++h.part<1>().turns;
+  EXPECT_FALSE(Operations::same(g, h));
 }
 
 }  // namespace

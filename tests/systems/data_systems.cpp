@@ -204,6 +204,47 @@ TEST(DataSystems, KeepTheLawsOfASystem) {
   }
 }
 
+/// dA/dt, db/dt and dI/dt of formulas, against differences along the motion.
+TEST(DataSystems, RatesAlongTheMotion) {
+  const SystemModel model = data_system(registry(), R"toml(
+group = "se3*so2*se2"
+coordinates = ["R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33", "x", "y", "z",
+               "angle", "theta", "x_3", "y_3"]
+inertia = ["1 + z^2", 1, 1, 1, 1, "2 + sin(angle)", 1, 1, 1, "3 + R12*x_3"]
+constraints = [[0, "R23*y + t", "sin(angle)*t^2", 1, 0, 0, 0, 0, 0, 0],
+               [0, 0, 0, 0, "cos(theta) - x*y_3", 0, "exp(t)*R31", 0, 0, 1]]
+drift = ["sin(3*t)*R11", "x_3*theta"]
+)toml",
+                                        "rates.toml");
+  const auto geometry = registry().geometry(model.group.name, "exp");
+  const Mechanics& mechanics = *model.mechanics;
+  const int n = mechanics.dim(), k = mechanics.rows();
+  Eigen::VectorXd xi(n), g(geometry->size()), moved(geometry->size()), b(k), b_rate(k);
+  Eigen::MatrixXd a(k, n), a_rate(k, n), inertia(n, n), inertia_rate(n, n);
+  for (int i = 0; i < n; ++i) xi[i] = std::sin(1.7 * i + 0.4);
+  geometry->tau(xi.data(), g.data());
+  ASSERT_TRUE(mechanics.rates(0.3, g.data(), xi, a_rate, b_rate, inertia_rate));
+  const auto all = [&](double e) {
+    const Eigen::VectorXd step = e * xi;
+    geometry->tau(step.data(), moved.data());
+    geometry->compose(g.data(), moved.data(), moved.data());
+    mechanics.constraints(0.3 + e, moved.data(), a, b);
+    mechanics.inertia(moved.data(), inertia);
+  };
+  const auto expect = [&](const auto& now, const auto& rate) {
+    for (int i = 0; i < now.size(); ++i) {
+      const auto value = [&](double e) {
+        all(e);
+        return now.data()[i];
+      };
+      EXPECT_NEAR(rate.data()[i], check::derivative(value, 4e-3), 1e-9) << i;
+    }
+  };
+  expect(a, a_rate);
+  expect(b, b_rate);
+  expect(inertia, inertia_rate);
+}
+
 /// C(g)^T of every group against differences of its coordinates.
 TEST(DataSystems, RatesOfCoordinates) {
   for (const std::string name :

@@ -68,14 +68,15 @@ TEST(Mechanisms, SayWhatIsWrongWithTheirParts) {
 TEST(Mechanisms, FindRowsThatSayNothingNew) {
   const Mechanism dropping = by_parts::drive({});
   EXPECT_EQ(dropping.model().mechanics->rows(), 3);
-  EXPECT_THAT(words_of(dropping.model()).notes,
-              testing::Contains(HasSubstr(
-                  "row dropped: 'left' (does not slip sideways) says nothing beyond 'right' "
-                  "(does not slip sideways)")));
+  EXPECT_THAT(
+      words_of(dropping.model()).notes,
+      testing::Contains(HasSubstr(
+          "row dropped: wheel 'left' (does not slip sideways) says nothing beyond wheel 'right' "
+          "(does not slip sideways)")));
   Mechanism refusing = dropping;
   refusing.redundant("refuse");
-  EXPECT_THAT(refused(refusing), HasSubstr("redundant row: 'left' (does not slip sideways)"));
-  // Four wheels under a stiff cart in space: three contacts hold it.
+  EXPECT_THAT(refused(refusing), HasSubstr("redundant row: wheel 'left' (does not slip sideways)"));
+  // Four balls under a stiff table in space: three contacts hold it, and what turns on it moves.
   Mechanism table("table");
   table.body("top", {.mass = 1, .at = {0, 0, 0.5}, .inertia = {1, 1, 1}});
   table.free("space", "top", {.at = {0, 0, 0.5}});
@@ -84,7 +85,11 @@ TEST(Mechanisms, FindRowsThatSayNothingNew) {
       table.ball(fmt::format("leg {} {}", x, y), "top", {.at = {x, y, 0.1}, .radius = 0.1});
     }
   }
+  EXPECT_THAT(refused(table), HasSubstr("redundant row"));
   table.redundant("drop");
+  EXPECT_THAT(refused(table), HasSubstr("the parts leave no motion, 6 independent rows"));
+  table.body("lamp", {.mass = 1, .at = {0, 0, 0.6}, .inertia = {1, 1, 1}});
+  table.hinge("turn", "top", "lamp", {});
   EXPECT_EQ(table.model().mechanics->holonomic_rows(), 3);
 }
 

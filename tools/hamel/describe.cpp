@@ -107,9 +107,24 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
   return out;
 }
 
-// A system by data.
+// Formulas that have no value where the system starts are said before a run.
+void check_start(const SystemModel& model) {
+  const auto* worded = dynamic_cast<const Worded*>(model.mechanics.get());
+  const auto geometry = registry().geometry(model.group.name, "exp");
+  if (worded == nullptr || geometry == nullptr) return;
+  std::vector<double> g(static_cast<size_t>(geometry->size()));
+  geometry->from_coordinates(start_of(model)["configuration"].get<std::vector<double>>(), g.data());
+  Eigen::VectorXd xi = Eigen::VectorXd::Zero(geometry->dim());
+  if (!model.start.velocity.empty())
+    xi = Eigen::Map<const Eigen::VectorXd>(model.start.velocity.data(), xi.size());
+  const auto mistakes = worded->mistakes_at(0, g.data(), xi);
+  if (!mistakes.empty()) throw ConfigError(mistakes);
+}
+
+// A system by data, or a mechanism.
 Json describe_file(const std::string& path, const Parameters& given) {
   const SystemModel model = data_system_maker(registry(), path)(given);
+  check_start(model);
   const Mechanics& mechanics = *model.mechanics;
   Json out = {{"kind", "system"},
               {"name", model.name},

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/systems/simulate.hpp>
 
 namespace hamel::tools {
 namespace {
@@ -17,9 +16,11 @@ namespace {
 constexpr double kRoundOff = 2.2e-16;
 constexpr size_t kWindows = 240;  // maxima of errors: as many as a figure shows apart
 
-// The first column that is called name or ends in _name (a factor of a product); -1 when none is.
+// The first column that the group calls name or ends in _name (a factor of a product), whatever the system calls it; -1 when
+// none is.
 int find_column(const Result& result, const std::string& name) {
-  const auto& columns = result.system.group.columns;
+  const auto group = registry().group_or_product(result.system.group.name);
+  const auto& columns = group ? group->columns : result.system.group.columns;
   for (size_t j = 0; j < columns.size(); ++j) {
     if (columns[j] == name || columns[j].ends_with("_" + name)) return static_cast<int>(j) + 1;
   }
@@ -36,10 +37,6 @@ std::vector<size_t> thin_rows(const Result& result, size_t points) {
 
 std::span<const double> element(const Result& result, size_t row) {
   return result.trajectory.row(row).subspan(1, result.system.group.columns.size());
-}
-
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
 }
 
 // The points of bodies whose way is drawn, seen from above; else x and y of the group, where it has them.
@@ -59,7 +56,10 @@ std::vector<Series> paths(const Result& result) {
   }
   const int x = find_column(result, "x"), y = find_column(result, "y");
   if (!out.empty() || x < 0 || y < 0) return out;
-  Series& series = out.emplace_back(Series{"x, y", {}, {}});
+  const auto name = [&](int column) {
+    return result.trajectory.columns()[static_cast<size_t>(column)];
+  };
+  Series& series = out.emplace_back(Series{fmt::format("{}, {}", name(x), name(y)), {}, {}});
   for (size_t i : rows) {
     series.x.push_back(result.trajectory.at(i, static_cast<size_t>(x)));
     series.y.push_back(result.trajectory.at(i, static_cast<size_t>(y)));
@@ -128,86 +128,6 @@ std::optional<Animation> animation_of(const Result& result) {
   return out;
 }
 
-// Curves that are measured in the same unit stand in one figure.
-class ByUnit {
- public:
-  void add(const std::string& unit, Series series) {
-    if (!figures_.contains(unit)) order_.push_back(unit);
-    figures_[unit].push_back(std::move(series));
-  }
-  void plot(Page& page, const std::map<std::string, std::string>& titles, const std::string& other,
-            const std::vector<Mark>& marks) const {
-    for (const std::string& unit : order_) {
-      const auto title = titles.find(unit);
-      Axes axes{.x = "time t [s]", .y = unit.empty() ? "" : "[" + unit + "]"};
-      axes.marks = marks;
-      page.plot(title == titles.end() ? other : title->second, axes, figures_.at(unit));
-    }
-  }
-
- private:
-  std::vector<std::string> order_;
-  std::map<std::string, std::vector<Series>> figures_;
-};
-
-Series component(const Result& r, const std::string& name, const std::string& column,
-                 const std::string& key) {
-  Series series = curve(r, name, column, false);
-  series.key = key;
-  return series;
-}
-
-void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) {
-  std::vector<Series> reactions;
-  Axes axes{.x = "time t [s]", .y = "lambda"};
-  axes.marks = marks;
-  std::string note = fmt::format(
-      "Multipliers of the rows A xi = b, from the equations of motion at the recorded "
-      "states. Their work over the run: {:.2e}, with A xi measured on the "
-      "configurations; where b = 0 it is zero but for round-off.",
-      r.reaction_work);
-  for (int i = 0; i < r.system.mechanics->rows(); ++i) {
-    const std::string column = words_of(r.system).reactions.empty()
-                                   ? fmt::format("lambda{}", i + 1)
-                                   : words_of(r.system).reactions[static_cast<size_t>(i)];
-    if (!r.trajectory.has(column)) continue;
-    const auto& contacts = r.system.contacts;
-    const bool contact = std::find(contacts.begin(), contacts.end(), i) != contacts.end();
-    reactions.push_back(curve(r, contact ? column + " [N], contact" : column, column, false));
-    if (!contact) continue;
-    const std::vector<double> force = r.trajectory.column(column);
-    const auto pull = std::find_if(force.begin(), force.end(), [](double f) { return f < 0; });
-    const double least = *std::min_element(force.begin(), force.end());
-    if (pull == force.end()) {
-      note += fmt::format(
-          " `{}` is a normal reaction: the contact pushes all along, by {:.3g} N "
-          "at least.",
-          column, least);
-    } else {
-      const double t = r.trajectory.at(static_cast<size_t>(pull - force.begin()), 0);
-      axes.marks.push_back({t, "contact pulls"});
-      note += fmt::format(
-          " `{}` is a normal reaction: from t = {:.4g} on the contact would have "
-          "to **pull** (least {:.3g} N), where a real body lifts off.",
-          column, t, least);
-    }
-  }
-  if (!reactions.empty()) page.plot("Reaction forces", axes, reactions, note);
-}
-
-void add_energy_balance(Page& page, const Result& r, const std::vector<Mark>& marks) {
-  std::vector<double> rest = r.trajectory.column("energy");
-  const std::vector<double> work = r.trajectory.column("work");
-  for (size_t i = 0; i < rest.size(); ++i) rest[i] -= work[i];
-  Axes axes{.x = "time t [s]", .y = "[J]"};
-  axes.marks = marks;
-  page.plot("Energy balance", axes,
-            {curve(r, "energy E [J]", "energy", false), curve(r, "work W [J]", "work", false),
-             thinned("E - W [J]", r.trajectory.column("t"), rest, false)},
-            "W is the work of forces and moving constraints, by a quadrature over all steps; E - W "
-            "is constant but for the error of the scheme.");
-}
-
 }  // namespace
 
 bool does_work(const Result& r) { return std::isfinite(r.work); }
@@ -240,34 +160,6 @@ void add_motion(Page& page, const Result& r) {
   }
   if (const auto axes = axes_on_sphere(r); !axes.empty())
     page.sphere("Motion of the body axes", axes, "Columns of R; drag to turn.");
-}
-
-void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
-  const std::vector<std::string>&rates = words_of(r.system).rates,
-        &columns = r.system.group.columns;
-  std::vector<Component> names = components_of(r.system.group);
-  for (size_t i = 0; i < rates.size(); ++i) names[i].name = rates[i];
-  ByUnit velocity, momentum, shape;
-  for (size_t i = 0; i < names.size(); ++i) {
-    const auto& [name, unit] = names[i];
-    velocity.add(unit, component(r, with_unit(name, unit), fmt::format("xi{}", i + 1), name));
-    const std::string dual = unit == "rad/s" ? "N m s" : unit == "m/s" ? "N s" : "";
-    momentum.add(dual,
-                 component(r, with_unit("mu of " + name, dual), fmt::format("mu{}", i + 1), name));
-  }
-  for (const ShapeCoordinate& s : shape_of(r.system.group, names))
-    shape.add(
-        s.unit,
-        component(
-            r, with_unit(rates.empty() ? s.name : columns[static_cast<size_t>(s.column)], s.unit),
-            columns[static_cast<size_t>(s.column)], names[static_cast<size_t>(s.component)].name));
-  velocity.plot(page, {{"rad/s", "Angular velocity"}, {"m/s", "Velocity"}}, "Body velocity xi",
-                marks);
-  shape.plot(page, {{"rad", "Angles of the shape"}, {"m", "Places"}}, "Shape", marks);
-  if (r.system.mechanics->rows() > 0) add_reactions(page, r, marks);
-  if (does_work(r)) add_energy_balance(page, r, marks);
-  momentum.plot(page, {{"N m s", "Angular momentum in the body"}, {"N s", "Momentum in the body"}},
-                "Body momentum mu", marks);
 }
 
 void add_accuracy(Page& page, const Result& r) {

@@ -59,11 +59,11 @@ for (const [name, source] of Object.entries(LIBRARIES)) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   await page.goto(pathToFileURL(file).href, { waitUntil: 'commit' });
   await page.waitForFunction(() => window.spent, null, { timeout: 900000 }).catch(() => {});
-  const spent = await page.evaluate(() => window.spent ?? NaN);
-  const texts = await page.evaluate(() => document.querySelectorAll('svg text').length);
+  const spent = await page.evaluate(() => window.spent ?? NaN).catch(() => NaN);  // (a page may run out of memory)
+  const texts = await page.evaluate(() => document.querySelectorAll('svg text').length).catch(() => 0);
   const pdf = await page.pdf({ timeout: 120000 }).then((bytes) => `${Math.round(bytes.length / 1024)} KB`, () => 'none in 2 min');
   const size = (bytes) => `${Math.round(bytes.length / 1024)} KB`;
-  console.log(`| ${name} | ${size(contents)} | ${size(gzipSync(contents))} | ${(spent / 1000).toFixed(1)} s | ${pdf} | ${texts ? 'yes' : 'no'} |`);
+  console.log(`| ${name} | ${size(contents)} | ${size(gzipSync(contents))} | ${Number.isFinite(spent) ? `${(spent / 1000).toFixed(1)} s` : 'none in 15 min'} | ${pdf} | ${texts ? 'yes' : 'no'} |`);
   await page.close();
 }
 await browser.close();

@@ -1,0 +1,196 @@
+// Assembly: what the parts do not allow together, each mistake with the place of its part.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <hamel/systems/mechanisms/assembly.hpp>
+
+namespace hamel {
+
+using namespace mechanisms;
+
+namespace {
+
+constexpr double kTouching = 1e-6;  // m
+
+}  // namespace
+
+void Assembly::check_names() {
+  const auto unique = [&](const auto& parts, const std::string& kind,
+                          std::set<std::string>& taken) {
+    for (const auto& part : parts) {
+      if (part.name.empty()) wrong(part, kind, "expected a name");
+      else if (part.name == kWorld) wrong(part, kind, "is the name of what rests in the world");
+      else if (!taken.insert(part.name).second) wrong(part, kind, "this name is taken");
+    }
+  };
+  std::set<std::string> bodies, joints, rows, springs, forces;
+  unique(parts_.bodies_, "body", bodies);
+  unique(parts_.joints_, "joint", joints);
+  unique(parts_.contacts_, "contact", rows);
+  unique(parts_.loops_, "loop", rows);
+  unique(parts_.springs_, "spring", springs);
+  unique(parts_.forces_, "force", forces);
+}
+
+void Assembly::check_body(const Mechanism::BodyPart& body) {
+  if (!(body.mass >= 0) || !std::isfinite(body.mass))
+    wrong(body, "body", fmt::format("mass: got {}, expected at least 0", body.mass));
+  const int shapes = (vec(body.box).isZero(0) ? 0 : 1) + (body.cylinder.empty() ? 0 : 1) +
+                     (body.sphere != 0 ? 1 : 0);
+  if (shapes > 1) wrong(body, "body", "expected one of box, cylinder and sphere");
+  if (!body.cylinder.empty() && body.cylinder.size() != 2)
+    wrong(
+        body, "body",
+        fmt::format("cylinder: got {} numbers, expected radius and length", body.cylinder.size()));
+}
+
+// A body that can be moved for nothing has no equation of motion.
+void Assembly::check_masses(const Tree& tree) {
+  Eigen::MatrixXd inertia(tree.dim(), tree.dim());
+  tree.inertia(inertia);
+  for (const auto& joint : parts_.joints_) {
+    const int link = body_links_.at(joint.child);
+    if (joint.kind == "weld" || link == kGround) continue;
+    for (int i = 0; i < tree.count(link); ++i) {
+      if (inertia(tree.first(link) + i, tree.first(link) + i) > 0) continue;
+      wrong(joint, "joint",
+            fmt::format("body '{}' and all that it carries have no inertia against its motion; "
+                        "give it a mass, or weld it",
+                        joint.child));
+      break;
+    }
+  }
+}
+
+// Contacts touch the ground as drawn, loops are closed.
+void Assembly::check_contacts(const Multibody& system) {
+  const Rows& rows = system.all_rows();
+  const Tree& tree = system.tree(system.drawn().data());
+  for (size_t i = 0; i < rows.contacts.size(); ++i) {
+    const auto& part = parts_.contacts_[i];
+    const double height = rows.height(rows.contacts[i], tree);
+    if (!(std::abs(height) < kTouching)) {
+      wrong(part, part.kind,
+            fmt::format("does not touch the ground z = 0 as drawn: its lowest point is at {:.6g} m",
+                        height));
+    }
+  }
+  for (size_t i = 0; i < rows.loops.size(); ++i) {
+    const Loop& loop = rows.loops[i];
+    const double apart =
+        (tree.in_world(loop.b).apply(loop.at) - tree.in_world(loop.a).apply(loop.at)).norm();
+    if (!(apart < kTouching))
+      wrong(parts_.loops_[i], "loop", fmt::format("is open as drawn by {:.6g} m", apart));
+  }
+}
+
+// Of all rows: contacts, loops, and one for each prescribed joint.
+std::vector<Said> Assembly::rows_in_words(const std::vector<RowWords>& rows) const {
+  std::vector<Said> out;
+  const size_t others = rows.size() - parts_.rates_.size();
+  for (const RowWords& row : rows) {
+    const auto say = [&](const Part& part, const std::string& kind) {
+      out.push_back({part.where, fmt::format("{} '{}' ({})", kind, part.name, row.meaning)});
+    };
+    if (out.size() >= others) {
+      say(parts_.rates_[out.size() - others], "prescribed");
+      continue;
+    }
+    for (const auto& part : parts_.contacts_)
+      if (part.name == row.part) say(part, part.kind);
+    for (const auto& part : parts_.loops_)
+      if (part.name == row.part) say(part, "loop");
+  }
+  return out;
+}
+
+// Refuses rows that say nothing new, or drops them with a note.
+void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<Said>& rows) {
+  const Part& policy = parts_.redundant_;
+  const bool drop = policy.name == "drop";
+  if (!drop && policy.name != "refuse")
+    mistakes_.push_back(policy.where + unknown_name("redundant", policy.name, {"drop", "refuse"}));
+  for (const auto& [row, others] : redundancy.repeats) {
+    std::string list;
+    for (const int other : others)
+      list += (list.empty() ? "" : ", ") + rows[static_cast<size_t>(other)].what;
+    const Said& said = rows[static_cast<size_t>(row)];
+    const std::string text = fmt::format("{} says nothing beyond {}", said.what, list);
+    if (drop) words_.notes.push_back("row dropped: " + text);
+    else
+      mistakes_.push_back(
+          fmt::format("{}redundant row: {}; take a part with fewer rows (a roller for a wheel), "
+                      "or redundant = \"drop\"",
+                      said.where, text));
+  }
+  stop_at_mistakes();
+}
+
+// The start as stated, and those that few numbers stand for.
+void Assembly::start(const std::shared_ptr<const Starts>& starts) {
+  const auto& columns = model_.group.columns;
+  std::map<std::string, double> stated, usual;
+  std::map<std::string, std::string> places;
+  for (const auto& part : parts_.start_) {
+    stated[part.name] = part.value;
+    places[part.name] = part.where;
+    // The stated coordinates hold at other velocities too.
+    if (std::find(columns.begin(), columns.end(), part.name) != columns.end())
+      usual[part.name] = part.value;
+  }
+  std::vector<std::string> asks = parts_.asks_.names;
+  if (asks.empty() && starts->mistakes({"speed"}).empty()) asks = {"speed"};
+  for (const std::string& wrong : starts->mistakes(asks))
+    mistakes_.push_back(parts_.asks_.where + "asks: " + wrong);
+  stop_at_mistakes();
+  model_.start = starts->solve(stated, places);
+  words_.start_parameters = asks;
+  words_.start_from = [starts, asks, usual](std::span<const double> given) {
+    std::map<std::string, double> values = usual;
+    for (size_t i = 0; i < given.size(); ++i) values[asks[i]] = given[i];
+    return starts->solve(values);
+  };
+}
+
+// Massless bodies in the middle of a chain, axes that coincide: a motion that the rows admit and no inertia resists.
+void Assembly::check_motions(const Multibody& system, const std::vector<Said>& rows) {
+  std::vector<double> g(system.drawn().size());
+  system.geometry().from_coordinates(model_.start.configuration, g.data());
+  const int n = system.dim(), k = system.rows();
+  Eigen::MatrixXd inertia(n, n), a(k, n), free = Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd b(k);
+  system.inertia(g.data(), inertia);
+  system.constraints(0, g.data(), a, b);
+  if (k > 0) free = Eigen::FullPivLU<Eigen::MatrixXd>(a).kernel();
+  if (free.isZero(0)) {
+    const Said& last = rows[static_cast<size_t>(system.kept().back())];
+    mistakes_.push_back(
+        fmt::format("{}{}: the parts leave no motion, {} independent rows in dimension {}",
+                    last.where, last.what, k, n));
+    return;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(free.transpose() * inertia * free);
+  if (solver.eigenvalues()[0] > 1e-14 * solver.eigenvalues().maxCoeff()) return;
+  const Eigen::VectorXd idle = free * solver.eigenvectors().col(0);
+  std::string list;
+  const Part* last = nullptr;
+  const Tree& tree = system.tree(g.data());
+  for (int link = 0; link < tree.links(); ++link) {
+    const auto own = idle.segment(tree.first(link), tree.count(link));
+    if (own.norm() <= 1e-6 * idle.norm()) continue;
+    const auto j = static_cast<size_t>(link);
+    list += fmt::format("{}'{}'", list.empty() ? "" : ", ", link_names_[j]);
+    last = link_joints_[j];
+  }
+  wrong(*last, "joint",
+        fmt::format("{} can move so that nothing that has inertia moves: give the bodies between "
+                    "them masses, or let no axes coincide",
+                    list));
+}
+
+}  // namespace hamel

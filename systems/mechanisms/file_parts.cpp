@@ -1,0 +1,211 @@
+#include <hamel/systems/mechanisms/file_parts.hpp>
+
+#include <hamel/framework/run/toml_parameters.hpp>
+
+namespace hamel::mechanisms {
+
+void FileParts::bodies() {
+  tables("body", [&](const toml::table& table) {
+    std::string name;
+    BodyOptions o;
+    read_.entries(table, {{"name", read_.read(name)},
+                          {"mass", read_.read(o.mass)},
+                          {"at", read_.read(o.at)},
+                          {"inertia", read_.read(o.inertia)},
+                          {"box", read_.read(o.box)},
+                          {"cylinder", read_.read(o.cylinder)},
+                          {"sphere", read_.read(o.sphere)},
+                          {"axis", read_.read(o.axis)}});
+    m_.body(name, o);
+  });
+}
+void FileParts::joints() {
+  tables("joint", [&](const toml::table& table) {
+    std::string name, kind, child, parent = kWorld;
+    JointOptions o;
+    read_.entries(table, {{"name", read_.read(name)},
+                          {"kind", read_.read(kind)},
+                          {"parent", read_.read(parent)},
+                          {"child", read_.read(child)},
+                          {"at", read_.read(o.at)},
+                          {"axis", read_.read(o.axis)},
+                          {"axis2", read_.read(o.axis2)},
+                          {"stiffness", read_.read(o.stiffness)},
+                          {"rest", read_.read(o.rest)},
+                          {"damping", read_.read(o.damping)}});
+    m_.joint(kind, name.empty() ? child : name, parent, child, o);
+  });
+}
+// A contact is named as its body where it has no name of its own.
+void FileParts::contacts() {
+  const auto round = [&](const std::string& kind, auto add) {
+    tables(kind, [&](const toml::table& table) {
+      std::string name, body;
+      WheelOptions o;
+      FileValues::Keys keys = {{"name", read_.read(name)},
+                               {"body", read_.read(body)},
+                               {"at", read_.read(o.at)},
+                               {"radius", read_.read(o.radius)}};
+      if (kind != "ball") keys.emplace_back("axle", read_.read(o.axle));
+      if (kind == "roller") keys.emplace_back("angle", read_.read(o.angle));
+      read_.entries(table, keys);
+      (m_.*add)(name.empty() ? body : name, body, o);
+    });
+  };
+  round("wheel", &Mechanism::wheel);
+  round("roller", &Mechanism::roller);
+  round("ball", &Mechanism::ball);
+  tables("blade", [&](const toml::table& table) {
+    std::string name, body;
+    BladeOptions o;
+    read_.entries(table, {{"name", read_.read(name)},
+                          {"body", read_.read(body)},
+                          {"at", read_.read(o.at)},
+                          {"along", read_.read(o.along)}});
+    m_.blade(name.empty() ? body : name, body, o);
+  });
+}
+void FileParts::chains() {
+  tables("loop", [&](const toml::table& table) {
+    std::string name, a, b = kWorld;
+    LoopOptions o;
+    read_.entries(table, {{"name", read_.read(name)},
+                          {"a", read_.read(a)},
+                          {"b", read_.read(b)},
+                          {"at", read_.read(o.at)},
+                          {"axis", read_.read(o.axis)}});
+    m_.loop(name, a, b, o);
+  });
+  tables("prescribed", [&](const toml::table& table) {
+    if (!is_input(table, {"rate", "angle"})) prescribed(table);
+  });
+}
+void FileParts::prescribed(const toml::table& table) {
+  std::string joint;
+  std::function<double(double)> rate, angle;
+  Range range;
+  const auto of_time = [&](auto& to) {
+    return [this, &to](const Node& node, const std::string& key) {
+      to = read_.of_time(node, key, key == "angle");
+    };
+  };
+  read_.entries(table, {{"joint", read_.read(joint)},
+                        {"rate", of_time(rate)},
+                        {"angle", of_time(angle)},
+                        {"least", read_.read(range.least)},
+                        {"most", read_.read(range.most)}});
+  if (rate && angle) read_.toml.wrong(table, "prescribed", "one of rate and angle");
+  if (rate || angle) m_.prescribe(joint, rate ? rate : angle);
+  else m_.prescribe(joint, range);
+}
+void FileParts::motor(const toml::table& table) {
+  std::string joint;
+  Signal effort;
+  Range range;
+  read_.entries(table, {{"joint", read_.read(joint)},
+                        {"effort", read_.read(effort)},
+                        {"least", read_.read(range.least)},
+                        {"most", read_.read(range.most)}});
+  if (effort) m_.motor(joint, effort);
+  else m_.motor(joint, range);
+}
+// A motor or a prescribed joint that says none of these is an input.
+bool FileParts::is_input(const toml::table& table, std::initializer_list<const char*> keys) {
+  return std::none_of(keys.begin(), keys.end(),
+                      [&](const char* key) { return table.contains(key); });
+}
+// Those of motors, of prescribed joints, and by name: formulas may use them.
+void FileParts::inputs() {
+  tables("motor", [&](const toml::table& table) {
+    if (is_input(table, {"effort"})) motor(table);
+  });
+  tables("prescribed", [&](const toml::table& table) {
+    if (is_input(table, {"rate", "angle"})) prescribed(table);
+  });
+  for (const InputField& field : read_input_fields(read_.toml, table_)) {
+    m_.place(read_.toml.place(*table_["inputs"][field.name].node()) + ": ");
+    m_.input(field);
+  }
+}
+void FileParts::forces() {
+  tables("spring", [&](const toml::table& table) {
+    std::string name, a = kWorld, b;
+    SpringOptions o;
+    read_.entries(table, {{"name", read_.read(name)},
+                          {"a", read_.read(a)},
+                          {"b", read_.read(b)},
+                          {"from", read_.read(o.from)},
+                          {"to", read_.read(o.to)},
+                          {"stiffness", read_.read(o.stiffness)},
+                          {"rest", read_.read(o.rest)},
+                          {"damping", read_.read(o.damping)}});
+    m_.spring(name, a, b, o);
+  });
+  tables("motor", [&](const toml::table& table) {
+    if (!is_input(table, {"effort"})) motor(table);
+  });
+  tables("force", [&](const toml::table& table) {
+    std::string name, body;
+    ForceOptions o;
+    const auto along = [&](const Node& node, const std::string& key) {
+      const toml::array* array = node.as_array();
+      if (array == nullptr || array->size() != 3)
+        return read_.toml.wrong(node, key, "3 numbers or formulas");
+      for (size_t i = 0; i < 3; ++i) o.along[i] = read_.signal((*array)[i], key);
+    };
+    read_.entries(table, {{"name", read_.read(name)},
+                          {"body", read_.read(body)},
+                          {"at", read_.read(o.at)},
+                          {"along", along},
+                          {"of_body", read_.read(o.of_body)}});
+    m_.force(name, body, o);
+  });
+}
+void FileParts::surroundings() {
+  Point gravity = {0, 0, -9.81};
+  stated("gravity", [&](const Node& node) {
+    if (node.is_array()) gravity = read_.point(node, "gravity");
+    else gravity[2] = -read_.number(node, "gravity");
+  });
+  stated("slope", [&](const Node& node) {
+    const double slope = read_.number(node, "slope"), g = gravity[2];
+    gravity = {-g * std::sin(slope), 0, g * std::cos(slope)};
+  });
+  m_.gravity(gravity);
+  stated("ground", [&](const Node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return read_.toml.wrong(node, "ground", "a table");
+    double rate = 0;
+    Point velocity = {0, 0, 0};
+    read_.entries(*table, {{"rate", read_.read(rate)}, {"velocity", read_.read(velocity)}});
+    m_.ground(rate, velocity);
+  });
+  stated("redundant", [&](const Node& node) {
+    std::string policy;
+    read_.toml.value(node, "redundant", policy);
+    m_.redundant(policy);
+  });
+  stated("asks", [&](const Node& node) {
+    std::vector<std::string> names;
+    read_.toml.value(node, "asks", names);
+    m_.asks(names);
+  });
+  stated("start", [&](const Node& node) {
+    if (const toml::table* table = node.as_table()) start(*table);
+    else read_.toml.wrong(node, "start", "a table");
+  });
+}
+// steer.angle = 0.1 is a table in a table to TOML.
+void FileParts::start(const toml::table& table, const std::string& front) {
+  for (const auto& [name, node] : table) {
+    const std::string key = front + std::string(name.str());
+    if (const toml::table* inner = node.as_table()) {
+      start(*inner, key + ".");
+    } else {
+      m_.place(read_.toml.place(node) + ": ");
+      m_.start(key, read_.number(node, key));
+    }
+  }
+}
+
+}  // namespace hamel::mechanisms

@@ -1,0 +1,58 @@
+// The parts of a mechanism, read from its file into it. Not installed.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+
+#include <hamel/systems/mechanisms/file_values.hpp>
+
+namespace hamel::mechanisms {
+
+class FileParts {
+ public:
+  FileParts(FileValues& read, const toml::table& file, Mechanism& to)
+      : read_(read), table_(file), m_(to) {}
+  void bodies();
+  void joints();
+  void inputs();
+  // Their formulas may use the names of joints and inputs.
+  void contacts();
+  void chains();
+  void forces();
+  void surroundings();
+
+ private:
+  using Node = toml::node;
+
+  // read(node) of a key, where the file has it; what it says carries its place.
+  template <class Read>
+  void stated(const std::string& key, Read&& read) {
+    const Node* node = table_.get(key);
+    if (node == nullptr) return;
+    m_.place(read_.toml.place(*node) + ": ");
+    read(*node);
+  }
+  // each(table) for the tables [[kind]].
+  template <class Each>
+  void tables(const std::string& kind, Each&& each) {
+    stated(kind, [&](const Node& node) {
+      const toml::array* array = node.as_array();
+      if (array == nullptr || !array->is_array_of_tables())
+        return read_.toml.wrong(node, kind, fmt::format("tables, [[{}]]", kind));
+      for (const Node& entry : *array) {
+        m_.place(read_.toml.place(entry) + ": ");
+        each(*entry.as_table());
+      }
+    });
+  }
+  void prescribed(const toml::table& table);
+  void motor(const toml::table& table);
+  static bool is_input(const toml::table& table, std::initializer_list<const char*> keys);
+  void start(const toml::table& table, const std::string& front = "");
+
+  FileValues& read_;
+  const toml::table& table_;
+  Mechanism& m_;
+};
+
+}  // namespace hamel::mechanisms

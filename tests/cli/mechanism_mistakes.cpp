@@ -1,0 +1,185 @@
+// What is wrong with the file of a mechanism: each mistake names the part, its file, line and column, before anything runs.
+#include "program.hpp"
+
+namespace {
+
+using namespace hamel::test;
+using testing::HasSubstr;
+
+struct Mistake {
+  std::string text, message;  // behind "system.toml:"
+};
+
+// A body on the plane: eight lines. A body in space with its mass centre at 0.3 m: nine.
+const std::string kFlat = R"([[body]]
+name = "a"
+mass = 1
+inertia = [1, 1, 1]
+[[joint]]
+name = "floor"
+kind = "planar"
+child = "a"
+)";
+const std::string kSpace = R"([[body]]
+name = "a"
+mass = 1
+at = [0, 0, 0.3]
+inertia = [1, 1, 1]
+[[joint]]
+kind = "free"
+child = "a"
+at = [0, 0, 0.3]
+)";
+// Behind kFlat, to line 18: a second body on a hinge.
+const std::string kArm = R"([[body]]
+name = "b"
+mass = 1
+at = [1, 0, 0]
+inertia = [1, 1, 1]
+[[joint]]
+name = "arm"
+kind = "hinge"
+parent = "a"
+child = "b"
+)";
+// A crank and a rod, in the plane of x and z: 22 lines.
+const std::string kCrank = R"([[body]]
+name = "crank"
+mass = 1
+at = [0, 0, 0.5]
+inertia = [1, 1, 1]
+[[body]]
+name = "rod"
+mass = 1
+at = [0.5, 0, 1]
+inertia = [1, 1, 1]
+[[joint]]
+name = "low"
+kind = "hinge"
+child = "crank"
+axis = [0, 1, 0]
+[[joint]]
+name = "high"
+kind = "hinge"
+parent = "crank"
+child = "rod"
+at = [0, 0, 1]
+axis = [0, 1, 0]
+)";
+
+class MechanismMistakes : public CommandLine {
+ protected:
+  void refuses(const std::vector<Mistake>& mistakes) const {
+    for (const auto& [text, message] : mistakes) {
+      const std::string path = write(text);
+      for (const char* command : {"run", "describe"}) {
+        const Outcome o = run({command, path});
+        EXPECT_EQ(o.status, 2) << text;
+        EXPECT_THAT(o.err, HasSubstr("system.toml:" + message)) << text;
+      }
+    }
+  }
+};
+
+TEST_F(MechanismMistakes, InBodiesAndJoints) {
+  refuses({
+      {"[[body]]\nname = \"a\"\nmass = \"1/0\"\n", "3:8: mass: expected a finite number, got inf"},
+      {"gravity = \"x\"\n" + kFlat, "1:12: gravity: unknown name 'x': there are none"},
+      {kFlat + "[[body]]\nname = \"a\"\nmass = 1\n", "9:1: body 'a': this name is taken"},
+      {kFlat + "[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 1]\n" +
+           "[[joint]]\nkind = \"hinge\"\nparent = \"a\"\nchild = \"b\"\n",
+       "9:1: body 'b': inertia: got 2 numbers, expected 3, 6 or 9"},
+      {kFlat + "[[body]]\nname = \"b\"\nmass = 1\n", "9:1: body 'b': hangs on no joint"},
+      {kFlat + "[[joint]]\nchild = \"a\"\n", "9:1: joint 'a': kind: missing, expected one of ball"},
+      {kFlat + kArm + "[[joint]]\nname = \"c\"\nkind = \"hinge\"\nchild = \"b\"\n",
+       "19:1: joint 'c': body 'b' hangs on joint 'arm' already: a joint that closes a chain is a "
+       "loop"},
+      {"[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 1]\n" + kArm +
+           "[[joint]]\nname = \"back\"\nkind = \"hinge\"\nparent = \"b\"\nchild = \"a\"\n",
+       "10:1: joint 'arm': 'arm', 'back' go round in a circle that does not reach the ground; "},
+      {kFlat + "[[body]]\nname = \"tip\"\n[[joint]]\nname = \"end\"\nkind = \"hinge\"\n" +
+           "parent = \"a\"\nchild = \"tip\"\nat = [1, 0, 0]\n",
+       "11:1: joint 'end': body 'tip' and all that it carries have no inertia"},
+      {kFlat + "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n" +
+           "[[joint]]\nname = \"u\"\nkind = \"universal\"\nparent = \"a\"\nchild = \"b\"\n" +
+           "axis2 = [0, 0, 1]\n",
+       "14:1: joint 'u': 'u1', 'u2' can move so that nothing that has inertia moves"},
+  });
+  const Outcome o = run({"run", write("system.toml",
+                                      "[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 3]\n"
+                                      "[[joint]]\nkind = \"planar\"\nchild = \"a\"\n"
+                                      "[start]\nv1 = 1\n")});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out + o.err, HasSubstr("system.toml:1:1: body 'a': no rigid body has the "
+                                       "principal moments 1,1,3"));
+}
+
+TEST_F(MechanismMistakes, InContactsAndLoops) {
+  const std::string wheel = kSpace + "[[wheel]]\nbody = \"a\"\nradius = 0.3\n";
+  refuses({
+      {kFlat + "[[wheel]]\nbody = \"b\"\nradius = 1\n",
+       "9:1: wheel 'b': unknown body 'b': expected one of a"},
+      {wheel + "at = [0, 0, 0.32]\n",
+       "10:1: wheel 'a': does not touch the ground z = 0 as drawn: its lowest point is at 0.02 m"},
+      {wheel + "at = [0, 0, 0.3]\naxle = [0, 0, 1]\n", "10:1: wheel 'a': axle: is vertical"},
+      {kSpace + "[[wheel]]\nbody = \"a\"\nat = [0, 0, 0.3]\n",
+       "10:1: wheel 'a': radius: got 0, expected a positive number"},
+      {kFlat + "[[blade]]\nbody = \"a\"\nallong = [1, 0, 0]\n", "11:10: unknown key 'allong'"},
+      {kFlat + "[[blade]]\nname = \"left\"\nbody = \"a\"\nat = [0, 1, 0]\n" +
+           "[[blade]]\nname = \"right\"\nbody = \"a\"\nat = [0, -1, 0]\n",
+       "13:1: redundant row: blade 'right' (does not slip across its edge) says nothing beyond "
+       "blade 'left' (does not slip across its edge); take a part with fewer rows"},
+      {"redundant = \"dropp\"\n" + kFlat, "1:13: unknown redundant 'dropp': expected one of"},
+      {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"crank\"\nat = [1, 0, 1]\n" +
+           "[[loop]]\nname = \"end\"\na = \"rod\"\nb = \"rodd\"\n",
+       "28:1: loop 'end': unknown body 'rodd': expected one of crank, rod"},
+      {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"rod\"\nat = [1, 0, 1]\n",
+       "23:1: loop 'pin': 'rod' and 'rod' are one body"},
+      {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"ground\"\nat = [1, 0, 1]\n",
+       "23:1: loop 'pin' (the points of the joint coincide): the parts leave no motion, 2 "},
+  });
+}
+
+TEST_F(MechanismMistakes, InTheStart) {
+  const std::string pin =
+      kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"ground\"\nat = [1, 0, 1]\n";
+  refuses({
+      {kFlat + "[start]\nspeeed = 1\n", "10:10: unknown number of the start"},
+      {kFlat + "[start]\nv1 = nan\n", "10:6: v1: expected a finite number, got nan"},
+      {kFlat + "[[blade]]\nbody = \"a\"\n[start]\nv1 = 1\nv2 = 1\n",
+       "13:6: start: blade 'a' (does not slip across its edge) with v2 = 1 do not go together"},
+      {pin + "[start]\nlow.angle = 1.5\nhigh.angle = 0.3\n",
+       "29:13: start: loop 'pin' (the points of the joint coincide) with high.angle = 0.3, "
+       "low.angle = 1.5 cannot be reached, 1.91 m is left"},
+      {kSpace + "[start]\nR11 = 3\n", "11:7: start: R11 = 3: se3: R11..R33 has"},
+      {"asks = [\"sped\"]\n" + kFlat, "1:8: asks: unknown number of the start"},
+  });
+}
+
+TEST_F(MechanismMistakes, InFormulas) {
+  const std::string motor = kFlat + kArm + "[[motor]]\njoint = \"arm\"\n",
+                    moved = kFlat + kArm + "[[prescribed]]\njoint = \"arm\"\n",
+                    pushed = kFlat + "[[force]]\nname = \"f\"\nbody = \"a\"\n";
+  refuses({
+      {kFlat + "[[motor]]\njoint = \"a\"\neffort = \"1\"\n",
+       "9:1: motor 'a': unknown hinge or slider 'a': there are none"},
+      {motor + "[[motor]]\njoint = \"arm\"\n",
+       "21:1: motor 'arm': this joint is driven by an input already"},
+      {motor + "effort = \"1/arm.angle\"\n", "19:1: motor 'arm': effort is inf at the start"},
+      {pushed + "along = [\"2*omeg\", 0, 0]\n",
+       "12:13: along: unknown name 'omeg': expected one of t, theta, x, y, omega, v1, v2; did you "
+       "mean 'omega'?"},
+      {pushed + "along = [0, \"1/x\", 0]\n", "9:1: force 'f': along is inf at the start"},
+      {moved + "rate = \"ln(t)\"\n", "21:8: rate: expected a rate finite at t = 0, got -inf"},
+      {moved + "rate = \"1\"\nangle = \"t\"\n", "19:1: prescribed: expected one of rate and angle"},
+      {moved + "rate = \"1\"\n[[prescribed]]\njoint = \"arm\"\nrate = \"2\"\n",
+       "22:1: prescribed 'arm': this joint is prescribed already"},
+      {moved + "rate = \"wind\"\n[inputs]\nwind = {}\n",
+       "21:8: rate: expected a formula of t and parameters, since its rate is needed too; 'wind' "
+       "is none of them"},
+      {kFlat + "[inputs]\nx = {}\n", "10:5: inputs.x: expected a name that nothing else has"},
+      {kFlat + "wheels = 3\n", "9:10: unknown key 'wheels'"},
+  });
+}
+
+}  // namespace

@@ -1,0 +1,150 @@
+// Velocities, shape, reactions, energy and momenta of a run, as curves.
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/motion_words.hpp>
+
+#include "run_figures.hpp"
+
+namespace hamel::tools {
+namespace {
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+}
+
+// Curves that are measured in the same unit stand in one figure.
+class ByUnit {
+ public:
+  void add(const std::string& unit, Series series) {
+    if (!figures_.contains(unit)) order_.push_back(unit);
+    figures_[unit].push_back(std::move(series));
+  }
+  void plot(Page& page, const std::map<std::string, std::string>& titles, const std::string& other,
+            const std::vector<Mark>& marks) const {
+    for (const std::string& unit : order_) {
+      const auto title = titles.find(unit);
+      Axes axes{.x = "time t [s]", .y = unit.empty() ? "" : "[" + unit + "]"};
+      axes.marks = marks;
+      page.plot(title == titles.end() ? other : title->second, axes, figures_.at(unit));
+    }
+  }
+
+ private:
+  std::vector<std::string> order_;
+  std::map<std::string, std::vector<Series>> figures_;
+};
+
+Series component(const Result& r, const std::string& name, const std::string& column,
+                 const std::string& key) {
+  Series series = curve(r, name, column, false);
+  series.key = key;
+  return series;
+}
+
+// The reactions of one part together: a mechanism's rows of phi stand behind all others.
+std::vector<int> rows_by_part(const Result& r) {
+  const std::vector<std::string>& names = words_of(r.system).reactions;
+  std::vector<int> out(static_cast<size_t>(r.system.mechanics->rows()));
+  std::iota(out.begin(), out.end(), 0);
+  if (names.empty()) return out;
+  const auto part = [&](int row) {
+    const std::string& name = names[static_cast<size_t>(row)];
+    return name.substr(0, name.rfind('.'));
+  };
+  std::vector<std::string> parts;
+  for (const DrawnForce& force : words_of(r.system).forces) parts.push_back(force.name);
+  for (const int row : out) parts.push_back(part(row));
+  std::stable_sort(out.begin(), out.end(), [&](int a, int b) {
+    return std::find(parts.begin(), parts.end(), part(a)) <
+           std::find(parts.begin(), parts.end(), part(b));
+  });
+  return out;
+}
+
+void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) {
+  std::vector<Series> reactions;
+  Axes axes{.x = "time t [s]", .y = "lambda"};
+  axes.marks = marks;
+  std::string note = fmt::format(
+      "Multipliers of the rows A xi = b, from the equations of motion at the recorded "
+      "states. Their work over the run: {:.2e}, with A xi measured on the "
+      "configurations; where b = 0 it is zero but for round-off.",
+      r.reaction_work);
+  for (const int i : rows_by_part(r)) {
+    const std::string column = words_of(r.system).reactions.empty()
+                                   ? fmt::format("lambda{}", i + 1)
+                                   : words_of(r.system).reactions[static_cast<size_t>(i)];
+    if (!r.trajectory.has(column)) continue;
+    const auto& contacts = r.system.contacts;
+    const bool contact = std::find(contacts.begin(), contacts.end(), i) != contacts.end();
+    reactions.push_back(curve(r, contact ? column + " [N], contact" : column, column, false));
+    if (!contact) continue;
+    const std::vector<double> force = r.trajectory.column(column);
+    const auto pull = std::find_if(force.begin(), force.end(), [](double f) { return f < 0; });
+    const double least = *std::min_element(force.begin(), force.end());
+    if (pull == force.end()) {
+      note += fmt::format(
+          " `{}` is a normal reaction: the contact pushes all along, by {:.3g} N "
+          "at least.",
+          column, least);
+    } else {
+      const double t = r.trajectory.at(static_cast<size_t>(pull - force.begin()), 0);
+      axes.marks.push_back({t, "contact pulls"});
+      note += fmt::format(
+          " `{}` is a normal reaction: from t = {:.4g} on the contact would have "
+          "to **pull** (least {:.3g} N), where a real body lifts off.",
+          column, t, least);
+    }
+  }
+  if (!reactions.empty()) page.plot("Reaction forces", axes, reactions, note);
+}
+
+void add_energy_balance(Page& page, const Result& r, const std::vector<Mark>& marks) {
+  std::vector<double> rest = r.trajectory.column("energy");
+  const std::vector<double> work = r.trajectory.column("work");
+  for (size_t i = 0; i < rest.size(); ++i) rest[i] -= work[i];
+  Axes axes{.x = "time t [s]", .y = "[J]"};
+  axes.marks = marks;
+  page.plot("Energy balance", axes,
+            {curve(r, "energy E [J]", "energy", false), curve(r, "work W [J]", "work", false),
+             thinned("E - W [J]", r.trajectory.column("t"), rest, false)},
+            "W is the work of forces and moving constraints, by a quadrature over all steps; E - W "
+            "is constant but for the error of the scheme.");
+}
+
+}  // namespace
+
+void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
+  const std::vector<std::string>&rates = words_of(r.system).rates,
+        &columns = r.system.group.columns;
+  std::vector<Component> names = components_of(r.system.group);
+  for (size_t i = 0; i < rates.size(); ++i) names[i].name = rates[i];
+  ByUnit velocity, momentum, shape;
+  for (size_t i = 0; i < names.size(); ++i) {
+    const auto& [name, unit] = names[i];
+    velocity.add(unit, component(r, with_unit(name, unit), fmt::format("xi{}", i + 1), name));
+    const std::string dual = unit == "rad/s" ? "N m s" : unit == "m/s" ? "N s" : "";
+    momentum.add(dual,
+                 component(r, with_unit("mu of " + name, dual), fmt::format("mu{}", i + 1), name));
+  }
+  for (const ShapeCoordinate& s : shape_of(r.system.group, names))
+    shape.add(
+        s.unit,
+        component(
+            r, with_unit(rates.empty() ? s.name : columns[static_cast<size_t>(s.column)], s.unit),
+            columns[static_cast<size_t>(s.column)], names[static_cast<size_t>(s.component)].name));
+  velocity.plot(page, {{"rad/s", "Angular velocity"}, {"m/s", "Velocity"}}, "Body velocity xi",
+                marks);
+  shape.plot(page, {{"rad", "Angles of the shape"}, {"m", "Places"}}, "Shape", marks);
+  if (r.system.mechanics->rows() > 0) add_reactions(page, r, marks);
+  if (does_work(r)) add_energy_balance(page, r, marks);
+  momentum.plot(page, {{"N m s", "Angular momentum in the body"}, {"N s", "Momentum in the body"}},
+                "Body momentum mu", marks);
+}
+
+}  // namespace hamel::tools
