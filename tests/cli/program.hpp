@@ -109,10 +109,12 @@ class CommandLine : public testing::Test {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const std::string page = contents(file("page.html")), head = "id=\"hamel-data\">";
     const size_t from = page.find(head) + head.size(), to = page.find("</script>", from);
-    for (const auto& section : nlohmann::json::parse(page.substr(from, to - from))["sections"]) {
-      for (const auto& block : section["blocks"])
-        for (const auto& series : block.value("series", nlohmann::json::array()))
-          out[block["title"]].push_back(series["name"]);
+    const nlohmann::json data = nlohmann::json::parse(page.substr(from, to - from));
+    for (const auto& section : data["sections"]) {
+      for (const auto& block : section["blocks"]) {
+        if (!block.contains("series")) continue;
+        for (const auto& series : block["series"]) out[block["title"]].push_back(series["name"]);
+      }
     }
     return out;
   }
