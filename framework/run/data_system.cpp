@@ -262,9 +262,6 @@ class File {
   MotionWords words_;
 };
 
-}  // namespace
-
-namespace {
 std::vector<FileKind>& kinds() {
   static std::vector<FileKind> all;
   return all;

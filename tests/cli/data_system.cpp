@@ -247,6 +247,15 @@ TEST_F(DataSystem, AnalysisSeesWhatASystemIs) {
   EXPECT_THAT(lift["verdict"].get<std::string>(), HasSubstr("with time"));
 }
 
+/// A formula without a value at the start is refused by describe, too.
+TEST_F(DataSystem, DescribesNoStartWithoutAValue) {
+  const Outcome o =
+      run({"describe", write("group = \"r2\"\ninertia = [1, 1]\npotential = \"ln(x1)\"\n"
+                             "velocity = [1, 0]\n")});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("system.toml:3:13: potential: 'ln(x1)' is -inf at the start"));
+}
+
 /// The page calls coordinates and rates as the file does, and knows which of them are places all the same.
 TEST_F(DataSystem, NamesTheCurvesOfThePage) {
   auto figures = curves({write(R"(

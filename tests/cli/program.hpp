@@ -124,9 +124,10 @@ class CommandLine : public testing::Test {
     const nlohmann::json page = page_of(std::move(arguments));
     if (page.is_null()) return out;
     for (const auto& section : page["sections"]) {
-      for (const auto& block : section["blocks"])
-        for (const auto& series : block.value("series", nlohmann::json::array()))
-          out[block["title"]].push_back(series["name"]);
+      for (const auto& block : section["blocks"]) {
+        if (!block.contains("series")) continue;
+        for (const auto& series : block["series"]) out[block["title"]].push_back(series["name"]);
+      }
     }
     return out;
   }

@@ -9,6 +9,7 @@
 #include <hamel/framework/lie/group_operations.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product.hpp>
+#include <hamel/groups/product_retraction.hpp>
 
 namespace {
 

@@ -79,6 +79,7 @@ bool moves(const std::vector<Series>& paths) {
 std::vector<SphereCurve> axes_on_sphere(const Result& result) {
   const int first = find_column(result, "R11");
   if (first < 0) return {};
+  bool turns = false;
   std::vector<SphereCurve> out;
   for (size_t axis = 0; axis < 3; ++axis) {
     SphereCurve curve{fmt::format("body axis e{}", axis + 1), {}};
@@ -87,9 +88,14 @@ std::vector<SphereCurve> axes_on_sphere(const Result& result) {
       curve.points.push_back({result.trajectory.at(i, at), result.trajectory.at(i, at + 3),
                               result.trajectory.at(i, at + 6)});
     }
+    turns = turns || std::any_of(curve.points.begin(), curve.points.end(), [&](const auto& p) {
+              return Eigen::Map<const Vec<3>>(p.data())
+                         .cross(Eigen::Map<const Vec<3>>(curve.points[0].data()))
+                         .norm() > 1e-6;
+            });
     out.push_back(std::move(curve));
   }
-  return out;
+  return turns ? out : std::vector<SphereCurve>{};  // nothing to see of a body that does not turn
 }
 
 std::optional<Animation> animation_of(const Result& result) {

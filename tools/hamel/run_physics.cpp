@@ -120,10 +120,8 @@ void add_energy_balance(Page& page, const Result& r, const std::vector<Mark>& ma
 }  // namespace
 
 void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
-  const std::vector<std::string>&rates = words_of(r.system).rates,
-        &columns = r.system.group.columns;
-  std::vector<Component> names = components_of(r.system.group);
-  for (size_t i = 0; i < rates.size(); ++i) names[i].name = rates[i];
+  const std::vector<std::string>& columns = r.system.group.columns;
+  const std::vector<Component> names = components_of(r.system);
   ByUnit velocity, momentum, shape;
   for (size_t i = 0; i < names.size(); ++i) {
     const auto& [name, unit] = names[i];
@@ -132,12 +130,12 @@ void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
     momentum.add(dual,
                  component(r, with_unit("mu of " + name, dual), fmt::format("mu{}", i + 1), name));
   }
-  for (const ShapeCoordinate& s : shape_of(r.system.group, names))
-    shape.add(
-        s.unit,
-        component(
-            r, with_unit(rates.empty() ? s.name : columns[static_cast<size_t>(s.column)], s.unit),
-            columns[static_cast<size_t>(s.column)], names[static_cast<size_t>(s.component)].name));
+  for (const ShapeCoordinate& s : shape_of(r.system.group, names)) {
+    const std::string &column = columns[static_cast<size_t>(s.column)],
+                      &rate = names[static_cast<size_t>(s.component)].name;
+    shape.add(s.unit, component(r, with_unit(rate.ends_with('\'') ? s.name : column, s.unit),
+                                column, rate));
+  }
   velocity.plot(page, {{"rad/s", "Angular velocity"}, {"m/s", "Velocity"}}, "Body velocity xi",
                 marks);
   shape.plot(page, {{"rad", "Angles of the shape"}, {"m", "Places"}}, "Shape", marks);
