@@ -11,10 +11,11 @@ namespace {
 
 class StudyReader {
  public:
-  StudyReader(const std::string& origin) : read_(origin) {}
+  StudyReader(const std::string& origin) : origin_(origin), read_(origin) {}
 
   StudyConfig file(const std::string& text) {
     const toml::table table = read_.parse(text);
+    refuse_other_kinds(table);
     config_.text = text;
     for (const auto& [name, node] : table) {
       const std::string key(name.str());
@@ -38,6 +39,21 @@ class StudyReader {
                                     "reference", "system", "exclude"};
     all.insert(all.end(), study_axes().begin() + 1, study_axes().end());
     return all;
+  }
+
+  void refuse_other_kinds(const toml::table& table) const {
+    const toml::node* system = table.get("system");
+    if (system == nullptr && (table.contains("group") || table.contains("body"))) {
+      throw ConfigError(
+          {fmt::format("{0}: this file is a system (hamel run {0}), no study; a study of it has "
+                       "[[system]] name = \"{0}\"",
+                       origin_)});
+    }
+    if (system != nullptr && system->is_string()) {
+      throw ConfigError({fmt::format(
+          "{0}: this file is the configuration of a run (hamel run --config {0}), no study",
+          origin_)});
+    }
   }
 
   void at(const std::string& key, const toml::node& node) {
@@ -164,6 +180,7 @@ class StudyReader {
     return (key == "rtol" || key == "atol") && node.value<std::string>() == "fixed";
   }
 
+  std::string origin_;
   TomlReader read_;
   StudyConfig config_;
 };

@@ -60,6 +60,8 @@ TEST_F(Words, AFileOfAnotherKindIsCalledByItsKind) {
   says({"run", "study.toml"}, "a study (hamel study study.toml)");
   says({"run", "--config", "study.toml"}, "a study (hamel study study.toml)");
   says({"run", "--config", "skate.toml"}, "a system by data (hamel run skate.toml)");
+  says({"study", "skate.toml"}, "a system (hamel run skate.toml)");
+  says({"study", "run.toml"}, "the configuration of a run (hamel run --config run.toml)");
 }
 
 /// What describe claims of gni and of energy_preserving is what is measured on Suslov's body with full inertia.
