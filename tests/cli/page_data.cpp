@@ -97,6 +97,19 @@ TEST(PageData, MaximaOverWindows) {
   EXPECT_EQ(s.y, std::vector<double>(50, 1.0));
 }
 
+// A curve begins and ends where its run does, also where it is flat there.
+TEST(PageData, CurvesKeepTheirEnds) {
+  std::vector<double> x, y(1000, 0.5);
+  for (int i = 0; i < 1000; ++i) x.push_back(i);
+  y[500] = 1;
+  const Series s = thinned("angle", x, y, false, 100);
+  EXPECT_EQ(s.x.front(), 0);
+  EXPECT_EQ(s.x.back(), 999);
+  EXPECT_EQ(*std::max_element(s.y.begin(), s.y.end()), 1);
+  EXPECT_LE(s.x.size(), 102u);
+  EXPECT_TRUE(std::is_sorted(s.x.begin(), s.x.end()));
+}
+
 TEST(PageData, TableWithFilter) {
   const Json b = block([](Page& page) {
     page.table("Runs", {"name", "error"}, {{"lift", 1.5}, {"boxed", kNaN}}, "note", true);

@@ -216,6 +216,10 @@ void Page::write(const std::string& path) const {
 Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
                bool peaks, size_t points) {
   Series out{std::move(name), {}, {}};
+  const auto add = [&](size_t i) {
+    out.x.push_back(x[i]);
+    out.y.push_back(y[i]);
+  };
   const size_t count = y.size(), buckets = std::max<size_t>(points / 2, 1);
   if (count <= points) return {out.name, x, y};
   const auto less = [&](size_t a, size_t b) {  // NaN first, so that it is never hidden
@@ -229,11 +233,11 @@ Series thinned(std::string name, const std::vector<double>& x, const std::vector
       if (less(high, i)) high = i;
     }
     if (peaks && !std::isnan(y[low])) low = high;
-    for (size_t i : {std::min(low, high), std::max(low, high)}) {
-      out.x.push_back(x[i]);
-      out.y.push_back(y[i]);
-      if (low == high) break;
-    }
+    if (low > high) std::swap(low, high);
+    if (!peaks && b == 0 && low > 0) add(0);
+    add(low);
+    if (low != high) add(high);
+    if (!peaks && b + 1 == buckets && high + 1 < count) add(count - 1);
   }
   return out;
 }

@@ -85,7 +85,7 @@ class Page {
 };
 
 /// At most about `points` points: of each of equal windows those with the smallest and the largest y, or only
-/// the largest (peaks, for errors on a logarithmic axis), the last window like the others. NaN is never dropped.
+/// the largest (peaks, for errors on a logarithmic axis), the last window like the others; else with both ends. NaN is never dropped.
 Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
                bool peaks, size_t points = 1200);
 
