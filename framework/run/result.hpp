@@ -57,8 +57,8 @@ struct Result : Measurements {
   Config config;  // as it was run: start and parameters filled in
   SystemModel system;
   std::shared_ptr<const Inputs> inputs;  // null without
-  std::vector<std::string> unused;  // options that the scheme makes no use of
-  std::vector<std::string> notes;   // what the user should know (a start that was projected, ...)
+  std::vector<std::string> unused;       // options that the scheme makes no use of
+  std::vector<std::string> notes;  // what the user should know (a start that was projected, ...)
   Status status;
   Snapshot last;  // the last good state
   long steps = 0;
