@@ -163,7 +163,6 @@ along = ["wind*(1 + t)", "turn.torque", 0]
 [inputs]
 wind = { unit = "N", meaning = "along x", least = -5, most = 5 }
 )toml");
-  ;
   const auto driven = [&](std::vector<std::string> inputs) {
     std::vector<std::string> words = {"run", cart, "--until", "1", "--step", "0.005"};
     for (std::string& input : inputs) words.insert(words.end(), {"--input", std::move(input)});
@@ -179,7 +178,7 @@ wind = { unit = "N", meaning = "along x", least = -5, most = 5 }
   EXPECT_NEAR(std::cos(theta) * along - std::sin(theta) * across, 3, 1e-4);
   EXPECT_NEAR(std::sin(theta) * along + std::cos(theta) * across, 0.5, 1e-4);
   EXPECT_NE(rate, 0);
-  for (const double v : driven({})["final"]["velocity"]) EXPECT_EQ(v, 0);
+  EXPECT_EQ(driven({})["final"]["velocity"], json({0.0, 0.0, 0.0, 0.0}));
   const json inputs = answer({"describe", cart})["inputs"];
   ASSERT_EQ(inputs.size(), 2u);
   EXPECT_EQ(inputs[0]["name"], "turn.torque");
