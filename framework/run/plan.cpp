@@ -124,6 +124,11 @@ Simulation::Plan Simulation::plan() const {
     else plan.add({registry_->missing_group(name)});
   }
   if (plan.system.group.dim == 0) return plan;
+  try {
+    components_of(plan.system);  // a wrong shape() is said before anything runs
+  } catch (const ConfigError& error) {
+    plan.add(error.mistakes());
+  }
   plan.fill_start();
   const SystemModel& system = plan.system;
   const std::string& group = system.group.name;

@@ -1,9 +1,11 @@
 // Names and units of the components of xi, and the coordinates that are their integrals.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/systems/rolling_disk.hpp>
 #include <hamel/systems/simulate.hpp>
 
 namespace {
@@ -59,9 +61,18 @@ TEST(Components, BySystemsThatNameTheirShape) {
   EXPECT_EQ(names("segway"), "omega v1 v2 right' left' pitch' ");
   EXPECT_EQ(names("n_trailer"), "omega v1 v2 hitch1' hitch2' hitch3' ");
   EXPECT_EQ(names("suslov"), "omega1 omega2 omega3 ");
-  SystemModel wrong = simulate("segway").build().system();
-  wrong.shape.pop_back();
-  EXPECT_THROW(components_of(wrong), ConfigError);
+}
+
+struct TooManyNames : RollingDisk {
+  static std::vector<std::string> shape() { return {"roll", "yaw"}; }
+};
+TEST(Components, AWrongShapeIsRefusedBeforeTheRun) {
+  try {
+    simulate(TooManyNames()).build();
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("shape of rolling_disk: expected 1 names, got 2"));
+  }
 }
 
 // A shape coordinate is the integral of its component: over one small step of the exact flow of the segway's
