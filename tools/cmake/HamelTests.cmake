@@ -44,7 +44,11 @@ if(HAMEL_BUILD_TESTS)
   add_library(hamel_test_pch OBJECT ${CMAKE_CURRENT_BINARY_DIR}/pch/empty.cpp)
   target_link_libraries(hamel_test_pch PRIVATE hamel::hamel hamel_build_options GTest::gmock)
   target_compile_options(hamel_test_pch PRIVATE ${test_options})
-  set_target_properties(hamel_test_pch PROPERTIES CXX_EXTENSIONS OFF)
+  # A precompiled header knows the headers of #pragma once by the sum of their bytes. ccache takes sources for equal
+  # that are so once comments are gone, and would hand out the precompiled header of other bytes ("redefinition of
+  # class ..."); in this mode it compares the headers themselves.
+  set_target_properties(hamel_test_pch PROPERTIES CXX_EXTENSIONS OFF
+    CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_DEPEND=1;${CMAKE_CXX_COMPILER_LAUNCHER}")
   target_precompile_headers(hamel_test_pch PRIVATE
     <Eigen/Dense> <gtest/gtest.h> <gmock/gmock.h> <hamel/hamel.hpp>
     <cmath> <functional> <optional> <random> <sstream> <string> <vector>)
