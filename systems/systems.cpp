@@ -47,9 +47,9 @@ void add_solvers(Registry& registry) {
 #endif
 }
 
-// Files with bodies are mechanisms; those of the library go by name.
+// Files with parts are mechanisms; those of the library go by name.
 void add_mechanisms() {
-  FileKind kind{"body", mechanism_from, {}};
+  FileKind kind{{"body", "joint", "wheel", "roller", "ball", "blade", "loop"}, mechanism_from, {}};
   for (const auto& [name, text] : mechanisms::library()) {
     kind.library.push_back(mechanism_info(text, name + ".toml"));
   }

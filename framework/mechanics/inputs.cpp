@@ -16,22 +16,34 @@ std::size_t piece_at(const InputTable& table, double t) {
   return static_cast<std::size_t>(std::min(piece, std::max<std::ptrdiff_t>(last, 0)));
 }
 
-double linear(const InputTable& table, double t) {
-  if (table.times.size() == 1) return table.values.front();
-  const std::size_t i = piece_at(table, t);
-  const double part =
-      std::clamp((t - table.times[i]) / (table.times[i + 1] - table.times[i]), 0.0, 1.0);
+double line(const InputTable& table, std::size_t i, double t) {
+  const double part = (t - table.times[i]) / (table.times[i + 1] - table.times[i]);
   return table.values[i] + part * (table.values[i + 1] - table.values[i]);
+}
+
+// Does a step lie within a piece, up to round-off in the times of its nodes?
+bool within(const InputTable& table, std::size_t i, double t, double h) {
+  if (table.times.size() == 1) return false;
+  const double close = 1e-12 * (1 + std::abs(t));
+  return std::min(t, t + h) >= table.times[i] - close &&
+         std::max(t, t + h) <= table.times[i + 1] + close;
 }
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
+double InputTable::at(double t) const {
+  if (times.size() < 2) return values.front();
+  const std::size_t i = piece_at(*this, t);
+  return hold ? values[i] : line(*this, i, std::clamp(t, times.front(), times.back()));
+}
+
 Inputs::Inputs(std::vector<InputField> fields, std::vector<InputTable> tables)
     : fields_(std::move(fields)),
       tables_(std::move(tables)),
       pieces_(tables_.size()),
+      smooth_(tables_.size()),
       now_(static_cast<Eigen::Index>(tables_.size())) {
   assert(tables_.size() == fields_.size() && fields_.size() <= kMostInputs);
   for (std::size_t i = 0; i < tables_.size(); ++i)
@@ -44,6 +56,7 @@ void Inputs::enter(double t, double h) {
     const InputTable& table = tables_[i];
     if (table.times.empty()) continue;
     const std::size_t piece = piece_at(table, t + h / 2);
+    smooth_[i] = !table.hold && within(table, piece, t, h);
     if (piece == pieces_[i]) continue;
     pieces_[i] = piece;
     ++changes_;
@@ -55,13 +68,15 @@ InputValues Inputs::at(double t) const {
   InputValues out = now_;
   for (std::size_t i = 0; i < tables_.size(); ++i) {
     const InputTable& table = tables_[i];
-    if (!table.times.empty() && !table.hold) out[static_cast<Eigen::Index>(i)] = linear(table, t);
+    if (table.times.empty() || table.hold) continue;
+    out[static_cast<Eigen::Index>(i)] = smooth_[i] ? line(table, pieces_[i], t) : table.at(t);
   }
   return out;
 }
 
 void Inputs::set(std::size_t input, double value) {
   tables_[input] = {{}, {value}};
+  smooth_[input] = false;
   now_[static_cast<Eigen::Index>(input)] = value;
   ++changes_;
   find_cover();

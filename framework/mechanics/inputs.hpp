@@ -35,6 +35,8 @@ struct InputTable {
   std::vector<double> times, values;
   bool hold = false;
   bool operator==(const InputTable&) const = default;
+  /// The value at t, on a jump the one behind it; before and behind the times the first and the last.
+  double at(double t) const;
 };
 
 /// The inputs of one run, which owns them.
@@ -46,7 +48,9 @@ class Inputs {
   /// One for each field; no times and one value where it is constant.
   const std::vector<InputTable>& tables() const { return tables_; }
   /// A step from t to t + h begins. A table that is held has the value of the middle of the step all through it, so that
-  /// round-off in the times of the nodes does not decide on which side of a jump they lie.
+  /// round-off in the times of the nodes does not decide on which side of a jump they lie; one that is linear is in a
+  /// step between two of its times the line through them, beyond them too: methods that differentiate b(t) by
+  /// differences see no kink at their nodes.
   void enter(double t, double h);
   /// The values at a time of the step.
   InputValues at(double t) const;
@@ -68,6 +72,7 @@ class Inputs {
   std::vector<InputField> fields_;
   std::vector<InputTable> tables_;
   std::vector<std::size_t> pieces_;  // of each table, between times piece and piece + 1
+  std::vector<bool> smooth_;         // the step lies within it
   InputValues now_;                  // of constants and held tables
   double first_ = 0, last_ = 0;      // covered
   long changes_ = 0;

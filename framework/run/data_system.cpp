@@ -74,7 +74,7 @@ class File {
     if (node == nullptr) {
       std::string others;
       for (const FileKind& kind : file_kinds())
-        others += fmt::format(", or tables [[{}]]", kind.key);
+        others += fmt::format(", or tables [[{}]]", kind.keys.front());
       read_.mistakes.push_back(
           fmt::format("{}: group: missing, expected the name of a group{}", origin_, others));
     } else {
@@ -289,7 +289,9 @@ std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& 
   return [&registry, path, text](const Parameters& given) {
     const toml::table table = TomlReader(path).parse(text);
     for (const FileKind& kind : file_kinds()) {
-      if (table.contains(kind.key)) return kind.read(text, path, given);
+      const bool its_own =
+          std::ranges::any_of(kind.keys, [&](const auto& key) { return table.contains(key); });
+      if (its_own) return kind.read(text, path, given);
     }
     return data_system(registry, text, path, given);
   };

@@ -34,9 +34,10 @@
 
 namespace hamel {
 
-/// Another kind of file that describes a system, told by a key that it has and others do not: "body" of mechanisms.
+/// Another kind of file that describes a system, told by any of the keys that it has and others do not: "body",
+/// "joint", ... of mechanisms.
 struct FileKind {
-  std::string key;
+  std::vector<std::string> keys;  // the first is the one that it must have
   /// Throws ConfigError with every mistake, file, line and column.
   std::function<SystemModel(const std::string& text, const std::string& origin,
                             const Parameters& given)>

@@ -1,8 +1,11 @@
 // Study files: TOML with the names of `hamel run` as lists.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/run/toml_inputs.hpp>
 #include <hamel/framework/study/parts.hpp>
 
@@ -43,7 +46,10 @@ class StudyReader {
 
   void refuse_other_kinds(const toml::table& table) const {
     const toml::node* system = table.get("system");
-    if (system == nullptr && (table.contains("group") || table.contains("body"))) {
+    const auto has = [&](const std::string& key) { return table.contains(key); };
+    const bool parts = std::ranges::any_of(
+        file_kinds(), [&](const FileKind& kind) { return std::ranges::any_of(kind.keys, has); });
+    if (system == nullptr && (parts || has("group"))) {
       throw ConfigError(
           {fmt::format("{0}: this file is a system (hamel run {0}), no study; a study of it has "
                        "[[system]] name = \"{0}\"",

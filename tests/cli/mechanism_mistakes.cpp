@@ -90,6 +90,7 @@ TEST_F(MechanismMistakes, InBodiesAndJoints) {
            "[[joint]]\nkind = \"hinge\"\nparent = \"a\"\nchild = \"b\"\n",
        "9:1: body 'b': inertia: got 2 numbers, expected 3, 6 or 9"},
       {kFlat + "[[body]]\nname = \"b\"\nmass = 1\n", "9:1: body 'b': hangs on no joint"},
+      {"[[joint]]\nkind = \"planar\"\nchild = \"a\"\n", "1:1: joint 'a': unknown child 'a'"},
       {kFlat + "[[joint]]\nchild = \"a\"\n", "9:1: joint 'a': kind: missing, expected one of ball"},
       {kFlat + kArm + "[[joint]]\nname = \"c\"\nkind = \"hinge\"\nchild = \"b\"\n",
        "19:1: joint 'c': body 'b' hangs on joint 'arm' already: a joint that closes a chain is a "

@@ -19,14 +19,12 @@ Series drawn(const Inputs& inputs, size_t i, double t0, double t1) {
                [&](double at) { return at > t0 && at < t1; });
   t.push_back(t1);
   if (!table.hold) {
-    for (const double at : t) value.push_back(inputs.at(at)[static_cast<Eigen::Index>(i)]);
+    for (const double at : t) value.push_back(table.at(at));
   } else {
     std::vector<double> corners;
     for (size_t j = 0; j + 1 < t.size(); ++j) {
-      const auto piece = std::upper_bound(table.times.begin(), table.times.end(), t[j]);
-      const double held = table.values[static_cast<size_t>(piece - table.times.begin()) - 1];
       corners.insert(corners.end(), {t[j], t[j + 1]});
-      value.insert(value.end(), {held, held});
+      value.insert(value.end(), 2, table.at(t[j]));
     }
     t = std::move(corners);
   }
