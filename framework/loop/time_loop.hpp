@@ -28,12 +28,12 @@ class TimeLoop : public Kernel {
   double time() const {
     return chooses_steps() ? time_ : from_ + static_cast<double>(steps_ - first_) * h_;
   }
-  /// Where the next step ends at the latest: at the limit, or where an input jumps.
+  /// Where the next step ends at the latest: at the limit, or where an input jumps or bends.
   double end_of_step(double t) const {
     if (setup_.inputs == nullptr) [[likely]]
       return limit_;
-    const double jump = setup_.inputs->next_jump(t, h_);
-    return (h_ > 0) == (jump < limit_) ? jump : limit_;
+    const double next = setup_.inputs->next_break(t, h_);
+    return (h_ > 0) == (next < limit_) ? next : limit_;
   }
   /// Above it a chosen step is worth trying.
   double smallest_step(double t) const {

@@ -82,14 +82,14 @@ void Inputs::set(std::size_t input, double value) {
   find_cover();
 }
 
-double Inputs::next_jump(double t, double h) const {
+double Inputs::next_break(double t, double h) const {
   const double sign = h < 0 ? -1 : 1;
   const double beyond =
       t + sign * 1e-12 * (1 + std::abs(t));  // t itself, as round-off has it, is past
   double next = sign * infinite;
   for (const InputTable& table : tables_) {
-    if (!table.hold || table.times.size() < 2) continue;
-    const auto first = table.times.begin() + 1, last = table.times.end();  // where it jumps
+    if (table.times.size() < 2) continue;
+    const auto first = table.times.begin() + 1, last = table.times.end() - (table.hold ? 0 : 1);
     if (h < 0) {
       const auto at = std::lower_bound(first, last, beyond);
       if (at != first) next = std::max(next, *(at - 1));

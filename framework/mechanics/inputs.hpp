@@ -56,8 +56,9 @@ class Inputs {
   InputValues at(double t) const;
   /// From now on constant.
   void set(std::size_t input, double value);
-  /// The first time beyond t, in the direction of h, at which a held value jumps; infinite where there is none.
-  double next_jump(double t, double h) const;
+  /// The first time beyond t, in the direction of h, at which a held value jumps or a line bends; infinite where there
+  /// is none.
+  double next_break(double t, double h) const;
   /// Do the tables cover t, up to round-off?
   bool covers(double t) const {
     const double close = 1e-9 * (1 + std::abs(t));

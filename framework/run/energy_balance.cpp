@@ -40,16 +40,18 @@ void EnergyBalance::node(const Snapshot& state) {
     changes_ = inputs_->changes();
     last_ = state;
   }
-  work_.add(state.time, power(state));
+  const double now = power(state);
+  if (started_ && !work_.joins(state.time)) settle();
+  work_.add(state.time, now);
   if (!started_) energy_start_ = state.energy;
   started_ = true;
   raise(energy_max_, state.energy);
-  if (work_.count() == NodalQuadrature::kNodes) settle();
+  if (work_.settled()) settle();
 }
 
 void EnergyBalance::row(const Snapshot& state) {
   waiting_.push_back({state.time, state.energy});
-  if (work_.count() >= NodalQuadrature::kNodes) settle();
+  if (work_.settled()) settle();
 }
 
 void EnergyBalance::settle() {

@@ -81,6 +81,18 @@ TEST(InputsOfARun, EndChosenStepsAtTheirJumps) {
   }
 }
 
+// And where a line bends: the power has a kink there, and a quadrature across would be far off.
+TEST(InputsOfARun, EndChosenStepsAtTheirKinks) {
+  const InputTable bent = {{0, 0.3, 0.7, 1}, {0, 0.6, 0.2, 0.5}, false};
+  Simulation run = simulate("snakeboard");
+  run.scheme("dopri5").input("rotor_rate", bent).input("front_rate", bent).until(1);
+  const Result r = run.tolerance({.relative = 1e-8}).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  EXPECT_LT(r.energy_balance_error_max, 1e-7);
+  const std::vector<double> t = r.trajectory.column("t");
+  for (const double kink : {0.3, 0.7}) EXPECT_NE(std::find(t.begin(), t.end(), kink), t.end());
+}
+
 // The same run backwards: a step that ends at a jump sees the value before it, in its own direction.
 TEST(InputsOfARun, RunBackwards) {
   for (const InputSignal& torque : {InputSignal(kHeld), InputSignal(kLinear)}) {
@@ -257,17 +269,18 @@ TEST(Inputs, LieOnTheRightSideOfAJump) {
   EXPECT_NEAR(inputs.at(0.5)[1], 0.4, 1e-15);
   EXPECT_EQ(kLinear.at(7), 0.2);
   EXPECT_EQ(kHeld.at(0.3), -0.1);
-  EXPECT_EQ(inputs.next_jump(0, 1), 0.3);
-  EXPECT_EQ(inputs.next_jump(0.3, 1), 0.7);
-  EXPECT_EQ(inputs.next_jump(0.1 + 0.2, 1), 0.7);  // 0.30000000000000004
-  EXPECT_EQ(inputs.next_jump(0.7, -1), 0.3);
-  EXPECT_EQ(inputs.next_jump(0, -1), -kInfinite);
-  EXPECT_EQ(inputs.next_jump(2, 1), kInfinite);
+  EXPECT_EQ(inputs.next_break(0, 1), 0.3);
+  EXPECT_EQ(inputs.next_break(0.3, 1), 0.7);
+  EXPECT_EQ(inputs.next_break(0.1 + 0.2, 1), 0.7);  // 0.30000000000000004
+  EXPECT_EQ(inputs.next_break(0.7, -1), 0.3);
+  EXPECT_EQ(inputs.next_break(0, -1), -kInfinite);
+  EXPECT_EQ(inputs.next_break(2, 1), kInfinite);
   EXPECT_TRUE(inputs.covers(2));
   EXPECT_FALSE(inputs.covers(2.1));
   inputs.set(0, 3);
   EXPECT_EQ(inputs.at(1)[0], 3);
-  EXPECT_EQ(inputs.next_jump(0, 1), kInfinite);
+  EXPECT_EQ(inputs.next_break(0, 1), 0.3);  // of the lines
+  EXPECT_EQ(inputs.next_break(0.7, 1), kInfinite);
 }
 
 }  // namespace
