@@ -118,7 +118,8 @@ Vector Flow::kept(const Vector& g, const Vector& xi, const Vector& eta, double e
 
 Matrix Flow::symmetries(const Vector& g) const {
   const int n = dim();
-  Matrix changes(0, 2 * n);
+  Matrix changes(0, 2 * n), orbits(0, 2 * n);
+  double scale = 0;  // of what is kept
   for (int sample = 1; sample <= 3; ++sample) {
     Vector shift(n), xi(n);
     for (int i = 0; i < n; ++i) {
@@ -143,8 +144,12 @@ Matrix Flow::symmetries(const Vector& g) const {
     }
     changes.conservativeResize(changes.rows() + change.rows(), Eigen::NoChange);
     changes.bottomRows(change.rows()) = change;
+    orbits.conservativeResize(orbits.rows() + 2 * n, Eigen::NoChange);
+    orbits.bottomRows(2 * n) = orbit(Matrix::Identity(2 * n, 2 * n), here, xi);
+    scale = std::max(scale, kept(here, xi, Vector::Zero(n), 0).lpNorm<Eigen::Infinity>());
   }
-  return kernel_of(changes, 1e-9);
+  const Matrix all = kernel_of(changes, 1e-9, scale);
+  return all * range_of((orbits * all).transpose(), 1e-9, 1);
 }
 
 Matrix Flow::orbit(const Matrix& symmetries, const Vector& g, const Vector& xi) const {
@@ -157,24 +162,25 @@ Matrix Flow::orbit(const Matrix& symmetries, const Vector& g, const Vector& xi) 
 
 namespace {
 
-Eigen::Index rank_of(const Vector& singular, double least) {
+Eigen::Index rank_of(const Vector& singular, double least, double scale) {
   Eigen::Index rank = 0;
-  while (rank < singular.size() && singular[rank] > least * std::max(1e-300, singular[0])) ++rank;
+  const double most = singular.size() == 0 ? scale : std::max({1e-300, scale, singular[0]});
+  while (rank < singular.size() && singular[rank] > least * most) ++rank;
   return rank;
 }
 
 }  // namespace
 
-Matrix range_of(const Matrix& m, double least) {
+Matrix range_of(const Matrix& m, double least, double scale) {
   if (m.cols() == 0) return m;
   const Eigen::JacobiSVD<Matrix> svd(m, Eigen::ComputeFullU);
-  return svd.matrixU().leftCols(rank_of(svd.singularValues(), least));
+  return svd.matrixU().leftCols(rank_of(svd.singularValues(), least, scale));
 }
 
-Matrix kernel_of(const Matrix& m, double least) {
+Matrix kernel_of(const Matrix& m, double least, double scale) {
   if (m.rows() == 0) return Matrix::Identity(m.cols(), m.cols());
   const Eigen::JacobiSVD<Matrix> svd(m, Eigen::ComputeFullV);
-  return svd.matrixV().rightCols(m.cols() - rank_of(svd.singularValues(), least));
+  return svd.matrixV().rightCols(m.cols() - rank_of(svd.singularValues(), least, scale));
 }
 
 }  // namespace hamel::reduced

@@ -54,7 +54,8 @@ class Flow {
   Matrix ad(const Vector& xi) const;
   Matrix Ad_inverse(const Vector& g) const;
 
-  /// A basis of the symmetries, columns (zeta, eta), found at a few places near g.
+  /// A basis of the symmetries that move something, columns (zeta, eta), found at a few places near g. What moves nothing
+  /// anywhere, as (zeta, -zeta) of a commutative factor, is left out.
   Matrix symmetries(const Vector& g) const;
   /// The columns X_s(g, xi) of these symmetries.
   Matrix orbit(const Matrix& symmetries, const Vector& g, const Vector& xi) const;
@@ -67,8 +68,9 @@ class Flow {
   std::shared_ptr<const Mechanics> mechanics_;
 };
 
-/// Orthonormal bases of the range and of the kernel, singular values below `least` of the largest being none.
-Matrix range_of(const Matrix& m, double least);
-Matrix kernel_of(const Matrix& m, double least);
+/// Orthonormal bases of the range and of the kernel. Singular values below `least` of the largest are none; those of a
+/// matrix that is all round-off beside `scale` all are.
+Matrix range_of(const Matrix& m, double least, double scale = 0);
+Matrix kernel_of(const Matrix& m, double least, double scale = 0);
 
 }  // namespace hamel::reduced

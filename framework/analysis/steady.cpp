@@ -18,9 +18,12 @@ using Complex = std::complex<double>;
 
 constexpr double kGood = 1e-9;  // residual of a steady motion
 
+// What is 1e-10 of the largest column, or of 1, is zero.
 Vector least_norm(const Matrix& a, const Vector& b) {
+  if (a.cols() == 0) return Vector(0);
   Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(a.rows(), a.cols());
-  decomposition.setThreshold(1e-10);
+  const double most = a.colwise().norm().maxCoeff();
+  decomposition.setThreshold(most < 1 ? std::min(0.5, 1e-10 / std::max(1e-300, most)) : 1e-10);
   return decomposition.compute(a).solve(b);
 }
 
@@ -77,7 +80,7 @@ class Finder {
 
   SteadyMotion linearise(const std::vector<std::string>& names, int family) {
     const int n = flow_.dim();
-    const Matrix orbit = range_of(flow_.orbit(symmetries_, g_, xi_), 1e-9);
+    const Matrix orbit = range_of(flow_.orbit(symmetries_, g_, xi_), 1e-9, 1);
     const Matrix whole = derivative();  // of W, phi, A xi - b
     Matrix bounds(flow_.held() + flow_.rows() + orbit.cols(), 2 * n);
     bounds << whole.bottomRows(flow_.held() + flow_.rows()), orbit.transpose();
@@ -106,8 +109,12 @@ class Finder {
              std::pair(values[j].real(), values[j].imag());
     });
     out.neutral = static_cast<int>(orbit.cols()) + out.family;
+    const double size = order.empty() ? 1 : std::max(1.0, values.cwiseAbs().maxCoeff());
+    const Eigen::MatrixXcd left = solver.eigenvectors().inverse();
     for (const Eigen::Index i : order) {
       out.eigenvalues.push_back(values[i]);
+      const double condition = left.row(i).norm();  // inf or NaN of one that has no eigenvector
+      out.round_off.push_back(size * std::max(1e-9, std::fmin(1e-13 * condition, 1e-6)));
       const Eigen::VectorXcd mode = basis.topRows(n).cast<Complex>() * solver.eigenvectors().col(i);
       out.modes.push_back(parts_of(mode, names));
     }
@@ -214,91 +221,10 @@ SteadyMotion steady_motion(const Registry& registry, const Simulation& run, int 
   return steady_motion(registry, built.system(), built.config().start, family);
 }
 
-namespace {
-
-constexpr double kStable = 1e-9;  // a real part that counts as positive
-
-int unstable(const SteadyMotion& motion) {
-  return static_cast<int>(std::count_if(motion.eigenvalues.begin(), motion.eigenvalues.end(),
-                                        [](const Complex& x) { return x.real() > kStable; }));
-}
-
-// Between values with different numbers of unstable eigenvalues: halved until one crossing is left, then the real part
-// that changes its sign by the Illinois method. Where it is zero on one side, as an imaginary pair of a system without
-// damping, by halving.
-class Crossings {
- public:
-  Crossings(const std::function<SteadyMotion(double)>& at, std::vector<SteadySweep::Crossing>& out)
-      : at_(at), out_(out) {}
-
-  void look(double a, const SteadyMotion& left, double b, const SteadyMotion& right,
-            int depth = 0) {
-    if (left.eigenvalues.size() != right.eigenvalues.size()) return;  // not found at one of them
-    const int jump = std::abs(unstable(right) - unstable(left));
-    if (jump == 0) return;
-    const size_t index = static_cast<size_t>(std::min(unstable(left), unstable(right)));
-    const bool pair =
-        jump == 2 && left.eigenvalues[index].imag() != 0 && right.eigenvalues[index].imag() != 0;
-    if (jump > 1 && !pair && depth < 40) {
-      const double middle = 0.5 * (a + b);
-      const SteadyMotion there = at_(middle);
-      look(a, left, middle, there, depth + 1);
-      look(middle, there, b, right, depth + 1);
-      return;
-    }
-    out_.push_back(
-        {root(a, left.eigenvalues[index].real(), b, right.eigenvalues[index].real(), index), pair});
-  }
-
- private:
-  double root(double a, double fa, double b, double fb, size_t index) {
-    int side = 0;
-    const bool touches = std::min(std::abs(fa), std::abs(fb)) < kStable;
-    for (int k = 0; k < 80 && std::abs(b - a) > 1e-12 * (1 + std::abs(a) + std::abs(b)); ++k) {
-      double x = (fb * a - fa * b) / (fb - fa);
-      if (touches || k % 8 == 7 || !(x > std::min(a, b) && x < std::max(a, b))) x = 0.5 * (a + b);
-      const SteadyMotion there = at_(x);
-      if (!there.found) return x;
-      const double fx = there.eigenvalues[index].real();
-      if (!touches && std::abs(fx) < 1e-14) return x;
-      const double zero = touches ? kStable : 0;
-      if ((fx > zero) == (fb > zero)) {
-        b = x;
-        fb = fx;
-        if (side == 1) fa /= 2;
-        side = 1;
-      } else {
-        a = x;
-        fa = fx;
-        if (side == -1) fb /= 2;
-        side = -1;
-      }
-    }
-    return touches ? 0.5 * (a + b) : std::abs(fa) < std::abs(fb) ? a : b;
-  }
-
-  const std::function<SteadyMotion(double)>& at_;
-  std::vector<SteadySweep::Crossing>& out_;
-};
-
-}  // namespace
-
-SteadySweep sweep_steady(const std::vector<double>& values,
-                         const std::function<SteadyMotion(double value, int family)>& at) {
-  SteadySweep out;
-  out.values = values;
-  std::vector<int> families;
-  for (const double value : values) {
-    if (const SteadyMotion motion = at(value, -1); motion.found) families.push_back(motion.family);
-  }
-  const int family = families.empty() ? 0 : *std::min_element(families.begin(), families.end());
-  for (const double value : values) out.motions.push_back(at(value, family));
-  const std::function<SteadyMotion(double)> there = [&](double value) { return at(value, family); };
-  Crossings crossings(there, out.crossings);
-  for (size_t i = 1; i < values.size(); ++i) {
-    crossings.look(values[i - 1], out.motions[i - 1], values[i], out.motions[i]);
-  }
-  return out;
+int SteadyMotion::growing() const {
+  int count = 0;
+  for (size_t i = 0; i < eigenvalues.size(); ++i) count += eigenvalues[i].real() > round_off[i];
+  return count;
 }
 
 }  // namespace hamel

@@ -33,10 +33,13 @@ struct SteadyMotion {
   bool found = false;                     // else no eigenvalues
   double residual = 0;                    // of Z = X_s, phi and A xi = b
   std::vector<std::complex<double>>
-      eigenvalues;  // 1/s, by real part, largest first; without the neutral ones
+      eigenvalues;                // 1/s, by real part, largest first; without the neutral ones
+  std::vector<double> round_off;  // of each: a pair that meets another is known badly
   std::vector<std::vector<ModePart>> modes;  // what moves in each
   int neutral = 0;                           // directions of symmetry, and zeros of the family
   int family = 0;                            // of them, zeros of the family
+  /// How many eigenvalues have a positive real part, beyond their round-off.
+  int growing() const;
 };
 
 /// The steady motion near a start, its rates named by motion_words.hpp. family: how many zeros there are; -1: those that are

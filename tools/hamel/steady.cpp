@@ -83,10 +83,9 @@ void print(const std::string& system, const SteadyMotion& motion) {
              join(motion.velocity));
   fmt::print("  neutral       {}, of them {} along the family of steady motions\n", motion.neutral,
              motion.family);
-  const auto unstable = std::count_if(motion.eigenvalues.begin(), motion.eigenvalues.end(),
-                                      [](const auto& x) { return x.real() > 1e-9; });
+  const int growing = motion.growing();
   fmt::print("  {}\n",
-             unstable > 0 ? fmt::format("unstable: {} growing", unstable) : "no growing mode");
+             growing > 0 ? fmt::format("unstable: {} growing", growing) : "no growing mode");
   fmt::print("  eigenvalues [1/s], and what moves\n");
   for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
     const auto x = motion.eigenvalues[i];
@@ -104,10 +103,8 @@ void print(const Vary& vary, const SteadySweep& sweep) {
       fmt::print("  {:>12.6g}  no steady motion found\n", sweep.values[i]);
       continue;
     }
-    const auto growing = std::count_if(motion.eigenvalues.begin(), motion.eigenvalues.end(),
-                                       [](const auto& x) { return x.real() > 1e-9; });
     const double most = motion.eigenvalues.empty() ? 0 : motion.eigenvalues[0].real();
-    fmt::print("  {:>12.6g}  {:>7}  {:.9g}\n", sweep.values[i], growing, most);
+    fmt::print("  {:>12.6g}  {:>7}  {:.9g}\n", sweep.values[i], motion.growing(), most);
   }
   for (const auto& crossing : sweep.crossings) {
     fmt::print("  stability changes at {} = {:.14g}, {}\n", vary.name, crossing.value,
