@@ -121,7 +121,8 @@ LawReport check_system(const SystemModel& model, double until, const Geometry* g
 
 LawReport check_system(const Registry& registry, const std::string& name, double until) {
   const SystemInfo* info = registry.system(name);
-  if (info == nullptr) throw ConfigError({unknown_name("system", name, registry.systems())});
+  if (info == nullptr)
+    throw ConfigError({unknown_name("system", name, registry.systems_and_files())});
   SystemModel model = info->make({});
   if (model.group.dim == 0) model.group = *registry.group_or_product(model.group.name);
   const std::string retraction = registry.retractions_or_common(model.group.name).front();

@@ -99,7 +99,7 @@ Simulation::Plan Simulation::plan() const {
   if (!make) {
     const SystemInfo* info = registry_->system(config_.system);
     if (info == nullptr) {
-      plan.add({unknown_name("system", config_.system, registry_->systems())});
+      plan.add({unknown_name("system", config_.system, registry_->systems_and_files())});
       return plan;
     }
     make = info->make;

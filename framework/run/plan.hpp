@@ -40,6 +40,7 @@ struct Simulation::Plan {
   void check_composition(const SchemeInfo& scheme, bool left_invariant);
   void choose_steps(const SchemeInfo& scheme, bool left_invariant);
   void look_at_start();
+  void look_beside_start(const Eigen::VectorXd& g);
   void satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g);
   void project();
   void watch();

@@ -211,5 +211,12 @@ std::string Registry::missing_solver(const std::string& name) const {
   return unknown_name("solver", name, solvers());
 }
 std::vector<std::string> Registry::systems() const { return names(systems_); }
+std::vector<std::string> Registry::systems_and_files() const {
+  std::vector<std::string> out = systems();
+  for (const FileKind& kind : file_kinds())
+    for (const SystemInfo& info : kind.library) out.push_back(info.name);
+  std::sort(out.begin(), out.end());
+  return out;
+}
 
 }  // namespace hamel

@@ -122,6 +122,8 @@ class Registry {
   /// The reason why there is no solver of this name: a nearest name, or the package to install.
   std::string missing_solver(const std::string& name) const;
   std::vector<std::string> systems() const;
+  /// Those and the files that go by name: all that system(name) knows.
+  std::vector<std::string> systems_and_files() const;
 
   /// alias -> scheme.
   const std::map<std::string, std::string>& scheme_aliases() const { return scheme_aliases_; }

@@ -136,7 +136,31 @@ void Simulation::Plan::look_at_start() {
   Eigen::VectorXd phi(mechanics->holonomic_rows());
   mechanics->holonomic(g.data(), phi);
   if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
-  add(check_system_matrices(inertia, constraints, n));
+  const std::vector<std::string> wrong = check_system_matrices(inertia, constraints, n);
+  add(wrong);
+  if (wrong.empty() && !mechanics->constant_inertia()) look_beside_start(g);
+}
+
+// An inertia that depends on g may be symmetric at the start only.
+void Simulation::Plan::look_beside_start(const Eigen::VectorXd& g) {
+  const Eigen::Index n = inertia.rows();
+  Eigen::VectorXd shift(n), there(g.size());
+  Eigen::MatrixXd beside(n, n);
+  for (int place = 1; place <= 2; ++place) {
+    for (Eigen::Index i = 0; i < n; ++i)
+      shift[i] = 0.2 * std::sin(static_cast<double>(3 * i + 2 * place));
+    geometry->tau(shift.data(), there.data());
+    geometry->compose(g.data(), there.data(), there.data());
+    mechanics->inertia(there.data(), beside);
+    if (!beside.allFinite()) continue;
+    Eigen::Index row = 0, column = 0;
+    const double most = (beside - beside.transpose()).cwiseAbs().maxCoeff(&row, &column);
+    if (most < 1e-10 * beside.norm()) continue;
+    return add(
+        {fmt::format("inertia: symmetric at the start, but not beside it: entries ({}, {}) "
+                     "and ({}, {}) differ by {:.3g}",
+                     row + 1, column + 1, column + 1, row + 1, most)});
+  }
 }
 
 // Onto phi(g) = 0 by Newton's method, g <- g tau(-I^-1 A^T (A I^-1 A^T)^-1 phi), A the rows of phi: the start may be the

@@ -73,6 +73,8 @@ TEST_F(DataSystem, MistakesAreNamed) {
   refused("group = \"se2\"\ninertia = [1, 2]", ":2:11: inertia: expected 3 numbers");
   refused("group = \"se2\"\ninertia = [1, 2, nan]\nvelocity = [1, 0, 0]", "finite");
   refused("group = \"se2\"\ninertia = [1, 2, -3]\nvelocity = [1, 0, 0]", "positive definite");
+  refused("group = \"r2\"\ninertia = [[2, \"cos(x2 - x1)\"], [\"cos(x2)\", 1]]\nvelocity = [1, 0]",
+          "inertia: symmetric at the start, but not beside it: entries (2, 1) and (1, 2)");
   refused("group = \"se2\"\ninertia = [1, 2, 3]\nconstraints = [[0, 0]]", "constraints");
   refused("group = \"se2\"\ninertia = [1, 2, 3]\nconstrains = [[0, 0, 1]]",
           "did you mean 'constraints'?");

@@ -71,6 +71,7 @@ TEST(BadInput, AMemoryBombIsRefused) {
 TEST(BadInput, Names) {
   EXPECT_THAT(refused(simulate("suslow")),
               AllOf(HasSubstr("unknown system 'suslow'"), HasSubstr("did you mean 'suslov'?")));
+  EXPECT_THAT(refused(simulate("bycicle")), HasSubstr("did you mean 'bicycle'?"));
   EXPECT_THAT(refused(simulate("suslov").scheme("lfit")), HasSubstr("did you mean 'lift'?"));
   EXPECT_THAT(refused(simulate("suslov").retraction("cayly")), HasSubstr("did you mean 'cayley'?"));
   EXPECT_THAT(refused(simulate("suslov").solver("newtn")), HasSubstr("did you mean 'newton'?"));

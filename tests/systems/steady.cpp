@@ -8,6 +8,7 @@
 
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/run/at_speed.hpp>
+#include <hamel/framework/run/data_system.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "mechanism_systems.hpp"
@@ -146,6 +147,61 @@ TEST(Steady, SleighTurnsRoundOrNot) {
     ASSERT_EQ(motion.eigenvalues.size(), 1u);
     EXPECT_NEAR(motion.eigenvalues[0].real(),
                 -sleigh.mass * offset * u / (sleigh.moment + sleigh.mass * offset * offset), 1e-10);
+  }
+}
+
+// What no symmetry carries along: rest, at the rates of M q'' + K q = 0. Every coordinate of a commutative factor goes with
+// a pair (zeta, -zeta) that moves nothing.
+TEST(Steady, RestOnCommutativeGroups) {
+  const SystemModel particle = data_system(registry(), R"(
+group = "r2"
+inertia = [1, 2]
+potential = "0.5*x1^2 + 3*x2^2 + 0.1*x1*x2 + 0.01*x1^4"
+)",
+                                           "particle.toml");
+  const SteadyMotion rest =
+      steady_motion(registry(), particle, {.configuration = {0.3, 0.1}, .velocity = {0.1, 0.2}});
+  ASSERT_TRUE(rest.found);
+  ASSERT_EQ(rest.eigenvalues.size(), 4u);
+  EXPECT_EQ(rest.neutral, 0);
+  EXPECT_EQ(rest.growing(), 0);
+  const Eigen::Matrix2d k{{1, 0.1}, {0.05, 3}};  // M^-1 K
+  for (const auto& square : Eigen::EigenSolver<Eigen::Matrix2d>(k).eigenvalues())
+    EXPECT_LT(nearest(rest.eigenvalues, std::sqrt(-square)), 1e-10);
+  for (const double x : rest.element) EXPECT_NEAR(x, 0, 1e-12);
+}
+
+// A rod on its end, with a spring at its pivot: it stands from k = m g l on, and falls at sqrt((m g l - k) / J) before.
+TEST(Steady, InvertedPendulum) {
+  const auto rod = [](double stiffness) {
+    Mechanism m("rod");
+    const auto body = m.body("rod", {.mass = 1, .at = {0, 0, 0.5}, .inertia = {0.1, 0.1, 0.01}});
+    m.hinge("pivot", "ground", body, {.axis = {0, 1, 0}, .stiffness = stiffness});
+    return m.model();
+  };
+  const auto standing = [&](double stiffness, int family) {
+    return steady_motion(registry(), rod(stiffness), {.configuration = {0}, .velocity = {0}},
+                         family);
+  };
+  const double mgl = 9.81 * 0.5;
+  const SteadyMotion falls = standing(1, -1);
+  ASSERT_EQ(falls.eigenvalues.size(), 2u);
+  EXPECT_NEAR(falls.eigenvalues[0].real(), std::sqrt((mgl - 1) / (0.1 + 0.25)), 1e-10);
+  const SteadySweep sweep = sweep_steady({1, 4, 7, 10}, standing);
+  ASSERT_EQ(sweep.crossings.size(), 1u);
+  EXPECT_NEAR(sweep.crossings[0].value, mgl, 1e-10);
+}
+
+// Backwards the trailers jackknife, each at a rate in proportion to the speed: stability changes at rest, on the grid or
+// off it.
+TEST(Steady, TrailersFoldBackwards) {
+  const SystemModel truck = model("two_trailer_truck");
+  for (const std::vector<double>& speeds :
+       {std::vector<double>{-6, -3, 0, 3, 6}, std::vector<double>{-6, -7.0 / 3, 4.0 / 3, 5}}) {
+    const SteadySweep sweep =
+        sweep_steady(speeds, [&](double v, int family) { return at_speed(truck, v, family); });
+    ASSERT_EQ(sweep.crossings.size(), 2u);
+    for (const auto& crossing : sweep.crossings) EXPECT_NEAR(crossing.value, 0, 1e-10);
   }
 }
 

@@ -103,7 +103,7 @@ Json object(const std::string& title, const Json& properties,
 Json system_name() {
   return {{"type", "string"},
           {"description", "a registered system (hamel list systems), or a file my_system.toml"},
-          {"examples", registry().systems()}};
+          {"examples", registry().systems_and_files()}};
 }
 
 Json run() {
