@@ -23,12 +23,13 @@ void Multibody::keep(const std::vector<int>& rows) {
   const std::vector<RowWords> words = rows_.words();
   slots_.assign(words.size(), -1);
   kept_.clear();
+  holonomic_ = 0;
   for (const bool holonomic : {false, true}) {
     for (const int row : rows) {
       if (words[static_cast<size_t>(row)].holonomic != holonomic) continue;
       slots_[static_cast<size_t>(row)] = static_cast<int>(kept_.size());
       kept_.push_back(row);
-      holonomic_ = holonomic ? holonomic_ + 1 : 0;
+      if (holonomic) ++holonomic_;
     }
   }
   varies_.assign(words.size(), 0);
