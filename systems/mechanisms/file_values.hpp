@@ -38,6 +38,10 @@ class FileValues {
     }
   }
 
+  /// Is this the name of t, or of a coordinate, velocity or input?
+  bool names(const std::string& name) const {
+    return std::find(names_.begin(), names_.end(), name) != names_.end();
+  }
   /// Is this name that of an input, and of nothing else of the state?
   bool names_input(const std::string& name) const {
     const auto at = std::find(names_.begin(), names_.end(), name);

@@ -180,7 +180,38 @@ TEST_F(MechanismMistakes, InFormulas) {
        "is none of them"},
       {kFlat + "[inputs]\nx = {}\n", "10:5: inputs.x: expected a name that nothing else has"},
       {kFlat + "wheels = 3\n", "9:10: unknown key 'wheels'"},
+      {kFlat + "[parameters]\nt = 3\n",
+       "10:5: parameters.t: expected a name that nothing else has"},
+      {kFlat + "[parameters]\nx = 3\nm = 1\nv1 = { value = 2 }\n",
+       "12:6: parameters.v1: expected a name that nothing else has"},
+      {kFlat + "[parameters]\nwind = 3\n[inputs]\nwind = {}\n",
+       "10:8: parameters.wind: expected a name that nothing else has"},
   });
+}
+
+/// Parts may have any name; what cannot stand in a formula is left out of them, which a mistake says.
+TEST_F(MechanismMistakes, InFormulasOfJointsWithAnyName) {
+  for (const std::string name : {"left arm", "left-arm", "3rd", "дрель", "sin"}) {
+    const std::string arm = "[[body]]\nname = \"" + name +
+                            "\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n[[joint]]\n"
+                            "kind = \"hinge\"\nchild = \"" +
+                            name + "\"\n[[motor]]\njoint = \"" + name + "\"\neffort = ";
+    const Outcome o = run({"run", write(arm + "\"0.3*sin(t)\"\n"), "--until", "0.1"});
+    EXPECT_EQ(o.status, 0) << name << o.err;
+    if (name == "sin") continue;
+    refuses(
+        {{arm + "\"2*" + name + ".angle\"\n",
+          "11:13: effort: '" + name + ".angle' cannot stand in a formula: expected a letter, "}});
+  }
+  refuses(
+      {{kFlat + "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n" +
+            "[[joint]]\nname = \"left arm\"\nkind = \"hinge\"\nparent = \"a\"\nchild = \"b\"\n" +
+            "[[motor]]\njoint = \"left arm\"\neffort = \"-left_arm.angle\"\n",
+        "21:12: effort: unknown name 'left_arm.angle': "},
+       {kFlat + "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n" +
+            "[[joint]]\nname = \"left arm\"\nkind = \"hinge\"\nparent = \"a\"\nchild = \"b\"\n" +
+            "[[prescribed]]\njoint = \"left arm\"\nrate = \"steer l\"\n",
+        "21:9: rate: "}});
 }
 
 }  // namespace
