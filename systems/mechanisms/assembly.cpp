@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -31,14 +32,28 @@ struct Watched {
   Signal value;
 };
 
-// With its words; a run starts where its signals have values.
+// A coordinate with a prescribed value.
+struct Held {
+  std::string what;
+  size_t column;
+  bool turns;  // a hinge
+  std::function<double(double t)> value;
+};
+
+// What a run is not to start without.
+struct AtStart {
+  std::vector<Watched> signals;
+  std::vector<Held> held;
+};
+
+// With its words; a run starts where its signals have values and where it is prescribed to be.
 class Speaking final : public Multibody, public Worded {
  public:
-  Speaking(const Multibody& system, MotionWords words, std::vector<Watched> signals,
+  Speaking(const Multibody& system, MotionWords words, AtStart at_start,
            std::shared_ptr<const Inputs> inputs)
       : Multibody(system),
         words_(std::move(words)),
-        signals_(std::move(signals)),
+        at_start_(std::move(at_start)),
         inputs_(std::move(inputs)) {}
   const MotionWords& words() const override { return words_; }
   std::vector<std::string> mistakes_at(double t, const double* g, ConstVector xi) const override {
@@ -48,16 +63,23 @@ class Speaking final : public Multibody, public Worded {
     const auto count = [](const auto& v) { return static_cast<size_t>(v.size()); };
     const Now now{t, x, {xi.data(), count(xi)}, {u.data(), count(u)}};
     std::vector<std::string> out;
-    for (const Watched& signal : signals_) {
+    for (const Watched& signal : at_start_.signals) {
       if (const double value = signal.value(now); !std::isfinite(value))
         out.push_back(fmt::format("{} is {} at the start", signal.what, value));
+    }
+    for (const Held& held : at_start_.held) {
+      const double value = held.value(t), apart = x[held.column] - value;
+      // The start may be the last state of a run, whose scheme keeps the angle to its order.
+      if (!(std::abs(held.turns ? std::remainder(apart, 2 * std::numbers::pi) : apart) < 0.01))
+        out.push_back(fmt::format("{} is prescribed as {} at t = {}, but {} at the start",
+                                  held.what, value, t, x[held.column]));
     }
     return out;
   }
 
  private:
   MotionWords words_;
-  std::vector<Watched> signals_;
+  AtStart at_start_;
   std::shared_ptr<const Inputs> inputs_;
 };
 
@@ -157,7 +179,8 @@ Rows Assembly::rows() {
     for (const Prescribed& other : out.prescribed)
       if (other.name == part.name) wrong(part, "prescribed", "this joint is prescribed already");
     if (const int link = joint_of(part, "prescribed"); link >= 0)
-      out.prescribed.push_back({part.name, link, rate});  // the number of the velocity follows
+      out.prescribed.push_back(
+          {part.name, link, rate, part.angle});  // the number of the velocity follows
   }
   return out;
 }
@@ -258,18 +281,29 @@ SystemModel Assembly::model() {
   check_motions(*system, said);
   stop_at_mistakes();
   draw(system);
-  std::vector<Watched> signals;
+  AtStart at_start;
   for (const auto& part : parts_.motors_)
-    signals.push_back({fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});
+    at_start.signals.push_back(
+        {fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});
   for (const auto& part : parts_.forces_)
     for (const Signal& along : part.along)
-      signals.push_back({fmt::format("{}force '{}': along", part.where, part.name), along});
-  std::erase_if(signals, [](const Watched& signal) { return !signal.value; });
-  const auto driven = [system, signals, words = words_,
+      at_start.signals.push_back(
+          {fmt::format("{}force '{}': along", part.where, part.name), along});
+  std::erase_if(at_start.signals, [](const Watched& signal) { return !signal.value; });
+  for (const auto& part : parts_.rates_) {
+    if (!part.angle) continue;
+    const int link = joint_of(part, "prescribed");
+    size_t column = 0;
+    for (int j = 0; j < link; ++j) column += type_of(tree.kind(j)).columns.size();
+    at_start.held.push_back(
+        {fmt::format("{}prescribed '{}': {}", part.where, part.name, model_.group.columns[column]),
+         column, tree.kind(link) == JointKind::hinge, part.angle});
+  }
+  const auto driven = [system, at_start, words = words_,
                        drivers = drivers(tree)](const std::shared_ptr<const Inputs>& inputs) {
     Multibody out = *system;
     if (inputs != nullptr) out.drive(drivers, inputs);
-    return std::make_shared<Speaking>(out, words, signals, inputs);
+    return std::make_shared<Speaking>(out, words, at_start, inputs);
   };
   if (!model_.inputs.empty()) model_.drive = driven;
   model_.mechanics = invariant(*system, words_);

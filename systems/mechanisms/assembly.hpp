@@ -54,6 +54,7 @@ class Assembly {
   std::vector<mechanisms::Said> rows_in_words(const std::vector<mechanisms::RowWords>& rows) const;
   void look_at_redundant(const mechanisms::Redundancy& redundancy,
                          const std::vector<mechanisms::Said>& rows);
+  void check_prescribed(const mechanisms::Starts& starts);
   void start(const std::shared_ptr<const mechanisms::Starts>& starts);
   void check_motions(const mechanisms::Multibody& system,
                      const std::vector<mechanisms::Said>& rows);

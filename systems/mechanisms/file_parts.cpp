@@ -82,20 +82,19 @@ void FileParts::chains() {
 }
 void FileParts::prescribed(const toml::table& table) {
   std::string joint;
-  std::function<double(double)> rate, angle;
+  FileValues::OfTime rate, angle;
   Range range;
   const auto of_time = [&](auto& to) {
-    return [this, &to](const Node& node, const std::string& key) {
-      to = read_.of_time(node, key, key == "angle");
-    };
+    return [this, &to](const Node& node, const std::string& key) { to = read_.of_time(node, key); };
   };
   read_.entries(table, {{"joint", read_.read(joint)},
                         {"rate", of_time(rate)},
                         {"angle", of_time(angle)},
                         {"least", read_.read(range.least)},
                         {"most", read_.read(range.most)}});
-  if (rate && angle) read_.toml.wrong(table, "prescribed", "one of rate and angle");
-  if (rate || angle) m_.prescribe(joint, rate ? rate : angle);
+  if (rate.value && angle.value) read_.toml.wrong(table, "prescribed", "one of rate and angle");
+  if (rate.value) m_.prescribe(joint, rate.value);
+  else if (angle.value) m_.prescribe(joint, angle.slope, angle.value);
   else m_.prescribe(joint, range);
 }
 void FileParts::motor(const toml::table& table) {

@@ -66,8 +66,11 @@ class FileValues {
       return formula(values);
     };
   }
-  /// A formula of t and parameters, or its derivative.
-  std::function<double(double)> of_time(const Node& node, const std::string& key, bool derivative) {
+  /// A formula of t and parameters; empty where it is a mistake.
+  struct OfTime {
+    std::function<double(double)> value, slope;
+  };
+  OfTime of_time(const Node& node, const std::string& key) {
     const auto any = formulas.expression(node, key, names_);
     if (!any) return {};
     for (const size_t i : any->used()) {
@@ -79,16 +82,21 @@ class FileValues {
       return {};
     }
     const auto formula = formulas.expression(node, key, {"t"});
-    const auto out = [formula = *formula, derivative](double t) {
-      double slope = 0;
-      const double value = formula.differentiate({&t, 1}, 1, {&slope, 1});
-      return derivative ? slope : value;
+    const OfTime out = {[formula = *formula](double t) {
+                          return formula({&t, 1});
+                        },
+                        [formula = *formula](double t) {
+                          double slope = 0;
+                          formula.differentiate({&t, 1}, 1, {&slope, 1});
+                          return slope;
+                        }};
+    const auto finite = [&](double first, const char* what) {
+      if (!std::isfinite(first))
+        toml.wrong(node, key, fmt::format("{} finite at t = 0, got {}", what, first));
+      return std::isfinite(first);
     };
-    if (const double first = out(0); !std::isfinite(first)) {
-      toml.wrong(node, key,
-                 fmt::format("{} finite at t = 0, got {}",
-                             derivative ? "an angle whose rate is" : "a rate", first));
-    }
+    if (finite(out.value(0), key == "angle" ? "an angle" : "a rate") && key == "angle")
+      finite(out.slope(0), "an angle whose rate is");
     return out;
   }
 

@@ -41,11 +41,12 @@ void Mechanism::loop(const std::string& name, const std::string& a, const std::s
                      const LoopOptions& options) {
   loops_.push_back({part(name), options, a, b});
 }
-void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate) {
-  rates_.push_back({part(joint), std::move(rate)});
+void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate,
+                          std::function<double(double t)> angle) {
+  rates_.push_back({part(joint), std::move(rate), std::move(angle)});
 }
 void Mechanism::prescribe(const std::string& joint, const Range& range) {
-  rates_.push_back({part(joint), {}, range});
+  rates_.push_back({part(joint), {}, {}, range});
 }
 void Mechanism::ground(double rate, Point velocity) {
   ground_rate_ = rate;

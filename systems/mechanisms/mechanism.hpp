@@ -126,8 +126,10 @@ class Mechanism {
   /// A joint that closes a chain: its points, and axes, coincide.
   void loop(const std::string& name, const std::string& a, const std::string& b,
             const LoopOptions& options);
-  /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate".
-  void prescribe(const std::string& joint, std::function<double(double t)> rate);
+  /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate". With the angle (of a
+  /// slider the position) whose derivative it is, a run starts there.
+  void prescribe(const std::string& joint, std::function<double(double t)> rate,
+                 std::function<double(double t)> angle = {});
   void prescribe(const std::string& joint, const Range& range = {});
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});
@@ -189,7 +191,8 @@ class Mechanism {
     std::string body;
   };
   struct RatePart : Part {
-    std::function<double(double)> rate;  // empty: an input
+    std::function<double(double)> rate;   // empty: an input
+    std::function<double(double)> angle;  // empty: that of the start
     Range range = {};
   };
   struct MotorPart : Part {

@@ -191,8 +191,23 @@ void Starts::refuse(const std::vector<int>& rows, const Values& values, const Pl
                    parts.empty() || numbers.empty() ? "" : " with ", join(numbers), text)});
 }
 
-// The given coordinates hold; the others follow from phi = 0.
-std::vector<double> Starts::configuration(const Values& values, const Places& places) const {
+Starts::Values Starts::prescribed(double t) const {
+  Values out;
+  const Tree& tree = system_->tree(system_->drawn().data());
+  size_t column = 0;
+  for (int link = 0; link < tree.links(); ++link) {
+    for (const Prescribed& p : system_->all_rows().prescribed)
+      if (p.dof == tree.first(link) && p.angle) out[columns_[column]] = p.angle(t);
+    column += type_of(tree.kind(link)).columns.size();
+  }
+  return out;
+}
+
+// The given coordinates hold, before them the prescribed ones; the others follow from phi = 0.
+std::vector<double> Starts::configuration(const Values& given_values, double t,
+                                          const Places& places) const {
+  Values values = prescribed(t);
+  values.insert(given_values.begin(), given_values.end());
   const Tree& tree = system_->tree(system_->drawn().data());
   std::vector<double> g = tree.drawn(), coordinates(columns_.size());
   system_->geometry().coordinates(g.data(), coordinates.data());
@@ -232,7 +247,7 @@ std::vector<double> Starts::configuration(const Values& values, const Places& pl
 }
 
 // Least 1/2 xi^T I xi with A xi = b and the given velocities.
-Start Starts::solve(const Values& values, const Places& places) const {
+Start Starts::solve(const Values& values, double t, const Places& places) const {
   std::vector<std::string> wrong;
   for (const auto& [name, value] : values) {
     const auto place = places.find(name);
@@ -241,7 +256,7 @@ Start Starts::solve(const Values& values, const Places& places) const {
   }
   if (!wrong.empty()) throw ConfigError(wrong);
   Start start;
-  start.configuration = configuration(values, places);
+  start.configuration = configuration(values, t, places);
   std::vector<double> g(system_->drawn().size());
   system_->geometry().from_coordinates(start.configuration, g.data());
   const int n = system_->dim(), k = system_->rows();
@@ -253,7 +268,7 @@ Start Starts::solve(const Values& values, const Places& places) const {
   VectorXd b = VectorXd::Zero(a.rows()), b_rows(k);
   MatrixXd a_rows(k, n);
   system_->inertia(g.data(), inertia);
-  system_->constraints(0, g.data(), a_rows, b_rows);
+  system_->constraints(t, g.data(), a_rows, b_rows);
   a.topRows(k) = a_rows;
   b.head(k) = b_rows;
   for (size_t i = 0; i < stated.size(); ++i) {

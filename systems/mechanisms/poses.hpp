@@ -44,12 +44,15 @@ class Starts {
          std::vector<std::string> columns, std::vector<std::string> rates, std::vector<Said> rows);
   /// Mistakes in these names; "speed" is the first of the root's velocities ahead.
   std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
-  /// Throws ConfigError where the rows forbid these values; places: where these stand in a file.
-  Start solve(const Values& values, const Places& places = {}) const;
+  /// At a time, where prescribed angles hold. Throws ConfigError where the rows forbid these values; places: where these
+  /// stand in a file.
+  Start solve(const Values& values, double t, const Places& places = {}) const;
+  /// The coordinates that are prescribed, and what they are at a time.
+  Values prescribed(double t) const;
 
  private:
   int rate(const std::string& name) const;  // -1: no velocity
-  std::vector<double> configuration(const Values& values, const Places& places) const;
+  std::vector<double> configuration(const Values& values, double t, const Places& places) const;
   /// Throws that these rows and values do not go together, and the text behind them.
   [[noreturn]] void refuse(const std::vector<int>& rows, const Values& values, const Places& places,
                            const std::string& text) const;

@@ -131,6 +131,44 @@ TEST_F(MechanismFile, RefusesAParameterItDoesNotHave) {
   EXPECT_THAT(o.err, HasSubstr("did you mean 'offset'?"));
 }
 
+/// A prescribed angle is the start's, from other times too.
+TEST_F(MechanismFile, StartsWhereItIsPrescribed) {
+  const std::string hinge = write(R"toml([[body]]
+name = "arm"
+mass = 1
+at = [1, 0, 0]
+inertia = [1, 1, 1]
+[[body]]
+name = "tip"
+mass = 1
+at = [2, 0, 0]
+inertia = [1, 1, 1]
+[[joint]]
+name = "turn"
+kind = "hinge"
+child = "arm"
+[[joint]]
+name = "free"
+kind = "hinge"
+parent = "arm"
+child = "tip"
+at = [1.5, 0, 0]
+[[prescribed]]
+joint = "turn"
+angle = "0.5 + t^2/10"
+)toml");
+  for (const double from : {0.0, 3.0}) {
+    const json out = answer({"run", hinge, "--from", std::to_string(from), "--until",
+                             std::to_string(from + 1), "--compose", "kahan_li6"});
+    EXPECT_NEAR(out["start"]["configuration"][0], 0.5 + from * from / 10, 1e-14);
+    EXPECT_NEAR(out["start"]["velocity"][0], from / 5, 1e-14);
+    EXPECT_NEAR(out["final"]["configuration"][0], 0.5 + (from + 1) * (from + 1) / 10, 1e-10);
+  }
+  EXPECT_THAT(run({"run", hinge, "--configuration", "0,0", "--velocity", "0,1"}).err,
+              HasSubstr("system.toml:21:1: prescribed 'turn': turn.angle is prescribed as 0.5 at "
+                        "t = 0, but 0 at the start"));
+}
+
 /// A named input in a force and in another joint's motor, that of a motor in a force; not driven they are 0.
 TEST_F(MechanismFile, FormulasUseInputs) {
   const std::string cart = write(R"toml([[body]]

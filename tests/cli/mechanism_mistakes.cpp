@@ -154,6 +154,12 @@ TEST_F(MechanismMistakes, InTheStart) {
        "low.angle = 1.5 cannot be reached, 1.91 m is left"},
       {kSpace + "[start]\nR11 = 3\n", "11:7: start: R11 = 3: se3: R11..R33 has"},
       {"asks = [\"sped\"]\n" + kFlat, "1:8: asks: unknown number of the start"},
+      {kFlat + kArm + "[[prescribed]]\njoint = \"arm\"\nangle = \"0.5 + t\"\n[start]\n" +
+           "arm.angle = 0.25\n",
+       "23:13: start: arm.angle = 0.25, but it is prescribed as 0.5 at t = 0; leave it out"},
+      {"asks = [\"arm.angle\"]\n" + kFlat + kArm +
+           "[[prescribed]]\njoint = \"arm\"\nangle = \"t\"\n",
+       "1:8: asks: arm.angle is prescribed"},
   });
 }
 
@@ -172,6 +178,9 @@ TEST_F(MechanismMistakes, InFormulas) {
        "mean 'omega'?"},
       {pushed + "along = [0, \"1/x\", 0]\n", "9:1: force 'f': along is inf at the start"},
       {moved + "rate = \"ln(t)\"\n", "21:8: rate: expected a rate finite at t = 0, got -inf"},
+      {moved + "angle = \"ln(t)\"\n", "21:9: angle: expected an angle finite at t = 0, got -inf"},
+      {moved + "angle = \"sqrt(t)\"\n",
+       "21:9: angle: expected an angle whose rate is finite at t = 0, got inf"},
       {moved + "rate = \"1\"\nangle = \"t\"\n", "19:1: prescribed: expected one of rate and angle"},
       {moved + "rate = \"1\"\n[[prescribed]]\njoint = \"arm\"\nrate = \"2\"\n",
        "22:1: prescribed 'arm': this joint is prescribed already"},

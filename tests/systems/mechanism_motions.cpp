@@ -143,5 +143,42 @@ TEST(MechanismMotions, TriangleSwingsAsAPhysicalPendulum) {
   EXPECT_NEAR(std::abs(quarter.last.coordinates[5]), half * std::sin(2 * std::asin(modulus)), 1e-9);
 }
 
+// A prescribed angle is that of the start too, whenever that is.
+TEST(MechanismMotions, StartWhereTheyArePrescribed) {
+  Mechanism m("arm");
+  m.body("arm", {.mass = 1, .at = {1, 0, 0}, .inertia = {1, 1, 1}});
+  m.body("tip", {.mass = 1, .at = {2, 0, 0}, .inertia = {1, 1, 1}});
+  m.hinge("turn", kWorld, "arm", {});
+  m.slider("reach", "arm", "tip", {.at = {2, 0, 0}, .axis = {1, 0, 0}});
+  m.hinge("free", kWorld, m.body("wheel", {.mass = 1, .inertia = {1, 1, 1}}), {});
+  m.prescribe(
+      "turn", [](double t) { return std::cos(t); }, [](double t) { return 0.5 + std::sin(t); });
+  m.prescribe(
+      "reach", [](double) { return 0.25; }, [](double t) { return 0.25 * t; });
+  m.start({{"free.rate", 2}});
+  for (const double from : {0.0, 3.0}) {
+    const double until = from + 1;
+    const Result out = simulate(m).compose("kahan_li6").step(0.02).from(from).until(until).run();
+    ASSERT_TRUE(out.status.ok) << out.status.reason;
+    const auto& first = out.config.start;
+    EXPECT_NEAR(first.configuration[0], 0.5 + std::sin(from), 1e-14);
+    EXPECT_NEAR(first.configuration[1], 0.25 * from, 1e-14);
+    EXPECT_NEAR(first.velocity[0], std::cos(from), 1e-14);
+    EXPECT_NEAR(first.velocity[2], 2, 1e-14);
+    EXPECT_NEAR(out.last.coordinates[0], 0.5 + std::sin(until), 1e-10);
+    EXPECT_NEAR(out.last.coordinates[1], 0.25 * until, 1e-10);
+  }
+  EXPECT_THAT(simulate(m).start({.configuration = {0.4, 0, 0}, .velocity = {1, 0, 0}}).mistakes(),
+              testing::Contains(testing::HasSubstr(
+                  "prescribed 'turn': turn.angle is prescribed as 0.5 at t = 0, but 0.4")));
+  const double turns = 0.5 - 2 * std::numbers::pi;
+  EXPECT_TRUE(simulate(m)
+                  .start({.configuration = {turns, 0, 0}, .velocity = {1, 0, 0}})
+                  .mistakes()
+                  .empty());
+  m.start({{"turn.angle", 0.4}});
+  EXPECT_THROW(m.model(), ConfigError);
+}
+
 }  // namespace
 }  // namespace hamel
