@@ -135,11 +135,14 @@ void Simulation::Plan::look_at_start() {
   } else if (!mechanics->left_invariant()) {
     return;
   }
+  bool said = false;
   if (const auto* worded = dynamic_cast<const Worded*>(mechanics.get())) {
     Eigen::VectorXd xi = Eigen::VectorXd::Zero(n);
     if (config.start.velocity.size() == static_cast<size_t>(n))
       xi = Eigen::Map<const Eigen::VectorXd>(config.start.velocity.data(), n);
-    add(worded->mistakes_at(config.from, g.data(), xi));
+    const auto wrong = worded->mistakes_at(config.from, g.data(), xi);
+    said = !wrong.empty();
+    add(wrong);
   }
   constraints.resize(mechanics->rows(), mechanics->dim());
   inertia.resize(mechanics->dim(), mechanics->dim());
@@ -149,7 +152,7 @@ void Simulation::Plan::look_at_start() {
   Eigen::VectorXd phi(mechanics->holonomic_rows());
   mechanics->holonomic(g.data(), phi);
   if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
-  add(check_system_matrices(inertia, constraints, n));
+  if (!said) add(check_system_matrices(inertia, constraints, n));  // without names
 }
 
 // Onto phi(g) = 0 by Newton's method, g <- g tau(-I^-1 A^T (A I^-1 A^T)^-1 phi), A the rows of phi: the start may be the

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include <hamel/systems/mechanisms/poses.hpp>
+#include <hamel/systems/mechanisms/speaking.hpp>
 
 namespace hamel {
 namespace {
@@ -25,63 +25,6 @@ std::function<double(std::span<const double>, std::span<const double>)> energy_o
     return 0.5 * v.dot(inertia * v) + system->potential(g.data());
   };
 }
-
-// A signal of a part, and how messages call it.
-struct Watched {
-  std::string what;
-  Signal value;
-};
-
-// A coordinate with a prescribed value.
-struct Held {
-  std::string what;
-  size_t column;
-  bool turns;  // a hinge
-  std::function<double(double t)> value;
-};
-
-// What a run is not to start without.
-struct AtStart {
-  std::vector<Watched> signals;
-  std::vector<Held> held;
-};
-
-// With its words; a run starts where its signals have values and where it is prescribed to be.
-class Speaking final : public Multibody, public Worded {
- public:
-  Speaking(const Multibody& system, MotionWords words, AtStart at_start,
-           std::shared_ptr<const Inputs> inputs)
-      : Multibody(system),
-        words_(std::move(words)),
-        at_start_(std::move(at_start)),
-        inputs_(std::move(inputs)) {}
-  const MotionWords& words() const override { return words_; }
-  std::vector<std::string> mistakes_at(double t, const double* g, ConstVector xi) const override {
-    std::vector<double> x(static_cast<size_t>(geometry().columns()));
-    geometry().coordinates(g, x.data());
-    const InputValues u = inputs_ == nullptr ? InputValues() : inputs_->at(t);
-    const auto count = [](const auto& v) { return static_cast<size_t>(v.size()); };
-    const Now now{t, x, {xi.data(), count(xi)}, {u.data(), count(u)}};
-    std::vector<std::string> out;
-    for (const Watched& signal : at_start_.signals) {
-      if (const double value = signal.value(now); !std::isfinite(value))
-        out.push_back(fmt::format("{} is {} at the start", signal.what, value));
-    }
-    for (const Held& held : at_start_.held) {
-      const double value = held.value(t), apart = x[held.column] - value;
-      // The start may be the last state of a run, whose scheme keeps the angle to its order.
-      if (!(std::abs(held.turns ? std::remainder(apart, 2 * std::numbers::pi) : apart) < 0.01))
-        out.push_back(fmt::format("{} is prescribed as {} at t = {}, but {} at the start",
-                                  held.what, value, t, x[held.column]));
-    }
-    return out;
-  }
-
- private:
-  MotionWords words_;
-  AtStart at_start_;
-  std::shared_ptr<const Inputs> inputs_;
-};
 
 // Without places and forces where nothing depends on the configuration; else null.
 std::shared_ptr<const Mechanics> invariant(const Multibody& system, const MotionWords& words) {
@@ -267,7 +210,10 @@ SystemModel Assembly::model() {
 
   const std::vector<RowWords> words = system->all_rows().words();
   const std::vector<Said> said = rows_in_words(words);
-  const Redundancy redundancy = look_for_redundancy(*system, system->drawn());
+  const auto starts =
+      std::make_shared<Starts>(system, parts_.name_, model_.group.columns, words_.rates, said);
+  const Redundancy redundancy =
+      look_for_redundancy(*system, {system->drawn(), start_configuration(*system, *starts)});
   look_at_redundant(redundancy, said);
   system->keep(redundancy.rows);
   system->look_for_constants(poses_around(*system, system->drawn()));
@@ -277,11 +223,11 @@ SystemModel Assembly::model() {
     words_.reactions.push_back(word.name);
   }
 
-  start(std::make_shared<Starts>(system, parts_.name_, model_.group.columns, words_.rates, said));
+  start(starts);
   check_motions(*system, said);
   stop_at_mistakes();
   draw(system);
-  AtStart at_start;
+  AtStart at_start{said, {}, {}};
   for (const auto& part : parts_.motors_)
     at_start.signals.push_back(
         {fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});

@@ -131,6 +131,20 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
   stop_at_mistakes();
 }
 
+// The element at which it is stated to start.
+std::vector<double> Assembly::start_configuration(const Multibody& system,
+                                                  const Starts& starts) const {
+  Starts::Values stated;
+  Starts::Places places;
+  for (const auto& part : parts_.start_) {
+    stated[part.name] = part.value;
+    places[part.name] = part.where;
+  }
+  std::vector<double> g(system.drawn().size());
+  system.geometry().from_coordinates(starts.configuration(stated, 0, places), g.data());
+  return g;
+}
+
 // What is prescribed is not stated otherwise.
 void Assembly::check_prescribed(const Starts& starts) {
   for (const auto& [name, angle] : starts.prescribed(0)) {

@@ -141,6 +141,21 @@ TEST_F(MechanismMistakes, InContactsAndLoops) {
   });
 }
 
+/// Blades on arms to both sides say the same as drawn, but not elsewhere.
+TEST_F(MechanismMistakes, InRowsThatRepeatOthersAtTheStart) {
+  std::string walker = kFlat;
+  for (const std::string side : {"1", "-1"})
+    walker += "[[body]]\nname = \"arm" + side + "\"\nmass = 1\nat = [0, " + side +
+              ", 0]\ninertia = [1, 1, 1]\n[[joint]]\nkind = \"hinge\"\nparent = \"a\"\n" +
+              "child = \"arm" + side + "\"\n[[blade]]\nbody = \"arm" + side + "\"\nat = [0, " +
+              side + ", 0]\n";
+  refuses({{walker,
+            "30:1: blade 'arm-1' (does not slip across its edge) says nothing beyond blade 'arm1' "
+            "(does not slip across its edge) at the start; start elsewhere"}});
+  EXPECT_EQ(run({"run", write(walker + "[start]\narm1.angle = 0.3\n"), "--until", "0.1"}).status,
+            0);
+}
+
 TEST_F(MechanismMistakes, InTheStart) {
   const std::string pin =
       kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"ground\"\nat = [1, 0, 1]\n";

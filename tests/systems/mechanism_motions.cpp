@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <hamel/systems/mechanisms/mechanism.hpp>
@@ -178,6 +179,70 @@ TEST(MechanismMotions, StartWhereTheyArePrescribed) {
                   .empty());
   m.start({{"turn.angle", 0.4}});
   EXPECT_THROW(m.model(), ConfigError);
+}
+
+// Trunk and two legs with a blade each, the hips prescribed; drawn straight, where both blades say the same. The tree
+// grows from the trunk, or from the left leg.
+Mechanism roller_walker(bool from_trunk) {
+  Mechanism m("roller walker");
+  const std::vector<double> moments = {1, 1, 0.1};
+  m.body("trunk", {.mass = 8, .at = {0, 0, 0.2}, .inertia = moments});
+  m.body("left", {.mass = 1, .at = {0.1, 0.3, 0.15}, .inertia = moments});
+  m.body("right", {.mass = 1, .at = {0.1, -0.3, 0.15}, .inertia = moments});
+  m.planar("road", from_trunk ? "trunk" : "left");
+  const Point hip = {0.1, 0.15, 0};
+  if (from_trunk) m.hinge("left hip", "trunk", "left", {.at = hip});
+  else m.hinge("left hip", "left", "trunk", {.at = hip});
+  m.hinge("right hip", "trunk", "right", {.at = {0.1, -0.15, 0}});
+  m.blade("left", "left", {.at = {0.1, 0.45, 0}});
+  m.blade("right", "right", {.at = {0.1, -0.45, 0}});
+  const double side = from_trunk ? 1 : -1;
+  m.prescribe("left hip", [side](double t) { return side * 1.2 * std::cos(3 * t); });
+  m.prescribe("right hip", [](double t) { return -1.2 * std::cos(3 * t); });
+  return m;
+}
+
+TEST(MechanismMotions, RollerWalkerIsSingularOnlyAsDrawn) {
+  const auto at = [](double theta, double x, double y) {
+    return Eigen::Translation2d(x, y) * Eigen::Rotation2Dd(theta);
+  };
+  const double left = 0.3, right = -0.25;
+  Mechanism ours = roller_walker(true);
+  ours.start({{"left hip.angle", left}, {"right hip.angle", right}, {"v1", 0.3}});
+  EXPECT_EQ(ours.model().mechanics->rows(), 4);
+  const Eigen::Vector2d hip(0.1, 0.15);
+  // The left leg seen from the trunk turns about the hip; as drawn both are at the origin.
+  const auto leg = [&](double theta, double x, double y, double angle) {
+    return Eigen::Isometry2d(at(theta, x, y) * Eigen::Translation2d(hip) *
+                             Eigen::Rotation2Dd(angle) * Eigen::Translation2d(-hip));
+  };
+  const Result mine = simulate(ours).compose("kahan_li6").step(0.002).until(2).run();
+  ASSERT_TRUE(mine.status.ok) << mine.status.reason;
+  Mechanism other = roller_walker(false);
+  const Eigen::Isometry2d first = leg(0, 0, 0, left);
+  const auto& v = mine.config.start.velocity;
+  const Eigen::Vector2d shift = first.translation();
+  const Eigen::Vector2d velocity =
+      first.linear().transpose() *
+      (Eigen::Vector2d(v[1], v[2]) + v[0] * Eigen::Vector2d(-shift[1], shift[0]) +
+       v[3] * Eigen::Vector2d(-(shift - hip)[1], (shift - hip)[0]));
+  const Result hers = simulate(other)
+                          .start({.configuration = {left, shift[0], shift[1], -left, right},
+                                  .velocity = {v[0] + v[3], velocity[0], velocity[1], -v[3], v[4]}})
+                          .compose("kahan_li6")
+                          .step(0.002)
+                          .until(2)
+                          .run();
+  ASSERT_TRUE(hers.status.ok) << hers.status.reason;
+  const auto& g = mine.last.coordinates;
+  const auto& h = hers.last.coordinates;
+  const Eigen::Isometry2d last = leg(g[0], g[1], g[2], g[3]);
+  EXPECT_NEAR(std::remainder(g[0] + g[3] - h[0], 2 * std::numbers::pi), 0, 1e-9);
+  EXPECT_NEAR(last.translation()[0], h[1], 1e-9);
+  EXPECT_NEAR(last.translation()[1], h[2], 1e-9);
+  EXPECT_NEAR(mine.last.energy, hers.last.energy, 1e-9 * (1 + std::abs(mine.last.energy)));
+  for (const char* row : {"left.reaction1", "right.reaction1"})
+    EXPECT_NEAR(mine.trajectory.column(row).back(), hers.trajectory.column(row).back(), 1e-7);
 }
 
 }  // namespace
