@@ -123,7 +123,7 @@ Rows Assembly::rows() {
       if (other.name == part.name) wrong(part, "prescribed", "this joint is prescribed already");
     if (const int link = joint_of(part, "prescribed"); link >= 0)
       out.prescribed.push_back(
-          {part.name, link, rate, part.angle});  // the number of the velocity follows
+          {part.name, link, rate, part.angle, part.of_time});  // the number of the velocity follows
   }
   return out;
 }
@@ -156,10 +156,11 @@ Forces Assembly::forces() {
   }
   for (const auto& part : parts_.motors_) {
     if (const int link = joint_of(part, "motor"); link >= 0 && part.effort)
-      out.motors.push_back({part.name, link, part.effort});
+      out.motors.push_back({part.name, link, part.effort, part.of_time});
   }
   for (const auto& part : parts_.forces_) {
-    Force force{part.name, link_of(part, "force", part.body), vec(part.at), part.of_body, {}};
+    Force force{
+        part.name, link_of(part, "force", part.body), vec(part.at), part.of_body, part.of_time, {}};
     for (int i = 0; i < 3; ++i) force.along[i] = part.along[i];
     out.forces.push_back(std::move(force));
   }

@@ -53,10 +53,11 @@ class FileValues {
     const auto values = formulas.numbers(node, key, 3);
     return {values[0], values[1], values[2]};
   }
-  /// A formula of t, coordinates, velocities, inputs and parameters.
-  Signal signal(const Node& node, const std::string& key) {
+  /// A formula of t, coordinates, velocities, inputs and parameters; of_time becomes true where t stands in it.
+  Signal signal(const Node& node, const std::string& key, bool& of_time) {
     const auto formula = formulas.expression(node, key, names_);
     if (!formula) return {};
+    for (const size_t i : formula->used()) of_time |= i == 0;
     return [formula = *formula, inputs = inputs_,
             values = std::vector<double>(names_.size())](const Now& now) mutable {
       values[0] = now.t;
@@ -69,6 +70,7 @@ class FileValues {
   /// A formula of t and parameters; empty where it is a mistake.
   struct OfTime {
     std::function<double(double)> value, slope;
+    bool constant = false;
   };
   OfTime of_time(const Node& node, const std::string& key) {
     const auto any = formulas.expression(node, key, names_);
@@ -89,7 +91,8 @@ class FileValues {
                           double slope = 0;
                           formula.differentiate({&t, 1}, 1, {&slope, 1});
                           return slope;
-                        }};
+                        },
+                        formula->constant()};
     const auto finite = [&](double first, const char* what) {
       if (!std::isfinite(first))
         toml.wrong(node, key, fmt::format("{} finite at t = 0, got {}", what, first));
@@ -112,9 +115,6 @@ class FileValues {
   }
   Reader read(Point& to) {
     return [this, &to](const Node& node, const std::string& key) { to = point(node, key); };
-  }
-  Reader read(Signal& to) {
-    return [this, &to](const Node& node, const std::string& key) { to = signal(node, key); };
   }
   template <class Text>
   Reader read(Text& to) {  // string, bool, list of strings

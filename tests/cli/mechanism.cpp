@@ -267,6 +267,61 @@ TEST_F(MechanismFile, SteadyBicycle) {
   EXPECT_THAT(o.out, HasSubstr("steer.rate"));
 }
 
+/// A motor that slows a wheel and a rate that does not change leave a skate its steady motions; one of t does not.
+TEST_F(MechanismFile, SteadyWhereNoFormulaIsOfTime) {
+  const std::string skate = R"toml([[body]]
+name = "deck"
+mass = 3
+at = [0.1, 0, 0.2]
+box = [0.5, 0.2, 0.1]
+[[body]]
+name = "rotor"
+mass = 1
+at = [0, 0, 0.4]
+cylinder = [0.1, 0.03]
+[[body]]
+name = "fan"
+mass = 1
+at = [0, 0, 0.6]
+cylinder = [0.1, 0.03]
+[[joint]]
+name = "road"
+kind = "planar"
+child = "deck"
+[[joint]]
+name = "spin"
+kind = "hinge"
+parent = "deck"
+child = "rotor"
+[[joint]]
+name = "fan"
+kind = "hinge"
+parent = "deck"
+child = "fan"
+[[blade]]
+name = "keel"
+body = "deck"
+[inputs]
+wind = { unit = "N" }
+[[prescribed]]
+joint = "fan"
+)toml";
+  const auto steady = [&](const std::string& rate, const std::string& effort) {
+    return run({"steady",
+                write(skate + "rate = " + rate + "\n[[motor]]\njoint = \"spin\"\neffort = " +
+                      effort + "\n[[force]]\nname = \"wind\"\nbody = \"deck\"\n" +
+                      "along = [\"wind*cos(theta)\", 0, 0]\n"),
+                "--speed", "1", "--json"});
+  };
+  const Outcome o = steady("3", "\"wind - 0.1*spin.rate\"");
+  ASSERT_EQ(o.status, 0) << o.err;
+  const json s = json::parse(o.out);
+  EXPECT_NEAR(s["motion"]["velocity"][1], 1, 1e-12);
+  EXPECT_NEAR(s["motion"]["velocity"][4], 3, 1e-12);
+  EXPECT_THAT(steady("\"3 + t\"", "0").err, HasSubstr("depends on time"));
+  EXPECT_THAT(steady("3", "\"0.1*t\"").err, HasSubstr("depends on time"));
+}
+
 TEST_F(MechanismFile, SteadySaysWhatItCannotDo) {
   EXPECT_THAT(run({"steady", "suslov", "--speed", "1"}).err,
               HasSubstr("knows no motion by its speed"));
