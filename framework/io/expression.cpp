@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -41,6 +42,8 @@ class Expression::Reader {
         variable_slot_(variables.size()) {
     names_ = variables;
     for (const auto& [name, value] : constants) names_.push_back(name);
+    std::copy_if(names_.begin(), names_.end(), std::back_inserter(unusable_),
+                 [](const std::string& name) { return !allows(name); });
     parser_.EnableOptimizer(false);
     parser_.DefineNameChars(kLetters);
     parser_.ClearFun();
@@ -54,8 +57,13 @@ class Expression::Reader {
       else parser_.DefineFunUserData(rule.name, call_two, data);
     }
     parser_.DefineConst("pi", std::numbers::pi);
-    for (const auto& [name, value] : constants) parser_.DefineConst(name, value);
-    for (size_t i = 0; i < variables.size(); ++i) parser_.DefineVar(variables[i], &values_[i]);
+    for (const auto& [name, value] : constants) {
+      if (std::find(variables.begin(), variables.end(), name) != variables.end())
+        throw ExpressionError(fmt::format("two things are called '{}'", name), 0);
+      if (allows(name)) parser_.DefineConst(name, value);
+    }
+    for (size_t i = 0; i < variables.size(); ++i)
+      if (allows(variables[i])) parser_.DefineVar(variables[i], &values_[i]);
   }
 
   void read() {
@@ -80,13 +88,27 @@ class Expression::Reader {
   [[noreturn]] void refuse(const mu::Parser::exception_type& error) const {
     const size_t at =
         std::min(text_.size(), static_cast<size_t>(std::max(0, static_cast<int>(error.GetPos()))));
+    for (const std::string& name : unusable_)
+      if (const size_t there = text_.find(name); !name.empty() && there != std::string::npos)
+        throw ExpressionError(cannot_stand(name), there);
     if (error.GetCode() != mu::ecUNASSIGNABLE_TOKEN) throw ExpressionError(error.GetMsg(), at);
     const size_t end = std::min(text_.size(), text_.find_first_not_of(kLetters, at));
-    if (end == at)
-      throw ExpressionError(fmt::format("'{}' has no meaning here", text_.substr(at, 1)), at);
+    if (end == at) {
+      size_t next = at + 1;  // of a letter in UTF-8 all bytes
+      while (next < text_.size() && (text_[next] & 0xC0) == 0x80) ++next;
+      throw ExpressionError(fmt::format("'{}' has no meaning here", text_.substr(at, next - at)),
+                            at);
+    }
     std::vector<std::string> known = names_;
     if (end < text_.size() && text_[end] == '(') known = functions();
-    throw ExpressionError(unknown_name("name", text_.substr(at, end - at), known), at);
+    std::string what = unknown_name("name", text_.substr(at, end - at), known);
+    for (const std::string& name : unusable_)
+      if (what.ends_with(fmt::format("did you mean '{}'?", name))) what += " " + cannot_stand(name);
+    throw ExpressionError(what, at);
+  }
+  static std::string cannot_stand(const std::string& name) {
+    return fmt::format(
+        "'{}' cannot stand in a formula: expected a letter, then letters, digits, _ . '", name);
   }
 
   void leave_out_unused() {
@@ -185,7 +207,7 @@ class Expression::Reader {
   mu::Parser parser_;
   std::vector<double> values_;
   std::vector<std::optional<size_t>> variable_slot_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, unusable_;  // unusable: those with a blank, say
   std::vector<size_t> stack_;
   std::vector<std::pair<size_t, size_t>> conditions_;
 };
@@ -276,11 +298,10 @@ std::vector<size_t> Expression::used() const {
 }
 
 bool Expression::allows(const std::string& name) {
-  const auto known = functions();
   return !name.empty() && name.size() <= 100 &&
          name.find_first_not_of(kLetters) == std::string::npos &&
          (std::isalpha(static_cast<unsigned char>(name[0])) != 0) && name != "pi" &&
-         std::find(known.begin(), known.end(), name) == known.end();
+         std::ranges::none_of(kFunctions, [&](const Rule& rule) { return rule.name == name; });
 }
 
 std::vector<std::string> Expression::functions() {

@@ -30,7 +30,8 @@ class ExpressionError : public std::invalid_argument {
 /// One object serves one thread at a time. Evaluation takes no memory.
 class Expression {
  public:
-  /// A formula over these variables. Throws ExpressionError, with the nearest name for one that is unknown.
+  /// A formula over these variables; those with a name that is not allowed cannot stand in it. Throws ExpressionError,
+  /// with the nearest name for one that is unknown.
   Expression(const std::string& text, const std::vector<std::string>& variables,
              const std::map<std::string, double>& constants = {});
   /// Its value; values in the order of the variables.

@@ -23,10 +23,10 @@ struct DrawnForce {
 
 struct MotionWords {
   std::vector<std::string> rates, reactions;  // of the velocities and of the multipliers
-  /// A start from a few numbers, at least one and at most as many as start_parameters names.
-  /// Throws ConfigError where there is no such motion.
+  /// A start at a time from a few numbers, at most as many as start_parameters names; without any the system's own start
+  /// there. Throws ConfigError where there is no such motion.
   std::vector<std::string> start_parameters;  // "speed", in m/s
-  std::function<Start(std::span<const double>)> start_from;
+  std::function<Start(std::span<const double>, double t)> start_from;
   std::vector<std::string> notes;                             // what the user should know
   std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
   std::vector<DrawnForce> forces;

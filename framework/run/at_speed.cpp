@@ -19,12 +19,12 @@ void add_start_at_speed(const std::string& system, StartAtSpeed start) {
   starts()[system] = std::move(start);
 }
 
-std::optional<Start> start_at_speed(const SystemModel& model, double speed) {
+std::optional<Start> start_at_speed(const SystemModel& model, double speed, double t) {
   if (const auto it = starts().find(model.name); it != starts().end())
     return it->second(model, speed);
   const MotionWords& words = words_of(model);
   if (words.start_parameters.empty() || words.start_parameters[0] != "speed") return {};
-  return words.start_from(std::vector<double>{speed});
+  return words.start_from(std::vector<double>{speed}, t);
 }
 
 }  // namespace hamel

@@ -9,9 +9,9 @@
 
 namespace hamel {
 
-/// Straight ahead at v m/s: of mechanisms whose first number for a start is a speed, and of systems by these names.
-/// Empty where the system knows no such motion.
-std::optional<Start> start_at_speed(const SystemModel& model, double speed);
+/// Straight ahead at v m/s from time t on: of mechanisms whose first number for a start is a speed, and of systems by
+/// these names. Empty where the system knows no such motion.
+std::optional<Start> start_at_speed(const SystemModel& model, double speed, double t = 0);
 
 using StartAtSpeed = std::function<Start(const SystemModel& model, double speed)>;
 void add_start_at_speed(const std::string& system, StartAtSpeed start);

@@ -31,18 +31,30 @@ std::vector<std::string> fill_from_few(const SystemModel& system, Config& config
     if (const auto speed = std::exchange(config.speed, {})) {
       if (!start.configuration.empty() || given > 0 || !start.momentum.empty())
         return {"speed: give it alone, or configuration with velocity or momentum"};
-      const auto straight = start_at_speed(system, *speed);
+      const auto straight = start_at_speed(system, *speed, config.from);
       if (!straight)
         return {fmt::format("speed: {} knows no motion by its speed; give velocity", system.name)};
       start = *straight;
     } else if (given > 0 && given < static_cast<size_t>(system.group.dim) &&
                given <= words.start_parameters.size() && start.configuration.empty()) {
-      start = words.start_from(start.velocity);
+      start = words.start_from(start.velocity, config.from);
     }
   } catch (const ConfigError& error) {
     return error.mistakes();
   }
   return {};
+}
+
+// The system's own start at this time; mistakes are added.
+Start own_start(const SystemModel& system, double from, std::vector<std::string>& mistakes) {
+  const MotionWords& words = words_of(system);
+  if (from == 0 || !words.start_from) return system.start;
+  try {
+    return words.start_from({}, from);
+  } catch (const ConfigError& error) {
+    mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
+    return system.start;
+  }
 }
 
 }  // namespace
@@ -77,14 +89,15 @@ void Simulation::Plan::fill_start() {
   if (!start.velocity.empty() && !start.momentum.empty()) {
     add({"start: give velocity or momentum, not both"});
   }
+  const Start own = own_start(system, config.from, mistakes);
   if (start.velocity.empty() && start.momentum.empty()) {
-    start.velocity = system.start.velocity;
-    start.momentum = system.start.momentum;
+    start.velocity = own.velocity;
+    start.momentum = own.momentum;
     if (start.velocity.empty() && start.momentum.empty()) {
       add({fmt::format("start: {} has no default start; give velocity or momentum", system.name)});
     }
   }
-  if (start.configuration.empty()) start.configuration = system.start.configuration;
+  if (start.configuration.empty()) start.configuration = own.configuration;
   if (start.configuration.empty()) start.configuration = system.group.identity;
   try {
     start.configuration = system.group.element(start.configuration);
@@ -122,11 +135,14 @@ void Simulation::Plan::look_at_start() {
   } else if (!mechanics->left_invariant()) {
     return;
   }
+  bool said = false;
   if (const auto* worded = dynamic_cast<const Worded*>(mechanics.get())) {
     Eigen::VectorXd xi = Eigen::VectorXd::Zero(n);
     if (config.start.velocity.size() == static_cast<size_t>(n))
       xi = Eigen::Map<const Eigen::VectorXd>(config.start.velocity.data(), n);
-    add(worded->mistakes_at(config.from, g.data(), xi));
+    const auto wrong = worded->mistakes_at(config.from, g.data(), xi);
+    said = !wrong.empty();
+    add(wrong);
   }
   constraints.resize(mechanics->rows(), mechanics->dim());
   inertia.resize(mechanics->dim(), mechanics->dim());
@@ -136,8 +152,9 @@ void Simulation::Plan::look_at_start() {
   Eigen::VectorXd phi(mechanics->holonomic_rows());
   mechanics->holonomic(g.data(), phi);
   if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
+  if (said) return;
   const std::vector<std::string> wrong = check_system_matrices(inertia, constraints, n);
-  add(wrong);
+  add(wrong);  // without names
   if (wrong.empty() && !mechanics->constant_inertia()) look_beside_start(g);
 }
 

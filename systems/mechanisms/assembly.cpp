@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/systems/mechanisms/poses.hpp>
+#include <hamel/systems/mechanisms/speaking.hpp>
 
 namespace hamel {
 namespace {
@@ -24,42 +25,6 @@ std::function<double(std::span<const double>, std::span<const double>)> energy_o
     return 0.5 * v.dot(inertia * v) + system->potential(g.data());
   };
 }
-
-// A signal of a part, and how messages call it.
-struct Watched {
-  std::string what;
-  Signal value;
-};
-
-// With its words; a run starts where its signals have values.
-class Speaking final : public Multibody, public Worded {
- public:
-  Speaking(const Multibody& system, MotionWords words, std::vector<Watched> signals,
-           std::shared_ptr<const Inputs> inputs)
-      : Multibody(system),
-        words_(std::move(words)),
-        signals_(std::move(signals)),
-        inputs_(std::move(inputs)) {}
-  const MotionWords& words() const override { return words_; }
-  std::vector<std::string> mistakes_at(double t, const double* g, ConstVector xi) const override {
-    std::vector<double> x(static_cast<size_t>(geometry().columns()));
-    geometry().coordinates(g, x.data());
-    const InputValues u = inputs_ == nullptr ? InputValues() : inputs_->at(t);
-    const auto count = [](const auto& v) { return static_cast<size_t>(v.size()); };
-    const Now now{t, x, {xi.data(), count(xi)}, {u.data(), count(u)}};
-    std::vector<std::string> out;
-    for (const Watched& signal : signals_) {
-      if (const double value = signal.value(now); !std::isfinite(value))
-        out.push_back(fmt::format("{} is {} at the start", signal.what, value));
-    }
-    return out;
-  }
-
- private:
-  MotionWords words_;
-  std::vector<Watched> signals_;
-  std::shared_ptr<const Inputs> inputs_;
-};
 
 // Without places and forces where nothing depends on the configuration; else null.
 std::shared_ptr<const Mechanics> invariant(const Multibody& system, const MotionWords& words) {
@@ -157,7 +122,8 @@ Rows Assembly::rows() {
     for (const Prescribed& other : out.prescribed)
       if (other.name == part.name) wrong(part, "prescribed", "this joint is prescribed already");
     if (const int link = joint_of(part, "prescribed"); link >= 0)
-      out.prescribed.push_back({part.name, link, rate});  // the number of the velocity follows
+      out.prescribed.push_back(
+          {part.name, link, rate, part.angle, part.of_time});  // the number of the velocity follows
   }
   return out;
 }
@@ -190,10 +156,11 @@ Forces Assembly::forces() {
   }
   for (const auto& part : parts_.motors_) {
     if (const int link = joint_of(part, "motor"); link >= 0 && part.effort)
-      out.motors.push_back({part.name, link, part.effort});
+      out.motors.push_back({part.name, link, part.effort, part.of_time});
   }
   for (const auto& part : parts_.forces_) {
-    Force force{part.name, link_of(part, "force", part.body), vec(part.at), part.of_body, {}};
+    Force force{
+        part.name, link_of(part, "force", part.body), vec(part.at), part.of_body, part.of_time, {}};
     for (int i = 0; i < 3; ++i) force.along[i] = part.along[i];
     out.forces.push_back(std::move(force));
   }
@@ -244,7 +211,10 @@ SystemModel Assembly::model() {
 
   const std::vector<RowWords> words = system->all_rows().words();
   const std::vector<Said> said = rows_in_words(words);
-  const Redundancy redundancy = look_for_redundancy(*system, system->drawn());
+  const auto starts =
+      std::make_shared<Starts>(system, parts_.name_, model_.group.columns, words_.rates, said);
+  const Redundancy redundancy =
+      look_for_redundancy(*system, {system->drawn(), start_configuration(*system, *starts)});
   look_at_redundant(redundancy, said);
   system->keep(redundancy.rows);
   system->look_for_constants(poses_around(*system, system->drawn()));
@@ -254,22 +224,33 @@ SystemModel Assembly::model() {
     words_.reactions.push_back(word.name);
   }
 
-  start(std::make_shared<Starts>(system, parts_.name_, model_.group.columns, words_.rates, said));
+  start(starts);
   check_motions(*system, said);
   stop_at_mistakes();
   draw(system);
-  std::vector<Watched> signals;
+  AtStart at_start{said, {}, {}};
   for (const auto& part : parts_.motors_)
-    signals.push_back({fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});
+    at_start.signals.push_back(
+        {fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});
   for (const auto& part : parts_.forces_)
     for (const Signal& along : part.along)
-      signals.push_back({fmt::format("{}force '{}': along", part.where, part.name), along});
-  std::erase_if(signals, [](const Watched& signal) { return !signal.value; });
-  const auto driven = [system, signals, words = words_,
+      at_start.signals.push_back(
+          {fmt::format("{}force '{}': along", part.where, part.name), along});
+  std::erase_if(at_start.signals, [](const Watched& signal) { return !signal.value; });
+  for (const auto& part : parts_.rates_) {
+    if (!part.angle) continue;
+    const int link = joint_of(part, "prescribed");
+    size_t column = 0;
+    for (int j = 0; j < link; ++j) column += type_of(tree.kind(j)).columns.size();
+    at_start.held.push_back(
+        {fmt::format("{}prescribed '{}': {}", part.where, part.name, model_.group.columns[column]),
+         column, tree.kind(link) == JointKind::hinge, part.angle});
+  }
+  const auto driven = [system, at_start, words = words_,
                        drivers = drivers(tree)](const std::shared_ptr<const Inputs>& inputs) {
     Multibody out = *system;
     if (inputs != nullptr) out.drive(drivers, inputs);
-    return std::make_shared<Speaking>(out, words, signals, inputs);
+    return std::make_shared<Speaking>(out, words, at_start, inputs);
   };
   if (!model_.inputs.empty()) model_.drive = driven;
   model_.mechanics = invariant(*system, words_);

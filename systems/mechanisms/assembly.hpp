@@ -11,6 +11,7 @@
 #include <hamel/systems/mechanisms/mechanism.hpp>
 #include <hamel/systems/mechanisms/multibody.hpp>
 #include <hamel/systems/mechanisms/poses.hpp>
+#include <hamel/systems/mechanisms/starts.hpp>
 
 namespace hamel {
 
@@ -54,6 +55,9 @@ class Assembly {
   std::vector<mechanisms::Said> rows_in_words(const std::vector<mechanisms::RowWords>& rows) const;
   void look_at_redundant(const mechanisms::Redundancy& redundancy,
                          const std::vector<mechanisms::Said>& rows);
+  std::vector<double> start_configuration(const mechanisms::Multibody& system,
+                                          const mechanisms::Starts& starts) const;
+  void check_prescribed(const mechanisms::Starts& starts);
   void start(const std::shared_ptr<const mechanisms::Starts>& starts);
   void check_motions(const mechanisms::Multibody& system,
                      const std::vector<mechanisms::Said>& rows);

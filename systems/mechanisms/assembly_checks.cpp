@@ -131,6 +131,35 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
   stop_at_mistakes();
 }
 
+// The element at which it is stated to start.
+std::vector<double> Assembly::start_configuration(const Multibody& system,
+                                                  const Starts& starts) const {
+  Starts::Values stated;
+  Starts::Places places;
+  for (const auto& part : parts_.start_) {
+    stated[part.name] = part.value;
+    places[part.name] = part.where;
+  }
+  std::vector<double> g(system.drawn().size());
+  system.geometry().from_coordinates(starts.configuration(stated, 0, places), g.data());
+  return g;
+}
+
+// What is prescribed is not stated otherwise.
+void Assembly::check_prescribed(const Starts& starts) {
+  for (const auto& [name, angle] : starts.prescribed(0)) {
+    for (const auto& part : parts_.start_) {
+      if (part.name == name && !(std::abs(part.value - angle) < 1e-9))
+        mistakes_.push_back(
+            fmt::format("{}start: {} = {}, but it is prescribed as {} at t = 0; leave it out",
+                        part.where, name, part.value, angle));
+    }
+    const auto& asks = parts_.asks_.names;
+    if (std::find(asks.begin(), asks.end(), name) != asks.end())
+      mistakes_.push_back(fmt::format("{}asks: {} is prescribed", parts_.asks_.where, name));
+  }
+}
+
 // The start as stated, and those that few numbers stand for.
 void Assembly::start(const std::shared_ptr<const Starts>& starts) {
   const auto& columns = model_.group.columns;
@@ -143,17 +172,18 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
     if (std::find(columns.begin(), columns.end(), part.name) != columns.end())
       usual[part.name] = part.value;
   }
+  check_prescribed(*starts);
   std::vector<std::string> asks = parts_.asks_.names;
   if (asks.empty() && starts->mistakes({"speed"}).empty()) asks = {"speed"};
   for (const std::string& wrong : starts->mistakes(asks))
     mistakes_.push_back(parts_.asks_.where + "asks: " + wrong);
   stop_at_mistakes();
-  model_.start = starts->solve(stated, places);
+  model_.start = starts->solve(stated, 0, places);
   words_.start_parameters = asks;
-  words_.start_from = [starts, asks, usual](std::span<const double> given) {
-    std::map<std::string, double> values = usual;
+  words_.start_from = [starts, asks, stated, usual](std::span<const double> given, double t) {
+    std::map<std::string, double> values = given.empty() ? stated : usual;
     for (size_t i = 0; i < given.size(); ++i) values[asks[i]] = given[i];
-    return starts->solve(values);
+    return starts->solve(values, t);
   };
 }
 

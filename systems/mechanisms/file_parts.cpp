@@ -82,31 +82,35 @@ void FileParts::chains() {
 }
 void FileParts::prescribed(const toml::table& table) {
   std::string joint;
-  std::function<double(double)> rate, angle;
+  FileValues::OfTime rate, angle;
   Range range;
   const auto of_time = [&](auto& to) {
-    return [this, &to](const Node& node, const std::string& key) {
-      to = read_.of_time(node, key, key == "angle");
-    };
+    return [this, &to](const Node& node, const std::string& key) { to = read_.of_time(node, key); };
   };
   read_.entries(table, {{"joint", read_.read(joint)},
                         {"rate", of_time(rate)},
                         {"angle", of_time(angle)},
                         {"least", read_.read(range.least)},
                         {"most", read_.read(range.most)}});
-  if (rate && angle) read_.toml.wrong(table, "prescribed", "one of rate and angle");
-  if (rate || angle) m_.prescribe(joint, rate ? rate : angle);
+  if (rate.value && angle.value) read_.toml.wrong(table, "prescribed", "one of rate and angle");
+  if (rate.value && rate.constant) m_.prescribe(joint, rate.value(0));
+  else if (rate.value) m_.prescribe(joint, rate.value);
+  else if (angle.value) m_.prescribe(joint, angle.slope, angle.value);
   else m_.prescribe(joint, range);
 }
 void FileParts::motor(const toml::table& table) {
   std::string joint;
   Signal effort;
+  bool of_time = false;
   Range range;
   read_.entries(table, {{"joint", read_.read(joint)},
-                        {"effort", read_.read(effort)},
+                        {"effort",
+                         [&](const Node& node, const std::string& key) {
+                           effort = read_.signal(node, key, of_time);
+                         }},
                         {"least", read_.read(range.least)},
                         {"most", read_.read(range.most)}});
-  if (effort) m_.motor(joint, effort);
+  if (effort) m_.motor(joint, effort, of_time);
   else m_.motor(joint, range);
 }
 // A motor or a prescribed joint that says none of these is an input.
@@ -147,11 +151,12 @@ void FileParts::forces() {
   tables("force", [&](const toml::table& table) {
     std::string name, body;
     ForceOptions o;
+    o.of_time = false;
     const auto along = [&](const Node& node, const std::string& key) {
       const toml::array* array = node.as_array();
       if (array == nullptr || array->size() != 3)
         return read_.toml.wrong(node, key, "3 numbers or formulas");
-      for (size_t i = 0; i < 3; ++i) o.along[i] = read_.signal((*array)[i], key);
+      for (size_t i = 0; i < 3; ++i) o.along[i] = read_.signal((*array)[i], key, o.of_time);
     };
     read_.entries(table, {{"name", read_.read(name)},
                           {"body", read_.read(body)},

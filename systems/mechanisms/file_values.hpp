@@ -38,6 +38,10 @@ class FileValues {
     }
   }
 
+  /// Is this the name of t, or of a coordinate, velocity or input?
+  bool names(const std::string& name) const {
+    return std::find(names_.begin(), names_.end(), name) != names_.end();
+  }
   /// Is this name that of an input, and of nothing else of the state?
   bool names_input(const std::string& name) const {
     const auto at = std::find(names_.begin(), names_.end(), name);
@@ -49,10 +53,11 @@ class FileValues {
     const auto values = formulas.numbers(node, key, 3);
     return {values[0], values[1], values[2]};
   }
-  /// A formula of t, coordinates, velocities, inputs and parameters.
-  Signal signal(const Node& node, const std::string& key) {
+  /// A formula of t, coordinates, velocities, inputs and parameters; of_time becomes true where t stands in it.
+  Signal signal(const Node& node, const std::string& key, bool& of_time) {
     const auto formula = formulas.expression(node, key, names_);
     if (!formula) return {};
+    for (const size_t i : formula->used()) of_time |= i == 0;
     return [formula = *formula, inputs = inputs_,
             values = std::vector<double>(names_.size())](const Now& now) mutable {
       values[0] = now.t;
@@ -62,8 +67,12 @@ class FileValues {
       return formula(values);
     };
   }
-  /// A formula of t and parameters, or its derivative.
-  std::function<double(double)> of_time(const Node& node, const std::string& key, bool derivative) {
+  /// A formula of t and parameters; empty where it is a mistake.
+  struct OfTime {
+    std::function<double(double)> value, slope;
+    bool constant = false;
+  };
+  OfTime of_time(const Node& node, const std::string& key) {
     const auto any = formulas.expression(node, key, names_);
     if (!any) return {};
     for (const size_t i : any->used()) {
@@ -75,16 +84,22 @@ class FileValues {
       return {};
     }
     const auto formula = formulas.expression(node, key, {"t"});
-    const auto out = [formula = *formula, derivative](double t) {
-      double slope = 0;
-      const double value = formula.differentiate({&t, 1}, 1, {&slope, 1});
-      return derivative ? slope : value;
+    const OfTime out = {[formula = *formula](double t) {
+                          return formula({&t, 1});
+                        },
+                        [formula = *formula](double t) {
+                          double slope = 0;
+                          formula.differentiate({&t, 1}, 1, {&slope, 1});
+                          return slope;
+                        },
+                        formula->constant()};
+    const auto finite = [&](double first, const char* what) {
+      if (!std::isfinite(first))
+        toml.wrong(node, key, fmt::format("{} finite at t = 0, got {}", what, first));
+      return std::isfinite(first);
     };
-    if (const double first = out(0); !std::isfinite(first)) {
-      toml.wrong(node, key,
-                 fmt::format("{} finite at t = 0, got {}",
-                             derivative ? "an angle whose rate is" : "a rate", first));
-    }
+    if (finite(out.value(0), key == "angle" ? "an angle" : "a rate") && key == "angle")
+      finite(out.slope(0), "an angle whose rate is");
     return out;
   }
 
@@ -100,9 +115,6 @@ class FileValues {
   }
   Reader read(Point& to) {
     return [this, &to](const Node& node, const std::string& key) { to = point(node, key); };
-  }
-  Reader read(Signal& to) {
-    return [this, &to](const Node& node, const std::string& key) { to = signal(node, key); };
   }
   template <class Text>
   Reader read(Text& to) {  // string, bool, list of strings

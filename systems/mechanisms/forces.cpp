@@ -45,6 +45,10 @@ bool Forces::damped() const {
   return std::any_of(springs.begin(), springs.end(),
                      [](const Spring& s) { return s.damping != 0; });
 }
+bool Forces::of_time() const {
+  const auto changes = [](const auto& part) { return part.of_time; };
+  return std::ranges::any_of(motors, changes) || std::ranges::any_of(forces, changes);
+}
 bool Forces::any() const { return has_signals() || damped(); }
 
 double Forces::potential(const Tree& tree, const double* g) const {

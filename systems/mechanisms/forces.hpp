@@ -36,13 +36,15 @@ struct Spring {
 struct Motor {
   std::string name;
   int dof = 0;
-  Signal effort;  // N m or N
+  Signal effort;         // N m or N
+  bool of_time = false;  // may it use t?
 };
 struct Force {
   std::string name;
   int link = 0;
   Vec3 at = Vec3::Zero();  // as drawn
   bool of_body = false;    // along the axes of the body
+  bool of_time = false;    // may along use t?
   Signal along[3];         // N
 };
 
@@ -55,6 +57,8 @@ struct Forces {
   /// Is there a force beside the potential?
   bool any() const;
   bool damped() const;
+  /// Is one of them of t?
+  bool of_time() const;
   bool has_signals() const { return !motors.empty() || !forces.empty(); }
   double potential(const Tree& tree, const double* g) const;
   /// out -= dV.

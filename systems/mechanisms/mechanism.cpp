@@ -41,11 +41,15 @@ void Mechanism::loop(const std::string& name, const std::string& a, const std::s
                      const LoopOptions& options) {
   loops_.push_back({part(name), options, a, b});
 }
-void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate) {
-  rates_.push_back({part(joint), std::move(rate)});
+void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate,
+                          std::function<double(double t)> angle) {
+  rates_.push_back({part(joint), std::move(rate), std::move(angle), true});
+}
+void Mechanism::prescribe(const std::string& joint, double rate) {
+  rates_.push_back({part(joint), [rate](double) { return rate; }, {}, false, {}});
 }
 void Mechanism::prescribe(const std::string& joint, const Range& range) {
-  rates_.push_back({part(joint), {}, range});
+  rates_.push_back({part(joint), {}, {}, false, range});
 }
 void Mechanism::ground(double rate, Point velocity) {
   ground_rate_ = rate;
@@ -56,11 +60,11 @@ void Mechanism::spring(const std::string& name, const std::string& a, const std:
                        const SpringOptions& options) {
   springs_.push_back({part(name), options, a, b});
 }
-void Mechanism::motor(const std::string& joint, Signal effort) {
-  motors_.push_back({part(joint), std::move(effort)});
+void Mechanism::motor(const std::string& joint, Signal effort, bool of_time) {
+  motors_.push_back({part(joint), std::move(effort), of_time});
 }
 void Mechanism::motor(const std::string& joint, const Range& range) {
-  motors_.push_back({part(joint), {}, range});
+  motors_.push_back({part(joint), {}, false, range});
 }
 void Mechanism::force(const std::string& name, const std::string& body,
                       const ForceOptions& options) {

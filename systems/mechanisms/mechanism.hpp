@@ -78,6 +78,7 @@ struct ForceOptions {
   Point at = {0, 0, 0};  // m
   Signal along[3] = {};  // N, along x, y, z of the world
   bool of_body = false;  // along those of the body as drawn
+  bool of_time = true;   // may `along` use t? If not, there are steady motions
 };
 
 class Mechanism {
@@ -126,8 +127,11 @@ class Mechanism {
   /// A joint that closes a chain: its points, and axes, coincide.
   void loop(const std::string& name, const std::string& a, const std::string& b,
             const LoopOptions& options);
-  /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate".
-  void prescribe(const std::string& joint, std::function<double(double t)> rate);
+  /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate". With the angle (of a
+  /// slider the position) whose derivative it is, a run starts there.
+  void prescribe(const std::string& joint, std::function<double(double t)> rate,
+                 std::function<double(double t)> angle = {});
+  void prescribe(const std::string& joint, double rate);
   void prescribe(const std::string& joint, const Range& range = {});
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});
@@ -140,7 +144,8 @@ class Mechanism {
   void spring(const std::string& name, const std::string& a, const std::string& b,
               const SpringOptions& options);
   /// A torque [N m] or force [N] in a hinge or slider: a signal, or an input of the run, "steer.torque", "lift.force".
-  void motor(const std::string& joint, Signal effort);
+  /// of_time: may the signal use t? If not, there are steady motions.
+  void motor(const std::string& joint, Signal effort, bool of_time = true);
   void motor(const std::string& joint, const Range& range = {});
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
   /// An input of the run that signals may use: Now::inputs, behind those of motors and prescribed joints.
@@ -189,11 +194,14 @@ class Mechanism {
     std::string body;
   };
   struct RatePart : Part {
-    std::function<double(double)> rate;  // empty: an input
+    std::function<double(double)> rate;   // empty: an input
+    std::function<double(double)> angle;  // empty: that of the start
+    bool of_time = false;                 // not constant
     Range range = {};
   };
   struct MotorPart : Part {
     Signal effort;  // empty: an input
+    bool of_time = false;
     Range range = {};
   };
   struct InputPart : Part {

@@ -56,7 +56,7 @@ class File {
     stop_at_mistakes();
     const auto [outline, words] = m.outline();
     read_.set_names(outline.group.columns, words.rates, outline.inputs);
-    check_inputs();
+    check_formula_names();
     parts.contacts();
     parts.chains();
     parts.forces();
@@ -78,14 +78,18 @@ class File {
   }
 
   // What formulas call by one name is one thing.
-  void check_inputs() {
-    const toml::table* inputs = table_["inputs"].as_table();
-    if (inputs == nullptr) return;
-    for (const auto& [name, node] : *inputs) {
-      const std::string key(name.str());
-      if (!read_.formulas.constants().contains(key) && read_.names_input(key)) continue;
-      read_.toml.wrong(node, "inputs." + key, "a name that nothing else has");
-    }
+  void check_formula_names() {
+    const auto each = [&](const std::string& kind, auto&& taken) {
+      const toml::table* table = table_[kind].as_table();
+      if (table == nullptr) return;
+      for (const auto& [name, node] : *table) {
+        const std::string key(name.str());
+        if (taken(key)) read_.toml.wrong(node, kind + "." + key, "a name that nothing else has");
+      }
+    };
+    each("parameters", [&](const std::string& key) { return read_.names(key); });
+    each("inputs", [&](const std::string& key) { return !read_.names_input(key); });
+    stop_at_mistakes();
   }
 
   std::string origin_;

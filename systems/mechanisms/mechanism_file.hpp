@@ -15,7 +15,8 @@
 //   child = "deck"                            # stiffness, rest, damping
 //   [[wheel]] [[roller]] [[blade]] [[ball]]   # body, at; axle, radius, angle; along
 //   [[loop]]                                  # a, b, at, axis
-//   [[prescribed]]                            # joint; rate or angle = "0.3*sin(2*t)"; left out: an input, steer.rate
+//   [[prescribed]]                            # joint; rate or angle = "0.3*sin(2*t)", where a run then starts; left out:
+//                                             # an input, steer.rate
 //   [[spring]]                                # a, b, from, to, stiffness, rest, damping
 //   [[motor]]                                 # joint; effort = "-2*steer.angle - 0.1*steer.rate"; left out: an input,
 //   joint = "steer"                           # steer.torque, or lift.force of a slider, between `least` and `most`

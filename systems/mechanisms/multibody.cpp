@@ -23,12 +23,13 @@ void Multibody::keep(const std::vector<int>& rows) {
   const std::vector<RowWords> words = rows_.words();
   slots_.assign(words.size(), -1);
   kept_.clear();
+  holonomic_ = 0;
   for (const bool holonomic : {false, true}) {
     for (const int row : rows) {
       if (words[static_cast<size_t>(row)].holonomic != holonomic) continue;
       slots_[static_cast<size_t>(row)] = static_cast<int>(kept_.size());
       kept_.push_back(row);
-      holonomic_ = holonomic ? holonomic_ + 1 : 0;
+      if (holonomic) ++holonomic_;
     }
   }
   varies_.assign(words.size(), 0);
@@ -42,13 +43,22 @@ void Multibody::drive(const std::vector<Driver>& drivers,
   for (size_t i = 0; i < drivers.size(); ++i) {
     const auto at = [inputs, i](double t) { return inputs->at(t)[static_cast<Eigen::Index>(i)]; };
     if (!drivers[i].rate) {
-      forces_.motors.push_back(
-          {inputs->fields()[i].name, drivers[i].dof, [at](const Now& now) { return at(now.t); }});
+      forces_.motors.push_back({inputs->fields()[i].name, drivers[i].dof,
+                                [at](const Now& now) { return at(now.t); }, false});
       continue;
     }
     for (Prescribed& p : rows_.prescribed)
       if (p.dof == drivers[i].dof) p.rate = at;
   }
+}
+
+bool Multibody::autonomous() const {
+  if (inputs_ != nullptr && std::ranges::any_of(inputs_->tables(), [](const InputTable& table) {
+        return !table.times.empty();
+      }))
+    return false;
+  return !forces_.of_time() &&
+         std::ranges::none_of(rows_.prescribed, [](const Prescribed& p) { return p.of_time; });
 }
 
 Tree& Multibody::placed(const double* g) const {

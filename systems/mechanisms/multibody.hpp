@@ -38,7 +38,7 @@ class Multibody : public Mechanics {
   int holonomic_rows() const override { return holonomic_; }
   bool constant_inertia() const override { return constant_inertia_; }
   bool constant_constraints() const override { return constant_rows_; }
-  bool autonomous() const override { return rows_.prescribed.empty() && !forces_.has_signals(); }
+  bool autonomous() const override;
   bool has_force() const override { return forces_.any(); }
   bool has_drift() const override { return rows_.ground.moves() || !rows_.prescribed.empty(); }
   bool constant_potential() const { return constant_potential_; }

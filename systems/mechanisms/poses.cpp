@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <utility>
 
-#include <fmt/format.h>
-#include <Eigen/LU>
 #include <Eigen/QR>
 
 namespace hamel::mechanisms {
@@ -29,18 +27,15 @@ std::vector<double> move(const Multibody& system, const std::vector<double>& g,
   return out;
 }
 
-// Rows, b and phi of each().
-struct Looked {
-  MatrixXd a;
-  VectorXd b, phi;
-  Looked(const Multibody& system, const std::vector<double>& g) {
-    const auto rows = static_cast<Eigen::Index>(system.all_rows().words().size());
-    a.resize(rows, system.dim());
-    b.resize(rows);
-    phi = VectorXd::Zero(rows);
-    system.look(0, g.data(), a, b, phi);
-  }
-};
+}  // namespace
+
+Looked::Looked(const Multibody& system, const std::vector<double>& g) {
+  const auto rows = static_cast<Eigen::Index>(system.all_rows().words().size());
+  a.resize(rows, system.dim());
+  b.resize(rows);
+  phi = VectorXd::Zero(rows);
+  system.look(0, g.data(), a, b, phi);
+}
 
 VectorXd least(const MatrixXd& a, const VectorXd& b) {
   if (a.size() == 0) return VectorXd::Zero(a.cols());
@@ -48,8 +43,6 @@ VectorXd least(const MatrixXd& a, const VectorXd& b) {
   decomposition.setThreshold(1e-9);
   return decomposition.compute(a).solve(b);
 }
-
-}  // namespace
 
 std::vector<std::vector<double>> poses_around(const Multibody& system,
                                               const std::vector<double>& g) {
@@ -83,7 +76,8 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
   const std::vector<bool> fixed(static_cast<size_t>(system.dim()), false);
   for (int seed = 1; seed <= 3; ++seed) {
     const VectorXd any = 0.2 * scattered(system.dim(), seed);
-    const MatrixXd a = Looked(system, g).a;
+    MatrixXd a = Looked(system, g).a;
+    a.bottomRows(static_cast<Eigen::Index>(system.all_rows().prescribed.size())).setZero();
     std::vector<double> pose = move(system, g, any - least(a, VectorXd(a * any)));
     if (satisfy(system, fixed, pose) < 1e-12) out.push_back(std::move(pose));
   }
@@ -91,196 +85,64 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
 }
 
 // Gram-Schmidt on the rows of unit length, those of phi first: what is left of a row below 1e-9 is none.
-Redundancy look_for_redundancy(const Multibody& system, const std::vector<double>& drawn) {
+std::map<int, std::vector<int>> repeated_rows(const Multibody& system, const std::vector<double>& g,
+                                              std::vector<int> rows) {
   const std::vector<RowWords> words = system.all_rows().words();
-  std::vector<int> order;
-  for (const bool holonomic : {true, false}) {
-    for (size_t i = 0; i < words.size(); ++i) {
-      if (words[i].holonomic == holonomic) order.push_back(static_cast<int>(i));
+  std::stable_partition(rows.begin(), rows.end(),
+                        [&](int i) { return words[static_cast<size_t>(i)].holonomic; });
+  const MatrixXd a = Looked(system, g).a;
+  MatrixXd basis(0, system.dim());
+  std::vector<int> taken;
+  std::map<int, std::vector<int>> out;
+  for (const int i : rows) {
+    const VectorXd row = a.row(i).transpose() / std::max(a.row(i).norm(), 1e-300);
+    const VectorXd parts = least(basis.transpose(), row);
+    if ((row - basis.transpose() * parts).norm() > 1e-9) {
+      basis.conservativeResize(basis.rows() + 1, Eigen::NoChange);
+      basis.bottomRows(1) = row.transpose();
+      taken.push_back(i);
+      continue;
     }
+    auto& repeats = out[i];
+    for (Eigen::Index j = 0; j < parts.size(); ++j)
+      if (std::abs(parts[j]) > 1e-6) repeats.push_back(taken[static_cast<size_t>(j)]);
   }
+  return out;
+}
+
+Redundancy look_for_redundancy(const Multibody& system,
+                               const std::vector<std::vector<double>>& places) {
+  const std::vector<RowWords> words = system.all_rows().words();
   // A row of phi that is zero in all poses says nothing: in the plane no contact changes its height.
-  std::vector<bool> speaks(words.size(), false);
-  for (const auto& pose : poses_around(system, drawn)) {
-    const Looked looked(system, pose);
-    for (size_t i = 0; i < words.size(); ++i) {
-      if (!words[i].holonomic || looked.a.row(static_cast<Eigen::Index>(i)).norm() > 1e-11)
-        speaks[i] = true;
-    }
+  std::vector<int> speaking;
+  const auto around = poses_around(system, places.front());
+  for (size_t i = 0; i < words.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (!words[i].holonomic || std::ranges::any_of(around, [&](const auto& pose) {
+          return Looked(system, pose).a.row(row).norm() > 1e-11;
+        }))
+      speaking.push_back(static_cast<int>(i));
   }
   Redundancy out;
-  std::map<int, int> dependent;
-  const auto poses = poses_on_rows(system, drawn);
+  std::map<int, size_t> dependent;
+  std::vector<std::vector<double>> poses;
+  for (const auto& place : places) {
+    for (auto& pose : poses_on_rows(system, place)) poses.push_back(std::move(pose));
+  }
   for (const auto& pose : poses) {
-    const MatrixXd a = Looked(system, pose).a;
-    MatrixXd basis(0, system.dim());
-    std::vector<int> taken;
-    for (const int i : order) {
-      if (!speaks[static_cast<size_t>(i)]) continue;
-      const VectorXd row = a.row(i).transpose() / std::max(a.row(i).norm(), 1e-300);
-      const VectorXd parts = least(basis.transpose(), row);
-      if ((row - basis.transpose() * parts).norm() > 1e-9) {
-        basis.conservativeResize(basis.rows() + 1, Eigen::NoChange);
-        basis.bottomRows(1) = row.transpose();
-        taken.push_back(i);
-        continue;
-      }
-      ++dependent[i];
-      auto& repeats = out.repeats[i];
-      for (Eigen::Index j = 0; j < parts.size(); ++j) {
-        const int other = taken[static_cast<size_t>(j)];
-        if (std::abs(parts[j]) > 1e-6 &&
-            std::find(repeats.begin(), repeats.end(), other) == repeats.end())
+    for (const auto& [row, others] : repeated_rows(system, pose, speaking)) {
+      ++dependent[row];
+      auto& repeats = out.repeats[row];
+      for (const int other : others)
+        if (std::find(repeats.begin(), repeats.end(), other) == repeats.end())
           repeats.push_back(other);
-      }
     }
   }
-  const int all = static_cast<int>(poses.size());
-  std::erase_if(out.repeats, [&](const auto& entry) { return dependent[entry.first] < all; });
-  for (size_t i = 0; i < words.size(); ++i) {
-    if (speaks[i] && !out.repeats.contains(static_cast<int>(i)))
-      out.rows.push_back(static_cast<int>(i));
-  }
+  std::erase_if(out.repeats,
+                [&](const auto& entry) { return dependent[entry.first] < poses.size(); });
+  for (const int i : speaking)
+    if (!out.repeats.contains(i)) out.rows.push_back(i);
   return out;
-}
-
-Starts::Starts(std::shared_ptr<const Multibody> system, std::string name,
-               std::vector<std::string> columns, std::vector<std::string> rates,
-               std::vector<Said> rows)
-    : system_(std::move(system)),
-      name_(std::move(name)),
-      columns_(std::move(columns)),
-      rates_(std::move(rates)),
-      rows_(std::move(rows)) {}
-
-int Starts::rate(const std::string& name) const {
-  const auto index = [&](const std::string& wanted) {
-    const auto it = std::find(rates_.begin(), rates_.end(), wanted);
-    return it == rates_.end() ? -1 : static_cast<int>(it - rates_.begin());
-  };
-  return index(name == "speed" ? "v1" : name);
-}
-
-std::vector<std::string> Starts::mistakes(const std::vector<std::string>& names) const {
-  std::vector<std::string> known = columns_, out;
-  known.insert(known.end(), rates_.begin(), rates_.end());
-  if (rate("speed") >= 0) known.emplace_back("speed");
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      out.push_back(unknown_name("number of the start of " + name_, name, known));
-  }
-  return out;
-}
-
-void Starts::refuse(const std::vector<int>& rows, const Values& values, const Places& places,
-                    const std::string& text) const {
-  std::vector<std::string> parts, numbers;
-  std::string where = name_ + ": ";
-  for (const int i : rows) {
-    const Said& row = rows_[static_cast<size_t>(i)];
-    if (std::find(parts.begin(), parts.end(), row.what) == parts.end()) parts.push_back(row.what);
-    where = row.where.empty() ? where : row.where;
-  }
-  for (const auto& [name, value] : values) {
-    numbers.push_back(fmt::format("{} = {}", name, value));
-    const auto place = places.find(name);
-    if (place != places.end() && !place->second.empty()) where = place->second;
-  }
-  throw ConfigError(
-      {fmt::format("{}start: {}{}{}{}", where, join(parts),
-                   parts.empty() || numbers.empty() ? "" : " with ", join(numbers), text)});
-}
-
-// The given coordinates hold; the others follow from phi = 0.
-std::vector<double> Starts::configuration(const Values& values, const Places& places) const {
-  const Tree& tree = system_->tree(system_->drawn().data());
-  std::vector<double> g = tree.drawn(), coordinates(columns_.size());
-  system_->geometry().coordinates(g.data(), coordinates.data());
-  std::vector<bool> fixed(rates_.size(), false);
-  Values stated;
-  size_t column = 0;
-  for (int link = 0; link < tree.links(); ++link) {
-    for (const std::string& name : type_of(tree.kind(link)).columns) {
-      (void)name;
-      const auto given = values.find(columns_[column]);
-      if (given != values.end()) {
-        coordinates[column] = given->second;
-        stated.insert(*given);
-        for (int i = 0; i < tree.count(link); ++i)
-          fixed[static_cast<size_t>(tree.first(link) + i)] = true;
-      }
-      ++column;
-    }
-  }
-  try {
-    system_->geometry().from_coordinates(coordinates, g.data());
-  } catch (const std::invalid_argument& error) {
-    refuse({}, stated, places, fmt::format(": {}", error.what()));
-  }
-  if (const double off = satisfy(*system_, fixed, g); !(off < 1e-12)) {
-    const VectorXd phi = Looked(*system_, g).phi;
-    std::vector<int> open;
-    for (int i = 0; i < phi.size(); ++i)
-      if (!(std::abs(phi[i]) < 1e-9)) open.push_back(i);
-    refuse(open, stated, places,
-           fmt::format(" cannot be reached, {:.3g} m is left; leave out a coordinate: those that "
-                       "are not given follow",
-                       off));
-  }
-  system_->geometry().coordinates(g.data(), coordinates.data());
-  return coordinates;
-}
-
-// Least 1/2 xi^T I xi with A xi = b and the given velocities.
-Start Starts::solve(const Values& values, const Places& places) const {
-  std::vector<std::string> wrong;
-  for (const auto& [name, value] : values) {
-    const auto place = places.find(name);
-    for (const std::string& text : mistakes({name}))
-      wrong.push_back((place == places.end() ? "" : place->second) + text);
-  }
-  if (!wrong.empty()) throw ConfigError(wrong);
-  Start start;
-  start.configuration = configuration(values, places);
-  std::vector<double> g(system_->drawn().size());
-  system_->geometry().from_coordinates(start.configuration, g.data());
-  const int n = system_->dim(), k = system_->rows();
-  std::vector<std::pair<int, Values::value_type>> stated;
-  for (const auto& entry : values) {
-    if (const int i = rate(entry.first); i >= 0) stated.emplace_back(i, entry);
-  }
-  MatrixXd inertia(n, n), a = MatrixXd::Zero(k + static_cast<int>(stated.size()), n);
-  VectorXd b = VectorXd::Zero(a.rows()), b_rows(k);
-  MatrixXd a_rows(k, n);
-  system_->inertia(g.data(), inertia);
-  system_->constraints(0, g.data(), a_rows, b_rows);
-  a.topRows(k) = a_rows;
-  b.head(k) = b_rows;
-  for (size_t i = 0; i < stated.size(); ++i) {
-    const Eigen::Index row = k + static_cast<Eigen::Index>(i);
-    a(row, stated[i].first) = 1;
-    b[row] = stated[i].second.second;
-  }
-  const VectorXd some = least(a, b);
-  const VectorXd left = a * some - b;  // where rows say what others deny
-  if (const double size = 1e-9 * (1 + b.norm()); !(left.norm() <= size)) {
-    std::vector<int> rows;
-    Values against;
-    for (int i = 0; i < left.size(); ++i) {
-      if (std::abs(left[i]) <= 1e-3 * left.norm()) continue;
-      if (i < k) rows.push_back(system_->kept()[static_cast<size_t>(i)]);
-      else against.insert(stated[static_cast<size_t>(i - k)].second);
-    }
-    refuse(rows, against, places,
-           " do not go together; leave out a velocity: those that are not given follow");
-  }
-  // some + N z, N a basis of what is free: least energy where N^T I (some + N z) = 0.
-  const MatrixXd free = Eigen::FullPivLU<MatrixXd>(a).kernel();
-  const MatrixXd reduced = free.transpose() * inertia * free;
-  const VectorXd z = least(reduced, VectorXd(-(free.transpose() * (inertia * some))));
-  const VectorXd velocity = some + free * z;
-  start.velocity.assign(velocity.begin(), velocity.end());
-  return start;
 }
 
 }  // namespace hamel::mechanisms

@@ -1,19 +1,30 @@
-// Poses and velocities that satisfy the rows of a mechanism: to look at it away from the drawn pose, and to start.
+// Poses that satisfy the rows of a mechanism, to look at it away from the drawn pose; rows that repeat others.
 #pragma once
 
 #include <map>
-#include <string>
 #include <vector>
 
-#include <hamel/framework/mechanics/system.hpp>
+#include <Eigen/Core>
+
 #include <hamel/systems/mechanisms/multibody.hpp>
 
 namespace hamel::mechanisms {
 
+/// All rows of each() at a pose: A, b, phi.
+struct Looked {
+  Eigen::MatrixXd a;
+  Eigen::VectorXd b, phi;
+  Looked(const Multibody& system, const std::vector<double>& g);
+};
+
+/// The least x of those with the least |a x - b|.
+Eigen::VectorXd least(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
 /// Poses that share nothing, near g: g tau(eta), the rows left aside.
 std::vector<std::vector<double>> poses_around(const Multibody& system,
                                               const std::vector<double>& g);
-/// Poses near g on phi = 0 of all rows, reached by moves that satisfy the rows; g first. Rows may be dependent.
+/// Poses near g on phi = 0 of all rows, reached by moves that satisfy the rows, but for prescribed rates: these move to
+/// where the joint is at other times. g first. Rows may be dependent.
 std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
                                                const std::vector<double>& g);
 
@@ -21,43 +32,17 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
 /// largest |phi| left.
 double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g);
 
+/// Those of these rows that are combinations of others at g -> the others.
+std::map<int, std::vector<int>> repeated_rows(const Multibody& system, const std::vector<double>& g,
+                                              std::vector<int> rows);
+
 /// Which of the rows of each() say something at all, and what those that say nothing new repeat.
 struct Redundancy {
   std::vector<int> rows;                    // independent at one of the poses at least
   std::map<int, std::vector<int>> repeats;  // a row -> the rows that it is a combination of
 };
-Redundancy look_for_redundancy(const Multibody& system, const std::vector<double>& drawn);
-
-/// A row in words, for messages.
-struct Said {
-  std::string where,
-      what;  // of its part, "system.toml:3:1: "; "wheel 'rear' (rolls without slipping)"
-};
-
-/// Starts of a mechanism, by the names of coordinates and velocities.
-class Starts {
- public:
-  using Values = std::map<std::string, double>;
-  using Places = std::map<std::string, std::string>;
-
-  Starts(std::shared_ptr<const Multibody> system, std::string name,
-         std::vector<std::string> columns, std::vector<std::string> rates, std::vector<Said> rows);
-  /// Mistakes in these names; "speed" is the first of the root's velocities ahead.
-  std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
-  /// Throws ConfigError where the rows forbid these values; places: where these stand in a file.
-  Start solve(const Values& values, const Places& places = {}) const;
-
- private:
-  int rate(const std::string& name) const;  // -1: no velocity
-  std::vector<double> configuration(const Values& values, const Places& places) const;
-  /// Throws that these rows and values do not go together, and the text behind them.
-  [[noreturn]] void refuse(const std::vector<int>& rows, const Values& values, const Places& places,
-                           const std::string& text) const;
-
-  std::shared_ptr<const Multibody> system_;
-  std::string name_;
-  std::vector<std::string> columns_, rates_;
-  std::vector<Said> rows_;
-};
+/// Looked for near these places, on phi = 0; the first is the drawn pose.
+Redundancy look_for_redundancy(const Multibody& system,
+                               const std::vector<std::vector<double>>& places);
 
 }  // namespace hamel::mechanisms

@@ -57,6 +57,8 @@ struct Prescribed {
   std::string name;
   int dof = 0;
   std::function<double(double t)> rate;
+  std::function<double(double t)> angle;  // where a run starts; empty: anywhere
+  bool of_time = false;                   // does the rate change?
 };
 
 /// The ground moves with this velocity, and turns about the world's origin.

@@ -141,6 +141,21 @@ TEST_F(MechanismMistakes, InContactsAndLoops) {
   });
 }
 
+/// Blades on arms to both sides say the same as drawn, but not elsewhere.
+TEST_F(MechanismMistakes, InRowsThatRepeatOthersAtTheStart) {
+  std::string walker = kFlat;
+  for (const std::string side : {"1", "-1"})
+    walker += "[[body]]\nname = \"arm" + side + "\"\nmass = 1\nat = [0, " + side +
+              ", 0]\ninertia = [1, 1, 1]\n[[joint]]\nkind = \"hinge\"\nparent = \"a\"\n" +
+              "child = \"arm" + side + "\"\n[[blade]]\nbody = \"arm" + side + "\"\nat = [0, " +
+              side + ", 0]\n";
+  refuses({{walker,
+            "30:1: blade 'arm-1' (does not slip across its edge) says nothing beyond blade 'arm1' "
+            "(does not slip across its edge) at the start; start elsewhere"}});
+  EXPECT_EQ(run({"run", write(walker + "[start]\narm1.angle = 0.3\n"), "--until", "0.1"}).status,
+            0);
+}
+
 TEST_F(MechanismMistakes, InTheStart) {
   const std::string pin =
       kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"ground\"\nat = [1, 0, 1]\n";
@@ -154,6 +169,12 @@ TEST_F(MechanismMistakes, InTheStart) {
        "low.angle = 1.5 cannot be reached, 1.91 m is left"},
       {kSpace + "[start]\nR11 = 3\n", "11:7: start: R11 = 3: se3: R11..R33 has"},
       {"asks = [\"sped\"]\n" + kFlat, "1:8: asks: unknown number of the start"},
+      {kFlat + kArm + "[[prescribed]]\njoint = \"arm\"\nangle = \"0.5 + t\"\n[start]\n" +
+           "arm.angle = 0.25\n",
+       "23:13: start: arm.angle = 0.25, but it is prescribed as 0.5 at t = 0; leave it out"},
+      {"asks = [\"arm.angle\"]\n" + kFlat + kArm +
+           "[[prescribed]]\njoint = \"arm\"\nangle = \"t\"\n",
+       "1:8: asks: arm.angle is prescribed"},
   });
 }
 
@@ -172,6 +193,9 @@ TEST_F(MechanismMistakes, InFormulas) {
        "mean 'omega'?"},
       {pushed + "along = [0, \"1/x\", 0]\n", "9:1: force 'f': along is inf at the start"},
       {moved + "rate = \"ln(t)\"\n", "21:8: rate: expected a rate finite at t = 0, got -inf"},
+      {moved + "angle = \"ln(t)\"\n", "21:9: angle: expected an angle finite at t = 0, got -inf"},
+      {moved + "angle = \"sqrt(t)\"\n",
+       "21:9: angle: expected an angle whose rate is finite at t = 0, got inf"},
       {moved + "rate = \"1\"\nangle = \"t\"\n", "19:1: prescribed: expected one of rate and angle"},
       {moved + "rate = \"1\"\n[[prescribed]]\njoint = \"arm\"\nrate = \"2\"\n",
        "22:1: prescribed 'arm': this joint is prescribed already"},
@@ -180,7 +204,38 @@ TEST_F(MechanismMistakes, InFormulas) {
        "is none of them"},
       {kFlat + "[inputs]\nx = {}\n", "10:5: inputs.x: expected a name that nothing else has"},
       {kFlat + "wheels = 3\n", "9:10: unknown key 'wheels'"},
+      {kFlat + "[parameters]\nt = 3\n",
+       "10:5: parameters.t: expected a name that nothing else has"},
+      {kFlat + "[parameters]\nx = 3\nm = 1\nv1 = { value = 2 }\n",
+       "12:6: parameters.v1: expected a name that nothing else has"},
+      {kFlat + "[parameters]\nwind = 3\n[inputs]\nwind = {}\n",
+       "10:8: parameters.wind: expected a name that nothing else has"},
   });
+}
+
+/// Parts may have any name; what cannot stand in a formula is left out of them, which a mistake says.
+TEST_F(MechanismMistakes, InFormulasOfJointsWithAnyName) {
+  for (const std::string name : {"left arm", "left-arm", "3rd", "дрель", "sin"}) {
+    const std::string arm = "[[body]]\nname = \"" + name +
+                            "\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n[[joint]]\n"
+                            "kind = \"hinge\"\nchild = \"" +
+                            name + "\"\n[[motor]]\njoint = \"" + name + "\"\neffort = ";
+    const Outcome o = run({"run", write(arm + "\"0.3*sin(t)\"\n"), "--until", "0.1"});
+    EXPECT_EQ(o.status, 0) << name << o.err;
+    if (name == "sin") continue;
+    refuses(
+        {{arm + "\"2*" + name + ".angle\"\n",
+          "11:13: effort: '" + name + ".angle' cannot stand in a formula: expected a letter, "}});
+  }
+  refuses(
+      {{kFlat + "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n" +
+            "[[joint]]\nname = \"left arm\"\nkind = \"hinge\"\nparent = \"a\"\nchild = \"b\"\n" +
+            "[[motor]]\njoint = \"left arm\"\neffort = \"-left_arm.angle\"\n",
+        "21:12: effort: unknown name 'left_arm.angle': "},
+       {kFlat + "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n" +
+            "[[joint]]\nname = \"left arm\"\nkind = \"hinge\"\nparent = \"a\"\nchild = \"b\"\n" +
+            "[[prescribed]]\njoint = \"left arm\"\nrate = \"steer l\"\n",
+        "21:9: rate: "}});
 }
 
 }  // namespace

@@ -128,5 +128,24 @@ TEST(Expression, MistakesAreNamedWithTheirPlace) {
   }
 }
 
+// Variables that no formula can spell are allowed, and left out; that two are one is not.
+TEST(Expression, LeavesOutNamesThatCannotStandInIt) {
+  const std::vector<std::string> names = {"left arm", "3rd", "дрель", "x"};
+  EXPECT_EQ(Expression("2*x", names)(std::vector<double>{0, 0, 0, 3}), 6);
+  for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
+           {"x + left arm", "'left arm' cannot stand in a formula"},
+           {"2*дрель", "'дрель' cannot stand in a formula"},
+           {"2*left_arm", "did you mean 'left arm'? 'left arm' cannot stand in a formula"},
+           {"2*ж", "'ж' has no meaning here"}}) {
+    try {
+      Expression(text, names);
+      ADD_FAILURE() << text << " is accepted";
+    } catch (const ExpressionError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message));
+    }
+  }
+  EXPECT_THROW(Expression("x", names, {{"x", 2}}), ExpressionError);
+}
+
 }  // namespace
 }  // namespace hamel

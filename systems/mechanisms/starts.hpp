@@ -1,0 +1,52 @@
+// Where a mechanism starts: coordinates and velocities that satisfy its rows, from those that are stated.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/systems/mechanisms/multibody.hpp>
+
+namespace hamel::mechanisms {
+
+/// A row in words, for messages.
+struct Said {
+  std::string where,
+      what;  // of its part, "system.toml:3:1: "; "wheel 'rear' (rolls without slipping)"
+};
+
+/// Starts of a mechanism, by the names of coordinates and velocities.
+class Starts {
+ public:
+  using Values = std::map<std::string, double>;
+  using Places = std::map<std::string, std::string>;
+
+  Starts(std::shared_ptr<const Multibody> system, std::string name,
+         std::vector<std::string> columns, std::vector<std::string> rates, std::vector<Said> rows);
+  /// Mistakes in these names; "speed" is the first of the root's velocities ahead.
+  std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
+  /// At a time, where prescribed angles hold. Throws ConfigError where the rows forbid these values; places: where these
+  /// stand in a file.
+  Start solve(const Values& values, double t, const Places& places = {}) const;
+  /// The coordinates that are prescribed, and what they are at a time.
+  Values prescribed(double t) const;
+
+  /// Its coordinates.
+  std::vector<double> configuration(const Values& values, double t,
+                                    const Places& places = {}) const;
+
+ private:
+  int rate(const std::string& name) const;  // -1: no velocity
+  /// Throws that these rows and values do not go together, and the text behind them.
+  [[noreturn]] void refuse(const std::vector<int>& rows, const Values& values, const Places& places,
+                           const std::string& text) const;
+
+  std::shared_ptr<const Multibody> system_;
+  std::string name_;
+  std::vector<std::string> columns_, rates_;
+  std::vector<Said> rows_;
+};
+
+}  // namespace hamel::mechanisms

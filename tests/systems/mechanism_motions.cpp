@@ -1,0 +1,249 @@
+// Closed chains and prescribed joints along trajectories, against motions that are known by other means.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <hamel/systems/mechanisms/mechanism.hpp>
+#include <hamel/systems/simulate.hpp>
+
+namespace hamel {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kGravity = 9.81;
+
+// In the plane of x and z, a turn about y.
+Vector2d turned(double angle, const Vector2d& v) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * v[0] + s * v[1], -s * v[0] + c * v[1]};
+}
+Vector2d turning(const Vector2d& v) { return {v[1], -v[0]}; }  // at unit rate
+double between(const Vector2d& from, const Vector2d& to) {
+  return std::atan2(to[0] * from[1] - to[1] * from[0], from.dot(to));
+}
+
+// A four-bar: crank, coupler and rocker, of which the angle of the crank says all.
+struct FourBar {
+  struct Bar {
+    double mass, moment;
+    Vector2d centre;
+  };
+  Bar crank{1.0, 0.02, {0.05, 0.25}}, coupler{1.5, 0.03, {0.5, 0.65}},
+      rocker{0.8, 0.016, {1.05, 0.4}};
+  Vector2d low{0.1, 0.5}, high{0.9, 0.8}, foot{1.2, 0};  // the joints, beside the origin
+
+  Mechanism by_parts() const {
+    Mechanism m("four-bar");
+    const auto in_space = [](const Vector2d& v) { return Point{v[0], 0, v[1]}; };
+    const auto add = [&](const std::string& name, const Bar& bar) {
+      m.body(name,
+             {.mass = bar.mass, .at = in_space(bar.centre), .inertia = {0.03, bar.moment, 0.03}});
+    };
+    add("crank", crank);
+    add("coupler", coupler);
+    add("rocker", rocker);
+    const Point axis = {0, 1, 0};
+    m.hinge("a", kWorld, "crank", {.axis = axis});
+    m.hinge("b", "crank", "coupler", {.at = in_space(low), .axis = axis});
+    m.hinge("d", kWorld, "rocker", {.at = in_space(foot), .axis = axis});
+    m.loop("c", "coupler", "rocker", {.at = in_space(high), .axis = axis});
+    m.start({{"a.rate", 2}});
+    return m;
+  }
+
+  // At an angle of the crank: those of coupler and rocker in the world, V, and twice the kinetic energy at unit rate.
+  struct Seen {
+    double coupler, rocker, potential, moment;
+  };
+  Seen at(double angle) const {
+    const Vector2d b = turned(angle, low), apart = foot - b;
+    const double r = (high - low).norm(), s = (high - foot).norm(), d = apart.norm();
+    const double along = (r * r - s * s + d * d) / (2 * d),
+                 across = std::sqrt(r * r - along * along);
+    const Vector2d e = apart / d;
+    const Vector2d c = b + along * e + across * Vector2d(-e[1], e[0]);  // the branch above
+    Seen out{between(high - low, c - b), between(high - foot, c - foot), 0, 0};
+    // b' + coupler' x (c - b) = rocker' x (c - foot)
+    Eigen::Matrix2d a;
+    a << -turning(c - b), turning(c - foot);
+    const Vector2d rates = a.inverse() * turning(b);
+    const auto add = [&](const Bar& bar, const Vector2d& x, const Vector2d& v, double rate) {
+      out.potential += bar.mass * kGravity * x[1];
+      out.moment += bar.mass * v.squaredNorm() + bar.moment * rate * rate;
+    };
+    const Vector2d x = turned(angle, crank.centre), y = turned(out.coupler, coupler.centre - low),
+                   z = turned(out.rocker, rocker.centre - foot);
+    add(crank, x, turning(x), 1);
+    add(coupler, b + y, turning(b) + rates[0] * turning(y), rates[0]);
+    add(rocker, foot + z, rates[1] * turning(z), rates[1]);
+    return out;
+  }
+};
+
+// No row of it is nonholonomic. Its angles, the rate of its energy, and the time that it takes, by quadrature.
+TEST(MechanismMotions, FourBarFollowsItsAngleEquation) {
+  const FourBar bars;
+  const double until = 0.25;
+  const Simulation run = simulate(bars.by_parts()).compose("kahan_li6").step(0.0025).until(until);
+  EXPECT_EQ(run.build().system().mechanics->holonomic_rows(), 2);
+  const Result result = Simulation(run).run();
+  ASSERT_TRUE(result.status.ok) << result.status.reason;
+  const auto& angles = result.last.coordinates;
+  const FourBar::Seen first = bars.at(0), last = bars.at(angles[0]);
+  EXPECT_GT(angles[0], 0.3);
+  EXPECT_NEAR(angles[0] + angles[1], last.coupler, 1e-11);
+  EXPECT_NEAR(angles[2], last.rocker, 1e-11);
+  const double energy = 0.5 * first.moment * 4 + first.potential;
+  const auto rate = [&](double angle) {
+    const FourBar::Seen seen = bars.at(angle);
+    return std::sqrt(2 * (energy - seen.potential) / seen.moment);
+  };
+  EXPECT_NEAR(result.last.velocity[0], rate(angles[0]), 1e-9);
+  double time = 0;  // by Simpson's rule
+  constexpr int kPieces = 2000;
+  for (int i = 0; i <= kPieces; ++i) {
+    const double weight = i == 0 || i == kPieces ? 1 : i % 2 == 1 ? 4 : 2;
+    time += weight / rate(angles[0] * i / kPieces);
+  }
+  EXPECT_NEAR(time * angles[0] / (3 * kPieces), until, 1e-10);
+}
+
+// Two rods that close a triangle with the ground swing about its side there, 45 degrees from the vertical:
+// 1/2 J phi'^2 - m g l/2 cos phi, J = J_t + m l^2/4 of both together.
+TEST(MechanismMotions, TriangleSwingsAsAPhysicalPendulum) {
+  const double mass = 1, length = 1, width = 0.05;
+  Mechanism m("triangle");
+  m.body("a", {.mass = mass, .at = {0, 0, -0.5}, .box = {width, width, length}});
+  m.body("b", {.mass = mass, .at = {0.5, 0, -1}, .box = {length, width, width}});
+  m.ball_joint("p", kWorld, "a", {});
+  m.ball_joint("q", "a", "b", {.at = {0, 0, -1}});
+  m.loop("r", "b", kWorld, {.at = {1, 0, -1}});
+  const double rate = 2, half = std::numbers::sqrt2 / 2;
+  m.start({{"p.w1", rate * half}, {"p.w3", 0}});
+  const double moment = mass * (length * length + width * width) / 12 + mass * length * length / 4;
+  const double square = mass * kGravity * length / 2 / moment;  // of the small swing's rate
+  const double modulus = rate / (2 * std::sqrt(square));        // sin of half the widest angle
+  const double period = 4 * std::comp_ellint_1(modulus) / std::sqrt(square);
+  const auto after = [&](double until) {
+    const Result out = simulate(m).compose("kahan_li6").step(period / 400).until(until).run();
+    EXPECT_TRUE(out.status.ok) << out.status.reason;
+    return out;
+  };
+  const Result whole = after(period), quarter = after(period / 4);
+  for (size_t i = 0; i < whole.last.coordinates.size(); ++i)
+    EXPECT_NEAR(whole.last.coordinates[i], whole.config.start.configuration[i], 1e-9) << i;
+  EXPECT_NEAR(whole.last.velocity[0], rate * half, 1e-8);
+  EXPECT_NEAR(quarter.last.velocity[0], 0, 1e-8);
+  // The corner between the rods is off the drawn plane by its distance from the side times the sine of the angle.
+  EXPECT_NEAR(std::abs(quarter.last.coordinates[5]), half * std::sin(2 * std::asin(modulus)), 1e-9);
+}
+
+// A prescribed angle is that of the start too, whenever that is.
+TEST(MechanismMotions, StartWhereTheyArePrescribed) {
+  Mechanism m("arm");
+  m.body("arm", {.mass = 1, .at = {1, 0, 0}, .inertia = {1, 1, 1}});
+  m.body("tip", {.mass = 1, .at = {2, 0, 0}, .inertia = {1, 1, 1}});
+  m.hinge("turn", kWorld, "arm", {});
+  m.slider("reach", "arm", "tip", {.at = {2, 0, 0}, .axis = {1, 0, 0}});
+  m.hinge("free", kWorld, m.body("wheel", {.mass = 1, .inertia = {1, 1, 1}}), {});
+  m.prescribe(
+      "turn", [](double t) { return std::cos(t); }, [](double t) { return 0.5 + std::sin(t); });
+  m.prescribe(
+      "reach", [](double) { return 0.25; }, [](double t) { return 0.25 * t; });
+  m.start({{"free.rate", 2}});
+  for (const double from : {0.0, 3.0}) {
+    const double until = from + 1;
+    const Result out = simulate(m).compose("kahan_li6").step(0.02).from(from).until(until).run();
+    ASSERT_TRUE(out.status.ok) << out.status.reason;
+    const auto& first = out.config.start;
+    EXPECT_NEAR(first.configuration[0], 0.5 + std::sin(from), 1e-14);
+    EXPECT_NEAR(first.configuration[1], 0.25 * from, 1e-14);
+    EXPECT_NEAR(first.velocity[0], std::cos(from), 1e-14);
+    EXPECT_NEAR(first.velocity[2], 2, 1e-14);
+    EXPECT_NEAR(out.last.coordinates[0], 0.5 + std::sin(until), 1e-10);
+    EXPECT_NEAR(out.last.coordinates[1], 0.25 * until, 1e-10);
+  }
+  EXPECT_THAT(simulate(m).start({.configuration = {0.4, 0, 0}, .velocity = {1, 0, 0}}).mistakes(),
+              testing::Contains(testing::HasSubstr(
+                  "prescribed 'turn': turn.angle is prescribed as 0.5 at t = 0, but 0.4")));
+  const double turns = 0.5 - 2 * std::numbers::pi;
+  EXPECT_TRUE(simulate(m)
+                  .start({.configuration = {turns, 0, 0}, .velocity = {1, 0, 0}})
+                  .mistakes()
+                  .empty());
+  m.start({{"turn.angle", 0.4}});
+  EXPECT_THROW(m.model(), ConfigError);
+}
+
+// Trunk and two legs with a blade each, the hips prescribed; drawn straight, where both blades say the same. The tree
+// grows from the trunk, or from the left leg.
+Mechanism roller_walker(bool from_trunk) {
+  Mechanism m("roller walker");
+  const std::vector<double> moments = {1, 1, 0.1};
+  m.body("trunk", {.mass = 8, .at = {0, 0, 0.2}, .inertia = moments});
+  m.body("left", {.mass = 1, .at = {0.1, 0.3, 0.15}, .inertia = moments});
+  m.body("right", {.mass = 1, .at = {0.1, -0.3, 0.15}, .inertia = moments});
+  m.planar("road", from_trunk ? "trunk" : "left");
+  const Point hip = {0.1, 0.15, 0};
+  if (from_trunk) m.hinge("left hip", "trunk", "left", {.at = hip});
+  else m.hinge("left hip", "left", "trunk", {.at = hip});
+  m.hinge("right hip", "trunk", "right", {.at = {0.1, -0.15, 0}});
+  m.blade("left", "left", {.at = {0.1, 0.45, 0}});
+  m.blade("right", "right", {.at = {0.1, -0.45, 0}});
+  const double side = from_trunk ? 1 : -1;
+  m.prescribe("left hip", [side](double t) { return side * 1.2 * std::cos(3 * t); });
+  m.prescribe("right hip", [](double t) { return -1.2 * std::cos(3 * t); });
+  return m;
+}
+
+TEST(MechanismMotions, RollerWalkerIsSingularOnlyAsDrawn) {
+  const auto at = [](double theta, double x, double y) {
+    return Eigen::Translation2d(x, y) * Eigen::Rotation2Dd(theta);
+  };
+  const double left = 0.3, right = -0.25;
+  Mechanism ours = roller_walker(true);
+  ours.start({{"left hip.angle", left}, {"right hip.angle", right}, {"v1", 0.3}});
+  EXPECT_EQ(ours.model().mechanics->rows(), 4);
+  const Eigen::Vector2d hip(0.1, 0.15);
+  // The left leg seen from the trunk turns about the hip; as drawn both are at the origin.
+  const auto leg = [&](double theta, double x, double y, double angle) {
+    return Eigen::Isometry2d(at(theta, x, y) * Eigen::Translation2d(hip) *
+                             Eigen::Rotation2Dd(angle) * Eigen::Translation2d(-hip));
+  };
+  const Result mine = simulate(ours).compose("kahan_li6").step(0.002).until(2).run();
+  ASSERT_TRUE(mine.status.ok) << mine.status.reason;
+  Mechanism other = roller_walker(false);
+  const Eigen::Isometry2d first = leg(0, 0, 0, left);
+  const auto& v = mine.config.start.velocity;
+  const Eigen::Vector2d shift = first.translation();
+  const Eigen::Vector2d velocity =
+      first.linear().transpose() *
+      (Eigen::Vector2d(v[1], v[2]) + v[0] * Eigen::Vector2d(-shift[1], shift[0]) +
+       v[3] * Eigen::Vector2d(-(shift - hip)[1], (shift - hip)[0]));
+  const Result hers = simulate(other)
+                          .start({.configuration = {left, shift[0], shift[1], -left, right},
+                                  .velocity = {v[0] + v[3], velocity[0], velocity[1], -v[3], v[4]}})
+                          .compose("kahan_li6")
+                          .step(0.002)
+                          .until(2)
+                          .run();
+  ASSERT_TRUE(hers.status.ok) << hers.status.reason;
+  const auto& g = mine.last.coordinates;
+  const auto& h = hers.last.coordinates;
+  const Eigen::Isometry2d last = leg(g[0], g[1], g[2], g[3]);
+  EXPECT_NEAR(std::remainder(g[0] + g[3] - h[0], 2 * std::numbers::pi), 0, 1e-9);
+  EXPECT_NEAR(last.translation()[0], h[1], 1e-9);
+  EXPECT_NEAR(last.translation()[1], h[2], 1e-9);
+  EXPECT_NEAR(mine.last.energy, hers.last.energy, 1e-9 * (1 + std::abs(mine.last.energy)));
+  for (const char* row : {"left.reaction1", "right.reaction1"})
+    EXPECT_NEAR(mine.trajectory.column(row).back(), hers.trajectory.column(row).back(), 1e-7);
+}
+
+}  // namespace
+}  // namespace hamel
