@@ -133,6 +133,25 @@ TEST_F(Recorded, APipeThatIsClosed) {
   EXPECT_THAT(files(), testing::ElementsAre("a.h5.part"));
 }
 
+/// The runs that --check adds write no files.
+TEST_F(Recorded, CheckedRuns) {
+  const Words checked = {"run", "suslov", "--check", "--until", "2", "--quiet"};
+  Outcome o = run(with(checked, {"-o", "a.h5", "-o", "a.csv", "-o", "a.json"}));
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.h5", "a.csv", "a.json"));
+  const nlohmann::json diagnostics = record("a.json")["diagnostics"];
+  EXPECT_GT(diagnostics["estimated_error"], 0.0);
+  o = run({"run", "--continue", "a.json", "-o", "b.h5", "--quiet"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  // One that was ended, and goes on.
+  const Words longer = {"run", "rolling_disk", "--check", "--until", "500", "--quiet"};
+  ASSERT_EQ(run(with(longer, {"-o", "whole.json", "-o", "whole.h5"})).status, 0);
+  ASSERT_EQ(run(with(longer, {"-o", "c.h5"}), "ulimit -f 6000 && exec ").status, 1);
+  o = run({"run", "--continue", "c.h5", "-o", "c.json", "--quiet"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(record("c.json"), record("whole.json"));
+}
+
 TEST_F(Recorded, BadInput) {
   const auto refused = [&](const Words& words, const std::string& why) {
     const Outcome o = run(with({"run"}, words));
