@@ -24,7 +24,7 @@ struct ColumnGroup {
 
 class RowFileWriter {
  public:
-  /// ConfigError where the file cannot be created, or without HDF5 in the build.
+  /// Unfinished where the file cannot be created, ConfigError without HDF5 in the build.
   RowFileWriter(std::string path, const std::vector<ColumnGroup>& groups,
                 const std::map<std::string, std::string>& texts);
   /// Leaves the file as it is, unfinished.

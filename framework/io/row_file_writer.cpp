@@ -53,9 +53,11 @@ struct RowFileWriter::Data {
   std::unique_ptr<Handle> marks, record;
   hsize_t width = 0, rows = 0, marked = 0;
   std::vector<double> column;
+  bool given_up = false;
 
   // After a failed write the library cannot close the file; it stays as it was last flushed.
   void abandon() {
+    given_up = true;
     for (auto& set : sets) static_cast<void>(set.release());
     static_cast<void>(marks.release());
     static_cast<void>(record.release());
@@ -63,7 +65,7 @@ struct RowFileWriter::Data {
   }
   template <class F>
   void attempt(F&& write) {
-    if (file == nullptr) throw Unfinished(fmt::format("output: '{}' was given up", path));
+    if (given_up) throw Unfinished(fmt::format("output: '{}' was given up", path));
     try {
       errno = 0;
       write();
@@ -80,7 +82,7 @@ RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& g
     : data_(std::make_unique<Data>()) {
   begin();
   data_->path = std::move(path);
-  try {
+  data_->attempt([&] {
     const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "H5Pcreate");
     check(H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED),
           "H5Pset_link_creation_order");
@@ -105,9 +107,7 @@ RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& g
     data_->marks = std::make_unique<Handle>(create(file, kMarks, H5T_STD_U8LE, kChunkBytes, 1));
     data_->record = std::make_unique<Handle>(create(file, kRecord, H5T_STD_U8LE, kChunkBytes, 1));
     check(H5Fstart_swmr_write(file), "H5Fstart_swmr_write");
-  } catch (const ConfigError& error) {
-    throw ConfigError({fmt::format("output: cannot write '{}' ({})", data_->path, error.what())});
-  }
+  });
 }
 
 RowFileWriter::~RowFileWriter() = default;

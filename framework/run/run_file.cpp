@@ -30,13 +30,16 @@ std::string whole(const std::string& path) {
 
 }  // namespace
 
+RunFileSink::~RunFileSink() {
+  // Ended before it took its place, it has nothing that is not elsewhere.
+  if (lock_ != nullptr && !in_place_) std::remove((part_of(path_) + ".new").c_str());
+}
+
 void RunFileSink::begin(const RunHead& head) {
   const std::string part = part_of(path_), fresh = part + ".new";
   lock_ = std::make_unique<FileLock>(fresh);  // it stays with the file when that becomes x.part
-  if (locked(part)) {
-    std::remove(fresh.c_str());
+  if (locked(part))
     throw ConfigError({fmt::format("output: another process is writing '{}'", part)});
-  }
   out_ = std::make_unique<RowFileWriter>(fresh, head.columns,
                                          std::map<std::string, std::string>{
                                              {"format", kFormat},
@@ -56,10 +59,10 @@ void RunFileSink::checkpoint(const std::string& state, const std::string& news) 
 
 void RunFileSink::flush() {
   if (in_place_) return;
-  in_place_ = true;
   const std::string part = part_of(path_);
   if (std::rename((part + ".new").c_str(), part.c_str()) != 0)
     throw Unfinished(fmt::format("output: cannot write '{}'", path_));
+  in_place_ = true;
 }
 
 void RunFileSink::finish(const Result& result) {

@@ -16,6 +16,7 @@ namespace hamel {
 class RunFileSink final : public Sink {
  public:
   explicit RunFileSink(std::string path) : path_(std::move(path)) {}
+  ~RunFileSink() override;
   void begin(const RunHead& head) override;
   void rows(std::span<const double> values) override { out_->append(values); }
   bool resumable() const override { return true; }

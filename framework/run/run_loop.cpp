@@ -43,6 +43,7 @@ void RunLoop::run() {
   try {
     go();
   } catch (...) {  // the rows that are there reach their files
+    if (!begun_) throw;
     for (const auto& sink : sinks_) {
       try {
         if (!meter_.rows().empty()) sink->rows(meter_.rows());

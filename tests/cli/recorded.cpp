@@ -152,6 +152,21 @@ TEST_F(Recorded, CheckedRuns) {
   EXPECT_EQ(record("c.json"), record("whole.json"));
 }
 
+/// A disk that is full from the start, or soon: a message, and what goes by the name of rows has some.
+TEST_F(Recorded, NoRoomToBegin) {
+  for (int blocks = 0; blocks < 40; ++blocks) {  // of 512 bytes
+    for (const Words& outputs : {Words{"-o", "a.h5"}, Words{"-o", "b.csv", "-o", "a.h5"}}) {
+      SCOPED_TRACE(blocks);
+      const Outcome o = run(with({"run", "suslov", "--until", "1", "--quiet"}, outputs),
+                            "(ulimit -f " + std::to_string(blocks) + " && exec ", "2>&1) | cat");
+      EXPECT_THAT(o.out, AllOf(HasSubstr("cannot write"), HasSubstr("File too large"))) << o.out;
+      EXPECT_FALSE(exists("a.h5.part.new"));
+      EXPECT_EQ(exists("a.h5.part"), o.out.find("--continue a.h5") != std::string::npos) << o.out;
+      for (const std::string& name : files()) std::filesystem::remove(file(name));
+    }
+  }
+}
+
 TEST_F(Recorded, BadInput) {
   const auto refused = [&](const Words& words, const std::string& why) {
     const Outcome o = run(with({"run"}, words));
