@@ -15,6 +15,14 @@
 
 namespace hamel {
 
+std::string place_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path whole = fs::absolute(path, error);
+  const fs::path folder = fs::weakly_canonical(whole.parent_path(), error);
+  return error ? path : folder / whole.filename();
+}
+
 void finish_file(const std::string& part, const std::string& path) {
   const int file = open(part.c_str(), O_RDONLY | O_CLOEXEC);
   const bool on_disk = file >= 0 && fsync(file) == 0;

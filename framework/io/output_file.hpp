@@ -14,6 +14,9 @@ struct Unfinished : std::runtime_error {
 /// Where `path` is written until it is done.
 inline std::string part_of(const std::string& path) { return path + ".part"; }
 
+/// The same for all spellings of a path ("a.h5", "./a.h5", through a link to its folder).
+std::string place_of(const std::string& path);
+
 /// Brings `part` to the disk and gives it its name; Unfinished on failure.
 void finish_file(const std::string& part, const std::string& path);
 

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/plan.hpp>
@@ -46,16 +48,15 @@ double numbers_that_fit(const std::vector<std::string>& files) {
 
 // What is recorded, and what an earlier part of the run has recorded.
 void Simulation::add_outputs(Plan& plan) const {
-  for (size_t i = 0; i < records_.size(); ++i) {
-    const std::string& path = records_[i];
+  std::set<std::string> places;
+  for (const std::string& path : records_) {
     std::error_code error;
     if (const std::string mistake = record_mistake(path); !mistake.empty()) plan.add({mistake});
-    else if (std::find(records_.begin(), records_.begin() + static_cast<long>(i), path) !=
-             records_.begin() + static_cast<long>(i))
+    else if (!places.insert(place_of(path)).second)
       plan.add({fmt::format("output: '{}' is given twice", path)});
     else if (path.ends_with(".h5") && locked(part_of(path)))
       plan.add({fmt::format("output: another process is writing '{}.part'", path)});
-    else if (path.ends_with(".h5") && path != resumed_ &&
+    else if (path.ends_with(".h5") && place_of(path) != place_of(resumed_) &&
              std::filesystem::exists(part_of(path), error))
       plan.add(
           {fmt::format("output: '{0}.part' is an unfinished run; go on with it (hamel run "

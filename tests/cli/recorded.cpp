@@ -123,6 +123,12 @@ TEST_F(Recorded, IsWrittenByOne) {
   waitpid(child, nullptr, 0);
   EXPECT_EQ(run({"run", "--continue", "a.h5", "--quiet"}).status, 0);
   EXPECT_THAT(files(), testing::ElementsAre("a.h5"));
+  ASSERT_EQ(run({"run", "rolling_disk", "--until", "1e4", "--quiet", "-o", "b.h5"},
+                "ulimit -f 4000 && exec ")
+                .status,
+            1);
+  const Outcome o = run({"run", "--continue", "./b.h5", "-o", "b.h5", "--quiet"});
+  EXPECT_EQ(o.status, 0) << o.err << "one file, by two spellings";
 }
 
 TEST_F(Recorded, APipeThatIsClosed) {
@@ -179,6 +185,8 @@ TEST_F(Recorded, BadInput) {
   refused({"suslov", "-o", "folder.h5"}, "is a directory");
   refused({"suslov", "-o", "none/a.h5"}, "cannot write 'none/a.h5'");
   refused({"suslov", "-o", "a.csv", "-o", "a.csv"}, "'a.csv' is given twice");
+  refused({"suslov", "-o", "a.csv", "-o", "./a.csv"}, "'./a.csv' is given twice");
+  refused({"suslov", "-o", "folder.h5/../a.h5", "-o", "a.h5"}, "'a.h5' is given twice");
   refused({"suslov", "-o", "-", "--json"}, "standard output");
   refused({"--continue", "text.h5"}, "no HDF5 file");
   refused({"--continue", "none.h5"}, "there is no such file");
