@@ -20,7 +20,7 @@ std::string place_of(const std::string& path) {
   std::error_code error;
   const fs::path whole = fs::absolute(path, error);
   const fs::path folder = fs::weakly_canonical(whole.parent_path(), error);
-  return error ? path : folder / whole.filename();
+  return error ? path : (folder / whole.filename()).string();
 }
 
 void finish_file(const std::string& part, const std::string& path) {
