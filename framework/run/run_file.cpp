@@ -74,12 +74,16 @@ void RunFileSink::finish(const Result& result) {
 RunFile::RunFile(const std::string& path) : path_(whole(path)), rows_(existing(path_)) {
   if (rows_.text("format") != kFormat)
     throw ConfigError({fmt::format("'{}': it holds no run (hamel run … -o x.h5)", path_)});
+}
+
+RunFile::Kept RunFile::kept() const {
+  Kept out;
   for (const RowFileReader::Mark& mark : rows_.marks()) {
-    rows = mark.rows;
+    out.rows = mark.rows;
     CheckpointReader both(mark.bytes);
-    both(state, news.emplace_back());
+    both(out.state, out.news.emplace_back());
   }
-  if (finished()) rows = rows_.rows();
+  return out;
 }
 
 Config RunFile::config() const { return Config::from_toml(rows_.text("config"), path_); }
@@ -90,9 +94,16 @@ Trajectory read_rows(const RunFile& file, std::size_t most) {
   MemorySink rows(out, most);
   rows.begin({file.table().groups(), "", "", ""});
   std::vector<double> values;
-  for (std::size_t at = 0; at < file.rows; at += piece) {
-    file.table().read(at, std::min(piece, file.rows - at), values);
+  const std::size_t count = file.table().rows();
+  std::uint64_t sum = kNoRows;
+  for (std::size_t at = 0; at < count; at += piece) {
+    file.table().read(at, std::min(piece, count - at), values);
+    sum = checksum_of_rows(sum, values);
     rows.rows(values);
+  }
+  if (file.table().checksum().value_or(sum) != sum) {
+    throw ConfigError(
+        {fmt::format("'{}': it is damaged: its rows are not those written", file.path())});
   }
   rows.finish(Result());
   return out;

@@ -45,17 +45,21 @@ class RunFile {
   std::string text(const std::string& name) const { return rows_.text(name); }
   const RowFileReader& table() const { return rows_; }
 
-  /// The last checkpoint: its state, what came before it piece by piece, and its rows; 0 rows where there is none.
-  std::string state;
-  std::vector<std::string> news;
-  std::size_t rows = 0;
+  /// The last checkpoint that is whole with the rows before it: its state, what came before it piece by piece, and how many
+  /// rows; 0 where there is none. Reads these rows.
+  struct Kept {
+    std::string state;
+    std::vector<std::string> news;
+    std::size_t rows = 0;
+  };
+  Kept kept() const;
 
  private:
   std::string path_;
   RowFileReader rows_;
 };
 
-/// The rows of a file, thinned to at most so many.
+/// The rows of a finished file, thinned to at most so many. ConfigError where they are not those that were written.
 Trajectory read_rows(const RunFile& file, std::size_t most);
 
 /// What a record says of a run, into a Result that has its system and config.

@@ -173,6 +173,43 @@ TEST_F(Recorded, NoRoomToBegin) {
   }
 }
 
+/// What a damaged file makes of a run is the undisturbed one or a refusal.
+TEST_F(Recorded, DamagedFiles) {
+  const Words words = {"run", "chaplygin_sleigh", "--until", "150", "--quiet"};
+  ASSERT_EQ(run(with(words, {"-o", "whole.h5", "-o", "whole.csv"})).status, 0);
+  ASSERT_EQ(run(with(words, {"-o", "cut.h5"}), "ulimit -f 3500 && exec ").status, 1);
+  const std::string cut = contents(file("cut.h5.part")), whole = contents(file("whole.h5"));
+  int went_on = 0;
+  const auto expect = [&](const std::string& bytes) {
+    std::ofstream(file("a.h5.part"), std::ios::binary) << bytes;
+    const Outcome o = run({"run", "--continue", "a.h5", "--quiet", "-o", "a.csv"}, "timeout 30 ");
+    if (o.status == 0) {
+      ++went_on;
+      EXPECT_TRUE(rows("a.csv") == rows("whole.csv"));
+    } else {
+      EXPECT_EQ(o.status, 2);
+      EXPECT_THAT(o.err, HasSubstr("'a.h5.part': it is damaged"));
+    }
+    for (const char* name : {"a.h5", "a.csv", "a.h5.part"}) std::filesystem::remove(file(name));
+  };
+  for (const size_t part : {0, 1, 2, 4, 8, 12, 14, 15}) {  // of 16: truncated, a page of zeros
+    SCOPED_TRACE(part);
+    const size_t at = 5000 + (cut.size() - 5000) * part / 16;
+    expect(cut.substr(0, at));
+    expect(cut.substr(0, at) + std::string(4096, '\0') +
+           cut.substr(std::min(cut.size(), at + 4096)));
+  }
+  EXPECT_GT(went_on, 6);
+  // A finished one has no page.
+  std::ofstream(file("a.h5"), std::ios::binary) << whole.substr(0, whole.size() / 2) +
+                                                       std::string(4096, '\0') +
+                                                       whole.substr(whole.size() / 2 + 4096);
+  const Outcome o = run({"report", "a.h5", "-o", "a.html"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err,
+              testing::AnyOf(HasSubstr("'a.h5': it is damaged"), HasSubstr("without the page")));
+}
+
 TEST_F(Recorded, BadInput) {
   const auto refused = [&](const Words& words, const std::string& why) {
     const Outcome o = run(with({"run"}, words));
