@@ -54,7 +54,7 @@ void Simulation::add_outputs(Plan& plan) const {
     if (const std::string mistake = record_mistake(path); !mistake.empty()) plan.add({mistake});
     else if (!places.insert(place_of(path)).second)
       plan.add({fmt::format("output: '{}' is given twice", path)});
-    else if (path.ends_with(".h5") && locked(part_of(path)))
+    else if (locked(part_of(path)))
       plan.add({fmt::format("output: another process is writing '{}.part'", path)});
     else if (path.ends_with(".h5") && place_of(path) != place_of(resumed_) &&
              std::filesystem::exists(part_of(path), error))

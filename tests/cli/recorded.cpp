@@ -108,8 +108,9 @@ TEST_F(Recorded, CtrlCKeepsWhatThereIs) {
 
 /// A file has one writer: the second is refused while the first one lives.
 TEST_F(Recorded, IsWrittenByOne) {
-  const Words words = {"run", "rolling_disk", "--until", "2e4", "--quiet", "-o", "a.h5"};
-  const pid_t child = started(words);
+  const Words disk = {"run", "rolling_disk", "--until", "2e4", "--quiet"};
+  const Words words = with(disk, {"-o", "a.h5"});
+  const pid_t child = started(with(words, {"-o", "a.csv", "-o", "a.csv.gz"}));
   for (int i = 0; i < 6000 && !exists("a.h5.part"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   kill(child, SIGSTOP);
@@ -119,8 +120,14 @@ TEST_F(Recorded, IsWrittenByOne) {
     EXPECT_EQ(o.status, 2);
     EXPECT_THAT(o.err, HasSubstr("another process is writing 'a.h5.part'"));
   }
+  for (const std::string name : {"a.csv", "a.csv.gz"}) {
+    const Outcome o = run(with(disk, {"-o", name}));
+    EXPECT_EQ(o.status, 2);
+    EXPECT_THAT(o.err, HasSubstr("another process is writing '" + name + ".part'"));
+  }
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
+  for (const char* name : {"a.csv.part", "a.csv.gz.part"}) std::filesystem::remove(file(name));
   EXPECT_EQ(run({"run", "--continue", "a.h5", "--quiet"}).status, 0);
   EXPECT_THAT(files(), testing::ElementsAre("a.h5"));
   ASSERT_EQ(run({"run", "rolling_disk", "--until", "1e4", "--quiet", "-o", "b.h5"},
