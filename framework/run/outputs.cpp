@@ -9,7 +9,6 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
-#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/plan.hpp>
 #include <hamel/framework/run/run_file.hpp>
@@ -65,11 +64,7 @@ void Simulation::add_outputs(Plan& plan) const {
   }
   if (records_.empty() && resumed_.empty()) return;
   plan.request = config_.to_toml();
-  if (config_.system.ends_with(".toml")) plan.files += read_text_file("system", config_.system);
-  for (const auto& [name, signal] : config_.inputs) {
-    if (const auto* file = std::get_if<InputFile>(&signal))
-      plan.files += read_text_file(name, file->path);
-  }
+  plan.files = texts_of_files(config_);
   if (resumed_.empty()) return;
   const RunFile file(resumed_);
   const auto refuse = [&](const std::string& why) {

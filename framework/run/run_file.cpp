@@ -5,14 +5,20 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/checkpoint.hpp>
+#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/simulation.hpp>
 
 namespace hamel {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "hamel run 1";
 
@@ -88,6 +94,39 @@ RunFile::Kept RunFile::kept() const {
 
 Config RunFile::config() const { return Config::from_toml(rows_.text("config"), path_); }
 
+std::string texts_of_files(const Config& config) {
+  Json out = Json::object();
+  if (config.system.ends_with(".toml"))
+    out[config.system] = read_text_file("system", config.system);
+  for (const auto& [name, signal] : config.inputs) {
+    if (const auto* file = std::get_if<InputFile>(&signal))
+      out[file->path] = read_text_file(name, file->path);
+  }
+  // (A comment may be in no UTF-8.)
+  return out.empty() ? "" : out.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string RunFile::file(const std::string& path) const {
+  const Json files = Json::parse(text("files"), nullptr, false);
+  if (files.is_object() && files.contains(path)) return files[path].get<std::string>();
+  throw ConfigError({fmt::format("'{}': it does not hold the text of '{}'", path_, path)});
+}
+
+Simulation RunFile::simulation(const Registry& registry) const {
+  Config config = this->config();
+  for (auto& [name, signal] : config.inputs) {
+    if (const auto* table = std::get_if<InputFile>(&signal))
+      signal = read_input_table(name, *table, file(table->path));
+  }
+  const std::string& system = config.system;
+  Simulation out =
+      system.ends_with(".toml")
+          ? Simulation(registry, system, data_system_maker(registry, system, file(system)))
+          : Simulation(registry, system);
+  out.config(std::move(config));
+  return out;
+}
+
 Trajectory read_rows(const RunFile& file, std::size_t most) {
   constexpr std::size_t piece = 4096;
   Trajectory out;
@@ -111,8 +150,14 @@ Trajectory read_rows(const RunFile& file, std::size_t most) {
 
 Recorded read_recorded(const std::string& path) {
   const RunFile file(path);
-  return {file.path(), file.finished(),
-          file.finished() ? Config::continued(file.record(), path) : file.config()};
+  if (!file.finished()) return {file.path(), false, file.config()};
+  const Config config = Config::continued(file.record(), path);
+  const std::string& system = config.system;
+  if (system.ends_with(".toml") && file.file(system) != read_text_file("system", system)) {
+    throw ConfigError({fmt::format(
+        "continue: '{}': the file of its system, '{}', is not what it was", file.path(), system)});
+  }
+  return {file.path(), true, config};
 }
 
 }  // namespace hamel

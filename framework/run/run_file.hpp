@@ -1,6 +1,6 @@
 // A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its page. Not installed.
 //
-// Attributes: config (TOML), files, start (the record before the first step), build, format. Data sets: the groups of
+// Attributes: config (TOML), files (texts_of_files), start (the record before the first step), build, format. Data sets: the groups of
 // columns; record, the Result's, in the end; resume, checkpoints (run/checkpoint.hpp) until then.
 #pragma once
 
@@ -12,6 +12,12 @@
 #include <hamel/framework/run/sink.hpp>
 
 namespace hamel {
+
+class Registry;
+class Simulation;
+
+/// The texts of the files that a run reads, its system and inputs: {path: text}, JSON; "" where there is none.
+std::string texts_of_files(const Config& config);
 
 class RunFileSink final : public Sink {
  public:
@@ -42,8 +48,12 @@ class RunFile {
   bool finished() const { return rows_.finished(); }
   std::string record() const { return rows_.record(); }
   Config config() const;
+  /// The run, made of the texts in this file: the files that it was made of may be others by now, or gone.
+  Simulation simulation(const Registry& registry) const;
   std::string text(const std::string& name) const { return rows_.text(name); }
   const RowFileReader& table() const { return rows_; }
+  /// Of texts_of_files, by path. ConfigError where it is not there.
+  std::string file(const std::string& path) const;
 
   /// The last checkpoint that is whole with the rows before it: its state, what came before it piece by piece, and how many
   /// rows; 0 where there is none. Reads these rows.

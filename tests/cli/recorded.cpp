@@ -217,6 +217,38 @@ TEST_F(Recorded, DamagedFiles) {
               testing::AnyOf(HasSubstr("'a.h5': it is damaged"), HasSubstr("without the page")));
 }
 
+/// A page is of the run as it was, whatever became of the files that it was made of.
+TEST_F(Recorded, NeedsNoOtherFile) {
+  const auto write_files = [&](const std::string& value, const std::string& friction) {
+    std::ofstream(file("torque.csv")) << "# caf\xe9\nt,value\n0," << value << "\n20,0\n";
+    std::string scooter = source_file("tests/examples/scooter_by_rows.toml");
+    std::ofstream(file("scooter.toml")) << scooter << friction;
+  };
+  const auto page_of_file = [&](const std::string& name) {
+    const Outcome o = run({"report", name, "-o", "page.html"});
+    if (o.err.find("without the page") != std::string::npos) return nlohmann::json();
+    EXPECT_EQ(o.status, 0) << o.err;
+    nlohmann::json out = page_data(contents(file("page.html")));
+    out.erase("generated");
+    return out;
+  };
+  write_files("2", "");
+  ASSERT_EQ(run({"run", "segway", "--input", "right_torque=torque.csv", "--until", "1", "--quiet",
+                 "-o", "a.h5"})
+                .status,
+            0);
+  ASSERT_EQ(run({"run", "scooter.toml", "--until", "1", "--quiet", "-o", "b.h5"}).status, 0);
+  const nlohmann::json a = page_of_file("a.h5"), b = page_of_file("b.h5");
+  write_files("-5", "\n# edited\n[no_such_table]\n");
+  EXPECT_EQ(page_of_file("a.h5"), a);
+  EXPECT_EQ(page_of_file("b.h5"), b);
+  EXPECT_THAT(run({"run", "--continue", "b.h5"}).err, HasSubstr("is not what it was"));
+  std::filesystem::remove(file("torque.csv"));
+  std::filesystem::remove(file("scooter.toml"));
+  EXPECT_EQ(page_of_file("a.h5"), a);
+  EXPECT_EQ(page_of_file("b.h5"), b);
+}
+
 TEST_F(Recorded, BadInput) {
   const auto refused = [&](const Words& words, const std::string& why) {
     const Outcome o = run(with({"run"}, words));
