@@ -70,8 +70,9 @@ void write_file(const std::string& path, const std::string& text) {
   out << text;
   out.close();
   if (!out || std::rename(part.c_str(), path.c_str()) != 0) {
+    const int reason = errno;
     std::remove(part.c_str());
-    throw ConfigError({fmt::format("output: cannot write '{}'", path)});
+    throw Unfinished(fmt::format("output: cannot write '{}': {}", path, std::strerror(reason)));
   }
 }
 

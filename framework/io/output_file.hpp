@@ -35,7 +35,7 @@ class FileLock {
 /// Has somebody a FileLock of it?
 bool locked(const std::string& path);
 
-/// Writes text as a whole; ConfigError on failure, and then nothing is left.
+/// Writes text as a whole; Unfinished on failure, and then nothing is left.
 void write_file(const std::string& path, const std::string& text);
 
 /// "" when a file can be created at path, else what is in the way. Leaves nothing behind.

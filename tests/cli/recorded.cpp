@@ -249,6 +249,19 @@ TEST_F(Recorded, NeedsNoOtherFile) {
   EXPECT_EQ(page_of_file("b.h5"), b);
 }
 
+/// A page or a record for which there is no room: what was written before it is there, which is no bad input.
+TEST_F(Recorded, NoRoomForTheLast) {
+  for (const Words& last : {Words{"-o", "a.json"}, Words{"--report", "a.html"}}) {
+    const Outcome o =
+        run(with({"run", "suslov", "--until", "0.01", "--quiet", "-o", "a.csv"}, last),
+            "ulimit -f " + std::string(last[0] == "-o" ? "4" : "100") + " && exec ");
+    if (o.err.find("without the page") != std::string::npos) continue;
+    EXPECT_EQ(o.status, 1) << o.err;
+    EXPECT_THAT(o.err, AllOf(HasSubstr("cannot write '" + last[1]), HasSubstr("File too large")));
+    EXPECT_FALSE(exists(last[1]));
+  }
+}
+
 TEST_F(Recorded, BadInput) {
   const auto refused = [&](const Words& words, const std::string& why) {
     const Outcome o = run(with({"run"}, words));
