@@ -273,6 +273,9 @@ TEST_F(Recorded, BadInput) {
   refused({"suslov", "-o", "a.hdf5"}, "expected");
   refused({"suslov", "-o", "folder.h5"}, "is a directory");
   refused({"suslov", "-o", "none/a.h5"}, "cannot write 'none/a.h5'");
+  // A disk without any room: there is no number of steps to advise.
+  EXPECT_THAT(run({"run", "suslov", "-o", "/proc/a.csv"}).err,
+              AllOf(HasSubstr("room for on the disk"), testing::Not(HasSubstr("record every"))));
   refused({"suslov", "-o", "a.csv", "-o", "a.csv"}, "'a.csv' is given twice");
   refused({"suslov", "-o", "a.csv", "-o", "./a.csv"}, "'./a.csv' is given twice");
   refused({"suslov", "-o", "folder.h5/../a.h5", "-o", "a.h5"}, "'a.h5' is given twice");
