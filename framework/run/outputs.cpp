@@ -40,7 +40,13 @@ double numbers_that_fit(const std::vector<std::string>& files) {
     std::error_code error;
     const auto folder = std::filesystem::absolute(file, error).parent_path();
     const std::filesystem::space_info space = std::filesystem::space(folder, error);
-    if (!error) out = std::min(out, static_cast<double>(space.available) / sizeof(double));
+    if (error) continue;
+    auto available = static_cast<double>(space.available);
+    for (const char* left : {"", ".new"}) {  // by an earlier run: this one replaces it
+      const auto size = std::filesystem::file_size(part_of(file) + left, error);
+      if (!error) available += static_cast<double>(size);
+    }
+    out = std::min(out, available / sizeof(double));
   }
   return out;
 }

@@ -217,6 +217,21 @@ TEST_F(Recorded, DamagedFiles) {
               testing::AnyOf(HasSubstr("'a.h5': it is damaged"), HasSubstr("without the page")));
 }
 
+/// What a --continue that was killed left beside the file goes with the next run of that name.
+TEST_F(Recorded, WhatAKillLeftIsReplaced) {
+  const Words disk = {"run", "rolling_disk", "--until", "1e4", "--quiet", "-o", "a.h5"};
+  ASSERT_EQ(run(disk, "ulimit -f 4000 && exec ").status, 1);
+  for (const Words& words : {Words{"run", "--continue", "a.h5", "--quiet"}, disk}) {
+    std::ofstream(file("a.h5.part.new")) << "the beginning of a file\n";
+    EXPECT_EQ(run(words).status, 0);
+    EXPECT_THAT(files(), testing::ElementsAre("a.h5"));
+  }
+  // One that could not begin takes its own along.
+  ASSERT_EQ(run(disk, "ulimit -f 4000 && exec ").status, 1);
+  EXPECT_EQ(run({"run", "--continue", "a.h5"}, "ulimit -f 2000 && exec ").status, 1);
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.h5", "a.h5.part"));
+}
+
 /// A page is of the run as it was, whatever became of the files that it was made of.
 TEST_F(Recorded, NeedsNoOtherFile) {
   const auto write_files = [&](const std::string& value, const std::string& friction) {
