@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/table.hpp>
 
 #ifdef HAMEL_HAS_HDF5
@@ -97,11 +98,11 @@ void Table::write_hdf5(const std::string& path,
     for (const TableColumn& column : columns) write_column(file, column);
   } catch (const ConfigError& error) {
     std::remove(part.c_str());
-    throw ConfigError({fmt::format("output: cannot write '{}' ({})", path, error.what())});
+    throw Unfinished(fmt::format("output: cannot write '{}' ({})", path, error.what()));
   }
   if (std::rename(part.c_str(), path.c_str()) != 0) {
     std::remove(part.c_str());
-    throw ConfigError({fmt::format("output: cannot write '{}'", path)});
+    throw Unfinished(fmt::format("output: cannot write '{}'", path));
   }
 }
 

@@ -15,6 +15,14 @@
 
 namespace hamel {
 
+std::string place_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path whole = fs::absolute(path, error);
+  const fs::path folder = fs::weakly_canonical(whole.parent_path(), error);
+  return error ? path : (folder / whole.filename()).string();
+}
+
 void finish_file(const std::string& part, const std::string& path) {
   const int file = open(part.c_str(), O_RDONLY | O_CLOEXEC);
   const bool on_disk = file >= 0 && fsync(file) == 0;
@@ -62,8 +70,9 @@ void write_file(const std::string& path, const std::string& text) {
   out << text;
   out.close();
   if (!out || std::rename(part.c_str(), path.c_str()) != 0) {
+    const int reason = errno;
     std::remove(part.c_str());
-    throw ConfigError({fmt::format("output: cannot write '{}'", path)});
+    throw Unfinished(fmt::format("output: cannot write '{}': {}", path, std::strerror(reason)));
   }
 }
 

@@ -14,6 +14,9 @@ struct Unfinished : std::runtime_error {
 /// Where `path` is written until it is done.
 inline std::string part_of(const std::string& path) { return path + ".part"; }
 
+/// The same for all spellings of a path ("a.h5", "./a.h5", through a link to its folder).
+std::string place_of(const std::string& path);
+
 /// Brings `part` to the disk and gives it its name; Unfinished on failure.
 void finish_file(const std::string& part, const std::string& path);
 
@@ -32,7 +35,7 @@ class FileLock {
 /// Has somebody a FileLock of it?
 bool locked(const std::string& path);
 
-/// Writes text as a whole; ConfigError on failure, and then nothing is left.
+/// Writes text as a whole; Unfinished on failure, and then nothing is left.
 void write_file(const std::string& path, const std::string& text);
 
 /// "" when a file can be created at path, else what is in the way. Leaves nothing behind.

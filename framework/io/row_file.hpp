@@ -4,11 +4,15 @@
 // Each group of columns is a data set, rows x columns (rows alone where it is one number), with unit, meaning, frame and
 // columns as attributes; texts are attributes of the file. Its attribute `finished` is 0 until it is closed, and the data set
 // `record` (text, in bytes) empty. The data set `resume` holds marks, pieces of bytes that belong to the rows before them.
+// Each mark, and in the end the attribute `checksum`, has the checksum of all rows before it: HDF5 reads what is missing at
+// the end of a file as zeros, of which its own fletcher32 is zero.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,9 +26,13 @@ struct ColumnGroup {
   std::vector<std::string> columns;
 };
 
+/// The checksum of rows that come after others with the checksum `before`; of none it is kNoRows.
+constexpr std::uint64_t kNoRows = 14695981039346656037u;
+std::uint64_t checksum_of_rows(std::uint64_t before, std::span<const double> rows);
+
 class RowFileWriter {
  public:
-  /// ConfigError where the file cannot be created, or without HDF5 in the build.
+  /// Unfinished where the file cannot be created, ConfigError without HDF5 in the build.
   RowFileWriter(std::string path, const std::vector<ColumnGroup>& groups,
                 const std::map<std::string, std::string>& texts);
   /// Leaves the file as it is, unfinished.
@@ -43,7 +51,7 @@ class RowFileWriter {
 
 class RowFileReader {
  public:
-  /// ConfigError where it is no such file.
+  /// ConfigError where it is no such file, or damaged; so below.
   explicit RowFileReader(const std::string& path);
   ~RowFileReader();
   RowFileReader(RowFileReader&&) noexcept;
@@ -54,13 +62,15 @@ class RowFileReader {
   bool finished() const;
   std::string record() const;
   std::size_t rows() const;
+  /// Of all rows of a finished file; none in files of before there was one.
+  std::optional<std::uint64_t> checksum() const;
   /// Whole rows, one after the other.
   void read(std::size_t first, std::size_t count, std::vector<double>& out) const;
   struct Mark {
     std::size_t rows;
     std::string bytes;
   };
-  /// Those that are whole, in their order.
+  /// Those that are whole with all rows before them, in their order. Reads these rows.
   std::vector<Mark> marks() const;
 
  private:

@@ -18,7 +18,7 @@ inline std::uint64_t checksum(std::string_view bytes) {
   return hash;
 }
 
-using MarkHead = std::array<std::uint64_t, 3>;  // rows, bytes, checksum
+using MarkHead = std::array<std::uint64_t, 4>;  // rows, their checksum, bytes, theirs
 
 inline Handle latest_format() {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -26,13 +26,21 @@ inline Handle latest_format() {
   return {access, H5Pclose, "H5Pcreate"};
 }
 
-// 0 or 1, the one attribute that changes: a text cannot while others read.
-inline Handle finished_flag(hid_t file) {
-  if (H5Aexists(file, "finished") > 0)
-    return {H5Aopen(file, "finished", H5P_DEFAULT), H5Aclose, "H5Aopen"};
+// finished (0 or 1) and checksum, the attributes that change: a text cannot while others read.
+constexpr const char *kFinished = "finished", *kChecksum = "checksum";
+inline void write_number(hid_t file, const char* name, hid_t type, std::uint64_t value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "H5Screate");
-  return {H5Acreate2(file, "finished", H5T_STD_U8LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-          "H5Acreate2"};
+  const Handle attribute(H5Aexists(file, name) > 0
+                             ? H5Aopen(file, name, H5P_DEFAULT)
+                             : H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, "H5Aopen");
+  check(H5Awrite(attribute, H5T_NATIVE_UINT64, &value), "H5Awrite");
+}
+inline std::uint64_t read_number(hid_t file, const char* name) {
+  const Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose, "H5Aopen");
+  std::uint64_t out = 0;
+  check(H5Aread(attribute, H5T_NATIVE_UINT64, &out), "H5Aread");
+  return out;
 }
 
 }  // namespace hamel::hdf5

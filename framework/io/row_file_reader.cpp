@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/row_file.hpp>
 #include <hamel/framework/io/row_file_format.hpp>
 
@@ -24,29 +25,52 @@ std::string read_bytes(hid_t file, const char* name) {
   return out;
 }
 
+void read_column(hid_t set, hsize_t first, hsize_t count, hsize_t width, double* out) {
+  const int rank = width > 1 ? 2 : 1;
+  const hsize_t start[] = {first, 0}, block[] = {count, width};
+  const Handle there(H5Dget_space(set), H5Sclose, "H5Dget_space"),
+      here(H5Screate_simple(rank, block, nullptr), H5Sclose, "H5Screate_simple");
+  check(H5Sselect_hyperslab(there, H5S_SELECT_SET, start, nullptr, block, nullptr), "H5Sselect");
+  check(H5Dread(set, H5T_NATIVE_DOUBLE, here, there, H5P_DEFAULT, out), "H5Dread");
+}
+
+constexpr std::size_t kPiece = 4096;  // rows that are read at once
+
 }  // namespace
 
 struct RowFileReader::Data {
+  std::string path;
   std::unique_ptr<Handle> file;
   std::vector<ColumnGroup> groups;
   std::vector<std::unique_ptr<Handle>> sets;
   std::size_t rows = 0;
+
+  template <class F>
+  auto attempt(F&& read) const {
+    try {
+      return read();
+    } catch (const ConfigError& error) {
+      throw ConfigError({fmt::format("'{}': it is damaged ({})", path, error.what())});
+    }
+  }
 };
 
 RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<Data>()) {
   begin();
+  data_->path = path;
   const auto refuse = [&](const std::string& why) {
     throw ConfigError({fmt::format("'{}': {}", path, why)});
   };
   std::error_code error;
   if (!std::filesystem::exists(path, error)) refuse("there is no such file");
   if (H5Fis_hdf5(path.c_str()) <= 0) refuse("it is no HDF5 file");
-  try {
-    hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, latest_format());
+  data_->attempt([&] {
+    const Handle access = latest_format();
+    // What another writes may be read again until it is whole; what is damaged stays so, at every level of the file.
+    if (!locked(path)) check(H5Pset_metadata_read_attempts(access, 1), "H5Pset_metadata");
+    hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
     if (file < 0) file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     data_->file = std::make_unique<Handle>(file, H5Fclose, "H5Fopen");
-    if (H5Aexists(file, "finished") <= 0)
-      throw ConfigError({"it holds no run (hamel run … -o x.h5)"});
     std::vector<std::string> names;
     const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
       static_cast<std::vector<std::string>*>(out)->emplace_back(name);
@@ -73,10 +97,9 @@ RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<D
       data_->groups.push_back(std::move(group));
       data_->sets.push_back(std::move(set));
     }
-    if (data_->sets.empty()) throw ConfigError({"it holds no rows"});
-  } catch (const ConfigError& e) {
-    refuse(e.what());
-  }
+  });
+  if (H5Aexists(*data_->file, kFinished) <= 0) refuse("it holds no run (hamel run … -o x.h5)");
+  if (data_->sets.empty()) refuse("it holds no rows");
 }
 
 RowFileReader::~RowFileReader() = default;
@@ -85,15 +108,20 @@ RowFileReader::RowFileReader(RowFileReader&&) noexcept = default;
 const std::vector<ColumnGroup>& RowFileReader::groups() const { return data_->groups; }
 std::size_t RowFileReader::rows() const { return data_->rows; }
 
-std::string RowFileReader::record() const { return read_bytes(*data_->file, kRecord); }
 bool RowFileReader::finished() const {
-  unsigned char out = 0;
-  check(H5Aread(finished_flag(*data_->file), H5T_NATIVE_UCHAR, &out), "H5Aread");
-  return out == 1;
+  return data_->attempt([&] { return read_number(*data_->file, kFinished) == 1; });
+}
+std::string RowFileReader::record() const {
+  return data_->attempt([&] { return read_bytes(*data_->file, kRecord); });
+}
+std::optional<std::uint64_t> RowFileReader::checksum() const {
+  if (H5Aexists(*data_->file, kChecksum) <= 0) return {};
+  return data_->attempt([&] { return read_number(*data_->file, kChecksum); });
 }
 
 std::string RowFileReader::text(const std::string& name) const {
-  return H5Aexists(*data_->file, name.c_str()) > 0 ? read_text(*data_->file, name) : "";
+  if (H5Aexists(*data_->file, name.c_str()) <= 0) return "";
+  return data_->attempt([&] { return read_text(*data_->file, name); });
 }
 
 void RowFileReader::read(std::size_t first, std::size_t count, std::vector<double>& out) const {
@@ -103,14 +131,8 @@ void RowFileReader::read(std::size_t first, std::size_t count, std::vector<doubl
   std::vector<double> column;
   for (std::size_t i = 0; i < data_->sets.size(); ++i) {
     const std::size_t n = data_->groups[i].columns.size();
-    const int rank = n > 1 ? 2 : 1;
-    const hsize_t start[] = {first, 0}, block[] = {count, n};
-    const Handle there(H5Dget_space(*data_->sets[i]), H5Sclose, "H5Dget_space"),
-        here(H5Screate_simple(rank, block, nullptr), H5Sclose, "H5Screate_simple");
-    check(H5Sselect_hyperslab(there, H5S_SELECT_SET, start, nullptr, block, nullptr), "H5Sselect");
     column.resize(count * n);
-    check(H5Dread(*data_->sets[i], H5T_NATIVE_DOUBLE, here, there, H5P_DEFAULT, column.data()),
-          "H5Dread");
+    data_->attempt([&] { read_column(*data_->sets[i], first, count, n, column.data()); });
     for (std::size_t r = 0; r < count; ++r)
       for (std::size_t j = 0; j < n; ++j) out[r * width + at + j] = column[r * n + j];
     at += n;
@@ -119,14 +141,27 @@ void RowFileReader::read(std::size_t first, std::size_t count, std::vector<doubl
 
 std::vector<RowFileReader::Mark> RowFileReader::marks() const {
   std::vector<Mark> out;
-  const std::string all = read_bytes(*data_->file, kMarks);
+  const std::string all = data_->attempt([&] { return read_bytes(*data_->file, kMarks); });
   MarkHead head{};
-  for (std::size_t at = 0; at + sizeof head <= all.size(); at += sizeof head + head[1]) {
+  std::uint64_t sum = kNoRows;
+  std::vector<double> piece;
+  for (std::size_t at = 0, row = 0; at + sizeof head <= all.size(); at += sizeof head + head[2]) {
     std::memcpy(head.data(), all.data() + at, sizeof head);
-    if (head[1] == 0 || head[1] > all.size() - at - sizeof head || head[0] > rows()) break;
-    std::string bytes = all.substr(at + sizeof head, head[1]);
-    if (checksum(bytes) != head[2]) break;
-    out.push_back({head[0], std::move(bytes)});
+    const auto [marked, sum_there, size, sum_of_bytes] = head;
+    if (size == 0 || size > all.size() - at - sizeof head || marked > rows()) break;
+    std::string bytes = all.substr(at + sizeof head, size);
+    if (hdf5::checksum(bytes) != sum_of_bytes) break;
+    try {
+      for (; row < marked; row += kPiece) {
+        read(row, std::min(kPiece, marked - row), piece);
+        sum = checksum_of_rows(sum, piece);
+      }
+    } catch (const ConfigError&) {
+      break;
+    }
+    row = marked;
+    if (sum != sum_there) break;
+    out.push_back({marked, std::move(bytes)});
   }
   return out;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -18,10 +19,6 @@ using namespace hdf5;
 namespace {
 
 constexpr hsize_t kChunkRows = 4096, kChunkBytes = 1 << 16;
-
-void write_finished(hid_t file, unsigned char value) {
-  check(H5Awrite(finished_flag(file), H5T_NATIVE_UCHAR, &value), "H5Awrite");
-}
 
 Handle create(hid_t file, const std::string& name, hid_t type, hsize_t chunk, hsize_t width) {
   const int rank = width > 1 ? 2 : 1;
@@ -45,6 +42,14 @@ void append_to(hid_t set, hid_t type, hsize_t at, hsize_t count, hsize_t width, 
 
 }  // namespace
 
+// As FNV-1a, by numbers instead of bytes; turned, so that a sign counts as much as what is behind the point.
+std::uint64_t checksum_of_rows(std::uint64_t before, std::span<const double> rows) {
+  constexpr std::uint64_t prime = 1099511628211u;
+  for (const double value : rows)
+    before = std::rotl((before ^ std::bit_cast<std::uint64_t>(value)) * prime, 29);
+  return before;
+}
+
 struct RowFileWriter::Data {
   std::string path;
   std::vector<hsize_t> widths;
@@ -53,9 +58,12 @@ struct RowFileWriter::Data {
   std::unique_ptr<Handle> marks, record;
   hsize_t width = 0, rows = 0, marked = 0;
   std::vector<double> column;
+  bool given_up = false;
+  std::uint64_t sum = kNoRows;
 
   // After a failed write the library cannot close the file; it stays as it was last flushed.
   void abandon() {
+    given_up = true;
     for (auto& set : sets) static_cast<void>(set.release());
     static_cast<void>(marks.release());
     static_cast<void>(record.release());
@@ -63,7 +71,7 @@ struct RowFileWriter::Data {
   }
   template <class F>
   void attempt(F&& write) {
-    if (file == nullptr) throw Unfinished(fmt::format("output: '{}' was given up", path));
+    if (given_up) throw Unfinished(fmt::format("output: '{}' was given up", path));
     try {
       errno = 0;
       write();
@@ -79,17 +87,19 @@ RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& g
                              const std::map<std::string, std::string>& texts)
     : data_(std::make_unique<Data>()) {
   begin();
-  data_->path = std::move(path);
-  try {
+  Data& d = *data_;
+  d.path = std::move(path);
+  d.attempt([&] {
     const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "H5Pcreate");
     check(H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED),
           "H5Pset_link_creation_order");
-    data_->file = std::make_unique<Handle>(
-        H5Fcreate(data_->path.c_str(), H5F_ACC_TRUNC, properties, latest_format()), H5Fclose,
+    d.file = std::make_unique<Handle>(
+        H5Fcreate(d.path.c_str(), H5F_ACC_TRUNC, properties, latest_format()), H5Fclose,
         "H5Fcreate");
-    const hid_t file = *data_->file;
+    const hid_t file = *d.file;
     for (const auto& [name, value] : texts) write_text(file, name, value);
-    write_finished(file, 0);
+    write_number(file, kFinished, H5T_STD_U8LE, 0);
+    write_number(file, kChecksum, H5T_STD_U64LE, d.sum);
     for (const ColumnGroup& group : groups) {
       const hsize_t width = group.columns.size();
       auto set =
@@ -98,16 +108,14 @@ RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& g
       write_text(*set, "meaning", group.meaning);
       write_text(*set, "frame", group.frame);
       write_text(*set, "columns", fmt::format("{}", fmt::join(group.columns, ",")));
-      data_->sets.push_back(std::move(set));
-      data_->widths.push_back(width);
-      data_->width += width;
+      d.sets.push_back(std::move(set));
+      d.widths.push_back(width);
+      d.width += width;
     }
-    data_->marks = std::make_unique<Handle>(create(file, kMarks, H5T_STD_U8LE, kChunkBytes, 1));
-    data_->record = std::make_unique<Handle>(create(file, kRecord, H5T_STD_U8LE, kChunkBytes, 1));
+    d.marks = std::make_unique<Handle>(create(file, kMarks, H5T_STD_U8LE, kChunkBytes, 1));
+    d.record = std::make_unique<Handle>(create(file, kRecord, H5T_STD_U8LE, kChunkBytes, 1));
     check(H5Fstart_swmr_write(file), "H5Fstart_swmr_write");
-  } catch (const ConfigError& error) {
-    throw ConfigError({fmt::format("output: cannot write '{}' ({})", data_->path, error.what())});
-  }
+  });
 }
 
 RowFileWriter::~RowFileWriter() = default;
@@ -132,11 +140,12 @@ void RowFileWriter::append(std::span<const double> rows) {
     check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
   });
   d.rows += count;
+  d.sum = checksum_of_rows(d.sum, rows);
 }
 
 void RowFileWriter::mark(std::string_view bytes) {
   Data& d = *data_;
-  const MarkHead head = {d.rows, bytes.size(), checksum(bytes)};
+  const MarkHead head = {d.rows, d.sum, bytes.size(), checksum(bytes)};
   std::string text(sizeof head, '\0');
   std::memcpy(text.data(), head.data(), sizeof head);
   text += bytes;
@@ -152,7 +161,8 @@ void RowFileWriter::finish(const std::string& record) {
   d.attempt([&] {
     append_to(*d.record, H5T_NATIVE_UINT8, 0, record.size(), 1, record.data());
     check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
-    write_finished(*d.file, 1);
+    write_number(*d.file, kChecksum, H5T_STD_U64LE, d.sum);
+    write_number(*d.file, kFinished, H5T_STD_U8LE, 1);
     check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
     d.sets.clear();
     d.marks.reset();

@@ -86,7 +86,12 @@ std::string text_of(const InputSignal& signal) {
 }
 
 InputTable read_input_table(const std::string& what, const InputFile& file) {
-  std::istringstream lines(read_text_file(what, file.path));
+  return read_input_table(what, file, read_text_file(what, file.path));
+}
+
+InputTable read_input_table(const std::string& what, const InputFile& file,
+                            const std::string& text) {
+  std::istringstream lines(text);
   InputTable table{{}, {}, file.hold};
   bool named = false;
   long at = 0;

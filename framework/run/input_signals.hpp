@@ -31,6 +31,9 @@ std::string text_of(const InputSignal& signal);
 
 /// The table of a file. ConfigError "what: path:line: ...".
 InputTable read_input_table(const std::string& what, const InputFile& file);
+/// The same of a file whose text is at hand.
+InputTable read_input_table(const std::string& what, const InputFile& file,
+                            const std::string& text);
 
 /// The span of a run, either way.
 struct RunSpan {

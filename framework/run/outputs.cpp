@@ -2,12 +2,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/io/text_file.hpp>
+#include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/plan.hpp>
 #include <hamel/framework/run/run_file.hpp>
@@ -39,23 +40,28 @@ double numbers_that_fit(const std::vector<std::string>& files) {
     std::error_code error;
     const auto folder = std::filesystem::absolute(file, error).parent_path();
     const std::filesystem::space_info space = std::filesystem::space(folder, error);
-    if (!error) out = std::min(out, static_cast<double>(space.available) / sizeof(double));
+    if (error) continue;
+    auto available = static_cast<double>(space.available);
+    for (const char* left : {"", ".new"}) {  // by an earlier run: this one replaces it
+      const auto size = std::filesystem::file_size(part_of(file) + left, error);
+      if (!error) available += static_cast<double>(size);
+    }
+    out = std::min(out, available / sizeof(double));
   }
   return out;
 }
 
 // What is recorded, and what an earlier part of the run has recorded.
 void Simulation::add_outputs(Plan& plan) const {
-  for (size_t i = 0; i < records_.size(); ++i) {
-    const std::string& path = records_[i];
+  std::set<std::string> places;
+  for (const std::string& path : records_) {
     std::error_code error;
     if (const std::string mistake = record_mistake(path); !mistake.empty()) plan.add({mistake});
-    else if (std::find(records_.begin(), records_.begin() + static_cast<long>(i), path) !=
-             records_.begin() + static_cast<long>(i))
+    else if (!places.insert(place_of(path)).second)
       plan.add({fmt::format("output: '{}' is given twice", path)});
-    else if (path.ends_with(".h5") && locked(part_of(path)))
+    else if (locked(part_of(path)))
       plan.add({fmt::format("output: another process is writing '{}.part'", path)});
-    else if (path.ends_with(".h5") && path != resumed_ &&
+    else if (path.ends_with(".h5") && place_of(path) != place_of(resumed_) &&
              std::filesystem::exists(part_of(path), error))
       plan.add(
           {fmt::format("output: '{0}.part' is an unfinished run; go on with it (hamel run "
@@ -64,11 +70,7 @@ void Simulation::add_outputs(Plan& plan) const {
   }
   if (records_.empty() && resumed_.empty()) return;
   plan.request = config_.to_toml();
-  if (config_.system.ends_with(".toml")) plan.files += read_text_file("system", config_.system);
-  for (const auto& [name, signal] : config_.inputs) {
-    if (const auto* file = std::get_if<InputFile>(&signal))
-      plan.files += read_text_file(name, file->path);
-  }
+  plan.files = texts_of_files(config_);
   if (resumed_.empty()) return;
   const RunFile file(resumed_);
   const auto refuse = [&](const std::string& why) {

@@ -178,13 +178,15 @@ Simulation::Plan Simulation::plan() const {
   const double most = in_memory ? kMaxNumbers : numbers_that_fit(records_);
   const char* where = in_memory ? "memory holds" : "there is room for on the disk";
   if (rows < 9e15 && rows * width > most) {
-    plan.add(
-        {config_.output_step
-             ? fmt::format("output_step: {:.3g} rows would be recorded, more than {}", rows, where)
-             : fmt::format("every: {:.3g} rows would be recorded, more than {}; record every "
-                           "{:.0f} steps or more",
-                           rows, where,
-                           std::ceil(rows * static_cast<double>(config_.every) * width / most))});
+    const bool resumed = !resumed_.empty();  // as it was run, and no other way
+    const char* what = resumed ? "continue" : config_.output_step ? "output_step" : "every";
+    std::string mistake =
+        fmt::format("{}: {:.3g} rows would be recorded, more than {}", what, rows, where);
+    if (!resumed && !config_.output_step && 2 * width <= most) {  // the first and the last
+      mistake += fmt::format("; record every {:.0f} steps or more",
+                             std::ceil(rows * static_cast<double>(config_.every) * width / most));
+    }
+    plan.add({mistake});
   }
   if (scheme != nullptr && !scheme->steps_admissible && plan.mistakes.empty() &&
       !is_definite(plan.inertia)) {

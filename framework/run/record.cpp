@@ -98,7 +98,10 @@ Json record_of(const Result& r) {
     diagnostics[std::string(quantity.name) + suffix] = json_of(r.*member);
   });
   diagnostics["invariants"] = invariants;
-  Json out = {{"system", r.system.name}, {"group", r.system.group.name}};
+  const std::string& system = r.config.system;
+  Json out = {{"system", r.system.name},
+              {"system_file", system.ends_with(".toml") ? Json(system) : Json(nullptr)},
+              {"group", r.system.group.name}};
   Config::fields([&](const Option& option, auto member) {
     const bool used = std::find(r.unused.begin(), r.unused.end(), option.name) == r.unused.end();
     out[record_key(option)] = used ? json_of(r.config.*member) : Json(nullptr);
@@ -149,7 +152,9 @@ Config Config::continued(const std::string& record, const std::string& origin) {
   Config config;
   try {
     const Json json = Json::parse(record);
-    config.system = json.at("system").get<std::string>();
+    const auto path = json.find("system_file");
+    const bool of_file = path != json.end() && path->is_string();
+    config.system = (of_file ? *path : json.at("system")).get<std::string>();
     fields([&](const Option& option, auto member) {
       const auto it = json.find(record_key(option));
       if (it == json.end() || it->is_null() || (it->is_array() && it->empty())) return;

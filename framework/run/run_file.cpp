@@ -5,14 +5,20 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/checkpoint.hpp>
+#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/simulation.hpp>
 
 namespace hamel {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "hamel run 1";
 
@@ -30,13 +36,16 @@ std::string whole(const std::string& path) {
 
 }  // namespace
 
+RunFileSink::~RunFileSink() {
+  // Ended before it took its place, it has nothing that is not elsewhere.
+  if (lock_ != nullptr && !in_place_) std::remove((part_of(path_) + ".new").c_str());
+}
+
 void RunFileSink::begin(const RunHead& head) {
   const std::string part = part_of(path_), fresh = part + ".new";
   lock_ = std::make_unique<FileLock>(fresh);  // it stays with the file when that becomes x.part
-  if (locked(part)) {
-    std::remove(fresh.c_str());
+  if (locked(part))
     throw ConfigError({fmt::format("output: another process is writing '{}'", part)});
-  }
   out_ = std::make_unique<RowFileWriter>(fresh, head.columns,
                                          std::map<std::string, std::string>{
                                              {"format", kFormat},
@@ -56,10 +65,10 @@ void RunFileSink::checkpoint(const std::string& state, const std::string& news) 
 
 void RunFileSink::flush() {
   if (in_place_) return;
-  in_place_ = true;
   const std::string part = part_of(path_);
   if (std::rename((part + ".new").c_str(), part.c_str()) != 0)
     throw Unfinished(fmt::format("output: cannot write '{}'", path_));
+  in_place_ = true;
 }
 
 void RunFileSink::finish(const Result& result) {
@@ -71,15 +80,52 @@ void RunFileSink::finish(const Result& result) {
 RunFile::RunFile(const std::string& path) : path_(whole(path)), rows_(existing(path_)) {
   if (rows_.text("format") != kFormat)
     throw ConfigError({fmt::format("'{}': it holds no run (hamel run … -o x.h5)", path_)});
+}
+
+RunFile::Kept RunFile::kept() const {
+  Kept out;
   for (const RowFileReader::Mark& mark : rows_.marks()) {
-    rows = mark.rows;
+    out.rows = mark.rows;
     CheckpointReader both(mark.bytes);
-    both(state, news.emplace_back());
+    both(out.state, out.news.emplace_back());
   }
-  if (finished()) rows = rows_.rows();
+  return out;
 }
 
 Config RunFile::config() const { return Config::from_toml(rows_.text("config"), path_); }
+
+std::string texts_of_files(const Config& config) {
+  Json out = Json::object();
+  if (config.system.ends_with(".toml"))
+    out[config.system] = read_text_file("system", config.system);
+  for (const auto& [name, signal] : config.inputs) {
+    if (const auto* file = std::get_if<InputFile>(&signal))
+      out[file->path] = read_text_file(name, file->path);
+  }
+  // (A comment may be in no UTF-8.)
+  return out.empty() ? "" : out.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string RunFile::file(const std::string& path) const {
+  const Json files = Json::parse(text("files"), nullptr, false);
+  if (files.is_object() && files.contains(path)) return files[path].get<std::string>();
+  throw ConfigError({fmt::format("'{}': it does not hold the text of '{}'", path_, path)});
+}
+
+Simulation RunFile::simulation(const Registry& registry) const {
+  Config config = this->config();
+  for (auto& [name, signal] : config.inputs) {
+    if (const auto* table = std::get_if<InputFile>(&signal))
+      signal = read_input_table(name, *table, file(table->path));
+  }
+  const std::string& system = config.system;
+  Simulation out =
+      system.ends_with(".toml")
+          ? Simulation(registry, system, data_system_maker(registry, system, file(system)))
+          : Simulation(registry, system);
+  out.config(std::move(config));
+  return out;
+}
 
 Trajectory read_rows(const RunFile& file, std::size_t most) {
   constexpr std::size_t piece = 4096;
@@ -87,9 +133,16 @@ Trajectory read_rows(const RunFile& file, std::size_t most) {
   MemorySink rows(out, most);
   rows.begin({file.table().groups(), "", "", ""});
   std::vector<double> values;
-  for (std::size_t at = 0; at < file.rows; at += piece) {
-    file.table().read(at, std::min(piece, file.rows - at), values);
+  const std::size_t count = file.table().rows();
+  std::uint64_t sum = kNoRows;
+  for (std::size_t at = 0; at < count; at += piece) {
+    file.table().read(at, std::min(piece, count - at), values);
+    sum = checksum_of_rows(sum, values);
     rows.rows(values);
+  }
+  if (file.table().checksum().value_or(sum) != sum) {
+    throw ConfigError(
+        {fmt::format("'{}': it is damaged: its rows are not those written", file.path())});
   }
   rows.finish(Result());
   return out;
@@ -97,8 +150,14 @@ Trajectory read_rows(const RunFile& file, std::size_t most) {
 
 Recorded read_recorded(const std::string& path) {
   const RunFile file(path);
-  return {file.path(), file.finished(),
-          file.finished() ? Config::continued(file.record(), path) : file.config()};
+  if (!file.finished()) return {file.path(), false, file.config()};
+  const Config config = Config::continued(file.record(), path);
+  const std::string& system = config.system;
+  if (system.ends_with(".toml") && file.file(system) != read_text_file("system", system)) {
+    throw ConfigError({fmt::format(
+        "continue: '{}': the file of its system, '{}', is not what it was", file.path(), system)});
+  }
+  return {file.path(), true, config};
 }
 
 }  // namespace hamel

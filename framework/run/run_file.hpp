@@ -1,6 +1,6 @@
 // A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its page. Not installed.
 //
-// Attributes: config (TOML), files, start (the record before the first step), build, format. Data sets: the groups of
+// Attributes: config (TOML), files (texts_of_files), start (the record before the first step), build, format. Data sets: the groups of
 // columns; record, the Result's, in the end; resume, checkpoints (run/checkpoint.hpp) until then.
 #pragma once
 
@@ -13,9 +13,16 @@
 
 namespace hamel {
 
+class Registry;
+class Simulation;
+
+/// The texts of the files that a run reads, its system and inputs: {path: text}, JSON; "" where there is none.
+std::string texts_of_files(const Config& config);
+
 class RunFileSink final : public Sink {
  public:
   explicit RunFileSink(std::string path) : path_(std::move(path)) {}
+  ~RunFileSink() override;
   void begin(const RunHead& head) override;
   void rows(std::span<const double> values) override { out_->append(values); }
   bool resumable() const override { return true; }
@@ -41,20 +48,28 @@ class RunFile {
   bool finished() const { return rows_.finished(); }
   std::string record() const { return rows_.record(); }
   Config config() const;
+  /// The run, made of the texts in this file: the files that it was made of may be others by now, or gone.
+  Simulation simulation(const Registry& registry) const;
   std::string text(const std::string& name) const { return rows_.text(name); }
   const RowFileReader& table() const { return rows_; }
+  /// Of texts_of_files, by path. ConfigError where it is not there.
+  std::string file(const std::string& path) const;
 
-  /// The last checkpoint: its state, what came before it piece by piece, and its rows; 0 rows where there is none.
-  std::string state;
-  std::vector<std::string> news;
-  std::size_t rows = 0;
+  /// The last checkpoint that is whole with the rows before it: its state, what came before it piece by piece, and how many
+  /// rows; 0 where there is none. Reads these rows.
+  struct Kept {
+    std::string state;
+    std::vector<std::string> news;
+    std::size_t rows = 0;
+  };
+  Kept kept() const;
 
  private:
   std::string path_;
   RowFileReader rows_;
 };
 
-/// The rows of a file, thinned to at most so many.
+/// The rows of a finished file, thinned to at most so many. ConfigError where they are not those that were written.
 Trajectory read_rows(const RunFile& file, std::size_t most);
 
 /// What a record says of a run, into a Result that has its system and config.

@@ -43,6 +43,7 @@ void RunLoop::run() {
   try {
     go();
   } catch (...) {  // the rows that are there reach their files
+    if (!begun_) throw;
     for (const auto& sink : sinks_) {
       try {
         if (!meter_.rows().empty()) sink->rows(meter_.rows());
@@ -126,13 +127,14 @@ void RunLoop::begin_from_here() {
 }
 
 void RunLoop::resume(const RunFile& file) {
-  if (file.state.empty()) return;  // from its start
-  CheckpointReader state(file.state);
+  const RunFile::Kept kept = file.kept();
+  if (kept.state.empty()) return;  // from its start
+  CheckpointReader state(kept.state);
   carry(state);
   begin_from_here();
   before_ = result_.seconds;
   kept_at_ = node_.step;
-  for (const std::string& piece : file.news) {
+  for (const std::string& piece : kept.news) {
     std::vector<EventMet> met;
     CheckpointReader news(piece);
     news(met);
@@ -142,8 +144,8 @@ void RunLoop::resume(const RunFile& file) {
 
   begin_sinks(file.table().groups(), file.text("start"));
   std::vector<double> rows;
-  for (std::size_t at = 0; at < file.rows; at += kRows) {
-    const std::size_t count = std::min<std::size_t>(kRows, file.rows - at);
+  for (std::size_t at = 0; at < kept.rows; at += kRows) {
+    const std::size_t count = std::min<std::size_t>(kRows, kept.rows - at);
     file.table().read(at, count, rows);
     for (const auto& sink : sinks_) sink->rows(rows);
     for (std::size_t i = 0; i < count; ++i) meter_.follow_exact(rows[i * (rows.size() / count)]);
@@ -151,7 +153,7 @@ void RunLoop::resume(const RunFile& file) {
   CheckpointWriter news;
   news(result_.events);
   for (const auto& sink : sinks_) {
-    sink->checkpoint(file.state, news.bytes());
+    sink->checkpoint(kept.state, news.bytes());
     sink->flush();
   }
 }

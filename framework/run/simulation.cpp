@@ -174,6 +174,9 @@ void Simulation::estimate_error(Result& result) const {
   for (const int k : {1, 2}) {
     const double parts = std::pow(factor, k);
     Simulation finer = *this;
+    finer.records_.clear();  // the files are this run's
+    finer.resumed_.clear();
+    finer.keep_rows(1);
     if (chosen) {
       if (config_.rtol) finer.config_.rtol = *config_.rtol / parts;
       if (config_.atol) finer.config_.atol = *config_.atol / parts;

@@ -28,7 +28,9 @@ namespace {
 class PlainBytes {
  public:
   explicit PlainBytes(const std::string& path)
-      : path_(path), file_(path == "-" ? stdout : std::fopen(part_of(path).c_str(), "wb")) {
+      : path_(path),
+        lock_(path == "-" ? nullptr : std::make_unique<FileLock>(part_of(path))),
+        file_(path == "-" ? stdout : std::fopen(part_of(path).c_str(), "wb")) {
     if (file_ == nullptr) refuse(path_);
   }
   ~PlainBytes() {
@@ -51,13 +53,14 @@ class PlainBytes {
 
  private:
   std::string path_;
+  std::unique_ptr<FileLock> lock_;
   std::FILE* file_;
 };
 
 class CompressedBytes {
  public:
   explicit CompressedBytes(const std::string& path)
-      : path_(path), file_(gzopen(part_of(path).c_str(), "wb1")) {
+      : path_(path), lock_(part_of(path)), file_(gzopen(part_of(path).c_str(), "wb1")) {
     if (file_ == nullptr) refuse(path_);
   }
   ~CompressedBytes() {
@@ -79,6 +82,7 @@ class CompressedBytes {
 
  private:
   std::string path_;
+  FileLock lock_;
   gzFile file_;
 };
 

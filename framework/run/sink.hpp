@@ -18,7 +18,7 @@ namespace hamel {
 struct RunHead {
   std::vector<ColumnGroup> columns;
   std::string config;  // as given, TOML: reads back to the same run
-  std::string files;   // the texts of the files that it reads: a system, inputs
+  std::string files;   // texts_of_files (run_file.hpp)
   std::string record;  // as it is at the start: everything resolved, nothing computed
 };
 

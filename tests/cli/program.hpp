@@ -52,6 +52,13 @@ inline std::string source_file(const std::string& path) {
   return contents(std::filesystem::path(root != nullptr ? root : "") / path);
 }
 
+/// The data in the text of a page.
+inline nlohmann::json page_data(const std::string& page) {
+  const std::string head = "id=\"hamel-data\">";
+  const size_t from = page.find(head) + head.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
 /// The figure of that title on a page; null where there is none.
 inline nlohmann::json figure_of(const nlohmann::json& page, const std::string& title) {
   for (const nlohmann::json& section : page["sections"])
@@ -114,9 +121,7 @@ class CommandLine : public testing::Test {
     const Outcome outcome = run(arguments);
     if (outcome.err.find("without the page") != std::string::npos) return {};
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    const std::string page = contents(file("page.html")), head = "id=\"hamel-data\">";
-    const size_t from = page.find(head) + head.size();
-    return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+    return page_data(contents(file("page.html")));
   }
   /// The names of the curves in a run's figures, by their titles; none without the page.
   std::map<std::string, std::vector<std::string>> curves(std::vector<std::string> arguments) const {

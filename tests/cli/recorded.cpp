@@ -9,12 +9,6 @@ namespace {
 using namespace hamel::test;
 using testing::AllOf;
 using testing::HasSubstr;
-using Words = std::vector<std::string>;
-
-Words with(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
 
 TEST_F(Recorded, EveryFormatHasTheSameRows) {
   const Words suslov = {"run", "suslov", "--until", "3"};
@@ -108,8 +102,9 @@ TEST_F(Recorded, CtrlCKeepsWhatThereIs) {
 
 /// A file has one writer: the second is refused while the first one lives.
 TEST_F(Recorded, IsWrittenByOne) {
-  const Words words = {"run", "rolling_disk", "--until", "2e4", "--quiet", "-o", "a.h5"};
-  const pid_t child = started(words);
+  const Words disk = {"run", "rolling_disk", "--until", "2e4", "--quiet"};
+  const Words words = with(disk, {"-o", "a.h5"});
+  const pid_t child = started(with(words, {"-o", "a.csv", "-o", "a.csv.gz"}));
   for (int i = 0; i < 6000 && !exists("a.h5.part"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   kill(child, SIGSTOP);
@@ -119,10 +114,22 @@ TEST_F(Recorded, IsWrittenByOne) {
     EXPECT_EQ(o.status, 2);
     EXPECT_THAT(o.err, HasSubstr("another process is writing 'a.h5.part'"));
   }
+  for (const std::string name : {"a.csv", "a.csv.gz"}) {
+    const Outcome o = run(with(disk, {"-o", name}));
+    EXPECT_EQ(o.status, 2);
+    EXPECT_THAT(o.err, HasSubstr("another process is writing '" + name + ".part'"));
+  }
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
+  for (const char* name : {"a.csv.part", "a.csv.gz.part"}) std::filesystem::remove(file(name));
   EXPECT_EQ(run({"run", "--continue", "a.h5", "--quiet"}).status, 0);
   EXPECT_THAT(files(), testing::ElementsAre("a.h5"));
+  ASSERT_EQ(run({"run", "rolling_disk", "--until", "1e4", "--quiet", "-o", "b.h5"},
+                "ulimit -f 4000 && exec ")
+                .status,
+            1);
+  const Outcome o = run({"run", "--continue", "./b.h5", "-o", "b.h5", "--quiet"});
+  EXPECT_EQ(o.status, 0) << o.err << "one file, by two spellings";
 }
 
 TEST_F(Recorded, APipeThatIsClosed) {
@@ -131,6 +138,25 @@ TEST_F(Recorded, APipeThatIsClosed) {
   EXPECT_EQ(lines(o.out).size(), 3u);
   EXPECT_THAT(o.err, HasSubstr("Broken pipe"));
   EXPECT_THAT(files(), testing::ElementsAre("a.h5.part"));
+}
+
+/// The runs that --check adds write no files.
+TEST_F(Recorded, CheckedRuns) {
+  const Words checked = {"run", "suslov", "--check", "--until", "2", "--quiet"};
+  Outcome o = run(with(checked, {"-o", "a.h5", "-o", "a.csv", "-o", "a.json"}));
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.h5", "a.csv", "a.json"));
+  const nlohmann::json diagnostics = record("a.json")["diagnostics"];
+  EXPECT_GT(diagnostics["estimated_error"], 0.0);
+  o = run({"run", "--continue", "a.json", "-o", "b.h5", "--quiet"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  // One that was ended, and goes on.
+  const Words longer = {"run", "rolling_disk", "--check", "--until", "500", "--quiet"};
+  ASSERT_EQ(run(with(longer, {"-o", "whole.json", "-o", "whole.h5"})).status, 0);
+  ASSERT_EQ(run(with(longer, {"-o", "c.h5"}), "ulimit -f 6000 && exec ").status, 1);
+  o = run({"run", "--continue", "c.h5", "-o", "c.json", "--quiet"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(record("c.json"), record("whole.json"));
 }
 
 TEST_F(Recorded, BadInput) {
@@ -144,7 +170,12 @@ TEST_F(Recorded, BadInput) {
   refused({"suslov", "-o", "a.hdf5"}, "expected");
   refused({"suslov", "-o", "folder.h5"}, "is a directory");
   refused({"suslov", "-o", "none/a.h5"}, "cannot write 'none/a.h5'");
+  // A disk without any room: there is no number of steps to advise.
+  EXPECT_THAT(run({"run", "suslov", "-o", "/proc/a.csv"}).err,
+              AllOf(HasSubstr("room for on the disk"), testing::Not(HasSubstr("record every"))));
   refused({"suslov", "-o", "a.csv", "-o", "a.csv"}, "'a.csv' is given twice");
+  refused({"suslov", "-o", "a.csv", "-o", "./a.csv"}, "'./a.csv' is given twice");
+  refused({"suslov", "-o", "folder.h5/../a.h5", "-o", "a.h5"}, "'a.h5' is given twice");
   refused({"suslov", "-o", "-", "--json"}, "standard output");
   refused({"--continue", "text.h5"}, "no HDF5 file");
   refused({"--continue", "none.h5"}, "there is no such file");

@@ -13,6 +13,13 @@
 
 namespace hamel::test {
 
+using Words = std::vector<std::string>;
+
+inline Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 class Recorded : public CommandLine {
  protected:
   /// The rows of a CSV, and its first line.

@@ -156,6 +156,20 @@ offset = 0.4
   EXPECT_THAT(other.err, HasSubstr("mass"));
 }
 
+/// A system by data goes on by its file, not by the name in it.
+TEST_F(Files, ASystemByDataGoesOn) {
+  std::ofstream(file("scooter.toml")) << source_file("tests/examples/scooter_by_rows.toml");
+  for (const std::string name : {"a.json", "a.h5"}) {
+    Outcome o = run({"run", "scooter.toml", "--until", "1", "-o", name, "--quiet"});
+    if (o.err.find("no HDF5") != std::string::npos) continue;
+    ASSERT_EQ(o.status, 0) << o.err;
+    const Json on = record({"--continue", name});
+    EXPECT_EQ(on["system"], "kick scooter");
+    EXPECT_EQ(on["system_file"], "scooter.toml");
+    EXPECT_EQ(on["until"], 2.0);
+  }
+}
+
 TEST_F(Files, AConfigThatDoesNotFit) {
   std::ofstream(file("bad.toml")) << "system = \"suslov\"\nstpe = 0.1\n";
   const Outcome o = run({"run", "--config", "bad.toml", "-o", "a.csv"});

@@ -100,7 +100,7 @@ int program(int argc, char** argv) {
   study_command->add_flag("--quiet", studying.quiet, "print nothing but errors (and --json)");
   study_command->footer(
       "A study that was interrupted or killed goes on when the same command is given again.\n"
-      "Exit status: 0 done (failed cells are results), 1 interrupted, 2 bad input.\n"
+      "Exit status: 0 done (failed cells are results), 1 interrupted or disk full, 2 bad input.\n"
       "Examples:\n"
       "  hamel study tools/studies/readings.toml -o readings\n"
       "  hamel study tools/studies/solvers.toml -o solvers --threads 1   # quieter times");
@@ -132,7 +132,7 @@ int program(int argc, char** argv) {
                              "write a self-contained HTML page, with --vary");
   steady_command->add_flag("--json", steadying.json, "as JSON");
   steady_command->footer(
-      "Exit status: 0 done, 1 none found, 2 bad input.\n"
+      "Exit status: 0 done, 1 none found or disk full, 2 bad input.\n"
       "Examples:\n"
       "  hamel steady bicycle --speed 5\n"
       "  hamel steady bicycle --vary speed=1:8:71 --report bicycle.html\n"

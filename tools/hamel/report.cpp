@@ -33,10 +33,11 @@ ReadRun read_run(const std::string& path) {
   out.name = std::filesystem::path(file.path()).stem();
   out.record = file.record();
   const Config config = file.config();
-  const Integration run = Simulation(registry(), config.system).config(config).build();
+  const Integration run = file.simulation(registry()).build();
   Result& r = out.result;
   r.system = run.system();
   r.config = run.config();
+  r.config.inputs = config.inputs;  // by their names
   r.inputs = run.inputs();
   read_record(out.record, r);
   r.trajectory = read_rows(file, kRowsOfPage);

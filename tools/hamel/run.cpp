@@ -22,7 +22,8 @@ namespace {
 std::string kept(const RunOptions& options) {
   std::string out;
   for (const std::string& path : options.outputs) {
-    if (path == "-" || path.ends_with(".json")) continue;
+    std::error_code error;
+    if (path == "-" || !std::filesystem::exists(part_of(path), error)) continue;
     out += fmt::format("; the rows so far are in '{}'", part_of(path));
     if (path.ends_with(".h5")) out += fmt::format(", and --continue {} goes on", path);
   }
@@ -61,6 +62,8 @@ void Progress::operator()(double fraction) {
 }
 
 int run(const RunOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // a pipe that was closed, and a limit on files: as a full disk
+  std::signal(SIGXFSZ, SIG_IGN);
   Simulation simulation(registry(), options.config.system);
   simulation.config(options.config).resume(options.resumed);
   for (const std::string& path : options.outputs) simulation.record_to(path);
@@ -77,8 +80,6 @@ int run(const RunOptions& options) {
   if (!mistakes.empty()) throw ConfigError(mistakes);
 
   const std::atomic<bool>& stop = stop_when_asked();
-  std::signal(SIGPIPE, SIG_IGN);  // a pipe that was closed, and a limit on files: as a full disk
-  std::signal(SIGXFSZ, SIG_IGN);
   Result result;
   {
     Progress progress(options.config.system, options.quiet);

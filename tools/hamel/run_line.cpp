@@ -1,9 +1,11 @@
 #include "run_line.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/run/result.hpp>
 
 namespace hamel::tools {
@@ -134,8 +136,10 @@ void RunLine::go_on(Config& config) {
   config = file.config;
   if (file.finished) return;
   options.resumed = file.path;
-  if (std::find(options.outputs.begin(), options.outputs.end(), file.path) == options.outputs.end())
-    options.outputs.push_back(file.path);
+  const bool named = std::ranges::any_of(options.outputs, [&](const std::string& path) {
+    return place_of(path) == place_of(file.path);
+  });
+  if (!named) options.outputs.push_back(file.path);
 }
 
 }  // namespace hamel::tools
