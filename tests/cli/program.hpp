@@ -107,16 +107,20 @@ class CommandLine : public testing::Test {
     arguments.insert(arguments.begin(), "run");
     return answer(std::move(arguments), status);
   }
-  /// The data of the page of `run` with these arguments; null where the program was built without the page.
-  nlohmann::json page_of(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "run");
-    arguments.insert(arguments.end(), {"--quiet", "--report", "page.html"});
+  /// The data of the page that these arguments write to page.html; null where the program was built without the page.
+  nlohmann::json page_by(const std::vector<std::string>& arguments) const {
     const Outcome outcome = run(arguments);
     if (outcome.err.find("without the page") != std::string::npos) return {};
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const std::string page = contents(file("page.html")), head = "id=\"hamel-data\">";
     const size_t from = page.find(head) + head.size();
     return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+  }
+  /// The same of `run` with these arguments.
+  nlohmann::json page_of(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--quiet", "--report", "page.html"});
+    return page_by(arguments);
   }
   /// The names of the curves in a run's figures, by their titles; none without the page.
   std::map<std::string, std::vector<std::string>> curves(std::vector<std::string> arguments) const {

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "run_page.hpp"
+#include "run_verdict.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -62,7 +63,11 @@ Page compared(const std::vector<ReadRun>& runs) {
   Page page(fmt::format("{} runs compared", runs.size()),
             fmt::format("of {}", runs.front().result.system.name));
   page.section("Runs");
-  std::vector<std::string> columns = {"run", "system", "method", "steps", "status"};
+  for (const ReadRun& run : runs) {
+    const RunVerdict verdict = run_verdict(run.result);
+    page.verdict(verdict.status, fmt::format("`{}`: {}", run.name, verdict.text));
+  }
+  std::vector<std::string> columns = {"run", "system", "method", "steps", "ended"};
   std::vector<std::string> measured;
   Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
     const bool any = std::any_of(runs.begin(), runs.end(), [&](const ReadRun& run) {
@@ -77,7 +82,7 @@ Page compared(const std::vector<ReadRun>& runs) {
     const Result& r = run.result;
     std::vector<Cell>& row = rows.emplace_back(std::vector<Cell>{
         run.name, r.system.name, r.method(), fmt::format("{} of {}", r.steps, r.steps_in_words()),
-        r.status.ok ? "ok" : "failed: " + r.status.reason});
+        r.status.ok ? fmt::format("at t = {:.6g}", r.last.time) : "failed: " + r.status.reason});
     Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
       const std::string name = std::string(quantity.name) + suffix;
       if (std::find(measured.begin(), measured.end(), name) != measured.end())
