@@ -37,4 +37,58 @@ TEST_F(Pages, OkMeansRight) {
             "note");
 }
 
+// The names of a figure's curves.
+std::vector<std::string> names(const json& figure) {
+  std::vector<std::string> out;
+  for (const json& series : figure["series"]) out.push_back(series["name"]);
+  return out;
+}
+
+class Comparisons : public Pages {
+ protected:
+  void SetUp() override {
+    Pages::SetUp();
+    std::filesystem::create_directory(file("A"));
+    std::filesystem::create_directory(file("B"));
+    first_ = run({"run", "chaplygin_sleigh", "--quiet", "-o", "A/run.h5"});
+    if (first_.err.find("HDF5") != std::string::npos) GTEST_SKIP() << "built without HDF5";
+    ASSERT_EQ(first_.status, 0) << first_.err;
+    if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  }
+  json compared(const std::vector<std::string>& arguments) const {
+    EXPECT_EQ(run(arguments).status, 0);
+    return page_by({"report", "A/run.h5", "B/run.h5", "-o", "page.html"});
+  }
+
+ private:
+  hamel::test::Outcome first_;
+};
+
+TEST_F(Comparisons, FilesOfOneNameAreToldApart) {
+  const json page =
+      compared({"run", "chaplygin_sleigh", "--step", "0.001", "--quiet", "-o", "B/run.h5"});
+  const json omega = figure_of(page, "omega"), residual = figure_of(page, "Constraint residual");
+  EXPECT_THAT(names(omega), testing::ElementsAre("A/run", "B/run"));
+  EXPECT_EQ(omega["y"], "omega [rad/s]");
+  EXPECT_EQ(figure_of(page, "theta")["y"], "theta [rad]");
+  EXPECT_EQ(figure_of(page, "x")["y"], "x [m]");
+  // As on the page of one run: of the constraint over the step, here the smaller one; of the group alone.
+  EXPECT_GT(residual["floor"], 1000 * figure_of(page, "Group defect")["floor"].get<double>());
+  EXPECT_EQ(figure_of(page, "Group defect")["floor"], 2.2e-16);
+  EXPECT_EQ(figure_of(page, "Energy error, or defect of the energy balance")["floor"], 2.2e-16);
+  // Each curve has its own windows.
+  EXPECT_THAT(residual["note"].get<std::string>(), HasSubstr("`A/run`: Each"));
+  EXPECT_THAT(residual["note"].get<std::string>(), HasSubstr("`B/run`: Each"));
+}
+
+// Curves of different meaning are never in one figure.
+TEST_F(Comparisons, DifferentSystems) {
+  const json page = compared({"run", "falling_disk", "--quiet", "-o", "B/run.h5"});
+  EXPECT_EQ(page["subtitle"], "of chaplygin_sleigh, falling_disk");
+  EXPECT_THAT(names(figure_of(page, "v1")), testing::ElementsAre("A/run", "B/run"));
+  EXPECT_EQ(figure_of(page, "v1")["y"], "v1 [m/s]");
+  EXPECT_THAT(names(figure_of(page, "omega")), testing::ElementsAre("A/run"));
+  EXPECT_THAT(names(figure_of(page, "omega2")), testing::ElementsAre("B/run"));
+}
+
 }  // namespace

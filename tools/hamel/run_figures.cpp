@@ -158,6 +158,17 @@ double round_off(const Result& result) {
   return kRoundOff * size;
 }
 
+double floor_of(const Result& result, const std::string& column) {
+  if (column == kConstraint.name) return round_off(result) / std::abs(result.config.step);
+  const bool of_size =
+      column == kExactError.name || column == kExactVelocityError.name || column == kHolonomic.name;
+  return of_size ? round_off(result) : kRoundOff;
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+}
+
 void add_motion(Page& page, const Result& r) {
   if (const auto animation = animation_of(r)) page.animation(*animation);
   if (r.system.drawing.has_floor || r.system.drawing.bodies.empty()) {
@@ -170,11 +181,15 @@ void add_motion(Page& page, const Result& r) {
 
 void add_accuracy(Page& page, const Result& r) {
   const std::string windows = windows_note(r);
-  const double floor = round_off(r);
-  const auto plot = [&](const char* title, const char* y, double at, std::vector<Series> series,
+  struct Curve {
+    const char *name, *column;
+  };
+  const auto plot = [&](const char* title, const char* y, const std::vector<Curve>& curves,
                         const std::string& note = "") {
     Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true};
-    axes.floor = at;
+    axes.floor = floor_of(r, curves.front().column);
+    std::vector<Series> series;
+    for (const auto& [name, column] : curves) series.push_back(curve(r, name, column));
     if (series.size() == 1) {  // its name is the title: the page leaves out the legend
       series[0].name = title;
       series[0].key = "accuracy";
@@ -183,23 +198,20 @@ void add_accuracy(Page& page, const Result& r) {
               note.empty() || windows.empty() ? note + windows : windows + " " + note);
   };
   if (r.trajectory.columns().back() == "exact_velocity_error") {
-    plot("Error against the exact motion", "|difference|", floor,
-         {curve(r, "configuration", "exact_error"), curve(r, "velocity", "exact_velocity_error")},
+    plot("Error against the exact motion", "|difference|",
+         {{"configuration", "exact_error"}, {"velocity", "exact_velocity_error"}},
          "Euclidean distance of the element's columns, and of the body velocities.");
   }
   if (does_work(r)) {
-    plot("Defect of the energy balance", "|E - E0 - W| / max E", kRoundOff,
-         {curve(r, "energy_error", "energy_error")});
+    plot("Defect of the energy balance", "|E - E0 - W| / max E", {{"", "energy_error"}});
   } else {
-    plot("Energy error", "|E - E0| / E0", kRoundOff, {curve(r, "energy_error", "energy_error")});
+    plot("Energy error", "|E - E0| / E0", {{"", "energy_error"}});
   }
-  plot("Constraint residual", "|A xi/h|", floor / std::abs(r.config.step),
-       {curve(r, "constraint", "constraint")},
+  plot("Constraint residual", "|A xi/h|", {{"", "constraint"}},
        "The step's velocity is recovered from consecutive configurations; its floor is about "
        "2e-16/h times the size of the coordinates.");
-  if (r.trajectory.has("holonomic"))
-    plot("Holonomic residual", "|phi(g)|", floor, {curve(r, "holonomic", "holonomic")});
-  plot("Group defect", "defect", kRoundOff, {curve(r, "group_defect", "group_defect")});
+  if (r.trajectory.has("holonomic")) plot("Holonomic residual", "|phi(g)|", {{"", "holonomic"}});
+  plot("Group defect", "defect", {{"", "group_defect"}});
 }
 
 }  // namespace hamel::tools

@@ -13,10 +13,6 @@
 namespace hamel::tools {
 namespace {
 
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
-}
-
 // Curves that are measured in the same unit stand in one figure.
 class ByUnit {
  public:
