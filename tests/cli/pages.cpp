@@ -37,6 +37,19 @@ TEST_F(Pages, OkMeansRight) {
             "note");
 }
 
+// No line joins the eigenvalues of two branches.
+TEST_F(Pages, EigenvaluesAreDots) {
+  const json page =
+      page_by({"steady", "bicycle", "--vary", "speed=4:6:3", "--report", "page.html"});
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  const json real = figure_of(page, "Real parts of the eigenvalues");
+  EXPECT_EQ(real["x"], "speed [m/s]");
+  for (const json& series : real["series"]) EXPECT_EQ(series.value("dots", false), true);
+  const json segway =
+      page_by({"steady", "segway", "--vary", "height=0.5:1:3", "--report", "page.html"});
+  EXPECT_EQ(figure_of(segway, "Real parts of the eigenvalues")["x"], "height [m]");
+}
+
 // The names of a figure's curves.
 std::vector<std::string> names(const json& figure) {
   std::vector<std::string> out;

@@ -165,10 +165,6 @@ double floor_of(const Result& result, const std::string& column) {
   return of_size ? round_off(result) : kRoundOff;
 }
 
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
-}
-
 void add_motion(Page& page, const Result& r) {
   if (const auto animation = animation_of(r)) page.animation(*animation);
   if (r.system.drawing.has_floor || r.system.drawing.bodies.empty()) {

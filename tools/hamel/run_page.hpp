@@ -32,7 +32,4 @@ double round_off(const Result& result);
 /// Round-off of an error, a column of the run.
 double floor_of(const Result& result, const std::string& column);
 
-/// "omega [rad/s]"; the name alone where nothing is known of its unit.
-std::string with_unit(const std::string& name, const std::string& unit);
-
 }  // namespace hamel::tools
