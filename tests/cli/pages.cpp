@@ -37,6 +37,21 @@ TEST_F(Pages, OkMeansRight) {
             "note");
 }
 
+// The estimate is told by what it was made of.
+TEST_F(Pages, HowTheErrorIsKnown) {
+  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  EXPECT_THAT(verdict({"rattleback", "--until", "2", "--check"}).second,
+              HasSubstr("By half and a quarter of the step"));
+  EXPECT_THAT(verdict({"falling_disk", "--scheme", "dop853", "--rtol", "1e-8", "--check"}).second,
+              HasSubstr("By a tenth and a hundredth of the tolerance"));
+  EXPECT_THAT(verdict({"suslov", "--no-exact"}).second, HasSubstr("left out (`--no-exact`)"));
+  // No step makes it better: its step size cancels.
+  const std::string stuck =
+      verdict({"suslov", "--scheme", "boxed_literal", "--no-exact", "--check"}).second;
+  EXPECT_THAT(stuck, HasSubstr("do not agree on an order"));
+  EXPECT_THAT(stuck, Not(HasSubstr("--check")));
+}
+
 // No line joins the eigenvalues of two branches.
 TEST_F(Pages, EigenvaluesAreDots) {
   const json page =

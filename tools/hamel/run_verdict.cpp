@@ -77,14 +77,19 @@ class Judge {
           r_.exact_error_max, part_of(r_.exact_error_max, size_.extent),
           r_.exact_velocity_error_max);
     }
+    const char* finer = r_.config.chooses_steps() ? "a tenth and a hundredth of the tolerance"
+                                                  : "half and a quarter of the step";
     if (std::isfinite(r_.estimated_error)) {
       ok_ = small(r_.estimated_error, size_.extent);
-      return fmt::format("By half and a quarter of the step its end is off by about **{:.1e}**{}",
-                         r_.estimated_error, part_of(r_.estimated_error, size_.extent));
+      return fmt::format("By {} its end is off by about **{:.1e}**{}", finer, r_.estimated_error,
+                         part_of(r_.estimated_error, size_.extent));
     }
     ok_ = false;
     unknown_ = true;
-    return "It ran to the end; **its error is not known**: `--check` estimates it";
+    std::string out = "It ran to the end; **its error is not known**: ";
+    if (r_.config.check) return out + fmt::format("{} do not agree on an order", finer);
+    if (r_.config.no_exact) out += "the exact motion was left out (`--no-exact`), and ";
+    return out + "`--check` estimates it";
   }
 
   // An estimate knows nothing of it: without the constraint it is the error of another motion.
