@@ -52,6 +52,21 @@ TEST_F(Pages, HowTheErrorIsKnown) {
   EXPECT_THAT(stuck, Not(HasSubstr("--check")));
 }
 
+// A contact that ceased to push between two recorded states is not said to push all along.
+TEST_F(Pages, ContactThatIsLost) {
+  const json page =
+      page_of({"falling_disk", "--scheme", "dop853", "--rtol", "1e-10", "--output-step", "0.05",
+               "--stop-at", "contact_lost,fallen", "--velocity", "0.5,0,0,0,0,0"});
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  const std::string note = figure_of(page, "Reaction forces")["note"];
+  EXPECT_THAT(note, HasSubstr("**ceases to push** at t = 0.556143 (`contact_lost`)"));
+  EXPECT_THAT(note, Not(HasSubstr("all along")));
+  EXPECT_THAT(page["sections"][0]["blocks"][0]["text"].get<std::string>(),
+              HasSubstr("It stopped at contact_lost"));
+  EXPECT_THAT(figure_of(page_of({"rattleback"}), "Reaction forces")["note"].get<std::string>(),
+              HasSubstr("at the recorded states the contact pushes"));
+}
+
 // No line joins the eigenvalues of two branches.
 TEST_F(Pages, EigenvaluesAreDots) {
   const json page =

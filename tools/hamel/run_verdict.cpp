@@ -86,7 +86,8 @@ class Judge {
     }
     ok_ = false;
     unknown_ = true;
-    std::string out = "It ran to the end; **its error is not known**: ";
+    std::string out = fmt::format("It {}; **its error is not known**: ",
+                                  r_.status.reason.empty() ? "ran to the end" : r_.status.reason);
     if (r_.config.check) return out + fmt::format("{} do not agree on an order", finer);
     if (r_.config.no_exact) out += "the exact motion was left out (`--no-exact`), and ";
     return out + "`--check` estimates it";
