@@ -1,4 +1,6 @@
 // What the pages of runs, comparisons, sweeps and studies say, as the program writes them.
+#include <fmt/format.h>
+
 #include "program.hpp"
 
 namespace {
@@ -65,6 +67,23 @@ TEST_F(Pages, ContactThatIsLost) {
               HasSubstr("It stopped at contact_lost"));
   EXPECT_THAT(figure_of(page_of({"rattleback"}), "Reaction forces")["note"].get<std::string>(),
               HasSubstr("at the recorded states the contact pushes"));
+}
+
+// What the points are the largest of is told as it is.
+TEST_F(Pages, LargestOfSoMany) {
+  const json page = page_of({"suslov", "--until", "6"});  // 601 states, 240 points
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  EXPECT_EQ(figure_of(page, "Group defect")["note"],
+            "Each point is the largest of 2 or 3 recorded states.");
+  const json many = page_of({"suslov", "--step", "0.0005", "--until", "60"});  // 120001 states
+  const std::string largest =
+      fmt::format("{:.2g}", many["sections"]
+                                .back()["blocks"][0]["record"]["diagnostics"]["group_defect_max"]
+                                .get<double>());
+  EXPECT_EQ(figure_of(many, "Group defect")["note"],
+            "Each point is the largest of 250 or 251 states, one in 2 of those recorded. The "
+            "largest of all recorded: " +
+                largest + ".");
 }
 
 // No line joins the eigenvalues of two branches.

@@ -74,11 +74,11 @@ void name_apart(std::vector<ReadRun>& runs, std::vector<std::filesystem::path> f
 }
 
 // What the points of each curve are the largest of.
-std::string windows_of(const std::vector<const ReadRun*>& runs) {
+std::string windows_of(const std::vector<const ReadRun*>& runs, const std::string& column) {
   std::set<std::string> different;
   std::string each;
   for (const ReadRun* run : runs) {
-    const std::string note = windows_note(run->result);
+    const std::string note = windows_note(run->result, {column});
     different.insert(note);
     if (!note.empty()) each += fmt::format("{}`{}`: {}", each.empty() ? "" : " ", run->name, note);
   }
@@ -97,7 +97,7 @@ void add_error(Page& page, const std::vector<ReadRun>& runs, const std::string& 
     shown.push_back(&run);
     axes.floor = std::max(axes.floor, floor_of(run.result, column));
   }
-  if (!series.empty()) page.plot(title, axes, series, windows_of(shown));
+  if (!series.empty()) page.plot(title, axes, series, windows_of(shown, column));
 }
 
 // Figures by name and unit, so that what is called otherwise in another system is never beside it.
@@ -182,7 +182,7 @@ Page compared(const std::vector<ReadRun>& runs) {
   page.table("What was measured", columns, rows);
   for (const ReadRun& run : runs) {
     if (const size_t stride = run.result.trajectory.stride(); stride > 1)
-      page.text({fmt::format("{}: every {}th recorded row is shown.", run.name, stride)});
+      page.text({fmt::format("{}: one recorded state in {} is shown.", run.name, stride)});
   }
 
   page.section("Accuracy");

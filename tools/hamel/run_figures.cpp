@@ -145,10 +145,22 @@ Series curve(const Result& result, const std::string& name, const std::string& c
                    : thinned(name, result.trajectory.column("t"), y, false);
 }
 
-std::string windows_note(const Result& result) {
-  const size_t rows = result.trajectory.rows();
+std::string windows_note(const Result& result, const std::vector<std::string>& columns) {
+  const size_t rows = result.trajectory.rows(), stride = result.trajectory.stride();
   if (rows <= 2 * kWindows) return "";
-  return fmt::format("Each point is the largest of {} recorded states.", rows / kWindows);
+  const size_t least = rows / kWindows;  // windows differ by one state
+  const std::string count =
+      rows % kWindows == 0 ? fmt::format("{}", least) : fmt::format("{} or {}", least, least + 1);
+  if (stride == 1) return fmt::format("Each point is the largest of {} recorded states.", count);
+  std::string out = fmt::format(
+      "Each point is the largest of {} states, one in {} of those recorded.", count, stride);
+  std::string all;
+  Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
+    const bool here = std::find(columns.begin(), columns.end(), quantity.name) != columns.end();
+    if (here && std::string_view(suffix) == "_max" && std::isfinite(result.*member))
+      all += fmt::format("{} {:.2g}", all.empty() ? "" : " and", result.*member);
+  });
+  return all.empty() ? out : out + fmt::format(" The largest of all recorded:{}.", all);
 }
 
 double round_off(const Result& result) {
@@ -176,7 +188,6 @@ void add_motion(Page& page, const Result& r) {
 }
 
 void add_accuracy(Page& page, const Result& r) {
-  const std::string windows = windows_note(r);
   struct Curve {
     const char *name, *column;
   };
@@ -190,6 +201,9 @@ void add_accuracy(Page& page, const Result& r) {
       series[0].name = title;
       series[0].key = "accuracy";
     }
+    std::vector<std::string> columns;
+    for (const Curve& c : curves) columns.emplace_back(c.column);
+    const std::string windows = windows_note(r, columns);
     page.plot(title, axes, series,
               note.empty() || windows.empty() ? note + windows : windows + " " + note);
   };

@@ -66,7 +66,7 @@ Page run_page(const Result& r, const std::string& record) {
   page.verdict(verdict.status, verdict.text);
   if (!r.notes.empty()) page.text(r.notes);
   if (const size_t stride = r.trajectory.stride(); stride > 1)
-    page.text({fmt::format("The figures show every {}th recorded row.", stride)});
+    page.text({fmt::format("The figures show one recorded state in {}.", stride)});
   add_motion(page, r);
   add_list(page, values, "events", "Events");
   add_list(page, values, "inputs", "Inputs");

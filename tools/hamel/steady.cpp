@@ -145,7 +145,7 @@ void add_plots(Page& page, const Vary& vary, const SystemModel& system, const St
                         vary.name, crossing.value, crossing.pair ? "complex pair" : "real");
   }
   if (stride > 1)
-    note += fmt::format("{}every {}th value is drawn", note.empty() ? "" : "; ", stride);
+    note += fmt::format("{}one value in {} is drawn", note.empty() ? "" : "; ", stride);
   const std::string x = with_unit(vary.name, unit_of(vary, system));
   page.plot(real.name, {.x = x, .y = "real part [1/s]"}, {real}, note);
   page.plot(imaginary.name, {.x = x, .y = "imaginary part [rad/s]"}, {imaginary});
