@@ -99,6 +99,36 @@ TEST_F(Pages, EigenvaluesAreDots) {
   EXPECT_EQ(figure_of(segway, "Real parts of the eigenvalues")["x"], "height [m]");
 }
 
+// A study has no figure of one cell or of none, and no table of what was not measured.
+TEST_F(Pages, NoEmptyFiguresOfAStudy) {
+  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  const auto look = [&](const std::string& more) {
+    write("small.toml",
+          "until = 1\nrepeats = 1\nscheme = \"lift\"\n" + more +
+              "[[system]]\nname = \"suslov\"\nlabel = \"one\"\n"
+              "[[system]]\nname = \"suslov\"\nlabel = \"two\"\nset = {inertia = [2, 3, 4]}\n");
+    return page_by({"study", "small.toml", "-o", "out", "--fresh", "--quiet"}, "out/report.html");
+  };
+  const auto titles = [](const json& page) {
+    std::string out;
+    for (const json& section : page["sections"]) {
+      out += section["title"].get<std::string>() + "; ";
+      for (const json& block : section["blocks"])
+        out += block.value("title", block["kind"].get<std::string>()) + "; ";
+    }
+    return out;
+  };
+  EXPECT_EQ(titles(look("reference = false\nstep = 0.1\n")),
+            "Verdict; verdict; text; All cells; All cells that were run; Record; record; ");
+  const std::string one = titles(look("step = 0.1\n"));
+  EXPECT_THAT(one, HasSubstr("What the cells are compared with"));
+  EXPECT_THAT(one, Not(HasSubstr("Measured orders")));
+  EXPECT_THAT(one, Not(HasSubstr("Heat maps")));
+  const std::string many = titles(look("step = [0.1, 0.05, 0.025]\n"));
+  EXPECT_THAT(many, HasSubstr("Measured orders"));
+  EXPECT_THAT(many, HasSubstr("Heat maps; Error: one"));
+}
+
 // The names of a figure's curves.
 std::vector<std::string> names(const json& figure) {
   std::vector<std::string> out;

@@ -107,12 +107,13 @@ class CommandLine : public testing::Test {
     arguments.insert(arguments.begin(), "run");
     return answer(std::move(arguments), status);
   }
-  /// The data of the page that these arguments write to page.html; null where the program was built without the page.
-  nlohmann::json page_by(const std::vector<std::string>& arguments) const {
+  /// The data of the page that these arguments write to this file; null where the program was built without the page.
+  nlohmann::json page_by(const std::vector<std::string>& arguments,
+                         const std::string& name = "page.html") const {
     const Outcome outcome = run(arguments);
     if (outcome.err.find("without the page") != std::string::npos) return {};
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    const std::string page = contents(file("page.html")), head = "id=\"hamel-data\">";
+    const std::string page = contents(file(name)), head = "id=\"hamel-data\">";
     const size_t from = page.find(head) + head.size();
     return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
   }
