@@ -72,6 +72,16 @@ TEST(PageData, PlotWithFitsMarkersAndFilters) {
   EXPECT_EQ(b["log_y"], true);
 }
 
+TEST(PageData, Dots) {
+  const Json b = block([](Page& page) {
+    Series dots{.name = "eigenvalues", .x = {1, 1}, .y = {0, 1}, .dots = true};
+    page.plot("Branches", {.x = with_unit("speed", "m/s"), .y = with_unit("count", "")}, {dots});
+  });
+  EXPECT_EQ(b["series"][0]["dots"], true);
+  EXPECT_EQ(b["x"], "speed [m/s]");
+  EXPECT_EQ(b["y"], "count");
+}
+
 TEST(PageData, PlotWithFloorSlopesAndMarks) {
   const Json b = block([](Page& page) {
     Series omega{"omega [rad/s]", {0, 1}, {1, 2}};

@@ -114,14 +114,19 @@ class CommandLine : public testing::Test {
     arguments.insert(arguments.begin(), "run");
     return answer(std::move(arguments), status);
   }
-  /// The data of the page of `run` with these arguments; null where the program was built without the page.
-  nlohmann::json page_of(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "run");
-    arguments.insert(arguments.end(), {"--quiet", "--report", "page.html"});
+  /// The data of the page that these arguments write to this file; null where the program was built without the page.
+  nlohmann::json page_by(const std::vector<std::string>& arguments,
+                         const std::string& name = "page.html") const {
     const Outcome outcome = run(arguments);
     if (outcome.err.find("without the page") != std::string::npos) return {};
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return page_data(contents(file("page.html")));
+    return page_data(contents(file(name)));
+  }
+  /// The same of `run` with these arguments.
+  nlohmann::json page_of(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--quiet", "--report", "page.html"});
+    return page_by(arguments);
   }
   /// The names of the curves in a run's figures, by their titles; none without the page.
   std::map<std::string, std::vector<std::string>> curves(std::vector<std::string> arguments) const {

@@ -3,8 +3,6 @@
 #include <iterator>
 #include <map>
 
-#include <fmt/format.h>
-
 #include "run_figures.hpp"
 
 namespace hamel::tools {
@@ -28,8 +26,7 @@ Series drawn(const Inputs& inputs, size_t i, double t0, double t1) {
     }
     t = std::move(corners);
   }
-  return thinned(field.unit.empty() ? field.name : fmt::format("{} [{}]", field.name, field.unit),
-                 t, value, false);
+  return thinned(with_unit(field.name, field.unit), t, value, false);
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ Json curves(const std::vector<Series>& series) {
     Json& curve = out.emplace_back(
         Json{{"name", s.name}, {"x", numbers(s.x)}, {"y", numbers(s.y)}, {"dashed", s.dashed}});
     if (s.markers) curve["markers"] = true;
+    if (s.dots) curve["dots"] = true;
     if (s.fit) curve["fit"] = {{"slope", number(s.fit->slope)}, {"text", s.fit->text}};
     if (!s.tags.empty()) curve["tags"] = s.tags;
     if (!s.key.empty()) curve["key"] = s.key;
@@ -240,6 +241,10 @@ Series thinned(std::string name, const std::vector<double>& x, const std::vector
     if (!peaks && b + 1 == buckets && high + 1 < count) add(count - 1);
   }
   return out;
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
 }
 
 std::vector<double> magnitudes(std::vector<double> y) {

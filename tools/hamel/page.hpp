@@ -26,6 +26,7 @@ struct Series {
   std::vector<double> x, y;
   bool dashed = false;
   bool markers = false;  // in a plot up to 48 points have them anyway
+  bool dots = false;     // markers alone: the points are in no order that a line may follow
   std::optional<Fit> fit = {};
   std::map<std::string, std::string> tags = {};  // what the plot's filters choose by
   std::string key = "";  // series with one key have one colour on the whole page; empty: the name
@@ -88,6 +89,9 @@ class Page {
 /// the largest (peaks, for errors on a logarithmic axis), the last window like the others; else with both ends. NaN is never dropped.
 Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
                bool peaks, size_t points = 1200);
+
+/// "omega [rad/s]"; the name alone where nothing is known of its unit.
+std::string with_unit(const std::string& name, const std::string& unit);
 
 /// |y|, for a logarithmic axis.
 std::vector<double> magnitudes(std::vector<double> y);

@@ -53,7 +53,7 @@ Outcome run_reading(const StudyCell& cell) {
   out.status = result.status;
   out.measured = result;
   out.nanoseconds = result.seconds * 1e9 / static_cast<double>(std::max(result.steps, 1L));
-  out.windows = windows_note(result);
+  out.windows = windows_note(result, {});
   for (const Figure& figure : figures())
     out.curves.push_back(curve(result, out.name, figure.column, figure.magnitude));
   return out;

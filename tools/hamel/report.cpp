@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -10,7 +12,8 @@
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"
-#include "run_page.hpp"
+#include "run_figures.hpp"
+#include "run_verdict.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -44,26 +47,117 @@ ReadRun read_run(const std::string& path) {
   return out;
 }
 
-// One figure of a column over all runs that have it.
-void add_figure(Page& page, const std::vector<ReadRun>& runs, const std::string& title,
-                const std::string& y, const std::string& column, bool error) {
+// The file's name with so many of its folders: "A/run".
+std::string called(const std::filesystem::path& file, int folders) {
+  std::filesystem::path out = file.stem(), rest = file.parent_path();
+  for (; folders > 0 && rest.has_relative_path(); --folders, rest = rest.parent_path())
+    out = rest.filename() / out;
+  return out.string();
+}
+
+// Runs of one file name are called by as many folders as tell them apart; one file given twice is numbered.
+void name_apart(std::vector<ReadRun>& runs, std::vector<std::filesystem::path> files) {
+  constexpr int most = 50;
+  for (auto& file : files) file = std::filesystem::weakly_canonical(file);
+  std::map<std::string, int> seen;
+  for (size_t i = 0; i < runs.size(); ++i) {
+    int folders = 0;
+    const auto alone = [&] {
+      return std::count_if(files.begin(), files.end(), [&](const auto& file) {
+               return called(file, folders) == called(files[i], folders);
+             }) == 1;
+    };
+    while (folders < most && !alone()) ++folders;
+    runs[i].name = called(files[i], folders == most ? 0 : folders);
+    if (const int times = ++seen[runs[i].name]; times > 1)
+      runs[i].name += fmt::format(" ({})", times);
+  }
+}
+
+// What the points of each curve are the largest of.
+std::string windows_of(const std::vector<const ReadRun*>& runs, const std::string& column) {
+  std::set<std::string> different;
+  std::string each;
+  for (const ReadRun* run : runs) {
+    const std::string note = windows_note(run->result, {column});
+    different.insert(note);
+    if (!note.empty()) each += fmt::format("{}`{}`: {}", each.empty() ? "" : " ", run->name, note);
+  }
+  return different.size() == 1 ? *different.begin() : each;
+}
+
+// An error of all runs that have it.
+void add_error(Page& page, const std::vector<ReadRun>& runs, const std::string& title,
+               const std::string& y, const std::string& column) {
+  Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true};
   std::vector<Series> series;
-  std::string windows;
+  std::vector<const ReadRun*> shown;
   for (const ReadRun& run : runs) {
     if (!run.result.trajectory.has(column)) continue;
-    series.push_back(curve(run.result, run.name, column, error));
-    if (error && windows.empty()) windows = windows_note(run.result);
+    series.push_back(curve(run.result, run.name, column));
+    shown.push_back(&run);
+    axes.floor = std::max(axes.floor, floor_of(run.result, column));
   }
-  Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = error};
-  if (error) axes.floor = round_off(runs.front().result);
-  if (!series.empty()) page.plot(title, axes, series, windows);
+  if (!series.empty()) page.plot(title, axes, series, windows_of(shown, column));
+}
+
+// Figures by name and unit, so that what is called otherwise in another system is never beside it.
+class ByName {
+ public:
+  void add(const std::string& name, const std::string& unit, Series series) {
+    const auto at = std::find_if(figures_.begin(), figures_.end(), [&](const Figure& figure) {
+      return figure.name == name && figure.unit == unit;
+    });
+    Figure& figure = at == figures_.end() ? figures_.emplace_back(Figure{name, unit, {}}) : *at;
+    figure.series.push_back(std::move(series));
+  }
+  void plot(Page& page) const {
+    for (const auto& [name, unit, series] : figures_)
+      page.plot(name, {.x = "time t [s]", .y = with_unit(name, unit)}, series);
+  }
+
+ private:
+  struct Figure {
+    std::string name, unit;
+    std::vector<Series> series;
+  };
+  std::vector<Figure> figures_;
+};
+
+void add_motions(Page& page, const std::vector<ReadRun>& runs) {
+  ByName velocities, coordinates;
+  for (const ReadRun& run : runs) {
+    const Result& r = run.result;
+    const std::vector<Component> names = components_of(r.system);
+    for (size_t i = 0; i < names.size(); ++i)
+      velocities.add(names[i].name, names[i].unit,
+                     curve(r, run.name, fmt::format("xi{}", i + 1), false));
+    const std::vector<std::string>&columns = r.system.group.columns,
+          units = units_of_element(r.system.group);
+    for (size_t i = 0; i < columns.size(); ++i)
+      coordinates.add(columns[i], i < units.size() ? units[i] : "",
+                      curve(r, run.name, columns[i], false));
+  }
+  velocities.plot(page);
+  coordinates.plot(page);
+}
+
+std::string systems_of(const std::vector<ReadRun>& runs) {
+  std::vector<std::string> names;
+  for (const ReadRun& run : runs)
+    if (std::find(names.begin(), names.end(), run.result.system.name) == names.end())
+      names.push_back(run.result.system.name);
+  return "of " + join(names);
 }
 
 Page compared(const std::vector<ReadRun>& runs) {
-  Page page(fmt::format("{} runs compared", runs.size()),
-            fmt::format("of {}", runs.front().result.system.name));
+  Page page(fmt::format("{} runs compared", runs.size()), systems_of(runs));
   page.section("Runs");
-  std::vector<std::string> columns = {"run", "system", "method", "steps", "status"};
+  for (const ReadRun& run : runs) {
+    const RunVerdict verdict = run_verdict(run.result);
+    page.verdict(verdict.status, fmt::format("`{}`: {}", run.name, verdict.text));
+  }
+  std::vector<std::string> columns = {"run", "system", "method", "steps", "ended"};
   std::vector<std::string> measured;
   Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
     const bool any = std::any_of(runs.begin(), runs.end(), [&](const ReadRun& run) {
@@ -78,7 +172,7 @@ Page compared(const std::vector<ReadRun>& runs) {
     const Result& r = run.result;
     std::vector<Cell>& row = rows.emplace_back(std::vector<Cell>{
         run.name, r.system.name, r.method(), fmt::format("{} of {}", r.steps, r.steps_in_words()),
-        r.status.ok ? "ok" : "failed: " + r.status.reason});
+        r.status.ok ? fmt::format("at t = {:.6g}", r.last.time) : "failed: " + r.status.reason});
     Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
       const std::string name = std::string(quantity.name) + suffix;
       if (std::find(measured.begin(), measured.end(), name) != measured.end())
@@ -89,27 +183,21 @@ Page compared(const std::vector<ReadRun>& runs) {
   page.table("What was measured", columns, rows);
   for (const ReadRun& run : runs) {
     if (const size_t stride = run.result.trajectory.stride(); stride > 1)
-      page.text({fmt::format("{}: every {}th recorded row is shown.", run.name, stride)});
+      page.text({fmt::format("{}: one recorded state in {} is shown.", run.name, stride)});
   }
 
   page.section("Accuracy");
-  add_figure(page, runs, "Error of the configuration against the exact motion", "|difference|",
-             kExactError.name, true);
-  add_figure(page, runs, "Error of the velocity against the exact motion", "|difference|",
-             kExactVelocityError.name, true);
-  add_figure(page, runs, "Energy error, or defect of the energy balance", "relative",
-             kEnergyError.name, true);
-  add_figure(page, runs, "Constraint residual", "|A xi/h|", kConstraint.name, true);
-  add_figure(page, runs, "Group defect", "defect", kGroupDefect.name, true);
+  add_error(page, runs, "Error of the configuration against the exact motion", "|difference|",
+            kExactError.name);
+  add_error(page, runs, "Error of the velocity against the exact motion", "|difference|",
+            kExactVelocityError.name);
+  add_error(page, runs, "Energy error, or defect of the energy balance", "relative",
+            kEnergyError.name);
+  add_error(page, runs, "Constraint residual", "|A xi/h|", kConstraint.name);
+  add_error(page, runs, "Group defect", "defect", kGroupDefect.name);
 
   page.section("Motion");
-  const Result& first = runs.front().result;
-  const std::vector<Component> names = components_of(first.system);
-  for (size_t i = 0; i < names.size(); ++i)
-    add_figure(page, runs, names[i].name, "[" + names[i].unit + "]", fmt::format("xi{}", i + 1),
-               false);
-  for (const std::string& column : first.system.group.columns)
-    add_figure(page, runs, column, column, column, false);
+  add_motions(page, runs);
   for (const ReadRun& run : runs) {
     page.section("Record of " + run.name);
     page.record(run.record);
@@ -130,8 +218,12 @@ int report(const ReportOptions& options) {
     }
   }
   if (!mistakes.empty()) throw ConfigError(mistakes);
-  if (runs.size() == 1) run_page(runs.front().result, runs.front().record).write(options.output);
-  else compared(runs).write(options.output);
+  if (runs.size() == 1) {
+    run_page(runs.front().result, runs.front().record).write(options.output);
+  } else {
+    name_apart(runs, {options.files.begin(), options.files.end()});
+    compared(runs).write(options.output);
+  }
   return 0;
 }
 

@@ -145,10 +145,22 @@ Series curve(const Result& result, const std::string& name, const std::string& c
                    : thinned(name, result.trajectory.column("t"), y, false);
 }
 
-std::string windows_note(const Result& result) {
-  const size_t rows = result.trajectory.rows();
+std::string windows_note(const Result& result, const std::vector<std::string>& columns) {
+  const size_t rows = result.trajectory.rows(), stride = result.trajectory.stride();
   if (rows <= 2 * kWindows) return "";
-  return fmt::format("Each point is the largest of {} recorded states.", rows / kWindows);
+  const size_t least = rows / kWindows;  // windows differ by one state
+  const std::string count =
+      rows % kWindows == 0 ? fmt::format("{}", least) : fmt::format("{} or {}", least, least + 1);
+  if (stride == 1) return fmt::format("Each point is the largest of {} recorded states.", count);
+  std::string out = fmt::format(
+      "Each point is the largest of {} states, one in {} of those recorded.", count, stride);
+  std::string all;
+  Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
+    const bool here = std::find(columns.begin(), columns.end(), quantity.name) != columns.end();
+    if (here && std::string_view(suffix) == "_max" && std::isfinite(result.*member))
+      all += fmt::format("{} {:.2g}", all.empty() ? "" : " and", result.*member);
+  });
+  return all.empty() ? out : out + fmt::format(" The largest of all recorded:{}.", all);
 }
 
 double round_off(const Result& result) {
@@ -156,6 +168,13 @@ double round_off(const Result& result) {
   for (size_t i : thin_rows(result, 500))
     for (double v : element(result, i)) size = std::max(size, std::abs(v));
   return kRoundOff * size;
+}
+
+double floor_of(const Result& result, const std::string& column) {
+  if (column == kConstraint.name) return round_off(result) / std::abs(result.config.step);
+  const bool of_size =
+      column == kExactError.name || column == kExactVelocityError.name || column == kHolonomic.name;
+  return of_size ? round_off(result) : kRoundOff;
 }
 
 void add_motion(Page& page, const Result& r) {
@@ -169,37 +188,40 @@ void add_motion(Page& page, const Result& r) {
 }
 
 void add_accuracy(Page& page, const Result& r) {
-  const std::string windows = windows_note(r);
-  const double floor = round_off(r);
-  const auto plot = [&](const char* title, const char* y, double at, std::vector<Series> series,
+  struct Curve {
+    const char *name, *column;
+  };
+  const auto plot = [&](const char* title, const char* y, const std::vector<Curve>& curves,
                         const std::string& note = "") {
     Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true};
-    axes.floor = at;
+    axes.floor = floor_of(r, curves.front().column);
+    std::vector<Series> series;
+    for (const auto& [name, column] : curves) series.push_back(curve(r, name, column));
     if (series.size() == 1) {  // its name is the title: the page leaves out the legend
       series[0].name = title;
       series[0].key = "accuracy";
     }
+    std::vector<std::string> columns;
+    for (const Curve& c : curves) columns.emplace_back(c.column);
+    const std::string windows = windows_note(r, columns);
     page.plot(title, axes, series,
               note.empty() || windows.empty() ? note + windows : windows + " " + note);
   };
   if (r.trajectory.columns().back() == "exact_velocity_error") {
-    plot("Error against the exact motion", "|difference|", floor,
-         {curve(r, "configuration", "exact_error"), curve(r, "velocity", "exact_velocity_error")},
+    plot("Error against the exact motion", "|difference|",
+         {{"configuration", "exact_error"}, {"velocity", "exact_velocity_error"}},
          "Euclidean distance of the element's columns, and of the body velocities.");
   }
   if (does_work(r)) {
-    plot("Defect of the energy balance", "|E - E0 - W| / max E", kRoundOff,
-         {curve(r, "energy_error", "energy_error")});
+    plot("Defect of the energy balance", "|E - E0 - W| / max E", {{"", "energy_error"}});
   } else {
-    plot("Energy error", "|E - E0| / E0", kRoundOff, {curve(r, "energy_error", "energy_error")});
+    plot("Energy error", "|E - E0| / E0", {{"", "energy_error"}});
   }
-  plot("Constraint residual", "|A xi/h|", floor / std::abs(r.config.step),
-       {curve(r, "constraint", "constraint")},
+  plot("Constraint residual", "|A xi/h|", {{"", "constraint"}},
        "The step's velocity is recovered from consecutive configurations; its floor is about "
        "2e-16/h times the size of the coordinates.");
-  if (r.trajectory.has("holonomic"))
-    plot("Holonomic residual", "|phi(g)|", floor, {curve(r, "holonomic", "holonomic")});
-  plot("Group defect", "defect", kRoundOff, {curve(r, "group_defect", "group_defect")});
+  if (r.trajectory.has("holonomic")) plot("Holonomic residual", "|phi(g)|", {{"", "holonomic"}});
+  plot("Group defect", "defect", {{"", "group_defect"}});
 }
 
 }  // namespace hamel::tools

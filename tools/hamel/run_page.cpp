@@ -1,6 +1,5 @@
 #include "run_page.hpp"
 
-#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -9,45 +8,12 @@
 #include <hamel/framework/io/errors.hpp>
 
 #include "run_figures.hpp"
+#include "run_verdict.hpp"
 
 namespace hamel::tools {
 namespace {
 
 using Json = nlohmann::json;
-
-// Leads with how far off the run is, as far as that is known.
-std::string headline(const Result& r) {
-  if (!r.status.ok) {
-    return fmt::format(
-        "Failed in step {} at t = {:.6g}: {} (residual {:.2e}). {} good steps are kept.",
-        r.status.step, r.status.time, r.status.reason, r.status.residual, r.steps);
-  }
-  std::string out;
-  if (std::isfinite(r.exact_error_max)) {
-    out = fmt::format(
-        "Against the exact motion the configuration is off by at most **{:.1e}**, the velocity by "
-        "at most **{:.1e}**",
-        r.exact_error_max, r.exact_velocity_error_max);
-  } else if (std::isfinite(r.estimated_error)) {
-    out = fmt::format("By half and a quarter of the step its end is off by about **{:.1e}**",
-                      r.estimated_error);
-  } else {
-    out = "No exact motion is known here; `--check` estimates the error of the end";
-  }
-  out += fmt::format(
-      "; {} at most {:.1e}, constraint residual at most {:.1e}, group defect at most {:.1e}. {} "
-      "steps {} to t = {:.6g}.",
-      does_work(r) ? "defect of the energy balance" : "energy error", r.energy_error_max,
-      r.constraint_max, r.group_defect_max, r.steps,
-      r.config.chooses_steps() ? "chosen by the error" : fmt::format("of h = {}", r.config.step),
-      r.last.time);
-  if (r.stats.fallbacks > 0) {
-    const Fallback& first = r.stats.first_fallbacks.front();
-    out += fmt::format(" {} steps failed and were rescued, the first at t = {:.6g}: {}.",
-                       r.stats.fallbacks, first.time, first.action);
-  }
-  return out;
-}
 
 // A value of a record as a cell shows it.
 Cell cell(const Json& value) {
@@ -96,10 +62,11 @@ Page run_page(const Result& r, const std::string& record) {
     events.push_back({event.value("time", 0.0), event.value("name", "")});
 
   page.section("Result");
-  page.verdict(r.status.ok ? "ok" : "failed", headline(r));
+  const RunVerdict verdict = run_verdict(r);
+  page.verdict(verdict.status, verdict.text);
   if (!r.notes.empty()) page.text(r.notes);
   if (const size_t stride = r.trajectory.stride(); stride > 1)
-    page.text({fmt::format("The figures show every {}th recorded row.", stride)});
+    page.text({fmt::format("The figures show one recorded state in {}.", stride)});
   add_motion(page, r);
   add_list(page, values, "events", "Events");
   add_list(page, values, "inputs", "Inputs");

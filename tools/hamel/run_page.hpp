@@ -23,10 +23,14 @@ std::vector<std::string> page_mistakes(const std::string& path);
 Series curve(const Result& result, const std::string& name, const std::string& column,
              bool magnitude = true);
 
-/// What windows those are; "" where every state is shown.
-std::string windows_note(const Result& result);
+/// What windows those are; "" where every recorded state is shown. Where the run has more rows than are at hand it says so, and
+/// the largest of all of each of these columns, as far as a run measures it.
+std::string windows_note(const Result& result, const std::vector<std::string>& columns);
 
 /// Round-off in coordinates as large as those of this run.
 double round_off(const Result& result);
+
+/// Round-off of an error, a column of the run.
+double floor_of(const Result& result, const std::string& column);
 
 }  // namespace hamel::tools

@@ -7,15 +7,12 @@
 
 #include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/run/events.hpp>
 
 #include "run_figures.hpp"
 
 namespace hamel::tools {
 namespace {
-
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
-}
 
 // Curves that are measured in the same unit stand in one figure.
 class ByUnit {
@@ -66,6 +63,31 @@ std::vector<int> rows_by_part(const Result& r) {
   return out;
 }
 
+// Does the k-th contact push? The event says when it ceased to; the rows only what they show. Marks the first that pulls.
+std::string contact_note(const Result& r, const std::string& column, size_t k, Axes& axes) {
+  const std::string event = events_of(r.system, nullptr)[r.system.events.size() + k].name;
+  const auto met = std::find_if(r.events.begin(), r.events.end(),
+                                [&](const EventMet& e) { return e.name == event; });
+  const std::string is = fmt::format("`{}` is a normal reaction: ", column);
+  const std::vector<double> force = r.trajectory.column(column);
+  const double least = *std::min_element(force.begin(), force.end());
+  const auto pull = std::find_if(force.begin(), force.end(), [](double f) { return f < 0; });
+  const bool pulls = pull != force.end();
+  const double t = pulls ? r.trajectory.at(static_cast<size_t>(pull - force.begin()), 0) : 0;
+  const std::string in_rows =
+      pulls ? fmt::format(
+                  "at the state at t = {:.4g} the contact would have to **pull** (least "
+                  "{:.3g} N), where a real body lifts off",
+                  t, least)
+            : fmt::format("at the {} states the contact pushes, by {:.3g} N at least",
+                          r.trajectory.stride() > 1 ? "shown" : "recorded", least);
+  if (met != r.events.end())
+    return is + fmt::format("the contact **ceases to push** at t = {:.6g} (`{}`); {}.", met->time,
+                            event, in_rows);
+  if (pulls) axes.marks.push_back({t, "contact pulls"});
+  return is + in_rows + ".";
+}
+
 void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) {
   std::vector<Series> reactions;
   Axes axes{.x = "time t [s]", .y = "lambda"};
@@ -81,25 +103,11 @@ void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) 
                                    : words_of(r.system).reactions[static_cast<size_t>(i)];
     if (!r.trajectory.has(column)) continue;
     const auto& contacts = r.system.contacts;
-    const bool contact = std::find(contacts.begin(), contacts.end(), i) != contacts.end();
-    reactions.push_back(curve(r, contact ? column + " [N], contact" : column, column, false));
-    if (!contact) continue;
-    const std::vector<double> force = r.trajectory.column(column);
-    const auto pull = std::find_if(force.begin(), force.end(), [](double f) { return f < 0; });
-    const double least = *std::min_element(force.begin(), force.end());
-    if (pull == force.end()) {
-      note += fmt::format(
-          " `{}` is a normal reaction: the contact pushes all along, by {:.3g} N "
-          "at least.",
-          column, least);
-    } else {
-      const double t = r.trajectory.at(static_cast<size_t>(pull - force.begin()), 0);
-      axes.marks.push_back({t, "contact pulls"});
-      note += fmt::format(
-          " `{}` is a normal reaction: from t = {:.4g} on the contact would have "
-          "to **pull** (least {:.3g} N), where a real body lifts off.",
-          column, t, least);
-    }
+    const auto contact = std::find(contacts.begin(), contacts.end(), i);
+    const bool is_contact = contact != contacts.end();
+    reactions.push_back(curve(r, is_contact ? column + " [N], contact" : column, column, false));
+    if (is_contact)
+      note += " " + contact_note(r, column, static_cast<size_t>(contact - contacts.begin()), axes);
   }
   if (!reactions.empty()) page.plot("Reaction forces", axes, reactions, note);
 }

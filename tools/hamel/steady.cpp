@@ -112,35 +112,43 @@ void print(const Vary& vary, const SteadySweep& sweep) {
   }
 }
 
-// Real and imaginary parts as points: branches meet and part.
-void add_plots(Page& page, const Vary& vary, const SteadySweep& sweep) {
-  Series real{.name = "real parts", .x = {}, .y = {}, .markers = true};
-  Series imaginary{.name = "imaginary parts", .x = {}, .y = {}, .markers = true};
-  std::vector<Series> reals, imaginaries;
-  size_t most = 0;
-  for (const SteadyMotion& motion : sweep.motions) most = std::max(most, motion.eigenvalues.size());
-  for (size_t j = 0; j < most; ++j) {
-    real = {.name = fmt::format("{}", j + 1), .x = {}, .y = {}};
-    imaginary = real;
-    for (size_t i = 0; i < sweep.values.size(); ++i) {
-      if (j >= sweep.motions[i].eigenvalues.size()) continue;
-      const auto x = sweep.motions[i].eigenvalues[j];
+// The unit of what is varied; "" where it has none.
+std::string unit_of(const Vary& vary, const SystemModel& system) {
+  std::string out;
+  Config::fields([&](const Option& option, auto) {
+    if (option.name == vary.name) out = option.unit;
+  });
+  for (const Field& field : system.fields)
+    if (field.name == vary.name) out = field.unit;
+  return out;
+}
+
+// Real and imaginary parts as points: branches meet and part, and nothing says which value goes on in which.
+void add_plots(Page& page, const Vary& vary, const SystemModel& system, const SteadySweep& sweep) {
+  constexpr size_t most = 600;  // values that a figure tells apart
+  Series real{.name = "Real parts of the eigenvalues", .x = {}, .y = {}, .dots = true};
+  real.key = "eigenvalues";
+  Series imaginary = real;
+  imaginary.name = "Imaginary parts of the eigenvalues";
+  const size_t stride = (sweep.values.size() + most - 1) / most;
+  for (size_t i = 0; i < sweep.values.size(); i += stride) {
+    for (const auto& x : sweep.motions[i].eigenvalues) {
       real.x.push_back(sweep.values[i]);
       real.y.push_back(x.real());
       imaginary.x.push_back(sweep.values[i]);
       imaginary.y.push_back(x.imag());
     }
-    reals.push_back(real);
-    imaginaries.push_back(imaginary);
   }
   std::string note;
   for (const auto& crossing : sweep.crossings) {
     note += fmt::format("{}stability changes at {} = {:.10g} ({})", note.empty() ? "" : "; ",
                         vary.name, crossing.value, crossing.pair ? "complex pair" : "real");
   }
-  page.plot("Real parts of the eigenvalues", {.x = vary.name, .y = "real part [1/s]"}, reals, note);
-  page.plot("Imaginary parts of the eigenvalues", {.x = vary.name, .y = "imaginary part [rad/s]"},
-            imaginaries);
+  if (stride > 1)
+    note += fmt::format("{}one value in {} is drawn", note.empty() ? "" : "; ", stride);
+  const std::string x = with_unit(vary.name, unit_of(vary, system));
+  page.plot(real.name, {.x = x, .y = "real part [1/s]"}, {real}, note);
+  page.plot(imaginary.name, {.x = x, .y = "imaginary part [rad/s]"}, {imaginary});
 }
 
 }  // namespace
@@ -190,7 +198,7 @@ int steady(const SteadyOptions& options) {
       throw ConfigError({"--report: the page shows eigenvalues along a parameter; give --vary"});
     Page page(fmt::format("{}: steady motions", system.name), "eigenvalues along " + vary->name);
     page.section("Stability");
-    add_plots(page, *vary, sweep);
+    add_plots(page, *vary, system, sweep);
     page.write(options.report);
   }
   if (motion.found) return 0;

@@ -118,8 +118,8 @@ class StudyPage {
         view_.run().begin(), view_.run().end(), [&](size_t i) { return !view_.metrics(i).ok; }));
     const std::string missing =
         failed == 0 ? ""
-                    : fmt::format(" {} failed cell{} no point here: see the heat maps.", failed,
-                                  failed == 1 ? " has" : "s have");
+                    : fmt::format(" {} failed cell{} no point here: see the table of cells.",
+                                  failed, failed == 1 ? " has" : "s have");
     const std::vector<Filter> filters = page_filters(filters_);
     const auto plot = [&](const char* title, const Axes& axes, const std::vector<Series>& series,
                           const std::string& note) {
@@ -137,6 +137,7 @@ class StudyPage {
         curves([&](size_t i) { return static_cast<double>(view_.metrics(i).evaluations); }, false),
         "Does not depend on the machine. What an evaluation costs differs between schemes; "
         "explicit ones make none.");
+    if (!result_.config.reference) return;  // no errors, and so no orders
     page_.section("Orders");
     const std::vector<Series> by_step = curves(
         [&](size_t i) {
@@ -168,7 +169,6 @@ class StudyPage {
   }
 
   void heat_maps() {
-    page_.section("Heat maps");
     std::vector<std::string> rows = names_, panels = filters_;
     if (view_.varies("s") && std::find(rows.begin(), rows.end(), "s") == rows.end()) {
       rows.emplace_back("s");
@@ -227,6 +227,22 @@ class StudyPage {
       else if (!view_.metrics(i).ok) map.marks[row][column] = "failed";
       else map.values[row][column] = value(i);
     }
+    add_heat_map(map);
+  }
+
+  // A map of one cell, or without any value, shows nothing that the table of cells does not.
+  void add_heat_map(const HeatMap& map) {
+    size_t values = 0, told = 0;
+    for (size_t row = 0; row < map.values.size(); ++row) {
+      for (size_t column = 0; column < map.values[row].size(); ++column) {
+        const bool value = std::isfinite(map.values[row][column]);
+        values += value;
+        told += value || !map.marks[row][column].empty();
+      }
+    }
+    if (values == 0 || told < 2) return;
+    if (!mapped_) page_.section("Heat maps");
+    mapped_ = true;
     page_.heatmap(map);
   }
 
@@ -234,6 +250,7 @@ class StudyPage {
   StudyView view_;
   Page page_;
   std::vector<std::string> names_, filters_;
+  bool mapped_ = false;  // the section of the heat maps has begun
 };
 
 }  // namespace

@@ -14,6 +14,11 @@ Cell axis_cell(const std::string& value) { return value.empty() ? kUnused : valu
 }  // namespace
 
 void add_references(Page& page, const StudyResult& result) {
+  if (!result.config.reference) {
+    page.text(
+        {"This study asks for times, not for errors (`reference = false`): nothing is compared."});
+    return;
+  }
   std::vector<std::vector<Cell>> rows;
   for (size_t i = 0; i < result.references.size(); ++i) {
     const StudyReference& reference = result.references[i];
@@ -35,8 +40,10 @@ void add_orders(Page& page, const StudyView& view) {
   for (const char* more : {"order", "finest", "claimed", "verdict", "points", "of", "least error"})
     columns.emplace_back(more);
   std::vector<std::vector<Cell>> rows;
+  bool measured = false;
   for (const auto& [key, cells] : view.groups(axes)) {
     const StudyMetrics& m = view.metrics(cells.front());
+    measured = measured || std::isfinite(m.order);
     const int claim = view.cell(cells.front()).claimed_order;
     double least = kNotMeasured;
     for (const size_t i : cells)
@@ -49,6 +56,12 @@ void add_orders(Page& page, const StudyView& view) {
              static_cast<double>(m.order_points), static_cast<double>(m.order_of), least})
       row.push_back(cell);
     rows.push_back(std::move(row));
+  }
+  if (!measured) {
+    page.text(
+        {"No order was measured: it takes two steps or tolerances whose errors are above the "
+         "floor and small beside the motion."});
+    return;
   }
   page.table("Measured orders", columns, rows, "", true);
 }

@@ -46,7 +46,7 @@ class Judge {
         words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, kind);
       text += fmt::format(" Not run, each listed below with its reason: {}.", words);
     }
-    say(ok == view_.run().size() ? "ok" : "note", text);
+    say(ok == view_.run().size() && view_.result().config.reference ? "ok" : "note", text);
   }
 
   // One sentence for each reason. A cell that fails is a result, and nothing wrong with the study.

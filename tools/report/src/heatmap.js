@@ -11,6 +11,7 @@ import { extent } from './series.js';
 
 const WIDE = 16;       // more columns take the whole width of the page
 const [BAR, TOP] = [30, 8];
+const [LONGEST, GAP] = [180, 10];  // pixels: the scale, and what is between it and its words
 const [ROW, LEAST] = [26, 3.5];  // pixels: of a named row, of one of many numbers
 const SAVED = 720;
 const HATCH = { type: 'pattern', repeat: 'repeat', imageWidth: 7, imageHeight: 7, image: `data:image/svg+xml,${encodeURIComponent(
@@ -27,6 +28,7 @@ export function heatmap(block) {
   const csv = () => columnsToCsv([{ name: block.y || 'row', values: map.rows }, ...map.columns.map((name, c) =>
     ({ name, values: map.values.map((row, r) => row[c] ?? map.marks[r]?.[c] ?? '') }))]);
   const element = figure(block, [holder, map.hidden ? remark(`${map.hidden} cell${map.hidden === 1 ? '' : 's'} at or below zero left white.`) : null,
+    map.only !== null ? remark(`Every value is ${scaleText(map, map.only)} ${block.unit ?? ''}.`) : null,
     map.values.flat().includes(null) ? remark('A hatched cell has no value.') : null, block.note ? remark(block.note) : null], { svg, csv });
   if (map.columns.length > WIDE) element.classList.add('wide');
   const draw = () => {
@@ -36,7 +38,8 @@ export function heatmap(block) {
   return { element, draw };
 }
 
-/** The block -> {columns, rows: texts; values, marks: rows from the top; at(value): on the scale; range, hidden}. */
+/** The block -> {columns, rows: texts; values, marks: rows from the top; at(value): on the scale; range; scaled: it has two ends, only: or one
+ * value; hidden}. */
 function readMap(block) {
   for (const name of ['x_values', 'y_values', 'values']) {
     if (!Array.isArray(block[name])) throw new Error(`no list "${name}"`);
@@ -55,8 +58,8 @@ function readMap(block) {
   const numbers = block.y_values.every((v) => typeof v === 'number');
   if (numbers && block.y_values[ny - 1] > block.y_values[0]) order.reverse();  // numbers grow upwards, names are read downwards
   const [min, max] = extent(block.values.flat().map(at));
-  return { label: String(block.y ?? ''), columns, rows: order.map((i) => names[i]), values: order.map((i) => block.values[i]), marks: order.map((i) => block.marks?.[i] ?? []), at,
-    range: min < max ? [min, max] : min === max ? [min - 0.5, max + 0.5] : [0, 1], numbers, log: Boolean(block.log),
+  return { label: String(block.y ?? ''), unit: block.unit ? `  ${block.unit}` : '', columns, rows: order.map((i) => names[i]), values: order.map((i) => block.values[i]), marks: order.map((i) => block.marks?.[i] ?? []), at,
+    range: min < max ? [min, max] : min === max ? [min - 0.5, max + 0.5] : [0, 1], scaled: min < max, only: min === max ? min : null, numbers, log: Boolean(block.log),
     hidden: block.values.flat().filter((v) => typeof v === 'number' && at(v) === null).length };
 }
 
@@ -66,10 +69,14 @@ function layout(map, width) {
   const turned = widest(map.columns) + 6 > cell && map.columns.length > 1 && !(cell < 20);
   const under = turned ? Math.min(90, widest(map.columns)) + 30 : 42;
   const row = map.numbers ? Math.max(LEAST, Math.min(ROW, 430 / map.rows.length)) : ROW;
-  return { left, cell, row, turned, under, height: Math.round(TOP + Math.max(row * map.rows.length, widthOf(map.label, 13) + 4) + under + BAR) };
+  // The scale and its words fit into the figure: first it moves left, then it gets shorter.
+  const words = map.scaled ? widest([scaleText(map, map.range[0])]) + widest([scaleText(map, map.range[1]) + map.unit]) + 2 * GAP + 10 : 0;
+  const long = Math.max(0, Math.min(LONGEST, width - 2 * GAP - words));
+  const bar = { left: Math.max(GAP, Math.min(left, width - GAP - words - long)), itemHeight: long };
+  return { left, cell, row, turned, under, bar, height: Math.round(TOP + Math.max(row * map.rows.length, widthOf(map.label, 13) + 4) + under + (map.scaled ? BAR : 0)) };
 }
 
-function option(map, block, { left, cell, row, turned, under }) {
+function option(map, block, { left, cell, row, turned, under, bar }) {
   const part = (value) => (map.at(value) - map.range[0]) / (map.range[1] - map.range[0]);
   const cells = map.values.flatMap((line, r) => line.map((value, c) => ({ value, mark: map.marks[r][c] || '', place: [c, r] })));
   const list = cells.map(({ value, mark, place }) => {
@@ -82,12 +89,12 @@ function option(map, block, { left, cell, row, turned, under }) {
   const name = (label, text) => `${label ? `${label}: ` : ''}${text}`;
   const names = { type: 'category', splitLine: { show: false } };
   return {
-    grid: { left, right: 12, top: TOP, bottom: under + BAR, outerBoundsMode: 'none' },
+    grid: { left, right: 12, top: TOP, bottom: under + (map.scaled ? BAR : 0), outerBoundsMode: 'none' },
     xAxis: axisOptions(block.x || '', under - 16, { ...names, data: map.columns, axisLabel: { rotate: turned ? 90 : 0, width: turned ? 88 : undefined, overflow: 'truncate' }, axisTick: { show: false } }),
     yAxis: axisOptions(block.y || '', left - 14, { ...names, data: map.rows, inverse: true, axisLabel: { width: left - (map.label ? 32 : 12), overflow: 'truncate' }, axisTick: { show: false } }),
     series: [{ type: 'heatmap', data: list, emphasis: { itemStyle: { borderColor: 'var(--ink)', borderWidth: 2 } } }],
-    visualMap: [{ type: 'continuous', show: true, seriesIndex: 0, dimension: 2, min: map.range[0], max: map.range[1], orient: 'horizontal', left, bottom: 0, itemWidth: 11, itemHeight: 180, padding: 2,
-      inRange: { color: COLOURS }, precision: 12, text: [`${scaleText(map, map.range[1])}  ${block.unit ?? ''}`, scaleText(map, map.range[0])], textStyle: TEXT, calculable: false }],
+    visualMap: [{ type: 'continuous', show: map.scaled, textGap: GAP, seriesIndex: 0, dimension: 2, min: map.range[0], max: map.range[1], orient: 'horizontal', ...bar, bottom: 0, itemWidth: 11, padding: 2,
+      inRange: { color: COLOURS }, precision: 12, text: [scaleText(map, map.range[1]) + map.unit, scaleText(map, map.range[0])], textStyle: TEXT, calculable: false }],
     tooltip: { ...TOOLTIP, trigger: 'item', formatter: ({ dataIndex }) => {
       const { value, mark, place: [c, r] } = cells[dataIndex];
       const text = typeof value === 'number' ? `${formatNumber(value)} ${block.unit ?? ''}`.trim() : 'no value';

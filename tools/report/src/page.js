@@ -11,6 +11,7 @@ import { path, plot } from './plot.js';
 import { preparePrinting } from './print.js';
 import { record } from './record.js';
 import { sphere } from './sphere.js';
+import { stateOf } from './state.js';
 import { table } from './table.js';
 import { text, verdict } from './text.js';
 
@@ -88,25 +89,11 @@ function showSection(section, place, counter, later) {
   return element;
 }
 
-/** The page's state in one line: from its verdicts or, where there are none, its records. */
 function statusLine(data) {
-  const blocks = data.sections.flatMap((section) => section?.blocks ?? []);
-  const numbered = blocks.map((block, i) => ({ block, number: i + 1 }));
-  let judged = numbered.filter(({ block }) => block?.kind === 'verdict' && ['ok', 'failed'].includes(block.status))
-    .map(({ block, number }) => ({ number, ok: block.status === 'ok' }));
-  if (judged.length === 0) {
-    judged = numbered.filter(({ block }) => block?.kind === 'record' && block.record?.status)
-      .map(({ block, number }) => ({ number, ok: block.record.status === 'ok' }));
-  }
-  if (judged.length === 0) return null;
-  const failed = judged.filter(({ ok }) => !ok);
-  if (failed.length === 0) {
-    const all = judged.length === 1 ? '' : `all ${judged.length} verdicts `;
-    return h('p', { class: 'state ok' }, `✓ ${all}OK`);
-  }
-  const links = failed.flatMap(({ number }, i) => [i ? ', ' : ' ', h('a', { href: `#block-${number}` }, `${i + 1}`)]);
-  return h('p', { class: 'state failed' }, `✕ ${failed.length} of ${judged.length} failed`,
-    judged.length > 1 ? [':', ...links] : null);
+  const state = stateOf(data.sections);
+  if (!state) return null;
+  const links = state.failed.flatMap((number, i) => [i ? ', ' : ': ', h('a', { href: `#block-${number}` }, `${i + 1}`)]);
+  return h('p', { class: `state ${state.failed.length ? 'failed' : 'ok'}` }, state.text, links);
 }
 
 function header(data) {

@@ -114,11 +114,11 @@ function option(block, data, equal, width, height, seen) {
   };
 }
 
-const oneSeries = ({ id, name, style, points, markers }, sorted) => ({
+const oneSeries = ({ id, name, style, points, dots, markers }, sorted) => ({
   id, name, type: 'line', data: points, clip: true, silent: true,
-  showSymbol: Boolean(markers), symbol: 'circle', symbolSize: 6.5, sampling: sorted && points.length > LONG ? 'minmax' : undefined,
-  lineStyle: { color: style.colour, width: 1.6, type: style.dash.length ? style.dash : 'solid', cap: 'round', join: 'round' }, itemStyle: { color: style.colour, borderWidth: 0 },
-  emphasis: { focus: 'series', lineStyle: { color: style.colour, width: 2.4 }, itemStyle: { color: style.colour } }, blur: { lineStyle: { opacity: 0.18 }, itemStyle: { opacity: 0.18 } },
+  showSymbol: Boolean(markers), symbol: 'circle', symbolSize: dots ? 4.5 : 6.5, sampling: sorted && !dots && points.length > LONG ? 'minmax' : undefined,
+  lineStyle: { color: style.colour, width: dots ? 0 : 1.6, type: style.dash.length ? style.dash : 'solid', cap: 'round', join: 'round' }, itemStyle: { color: style.colour, borderWidth: 0 },
+  emphasis: { focus: 'series', lineStyle: { color: style.colour, width: dots ? 0 : 2.4 }, itemStyle: { color: style.colour } }, blur: { lineStyle: { opacity: 0.18 }, itemStyle: { opacity: 0.18 } },
   markPoint: sorted || !points[0] ? undefined : { silent: true, symbol: 'circle', symbolSize: 8, label: { show: false },
     itemStyle: { color: 'var(--paper)', borderColor: style.colour, borderWidth: 2 }, data: [{ coord: points.find(isPoint) ?? [0, 0] }] },
 });
@@ -150,11 +150,15 @@ function oneAxis(axis, [min, max], gap, { at, read }) {
     axisTick: { ...custom, lineStyle: { color: 'var(--rule)' } }, splitLine: { ...custom, lineStyle: { color: 'var(--grid)' } } });
 }
 
+/** Of dots, all at that x. */
+const beside = (curve, point) => (curve?.dots ? curve.points.filter((p) => p[0] === point[0]) : [point]);
+
 /** What the curves are at the place of the pointer. */
 function readOut(list, data) {
   if (!list.length) return '';
   const value = (axis, v) => (v === null || v === undefined ? MISSING : formatNumber(axis.from(v)));
   return h('div', {}, h('b', {}, `${data.x.label || 'x'} = ${value(data.x, list[0].axisValue)}`),
-    list.filter(({ seriesName }) => seriesName).slice(0, MOST_READ).map(({ seriesName, data: point, color }) =>
-      h('div', { class: 'read' }, h('i', { style: `background:${color}` }), `${seriesName} `, h('span', {}, value(data.y, point[1])))));
+    list.filter(({ seriesName }) => seriesName).flatMap((one) => beside(data.curves[one.seriesId], one.data).map((point) => ({ ...one, point })))
+      .slice(0, MOST_READ).map(({ seriesName, point, color }) =>
+        h('div', { class: 'read' }, h('i', { style: `background:${color}` }), `${seriesName} `, h('span', {}, value(data.y, point[1])))));
 }

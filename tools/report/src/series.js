@@ -30,7 +30,7 @@ export function extent(values) {
   return values.reduce(([a, b], v) => (Number.isFinite(v) ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]);
 }
 
-/** -> {x, y: axes, curves: [{name, style, points: [[x, y], …], markers, tags, fit}], hidden}; `sorted` in order of x. */
+/** -> {x, y: axes, curves: [{name, style, points: [[x, y], …], dots, markers, tags, fit}], hidden}; `sorted` in order of x. */
 export function readSeries(block, sorted) {
   if (!Array.isArray(block.series)) throw new Error('no list "series"');
   block.series.forEach((s, i) => {
@@ -44,7 +44,7 @@ export function readSeries(block, sorted) {
     const points = s.x.map((v, i) => [x.to(v), y.to(s.y[i])]);
     hidden += s.x.filter((v, i) => (x.log && v !== null && v <= 0) || (y.log && s.y[i] !== null && s.y[i] <= 0)).length;
     if (sorted && s.x.some((v, i) => i > 0 && v < s.x[i - 1])) points.sort((a, b) => a[0] - b[0]);
-    return { name: String(s.name ?? ''), style: styleOf(s), points, markers: s.markers ?? (sorted && points.length <= FEW), tags: s.tags,
+    return { name: String(s.name ?? ''), style: styleOf(s), points, dots: Boolean(s.dots), markers: s.dots || (s.markers ?? (sorted && points.length <= FEW)), tags: s.tags,
       fit: s.fit ? String(s.fit.text || `slope ${s.fit.slope?.toFixed(2)}`) : '', picked: true, show: true };
   });
   return { x, y, curves, hidden };

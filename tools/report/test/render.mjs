@@ -138,6 +138,14 @@ async function checkWidth(page, width) {
     return `${document.documentElement.scrollWidth} > ${limit}: ${guilty.slice(0, 3).map((e) => `${e.tagName}.${e.className}`)}`;
   });
   check(`no horizontal overflow at ${width} px`, wide === null, wide ?? '');
+  const cut = await page.evaluate(() => [...document.querySelectorAll('.chart svg')].flatMap((svg) => {
+    const [left, right] = [svg.getBoundingClientRect().left - 1, svg.getBoundingClientRect().right + 1];
+    return [...svg.querySelectorAll('text')].filter((text) => {
+      const box = text.getBoundingClientRect();
+      return box.width > 0 && (box.left < left || box.right > right);
+    }).map((text) => `${svg.closest('figure')?.querySelector('.title')?.textContent}: ${text.textContent}`);
+  }));
+  check(`no words are cut at ${width} px`, cut.length === 0, cut.slice(0, 3).join('; '));
 }
 
 /** Uses the page wherever it has something to use: the watch is on complaints. */

@@ -5,6 +5,7 @@ import { logTicks, niceTicks } from '../src/format.js';
 import { floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/motion.js';
 import { columnsToCsv } from '../src/save.js';
 import { covered, readSeries } from '../src/series.js';
+import { stateOf } from '../src/state.js';
 
 const near = (a, b) => a.length === b.length && a.every((v, i) => Math.abs(v - b[i]) < 1e-12);
 const about = (axis, angle) => [Math.cos(angle / 2), ...axis.map((v) => v * Math.sin(angle / 2))];
@@ -27,6 +28,10 @@ const ticks = niceTicks(-0.31, 0.42, 5);
 const spans = [0.02, 0.1, 0.3, 0.399, 0.401, 0.5, 0.7, 0.9, 1, 1.3, 1.99, 2.01, 3, 7, 14];  // decades, each from many places
 const counts = spans.flatMap((span) => Array.from({ length: 100 }, (_, i) => logTicks(-4 + i / 100, -4 + i / 100 + span, 5).at.length));
 
+const verdicts = (...all) => [{ blocks: all.map((status) => ({ kind: 'verdict', status })) }];
+const state = (...all) => stateOf(verdicts(...all))?.text;
+const ran = (status) => ({ blocks: [{ kind: 'record', record: { status } }] });
+
 export const units = [
   ['the colour scale gets darker throughout', lights.every((light, i) => i === 0 || light < lights[i - 1])],
   ['a quarter turn about z takes x to y', near(turned(quarter, X), [0, 1, 0])],
@@ -48,5 +53,9 @@ export const units = [
   ['a logarithm leaves out what is not above zero', readSeries({ log_y: true, series: [{ name: 'a', x, y: [1, 0, -1, null] }] }, true).hidden === 2],
   ['ticks at round numbers with equal decimals', near(ticks.at, [-0.2, 0, 0.2, 0.4]) && ticks.read(0) === '0.0' && ticks.read(-0.2) === '−0.2'],
   ['an axis of logarithms has ticks, however far it is zoomed', Math.min(...counts) >= 3 && Math.max(...counts) <= 12],
+  ['verdicts are counted', state('ok') === '✓ OK' && state('ok', 'ok') === '✓ all 2 verdicts OK' && state('ok', 'failed') === '✕ 1 of 2 failed'],
+  ['a note is never counted as OK', state('note') === undefined && state('ok', 'note') === '✓ 1 verdict OK, 1 note'],
+  ['a run that came to its end is not called OK', stateOf([ran('ok')]) === null && stateOf([...verdicts('note'), ran('ok')]) === null],
+  ['a run that failed is told without verdicts', stateOf([ran('ok'), ran('failed')]).text === '✕ 1 of 2 failed' && stateOf([ran('ok'), ran('failed')]).failed[0] === 2],
   ['a saved table', columnsToCsv([{ name: 't', values: [0, 1] }, { name: 'a "b"', values: [2] }]) === '"t","a ""b"""\n0,2\n1,\n'],
 ];

@@ -1,0 +1,186 @@
+// What the pages of runs, comparisons, sweeps and studies say, as the program writes them.
+#include <fmt/format.h>
+
+#include "program.hpp"
+
+namespace {
+
+using hamel::test::figure_of;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+class Pages : public hamel::test::CommandLine {
+ protected:
+  /// status and text of the verdict of a run; empty without the page.
+  std::pair<std::string, std::string> verdict(const std::vector<std::string>& arguments) const {
+    const json page = page_of(arguments);
+    if (page.is_null()) return {};
+    const json& block = page["sections"][0]["blocks"][0];
+    EXPECT_EQ(block["kind"], "verdict");
+    return {block["status"], block["text"]};
+  }
+};
+
+// OK means right: what is wrong or not known is a note that says so.
+TEST_F(Pages, OkMeansRight) {
+  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  EXPECT_EQ(verdict({"suslov"}).first, "ok");
+  EXPECT_EQ(verdict({"rattleback", "--check"}).first, "ok");
+  const auto lost = verdict({"chaplygin_sleigh", "--scheme", "unadapted", "--step", "0.05"});
+  EXPECT_EQ(lost.first, "note");
+  EXPECT_THAT(lost.second, HasSubstr("off by at most **3.7e+01**"));
+  EXPECT_THAT(lost.second, HasSubstr("leave the constraint"));
+  const auto unknown = verdict({"falling_disk"});
+  EXPECT_EQ(unknown.first, "note");
+  EXPECT_THAT(unknown.second, HasSubstr("error is not known"));
+  // Its estimate is small: it converges, to another motion.
+  EXPECT_EQ(verdict({"chaplygin_sleigh", "--scheme", "unadapted", "--check", "--no-exact"}).first,
+            "note");
+}
+
+// The estimate is told by what it was made of.
+TEST_F(Pages, HowTheErrorIsKnown) {
+  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  EXPECT_THAT(verdict({"rattleback", "--until", "2", "--check"}).second,
+              HasSubstr("By half and a quarter of the step"));
+  EXPECT_THAT(verdict({"falling_disk", "--scheme", "dop853", "--rtol", "1e-8", "--check"}).second,
+              HasSubstr("By a tenth and a hundredth of the tolerance"));
+  EXPECT_THAT(verdict({"suslov", "--no-exact"}).second, HasSubstr("left out (`--no-exact`)"));
+  // No step makes it better: its step size cancels.
+  const std::string stuck =
+      verdict({"suslov", "--scheme", "boxed_literal", "--no-exact", "--check"}).second;
+  EXPECT_THAT(stuck, HasSubstr("do not agree on an order"));
+  EXPECT_THAT(stuck, Not(HasSubstr("--check")));
+}
+
+// A contact that ceased to push between two recorded states is not said to push all along.
+TEST_F(Pages, ContactThatIsLost) {
+  const json page =
+      page_of({"falling_disk", "--scheme", "dop853", "--rtol", "1e-10", "--output-step", "0.05",
+               "--stop-at", "contact_lost,fallen", "--velocity", "0.5,0,0,0,0,0"});
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  const std::string note = figure_of(page, "Reaction forces")["note"];
+  EXPECT_THAT(note, HasSubstr("**ceases to push** at t = 0.556143 (`contact_lost`)"));
+  EXPECT_THAT(note, Not(HasSubstr("all along")));
+  EXPECT_THAT(page["sections"][0]["blocks"][0]["text"].get<std::string>(),
+              HasSubstr("It stopped at contact_lost"));
+  EXPECT_THAT(figure_of(page_of({"rattleback"}), "Reaction forces")["note"].get<std::string>(),
+              HasSubstr("at the recorded states the contact pushes"));
+}
+
+// What the points are the largest of is told as it is.
+TEST_F(Pages, LargestOfSoMany) {
+  const json page = page_of({"suslov", "--until", "6"});  // 601 states, 240 points
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  EXPECT_EQ(figure_of(page, "Group defect")["note"],
+            "Each point is the largest of 2 or 3 recorded states.");
+  const json many = page_of({"suslov", "--step", "0.0005", "--until", "60"});  // 120001 states
+  const std::string largest =
+      fmt::format("{:.2g}", many["sections"]
+                                .back()["blocks"][0]["record"]["diagnostics"]["group_defect_max"]
+                                .get<double>());
+  EXPECT_EQ(figure_of(many, "Group defect")["note"],
+            "Each point is the largest of 250 or 251 states, one in 2 of those recorded. The "
+            "largest of all recorded: " +
+                largest + ".");
+}
+
+// No line joins the eigenvalues of two branches.
+TEST_F(Pages, EigenvaluesAreDots) {
+  const json page =
+      page_by({"steady", "bicycle", "--vary", "speed=4:6:3", "--report", "page.html"});
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  const json real = figure_of(page, "Real parts of the eigenvalues");
+  EXPECT_EQ(real["x"], "speed [m/s]");
+  for (const json& series : real["series"]) EXPECT_EQ(series.value("dots", false), true);
+  const json segway =
+      page_by({"steady", "segway", "--vary", "height=0.5:1:3", "--report", "page.html"});
+  EXPECT_EQ(figure_of(segway, "Real parts of the eigenvalues")["x"], "height [m]");
+}
+
+// A study has no figure of one cell or of none, and no table of what was not measured.
+TEST_F(Pages, NoEmptyFiguresOfAStudy) {
+  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  const auto look = [&](const std::string& more) {
+    write("small.toml",
+          "until = 1\nrepeats = 1\nscheme = \"lift\"\n" + more +
+              "[[system]]\nname = \"suslov\"\nlabel = \"one\"\n"
+              "[[system]]\nname = \"suslov\"\nlabel = \"two\"\nset = {inertia = [2, 3, 4]}\n");
+    return page_by({"study", "small.toml", "-o", "out", "--fresh", "--quiet"}, "out/report.html");
+  };
+  const auto titles = [](const json& page) {
+    std::string out;
+    for (const json& section : page["sections"]) {
+      out += section["title"].get<std::string>() + "; ";
+      for (const json& block : section["blocks"])
+        out += block.value("title", block["kind"].get<std::string>()) + "; ";
+    }
+    return out;
+  };
+  EXPECT_EQ(titles(look("reference = false\nstep = 0.1\n")),
+            "Verdict; verdict; text; All cells; All cells that were run; Record; record; ");
+  const std::string one = titles(look("step = 0.1\n"));
+  EXPECT_THAT(one, HasSubstr("What the cells are compared with"));
+  EXPECT_THAT(one, Not(HasSubstr("Measured orders")));
+  EXPECT_THAT(one, Not(HasSubstr("Heat maps")));
+  const std::string many = titles(look("step = [0.1, 0.05, 0.025]\n"));
+  EXPECT_THAT(many, HasSubstr("Measured orders"));
+  EXPECT_THAT(many, HasSubstr("Heat maps; Error: one"));
+}
+
+// The names of a figure's curves.
+std::vector<std::string> names(const json& figure) {
+  std::vector<std::string> out;
+  for (const json& series : figure["series"]) out.push_back(series["name"]);
+  return out;
+}
+
+class Comparisons : public Pages {
+ protected:
+  void SetUp() override {
+    Pages::SetUp();
+    std::filesystem::create_directory(file("A"));
+    std::filesystem::create_directory(file("B"));
+    first_ = run({"run", "chaplygin_sleigh", "--quiet", "-o", "A/run.h5"});
+    if (first_.err.find("HDF5") != std::string::npos) GTEST_SKIP() << "built without HDF5";
+    ASSERT_EQ(first_.status, 0) << first_.err;
+    if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  }
+  json compared(const std::vector<std::string>& arguments) const {
+    EXPECT_EQ(run(arguments).status, 0);
+    return page_by({"report", "A/run.h5", "B/run.h5", "-o", "page.html"});
+  }
+
+ private:
+  hamel::test::Outcome first_;
+};
+
+TEST_F(Comparisons, FilesOfOneNameAreToldApart) {
+  const json page =
+      compared({"run", "chaplygin_sleigh", "--step", "0.001", "--quiet", "-o", "B/run.h5"});
+  const json omega = figure_of(page, "omega"), residual = figure_of(page, "Constraint residual");
+  EXPECT_THAT(names(omega), testing::ElementsAre("A/run", "B/run"));
+  EXPECT_EQ(omega["y"], "omega [rad/s]");
+  EXPECT_EQ(figure_of(page, "theta")["y"], "theta [rad]");
+  EXPECT_EQ(figure_of(page, "x")["y"], "x [m]");
+  // As on the page of one run: of the constraint over the step, here the smaller one; of the group alone.
+  EXPECT_GT(residual["floor"], 1000 * figure_of(page, "Group defect")["floor"].get<double>());
+  EXPECT_EQ(figure_of(page, "Group defect")["floor"], 2.2e-16);
+  EXPECT_EQ(figure_of(page, "Energy error, or defect of the energy balance")["floor"], 2.2e-16);
+  // Each curve has its own windows.
+  EXPECT_THAT(residual["note"].get<std::string>(), HasSubstr("`A/run`: Each"));
+  EXPECT_THAT(residual["note"].get<std::string>(), HasSubstr("`B/run`: Each"));
+}
+
+// Curves of different meaning are never in one figure.
+TEST_F(Comparisons, DifferentSystems) {
+  const json page = compared({"run", "falling_disk", "--quiet", "-o", "B/run.h5"});
+  EXPECT_EQ(page["subtitle"], "of chaplygin_sleigh, falling_disk");
+  EXPECT_THAT(names(figure_of(page, "v1")), testing::ElementsAre("A/run", "B/run"));
+  EXPECT_EQ(figure_of(page, "v1")["y"], "v1 [m/s]");
+  EXPECT_THAT(names(figure_of(page, "omega")), testing::ElementsAre("A/run"));
+  EXPECT_THAT(names(figure_of(page, "omega2")), testing::ElementsAre("B/run"));
+}
+
+}  // namespace

@@ -1,0 +1,24 @@
+// What a page says first of a run: whether it is right, as far as that is known.
+#pragma once
+
+#include <string>
+
+#include <hamel/framework/run/result.hpp>
+
+namespace hamel::tools {
+
+/// An error above this part of the motion is not small.
+constexpr double kSmallError = 0.01;
+/// A constraint residual above this part of the velocity is no round-off.
+constexpr double kKeptConstraint = 1e-6;
+
+struct RunVerdict {
+  std::string status;  // "ok", "note" or "failed"
+  std::string text;
+};
+
+/// "ok" only where the error is known, against the exact motion or as an estimate, and small, the constraint is kept,
+/// and the energy where nothing does work. "note" where one of these is not so or not known.
+RunVerdict run_verdict(const Result& result);
+
+}  // namespace hamel::tools
