@@ -226,6 +226,8 @@ SystemModel Assembly::model() {
 
   start(starts);
   check_motions(*system, said);
+  words_.parts = body_names();
+  model_.events = parts_.events_;
   stop_at_mistakes();
   draw(system);
   AtStart at_start{said, {}, {}};

@@ -174,7 +174,8 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
   }
   check_prescribed(*starts);
   std::vector<std::string> asks = parts_.asks_.names;
-  if (asks.empty() && starts->mistakes({"speed"}).empty()) asks = {"speed"};
+  const bool runs = starts->mistakes({"speed"}).empty();
+  if (asks.empty() && runs) asks = {"speed"};
   for (const std::string& wrong : starts->mistakes(asks))
     mistakes_.push_back(parts_.asks_.where + "asks: " + wrong);
   stop_at_mistakes();
@@ -208,6 +209,13 @@ void Assembly::check_motions(const Multibody& system, const std::vector<Said>& r
   if (solver.eigenvalues()[0] > 1e-14 * solver.eigenvalues().maxCoeff()) return;
   const Eigen::VectorXd idle = free * solver.eigenvectors().col(0);
   std::string list;
+  if (runs) {
+    words_.start_at_speed = [starts, usual](double speed, double t) {
+      std::map<std::string, double> values = usual;
+      values["speed"] = speed;
+      return starts->solve(values, t);
+    };
+  }
   const Part* last = nullptr;
   const Tree& tree = system.tree(g.data());
   for (int link = 0; link < tree.links(); ++link) {
