@@ -27,6 +27,9 @@ struct MotionWords {
   /// there. Throws ConfigError where there is no such motion.
   std::vector<std::string> start_parameters;  // "speed", in m/s
   std::function<Start(std::span<const double>, double t)> start_from;
+  /// The same at a speed ahead [m/s]; empty where nothing runs ahead.
+  std::function<Start(double speed, double t)> start_at_speed;
+  std::vector<std::string> parts;                             // the bodies of a mechanism
   std::vector<std::string> notes;                             // what the user should know
   std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
   std::vector<DrawnForce> forces;

@@ -23,8 +23,8 @@ std::optional<Start> start_at_speed(const SystemModel& model, double speed, doub
   if (const auto it = starts().find(model.name); it != starts().end())
     return it->second(model, speed);
   const MotionWords& words = words_of(model);
-  if (words.start_parameters.empty() || words.start_parameters[0] != "speed") return {};
-  return words.start_from(std::vector<double>{speed}, t);
+  if (!words.start_at_speed) return {};
+  return words.start_at_speed(speed, t);
 }
 
 }  // namespace hamel

@@ -9,8 +9,8 @@
 
 namespace hamel {
 
-/// Straight ahead at v m/s from time t on: of mechanisms whose first number for a start is a speed, and of systems by
-/// these names. Empty where the system knows no such motion.
+/// Straight ahead at v m/s from time t on: of mechanisms with a root joint that runs ahead, and of systems by these
+/// names. Empty where the system knows no such motion.
 std::optional<Start> start_at_speed(const SystemModel& model, double speed, double t = 0);
 
 using StartAtSpeed = std::function<Start(const SystemModel& model, double speed)>;

@@ -8,6 +8,7 @@
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/run/data_drawing.hpp>
 #include <hamel/framework/run/data_formulas.hpp>
+#include <hamel/framework/run/toml_events.hpp>
 #include <hamel/framework/run/toml_parameters.hpp>
 
 namespace hamel {
@@ -168,7 +169,7 @@ class File {
     start("configuration", names_.coordinates.size(), model_.start.configuration);
     start("velocity", names_.rates.size(), model_.start.velocity);
     start("momentum", names_.rates.size(), model_.start.momentum);
-    each("events", [&](const std::string& name, const Node& node) { event(name, node); });
+    model_.events = read_events(read_, formulas_, table_, names_.coordinates, names_.rates);
     each("invariants", [&](const std::string& name, const Node& node) {
       if (auto f =
               formulas_.expression(node, "invariants." + name, names_.coordinates + names_.rates))
@@ -201,32 +202,6 @@ class File {
       values.insert(values.end(), xi.begin(), xi.end());
       return formula(values);
     };
-  }
-  void event(const std::string& name, const Node& node) {
-    Event out{name, "", 0, {}};
-    const std::string key = "events." + name;
-    const Node* value = &node;
-    if (const toml::table* table = node.as_table()) {
-      value = table->get("value");
-      for (const auto& [word, entry] : *table) {
-        if (word == "meaning") read_.value(entry, key + ".meaning", out.meaning);
-        else if (word == "direction") read_.value(entry, key + ".direction", out.direction);
-        else if (word != "value")
-          read_.unknown_key(entry, std::string(word.str()), {"value", "meaning", "direction"});
-      }
-      if (value == nullptr) return read_.wrong(node, key, "a formula, value = ...");
-    }
-    auto formula =
-        formulas_.expression(*value, key, Names{"t"} + names_.coordinates + names_.rates);
-    if (!formula) return;
-    out.value = [formula = std::move(*formula), values = std::vector<double>()](
-                    double t, std::span<const double> g, std::span<const double> xi) mutable {
-      values.assign(1, t);
-      values.insert(values.end(), g.begin(), g.end());
-      values.insert(values.end(), xi.begin(), xi.end());
-      return formula(values);
-    };
-    model_.events.push_back(std::move(out));
   }
   void contacts(const Node& node) {
     const std::vector<double> rows = formulas_.numbers(node, "contacts");

@@ -44,6 +44,8 @@ inline void read_stated(TomlReader& read, const toml::node& node, const std::str
       read.unknown_key(entry, word,
                        {parameter_keys().begin() + (value == nullptr), parameter_keys().end()});
   }
+  if (!(range.least <= range.most))
+    read.wrong(node, key, fmt::format("least below most, got {} and {}", range.least, range.most));
 }
 
 // visit(name, node, key) for the entries of a table of the file, where it has it.

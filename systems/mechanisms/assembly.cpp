@@ -132,7 +132,7 @@ Forces Assembly::forces() {
   Forces out;
   out.gravity = vec(parts_.gravity_);
   for (const auto& joint : parts_.joints_) {
-    if (joint.stiffness == 0 && joint.damping == 0) continue;
+    if (!has_spring(joint) || (joint.kind != "hinge" && joint.kind != "slider")) continue;
     Spring spring;
     spring.name = joint.name;
     spring.joint = joint_of(joint, "joint");
@@ -180,9 +180,11 @@ std::vector<Multibody::Driver> Assembly::drivers(const Tree& tree) {
 void Assembly::make_tree() {
   model_.name = parts_.name_;
   check_names();
+  check_numbers();
   for (const auto& body : parts_.bodies_) check_body(body);
   if (parts_.bodies_.empty()) mistakes_.push_back(fmt::format("{}: no body", parts_.name_));
   link_bodies();
+  check_dimension();
   name_columns();
   state_inputs();
 }
@@ -215,7 +217,7 @@ SystemModel Assembly::model() {
       std::make_shared<Starts>(system, parts_.name_, model_.group.columns, words_.rates, said);
   const Redundancy redundancy =
       look_for_redundancy(*system, {system->drawn(), start_configuration(*system, *starts)});
-  look_at_redundant(redundancy, said);
+  look_at_redundant(redundancy, said, words);
   system->keep(redundancy.rows);
   system->look_for_constants(poses_around(*system, system->drawn()));
   for (const int row : system->kept()) {
@@ -224,6 +226,8 @@ SystemModel Assembly::model() {
     words_.reactions.push_back(word.name);
   }
 
+  words_.parts = body_names();
+  model_.events = parts_.events_;
   start(starts);
   check_motions(*system, said);
   stop_at_mistakes();

@@ -32,6 +32,11 @@ class Assembly {
   // Bodies and joints: the tree.
   void make_tree();
   void check_names();
+  void check_numbers();
+  void check_dimension();
+  static bool has_spring(const Mechanism::JointPart& joint) {
+    return joint.stiffness != 0 || joint.damping != 0;
+  }
   void check_body(const Mechanism::BodyPart& body);
   mechanisms::Inertia inertia_of(const Mechanism::BodyPart& body);
   void link_bodies();
@@ -54,7 +59,8 @@ class Assembly {
   void check_contacts(const mechanisms::Multibody& system);
   std::vector<mechanisms::Said> rows_in_words(const std::vector<mechanisms::RowWords>& rows) const;
   void look_at_redundant(const mechanisms::Redundancy& redundancy,
-                         const std::vector<mechanisms::Said>& rows);
+                         const std::vector<mechanisms::Said>& rows,
+                         const std::vector<mechanisms::RowWords>& words);
   std::vector<double> start_configuration(const mechanisms::Multibody& system,
                                           const mechanisms::Starts& starts) const;
   void check_prescribed(const mechanisms::Starts& starts);

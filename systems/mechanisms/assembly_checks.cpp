@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -26,6 +27,10 @@ void Assembly::check_names() {
       if (part.name.empty()) wrong(part, kind, "expected a name");
       else if (part.name == kWorld) wrong(part, kind, "is the name of what rests in the world");
       else if (!taken.insert(part.name).second) wrong(part, kind, "this name is taken");
+      if (std::ranges::any_of(part.name, [](unsigned char c) {
+            return c < ' ' || c == 0x7f || c == ',' || c == '"';
+          }))  // in the head of a CSV file
+        wrong(part, kind, "expected a name without commas, double quotes and control characters");
     }
   };
   std::set<std::string> bodies, joints, rows, springs, forces;
@@ -40,6 +45,13 @@ void Assembly::check_names() {
 void Assembly::check_body(const Mechanism::BodyPart& body) {
   if (!(body.mass >= 0) || !std::isfinite(body.mass))
     wrong(body, "body", fmt::format("mass: got {}, expected at least 0", body.mass));
+  const auto extent = [&](const char* what, std::span<const double> sizes) {
+    if (std::ranges::any_of(sizes, [](double size) { return !(size >= 0); }))
+      wrong(body, "body", fmt::format("{}: got {}, expected at least 0", what, join(sizes)));
+  };
+  extent("box", body.box);
+  extent("cylinder", body.cylinder);
+  extent("sphere", {&body.sphere, 1});
   const int shapes = (vec(body.box).isZero(0) ? 0 : 1) + (body.cylinder.empty() ? 0 : 1) +
                      (body.sphere != 0 ? 1 : 0);
   if (shapes > 1) wrong(body, "body", "expected one of box, cylinder and sphere");
@@ -110,7 +122,8 @@ std::vector<Said> Assembly::rows_in_words(const std::vector<RowWords>& rows) con
 }
 
 // Refuses rows that say nothing new, or drops them with a note.
-void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<Said>& rows) {
+void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<Said>& rows,
+                                 const std::vector<RowWords>& words) {
   const Part& policy = parts_.redundant_;
   const bool drop = policy.name == "drop";
   if (!drop && policy.name != "refuse")
@@ -120,13 +133,28 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
     for (const int other : others)
       list += (list.empty() ? "" : ", ") + rows[static_cast<size_t>(other)].what;
     const Said& said = rows[static_cast<size_t>(row)];
-    const std::string text = fmt::format("{} says nothing beyond {}", said.what, list);
+    const std::string text =
+        list.empty() ? fmt::format("{} says nothing: no joint moves its body that way", said.what)
+                     : fmt::format("{} says nothing beyond {}", said.what, list);
     if (drop) words_.notes.push_back("row dropped: " + text);
     else
-      mistakes_.push_back(
-          fmt::format("{}redundant row: {}; take a part with fewer rows (a roller for a wheel), "
-                      "or redundant = \"drop\"",
-                      said.where, text));
+      mistakes_.push_back(fmt::format(
+          "{}redundant row: {}; {}, or redundant = \"drop\"", said.where, text,
+          list.empty() ? "leave it out" : "take a part with fewer rows (a roller for a wheel)"));
+  }
+  // Rows of phi that are zero at all places are left out without a word, but not all of a loop.
+  for (const auto& loop : parts_.loops_) {
+    const auto speaks = [&](size_t i) {
+      const int row = static_cast<int>(i);
+      return words[i].part == loop.name &&
+             (redundancy.repeats.contains(row) || std::ranges::count(redundancy.rows, row) > 0);
+    };
+    bool some = false;
+    for (size_t i = 0; i < words.size(); ++i) some = some || speaks(i);
+    if (some) continue;
+    const std::string text = "says nothing: the joints between its bodies hold it already";
+    if (drop) words_.notes.push_back(fmt::format("loop '{}' dropped: {}", loop.name, text));
+    else wrong(loop, "loop", text + "; leave it out");
   }
   stop_at_mistakes();
 }
@@ -174,12 +202,20 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
   }
   check_prescribed(*starts);
   std::vector<std::string> asks = parts_.asks_.names;
-  if (asks.empty() && starts->mistakes({"speed"}).empty()) asks = {"speed"};
+  const bool runs = starts->mistakes({"speed"}).empty();
+  if (asks.empty() && runs) asks = {"speed"};
   for (const std::string& wrong : starts->mistakes(asks))
     mistakes_.push_back(parts_.asks_.where + "asks: " + wrong);
   stop_at_mistakes();
   model_.start = starts->solve(stated, 0, places);
   words_.start_parameters = asks;
+  if (runs) {
+    words_.start_at_speed = [starts, usual](double speed, double t) {
+      std::map<std::string, double> values = usual;
+      values["speed"] = speed;
+      return starts->solve(values, t);
+    };
+  }
   words_.start_from = [starts, asks, stated, usual](std::span<const double> given, double t) {
     std::map<std::string, double> values = given.empty() ? stated : usual;
     for (size_t i = 0; i < given.size(); ++i) values[asks[i]] = given[i];

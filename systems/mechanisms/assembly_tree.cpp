@@ -123,6 +123,9 @@ void Assembly::link_bodies() {
 
 void Assembly::link(const Mechanism::JointPart& joint) {
   const int parent = body_links_.at(joint.parent);
+  if (has_spring(joint) && joint.kind != "hinge" && joint.kind != "slider")
+    wrong(joint, "joint",
+          fmt::format("stiffness and damping: expected a hinge or slider, got {}", joint.kind));
   if (joint.kind == "weld") {
     body_links_[joint.child] = parent;
   } else {
@@ -161,10 +164,6 @@ void Assembly::add_link(int parent, JointKind kind, const Mechanism::JointPart& 
   if (kind == JointKind::free) link.on_parent = {};
   if (kind == JointKind::planar) link.on_parent.position = e.dot(link.on_child.position) * e;
   links_.push_back(link);
-  const bool one = kind == JointKind::hinge || kind == JointKind::slider;
-  if (!one && (joint.stiffness != 0 || joint.damping != 0))
-    wrong(joint, "joint",
-          fmt::format("stiffness and damping: expected a hinge or slider, got {}", joint.kind));
   link_names_.push_back(joint.name + suffix);
   link_joints_.push_back(&joint);
 }

@@ -92,6 +92,7 @@ void FileParts::prescribed(const toml::table& table) {
                         {"angle", of_time(angle)},
                         {"least", read_.read(range.least)},
                         {"most", read_.read(range.most)}});
+  if (!is_input(table, {"rate", "angle"})) no_range(table);
   if (rate.value && angle.value) read_.toml.wrong(table, "prescribed", "one of rate and angle");
   if (rate.value && rate.constant) m_.prescribe(joint, rate.value(0));
   else if (rate.value) m_.prescribe(joint, rate.value);
@@ -110,8 +111,15 @@ void FileParts::motor(const toml::table& table) {
                          }},
                         {"least", read_.read(range.least)},
                         {"most", read_.read(range.most)}});
+  if (!is_input(table, {"effort"})) no_range(table);
   if (effort) m_.motor(joint, effort, of_time);
   else m_.motor(joint, range);
+}
+// A formula is not kept between limits.
+void FileParts::no_range(const toml::table& table) {
+  for (const char* key : {"least", "most"})
+    if (const Node* node = table.get(key))
+      read_.toml.wrong(*node, key, "none beside a formula, which may say min(max(...)) itself");
 }
 // A motor or a prescribed joint that says none of these is an input.
 bool FileParts::is_input(const toml::table& table, std::initializer_list<const char*> keys) {

@@ -47,6 +47,7 @@ class FileParts {
   }
   void prescribed(const toml::table& table);
   void motor(const toml::table& table);
+  void no_range(const toml::table& table);
   static bool is_input(const toml::table& table, std::initializer_list<const char*> keys);
   void start(const toml::table& table, const std::string& front = "");
 

@@ -151,7 +151,10 @@ class Mechanism {
   /// An input of the run that signals may use: Now::inputs, behind those of motors and prescribed joints.
   void input(const InputField& field) { inputs_.push_back({part(field.name), field}); }
 
-  /// The start: coordinates and velocities by name, and "speed", that of the first root joint ahead. Those that are
+  /// An event of a run (--events, --stop-at), a function of time, coordinates and velocities.
+  void event(Event event) { events_.push_back(std::move(event)); }
+
+  /// The start: coordinates and velocities by name, and "speed", that of the first planar or free root joint ahead. Those that are
   /// not given follow from the rows: coordinates stay near the drawn pose, velocities have the least energy.
   void start(const std::map<std::string, double>& values) {
     start_.clear();
@@ -228,6 +231,7 @@ class Mechanism {
   std::vector<RatePart> rates_;
   std::vector<MotorPart> motors_;
   std::vector<InputPart> inputs_;
+  std::vector<Event> events_;
   Point gravity_ = {0, 0, -9.81}, ground_velocity_ = {0, 0, 0};
   double ground_rate_ = 0;
   std::vector<StartPart> start_;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <hamel/framework/run/toml_events.hpp>
 #include <hamel/framework/run/toml_parameters.hpp>
 #include <hamel/systems/mechanisms/file_parts.hpp>
 
@@ -61,15 +62,19 @@ class File {
     parts.chains();
     parts.forces();
     parts.surroundings();
+    for (Event& event :
+         read_events(read_.toml, read_.formulas, table_, outline.group.columns, words.rates))
+      m.event(std::move(event));
     stop_at_mistakes();
     return m;
   }
 
   void check_keys() {
     static const std::vector<std::string> known = {
-        "asks",      "ball",   "blade", "body",   "force",  "formula", "gravity",    "ground",
-        "inputs",    "joint",  "known", "loop",   "motor",  "name",    "parameters", "prescribed",
-        "redundant", "roller", "slope", "source", "spring", "start",   "summary",    "wheel"};
+        "asks",    "ball",       "blade",      "body",      "events", "force", "formula",
+        "gravity", "ground",     "inputs",     "joint",     "known",  "loop",  "motor",
+        "name",    "parameters", "prescribed", "redundant", "roller", "slope", "source",
+        "spring",  "start",      "summary",    "wheel"};
     for (const auto& [name, node] : table_) {
       const std::string key(name.str());
       if (std::find(known.begin(), known.end(), key) == known.end())

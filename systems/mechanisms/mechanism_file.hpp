@@ -13,22 +13,24 @@
 //   [[joint]]                                 # kind: free planar hinge slider ball universal weld
 //   kind = "planar"                           # parent (left out: the ground), child, at, axis, axis2,
 //   child = "deck"                            # stiffness, rest, damping
-//   [[wheel]] [[roller]] [[blade]] [[ball]]   # body, at; axle, radius, angle; along
-//   [[loop]]                                  # a, b, at, axis
+//   [[wheel]] [[roller]] [[blade]] [[ball]]   # name (left out: the body's), body, at; axle, radius, angle; along
+//   [[loop]]                                  # name, a, b, at, axis
 //   [[prescribed]]                            # joint; rate or angle = "0.3*sin(2*t)", where a run then starts; left out:
 //                                             # an input, steer.rate
-//   [[spring]]                                # a, b, from, to, stiffness, rest, damping
+//   [[spring]]                                # name, a, b, from, to, stiffness, rest, damping
 //   [[motor]]                                 # joint; effort = "-2*steer.angle - 0.1*steer.rate"; left out: an input,
 //   joint = "steer"                           # steer.torque, or lift.force of a slider, between `least` and `most`
-//   [[force]]                                 # body, at; along = ["1", 0, 0]; of_body = true
+//   [[force]]                                 # name, body, at; along = ["1", 0, 0]; of_body = true
 //   [inputs]                                  # what a run may be driven by; efforts and forces may use them
 //   wind = { unit = "N", meaning = "...", least = -50, most = 50 }
+//   [events]                                  # zero at the event; direction +1, -1, or 0 for both ways
+//   straight = { value = "steer.angle", meaning = "the fork is straight", direction = 0 }
 //   [ground]                                  # rate [rad/s], velocity [m/s]: the ground turns and moves
 //   [start]                                   # coordinates and velocities by name, and speed
 //   speed = 2
 //   asks = ["speed"]                          # what the numbers of --velocity mean, fewer than velocities
 //
-// Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also of t, those of motors
+// Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also of t, those of events, motors
 // and forces of coordinates (steer.angle, x), velocities (steer.rate, v1) and inputs (wind, steer.torque).
 #pragma once
 

@@ -22,12 +22,22 @@ Starts::Starts(std::shared_ptr<const Multibody> system, std::string name,
       rates_(std::move(rates)),
       rows_(std::move(rows)) {}
 
+int Starts::ahead() const {
+  const Tree& tree = system_->tree(system_->drawn().data());
+  for (int link = 0; link < tree.links(); ++link) {
+    if (tree.parent(link) != kGround) continue;
+    if (tree.kind(link) == JointKind::free) return tree.first(link) + 3;
+    if (tree.kind(link) == JointKind::planar) return tree.first(link) + 1;
+  }
+  return -1;
+}
+
 int Starts::rate(const std::string& name) const {
   const auto index = [&](const std::string& wanted) {
     const auto it = std::find(rates_.begin(), rates_.end(), wanted);
     return it == rates_.end() ? -1 : static_cast<int>(it - rates_.begin());
   };
-  return index(name == "speed" ? "v1" : name);
+  return name == "speed" ? ahead() : index(name);
 }
 
 std::vector<std::string> Starts::mistakes(const std::vector<std::string>& names) const {

@@ -25,7 +25,7 @@ class Starts {
 
   Starts(std::shared_ptr<const Multibody> system, std::string name,
          std::vector<std::string> columns, std::vector<std::string> rates, std::vector<Said> rows);
-  /// Mistakes in these names; "speed" is the first of the root's velocities ahead.
+  /// Mistakes in these names; "speed" is that of the first planar or free root joint ahead.
   std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
   /// At a time, where prescribed angles hold. Throws ConfigError where the rows forbid these values; places: where these
   /// stand in a file.
@@ -38,6 +38,7 @@ class Starts {
                                     const Places& places = {}) const;
 
  private:
+  int ahead() const;                        // the velocity that "speed" is; -1: there is none
   int rate(const std::string& name) const;  // -1: no velocity
   /// Throws that these rows and values do not go together, and the text behind them.
   [[noreturn]] void refuse(const std::vector<int>& rows, const Values& values, const Places& places,

@@ -131,44 +131,6 @@ TEST_F(MechanismFile, RefusesAParameterItDoesNotHave) {
   EXPECT_THAT(o.err, HasSubstr("did you mean 'offset'?"));
 }
 
-/// A prescribed angle is the start's, from other times too.
-TEST_F(MechanismFile, StartsWhereItIsPrescribed) {
-  const std::string hinge = write(R"toml([[body]]
-name = "arm"
-mass = 1
-at = [1, 0, 0]
-inertia = [1, 1, 1]
-[[body]]
-name = "tip"
-mass = 1
-at = [2, 0, 0]
-inertia = [1, 1, 1]
-[[joint]]
-name = "turn"
-kind = "hinge"
-child = "arm"
-[[joint]]
-name = "free"
-kind = "hinge"
-parent = "arm"
-child = "tip"
-at = [1.5, 0, 0]
-[[prescribed]]
-joint = "turn"
-angle = "0.5 + t^2/10"
-)toml");
-  for (const double from : {0.0, 3.0}) {
-    const json out = answer({"run", hinge, "--from", std::to_string(from), "--until",
-                             std::to_string(from + 1), "--compose", "kahan_li6"});
-    EXPECT_NEAR(out["start"]["configuration"][0], 0.5 + from * from / 10, 1e-14);
-    EXPECT_NEAR(out["start"]["velocity"][0], from / 5, 1e-14);
-    EXPECT_NEAR(out["final"]["configuration"][0], 0.5 + (from + 1) * (from + 1) / 10, 1e-10);
-  }
-  EXPECT_THAT(run({"run", hinge, "--configuration", "0,0", "--velocity", "0,1"}).err,
-              HasSubstr("system.toml:21:1: prescribed 'turn': turn.angle is prescribed as 0.5 at "
-                        "t = 0, but 0 at the start"));
-}
-
 /// A named input in a force and in another joint's motor, that of a motor in a force; not driven they are 0.
 TEST_F(MechanismFile, FormulasUseInputs) {
   const std::string cart = write(R"toml([[body]]
@@ -265,61 +227,6 @@ TEST_F(MechanismFile, SteadyBicycle) {
   const Outcome o = run({"steady", "bicycle", "--speed", "5"});
   EXPECT_THAT(o.out, HasSubstr("no growing mode"));
   EXPECT_THAT(o.out, HasSubstr("steer.rate"));
-}
-
-/// A motor that slows a wheel and a rate that does not change leave a skate its steady motions; one of t does not.
-TEST_F(MechanismFile, SteadyWhereNoFormulaIsOfTime) {
-  const std::string skate = R"toml([[body]]
-name = "deck"
-mass = 3
-at = [0.1, 0, 0.2]
-box = [0.5, 0.2, 0.1]
-[[body]]
-name = "rotor"
-mass = 1
-at = [0, 0, 0.4]
-cylinder = [0.1, 0.03]
-[[body]]
-name = "fan"
-mass = 1
-at = [0, 0, 0.6]
-cylinder = [0.1, 0.03]
-[[joint]]
-name = "road"
-kind = "planar"
-child = "deck"
-[[joint]]
-name = "spin"
-kind = "hinge"
-parent = "deck"
-child = "rotor"
-[[joint]]
-name = "fan"
-kind = "hinge"
-parent = "deck"
-child = "fan"
-[[blade]]
-name = "keel"
-body = "deck"
-[inputs]
-wind = { unit = "N" }
-[[prescribed]]
-joint = "fan"
-)toml";
-  const auto steady = [&](const std::string& rate, const std::string& effort) {
-    return run({"steady",
-                write(skate + "rate = " + rate + "\n[[motor]]\njoint = \"spin\"\neffort = " +
-                      effort + "\n[[force]]\nname = \"wind\"\nbody = \"deck\"\n" +
-                      "along = [\"wind*cos(theta)\", 0, 0]\n"),
-                "--speed", "1", "--json"});
-  };
-  const Outcome o = steady("3", "\"wind - 0.1*spin.rate\"");
-  ASSERT_EQ(o.status, 0) << o.err;
-  const json s = json::parse(o.out);
-  EXPECT_NEAR(s["motion"]["velocity"][1], 1, 1e-12);
-  EXPECT_NEAR(s["motion"]["velocity"][4], 3, 1e-12);
-  EXPECT_THAT(steady("\"3 + t\"", "0").err, HasSubstr("depends on time"));
-  EXPECT_THAT(steady("3", "\"0.1*t\"").err, HasSubstr("depends on time"));
 }
 
 TEST_F(MechanismFile, SteadySaysWhatItCannotDo) {

@@ -213,6 +213,53 @@ TEST_F(MechanismMistakes, InFormulas) {
   });
 }
 
+/// What no part can be, or what would have no effect.
+TEST_F(MechanismMistakes, InNamesAndNumbers) {
+  const auto body = [](const std::string& shape) {
+    return "[[body]]\nname = \"a\"\nmass = 1\n" + shape +
+           "\n[[joint]]\nkind = \"planar\"\nchild = \"a\"\n";
+  };
+  const std::string arm = kFlat + kArm;
+  refuses({
+      {body("box = [1, -1, 1]"), "1:1: body 'a': box: got 1,-1,1, expected at least 0"},
+      {body("cylinder = [-0.1, 1]"), "1:1: body 'a': cylinder: got -0.1,1, expected at least 0"},
+      {body("sphere = -1"), "1:1: body 'a': sphere: got -1, expected at least 0"},
+      {arm + "[[motor]]\njoint = \"arm\"\neffort = 1\nleast = -1\n",
+       "22:9: least: expected none beside a formula"},
+      {arm + "[[prescribed]]\njoint = \"arm\"\nangle = \"t\"\nmost = 1\n",
+       "22:8: most: expected none beside a formula"},
+      {arm + "[[motor]]\njoint = \"arm\"\nleast = 2\nmost = 1\n",
+       "19:1: motor 'arm': least 2 is more than most 1"},
+      {arm + "[inputs]\nu = { least = 2, most = 1 }\n",
+       "20:5: inputs.u: expected least below most, got 2 and 1"},
+      {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"crank\"\nat = [0, 0, 1]\n" +
+           "axis = [0, 1, 0]\n",
+       "23:1: loop 'pin': says nothing: the joints between its bodies hold it already"},
+      {"[[body]]\nname = \"a\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n[[joint]]\n"
+       "kind = \"hinge\"\nchild = \"a\"\n[[blade]]\nname = \"keel\"\nbody = \"a\"\n",
+       "9:1: redundant row: blade 'keel' (does not slip across its edge) says nothing: no joint "
+       "moves its body that way; leave it out, or redundant = \"drop\""},
+      {kFlat +
+           "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n[[joint]]\n" +
+           "kind = \"universal\"\nparent = \"a\"\nchild = \"b\"\naxis2 = [1, 0, 0]\n" +
+           "damping = 1\n",
+       "14:1: joint 'b': stiffness and damping: expected a hinge or slider, got universal"},
+      {kFlat + "[[body]]\nname = \"b\"\nmass = 1\n[[joint]]\nkind = \"weld\"\nparent = \"a\"\n" +
+           "child = \"b\"\nstiffness = 1\n",
+       "12:1: joint 'b': stiffness and damping: expected a hinge or slider, got weld"},
+  });
+  for (const std::string name : {"a,b", "a\\nb", "a\\\"b", "a\\u0007"})
+    refuses({{"[[body]]\nname = \"" + name + "\"\nmass = 1\nsphere = 1\n[[joint]]\n" +
+                  "kind = \"planar\"\nchild = \"" + name + "\"\n",
+              "1:1: body '"}});
+  std::string chain;
+  for (int i = 0; i < 1001; ++i)
+    chain += "[[body]]\nname = \"b" + std::to_string(i) + "\"\nmass = 1\nsphere = 1\n[[joint]]\n" +
+             "kind = \"hinge\"\nchild = \"b" + std::to_string(i) + "\"\n";
+  EXPECT_THAT(run({"describe", write(chain)}).err,
+              HasSubstr("dimension 1001, expected at most 1000"));
+}
+
 /// Parts may have any name; what cannot stand in a formula is left out of them, which a mistake says.
 TEST_F(MechanismMistakes, InFormulasOfJointsWithAnyName) {
   for (const std::string name : {"left arm", "left-arm", "3rd", "дрель", "sin"}) {

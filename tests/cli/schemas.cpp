@@ -96,7 +96,21 @@ TEST(Schemas, ExamplesOfTheDocumentationFit) {
   EXPECT_GE(found, 4);
 }
 
+// A text as a reader of its kind takes it.
+auto reader(const std::string& kind, const std::string& text) {
+  return [=] {
+    using namespace hamel;
+    if (kind == "run") Config::from_toml(text);
+    else if (kind == "study") parse_study(text, "study", registry());
+    else data_system_maker(registry(), "file.toml", text)({});
+  };
+}
+
 TEST(Schemas, RefuseWhatTheReadersRefuse) {
+  const std::string root_body =
+      "[[body]]\nname = 'a'\nmass = 1\nsphere = 1\n[[joint]]\nkind = 'planar'\nchild = 'a'\n";
+  EXPECT_NO_THROW(reader("mechanism", root_body)());
+  EXPECT_EQ(misfit("mechanism", data_of(root_body)), "");
   for (const auto& [kind, text] : std::vector<std::pair<std::string, std::string>>{
            {"run", "system = 'suslov'\nstep = 'small'"},
            {"run", "system = 'suslov'\nscheme = 'lfit'"},
@@ -109,7 +123,16 @@ TEST(Schemas, RefuseWhatTheReadersRefuse) {
            {"study", "mode = 'zippd'\n[[system]]\nname = 'suslov'"},
            {"study", "step = [true]\n[[system]]\nname = 'suslov'"},
            {"mechanism", "[[body]]\nname = 'a'\nmas = 1\n[[joint]]\nkind='free'\nchild='a'"},
-           {"mechanism", "[[body]]\nname = 'a'\n[[joint]]\nkind='fere'\nchild='a'"}}) {
+           {"mechanism", "[[body]]\nname = 'a'\n[[joint]]\nkind='fere'\nchild='a'"},
+           {"mechanism", root_body + "[parameters]\nm = '2*3'"},
+           {"mechanism", root_body + "[parameters]\nm = { value = 1, least = '0' }"},
+           {"mechanism", root_body + "[events]\ne = { value = 'x', direction = 2 }"},
+           {"mechanism", root_body + "[[spring]]\nb = 'a'"},
+           {"mechanism", root_body + "[[loop]]\na = 'a'"},
+           {"mechanism", root_body + "[[force]]\nbody = 'a'"}}) {
+    if (kind == "mechanism") {
+      EXPECT_THROW(reader(kind, text)(), hamel::ConfigError) << text;
+    }
     EXPECT_NE(misfit(kind, data_of(text)), "") << kind << ": " << text;
   }
 }
@@ -140,16 +163,6 @@ std::set<std::string> keys_of(const json& object) {
   return out;
 }
 
-// A text as a reader of its kind takes it.
-auto reader(const std::string& kind, const std::string& text) {
-  return [=] {
-    using namespace hamel;
-    if (kind == "run") Config::from_toml(text);
-    else if (kind == "study") parse_study(text, "study", registry());
-    else data_system_maker(registry(), "file.toml", text)({});
-  };
-}
-
 TEST(Schemas, HaveTheKeysOfTheReaders) {
   const std::string system = "group = 'se2'\ninertia = [1, 1, 1]\n";
   const std::string body = "[[body]]\nname = 'a'\n",
@@ -175,6 +188,8 @@ TEST(Schemas, HaveTheKeysOfTheReaders) {
       {"mechanism", body + joint + "zzz = 1", "/properties/joint/items"},
       {"mechanism", body + joint + "[parameters]\nm = { value = 1, zzz = 1 }",
        "/properties/parameters/additionalProperties/anyOf/1"},
+      {"mechanism", body + joint + "[events]\ne = { value = 'x', zzz = 1 }",
+       "/properties/events/additionalProperties/anyOf/1"},
       {"mechanism", body + joint + "[ground]\nzzz = 1", "/properties/ground"}};
   for (const std::string part :
        {"wheel", "roller", "ball", "blade", "loop", "prescribed", "spring", "motor", "force"})

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "mechanism_systems.hpp"
@@ -91,6 +93,44 @@ TEST(Mechanisms, FindRowsThatSayNothingNew) {
   table.body("lamp", {.mass = 1, .at = {0, 0, 0.6}, .inertia = {1, 1, 1}});
   table.hinge("turn", "top", "lamp", {});
   EXPECT_EQ(table.model().mechanics->holonomic_rows(), 3);
+}
+
+// A user's program may state what no file can.
+TEST(Mechanisms, RefuseNumbersThatAreNone) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto with = [](auto change) {
+    Mechanism m("cart");
+    m.body("a", {.mass = 1, .sphere = 1});
+    m.body("b", {.mass = 1, .at = {1, 0, 0}, .sphere = 1});
+    m.planar("floor", "a");
+    change(m);
+    return refused(m);
+  };
+  EXPECT_THAT(with([&](Mechanism& m) { m.hinge("h", "a", "b", {.damping = nan}); }),
+              HasSubstr("joint 'h': damping: got nan, expected finite numbers"));
+  const auto fault = [&](auto change) {
+    return with([&](Mechanism& m) {
+      m.hinge("h", "a", "b", {});
+      change(m);
+    });
+  };
+  EXPECT_EQ(fault([](Mechanism&) {}), "nothing");
+  EXPECT_THAT(fault([&](Mechanism& m) { m.spring("s", "a", "b", {.stiffness = nan}); }),
+              HasSubstr("spring 's': stiffness: got nan"));
+  EXPECT_THAT(fault([&](Mechanism& m) {
+                m.gravity({0, nan, 0});
+              }),
+              HasSubstr("cart: gravity: got 0,nan,0"));
+  EXPECT_THAT(fault([&](Mechanism& m) { m.ground(nan); }),
+              HasSubstr("cart: ground's rate: got nan"));
+  EXPECT_THAT(fault([&](Mechanism& m) {
+                m.start({{"v1", nan}});
+              }),
+              HasSubstr("start 'v1': value: got nan"));
+  EXPECT_THAT(fault([&](Mechanism& m) {
+                m.blade("k", "a", {.at = {0, nan, 0}});
+              }),
+              HasSubstr("blade 'k': at: got 0,nan,0"));
 }
 
 }  // namespace

@@ -66,8 +66,7 @@ void add_parts(Json& out, const std::string& name, const SystemModel& model,
                const Parameters& given) {
   const Mechanics& mechanics = *model.mechanics;
   const MotionWords& words = words_of(model);
-  out["parts"] = Json::array();
-  for (const DrawnBody& body : model.drawing.bodies) out["parts"].push_back(body.name);
+  out["parts"] = words.parts;
   out["rates"] = words.rates;
   out["reactions"] = words.reactions;
   out["dimension"] = mechanics.dim();
@@ -103,7 +102,7 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
               {"events", events(model)},
               {"known", info.known},
               {"source", info.source}};
-  if (!words_of(model).rates.empty()) add_parts(out, info.name, model, given);
+  if (!words_of(model).parts.empty()) add_parts(out, info.name, model, given);
   return out;
 }
 
@@ -140,7 +139,7 @@ Json describe_file(const std::string& path, const Parameters& given) {
               {"start", start_of(model)},
               {"events", events(model)}};
   const MotionWords& words = words_of(model);
-  if (!words.start_parameters.empty()) {
+  if (!words.parts.empty()) {
     add_parts(out, path, model, given);
     return out;
   }

@@ -1,0 +1,63 @@
+// [events] of a file that describes a system. Not installed.
+//
+//   [events]
+//   straight = "steer"                                                   zero at the event
+//   tipped = { value = "abs(lean) - 1", meaning = "it lies", direction = 1 }   +1, -1, or 0 for both ways
+#pragma once
+
+#include <cstdlib>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/io/toml_formulas.hpp>
+#include <hamel/framework/mechanics/system.hpp>
+
+namespace hamel {
+
+/// Formulas of t, and of these names of coordinates and rates. Mistakes are those of `read`.
+inline std::vector<Event> read_events(TomlReader& read, TomlFormulas& formulas,
+                                      const toml::table& file,
+                                      const std::vector<std::string>& coordinates,
+                                      const std::vector<std::string>& rates) {
+  std::vector<Event> out;
+  const toml::node* entries = file.get("events");
+  if (entries == nullptr) return out;
+  if (!entries->is_table()) return read.wrong(*entries, "events", "a table"), out;
+  std::vector<std::string> names = {"t"};
+  names.insert(names.end(), coordinates.begin(), coordinates.end());
+  names.insert(names.end(), rates.begin(), rates.end());
+  for (const auto& [name, node] : *entries->as_table()) {
+    Event event{std::string(name.str()), "", 0, {}};
+    const std::string key = "events." + event.name;
+    const toml::node* value = &node;
+    if (const toml::table* table = node.as_table()) {
+      value = table->get("value");
+      for (const auto& [word, entry] : *table) {
+        if (word == "meaning") read.value(entry, key + ".meaning", event.meaning);
+        else if (word == "direction") read.value(entry, key + ".direction", event.direction);
+        else if (word != "value")
+          read.unknown_key(entry, std::string(word.str()), {"value", "meaning", "direction"});
+      }
+      if (value == nullptr) {
+        read.wrong(node, key, "a formula, value = ...");
+        continue;
+      }
+    }
+    if (std::abs(event.direction) > 1) read.wrong(node, key + ".direction", "-1, 0 or 1");
+    auto formula = formulas.expression(*value, key, names);
+    if (!formula) continue;
+    event.value = [formula = std::move(*formula), values = std::vector<double>()](
+                      double t, std::span<const double> g, std::span<const double> xi) mutable {
+      values.assign(1, t);
+      values.insert(values.end(), g.begin(), g.end());
+      values.insert(values.end(), xi.begin(), xi.end());
+      return formula(values);
+    };
+    out.push_back(std::move(event));
+  }
+  return out;
+}
+
+}  // namespace hamel

@@ -1,0 +1,189 @@
+// Mechanisms in files: where they start, what stops them, which have steady motions, with roots of any kind.
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace hamel::test;
+using nlohmann::json;
+using testing::HasSubstr;
+
+using MechanismRuns = CommandLine;
+
+/// A prescribed angle is the start's, from other times too.
+TEST_F(MechanismRuns, StartsWhereItIsPrescribed) {
+  const std::string hinge = write(R"toml([[body]]
+name = "arm"
+mass = 1
+at = [1, 0, 0]
+inertia = [1, 1, 1]
+[[body]]
+name = "tip"
+mass = 1
+at = [2, 0, 0]
+inertia = [1, 1, 1]
+[[joint]]
+name = "turn"
+kind = "hinge"
+child = "arm"
+[[joint]]
+name = "free"
+kind = "hinge"
+parent = "arm"
+child = "tip"
+at = [1.5, 0, 0]
+[[prescribed]]
+joint = "turn"
+angle = "0.5 + t^2/10"
+)toml");
+  for (const double from : {0.0, 3.0}) {
+    const json out = answer({"run", hinge, "--from", std::to_string(from), "--until",
+                             std::to_string(from + 1), "--compose", "kahan_li6"});
+    EXPECT_NEAR(out["start"]["configuration"][0], 0.5 + from * from / 10, 1e-14);
+    EXPECT_NEAR(out["start"]["velocity"][0], from / 5, 1e-14);
+    EXPECT_NEAR(out["final"]["configuration"][0], 0.5 + (from + 1) * (from + 1) / 10, 1e-10);
+  }
+  EXPECT_THAT(run({"run", hinge, "--configuration", "0,0", "--velocity", "0,1"}).err,
+              HasSubstr("system.toml:21:1: prescribed 'turn': turn.angle is prescribed as 0.5 at "
+                        "t = 0, but 0 at the start"));
+}
+
+const std::string kTwo = R"toml([[body]]
+name = "pendulum"
+mass = 1
+at = [0, 0, -1]
+box = [0.1, 0.1, 0.1]
+[[body]]
+name = "skate"
+mass = 1
+at = [0.2, 0, 0]
+box = [0.1, 0.1, 0.1]
+[[body]]
+name = "other"
+mass = 1
+at = [1, 0, 0]
+box = [0.1, 0.1, 0.1]
+[[joint]]
+name = "pivot"
+kind = "hinge"
+child = "pendulum"
+axis = [0, 1, 0]
+[[joint]]
+name = "ice"
+kind = "planar"
+child = "skate"
+[[joint]]
+name = "rink"
+kind = "planar"
+child = "other"
+[[blade]]
+name = "keel"
+body = "skate"
+)toml";
+
+/// Two roots and a pendulum: no joint is a lone root.
+TEST_F(MechanismRuns, WithoutALoneRootDescribesItself) {
+  const json d = answer({"describe", write(kTwo)});
+  EXPECT_EQ(d["parts"], json({"pendulum", "skate", "other"}));
+  EXPECT_EQ(d["reactions"], json({"keel.reaction1"}));
+  EXPECT_EQ(d["dimension"], 7);
+  EXPECT_EQ(d["directions"], 6);
+  EXPECT_THAT(d["verdict"].get<std::string>(), HasSubstr("nonholonomic"));
+  const std::string pendulum = kTwo.substr(0, kTwo.find("[[body]]\nname = \"skate\"")) +
+                               "[[joint]]\nname = \"pivot\"\nkind = \"hinge\"\nchild = "
+                               "\"pendulum\"\naxis = [0, 1, 0]\n";
+  const json p = answer({"describe", write(pendulum)});
+  EXPECT_EQ(p["parts"], json({"pendulum"}));
+  EXPECT_EQ(p["directions"], 1);
+}
+
+/// Of the first root joint that runs ahead, whatever the few numbers mean.
+TEST_F(MechanismRuns, StartsAtTheSpeedOfItsFirstRoot) {
+  const json two = answer({"run", write(kTwo), "--speed", "3", "--until", "0.01"});
+  EXPECT_EQ(two["start"]["velocity"][2], 3.0);
+  EXPECT_EQ(two["start"]["velocity"][5], 0.0);
+  const json ballbot = answer({"run", "ballbot", "--speed", "1", "--until", "0.01"});
+  EXPECT_NEAR(ballbot["start"]["velocity"][3], 1, 1e-12);
+}
+
+/// Of t, coordinates and rates by name: the pendulum, let go at 1 rad, is upright when its angle is 0.
+TEST_F(MechanismRuns, StopsAtEvents) {
+  const std::string text = kTwo + R"toml([events]
+upright = { value = "pivot.angle", meaning = "the pendulum hangs", direction = -1 }
+late = "t - 2"
+[start]
+pivot.angle = 1
+)toml";
+  const json out = answer(
+      {"run", write(text), "--stop-at", "upright", "--until", "3", "--compose", "kahan_li6"});
+  EXPECT_NEAR(out["final"]["configuration"][0], 0, 1e-12);
+  EXPECT_LT(out["final"]["velocity"][0], -1);
+  EXPECT_NEAR(answer({"run", write(text), "--stop-at", "late"})["time"], 2, 1e-12);
+  const json events = answer({"describe", write(text)})["events"];
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[1]["name"], "upright");
+  EXPECT_EQ(events[1]["meaning"], "the pendulum hangs");
+  EXPECT_EQ(events[1]["direction"], "downwards");
+  EXPECT_THAT(run({"run", write(kTwo + "[events]\nup = \"pivot.angel\"\n")}).err,
+              HasSubstr("did you mean 'pivot.angle'?"));
+}
+
+/// A motor that slows a wheel and a rate that does not change leave a skate its steady motions; one of t does not.
+TEST_F(MechanismRuns, SteadyWhereNoFormulaIsOfTime) {
+  const std::string skate = R"toml([[body]]
+name = "deck"
+mass = 3
+at = [0.1, 0, 0.2]
+box = [0.5, 0.2, 0.1]
+[[body]]
+name = "rotor"
+mass = 1
+at = [0, 0, 0.4]
+cylinder = [0.1, 0.03]
+[[body]]
+name = "fan"
+mass = 1
+at = [0, 0, 0.6]
+cylinder = [0.1, 0.03]
+[[joint]]
+name = "road"
+kind = "planar"
+child = "deck"
+[[joint]]
+name = "spin"
+kind = "hinge"
+parent = "deck"
+child = "rotor"
+[[joint]]
+name = "fan"
+kind = "hinge"
+parent = "deck"
+child = "fan"
+[[blade]]
+name = "keel"
+body = "deck"
+[inputs]
+wind = { unit = "N" }
+[[prescribed]]
+joint = "fan"
+)toml";
+  const auto steady = [&](const std::string& rate, const std::string& effort) {
+    return run({"steady",
+                write(skate + "rate = " + rate + "\n[[motor]]\njoint = \"spin\"\neffort = " +
+                      effort + "\n[[force]]\nname = \"wind\"\nbody = \"deck\"\n" +
+                      "along = [\"wind*cos(theta)\", 0, 0]\n"),
+                "--speed", "1", "--json"});
+  };
+  const Outcome o = steady("3", "\"wind - 0.1*spin.rate\"");
+  ASSERT_EQ(o.status, 0) << o.err;
+  const json s = json::parse(o.out);
+  EXPECT_NEAR(s["motion"]["velocity"][1], 1, 1e-12);
+  EXPECT_NEAR(s["motion"]["velocity"][4], 3, 1e-12);
+  EXPECT_THAT(steady("\"3 + t\"", "0").err, HasSubstr("depends on time"));
+  EXPECT_THAT(steady("3", "\"0.1*t\"").err, HasSubstr("depends on time"));
+}
+
+}  // namespace
