@@ -99,21 +99,20 @@ TEST_F(RecordedFaults, NeedsNoOtherFile) {
   ASSERT_EQ(run({"run", "scooter.toml", "--until", "1", "--quiet", "-o", "b.h5"}).status, 0);
   const nlohmann::json a = page_of_file("a.h5"), b = page_of_file("b.h5");
   write_files("-5", "\n# edited\n[no_such_table]\n");
-  EXPECT_EQ(page_of_file("a.h5"), a);
-  EXPECT_EQ(page_of_file("b.h5"), b);
+  EXPECT_TRUE(page_of_file("a.h5") == a);
+  EXPECT_TRUE(page_of_file("b.h5") == b);
   EXPECT_THAT(run({"run", "--continue", "b.h5"}).err, HasSubstr("is not what it was"));
   std::filesystem::remove(file("torque.csv"));
   std::filesystem::remove(file("scooter.toml"));
-  EXPECT_EQ(page_of_file("a.h5"), a);
-  EXPECT_EQ(page_of_file("b.h5"), b);
+  EXPECT_TRUE(page_of_file("a.h5") == a);
+  EXPECT_TRUE(page_of_file("b.h5") == b);
 }
 
 /// A page or a record for which there is no room: what was written before it is there, which is no bad input.
 TEST_F(RecordedFaults, NoRoomForTheLast) {
-  for (const Words& last : {Words{"-o", "a.json"}, Words{"--report", "a.html"}}) {
-    const Outcome o =
-        run(with({"run", "suslov", "--until", "0.01", "--quiet", "-o", "a.csv"}, last),
-            "ulimit -f " + std::string(last[0] == "-o" ? "4" : "100") + " && exec ");
+  for (const Words& last : {Words{"-o", "a.json"}, Words{"--report", "a.html", "-o", "a.csv"}}) {
+    const Outcome o = run(with({"run", "suslov", "--until", "0.01", "--quiet"}, last),
+                          "ulimit -f " + std::string(last[0] == "-o" ? "4" : "100") + " && exec ");
     if (o.err.find("without the page") != std::string::npos) continue;
     EXPECT_EQ(o.status, 1) << o.err;
     EXPECT_THAT(o.err, AllOf(HasSubstr("cannot write '" + last[1]), HasSubstr("File too large")));
