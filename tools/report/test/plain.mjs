@@ -9,6 +9,7 @@ import { inflateSync } from 'node:zlib';
 import { executable } from './browser.mjs';
 import { countPixels } from './pixels.mjs';
 
+const PHONE = 390;      // pixels
 const TALLEST = 15000;  // pixels of a picture; a longer page is looked at down to there
 
 function chromium(file, output, ...flags) {
@@ -33,6 +34,17 @@ function picturesAndCurves(pdf) {
   return count;
 }
 
+/** On a phone, whose narrow window comes after the first drawing, nothing stands out of the cards. */
+async function lookAtPhone(page, file, picture, check) {
+  const height = 2400;
+  await page.setViewportSize({ width: PHONE, height });
+  const right = await page.evaluate(() => Math.max(...[...document.querySelectorAll('.figure')].map((figure) => figure.getBoundingClientRect().right)));
+  const png = chromium(file, picture, `--screenshot=${picture}`, `--window-size=${PHONE},${height}`);
+  const x = Math.ceil(right) + 1;
+  const [{ inked }] = await countPixels(page, [png], [{ x, y: 0, width: PHONE - x, height }]);
+  check('plain screenshot of a phone: all is inside the cards', inked === 0, `${inked} inked pixels beside them`);
+}
+
 /** Every figure of the page, open in `page`, shows its curves in a plain screenshot; `expected`: whether it has any. */
 export async function lookPlainly(page, file, expected, check, keep) {
   await page.setViewportSize({ width: 1280, height: 800 });
@@ -51,6 +63,7 @@ export async function lookPlainly(page, file, expected, check, keep) {
     const png = chromium(file, picture, `--screenshot=${picture}`, `--window-size=1280,${tall}`);
     const found = await countPixels(page, [png], figures.map(({ box }) => box));
     figures.forEach(({ title }, i) => check(`plain screenshot: ${title} shows curves`, found[i].colours > 20, `${found[i].colours} coloured pixels`));
+    await lookAtPhone(page, file, join(folder, 'phone.png'), check);
     const pdf = join(folder, 'page.pdf');
     const strokes = picturesAndCurves(chromium(file, pdf, `--print-to-pdf=${pdf}`));
     check('plain print: the curves of the figures', strokes >= figures.length, `${strokes} pictures and coloured lines in ${figures.length} figures`);

@@ -148,6 +148,18 @@ async function checkWidth(page, width) {
   check(`no words are cut at ${width} px`, cut.length === 0, cut.slice(0, 3).join('; '));
 }
 
+/** A card that gets narrower shrinks its drawing at once: a plain screenshot may come before that is made again. */
+async function checkShrinking(page) {
+  const wide = await page.evaluate(() => {
+    const main = document.querySelector('main');
+    main.style.width = '280px';
+    const out = [...document.querySelectorAll('.chart svg')].filter((svg) => svg.getBoundingClientRect().right > svg.closest('.figure').getBoundingClientRect().right);
+    main.style.width = '';
+    return out.length;
+  });
+  check('drawings shrink with their cards', wide === 0, `${wide} do not`);
+}
+
 /** Uses the page wherever it has something to use: the watch is on complaints. */
 async function useIt(page) {
   await useChart(page, check);
@@ -194,6 +206,7 @@ await checkWidth(page, 390);
 if (options.narrow) await page.screenshot({ path: options.narrow, fullPage: true });
 await checkWidth(page, 1280);
 if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
+await checkShrinking(page);
 await checkPrint(page);
 await useIt(page);
 if (expected.includes(true) && failed === 0) await lookPlainly(page, file, expected, check, options.plain);
