@@ -154,8 +154,8 @@ class Mechanism {
   /// An event of a run (--events, --stop-at), a function of time, coordinates and velocities.
   void event(Event event) { events_.push_back(std::move(event)); }
 
-  /// The start: coordinates and velocities by name, and "speed", that of the first planar or free root joint ahead. Those that are
-  /// not given follow from the rows: coordinates stay near the drawn pose, velocities have the least energy.
+  /// The start: coordinates and velocities by name, and "speed", that of the first planar or free root joint ahead. Those
+  /// that are not given follow from the rows: coordinates stay near the drawn pose, velocities have the least energy.
   void start(const std::map<std::string, double>& values) {
     start_.clear();
     for (const auto& [name, value] : values) start(name, value);

@@ -30,8 +30,9 @@
 //   speed = 2
 //   asks = ["speed"]                          # what the numbers of --velocity mean, fewer than velocities
 //
-// Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also of t, those of events, motors
-// and forces of coordinates (steer.angle, x), velocities (steer.rate, v1) and inputs (wind, steer.torque).
+// Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also of t, those of
+// events, motors and forces of coordinates (steer.angle, x) and velocities (steer.rate, v1), the latter two of inputs
+// (wind, steer.torque). Parts may have any name; one with a blank, say, cannot stand in a formula.
 #pragma once
 
 #include <string>
