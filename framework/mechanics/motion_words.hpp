@@ -67,4 +67,7 @@ inline const MotionWords& words_of(const SystemModel& model) {
 /// The components of xi by the names that the system states, else by those of its group (components.hpp).
 std::vector<Component> components_of(const SystemModel& model);
 
+/// The unit of the multiplier of a row: "N" of contacts, whose rows are forces of size 1; "" where nothing is known.
+std::string unit_of_reaction(const SystemModel& model, int row);
+
 }  // namespace hamel

@@ -220,6 +220,13 @@ void Meter::react(const Snapshot& state) {
     ColumnGroup out = numbered("lambda", lambda.size());
     const std::vector<std::string>& names = words_of(system_).reactions;
     for (size_t i = 0; i < names.size(); ++i) out.columns[i] = names[reactions_[i]];
+    bool known = false;
+    std::vector<std::string> units;
+    for (const size_t row : reactions_) {
+      units.push_back(unit_of_reaction(system_, static_cast<int>(row)));
+      known = known || !units.back().empty();
+    }
+    if (known) out.unit = fmt::format("{}", fmt::join(units, ","));
     out.meaning = "multipliers of the rows A xi = b";
     return out;
   };

@@ -191,10 +191,10 @@ wind = { unit = "N", meaning = "along x", least = -5, most = 5 }
 TEST_F(MechanismFile, ShowsReactionsByPart) {
   auto figures = curves({"bicycle", "--speed", "5", "--until", "0.1"});
   if (figures.empty()) GTEST_SKIP() << "the program has no page";
-  EXPECT_THAT(
-      figures["Reaction forces"],
-      testing::ElementsAre("rear.reaction1", "rear.reaction2", "rear.reaction3 [N], contact",
-                           "front.reaction1", "front.reaction2", "front.reaction3 [N], contact"));
+  EXPECT_THAT(figures["Reaction forces"],
+              testing::ElementsAre("rear.reaction1 [N]", "rear.reaction2 [N]",
+                                   "rear.reaction3 [N], contact", "front.reaction1 [N]",
+                                   "front.reaction2 [N]", "front.reaction3 [N], contact"));
 }
 
 /// By name, and as a file.

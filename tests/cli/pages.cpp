@@ -86,6 +86,14 @@ TEST_F(Pages, LargestOfSoMany) {
                 largest + ".");
 }
 
+// Multipliers of contacts are forces; of others nothing is known.
+TEST_F(Pages, ReactionsOfContactsAreForces) {
+  const json page = page_of({"bicycle", "--until", "0.1"});
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  EXPECT_EQ(figure_of(page, "Reaction forces")["y"], "lambda [N]");
+  EXPECT_EQ(figure_of(page_of({"chaplygin_sleigh"}), "Reaction forces")["y"], "lambda");
+}
+
 // No line joins the eigenvalues of two branches.
 TEST_F(Pages, EigenvaluesAreDots) {
   const json page =

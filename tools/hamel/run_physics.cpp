@@ -90,7 +90,8 @@ std::string contact_note(const Result& r, const std::string& column, size_t k, A
 
 void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) {
   std::vector<Series> reactions;
-  Axes axes{.x = "time t [s]", .y = "lambda"};
+  Axes axes{.x = "time t [s]", .y = ""};
+  bool forces = true;  // all in N
   axes.marks = marks;
   std::string note = fmt::format(
       "Multipliers of the rows A xi = b, from the equations of motion at the recorded "
@@ -105,10 +106,13 @@ void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) 
     const auto& contacts = r.system.contacts;
     const auto contact = std::find(contacts.begin(), contacts.end(), i);
     const bool is_contact = contact != contacts.end();
-    reactions.push_back(curve(r, is_contact ? column + " [N], contact" : column, column, false));
+    const std::string name = with_unit(column, unit_of_reaction(r.system, i));
+    forces = forces && name != column;
+    reactions.push_back(curve(r, is_contact ? name + ", contact" : name, column, false));
     if (is_contact)
       note += " " + contact_note(r, column, static_cast<size_t>(contact - contacts.begin()), axes);
   }
+  axes.y = with_unit("lambda", forces ? "N" : "");
   if (!reactions.empty()) page.plot("Reaction forces", axes, reactions, note);
 }
 
