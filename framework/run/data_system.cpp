@@ -169,6 +169,8 @@ class File {
     start("configuration", names_.coordinates.size(), model_.start.configuration);
     start("velocity", names_.rates.size(), model_.start.velocity);
     start("momentum", names_.rates.size(), model_.start.momentum);
+    if (const Node* both = table_.get("momentum"); both != nullptr && table_.contains("velocity"))
+      read_.wrong(*both, "momentum", "velocity or momentum, not both");
     model_.events = read_events(read_, formulas_, table_, names_.coordinates, names_.rates);
     each("invariants", [&](const std::string& name, const Node& node) {
       if (auto f =

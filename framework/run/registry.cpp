@@ -126,6 +126,7 @@ namespace {
 // read.
 std::vector<std::string> factors_of(const std::string& name) {
   std::vector<std::string> out;
+  if (name.ends_with('*')) return out;
   std::istringstream in(name);
   for (std::string word; std::getline(in, word, '*');) {
     long count = 1;

@@ -70,6 +70,9 @@ TEST_F(DataSystem, MistakesAreNamed) {
   refused("inertia = [1]", "group: missing");
   refused("group = \"se4\"\ninertia = [1]", "did you mean 'se");
   refused("group = \"se2\"", "inertia: missing");
+  refused("group = \"se2*\"\ninertia = [1, 2, 3]", "se2*");
+  refused("group = \"se2\"\ninertia = [1, 2, 3]\nvelocity = [1, 0, 0]\nmomentum = [1, 0, 0]",
+          ":4:12: momentum: expected velocity or momentum, not both");
   refused("group = \"se2\"\ninertia = [1, 2]", ":2:11: inertia: expected 3 numbers");
   refused("group = \"se2\"\ninertia = [1, 2, nan]\nvelocity = [1, 0, 0]", "finite");
   refused("group = \"se2\"\ninertia = [1, 2, -3]\nvelocity = [1, 0, 0]", "positive definite");

@@ -97,7 +97,7 @@ class Judge {
   std::string constraint() {
     const double floor = zero_ / std::abs(r_.config.step);
     if (r_.constraint_max <= kKeptConstraint * size_.speed + 1e3 * floor) return "";
-    ok_ = false;
+    if (!std::isfinite(r_.exact_error_max)) ok_ = false;
     return fmt::format(" **The steps leave the constraint**, by up to {:.1e}.", r_.constraint_max);
   }
 
