@@ -115,7 +115,10 @@ class Finder {
       out.eigenvalues.push_back(values[i]);
       const double condition = left.row(i).norm();  // inf or NaN of one that has no eigenvector
       out.round_off.push_back(size * std::max(1e-9, std::fmin(1e-13 * condition, 1e-6)));
-      const Eigen::VectorXcd mode = basis.topRows(n).cast<Complex>() * solver.eigenvectors().col(i);
+      const Eigen::VectorXcd both = basis.cast<Complex>() * solver.eigenvectors().col(i);
+      // Where the mode is along the symmetries, which are divided out, as a spin that decays: its velocities.
+      const bool moves = both.head(n).norm() > 1e-9 * both.norm();
+      const Eigen::VectorXcd mode = moves ? both.head(n) : both.tail(n);
       out.modes.push_back(parts_of(mode, names));
     }
     return out;

@@ -192,6 +192,19 @@ TEST(Steady, InvertedPendulum) {
   EXPECT_NEAR(sweep.crossings[0].value, mgl, 1e-10);
 }
 
+// A wheel that spins down does nothing but spin: its angle is a symmetry.
+TEST(Steady, ASpinThatDecaysIsNamed) {
+  Mechanism m("wheel");
+  const auto wheel = m.body("wheel", {.mass = 1, .at = {0, 0, 0}, .inertia = {0.1, 0.2, 0.1}});
+  m.hinge("spin", "ground", wheel, {.axis = {0, 1, 0}, .damping = 0.5});
+  const SteadyMotion motion =
+      steady_motion(registry(), m.model(), {.configuration = {0}, .velocity = {0}});
+  ASSERT_EQ(motion.eigenvalues.size(), 1u);
+  EXPECT_NEAR(motion.eigenvalues[0].real(), -0.5 / 0.2, 1e-10);
+  ASSERT_EQ(motion.modes[0].size(), 1u);
+  EXPECT_EQ(motion.modes[0][0].name, "spin.rate");
+}
+
 // Backwards the trailers jackknife, each at a rate in proportion to the speed: stability changes at rest, on the grid or
 // off it.
 TEST(Steady, TrailersFoldBackwards) {
