@@ -109,10 +109,12 @@ std::string Result::report() const {
          fmt::format("configuration {:.2e} at the end, velocity {:.2e} at most", exact_error_final,
                      exact_velocity_error_max));
   }
-  if (config.check) {
+  if (config.check && status.ok) {
+    const char* finer = config.chooses_steps() ? "a tenth and a hundredth of the tolerance"
+                                               : "half and a quarter of the step";
     line("estimated error",
          std::isnan(estimated_error)
-             ? "unknown: half and a quarter of the step do not agree on an order"
+             ? fmt::format("unknown: {} do not agree on an order", finer)
              : fmt::format("{:.2e} of the configuration at the end, observed order {:.2f}",
                            estimated_error, observed_order));
   }
