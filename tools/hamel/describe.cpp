@@ -258,11 +258,8 @@ Json description_of(const std::string& name, const Parameters& given) {
     }
   }
   for (const auto& names :
-       {all.systems(), all.groups(), all.retractions(), all.schemes(), all.solvers()}) {
+       {all.systems_and_files(), all.groups(), all.retractions(), all.schemes(), all.solvers()}) {
     known.insert(known.end(), names.begin(), names.end());
-  }
-  for (const FileKind& kind : file_kinds()) {
-    for (const SystemInfo& info : kind.library) known.push_back(info.name);
   }
   throw ConfigError({unknown_name("name", name, known)});
 }
