@@ -76,16 +76,23 @@ void write_file(const std::string& path, const std::string& text) {
   }
 }
 
+// Asked, not tried: a file that is made for a moment stays there when the program is killed at that moment.
 std::string unwritable(const std::string& path) {
   namespace fs = std::filesystem;
-  std::error_code error;
   if (path.empty()) return "output: an empty path";
-  if (fs::is_directory(path, error)) return fmt::format("output: '{}' is a directory", path);
+  const auto no = [&](const char* reason) {
+    return fmt::format("output: cannot write '{}': {}", path, reason);
+  };
+  std::error_code error;
   const std::string part = part_of(path);
-  const bool there = fs::exists(part, error);
-  const bool opened = std::ofstream(part, std::ios::app).is_open();
-  if (!there) fs::remove(part, error);
-  return opened ? "" : fmt::format("output: cannot write '{}'", path);
+  for (const std::string& file : {path, part})
+    if (fs::is_directory(file, error)) return fmt::format("output: '{}' is a directory", file);
+  const fs::path parent = fs::path(path).parent_path(), folder = parent.empty() ? "." : parent;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    return no(std::strerror(ENOTDIR));
+  if (access(folder.c_str(), W_OK | X_OK) != 0) return no(std::strerror(errno));
+  if (fs::exists(part, error) && access(part.c_str(), W_OK) != 0) return no(std::strerror(errno));
+  return "";
 }
 
 }  // namespace hamel

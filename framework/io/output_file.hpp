@@ -38,7 +38,7 @@ bool locked(const std::string& path);
 /// Writes text as a whole; Unfinished on failure, and then nothing is left.
 void write_file(const std::string& path, const std::string& text);
 
-/// "" when a file can be created at path, else what is in the way. Leaves nothing behind.
+/// "" when a file can be created at path, else what is in the way. Touches nothing.
 std::string unwritable(const std::string& path);
 
 }  // namespace hamel

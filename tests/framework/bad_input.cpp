@@ -231,7 +231,11 @@ TEST(BadInput, FilesThatCannotBeWritten) {
   EXPECT_THROW(r.write((folder / "is_a_folder.csv").string()), ConfigError);
   EXPECT_NE(unwritable((folder / "is_a_folder.csv").string()), "");
   EXPECT_NE(unwritable((folder / "no_such_folder" / "a.csv").string()), "");
+  // Who asks makes no file, not even for a moment, which a kill would make last.
+  fs::last_write_time(folder, fs::file_time_type());
+  const auto untouched = fs::last_write_time(folder);
   EXPECT_EQ(unwritable((folder / "fine.csv").string()), "");
+  EXPECT_EQ(fs::last_write_time(folder), untouched);
   r.write((folder / "fine.csv").string());
   // Nothing else was left behind.
   std::vector<std::string> left;
