@@ -110,16 +110,19 @@ std::string Result::report() const {
                      exact_velocity_error_max));
   }
   if (config.check && status.ok) {
-    const char* finer = config.chooses_steps() ? "a tenth and a hundredth of the tolerance"
-                                               : "half and a quarter of the step";
     line("estimated error",
          std::isnan(estimated_error)
-             ? fmt::format("unknown: {} do not agree on an order", finer)
+             ? fmt::format("unknown by {}", finer_runs(config))
              : fmt::format("{:.2e} of the configuration at the end, observed order {:.2f}",
                            estimated_error, observed_order));
   }
   line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
   return out;
+}
+
+const char* finer_runs(const Config& config) {
+  return config.chooses_steps() ? "a tenth and a hundredth of the tolerance"
+                                : "half and a quarter of the step";
 }
 
 void Result::write(const std::string& path) const {

@@ -82,6 +82,9 @@ struct Result : Measurements {
   void write(const std::string& path) const;
 };
 
+/// The two runs by which an error is estimated (check), in words.
+const char* finer_runs(const Config& config);
+
 /// A run in a file, .h5: how to go on with it. ConfigError where the file holds none.
 struct Recorded {
   std::string path;  // without .part

@@ -137,6 +137,16 @@ void add_notes(Result& result) {
   }
 }
 
+// What step or tolerance is divided by in a run that --check adds.
+double finer_by(const Config& config) { return config.chooses_steps() ? 10 : 2; }
+
+// The steps of the first `runs` of this run and the two finer ones, in those of this run; a tenth of the tolerance takes some
+// 10^(1/5) times as many.
+double check_work(const Config& config, int runs) {
+  const double more = config.chooses_steps() ? 1.6 : 2;
+  return (std::pow(more, runs) - 1) / (more - 1);
+}
+
 }  // namespace
 
 Result Simulation::run() const {
@@ -154,6 +164,8 @@ Result Simulation::run() const {
   RunLoop loop(plan, result, sinks);
   loop.observer = observer_;
   loop.progress = progress_;
+  if (progress_ && config_.check)
+    loop.progress = [&](double done) { progress_(done / check_work(config_, 3)); };
   loop.impacts = &impacts_;
   if (!resumed_.empty()) loop.resume(RunFile(resumed_));
   loop.run();
@@ -166,10 +178,10 @@ Result Simulation::run() const {
 // Richardson: with the ends x(h), x(h/2), x(h/4) the order is p = log2(|x(h) - x(h/2)| / |x(h/2) - x(h/4)|), the error of
 // x(h) is |x(h) - x(h/2)| 2^p / (2^p - 1). Nothing is said where p is no order (below 0.5), unless the ends agree to
 // round-off. Where steps are chosen, the same with a tenth and a hundredth of the tolerance in place of h/2, h/4, and p the
-// power of the tolerance.
+// power of the tolerance. The ends are at one time, the last of this run, which may be that of an event.
 void Simulation::estimate_error(Result& result) const {
-  const bool chosen = config_.chooses_steps();
-  const double factor = chosen ? 10 : 2;
+  if (result.last.time == config_.from) return;
+  const double factor = finer_by(config_);
   std::vector<double> ends[3] = {result.last.coordinates, {}, {}};
   for (const int k : {1, 2}) {
     const double parts = std::pow(factor, k);
@@ -177,17 +189,34 @@ void Simulation::estimate_error(Result& result) const {
     finer.records_.clear();  // the files are this run's
     finer.resumed_.clear();
     finer.keep_rows(1);
-    if (chosen) {
-      if (config_.rtol) finer.config_.rtol = *config_.rtol / parts;
-      if (config_.atol) finer.config_.atol = *config_.atol / parts;
+    Config& config = finer.config_;
+    config.check = false;
+    config.no_exact = true;
+    config.stop_at.clear();  // it stops when this run did
+    config.until = result.last.time;
+    config.every = 1;
+    config.output_step.reset();
+    config.output_times = {result.last.time};
+    if (config.chooses_steps()) {
+      if (config.rtol) *config.rtol /= parts;
+      if (config.atol) *config.atol /= parts;
     } else {
-      finer.step(config_.step / parts);
-      finer.every(config_.every * std::lround(parts));  // as many rows as were allowed
+      config.step /= parts;
     }
-    Integration run = finer.build();
-    if (!(chosen ? run.advance_to(result.last.time) : run.step(std::lround(parts) * result.steps)))
-      return;
-    ends[k] = run.state().coordinates;
+    finer.observe([&](const Snapshot& end) {
+      ends[k] = end.coordinates;
+      return true;
+    });
+    finer.progress([&](double done) {
+      const double before = check_work(config_, k), all = check_work(config_, 3);
+      if (progress_) progress_((before + done * (check_work(config_, k + 1) - before)) / all);
+    });
+    const Status status = finer.run().status;
+    if (status.ok && !ends[k].empty()) continue;
+    result.notes.push_back(
+        fmt::format("check: the run with 1/{:g} of the {} failed at t = {:.6g}: {}", parts,
+                    config_.chooses_steps() ? "tolerance" : "step", status.time, status.reason));
+    return;
   }
   const double first = euclidean_distance(ends[0], ends[1]);
   const double second = euclidean_distance(ends[1], ends[2]);
@@ -198,6 +227,10 @@ void Simulation::estimate_error(Result& result) const {
   } else if (order > 0.5) {
     result.estimated_error = first / (1 - std::pow(factor, -order));
     result.observed_order = order;
+  } else {
+    result.notes.push_back(
+        fmt::format("check: {} do not agree on an order: the ends differ by {:.2e}, then by {:.2e}",
+                    finer_runs(config_), first, second));
   }
 }
 

@@ -166,7 +166,7 @@ class Simulation {
   Simulation& stop_at(std::vector<std::string> names) {
     return with(&Config::stop_at, std::move(names));
   }
-  /// Locates an event, and lets the caller change the state there.
+  /// Locates an event, and lets the caller change the state there; also in the two finer runs of a check.
   Simulation& on_event(const std::string& name, Impact impact) {
     config_.events.push_back(name);
     impacts_[name] = std::move(impact);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -104,7 +105,11 @@ class CsvSink final : public Sink {
   void rows(std::span<const double> values) override {
     std::size_t column = 0;
     for (const double value : values) {
-      fmt::format_to(std::back_inserter(text_), "{:.17g}", value);
+      text_.resize(text_.size() + kNumber);
+      char* const begin = text_.data() + text_.size() - kNumber;
+      const auto end =
+          std::to_chars(begin, begin + kNumber, value, std::chars_format::general, 17).ptr;
+      text_.resize(static_cast<std::size_t>(end - text_.data()));
       text_.push_back(++column == width_ ? '\n' : ',');
       if (column == width_) column = 0;
       if (text_.size() > 1 << 16) put();
@@ -126,6 +131,7 @@ class CsvSink final : public Sink {
     text_.clear();
   }
 
+  static constexpr std::size_t kNumber = 32;  // bytes of a number at most: -1.7976931348623157e+308
   Bytes out_;
   std::size_t width_ = 0;
   fmt::memory_buffer text_;

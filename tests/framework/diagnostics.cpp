@@ -78,6 +78,68 @@ TEST(Diagnostics, CheckEstimatesTheErrorAndTheOrder) {
   EXPECT_TRUE(std::isnan(simulate("suslov").until(1).run().estimated_error));  // not asked for
 }
 
+/// The ends of the three runs are of one time, that of the event where the first one stopped.
+TEST(Diagnostics, CheckOfARunThatStopsAtAnEvent) {
+  const auto run = [](Simulation sleigh) {
+    return sleigh.stop_at({"theta=1"}).until(20).with(&Config::check, true).run();
+  };
+  const Result lift = run(simulate("chaplygin_sleigh").step(0.02));
+  EXPECT_TRUE(lift.stopped_by_event);
+  EXPECT_NEAR(lift.estimated_error / lift.exact_error_final, 1, 0.05);
+  EXPECT_NEAR(lift.observed_order, 2, 0.1);
+  const Result pair =
+      run(simulate("chaplygin_sleigh").scheme("dopri5").tolerance({.relative = 1e-6}));
+  EXPECT_NEAR(pair.estimated_error / pair.exact_error_final, 1, 0.3);
+  EXPECT_NEAR(run(simulate("chaplygin_sleigh").step(0.02).every(7)).estimated_error,
+              lift.estimated_error, 1e-15);
+}
+
+/// The finer runs meet the walls as well.
+TEST(Diagnostics, CheckOfARunWithImpacts) {
+  int hits = 0;
+  const auto lane = [&] {
+    const auto wall = [&](EventState& at) { ++hits, at.velocity[1] *= -1; };
+    return simulate("chaplygin_sleigh")
+        .start({.velocity = {1.5, 0.5, 0}})
+        .on_event("y=1", wall)
+        .on_event("y=-1", wall)
+        .until(8);
+  };
+  const Result run = lane().step(0.01).with(&Config::check, true).run();
+  EXPECT_GE(hits, 3);
+  const Result exact = lane()
+                           .scheme("dop853")
+                           .tolerance({.relative = 1e-12})
+                           .until(run.last.time)  // whole steps from the last wall on
+                           .run();
+  const double error = euclidean_distance(run.last.coordinates, exact.last.coordinates);
+  EXPECT_NEAR(run.estimated_error / error, 1, 0.3);
+}
+
+/// What takes long is told all along, and can be ended: the finer runs too.
+TEST(Diagnostics, CheckReportsItsProgress) {
+  double last = 0;
+  int late = 0;
+  const auto check = [&](double stop_at) {
+    simulate("suslov")
+        .until(4000)
+        .every(1000)
+        .with(&Config::check, true)
+        .progress([&](double done) {
+          EXPECT_GE(done, last);
+          EXPECT_LE(done, 1);
+          last = done;
+          late += done > 1.0 / 7;
+          if (done > stop_at) throw std::runtime_error("enough");
+        })
+        .run();
+  };
+  check(2);
+  EXPECT_GT(late, 0);
+  last = 0;
+  EXPECT_THROW(check(0.3), std::runtime_error);
+}
+
 /// Three ends that agree on nothing give no number.
 TEST(Diagnostics, CheckSaysWhenItKnowsNothing) {
   const Result run = racing_disk().step(0.01).until(1).with(&Config::check, true).run();

@@ -77,8 +77,7 @@ class Judge {
           r_.exact_error_max, part_of(r_.exact_error_max, size_.extent),
           r_.exact_velocity_error_max);
     }
-    const char* finer = r_.config.chooses_steps() ? "a tenth and a hundredth of the tolerance"
-                                                  : "half and a quarter of the step";
+    const char* finer = finer_runs(r_.config);
     if (std::isfinite(r_.estimated_error)) {
       ok_ = small(r_.estimated_error, size_.extent);
       return fmt::format("By {} its end is off by about **{:.1e}**{}", finer, r_.estimated_error,
@@ -88,7 +87,7 @@ class Judge {
     unknown_ = true;
     std::string out = fmt::format("It {}; **its error is not known**: ",
                                   r_.status.reason.empty() ? "ran to the end" : r_.status.reason);
-    if (r_.config.check) return out + fmt::format("{} do not agree on an order", finer);
+    if (r_.config.check) return out + fmt::format("{} give no estimate", finer);
     if (r_.config.no_exact) out += "the exact motion was left out (`--no-exact`), and ";
     return out + "`--check` estimates it";
   }
