@@ -1,6 +1,7 @@
 #include <hamel/framework/io/output_file.hpp>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -41,14 +42,23 @@ static struct flock whole_file() {
   return out;
 }
 
-FileLock::FileLock(const std::string& path)
-    : file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-  struct flock all = whole_file();
-  if (file_ < 0 || fcntl(file_, F_OFD_SETLK, &all) == 0)
-    return;                                        // (unwritable: said by who writes)
-  if (errno != EAGAIN && errno != EACCES) return;  // a file system without locks
-  close(file_);
-  throw ConfigError({fmt::format("output: another process is writing '{}'", path)});
+// Is the open file still the one of that name? Who had it may have finished it in the meantime.
+static bool same_file(int file, const std::string& path) {
+  struct stat here = {}, there = {};
+  return fstat(file, &here) == 0 && stat(path.c_str(), &there) == 0 && here.st_ino == there.st_ino;
+}
+
+FileLock::FileLock(const std::string& path) {
+  for (;;) {
+    file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    struct flock all = whole_file();
+    if (file_ < 0) return;  // unwritable: said by who writes
+    const bool got = fcntl(file_, F_OFD_SETLK, &all) == 0;
+    const bool held = !got && (errno == EAGAIN || errno == EACCES);
+    if (!held && (!got || same_file(file_, path))) return;  // (or a file system without locks)
+    close(file_);
+    if (held) throw ConfigError({fmt::format("output: another process is writing '{}'", path)});
+  }
 }
 
 FileLock::~FileLock() {

@@ -30,6 +30,7 @@ void read_column(hid_t set, hsize_t first, hsize_t count, hsize_t width, double*
   const hsize_t start[] = {first, 0}, block[] = {count, width};
   const Handle there(H5Dget_space(set), H5Sclose, "H5Dget_space"),
       here(H5Screate_simple(rank, block, nullptr), H5Sclose, "H5Screate_simple");
+  check(H5Sget_simple_extent_ndims(there) == rank ? 0 : -1, "its rank");
   check(H5Sselect_hyperslab(there, H5S_SELECT_SET, start, nullptr, block, nullptr), "H5Sselect");
   check(H5Dread(set, H5T_NATIVE_DOUBLE, here, there, H5P_DEFAULT, out), "H5Dread");
 }

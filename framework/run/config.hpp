@@ -108,7 +108,7 @@ struct Config {
     f(Option{"events", "", "events to locate and record (hamel describe SYSTEM), or COLUMN=VALUE"},
       &Config::events);
     f(Option{"stop_at", "", "the same, where the run ends"}, &Config::stop_at);
-    f(Option{"check", "", "estimate the error: the run again with half the step, and a quarter"},
+    f(Option{"check", "", "estimate the error by two finer runs: half the step, and a quarter"},
       &Config::check);
     f(Option{"force", "", "compose a step that is not reversible all the same"}, &Config::force);
     f(Option{"no_exact", "", "leave out the comparison with the exact motion"}, &Config::no_exact);

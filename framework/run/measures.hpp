@@ -53,7 +53,7 @@ inline constexpr Quantity kReactionWork = {
 
 inline constexpr Quantity kEstimatedError = {"estimated_error", "columns of g",
                                              "distance of the end from the motion, by Richardson "
-                                             "from half and a quarter of the step (check)"};
+                                             "from two finer runs (check)"};
 inline constexpr Quantity kObservedOrder = {"observed_order", "1", "that of these three runs"};
 
 /// How far an invariant of the exact motion moved.

@@ -175,9 +175,12 @@ Simulation::Plan Simulation::plan() const {
                                       static_cast<double>(config_.every);
   const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
   const bool in_memory = records_.empty() && !rows_kept_;
-  const double most = in_memory ? kMaxNumbers : numbers_that_fit(records_);
-  const char* where = in_memory ? "memory holds" : "there is room for on the disk";
-  if (rows < 9e15 && rows * width > most) {
+  const double disk = numbers_that_fit(records_);
+  const double times =
+      config_.output_step ? kMaxNumbers * width : disk;  // of the rows: they are kept
+  const double most = in_memory ? kMaxNumbers : std::min(disk, times);
+  const char* where = in_memory || most < disk ? "memory holds" : "there is room for on the disk";
+  if ((config_.output_step || rows < 9e15) && rows * width > most) {
     const bool resumed = !resumed_.empty();  // as it was run, and no other way
     const char* what = resumed ? "continue" : config_.output_step ? "output_step" : "every";
     std::string mistake =
@@ -206,7 +209,7 @@ Simulation::Plan Simulation::plan() const {
         fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}", end,
                     config_.step, config_.until));
   }
-  if (config_.no_exact) plan.system.exact = nullptr;
+  if (config_.no_exact || !impacts_.empty()) plan.system.exact = nullptr;
   if (config_.from != 0 && plan.system.exact && !plan.mechanics->autonomous()) {
     plan.system.exact = nullptr;
     plan.notes.push_back("the exact motion is known from t = 0 on only: there is no comparison");

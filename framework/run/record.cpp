@@ -173,9 +173,10 @@ Config Config::continued(const std::string& record, const std::string& origin) {
     const Json& last = json.at("final");
     config.start.configuration = last.at("configuration").get<std::vector<double>>();
     config.start.velocity = last.at("velocity").get<std::vector<double>>();
-    const double span = config.until - config.from;
+    const double span = config.until - config.from, first = config.from;
     config.from = json.at("time").get<double>();
     config.until = config.from + span;
+    for (double& time : config.output_times) time = config.from + (time - first);
   } catch (const Json::exception& error) {
     throw ConfigError({fmt::format("{}: not the record of a run (hamel run … -o x.json): {}",
                                    origin, error.what())});

@@ -113,8 +113,10 @@ std::string Result::report() const {
     line("estimated error",
          std::isnan(estimated_error)
              ? fmt::format("unknown by {}", finer_runs(config))
-             : fmt::format("{:.2e} of the configuration at the end, observed order {:.2f}",
-                           estimated_error, observed_order));
+             : fmt::format("{:.2e} of the configuration at the end", estimated_error) +
+                   (std::isnan(observed_order)  // at round-off
+                        ? ""
+                        : fmt::format(", observed order {:.2f}", observed_order)));
   }
   line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
   return out;

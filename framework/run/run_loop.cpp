@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -173,10 +174,14 @@ bool RunLoop::look_at_step() {
   for (Events::Found& event : found_) {
     result_.events.push_back(
         {event.name, event.state.time, event.state.coordinates, event.state.velocity});
-    if (!event.stops && !impact(event)) continue;
+    const std::optional<EventState> after = event.stops ? std::nullopt : impact(event);
+    if (!event.stops && !after) continue;
     if (meter_.wants_nodes()) meter_.node(event.state);
-    if (!output(event.state.time)) return false;
-    if (!event.stops) return true;  // goes on from the state after the impact
+    if (!output(event.state.time)) return false;  // by the steps before the impact
+    if (after) {
+      go_on_from(*after, event.name);
+      return !times_.empty() || !over() || record(node_);
+    }
     result_.stopped_by_event = true;
     result_.status.reason = "stopped at " + event.name;
     result_.last = event.state;
@@ -227,14 +232,19 @@ bool RunLoop::record(const Snapshot& state) {
   return false;
 }
 
-// Did it change the state? The steps go on from there.
-bool RunLoop::impact(const Events::Found& event) {
+// The state behind it, where it is another one.
+std::optional<EventState> RunLoop::impact(const Events::Found& event) {
   const auto it = impacts->find(event.name);
-  if (it == impacts->end()) return false;
+  if (it == impacts->end()) return {};
   EventState state{event.state.time, event.state.coordinates, event.state.velocity};
   it->second(state);
   if (state.coordinates == event.state.coordinates && state.velocity == event.state.velocity)
-    return false;
+    return {};
+  return state;
+}
+
+void RunLoop::go_on_from(const EventState& state, const std::string& event) {
+  ++impacts_met_;
   const Eigen::VectorXd velocity = plan_.admissible(state);
   const double h = kernel_.next_step();
   kernel_.restart(state.time, state.coordinates, velocity, h);
@@ -242,8 +252,7 @@ bool RunLoop::impact(const Events::Found& event) {
   else
     steps_ = static_cast<long>(std::floor((config_.until - state.time) / h * (1 + 1e-12) + 1e-9));
   kernel_.state(node_);
-  plan_.events->resume(node_, event.name);
-  return true;
+  plan_.events->resume(node_, event);
 }
 
 }  // namespace hamel

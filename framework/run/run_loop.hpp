@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <hamel/framework/run/dense_output.hpp>
@@ -27,6 +28,8 @@ class RunLoop {
   const std::map<std::string, Impact>* impacts = nullptr;
 
   void run();
+  /// Events that changed the state.
+  long impacts_met() const { return impacts_met_; }
   /// The run in a file is gone on with.
   void resume(const RunFile& file);
 
@@ -50,7 +53,8 @@ class RunLoop {
   // Rows at the output times up to t.
   bool output(double t);
   bool record(const Snapshot& state);
-  bool impact(const Events::Found& event);
+  std::optional<EventState> impact(const Events::Found& event);
+  void go_on_from(const EventState& state, const std::string& event);
 
   const Config& config_;
   Simulation::Plan& plan_;
@@ -70,7 +74,8 @@ class RunLoop {
   bool resumable_ = false, begun_ = false;
   long rows_ = 0, kept_at_ = 0;  // since the last keep(); its step
   long told_ = 0;                // events that are in the files
-  double before_ = 0;            // seconds of the parts of the run before this one
+  long impacts_met_ = 0;
+  double before_ = 0;  // seconds of the parts of the run before this one
   Clock::time_point begin_;
   Clock::duration comparing_{};  // is no part of the time of a run
 };

@@ -120,13 +120,20 @@ Integration Simulation::build() const {
 
 namespace {
 
-void add_notes(Result& result) {
+void add_notes(Result& result, long impacts) {
   constexpr double far = 0.3;
   if (result.rotation_per_step_max > far && !result.config.chooses_steps()) {
     result.notes.push_back(fmt::format(
         "a step turns by up to {:.2g} rad: more than {} rarely follows the motion, whatever "
         "the diagnostics say; take a smaller step, or check",
         result.rotation_per_step_max, far));
+  }
+  if (impacts > 0) {
+    result.notes.push_back(fmt::format(
+        "{} impact{} changed the state: the energy error is that and the error of the steps; the "
+        "run ends at t = {:.10g}",
+        impacts, impacts > 1 ? "s" : "", result.last.time));
+    return;
   }
   constexpr double percent = 0.01;
   if (!std::isfinite(result.work) && result.energy_error_max > percent) {
@@ -169,7 +176,7 @@ Result Simulation::run() const {
   loop.impacts = &impacts_;
   if (!resumed_.empty()) loop.resume(RunFile(resumed_));
   loop.run();
-  add_notes(result);
+  add_notes(result, loop.impacts_met());
   if (config_.check && result.status.ok) estimate_error(result);
   for (const auto& sink : sinks) sink->finish(result);
   return result;
@@ -180,7 +187,11 @@ Result Simulation::run() const {
 // round-off. Where steps are chosen, the same with a tenth and a hundredth of the tolerance in place of h/2, h/4, and p the
 // power of the tolerance. The ends are at one time, the last of this run, which may be that of an event.
 void Simulation::estimate_error(Result& result) const {
-  if (result.last.time == config_.from) return;
+  const double span = std::abs(result.last.time - config_.from);
+  if (!config_.chooses_steps() && span < std::abs(config_.step)) {
+    result.notes.push_back("check: the run ended within its first step: nothing is known");
+    return;
+  }
   const double factor = finer_by(config_);
   std::vector<double> ends[3] = {result.last.coordinates, {}, {}};
   for (const int k : {1, 2}) {
@@ -211,11 +222,16 @@ void Simulation::estimate_error(Result& result) const {
       const double before = check_work(config_, k), all = check_work(config_, 3);
       if (progress_) progress_((before + done * (check_work(config_, k + 1) - before)) / all);
     });
+    const std::string which = fmt::format("check: the run with 1/{:g} of the {}", parts,
+                                          config.chooses_steps() ? "tolerance" : "step");
+    if (const auto mistakes = finer.mistakes(); !mistakes.empty()) {  // no reason to lose this run
+      result.notes.push_back(fmt::format("{}: {}", which, mistakes.front()));
+      return;
+    }
     const Status status = finer.run().status;
     if (status.ok && !ends[k].empty()) continue;
     result.notes.push_back(
-        fmt::format("check: the run with 1/{:g} of the {} failed at t = {:.6g}: {}", parts,
-                    config_.chooses_steps() ? "tolerance" : "step", status.time, status.reason));
+        fmt::format("{} failed at t = {:.6g}: {}", which, status.time, status.reason));
     return;
   }
   const double first = euclidean_distance(ends[0], ends[1]);

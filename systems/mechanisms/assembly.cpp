@@ -107,7 +107,9 @@ Rows Assembly::rows() {
     if (!edge && !(part.radius > 0 && std::isfinite(part.radius)))
       wrong(part, part.kind,
             fmt::format("radius: got {}, expected a positive number", part.radius));
-    if (part.body == kWorld) wrong(part, part.kind, "body: expected a body, not the ground");
+    if (contact.link == mechanisms::kGround && body_links_.contains(part.body))
+      wrong(part, part.kind,
+            "body: expected a body that moves, not the ground or what is welded to it");
     out.contacts.push_back(std::move(contact));
   }
   for (const auto& part : parts_.loops_) {

@@ -232,7 +232,16 @@ void Assembly::check_motions(const Multibody& system, const std::vector<Said>& r
   Eigen::VectorXd b(k);
   system.inertia(g.data(), inertia);
   system.constraints(0, g.data(), a, b);
-  if (k > 0) free = Eigen::FullPivLU<Eigen::MatrixXd>(a).kernel();
+  // Each velocity in units of its own inertia: that of a needle on a ship is not none.
+  const Eigen::VectorXd own = inertia.diagonal();
+  const double none = 1e-14 * own.maxCoeff();
+  const Eigen::VectorXd unit =
+      own.unaryExpr([&](double i) { return 1 / std::sqrt(i > 0 ? i : none); });
+  if (k > 0) {
+    a = a * unit.asDiagonal();
+    a.rowwise().normalize();
+    free = Eigen::FullPivLU<Eigen::MatrixXd>(a).kernel();
+  }
   if (free.isZero(0)) {
     const Said& last = rows[static_cast<size_t>(system.kept().back())];
     mistakes_.push_back(
@@ -240,7 +249,10 @@ void Assembly::check_motions(const Multibody& system, const std::vector<Said>& r
                     last.where, last.what, k, n));
     return;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(free.transpose() * inertia * free);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> orthonormal(free);
+  free = orthonormal.householderQ() * Eigen::MatrixXd::Identity(n, free.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(free.transpose() * unit.asDiagonal() *
+                                                              inertia * unit.asDiagonal() * free);
   if (solver.eigenvalues()[0] > 1e-14 * solver.eigenvalues().maxCoeff()) return;
   const Eigen::VectorXd idle = free * solver.eigenvectors().col(0);
   std::string list;

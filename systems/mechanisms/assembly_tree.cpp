@@ -1,6 +1,7 @@
 // Assembly: bodies and joints, the tree.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -117,6 +118,14 @@ void Assembly::link_bodies() {
           fmt::format("{} go round in a circle that does not reach the ground; hang one of the "
                       "bodies on it, and make one of the joints a loop",
                       circle));
+  }
+  std::set<std::string> taken;
+  for (size_t j = 0; j < links_.size(); ++j) {
+    if (!taken.insert(link_names_[j]).second)
+      wrong(*link_joints_[j], "joint",
+            fmt::format("'{}' is the name of two hinges; those of a universal joint are 1 and 2 "
+                        "behind its name",
+                        link_names_[j]));
   }
   stop_at_mistakes();
 }

@@ -182,6 +182,8 @@ void FileParts::surroundings() {
   });
   stated("slope", [&](const Node& node) {
     const double slope = read_.number(node, "slope"), g = gravity[2];
+    if (gravity[0] != 0 || gravity[1] != 0)
+      return read_.toml.wrong(node, "slope", "gravity as a number beside it");
     gravity = {-g * std::sin(slope), 0, g * std::cos(slope)};
   });
   m_.gravity(gravity);

@@ -187,10 +187,16 @@ void Multibody::look_for_constants(const std::vector<std::vector<double>>& poses
   const int n = dim(), k = rows();
   Eigen::MatrixXd inertia(n, n), a(k, n), first_a(k, n);
   Eigen::VectorXd b(k), slope(n);
-  bool same_inertia = true, level = true;
+  // (A stiffness is there to act: only weight is looked at.)
+  bool same_inertia = true, level = std::ranges::all_of(forces_.springs, [](const Spring&spring) {
+                              return spring.stiffness == 0;
+                            });
   std::vector<bool> same_row(static_cast<size_t>(k), !rows_.ground.moves());
   inertia_.resize(n, n);
   carrying(poses.front().data()).inertia(inertia_);
+  // Round-off of each velocity is that of what it moves: a needle on a ship has its own.
+  const Eigen::VectorXd own = inertia_.diagonal().cwiseMax(0).cwiseSqrt();
+  const double near = 1e-13, weight = forces_.gravity.norm() * own.maxCoeff();
   constraints(0, poses.front().data(), first_a, b);
   for (const auto& pose : poses) {
     const Tree& at = carrying(pose.data());
@@ -198,13 +204,14 @@ void Multibody::look_for_constants(const std::vector<std::vector<double>>& poses
     constraints(0, pose.data(), a, b);
     slope.setZero();
     forces_.add_potential_force(at, pose.data(), slope);
-    const double size = inertia_.lpNorm<Eigen::Infinity>();
-    same_inertia = same_inertia && (inertia - inertia_).lpNorm<Eigen::Infinity>() <= 1e-13 * size;
+    same_inertia =
+        same_inertia &&
+        ((inertia - inertia_).array().abs() <= near * (own * own.transpose()).array()).all();
     for (int i = 0; i < k; ++i) {
-      if (!((a.row(i) - first_a.row(i)).lpNorm<Eigen::Infinity>() <= 1e-13))
+      if (!((a.row(i) - first_a.row(i)).lpNorm<Eigen::Infinity>() <= near))
         same_row[static_cast<size_t>(i)] = false;
     }
-    level = level && slope.lpNorm<Eigen::Infinity>() <= 1e-13 * size;
+    level = level && (slope.array().abs() <= near * weight * own.array()).all();
   }
   constant_inertia_ = same_inertia;
   constant_potential_ = level;

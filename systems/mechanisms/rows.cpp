@@ -1,5 +1,6 @@
 #include <hamel/systems/mechanisms/rows.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hamel::mechanisms {
@@ -75,7 +76,11 @@ std::vector<RowWords> Rows::words() const {
       add(loop.name, i, "the axes of the joint coincide", true);
     }
   }
-  for (const Prescribed& p : prescribed) add(p.name, 1, "moves as prescribed", false);
+  for (const Prescribed& p : prescribed) {  // whose name may be that of a contact, too
+    const auto same = [&](const RowWords& row) { return row.part == p.name; };
+    add(p.name, 1 + static_cast<int>(std::ranges::count_if(out, same)), "moves as prescribed",
+        false);
+  }
   return out;
 }
 

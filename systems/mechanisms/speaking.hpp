@@ -73,9 +73,12 @@ class Speaking final : public Multibody, public Worded {
         beyond.push_back(at_start_.rows[static_cast<size_t>(other)].what);
       const Said& said = at_start_.rows[static_cast<size_t>(row)];
       out.push_back(
-          fmt::format("{}{} says nothing beyond {} at the start; start elsewhere, or take "
-                      "a part with fewer rows (a roller for a wheel)",
-                      said.where, said.what, join(beyond)));
+          beyond.empty()
+              ? fmt::format("{}{} says nothing at the start; start elsewhere, or leave it out",
+                            said.where, said.what)
+              : fmt::format("{}{} says nothing beyond {} at the start; start elsewhere, or take "
+                            "a part with fewer rows (a roller for a wheel)",
+                            said.where, said.what, join(beyond)));
     }
     return out;
   }

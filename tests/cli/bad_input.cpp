@@ -40,6 +40,11 @@ TEST_F(BadInput, Numbers) {
   refused({"suslov", "--step"}, "--step");
 }
 
+TEST_F(BadInput, MoreTimesThanMemoryHolds) {
+  for (const char* step : {"1e-9", "1e-12", "1e-300"})
+    refused({"suslov", "--until", "1", "--output-step", step}, "more than memory holds");
+}
+
 TEST_F(BadInput, Names) {
   refused({"suslow"}, "did you mean 'suslov'?");
   refused({"suslov", "--scheme", "lfit"}, "did you mean 'lift'?");

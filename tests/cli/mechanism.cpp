@@ -237,6 +237,9 @@ TEST_F(MechanismFile, SteadySaysWhatItCannotDo) {
   EXPECT_THAT(run({"steady", "segway", "--speed", "1", "--vary", "hight=1:2:3"}).err,
               HasSubstr("did you mean 'height'?"));
   EXPECT_THAT(run({"steady", "snakeboard"}).err, HasSubstr("depends on time"));
+  const Outcome page = run({"steady", "segway", "--report", "a.html"});  // before anything is found
+  EXPECT_THAT(page.err, HasSubstr("give --vary"));
+  EXPECT_EQ(page.out, "");
   EXPECT_EQ(run({"steady", "snakeboard"}).status, 2);
 }
 

@@ -130,6 +130,10 @@ TEST_F(MechanismMistakes, InContactsAndLoops) {
            "[[blade]]\nname = \"right\"\nbody = \"a\"\nat = [0, -1, 0]\n",
        "13:1: redundant row: blade 'right' (does not slip across its edge) says nothing beyond "
        "blade 'left' (does not slip across its edge); take a part with fewer rows"},
+      {kFlat + "[[body]]\nname = \"post\"\n[[joint]]\nkind = \"weld\"\nchild = \"post\"\n" +
+           "[[wheel]]\nbody = \"post\"\nat = [0, 0, 0.3]\nradius = 0.3\n",
+       "14:1: wheel 'post': body: expected a body that moves, not the ground or what is welded to "
+       "it"},
       {"redundant = \"dropp\"\n" + kFlat, "1:13: unknown redundant 'dropp': expected one of"},
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"crank\"\nat = [1, 0, 1]\n" +
            "[[loop]]\nname = \"end\"\na = \"rod\"\nb = \"rodd\"\n",
@@ -223,6 +227,13 @@ TEST_F(MechanismMistakes, InNamesAndNumbers) {
   refuses({
       {body("box = [1, -1, 1]"), "1:1: body 'a': box: got 1,-1,1, expected at least 0"},
       {body("cylinder = [-0.1, 1]"), "1:1: body 'a': cylinder: got -0.1,1, expected at least 0"},
+      {"gravity = [0, -9.81, 0]\nslope = 0.1\n" + kFlat,
+       "2:9: slope: expected gravity as a number beside it"},
+      {kFlat + "[[body]]\nname = \"b\"\nmass = 1\nsphere = 1\n[[joint]]\nname = \"u\"\n" +
+           "kind = \"universal\"\nparent = \"a\"\nchild = \"b\"\naxis2 = [1, 0, 0]\n" +
+           "[[body]]\nname = \"c\"\nmass = 1\nsphere = 1\n[[joint]]\nname = \"u1\"\n" +
+           "kind = \"hinge\"\nparent = \"b\"\nchild = \"c\"\n",
+       "23:1: joint 'u1': 'u1' is the name of two hinges"},
       {body("sphere = -1"), "1:1: body 'a': sphere: got -1, expected at least 0"},
       {arm + "[[motor]]\njoint = \"arm\"\neffort = 1\nleast = -1\n",
        "22:9: least: expected none beside a formula"},

@@ -186,4 +186,44 @@ joint = "fan"
   EXPECT_THAT(steady("3", "\"0.1*t\"").err, HasSubstr("depends on time"));
 }
 
+/// A wheel whose joint is prescribed: the contact and the joint have the name of the body, their reactions do not.
+TEST_F(MechanismRuns, EveryReactionHasItsOwnName) {
+  std::ofstream(file("cart.toml")) << R"(
+[[body]]
+name = "cart"
+mass = 1
+at = [0, 0, 0.1]
+inertia = [0.1, 0.1, 0.1]
+[[joint]]
+kind = "planar"
+child = "cart"
+[[body]]
+name = "wheel"
+mass = 1
+at = [0, 0, 0.1]
+cylinder = [0.1, 0.02]
+axis = [0, 1, 0]
+[[joint]]
+kind = "hinge"
+parent = "cart"
+child = "wheel"
+at = [0, 0, 0.1]
+axis = [0, 1, 0]
+[[wheel]]
+body = "wheel"
+at = [0, 0, 0.1]
+radius = 0.1
+[[prescribed]]
+joint = "wheel"
+rate = "1 + 0.5*sin(t)"
+)";
+  ASSERT_EQ(run({"run", "cart.toml", "--until", "0.1", "--quiet", "-o", "a.csv"}).status, 0);
+  const std::string head = lines(contents(file("a.csv"))).front();
+  for (const char* number : {"1", "2", "3"}) {
+    const std::string name = std::string(",wheel.reaction") + number;
+    EXPECT_NE(head.find(name), std::string::npos) << head;
+    EXPECT_EQ(head.find(name), head.rfind(name)) << head;
+  }
+}
+
 }  // namespace

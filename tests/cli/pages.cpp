@@ -1,4 +1,8 @@
 // What the pages of runs, comparisons, sweeps and studies say, as the program writes them.
+#include <algorithm>
+#include <functional>
+#include <set>
+
 #include <fmt/format.h>
 
 #include "program.hpp"
@@ -39,6 +43,28 @@ TEST_F(Pages, OkMeansRight) {
   // Its estimate is small: it converges, to another motion.
   EXPECT_EQ(verdict({"chaplygin_sleigh", "--scheme", "unadapted", "--check", "--no-exact"}).first,
             "note");
+}
+
+// Backwards, far from t = 0, and ended right behind a node: the times of a page are all there, and rise in its motion.
+TEST_F(Pages, TimesOfTheirOwn) {
+  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"chaplygin_sleigh", "--step", "-0.01", "--until", "-5"},
+        {"chaplygin_sleigh", "--from", "1e6", "--until", "1000001"},
+        {"chaplygin_sleigh", "--stop-at", "theta=1.7753262"}}) {
+    const json page = page_of(words);
+    for (const json& section : page["sections"]) {
+      for (const json& block : section["blocks"]) {
+        if (block["kind"] == "animation") {
+          const auto times = block["times"].get<std::vector<double>>();
+          EXPECT_TRUE(std::ranges::is_sorted(times, std::less_equal<>())) << words.back();
+        }
+        if (block["kind"] != "plot" || block["x"] != "time t [s]") continue;
+        const auto x = block["series"][0]["x"].get<std::vector<double>>();
+        EXPECT_GT(std::set<double>(x.begin(), x.end()).size(), x.size() * 9 / 10) << block["title"];
+      }
+    }
+  }
 }
 
 // The estimate is told by what it was made of.

@@ -203,6 +203,9 @@ TEST_F(Words, ARunGoesOnWhereARecordEnds) {
   const Json other = record({"--continue", "first.json", "--until", "1.5", "--scheme", "balance"});
   EXPECT_EQ(other["time"], 1.5);
   EXPECT_EQ(other["scheme"], "balance");
+  record({"suslov", "--until", "1", "--output-times", "0,0.5,1", "-o", "first.json"});
+  const Json times = record({"--continue", "first.json"})["output_times"];
+  EXPECT_EQ(times, Json({1.0, 1.5, 2.0}));
   write("no.json", "{}");
   EXPECT_THAT(run({"run", "--continue", "no.json"}).err, HasSubstr("not the record of a run"));
   EXPECT_THAT(run({"run", "suslov", "--from", "1", "--until", "0.5"}).err,

@@ -94,6 +94,23 @@ TEST(Diagnostics, CheckOfARunThatStopsAtAnEvent) {
               lift.estimated_error, 1e-15);
 }
 
+/// A run is not lost by the runs that would check it.
+TEST(Diagnostics, CheckOfARunThatEndsAtOnce) {
+  const Result run =
+      simulate("chaplygin_sleigh").stop_at({"x=-0.001"}).until(20).with(&Config::check, true).run();
+  EXPECT_TRUE(run.stopped_by_event);
+  EXPECT_TRUE(std::isnan(run.estimated_error));
+  EXPECT_THAT(run.notes, Contains(HasSubstr("ended within its first step")));
+  EXPECT_THAT(simulate("suslov")
+                  .scheme("dopri5")
+                  .tolerance({.relative = 1e-14})
+                  .until(5)
+                  .with(&Config::check, true)
+                  .run()
+                  .report(),
+              Not(HasSubstr("order nan")));
+}
+
 /// The finer runs meet the walls as well.
 TEST(Diagnostics, CheckOfARunWithImpacts) {
   int hits = 0;

@@ -119,6 +119,30 @@ TEST(Events, LetTheCallerChangeTheState) {
   EXPECT_DOUBLE_EQ(r.last.time, 6);
 }
 
+// A ball that falls under g and comes back from the floor x2 = 0: rows within the step of an impact are of the motion before it,
+// the last state is a row, and there is no comparison with the motion that knows no floor.
+TEST(Events, RowsAroundAnImpact) {
+  const auto bounce = [] {
+    return simulate("nonholonomic_particle")
+        .start({.configuration = {0, 0.5, 0}, .velocity = {0, -0.25, 0}})
+        .step(0.3)
+        .on_event("x2=0", [](EventState& state) { state.velocity[1] *= -0.5; });
+  };
+  const Result rows = bounce().output(0.1).until(3).run();
+  ASSERT_TRUE(rows);
+  const std::vector<double> t = rows.trajectory.column("t"), x2 = rows.trajectory.column("x2");
+  for (size_t i = 0; i < t.size(); ++i)
+    EXPECT_NEAR(x2[i], t[i] < 2 ? 0.5 - 0.25 * t[i] : 0.125 * (t[i] - 2), 1e-12) << t[i];
+  const Result last = bounce().until(2.1).run();  // a whole step does not follow
+  ASSERT_TRUE(last);
+  EXPECT_DOUBLE_EQ(last.trajectory.column("t").back(), last.last.time);
+  EXPECT_NEAR(last.last.time, 2, 1e-9);
+  EXPECT_NEAR(last.last.velocity[1], 0.125, 1e-12);
+  EXPECT_TRUE(std::isnan(last.exact_error_max));
+  EXPECT_THAT(last.notes, testing::Contains(testing::HasSubstr("1 impact changed the state")));
+  EXPECT_THAT(last.notes, Not(testing::Contains(testing::HasSubstr("nothing does work"))));
+}
+
 TEST(Output, IsAtTheTimesAskedForWithEveryScheme) {
   const std::vector<double> times = {0, 0.013, 0.5, 0.9999, 1};
   for (const std::string& scheme : registry().schemes()) {

@@ -245,5 +245,32 @@ TEST(MechanismMotions, RollerWalkerIsSingularOnlyAsDrawn) {
     EXPECT_NEAR(mine.trajectory.column(row).back(), hers.trajectory.column(row).back(), 1e-7);
 }
 
+/// A needle on a ship, 5e13 times as heavy: what holds and drives the small one is no round-off of the large one.
+TEST(Mechanisms, LightPartsOnHeavyOnes) {
+  const double inertia = 1e-6, stiffness = 1e-6, angle = 0.5;
+  const auto ship = [](bool upright) {
+    Mechanism m("ship");
+    m.gravity(upright ? kGravity : 0.0);
+    m.body("ship", {.mass = 1e6, .inertia = {5e7, 5e7, 5e7}});
+    m.planar("sea", "ship");
+    return m;
+  };
+  Mechanism compass = ship(false);
+  compass.body("needle", {.mass = 1e-3, .inertia = {inertia, inertia, inertia}});
+  compass.hinge("needle", "ship", "needle", {.stiffness = stiffness});
+  compass.start({{"needle.angle", angle}});
+  const Result turned = simulate(compass).scheme("dop853").tolerance({1e-10}).until(3).run();
+  ASSERT_TRUE(turned) << turned.status.reason;
+  EXPECT_NEAR(turned.trajectory.column("needle.angle").back(), angle * std::cos(3.0), 1e-9);
+  Mechanism clock = ship(true);
+  clock.body("bob", {.mass = 1e-3, .at = {0, 0, 1}, .inertia = {1e-9, 1e-9, 1e-9}});
+  clock.hinge("pivot", "ship", "bob", {.at = {0, 0, 2}, .axis = {0, 1, 0}});
+  clock.start({{"pivot.angle", 1e-3}});
+  const Result swung = simulate(clock).scheme("dop853").tolerance({1e-10}).until(1).run();
+  ASSERT_TRUE(swung) << swung.status.reason;
+  EXPECT_NEAR(swung.trajectory.column("pivot.angle").back(), 1e-3 * std::cos(std::sqrt(kGravity)),
+              1e-9);
+}
+
 }  // namespace
 }  // namespace hamel

@@ -20,22 +20,39 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Six digits are more than a plot shows, and keep the page small.
-Json number(double value) {
+constexpr int kDigits = 6, kTimeDigits = 15;
+
+Json number(double value, int digits = kDigits) {
   if (!std::isfinite(value)) return nullptr;
-  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+  return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
 }
 
-Json numbers(std::span<const double> values) {
+Json numbers(std::span<const double> values, int digits = kDigits) {
   Json out = Json::array();
-  for (double v : values) out.push_back(number(v));
+  for (double v : values) out.push_back(number(v, digits));
   return out;
 }
+
+// As many digits of their range: a run from t = 10000 on has times of its own. Less than round-off shows.
+int digits_of(std::span<const double> values) {
+  double least = INFINITY, most = -INFINITY;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    least = std::min(least, v);
+    most = std::max(most, v);
+  }
+  if (!(least < most)) return kDigits;
+  const double size = std::max(std::abs(least), std::abs(most));
+  return kDigits + static_cast<int>(std::clamp(std::log10(size / (most - least)) + 1, 0.0, 6.0));
+}
+
+Json coordinates(std::span<const double> values) { return numbers(values, digits_of(values)); }
 
 Json curves(const std::vector<Series>& series) {
   Json out = Json::array();
   for (const Series& s : series) {
-    Json& curve = out.emplace_back(
-        Json{{"name", s.name}, {"x", numbers(s.x)}, {"y", numbers(s.y)}, {"dashed", s.dashed}});
+    Json& curve = out.emplace_back(Json{
+        {"name", s.name}, {"x", coordinates(s.x)}, {"y", coordinates(s.y)}, {"dashed", s.dashed}});
     if (s.markers) curve["markers"] = true;
     if (s.dots) curve["dots"] = true;
     if (s.fit) curve["fit"] = {{"slope", number(s.fit->slope)}, {"text", s.fit->text}};
@@ -144,7 +161,7 @@ void Page::plot(const std::string& title, const Axes& axes, const std::vector<Se
   if (axes.floor > 0) block["floor"] = number(axes.floor);
   if (!axes.slopes.empty()) block["slopes"] = axes.slopes;
   for (const Mark& mark : axes.marks)
-    block["marks"].push_back({{"x", number(mark.x)}, {"text", mark.text}});
+    block["marks"].push_back({{"x", number(mark.x, kTimeDigits)}, {"text", mark.text}});
   data_->blocks().push_back(std::move(block));
 }
 void Page::path(const std::string& title, const Axes& axes, const std::vector<Series>& series) {
@@ -188,7 +205,7 @@ void Page::animation(const Animation& animation) {
   data_->blocks().push_back({{"kind", "animation"},
                              {"title", animation.title},
                              {"view", animation.from_above ? "top" : "3d"},
-                             {"times", numbers(animation.times)},
+                             {"times", numbers(animation.times, kTimeDigits)},
                              {"floor", animation.floor},
                              {"bodies", bodies},
                              {"note", animation.note}});

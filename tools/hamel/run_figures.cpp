@@ -105,7 +105,9 @@ std::optional<Animation> animation_of(const Result& result) {
   out.title = "Motion";
   out.from_above = drawing.from_above;
   out.floor = drawing.has_floor;
-  const std::vector<size_t> rows = thin_rows(result, 900);
+  std::vector<size_t> rows = thin_rows(result, 900);
+  const auto time = [&](size_t i) { return result.trajectory.at(i, 0); };
+  if (!rows.empty() && time(rows.back()) < time(rows.front())) std::ranges::reverse(rows);
   for (size_t i : rows) out.times.push_back(result.trajectory.at(i, 0));
   for (const DrawnBody& drawn : drawing.bodies) {
     MovingBody body{drawn.name, {}, drawn.shapes, drawn.has_trail, drawn.trail_point};

@@ -10,6 +10,7 @@
 #include <hamel/systems/simulate.hpp>
 
 #include "page.hpp"
+#include "run_page.hpp"
 #include "steady.hpp"
 
 namespace hamel::tools {
@@ -156,6 +157,12 @@ void add_plots(Page& page, const Vary& vary, const SystemModel& system, const St
 int steady(const SteadyOptions& options) {
   std::optional<Vary> vary;
   if (!options.vary.empty()) vary.emplace(options.vary);
+  if (!options.report.empty()) {
+    if (!vary)
+      throw ConfigError({"--report: the page shows eigenvalues along a parameter; give --vary"});
+    if (const auto mistakes = page_mistakes(options.report); !mistakes.empty())
+      throw ConfigError(mistakes);
+  }
   const bool by_speed = vary && vary->name == "speed";
   const Simulation first = at(options, by_speed ? "speed" : "", by_speed ? vary->values[0] : 0);
   const Integration built = first.build();
@@ -194,8 +201,6 @@ int steady(const SteadyOptions& options) {
     if (vary) print(*vary, sweep);
   }
   if (!options.report.empty()) {
-    if (!vary)
-      throw ConfigError({"--report: the page shows eigenvalues along a parameter; give --vary"});
     Page page(fmt::format("{}: steady motions", system.name), "eigenvalues along " + vary->name);
     page.section("Stability");
     add_plots(page, *vary, system, sweep);
