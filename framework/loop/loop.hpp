@@ -250,7 +250,10 @@ class Loop final : public TimeLoop {
     } else {
       report = unknown_.solve(step_, *now_, h, stage.memory);
     }
-    if (report.ok() && !step_.finish(unknown_.x, *next_)) report.reason = why_not_finished();
+    if (report.ok()) {
+      if (!step_.finish(unknown_.x, *next_)) report.reason = why_not_finished();
+      else if (!std::isfinite(next_->x.sum())) report.reason = Reason::not_finite;  // a force there
+    }
     if constexpr (kEstimates) {
       if (errors_ && report.ok()) {
         error_ = step_.error(*next_, setup_.relative, setup_.absolute);
@@ -275,6 +278,7 @@ class Loop final : public TimeLoop {
 
   [[gnu::cold]] Reason why_not_finished() const {
     if constexpr (requires { step_.lost_constraints(); }) {
+      if (!next_->x.allFinite()) return Reason::not_finite;
       if (step_.lost_constraints()) return Reason::lost_constraints;
     }
     return Reason::outside_domain;

@@ -42,20 +42,31 @@ class PrincipalRoot {
   }
 
  private:
+  // A step from rest is so small on the path that the round-off of its rows (of lengths) is above the tolerance, which is
+  // relative to its size: the path needs no more than to be told from others.
+  static bool near(const SolveReport& report) {
+    return report.ok() || (report.reason == Reason::stagnated && report.residual <= 1e-5);
+  }
   // To end_: the solution for lambda h at lambda = 1, by steps that move it by 3 percent at most; NaN where the path
   // ends before. It starts where there is one root, which is not always next to the scheme's guess.
   void follow(const StepOnPath<Unknown>& step, double h, double size, double tolerance) {
-    constexpr double start = 1e-3, lost = std::numeric_limits<double>::quiet_NaN();
-    step.begin(start * h);
-    step.guess(end_);
-    memory_.valid = false;
-    if (!Newton::solve(step.equation, end_, tolerance, memory_).ok()) end_.setConstant(lost);
-    for (double at = start, length = 0.1; at < 1 && end_.allFinite();) {
+    constexpr double lost = std::numeric_limits<double>::quiet_NaN();
+    double at = 1e-3;
+    for (;; at *= 10) {
+      step.begin(at * h);
+      step.guess(end_);
+      memory_.valid = false;
+      const SolveReport report = Newton::solve(step.equation, end_, tolerance, memory_);
+      if (near(report)) break;
+      if (report.reason != Reason::stagnated || at > 0.05) end_.setConstant(lost);
+      if (!end_.allFinite()) break;
+    }
+    for (double length = 0.1; at < 1 && end_.allFinite();) {
       const double next = std::min(at + length, 1.0);
       step.begin(next * h);
       trial_ = end_;
       const SolveReport report = Newton::solve(step.equation, trial_, tolerance, memory_);
-      if (report.ok() && (trial_ - end_).squaredNorm() <= 1e-3 * size) {
+      if (near(report) && (trial_ - end_).squaredNorm() <= 1e-3 * size) {
         end_ = trial_;
         at = next;
         length *= 1.5;

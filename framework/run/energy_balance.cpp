@@ -36,7 +36,7 @@ double EnergyBalance::power(const Snapshot& state) {
 
 void EnergyBalance::node(const Snapshot& state) {
   if (inputs_ != nullptr) {
-    if (inputs_->changes() != changes_ && started_) break_off();
+    if (inputs_->changes() != changes_ && started_) break_off(last_);
     changes_ = inputs_->changes();
     last_ = state;
   }
@@ -64,11 +64,18 @@ void EnergyBalance::settle() {
   waiting_.clear();
 }
 
-void EnergyBalance::break_off() {
+void EnergyBalance::break_off(const Snapshot& at) {
   settle();
-  done_ += work_.value(last_.time);
+  done_ += work_.value(at.time);
   work_ = NodalQuadrature();
-  work_.add(last_.time, power(last_));
+  work_.add(at.time, power(at));
+}
+
+void EnergyBalance::impact(const Snapshot& before, const Snapshot& after) {
+  break_off(after);
+  last_ = after;
+  energy_start_ += after.energy - before.energy;
+  raise(energy_max_, after.energy);
 }
 
 void EnergyBalance::settled(std::vector<BalancedState>& out) {

@@ -26,6 +26,9 @@ class EnergyBalance {
   /// A recorded state, between the last two nodes or one of them.
   void row(const Snapshot& state);
 
+  /// An event changed the state at the last node: its energy is followed from there on.
+  void impact(const Snapshot& before, const Snapshot& after);
+
   /// Those of the recorded states that are known by now and were not taken before, in their order: one waits for the
   /// first nodes of the quadrature.
   void settled(std::vector<BalancedState>& out);
@@ -57,8 +60,8 @@ class EnergyBalance {
   bool active_;
   // The work at the recorded states that wait.
   void settle();
-  // The quadrature begins anew at the last node: an input jumps or has a kink there, and so has the power.
-  void break_off();
+  // The quadrature begins anew at a node: an input jumps or has a kink there, and so has the power, or the state does.
+  void break_off(const Snapshot& at);
 
   std::shared_ptr<const Inputs> inputs_;
   long changes_ = 0;      // of the inputs, seen

@@ -98,12 +98,29 @@ void Meter::add(Group&& group, std::span<const double> values) {
   rows_.insert(rows_.end(), values.begin(), values.end());
 }
 
-void Meter::take(const Snapshot& state) {
-  if (first_) {
-    energy_start_ = state.energy;
-    time_start_ = state.time;
-    start_configuration_ = state.coordinates;
+void Meter::begin(const Snapshot& start) {
+  energy_start_ = start.energy;
+  time_start_ = start.time;
+  start_configuration_ = start.coordinates;
+  for (const Invariant& invariant : system_.invariants) {
+    all_.invariants.push_back(
+        {invariant.name, invariant.value(start.coordinates, start.velocity), 0});
   }
+  if (motion_ != nullptr) react(start, true);
+}
+
+void Meter::impact(const Snapshot& before, const Snapshot& after) {
+  energy_start_ += after.energy - before.energy;
+  for (size_t i = 0; i < system_.invariants.size(); ++i) {
+    const auto& value = system_.invariants[i].value;
+    all_.invariants[i].start +=
+        value(after.coordinates, after.velocity) - value(before.coordinates, before.velocity);
+  }
+  if (balance_.active()) balance_.impact(before, after);
+}
+
+void Meter::take(const Snapshot& state) {
+  last_row_ = state.time;
   const double error = all_.take(state, energy_start_);
   add(kTime, state.time);
   add([&] { return element_columns(system_.group); }, state.coordinates);
@@ -123,24 +140,15 @@ void Meter::compare(const Snapshot& state) {
     balance_.row(state);
     add(kWork, 0);  // until it is settled
   }
-  if (motion_ != nullptr) react(state);
-  for (size_t i = 0; i < system_.invariants.size(); ++i) {
-    const Invariant& invariant = system_.invariants[i];
-    const double value = invariant.value(state.coordinates, state.velocity);
-    if (first_) all_.invariants.push_back({invariant.name, value, 0});
-    else raise(all_.invariants[i].drift_max, value - all_.invariants[i].start);
+  if (motion_ != nullptr) {
+    react(state);
+    add_reactions();
   }
+  look_at_invariants(state);
   if (system_.exact) {
-    if (first_) exact_ = exact_from_start();
-    const auto [element, velocity] = exact_(state.time - time_start_);
-    const auto [error, velocity_error] = all_.compare(state, element, velocity);
+    const auto [error, velocity_error] = look_at_exact(state);
     add(kExactError, error);
     add(kExactVelocityError, velocity_error);
-    if (!exact_lost_ && !std::isfinite(error) && std::isfinite(state.energy)) {
-      exact_lost_ = true;
-      notes_.push_back(fmt::format(
-          "the exact motion was not followed to t = {:.6g}: it turns too fast", state.time));
-    }
   }
   if (first_) {
     width_ = rows_.size();
@@ -155,7 +163,26 @@ void Meter::compare(const Snapshot& state) {
   settle();
 }
 
-// Completes rows whose work is known.
+void Meter::look_at_invariants(const Snapshot& state) {
+  for (size_t i = 0; i < system_.invariants.size(); ++i) {
+    const double value = system_.invariants[i].value(state.coordinates, state.velocity);
+    raise(all_.invariants[i].drift_max, value - all_.invariants[i].start);
+  }
+}
+
+std::pair<double, double> Meter::look_at_exact(const Snapshot& state) {
+  if (!exact_) exact_ = exact_from_start();
+  const auto [element, velocity] = exact_(state.time - time_start_);
+  const auto errors = all_.compare(state, element, velocity);
+  if (!exact_lost_ && !std::isfinite(errors.first) && std::isfinite(state.energy)) {
+    exact_lost_ = true;
+    notes_.push_back(fmt::format(
+        "the exact motion was not followed to t = {:.6g}: it turns too fast", state.time));
+  }
+  return errors;
+}
+
+// Completes rows whose work is known; the end of a run may be none.
 void Meter::settle() {
   if (!balance_.active()) {
     complete_ = rows_.size() / width_;
@@ -163,6 +190,7 @@ void Meter::settle() {
   }
   balance_.settled(settled_);
   for (const BalancedState& state : settled_) {
+    if (complete_ * width_ == rows_.size()) break;
     double* row = rows_.data() + width_ * complete_++;
     row[energy_error_] = state.defect / state.scale;
     row[work_] = state.work;
@@ -184,20 +212,22 @@ ExactFlow Meter::exact_from_start() const {
   return system_.exact({.configuration = start_configuration_, .velocity = start_.velocity});
 }
 
-void Meter::react(const Snapshot& state) {
+// The start is the first state, and may be a row as well.
+void Meter::react(const Snapshot& state, bool start) {
+  if (!start && state.time == time_) return;
   geometry_->from_coordinates(state.coordinates, g_.data());
   xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
                                           static_cast<Eigen::Index>(state.velocity.size()));
   motion_->solve(state.time, g_, xi_);
   const Eigen::VectorXd& now = motion_->reaction();
-  const double part = first_ ? 0 : state.lag / (state.time - time_);
+  const double part = start ? 0 : state.lag / (state.time - time_);
   double power = 0;
   for (Eigen::Index j = 0; j < now.size(); ++j) {
-    const double there = first_ ? now[j] : now[j] - part * (now[j] - lambda_[j]);
+    const double there = start ? now[j] : now[j] - part * (now[j] - lambda_[j]);
     power += there * state.row_rates[static_cast<size_t>(j)];
   }
-  const double at = first_ ? state.time : state.time - state.lag;
-  if (!first_) all_.reaction_work += (power_ + power) / 2 * (at - power_time_);
+  const double at = start ? state.time : state.time - state.lag;
+  if (!start) all_.reaction_work += (power_ + power) / 2 * (at - power_time_);
   lambda_ = now;
   time_ = state.time;
   power_ = power;
@@ -214,6 +244,9 @@ void Meter::react(const Snapshot& state) {
                         ? fmt::format("lambda{}", row + 1)
                         : words_of(system_).reactions[static_cast<size_t>(row)]));
   }
+}
+
+void Meter::add_reactions() {
   std::vector<double> lambda;
   for (const size_t row : reactions_) lambda.push_back(lambda_[static_cast<Eigen::Index>(row)]);
   const auto describe = [&] {
@@ -231,10 +264,17 @@ void Meter::react(const Snapshot& state) {
     return out;
   };
   add(describe, lambda);
-  add(kReactionPower, power);
+  add(kReactionPower, power_);
 }
 
-void Meter::finish() {
+void Meter::finish(const Snapshot& last) {
+  if (last.time != last_row_) {
+    all_.take(last, energy_start_);
+    if (balance_.active()) balance_.row(last);
+    if (motion_ != nullptr) react(last);
+    look_at_invariants(last);
+    if (system_.exact) look_at_exact(last);
+  }
   if (motion_ != nullptr) all_.reaction_work += power_ * (time_ - power_time_);
   if (!balance_.active()) return;
   balance_.finish();

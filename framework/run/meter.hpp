@@ -28,6 +28,10 @@ class Meter {
   /// Does it want every node, not the recorded states only?
   bool wants_nodes() const { return balance_.active(); }
   void node(const Snapshot& state) { balance_.node(state); }
+  /// The start, from which energy, invariants and the exact motion are followed, before any row.
+  void begin(const Snapshot& start);
+  /// An event changed the state: what that did to the energy and the invariants is no error.
+  void impact(const Snapshot& before, const Snapshot& after);
   /// Begins the row of a state with what the kernel measured of it (the columns of tools/README.md).
   void take(const Snapshot& state);
   /// Ends it with what the equations of motion, the invariants and the exact motion say.
@@ -37,17 +41,17 @@ class Meter {
   /// The rows that are complete and were not dropped, one after the other. Where work is done the first few wait.
   std::span<const double> rows() const { return std::span(rows_).first(complete_ * width_); }
   void drop_rows();
-  /// After the last state: no row waits.
-  void finish();
+  /// After the last state, a row or not: no row waits.
+  void finish(const Snapshot& last);
   const Measurements& all() const { return all_; }
   /// What the user should know.
   const std::vector<std::string>& notes() const { return notes_; }
 
   template <class Archive>
   void carry(Archive& archive) {
-    archive(all_, first_, energy_start_, time_start_, width_, energy_error_, work_, rows_,
-            exact_lost_, notes_, pulls_, time_, power_, power_time_, start_configuration_, lambda_,
-            balance_);
+    archive(all_, first_, energy_start_, time_start_, last_row_, width_, energy_error_, work_,
+            rows_, exact_lost_, notes_, pulls_, time_, power_, power_time_, start_configuration_,
+            lambda_, balance_);
   }
   /// A run that goes on: the exact motion is followed to here through the times of the rows before.
   void follow_exact(double time);
@@ -57,7 +61,10 @@ class Meter {
   // group() describes the values, of the first row.
   template <class Group>
   void add(Group&& group, std::span<const double> values);
-  void react(const Snapshot& state);
+  void react(const Snapshot& state, bool start = false);
+  void add_reactions();
+  void look_at_invariants(const Snapshot& state);
+  std::pair<double, double> look_at_exact(const Snapshot& state);
   void settle();
   ExactFlow exact_from_start() const;
 
@@ -71,7 +78,7 @@ class Meter {
   std::vector<double> start_configuration_;
   Measurements all_;
   bool first_ = true, holonomic_ = false;
-  double energy_start_ = 0, time_start_ = 0;
+  double energy_start_ = 0, time_start_ = 0, last_row_ = 0;
   EnergyBalance balance_;
   ExactFlow exact_;
   bool exact_lost_ = false;  // said already

@@ -70,6 +70,8 @@ void Simulation::add_outputs(Plan& plan) const {
   }
   if (records_.empty() && resumed_.empty()) return;
   plan.request = config_.to_toml();
+  for (const auto& [event, impact] : impacts_)
+    plan.request += fmt::format("# on_event: {}\n", event);
   plan.files = texts_of_files(config_);
   if (resumed_.empty()) return;
   const RunFile file(resumed_);

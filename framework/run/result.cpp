@@ -128,6 +128,12 @@ const char* finer_runs(const Config& config) {
 }
 
 void Result::write(const std::string& path) const {
+  if (trajectory.groups().empty() && !path.ends_with(".json")) {
+    throw ConfigError({fmt::format(
+        "write: '{}': the rows of this run are in its files and not in memory; keep_rows() keeps "
+        "some of them",
+        path)});
+  }
   const std::unique_ptr<Sink> sink = make_sink(path);
   sink->begin({trajectory.groups(), config.to_toml(), "", record()});
   sink->rows(trajectory.values());

@@ -62,6 +62,8 @@ void RunLoop::go() {
   kernel_.state(node_);
   bool go_on = true;
   if (node_.step == 0) {
+    kernel_.measure(result_.last);
+    meter_.begin(result_.last);
     if (meter_.wants_nodes()) meter_.node(node_);
     go_on = times_.empty() ? record(node_) : output(config_.from);
   }
@@ -87,7 +89,7 @@ void RunLoop::go() {
   if (!result_.stopped_by_event) kernel_.measure(result_.last);
   result_.steps = node_.step;
   result_.stats = kernel_.stats();
-  meter_.finish();
+  meter_.finish(result_.last);
   deliver();
   static_cast<Measurements&>(result_) = meter_.all();
   result_.notes.insert(result_.notes.end(), meter_.notes().begin(), meter_.notes().end());
@@ -179,7 +181,7 @@ bool RunLoop::look_at_step() {
     if (meter_.wants_nodes()) meter_.node(event.state);
     if (!output(event.state.time)) return false;  // by the steps before the impact
     if (after) {
-      go_on_from(*after, event.name);
+      go_on_from(*after, event);
       return !times_.empty() || !over() || record(node_);
     }
     result_.stopped_by_event = true;
@@ -188,9 +190,22 @@ bool RunLoop::look_at_step() {
     if (times_.empty()) record(event.state);
     return false;
   }
-  if (meter_.wants_nodes()) meter_.node(node_);
+  if (meter_.wants_nodes()) {
+    look_within_step();
+    meter_.node(node_);
+  }
   if (!times_.empty()) return output(node_.time);
   return node_.step % config_.every == 0 || over() || !result_.status.ok ? record(node_) : true;
+}
+
+// The explicit pairs take long steps, and know the motion within them: so the work is not known from their ends alone.
+void RunLoop::look_within_step() {
+  kernel_.beginning(row_);
+  const double begin = row_.time;
+  for (const double part : {0.25, 0.5, 0.75}) {
+    if (!kernel_.interpolate(begin + part * (node_.time - begin), row_)) return;
+    meter_.node(row_);
+  }
 }
 
 bool RunLoop::output(double t) {
@@ -243,16 +258,17 @@ std::optional<EventState> RunLoop::impact(const Events::Found& event) {
   return state;
 }
 
-void RunLoop::go_on_from(const EventState& state, const std::string& event) {
+void RunLoop::go_on_from(const EventState& state, const Events::Found& event) {
   ++impacts_met_;
-  const Eigen::VectorXd velocity = plan_.admissible(state);
+  const Eigen::VectorXd velocity = plan_.admissible(state, event.name);
   const double h = kernel_.next_step();
   kernel_.restart(state.time, state.coordinates, velocity, h);
   if (config_.chooses_steps()) kernel_.limit(config_.until);
   else
     steps_ = static_cast<long>(std::floor((config_.until - state.time) / h * (1 + 1e-12) + 1e-9));
   kernel_.state(node_);
-  plan_.events->resume(node_, event);
+  meter_.impact(event.state, node_);
+  plan_.events->resume(node_, event.name);
 }
 
 }  // namespace hamel

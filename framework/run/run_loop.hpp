@@ -50,11 +50,12 @@ class RunLoop {
   bool over() const;
   // What the last step brought; false: the run ends here.
   bool look_at_step();
+  void look_within_step();
   // Rows at the output times up to t.
   bool output(double t);
   bool record(const Snapshot& state);
   std::optional<EventState> impact(const Events::Found& event);
-  void go_on_from(const EventState& state, const std::string& event);
+  void go_on_from(const EventState& state, const Events::Found& event);
 
   const Config& config_;
   Simulation::Plan& plan_;

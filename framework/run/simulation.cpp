@@ -56,18 +56,42 @@ void Integration::restart(const Start& start) {
   dense_ = std::make_unique<DenseOutput>(*kernel_, factory_, setup_);
 }
 
+Status Integration::behind(double t) {
+  kernel_->state(state_);
+  return {false, state_.step + 1, state_.time, 0, fmt::format("t = {} lies behind", t)};
+}
+
 Status Integration::advance_to(double t) {
   if (const Status status = covered(t); !status.ok) return status;
+  kernel_->state(state_);
+  const double steps = (t - state_.time) / kernel_->next_step();
   if (config_.chooses_steps()) {
+    if (!(steps >= -1e-9)) return behind(t);
+    if (steps <= 0) return {};
     kernel_->limit(t);
     return kernel_->advance(std::numeric_limits<long>::max());
   }
-  kernel_->state(state_);
-  const double h = kernel_->next_step();
-  return kernel_->advance(std::max(0L, std::lround((t - state_.time) / h)));
+  if (!(steps >= -0.5)) return behind(t);
+  return kernel_->advance(std::max(0L, std::lround(steps)));
+}
+
+Status Integration::step_towards(double t) {
+  if (config_.chooses_steps()) {
+    kernel_->state(state_);
+    if (!((t - state_.time) * kernel_->next_step() > 0)) return behind(t);
+    kernel_->limit(t);
+  }
+  return kernel_->advance(1);
 }
 
 const Snapshot& Integration::at(double t) {
+  kernel_->state(state_);
+  const double end = state_.time, slack = 1e-12 * std::abs(kernel_->next_step());
+  kernel_->beginning(state_);
+  if (!(std::min(state_.time, end) - slack <= t && t <= std::max(state_.time, end) + slack)) {
+    throw std::runtime_error(
+        fmt::format("no state at t = {}: the last step is from {} to {}", t, state_.time, end));
+  }
   const Status status = dense_->at(t, state_);
   if (!status.ok) throw std::runtime_error(fmt::format("no state at t = {}: {}", t, status.reason));
   return state_;
@@ -130,10 +154,9 @@ void add_notes(Result& result, long impacts) {
   }
   if (impacts > 0) {
     result.notes.push_back(fmt::format(
-        "{} impact{} changed the state: the energy error is that and the error of the steps; the "
+        "{} impact{} changed the state, which is no error of the energy or of an invariant; the "
         "run ends at t = {:.10g}",
         impacts, impacts > 1 ? "s" : "", result.last.time));
-    return;
   }
   constexpr double percent = 0.01;
   if (!std::isfinite(result.work) && result.energy_error_max > percent) {
@@ -177,7 +200,14 @@ Result Simulation::run() const {
   if (!resumed_.empty()) loop.resume(RunFile(resumed_));
   loop.run();
   add_notes(result, loop.impacts_met());
-  if (config_.check && result.status.ok) estimate_error(result);
+  if (config_.check && result.status.ok) {
+    if (plan.keeps_rows || plan.mechanics->rows() == 0) estimate_error(result);
+    else
+      result.notes.push_back(
+          fmt::format("check: {} leaves out constraints: its limit is another motion, and nothing "
+                      "is known of its error",
+                      result.config.scheme));
+  }
   for (const auto& sink : sinks) sink->finish(result);
   return result;
 }

@@ -50,10 +50,7 @@ class Integration {
   /// One step (or count of them); the status of the first that failed.
   Status step(long count = 1);
   /// One step; a chosen one ends at t at the latest.
-  Status step_towards(double t) {
-    if (config_.chooses_steps()) kernel_->limit(t);
-    return kernel_->advance(1);
-  }
+  Status step_towards(double t);
   /// Time runs the other way from here; steps chosen by the reversible control are taken back as they came.
   void turn_back() { kernel_->turn_back(); }
   /// Steps to time t: chosen ones end there, others at the node nearest to it.
@@ -78,6 +75,7 @@ class Integration {
  private:
   // Not ok where a table of an input ends before t.
   Status covered(double t);
+  Status behind(double t);
 
   KernelFactory factory_;
   KernelSetup setup_;

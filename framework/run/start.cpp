@@ -70,13 +70,30 @@ void Simulation::Plan::watch() {
 }
 
 // The velocity of a state after an impact, onto the constraints there in the metric I.
-Eigen::VectorXd Simulation::Plan::admissible(const EventState& state) const {
-  const auto n = static_cast<Eigen::Index>(state.velocity.size());
+Eigen::VectorXd Simulation::Plan::admissible(const EventState& state,
+                                             const std::string& event) const {
+  const auto n = static_cast<Eigen::Index>(system.group.dim);
+  const auto refuse = [&](const std::string& why) {
+    throw ConfigError({fmt::format("on_event {}: at t = {:.6g} {}", event, state.time, why)});
+  };
+  if (static_cast<Eigen::Index>(state.velocity.size()) != n)
+    refuse(fmt::format("velocity: got {} values, expected {}", state.velocity.size(), n));
+  if (!finite(state.velocity)) refuse("velocity: " + join(state.velocity) + " is not finite");
+  try {
+    (void)system.group.element(state.coordinates);
+  } catch (const std::invalid_argument& error) {
+    refuse(error.what());
+  }
   Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(), n);
   if (geometry == nullptr || mechanics->rows() == 0) return xi;
   EquationsOfMotion<Erased> motion(Erased(geometry, mechanics));
   Eigen::VectorXd g(geometry->size());
   geometry->from_coordinates(state.coordinates, g.data());
+  Eigen::VectorXd phi(mechanics->holonomic_rows());
+  mechanics->holonomic(g.data(), phi);
+  if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-6))
+    refuse(fmt::format("the holonomic constraints do not hold, |phi| = {:.2g}",
+                       phi.lpNorm<Eigen::Infinity>()));
   motion.set(state.time, g);
   motion.project(xi);
   return xi;

@@ -66,6 +66,23 @@ force = [0, "-0.6*theta_2'"]
   EXPECT_EQ(r["system"], "two oscillators");
 }
 
+/// A force that has no value at the end of a step: the step fails, and the states before it are kept.
+TEST_F(DataSystem, AValueThatIsNotFiniteIsNoStep) {
+  const std::string path = write(
+      "group = \"r1\"\ninertia = [1]\ncoordinates = [\"x\"]\nforce = [\"sqrt(0.495 - "
+      "t)\"]\nvelocity = [1]\n");
+  for (const char* scheme : {"lift", "balance", "gni", "unadapted", "reversible", "rkmk4"}) {
+    for (const char* until : {"0.5", "1"}) {
+      const Outcome o = run({"run", path, "--scheme", scheme, "--until", until, "--json"});
+      EXPECT_EQ(o.status, 1) << scheme;
+      EXPECT_THAT(o.err, HasSubstr("a value that is not finite")) << scheme;
+      const json record = json::parse(o.out);
+      EXPECT_TRUE(record["final"]["velocity"][0].is_number()) << scheme;
+      EXPECT_EQ(record["steps"], 49) << scheme;
+    }
+  }
+}
+
 TEST_F(DataSystem, MistakesAreNamed) {
   refused("inertia = [1]", "group: missing");
   refused("group = \"se4\"\ninertia = [1]", "did you mean 'se");

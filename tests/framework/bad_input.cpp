@@ -218,6 +218,20 @@ TEST(BadInput, AllAtOnce) {
 
 // ---- files ---------------------------------------------------------------------------------------------
 
+TEST(BadInput, RowsThatAreNotInMemory) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / ("hamel_rows_elsewhere_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const Result r = simulate("suslov").until(0.1).record_to((folder / "a.csv").string()).run();
+  for (const char* name : {"b.csv", "b.csv.gz", "b.h5"}) {
+    EXPECT_THROW(r.write((folder / name).string()), ConfigError) << name;
+    EXPECT_FALSE(fs::exists(folder / name)) << name;
+  }
+  r.write((folder / "b.json").string());
+  fs::remove_all(folder);
+}
+
 TEST(BadInput, FilesThatCannotBeWritten) {
   namespace fs = std::filesystem;
   const fs::path folder =

@@ -94,6 +94,45 @@ TEST(Diagnostics, CheckOfARunThatStopsAtAnEvent) {
               lift.estimated_error, 1e-15);
 }
 
+/// Measured from the start to the end, whatever the rows: none at the start, none at the end.
+TEST(Diagnostics, DoNotDependOnTheRows) {
+  for (const char* system : {"chaplygin_sleigh", "snakeboard", "ball_on_turntable", "segway"}) {
+    const auto of = [&](auto rows) {
+      Simulation s = simulate(system);
+      s.until(5).step(0.01);
+      rows(s);
+      return s.run();
+    };
+    const Result all = of([](Simulation&) {});
+    for (const std::vector<double>& times : std::vector<std::vector<double>>{{1, 2}, {3}}) {
+      const Result some = of([&](Simulation& s) { s.output(times); });
+      ASSERT_TRUE(some) << system;
+      EXPECT_EQ(some.trajectory.rows(), times.size());
+      if (std::isfinite(all.exact_error_final))
+        EXPECT_NEAR(some.exact_error_final, all.exact_error_final, 1e-9) << system;
+      EXPECT_LE(some.energy_error_max, all.energy_error_max * (1 + 1e-6) + 1e-15) << system;
+      EXPECT_GT(some.energy_error_max, 0) << system;
+      if (std::isfinite(all.work)) EXPECT_NEAR(some.work, all.work, 1e-9) << system;
+      for (size_t i = 0; i < all.invariants.size(); ++i)
+        EXPECT_NEAR(some.invariants[i].start, all.invariants[i].start, 1e-12) << system;
+    }
+  }
+}
+
+/// Without the constraint the limit of the steps is another motion.
+TEST(Diagnostics, CheckKnowsNothingOfAnotherMotion) {
+  const Result run = simulate("suslov")
+                         .set("inertia", {2, 0.3, 0.5, 3, 0.4, 4})
+                         .start({.velocity = {1, 0.5, 0}})
+                         .scheme("unadapted")
+                         .until(4)
+                         .with(&Config::check, true)
+                         .run();
+  EXPECT_GT(run.exact_error_final, 1);
+  EXPECT_TRUE(std::isnan(run.estimated_error));
+  EXPECT_THAT(run.notes, Contains(HasSubstr("its limit is another motion")));
+}
+
 /// A run is not lost by the runs that would check it.
 TEST(Diagnostics, CheckOfARunThatEndsAtOnce) {
   const Result run =

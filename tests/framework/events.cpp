@@ -143,6 +143,68 @@ TEST(Events, RowsAroundAnImpact) {
   EXPECT_THAT(last.notes, Not(testing::Contains(testing::HasSubstr("nothing does work"))));
 }
 
+// What an impact makes of the state is looked at before the run goes on from it.
+TEST(Events, ImpactsThatNoRunCanGoOnFrom) {
+  const auto says = [](const std::string& system, const std::string& event, Impact impact) {
+    try {
+      simulate(system).scheme("dop853").tolerance({1e-8}).on_event(event, impact).until(5).run();
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_THAT(says("chaplygin_sleigh", "x=0.3", [](EventState& s) { s.velocity.clear(); }),
+              testing::HasSubstr("on_event x=0.3: at t = "));
+  EXPECT_THAT(says("chaplygin_sleigh", "x=0.3", [](EventState& s) { s.velocity[1] = NAN; }),
+              testing::HasSubstr("is not finite"));
+  EXPECT_THAT(says("chaplygin_sleigh", "x=0.3", [](EventState& s) { s.coordinates.pop_back(); }),
+              testing::HasSubstr("on_event x=0.3: at t = "));
+  EXPECT_THAT(says("falling_disk", "x=0.01", [](EventState& s) { s.coordinates[11] += 0.3; }),
+              testing::HasSubstr("the holonomic constraints do not hold, |phi| = 0.3"));
+}
+
+// Of its energy and its invariants an impact is no error.
+TEST(Events, ImpactsAreNoErrors) {
+  const Result r = simulate("chaplygin_sleigh")
+                       .start({.velocity = {0.5, 1, 0}})
+                       .scheme("dop853")
+                       .tolerance({1e-10})
+                       .on_event("x=0.3", [](EventState& s) { s.velocity[1] *= 0.5; })
+                       .until(5)
+                       .run();
+  ASSERT_TRUE(r);
+  EXPECT_LT(r.energy_error_max, 1e-8);
+  for (const InvariantDrift& i : r.invariants) EXPECT_LT(i.drift_max, 1e-8) << i.name;
+  Simulation driven = simulate("segway").input("left_torque", 0.3).input("right_torque", 0.3);
+  const Result work = driven.scheme("dop853")
+                          .tolerance({1e-11})
+                          .on_event("x=0.01", [](EventState& s) { s.velocity[0] += 0.5; })
+                          .until(0.6)
+                          .run();
+  ASSERT_TRUE(work) << work.status.reason;
+  EXPECT_THAT(work.notes, testing::Contains(testing::HasSubstr("1 impact changed the state")));
+  EXPECT_LT(work.energy_balance_error_max, 1e-6);
+}
+
+// By hand: times that lie behind, or between no two nodes of the last step.
+TEST(Integrations, KnowWhereTheyAre) {
+  for (const double tolerance : {0.0, 1e-6}) {
+    Simulation s = simulate("chaplygin_sleigh");
+    if (tolerance > 0) s.scheme("tsit5").tolerance({tolerance});
+    Integration run = s.build();
+    EXPECT_TRUE(run.advance_to(0.7).ok);
+    EXPECT_TRUE(run.advance_to(0.7).ok);
+    for (const double t : {0.3, std::nan("")}) {
+      const Status behind = run.advance_to(t);
+      EXPECT_FALSE(behind.ok);
+      EXPECT_THAT(behind.reason, testing::HasSubstr("lies behind"));
+    }
+    EXPECT_NEAR(run.at(0.699).time, 0.699, 1e-15);
+    for (const double t : {0.1, 5.0, -3.0, std::nan("")})
+      EXPECT_THROW(run.at(t), std::runtime_error) << t;
+  }
+}
+
 TEST(Output, IsAtTheTimesAskedForWithEveryScheme) {
   const std::vector<double> times = {0, 0.013, 0.5, 0.9999, 1};
   for (const std::string& scheme : registry().schemes()) {

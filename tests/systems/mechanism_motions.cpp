@@ -114,6 +114,19 @@ TEST(MechanismMotions, FourBarFollowsItsAngleEquation) {
   EXPECT_NEAR(time * angles[0] / (3 * kPieces), until, 1e-10);
 }
 
+TEST(MechanismMotions, FourBarFromRestBySmallSteps) {
+  Mechanism bars = FourBar().by_parts();
+  bars.start({{"a.rate", 0}});
+  const Result exact = simulate(bars).scheme("dop853").tolerance({1e-12}).until(0.02).run();
+  for (const double h : {2e-3, 1e-3, 1e-4, 1e-5}) {
+    const Result r = simulate(bars).step(h).until(0.02).run();
+    ASSERT_TRUE(r.status.ok) << h << ": " << r.status.reason;
+    EXPECT_NEAR(r.last.velocity[0], exact.last.velocity[0], 10 * h * h + 1e-9) << h;
+  }
+  const Result chosen = simulate(bars).tolerance({1e-8}).until(0.02).run();
+  EXPECT_TRUE(chosen.status.ok) << chosen.status.reason;
+}
+
 // Two rods that close a triangle with the ground swing about its side there, 45 degrees from the vertical:
 // 1/2 J phi'^2 - m g l/2 cos phi, J = J_t + m l^2/4 of both together.
 TEST(MechanismMotions, TriangleSwingsAsAPhysicalPendulum) {

@@ -96,7 +96,8 @@ void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) 
   std::string note = fmt::format(
       "Multipliers of the rows A xi = b, from the equations of motion at the recorded "
       "states. Their work over the run: {:.2e}, with A xi measured on the "
-      "configurations; where b = 0 it is zero but for round-off.",
+      "configurations; where b = 0 a scheme that keeps the rows in its steps leaves it at "
+      "round-off.",
       r.reaction_work);
   for (const int i : rows_by_part(r)) {
     const std::string column = words_of(r.system).reactions.empty()
