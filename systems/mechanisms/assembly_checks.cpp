@@ -233,10 +233,10 @@ void Assembly::check_motions(const Multibody& system, const std::vector<Said>& r
   system.inertia(g.data(), inertia);
   system.constraints(0, g.data(), a, b);
   // Each velocity in units of its own inertia: that of a needle on a ship is not none.
-  const Eigen::VectorXd own = inertia.diagonal();
-  const double none = 1e-14 * own.maxCoeff();
+  const Eigen::VectorXd inertias = inertia.diagonal();
+  const double none = 1e-14 * inertias.maxCoeff();
   const Eigen::VectorXd unit =
-      own.unaryExpr([&](double i) { return 1 / std::sqrt(i > 0 ? i : none); });
+      inertias.unaryExpr([&](double i) { return 1 / std::sqrt(i > 0 ? i : none); });
   if (k > 0) {
     a = a * unit.asDiagonal();
     a.rowwise().normalize();
