@@ -234,7 +234,8 @@ SystemModel Assembly::model() {
   check_motions(*system, said);
   stop_at_mistakes();
   draw(system);
-  AtStart at_start{said, {}, {}};
+  AtStart at_start{said, {}, {}, {}};
+  for (const auto& [row, repeat] : redundancy.repeats) at_start.dropped.push_back(row);
   for (const auto& part : parts_.motors_)
     at_start.signals.push_back(
         {fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});

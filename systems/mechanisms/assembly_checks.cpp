@@ -121,18 +121,27 @@ std::vector<Said> Assembly::rows_in_words(const std::vector<RowWords>& rows) con
   return out;
 }
 
-// Refuses rows that say nothing new, or drops them with a note.
+// Refuses rows that contradict others; rows that say nothing new too, or drops them with a note.
 void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<Said>& rows,
                                  const std::vector<RowWords>& words) {
   const Part& policy = parts_.redundant_;
   const bool drop = policy.name == "drop";
   if (!drop && policy.name != "refuse")
     mistakes_.push_back(policy.where + unknown_name("redundant", policy.name, {"drop", "refuse"}));
-  for (const auto& [row, others] : redundancy.repeats) {
-    std::string list;
-    for (const int other : others)
-      list += (list.empty() ? "" : ", ") + rows[static_cast<size_t>(other)].what;
+  const auto driven = [&](int row) {
+    const auto i = static_cast<size_t>(row) + parts_.rates_.size();
+    return i >= rows.size() && !parts_.rates_[i - rows.size()].rate;
+  };
+  for (const auto& [row, repeat] : redundancy.repeats) {
+    const std::string list = in_words(repeat.others, rows);
     const Said& said = rows[static_cast<size_t>(row)];
+    const bool inputs = driven(row) || std::ranges::any_of(repeat.others, driven);
+    if (repeat.contradicts || inputs) {
+      mistakes_.push_back(said.where + contradiction(said, list) +
+                          (inputs ? " at most values of the inputs" : "") +
+                          (list.empty() ? "; leave it out" : "; leave one of them out"));
+      continue;
+    }
     const std::string text =
         list.empty() ? fmt::format("{} says nothing: no joint moves its body that way", said.what)
                      : fmt::format("{} says nothing beyond {}", said.what, list);

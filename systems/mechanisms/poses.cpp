@@ -29,12 +29,12 @@ std::vector<double> move(const Multibody& system, const std::vector<double>& g,
 
 }  // namespace
 
-Looked::Looked(const Multibody& system, const std::vector<double>& g) {
+Looked::Looked(const Multibody& system, const std::vector<double>& g, double t) {
   const auto rows = static_cast<Eigen::Index>(system.all_rows().words().size());
   a.resize(rows, system.dim());
   b.resize(rows);
   phi = VectorXd::Zero(rows);
-  system.look(0, g.data(), a, b, phi);
+  system.look(t, g.data(), a, b, phi);
 }
 
 VectorXd least(const MatrixXd& a, const VectorXd& b) {
@@ -85,17 +85,22 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
 }
 
 // Gram-Schmidt on the rows of unit length, those of phi first: what is left of a row below 1e-9 is none.
-std::map<int, std::vector<int>> repeated_rows(const Multibody& system, const std::vector<double>& g,
-                                              std::vector<int> rows) {
+std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<double>& g,
+                                    std::vector<int> rows, const std::vector<double>& times) {
   const std::vector<RowWords> words = system.all_rows().words();
   std::stable_partition(rows.begin(), rows.end(),
                         [&](int i) { return words[static_cast<size_t>(i)].holonomic; });
   const MatrixXd a = Looked(system, g).a;
+  std::vector<VectorXd> drifts;
+  for (const double t : times) drifts.push_back(Looked(system, g, t).b);
+  const Ground& ground = system.all_rows().ground;
+  const double moves = ground.velocity.norm() + std::abs(ground.rate);
   MatrixXd basis(0, system.dim());
   std::vector<int> taken;
-  std::map<int, std::vector<int>> out;
+  std::map<int, Repeat> out;
   for (const int i : rows) {
-    const VectorXd row = a.row(i).transpose() / std::max(a.row(i).norm(), 1e-300);
+    const double length = a.row(i).norm();
+    const VectorXd row = a.row(i).transpose() / std::max(length, 1e-300);
     const VectorXd parts = least(basis.transpose(), row);
     if ((row - basis.transpose() * parts).norm() > 1e-9) {
       basis.conservativeResize(basis.rows() + 1, Eigen::NoChange);
@@ -103,15 +108,30 @@ std::map<int, std::vector<int>> repeated_rows(const Multibody& system, const std
       taken.push_back(i);
       continue;
     }
-    auto& repeats = out[i];
-    for (Eigen::Index j = 0; j < parts.size(); ++j)
-      if (std::abs(parts[j]) > 1e-6) repeats.push_back(taken[static_cast<size_t>(j)]);
+    Repeat& repeat = out[i];
+    std::vector<double> factors;
+    for (Eigen::Index j = 0; j < parts.size(); ++j) {
+      if (!(std::abs(parts[j]) > 1e-6)) continue;
+      repeat.others.push_back(taken[static_cast<size_t>(j)]);
+      factors.push_back(length * parts[j] / a.row(repeat.others.back()).norm());
+    }
+    for (const VectorXd& b : drifts) {  // one that is not finite at this time decides nothing
+      double apart = b[i], size = std::abs(b[i]);
+      for (size_t j = 0; j < factors.size(); ++j) {
+        const double part = factors[j] * b[repeat.others[j]];
+        apart -= part;
+        size += std::abs(part);
+      }
+      const double round_off = 1e-12 * (moves + b.lpNorm<Eigen::Infinity>());
+      repeat.contradicts |= std::abs(apart) > 1e-6 * size + round_off;
+    }
   }
   return out;
 }
 
 Redundancy look_for_redundancy(const Multibody& system,
                                const std::vector<std::vector<double>>& places) {
+  const std::vector<double> times = {0, -1.3, 0.7, 1.9, 5.3, 14.1, 37.7, 101.3};  // s, of no period
   const std::vector<RowWords> words = system.all_rows().words();
   // A row of phi that is zero in all poses says nothing: in the plane no contact changes its height.
   std::vector<int> speaking;
@@ -130,12 +150,12 @@ Redundancy look_for_redundancy(const Multibody& system,
     for (auto& pose : poses_on_rows(system, place)) poses.push_back(std::move(pose));
   }
   for (const auto& pose : poses) {
-    for (const auto& [row, others] : repeated_rows(system, pose, speaking)) {
+    for (const auto& [row, here] : repeated_rows(system, pose, speaking, times)) {
       ++dependent[row];
-      auto& repeats = out.repeats[row];
-      for (const int other : others)
-        if (std::find(repeats.begin(), repeats.end(), other) == repeats.end())
-          repeats.push_back(other);
+      auto& [others, contradicts] = out.repeats[row];
+      for (const int other : here.others)
+        if (std::find(others.begin(), others.end(), other) == others.end()) others.push_back(other);
+      contradicts |= here.contradicts;
     }
   }
   std::erase_if(out.repeats,

@@ -1,6 +1,7 @@
 // A mechanism with its words, and what it says of a start. Not installed.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -33,7 +34,8 @@ struct Held {
 
 // What a run is not to start without.
 struct AtStart {
-  std::vector<Said> rows;  // of all_rows(): those that are kept independent
+  std::vector<Said> rows;    // of all_rows(): those that are kept independent
+  std::vector<int> dropped;  // of these: agree with those that are kept
   std::vector<Watched> signals;
   std::vector<Held> held;
 };
@@ -67,23 +69,42 @@ class Speaking final : public Multibody, public Worded {
                                   held.what, value, t, x[held.column]));
     }
     const std::vector<double> place(g, g + drawn().size());
-    for (const auto& [row, others] : repeated_rows(*this, place, kept())) {
-      std::vector<std::string> beyond;
-      for (const int other : others)
-        beyond.push_back(at_start_.rows[static_cast<size_t>(other)].what);
+    for (const auto& [row, repeat] : repeated_rows(*this, place, kept(), {t})) {
+      const std::string beyond = in_words(repeat.others, at_start_.rows);
       const Said& said = at_start_.rows[static_cast<size_t>(row)];
-      out.push_back(
-          beyond.empty()
-              ? fmt::format("{}{} says nothing at the start; start elsewhere, or leave it out",
-                            said.where, said.what)
-              : fmt::format("{}{} says nothing beyond {} at the start; start elsewhere, or take "
-                            "a part with fewer rows (a roller for a wheel)",
-                            said.where, said.what, join(beyond)));
+      if (repeat.contradicts)
+        out.push_back(fmt::format("{}{} at the start; start elsewhere, or leave one of them out",
+                                  said.where, contradiction(said, beyond)));
+      else if (beyond.empty())
+        out.push_back(
+            fmt::format("{}{} says nothing at the start; start elsewhere, or leave it out",
+                        said.where, said.what));
+      else
+        out.push_back(
+            fmt::format("{}{} says nothing beyond {} at the start; start elsewhere, or take a part "
+                        "with fewer rows (a roller for a wheel)",
+                        said.where, said.what, beyond));
     }
+    add_contradictions(t, place, out);
     return out;
   }
 
  private:
+  // Of rows that were dropped, at this place and time.
+  void add_contradictions(double t, const std::vector<double>& place,
+                          std::vector<std::string>& out) const {
+    if (at_start_.dropped.empty()) return;
+    std::vector<int> all = kept();
+    all.insert(all.end(), at_start_.dropped.begin(), at_start_.dropped.end());
+    std::sort(all.begin(), all.end());
+    for (const auto& [row, repeat] : repeated_rows(*this, place, all, {t})) {
+      const Said& said = at_start_.rows[static_cast<size_t>(row)];
+      if (repeat.contradicts && std::ranges::count(at_start_.dropped, row) > 0)
+        out.push_back(fmt::format("{}{} at t = {}; leave one of them out", said.where,
+                                  contradiction(said, in_words(repeat.others, at_start_.rows)), t));
+    }
+  }
+
   MotionWords words_;
   AtStart at_start_;
   std::shared_ptr<const Inputs> inputs_;

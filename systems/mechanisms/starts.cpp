@@ -13,6 +13,19 @@ namespace hamel::mechanisms {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+std::string in_words(const std::vector<int>& some, const std::vector<Said>& rows) {
+  std::vector<std::string> out;
+  for (const int i : some) out.push_back(rows[static_cast<size_t>(i)].what);
+  return join(out);
+}
+std::string contradiction(const Said& row, const std::string& list) {
+  return list.empty() ? fmt::format(
+                            "{} contradicts the joints: its body cannot move with the "
+                            "ground",
+                            row.what)
+                      : fmt::format("{} contradicts {}", row.what, list);
+}
+
 Starts::Starts(std::shared_ptr<const Multibody> system, std::string name,
                std::vector<std::string> columns, std::vector<std::string> rates,
                std::vector<Said> rows)

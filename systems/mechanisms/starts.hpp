@@ -16,6 +16,10 @@ struct Said {
   std::string where,
       what;  // of its part, "system.toml:3:1: "; "wheel 'rear' (rolls without slipping)"
 };
+/// Some of these rows, one behind the other.
+std::string in_words(const std::vector<int>& some, const std::vector<Said>& rows);
+/// That a row contradicts those of a list.
+std::string contradiction(const Said& row, const std::string& list);
 
 /// Starts of a mechanism, by the names of coordinates and velocities.
 class Starts {
