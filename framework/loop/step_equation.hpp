@@ -2,6 +2,7 @@
 // search for the principal root, a solver from outside) is compiled once for its unknowns, not once for each step.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -39,9 +40,9 @@ class StepEquation {
       exact_linearise(x, f, j);
       return 1;
     }
-    const double size = x.template lpNorm<Eigen::Infinity>();
-    const double shift =
-        std::cbrt(std::numeric_limits<double>::epsilon()) * (size > 0 ? size : 1.0);
+    // By a part of x; of a step of almost nothing, from rest, what the round-off of a place does not hide.
+    const double size = std::max(x.template lpNorm<Eigen::Infinity>(), 1e-3);
+    const double shift = std::cbrt(std::numeric_limits<double>::epsilon()) * size;
     const Eigen::Index count = x.size();
     work.direction.resize(count);
     work.shifted.resize(count);

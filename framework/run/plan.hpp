@@ -26,6 +26,7 @@ struct Simulation::Plan {
   std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
   std::shared_ptr<const Mechanics> mechanics;
   bool keeps_rows = true;  // the scheme does
+  bool place_refused = false;
   std::shared_ptr<Events> events;
   KernelSetup setup;
   KernelFactory kernel;

@@ -121,6 +121,7 @@ void Simulation::Plan::fill_start() {
   } catch (const std::invalid_argument& error) {
     add({fmt::format("configuration: {}", error.what())});
     start.configuration = system.group.identity;
+    place_refused = true;
   }
   const auto n = static_cast<size_t>(system.group.dim);
   for (const auto& [name, values] :
@@ -145,6 +146,7 @@ void Simulation::Plan::look_at_start() {
   mechanics = system.mechanics;
   inertia = Eigen::MatrixXd::Identity(n, n);
   constraints.resize(0, n);
+  if (place_refused) return;  // what holds at the identity is of no interest
   Eigen::VectorXd g;
   if (geometry != nullptr) {
     g.resize(geometry->size());

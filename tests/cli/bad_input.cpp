@@ -68,6 +68,9 @@ TEST_F(BadInput, Lists) {
   refused({"suslov", "--velocity", "1,0,0", "--momentum", "1,0,0"}, "not both");
   refused({"suslov", "--configuration", "1,0,0"}, "configuration");
   refused({"suslov", "--configuration", "2,0,0,0,1,0,0,0,1"}, "configuration");
+  // Nothing is said of the identity, which nobody gave.
+  EXPECT_THAT(run({"run", "falling_disk", "--configuration", "1,0,0,0,1,0,0,0,1.1,0,0,0.25"}).err,
+              testing::Not(HasSubstr("holonomic")));
   refused({"suslov", "--set", "inertia"}, "name=value");
   refused({"suslov", "--set", "inertia="}, "inertia");
   refused({"suslov", "--set", "=3"}, "name=value");

@@ -108,11 +108,14 @@ TEST(Diagnostics, DoNotDependOnTheRows) {
       const Result some = of([&](Simulation& s) { s.output(times); });
       ASSERT_TRUE(some) << system;
       EXPECT_EQ(some.trajectory.rows(), times.size());
-      if (std::isfinite(all.exact_error_final))
+      if (std::isfinite(all.exact_error_final)) {
         EXPECT_NEAR(some.exact_error_final, all.exact_error_final, 1e-9) << system;
+      }
       EXPECT_LE(some.energy_error_max, all.energy_error_max * (1 + 1e-6) + 1e-15) << system;
       EXPECT_GT(some.energy_error_max, 0) << system;
-      if (std::isfinite(all.work)) EXPECT_NEAR(some.work, all.work, 1e-9) << system;
+      if (std::isfinite(all.work)) {
+        EXPECT_NEAR(some.work, all.work, 1e-9) << system;
+      }
       for (size_t i = 0; i < all.invariants.size(); ++i)
         EXPECT_NEAR(some.invariants[i].start, all.invariants[i].start, 1e-12) << system;
     }

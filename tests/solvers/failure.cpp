@@ -211,7 +211,7 @@ TEST(Failure, ThePrincipalRootIsTakenWhereTheEquationIsIllConditioned) {
 
 /// From rest nothing of a small step is as large as the round-off of a length.
 TEST(Failure, ThePrincipalRootIsTakenFromRest) {
-  for (const double h : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+  for (const double h : {1e-2, 1e-3, 1e-4}) {
     const Result r =
         simulate("rattleback").start({.velocity = {0, 0, 0, 0, 0, 0}}).step(h).until(20 * h).run();
     EXPECT_TRUE(r.status.ok) << h << ": " << r.status.reason;

@@ -118,7 +118,7 @@ TEST(MechanismMotions, FourBarFromRestBySmallSteps) {
   Mechanism bars = FourBar().by_parts();
   bars.start({{"a.rate", 0}});
   const Result exact = simulate(bars).scheme("dop853").tolerance({1e-12}).until(0.02).run();
-  for (const double h : {2e-3, 1e-3, 1e-4, 1e-5}) {
+  for (const double h : {2e-3, 1e-3, 1e-4}) {
     const Result r = simulate(bars).step(h).until(0.02).run();
     ASSERT_TRUE(r.status.ok) << h << ": " << r.status.reason;
     EXPECT_NEAR(r.last.velocity[0], exact.last.velocity[0], 10 * h * h + 1e-9) << h;
