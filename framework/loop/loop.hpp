@@ -278,7 +278,7 @@ class Loop final : public TimeLoop {
 
   [[gnu::cold]] Reason why_not_finished() const {
     if constexpr (requires { step_.lost_constraints(); }) {
-      if (!next_->x.allFinite()) return Reason::not_finite;
+      if (step_.not_finite()) return Reason::not_finite;
       if (step_.lost_constraints()) return Reason::lost_constraints;
     }
     return Reason::outside_domain;

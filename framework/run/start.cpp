@@ -91,7 +91,8 @@ Eigen::VectorXd Simulation::Plan::admissible(const EventState& state,
   geometry->from_coordinates(state.coordinates, g.data());
   Eigen::VectorXd phi(mechanics->holonomic_rows());
   mechanics->holonomic(g.data(), phi);
-  if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-6))
+  // (Of a place that was refused nobody wants to know what holds at the identity.)
+  if (!place_refused && phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-6))
     refuse(fmt::format("the holonomic constraints do not hold, |phi| = {:.2g}",
                        phi.lpNorm<Eigen::Infinity>()));
   motion.set(state.time, g);
@@ -146,7 +147,6 @@ void Simulation::Plan::look_at_start() {
   mechanics = system.mechanics;
   inertia = Eigen::MatrixXd::Identity(n, n);
   constraints.resize(0, n);
-  if (place_refused) return;  // what holds at the identity is of no interest
   Eigen::VectorXd g;
   if (geometry != nullptr) {
     g.resize(geometry->size());

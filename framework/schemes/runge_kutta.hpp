@@ -79,6 +79,8 @@ class RungeKutta {
   }
   /// Forgets the rates at the last nodes.
   void forget() { begin_.t = end_.t = kNever; }
+  /// Was the last step refused because the equations of motion gave a value that is not finite?
+  bool not_finite() const { return !(x_.allFinite() && q_.allFinite()); }
   /// Was the last step refused because the constraints do not hold at its end?
   bool lost_constraints() const { return lost_; }
 
