@@ -40,8 +40,9 @@ class Search {
   }
 
   std::vector<Analysis::Conserved> all() {
-    for (int i = 0; i < kMotions; ++i) follow(i, kShort, first_.config.start.configuration);
-    for (int i = 0; i < kMotions; ++i) follow(i + 1, kLong, first_.last.coordinates);
+    for (int i = 0; i < kMotions; ++i) follow(i, 0, kShort, first_.config.start.configuration);
+    for (int i = 0; i < kMotions; ++i)
+      follow(i + 1, first_.last.time, kLong, first_.last.coordinates);
     if (values_.rows() == 0) return {};
     find_scales();
     const Vector units = scale_.cwiseInverse();
@@ -57,14 +58,15 @@ class Search {
  private:
   Eigen::Index width() const { return static_cast<Eigen::Index>(names_.size()); }
 
-  // A motion; of one that fails the first half, far from where it did.
-  void follow(int motion, double until, const std::vector<double>& from) {
+  // A motion, from the time of its place on; of one that fails the first half, far from where it did.
+  void follow(int motion, double from, double length, const std::vector<double>& at) {
     Config config = first_.config;
-    config.until = until;
+    config.from = from;
+    config.until = from + length;
     config.step = 0.005;
     config.every = std::max(1L, config.steps() / kRows);
     config.compose = "suzuki_umeno8";
-    config.start.configuration = from;
+    config.start.configuration = at;
     if (motion > 0) perturb(config.start.velocity);
     const std::string system = config.system;
     const Result run = Simulation(registry_, system).config(config).run();

@@ -297,6 +297,26 @@ std::vector<size_t> Expression::used() const {
   return out;
 }
 
+bool Expression::linear() const {
+  std::vector<int> degrees(slots_.size(), 0);  // 2: any that is not 0 or 1
+  for (const auto& [slot, variable] : inputs_) degrees[slot] = 1;
+  for (const Instruction& i : instructions_) {
+    const int a = degrees[i.a], b = degrees[i.b];
+    const bool divides = i.rule == rule_of(mu::cmDIV);
+    int degree = 2;
+    if (i.op == Op::add || i.op == Op::subtract || i.rule == &kMinus) degree = std::max(a, b);
+    else if (i.op == Op::multiply || (divides && b == 0)) degree = a + b;
+    degrees[i.to] = std::min(degree, 2);
+  }
+  return degrees[result_] < 2;
+}
+
+bool Expression::may_jump() const {
+  return std::ranges::any_of(instructions_, [](const Instruction& i) {
+    return i.op == Op::choose || (i.rule->by_first == kNone && i.rule->by_second == kNone);
+  });
+}
+
 bool Expression::allows(const std::string& name) {
   return !name.empty() && name.size() <= 100 &&
          name.find_first_not_of(kLetters) == std::string::npos &&

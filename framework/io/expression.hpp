@@ -43,6 +43,10 @@ class Expression {
   /// The variables that stand in it, by their places.
   std::vector<size_t> used() const;
   bool constant() const { return inputs_.empty(); }
+  /// Are its derivatives constant, as its form shows?
+  bool linear() const;
+  /// Does a comparison, a ? b : c, sign or rint of variables stand in it?
+  bool may_jump() const;
 
   /// May a variable or constant have this name?
   static bool allows(const std::string& name);

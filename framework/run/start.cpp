@@ -107,7 +107,9 @@ void Simulation::Plan::fill_start() {
   if (!start.velocity.empty() && !start.momentum.empty()) {
     add({"start: give velocity or momentum, not both"});
   }
-  const Start own = own_start(system, config.from, mistakes);
+  const bool whole =
+      !start.configuration.empty() && (!start.velocity.empty() || !start.momentum.empty());
+  const Start own = whole ? Start{} : own_start(system, config.from, mistakes);
   if (start.velocity.empty() && start.momentum.empty()) {
     start.velocity = own.velocity;
     start.momentum = own.momentum;

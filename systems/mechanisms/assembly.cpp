@@ -57,7 +57,7 @@ void Assembly::stop_at_mistakes() const {
 std::vector<std::string> Assembly::body_names() const {
   std::vector<std::string> out;
   for (const auto& body : parts_.bodies_)
-    if (!body.name.empty()) out.push_back(body.name);
+    if (!body.name.empty() && std::ranges::count(out, body.name) == 0) out.push_back(body.name);
   return out;
 }
 
@@ -66,6 +66,12 @@ int Assembly::link_of(const Part& part, const std::string& kind, const std::stri
   if (it != body_links_.end()) return it->second;
   unknown(part, kind, "body", body, body_names());
   return mechanisms::kGround;
+}
+
+void Assembly::check_moves(const Part& part, const std::string& kind, const std::string& body) {
+  const auto it = body_links_.find(body);
+  if (it != body_links_.end() && it->second == mechanisms::kGround)
+    wrong(part, kind, "body: expected a body that moves, not the ground or what is welded to it");
 }
 
 int Assembly::joint_of(const Part& part, const std::string& kind) {
@@ -107,16 +113,15 @@ Rows Assembly::rows() {
     if (!edge && !(part.radius > 0 && std::isfinite(part.radius)))
       wrong(part, part.kind,
             fmt::format("radius: got {}, expected a positive number", part.radius));
-    if (contact.link == mechanisms::kGround && body_links_.contains(part.body))
-      wrong(part, part.kind,
-            "body: expected a body that moves, not the ground or what is welded to it");
+    check_moves(part, part.kind, part.body);
     out.contacts.push_back(std::move(contact));
   }
   for (const auto& part : parts_.loops_) {
     const Vec3 axis = vec(part.axis);
     out.loops.push_back({part.name, link_of(part, "loop", part.a), link_of(part, "loop", part.b),
                          vec(part.at), axis.isZero(0) ? axis : Vec3(axis.normalized())});
-    if (out.loops.back().a == out.loops.back().b)
+    if (out.loops.back().a == out.loops.back().b && body_links_.contains(part.a) &&
+        body_links_.contains(part.b))
       wrong(part, "loop", fmt::format("'{}' and '{}' are one body", part.a, part.b));
   }
   for (const auto& part : parts_.rates_) {
@@ -155,6 +160,13 @@ Forces Assembly::forces() {
                   part.damping};
     spring.rest = part.rest.value_or((spring.at_b - spring.at_a).norm());
     out.springs.push_back(spring);
+    if (spring.a != spring.b || !body_links_.contains(part.a) || !body_links_.contains(part.b))
+      continue;
+    wrong(part, "spring",
+          spring.a == mechanisms::kGround
+              ? "expected a body that moves at one of its ends, not the ground or what is welded "
+                "to it"
+              : fmt::format("'{}' and '{}' are one rigid body", part.a, part.b));
   }
   for (const auto& part : parts_.motors_) {
     if (const int link = joint_of(part, "motor"); link >= 0 && part.effort)
@@ -164,6 +176,7 @@ Forces Assembly::forces() {
     Force force{
         part.name, link_of(part, "force", part.body), vec(part.at), part.of_body, part.of_time, {}};
     for (int i = 0; i < 3; ++i) force.along[i] = part.along[i];
+    check_moves(part, "force", part.body);
     out.forces.push_back(std::move(force));
   }
   return out;
@@ -204,7 +217,10 @@ SystemModel Assembly::model() {
 
   const Tree tree(links_);
   check_masses(tree);
-  for (Prescribed& p : rows.prescribed) p.dof = tree.first(p.dof);
+  for (Prescribed& p : rows.prescribed) {
+    if (p.angle && !p.of_time && p.rate(0) == 0) p.held = p.dof;
+    p.dof = tree.first(p.dof);
+  }
   for (Motor& m : forces.motors) m.dof = tree.first(m.dof);
   std::vector<std::shared_ptr<const Geometry>> factors;
   for (const Link& link : links_) factors.push_back(type_of(link.kind).geometry);

@@ -50,6 +50,8 @@ class Assembly {
   // What acts on it.
   /// The link of a body; kGround, with a mistake, where there is none of this name.
   int link_of(const Part& part, const std::string& kind, const std::string& body);
+  /// That a body moves; one that is unknown is a mistake of link_of.
+  void check_moves(const Part& part, const std::string& kind, const std::string& body);
   /// The link of a hinge or slider; -1, with a mistake, where there is none of this name.
   int joint_of(const Part& part, const std::string& kind);
   mechanisms::Vec3 direction(const Part& part, const std::string& kind, const std::string& what,

@@ -70,7 +70,7 @@ class FileValues {
   /// A formula of t and parameters; empty where it is a mistake.
   struct OfTime {
     std::function<double(double)> value, slope;
-    bool constant = false;
+    bool constant = false;  // the rate, which is the slope of an angle
   };
   OfTime of_time(const Node& node, const std::string& key) {
     const auto any = formulas.expression(node, key, names_);
@@ -84,6 +84,12 @@ class FileValues {
       return {};
     }
     const auto formula = formulas.expression(node, key, {"t"});
+    if (key == "angle" && formula->may_jump()) {
+      toml.wrong(node, key,
+                 "a formula without comparisons, a ? b : c, sign and rint, since its rate says "
+                 "nothing of a jump; prescribe the rate instead");
+      return {};
+    }
     const OfTime out = {[formula = *formula](double t) {
                           return formula({&t, 1});
                         },
@@ -92,7 +98,7 @@ class FileValues {
                           formula.differentiate({&t, 1}, 1, {&slope, 1});
                           return slope;
                         },
-                        formula->constant()};
+                        key == "angle" ? formula->linear() : formula->constant()};
     const auto finite = [&](double first, const char* what) {
       if (!std::isfinite(first))
         toml.wrong(node, key, fmt::format("{} finite at t = 0, got {}", what, first));

@@ -45,8 +45,9 @@ void Mechanism::prescribe(const std::string& joint, std::function<double(double 
                           std::function<double(double t)> angle) {
   rates_.push_back({part(joint), std::move(rate), std::move(angle), true});
 }
-void Mechanism::prescribe(const std::string& joint, double rate) {
-  rates_.push_back({part(joint), [rate](double) { return rate; }, {}, false, {}});
+void Mechanism::prescribe(const std::string& joint, double rate,
+                          std::function<double(double t)> angle) {
+  rates_.push_back({part(joint), [rate](double) { return rate; }, std::move(angle), false, {}});
 }
 void Mechanism::prescribe(const std::string& joint, const Range& range) {
   rates_.push_back({part(joint), {}, {}, false, range});

@@ -3,11 +3,12 @@
 //   hamel::Mechanism m("scooter");
 //   const auto deck = m.body("deck", {.mass = 5, .at = {0.3, 0, 0.1}, .box = {0.8, 0.2, 0.05}});
 //   const auto fork = m.body("fork", {.mass = 2, .at = {0.7, 0, 0.4}, .inertia = {0.1, 0.1, 0.01}});
-//   m.planar("ground", deck, {.at = {0, 0, 0}});
+//   m.planar("road", deck);
 //   m.hinge("steer", deck, fork, {.at = {0.7, 0, 0}, .axis = {0, 0, 1}});
 //   m.blade("rear", deck, {.at = {0, 0, 0}});
 //   m.blade("front", fork, {.at = {0.7, 0, 0}});
-//   hamel::simulate(m).set(...).run();
+//   m.start({{"speed", 2}, {"steer.angle", 0.3}});
+//   hamel::simulate(m).until(10).run();
 //
 // All points and directions are those of one pose of the whole mechanism, as drawn: x ahead, z up, the ground z = 0.
 // That pose is the default start. Moments of inertia are about the mass centre, along the axes of that pose.
@@ -131,7 +132,8 @@ class Mechanism {
   /// slider the position) whose derivative it is, a run starts there.
   void prescribe(const std::string& joint, std::function<double(double t)> rate,
                  std::function<double(double t)> angle = {});
-  void prescribe(const std::string& joint, double rate);
+  /// One that does not change, so that there are steady motions; of rate 0 with an angle the joint is held there.
+  void prescribe(const std::string& joint, double rate, std::function<double(double t)> angle = {});
   void prescribe(const std::string& joint, const Range& range = {});
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include <hamel/groups/so2.hpp>
 
 namespace hamel::mechanisms {
 namespace {
@@ -79,7 +82,7 @@ std::vector<RowWords> Rows::words() const {
   for (const Prescribed& p : prescribed) {  // whose name may be that of a contact, too
     const auto same = [&](const RowWords& row) { return row.part == p.name; };
     add(p.name, 1 + static_cast<int>(std::ranges::count_if(out, same)), "moves as prescribed",
-        false);
+        p.held >= 0);
   }
   return out;
 }
@@ -143,6 +146,12 @@ HAMEL_FLATTEN void Rows::look(const Contact& contact, const Tree& tree, Row* row
   row.link = contact.link;
   row.wrench = force_at(touch.q, touch.gamma);
   row.phi = tree.root_in_world(contact.link).apply(touch.q)[2];
+}
+
+double Rows::beyond(const Prescribed& p, const Tree& tree) {
+  const double* element = tree.placed(p.held);
+  if (tree.kind(p.held) != JointKind::hinge) return element[0] - p.angle(0);
+  return std::remainder(Packing<SO2>::load(element).angle() - p.angle(0), 2 * std::numbers::pi);
 }
 
 void Rows::look(const Loop& loop, const Tree& tree, Row* rows) {

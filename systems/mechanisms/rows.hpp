@@ -11,7 +11,7 @@
 //   ball    q = c - r gamma; u along the world's x and y
 //   loop    a hinge or ball joint between links a, b: e_i . (x_b - x_a) = 0, for a hinge with axis n also
 //           e_1 . n_b = e_2 . n_b = 0; e_i and n fixed in a
-//   prescribed  one velocity of a joint, xi_i = rate(t)
+//   prescribed  one velocity of a joint, xi_i = rate(t); of one that is held at an angle also that, coordinate = angle
 // Source: Neimark and Fufaev, Dynamics of Nonholonomic Systems (1972); Campion, Bastin, d'Andrea-Novel, IEEE Trans.
 // Robotics and Automation 12 (1996).
 #pragma once
@@ -59,6 +59,7 @@ struct Prescribed {
   std::function<double(double t)> rate;
   std::function<double(double t)> angle;  // where a run starts; empty: anywhere
   bool of_time = false;                   // does the rate change?
+  int held = -1;                          // the link that stays at this angle; else -1
 };
 
 /// The ground moves with this velocity, and turns about the world's origin.
@@ -131,6 +132,7 @@ struct Rows {
         Row given;
         given.dof = p.dof;
         given.drift = p.rate(t);
+        if (p.held >= 0) given.phi = beyond(p, tree);
         f(i, given);
       }
       ++i;
@@ -159,6 +161,8 @@ struct Rows {
   }
   void look(const Contact& contact, const Tree& tree, Row* rows) const;
   static void look(const Loop& loop, const Tree& tree, Row* rows);
+  // The coordinate of a joint that is held, from where it is held.
+  static double beyond(const Prescribed& p, const Tree& tree);
 };
 
 }  // namespace hamel::mechanisms

@@ -63,6 +63,8 @@ class Tree {
   bool placed_at(const double* g) const {
     return std::memcmp(placed_.data(), g, placed_.size() * sizeof(double)) == 0;
   }
+  /// The element of a joint where it was placed.
+  const double* placed(int link) const { return placed_.data() + element(link); }
   /// Inertias, for inertia(), composite() and add_inertial_force(); place() first.
   void carry();
   /// Link seen from its root (the ground: from the world), and its root in the world.

@@ -86,6 +86,9 @@ TEST_F(MechanismMistakes, InBodiesAndJoints) {
       {"[[body]]\nname = \"a\"\nmass = \"1/0\"\n", "3:8: mass: expected a finite number, got inf"},
       {"gravity = \"x\"\n" + kFlat, "1:12: gravity: unknown name 'x': there are none"},
       {kFlat + "[[body]]\nname = \"a\"\nmass = 1\n", "9:1: body 'a': this name is taken"},
+      {kFlat + "[[body]]\nname = \"a\"\nmass = 1\n[[joint]]\nname = \"c\"\nkind = \"hinge\"\n" +
+           "parent = \"ab\"\nchild = \"a\"\n",
+       "12:1: joint 'c': unknown parent 'ab': expected one of a; did you mean 'a'?"},
       {kFlat + "[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 1]\n" +
            "[[joint]]\nkind = \"hinge\"\nparent = \"a\"\nchild = \"b\"\n",
        "9:1: body 'b': inertia: got 2 numbers, expected 3, 6 or 9"},
@@ -138,6 +141,14 @@ TEST_F(MechanismMistakes, InContactsAndLoops) {
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"crank\"\nat = [1, 0, 1]\n" +
            "[[loop]]\nname = \"end\"\na = \"rod\"\nb = \"rodd\"\n",
        "28:1: loop 'end': unknown body 'rodd': expected one of crank, rod"},
+      {kFlat + "[[force]]\nname = \"f\"\nbody = \"ground\"\nalong = [5, 0, 0]\n",
+       "9:1: force 'f': body: expected a body that moves, not the ground or what is welded to it"},
+      {kFlat + "[[spring]]\nname = \"s\"\na = \"ground\"\nb = \"ground\"\nto = [1, 0, 0]\n",
+       "9:1: spring 's': expected a body that moves at one of its ends, not the ground or what is "
+       "welded to it"},
+      {kFlat + "[[body]]\nname = \"post\"\n[[joint]]\nkind = \"weld\"\nparent = \"a\"\n" +
+           "child = \"post\"\n[[spring]]\nname = \"s\"\na = \"a\"\nb = \"post\"\nstiffness = 1\n",
+       "15:1: spring 's': 'a' and 'post' are one rigid body"},
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"rod\"\nat = [1, 0, 1]\n",
        "23:1: loop 'pin': 'rod' and 'rod' are one body"},
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"ground\"\nat = [1, 0, 1]\n",
@@ -248,6 +259,10 @@ TEST_F(MechanismMistakes, InFormulas) {
       {moved + "angle = \"ln(t)\"\n", "21:9: angle: expected an angle finite at t = 0, got -inf"},
       {moved + "angle = \"sqrt(t)\"\n",
        "21:9: angle: expected an angle whose rate is finite at t = 0, got inf"},
+      {moved + "angle = \"t < 1 ? 4 : 7\"\n",
+       "21:9: angle: expected a formula without comparisons, a ? b : c, sign and rint, since its "
+       "rate says nothing of a jump; prescribe the rate instead"},
+      {moved + "angle = \"0.3*sign(t - 1)\"\n", "21:9: angle: expected a formula without "},
       {moved + "rate = \"1\"\nangle = \"t\"\n", "19:1: prescribed: expected one of rate and angle"},
       {moved + "rate = \"1\"\n[[prescribed]]\njoint = \"arm\"\nrate = \"2\"\n",
        "22:1: prescribed 'arm': this joint is prescribed already"},

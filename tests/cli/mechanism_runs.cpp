@@ -1,5 +1,6 @@
 // Mechanisms in files: where they start, what stops them, which have steady motions, with roots of any kind.
 #include <cmath>
+#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -224,6 +225,108 @@ rate = "1 + 0.5*sin(t)"
     EXPECT_NE(head.find(name), std::string::npos) << head;
     EXPECT_EQ(head.find(name), head.rfind(name)) << head;
   }
+}
+
+const std::string kLocked = R"toml([[body]]
+name = "deck"
+mass = 5
+at = [0.3, 0, 0.1]
+box = [0.6, 0.15, 0.05]
+[[body]]
+name = "fork"
+mass = 1.5
+at = [0.75, 0, 0.5]
+box = [0.05, 0.06, 0.8]
+[[body]]
+name = "bob"
+mass = 1
+at = [0.3, 0, 0.5]
+sphere = 0.1
+[[joint]]
+name = "road"
+kind = "planar"
+child = "deck"
+[[joint]]
+name = "steer"
+kind = "hinge"
+parent = "deck"
+child = "fork"
+at = [0.75, 0, 0]
+[[joint]]
+name = "roll"
+kind = "hinge"
+parent = "deck"
+child = "bob"
+at = [0.3, 0, 0.1]
+axis = [1, 0, 0]
+stiffness = 20
+damping = 0.5
+[[blade]]
+name = "rear"
+body = "deck"
+[[blade]]
+name = "front"
+body = "fork"
+at = [0.75, 0, 0]
+[start]
+speed = 2
+[[prescribed]]
+joint = "steer"
+)toml";
+
+/// A constant angle is held while a steady motion is sought, and its rate leaves the mechanism its steady motions: on a
+/// circle of radius 0.75 m / tan 0.2, the bob where its spring bears weight and centrifugal force.
+TEST_F(MechanismRuns, SteadyWhereAnAngleIsHeld) {
+  for (const char* angle : {"0.2", "\"0.4/2\"", "\"0.2 + 2*pi\""}) {
+    const Outcome o =
+        run({"steady", write(kLocked + "angle = " + std::string(angle) + "\n"), "--json"});
+    ASSERT_EQ(o.status, 0) << o.err;
+    const json s = json::parse(o.out);
+    const json &at = s["motion"]["element"], &xi = s["motion"]["velocity"];
+    EXPECT_NEAR(std::remainder(at[3].get<double>() - 0.2, 2 * std::numbers::pi), 0, 1e-12);
+    const double turn = xi[0], ahead = xi[1], roll = at[4];
+    EXPECT_NEAR(turn, ahead * std::tan(0.2) / 0.75, 1e-10);
+    // The bob 0.4 m above the axis of roll, 0.1 m from its centre all moments the same.
+    const double aside = -0.4 * std::sin(roll), height = 0.4 * std::cos(roll);
+    const double inward = turn * ahead - turn * turn * aside;  // acceleration to the left
+    EXPECT_NEAR(20 * roll, -9.81 * aside + inward * height, 1e-9) << angle;
+    EXPECT_EQ(run({"run", write(kLocked + "angle = " + std::string(angle) + "\n"), "--until", "1"})
+                  .status,
+              0);
+  }
+  EXPECT_THAT(run({"steady", write(kLocked + "angle = \"0.2 + t^2\"\n")}).err,
+              HasSubstr("depends on time"));
+}
+
+/// Motions of the analysis that start later start where the angle is then.
+TEST_F(MechanismRuns, AnalysedWhereAnAngleIsPrescribed) {
+  for (const char* angle : {"0.1 + 0.4*sin(1.5*t)", "0.2 + t"}) {
+    const Outcome o = run({"describe", "--analyse",
+                           write(kLocked + "angle = \"" + std::string(angle) + "\"\n"), "--json"});
+    EXPECT_EQ(o.status, 0) << o.err;
+    EXPECT_EQ(json::parse(o.out)["directions"], 2) << angle;
+  }
+  // A four-bar linkage that cannot start later where it is stated to start now.
+  const Outcome o = run({"describe", "--analyse", write(R"toml(redundant = "drop"
+body = [
+  { name = "crank", mass = 1, at = [0.15, 0, 1.2], box = [0.3, 0.03, 0.03] },
+  { name = "rod", mass = 1.5, at = [0.6, 0, 1.5], box = [0.6, 0.03, 0.03] },
+  { name = "rocker", mass = 1, at = [0.95, 0, 1.3], box = [0.03, 0.03, 0.6] },
+  { name = "bob", mass = 1, at = [0.95, 0, 1.3], box = [0.03, 0.03, 0.6] },
+]
+joint = [
+  { name = "a", kind = "hinge", child = "crank", at = [0, 0, 1], axis = [0, 1, 0] },
+  { name = "b", kind = "hinge", parent = "crank", child = "rod", at = [0.3, 0, 1.4], axis = [0, 1, 0] },
+  { name = "d", kind = "hinge", child = "rocker", at = [1, 0, 1], axis = [0, 1, 0] },
+  { name = "e", kind = "hinge", parent = "rocker", child = "bob", at = [1, 0, 1], axis = [0, 1, 0] },
+]
+loop = [{ name = "c", a = "rod", b = "rocker", at = [0.9, 0, 1.6], axis = [0, 1, 0] }]
+prescribed = [{ joint = "a", angle = "0.3*sin(t)" }]
+[start]
+d.angle = 0
+)toml"),
+                         "--json"});
+  EXPECT_EQ(o.status, 0) << o.err;
 }
 
 }  // namespace

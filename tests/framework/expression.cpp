@@ -128,6 +128,18 @@ TEST(Expression, MistakesAreNamedWithTheirPlace) {
   }
 }
 
+/// As its form shows: what is neither may be, but is not known to be.
+TEST(Expression, KnowsItsForm) {
+  for (const char* text : {"3", "2*x - y/m + m^2", "-(x + 1)*sin(m)", "m > 1 ? x : x*y"})
+    EXPECT_TRUE(Expression(text, kNames, {{"m", 2}}).linear()) << text;
+  for (const char* text : {"x*y", "x^2", "x^1", "m/x", "sin(x)", "abs(x)", "x > 0 ? x : 1"})
+    EXPECT_FALSE(Expression(text, kNames, {{"m", 2}}).linear()) << text;
+  for (const char* text : {"x > 0 ? x : 1", "x + (y >= 1)", "sign(x)", "2*rint(x/2)", "x && 1"})
+    EXPECT_TRUE(Expression(text, kNames, {{"m", 2}}).may_jump()) << text;
+  for (const char* text : {"3", "x^2*abs(y)", "min(x, max(y, 0))", "m > 1 ? x : y", "sign(m)*x"})
+    EXPECT_FALSE(Expression(text, kNames, {{"m", 2}}).may_jump()) << text;
+}
+
 // Variables that no formula can spell are allowed, and left out; that two are one is not.
 TEST(Expression, LeavesOutNamesThatCannotStandInIt) {
   const std::vector<std::string> names = {"left arm", "3rd", "дрель", "x"};

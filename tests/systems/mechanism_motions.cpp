@@ -258,6 +258,21 @@ TEST(MechanismMotions, RollerWalkerIsSingularOnlyAsDrawn) {
     EXPECT_NEAR(mine.trajectory.column(row).back(), hers.trajectory.column(row).back(), 1e-7);
 }
 
+/// The example on top of mechanism.hpp.
+TEST(Mechanisms, RunTheExampleOfTheirHeader) {
+  hamel::Mechanism m("scooter");
+  const auto deck = m.body("deck", {.mass = 5, .at = {0.3, 0, 0.1}, .box = {0.8, 0.2, 0.05}});
+  const auto fork = m.body("fork", {.mass = 2, .at = {0.7, 0, 0.4}, .inertia = {0.1, 0.1, 0.01}});
+  m.planar("road", deck);
+  m.hinge("steer", deck, fork, {.at = {0.7, 0, 0}, .axis = {0, 0, 1}});
+  m.blade("rear", deck, {.at = {0, 0, 0}});
+  m.blade("front", fork, {.at = {0.7, 0, 0}});
+  m.start({{"speed", 2}, {"steer.angle", 0.3}});
+  const Result run = hamel::simulate(m).until(10).run();
+  ASSERT_TRUE(run) << run.status.reason;
+  EXPECT_NEAR(run.config.start.velocity[0], 2 * std::tan(0.3) / 0.7, 1e-12);
+}
+
 /// A needle on a ship, 5e13 times as heavy: what holds and drives the small one is no round-off of the large one.
 TEST(Mechanisms, LightPartsOnHeavyOnes) {
   const double inertia = 1e-6, stiffness = 1e-6, angle = 0.5;
