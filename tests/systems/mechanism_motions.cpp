@@ -250,7 +250,7 @@ TEST(Mechanisms, LightPartsOnHeavyOnes) {
   const double inertia = 1e-6, stiffness = 1e-6, angle = 0.5;
   const auto ship = [](bool upright) {
     Mechanism m("ship");
-    m.gravity(upright ? kGravity : 0.0);
+    m.gravity({0, 0, upright ? -kGravity : 0.0});
     m.body("ship", {.mass = 1e6, .inertia = {5e7, 5e7, 5e7}});
     m.planar("sea", "ship");
     return m;
