@@ -2,10 +2,12 @@
 //
 // Lagrange-d'Alembert with multipliers, d/dt along the motion:
 //   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,   A xi' = db/dt - (dA/dt) xi.
-// dI/dt, dA/dt, db/dt: by one dual number where the problem has its formulas over any scalar, its own where it has
-// them (Mechanics::rates), else by differences along g tau(e xi), t + e (lie/differences.hpp). A left-invariant problem has y' in closed form.
+// (dI/dt) xi and db/dt - (dA/dt) xi: by one dual number where the problem has its formulas over any scalar, its own where
+// it has them (Mechanics::rates), else by differences along g tau(e xi) at t, and in t at g (lie/differences.hpp). A
+// left-invariant problem has y' in closed form.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -31,9 +33,12 @@ class EquationsOfMotion {
         work_(problem.dim()),
         reaction_(problem.rows()),
         b_(problem.rows()),
-        b_rate_(problem.rows()),
+        row_rate_(problem.rows()),
+        time_rate_(b_),
+        time_work_{b_, b_},
+        momentum_rate_(problem.dim()),
         a_(problem.rows(), problem.dim()),
-        a_rate_(problem.rows(), problem.dim()),
+        a_rate_(Problem::Rows::Zero(problem.rows(), problem.dim())),
         moved_a_(a_),
         moved_b_(b_),
         inertia_(problem.dim(), problem.dim()),
@@ -64,16 +69,15 @@ class EquationsOfMotion {
     }
     apply_inertia(xi, momentum_);
     problem_.force(t, g, xi, change_);
-    if (!problem_.constant_inertia()) change_ -= inertia_rate_.lazyProduct(xi);
+    if (!problem_.constant_inertia()) change_ -= momentum_rate_;
     problem_.ad_transpose(xi, momentum_, work_);
     change_ += work_;
     apply_root(change_, work_);
     if (problem_.rows() > 0) {
-      b_rate_ -= a_rate_.lazyProduct(xi);
-      reaction_ = b_rate_ - y_.transpose().lazyProduct(work_);
+      reaction_ = row_rate_ - y_.transpose().lazyProduct(work_);
       solve_gram(reaction_);
       work_ += y_.lazyProduct(reaction_);
-      if (singular_) reaction_ -= stiffness_ * b_rate_;
+      if (singular_) reaction_ -= stiffness_ * row_rate_;
     }
     apply_root_transpose(work_, acceleration_);
   }
@@ -99,8 +103,8 @@ class EquationsOfMotion {
     apply_inertia(xi, momentum_);
     const double size = momentum_.dot(xi);
     if (problem_.rows() == 0) return {0, size};
-    b_rate_ = b_ - a_.lazyProduct(xi);
-    const double added = smallest(b_rate_, acceleration_);
+    row_rate_ = b_ - a_.lazyProduct(xi);
+    const double added = smallest(row_rate_, acceleration_);
     xi += acceleration_;
     return {added, size};
   }
@@ -116,7 +120,8 @@ class EquationsOfMotion {
   void evaluate_with_rates(const Element& g, const Vector& xi) {
     if constexpr (has_dual_rates())
       problem_.dual_rates(g, xi, a_, a_rate_, inertia_, inertia_rate_);
-    b_rate_.setZero();
+    row_rate_ = -a_rate_.lazyProduct(xi);
+    if (!problem_.constant_inertia()) momentum_rate_ = inertia_rate_.lazyProduct(xi);
   }
   // What follows from inertia_ and a_.
   void factor(double t, const Element& g) {
@@ -139,27 +144,44 @@ class EquationsOfMotion {
   }
 
   void find_rates(double t, const Element& g, const Vector& xi) {
-    b_rate_.setZero();
-    a_rate_.setZero();
+    row_rate_.setZero();
     if (problem_.rows() == 0 && problem_.constant_inertia()) return;
     const bool moves = !problem_.constant_constraints(), varies = !problem_.constant_inertia();
     if (!moves && !varies) return;
     if constexpr (has_dual_rates()) return evaluate_with_rates(g, xi);
-    if constexpr (requires { problem_.rates(t, g, xi, a_rate_, b_rate_, inertia_rate_); }) {
-      if (problem_.rates(t, g, xi, a_rate_, b_rate_, inertia_rate_)) return;
+    if constexpr (requires { problem_.rates(t, g, xi, row_rate_, momentum_rate_); }) {
+      if (problem_.rates(t, g, xi, row_rate_, momentum_rate_)) return;
     }
-    inertia_rate_.setZero();
-    differentiate_along(problem_, g, xi, work_, moved_, [&](double shift, double weight) {
+    row_rate_.setZero();
+    momentum_rate_.setZero();
+    // What A xi lacks of b.
+    const auto lack = [&](double at, const Element& where) {
+      problem_.constraints(at, where, moved_a_, moved_b_);
+      moved_b_ -= moved_a_.lazyProduct(xi);
+    };
+    differentiate_along(problem_, g, xi, work_, moved_, [&](double, double weight) {
       if (moves) {
-        problem_.constraints(t + shift, moved_, moved_a_, moved_b_);
-        a_rate_ += weight * moved_a_;
-        b_rate_ += weight * moved_b_;
+        lack(t, moved_);
+        row_rate_ += weight * moved_b_;
       }
       if (varies) {
         problem_.inertia(moved_, moved_inertia_);
-        inertia_rate_ += weight * moved_inertia_;
+        momentum_rate_ += weight * moved_inertia_.lazyProduct(xi);
       }
     });
+    if (!moves || autonomous()) return;
+    differentiate_in_time(
+        t,
+        [&](double at) -> const Few& {
+          lack(at, g);
+          return moved_b_;
+        },
+        time_work_, time_rate_);
+    row_rate_ += time_rate_;
+  }
+  bool autonomous() const {
+    if constexpr (requires { problem_.autonomous(); }) return problem_.autonomous();
+    else return true;
   }
 
   // root_ = W = L^-1, I = L L^T: rows of W from those above.
@@ -239,7 +261,9 @@ class EquationsOfMotion {
   bool known_ = false, diagonal_ = false, singular_ = false;
   double stiffness_ = 0;
   Vector acceleration_, momentum_, change_, work_;
-  Few reaction_, b_, b_rate_;
+  Few reaction_, b_, row_rate_, time_rate_;  // row_rate_: of b - A xi at constant xi
+  std::array<Few, 2> time_work_;
+  Vector momentum_rate_;  // of I xi at constant xi
   typename Problem::Rows a_, a_rate_, moved_a_;
   Few moved_b_;
   typename Problem::Matrix inertia_, inertia_rate_, moved_inertia_, root_;

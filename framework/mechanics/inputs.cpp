@@ -74,6 +74,19 @@ InputValues Inputs::at(double t) const {
   return out;
 }
 
+InputValues Inputs::slopes_at(double t) const {
+  InputValues out = InputValues::Zero(now_.size());
+  for (std::size_t i = 0; i < tables_.size(); ++i) {
+    const InputTable& table = tables_[i];
+    if (table.times.size() < 2 || table.hold) continue;
+    if (!smooth_[i] && (t < table.times.front() || t > table.times.back())) continue;
+    const std::size_t piece = smooth_[i] ? pieces_[i] : piece_at(table, t);
+    out[static_cast<Eigen::Index>(i)] = (table.values[piece + 1] - table.values[piece]) /
+                                        (table.times[piece + 1] - table.times[piece]);
+  }
+  return out;
+}
+
 void Inputs::set(std::size_t input, double value) {
   tables_[input] = {{}, {value}};
   smooth_[input] = false;

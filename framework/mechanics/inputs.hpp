@@ -54,6 +54,8 @@ class Inputs {
   void enter(double t, double h);
   /// The values at a time of the step.
   InputValues at(double t) const;
+  /// Their rates there, where they have one: of lines.
+  InputValues slopes_at(double t) const;
   /// From now on constant.
   void set(std::size_t input, double value);
   /// The first time beyond t, in the direction of h, at which a held value jumps or a line bends; infinite where there

@@ -39,9 +39,10 @@ class Mechanics {
   virtual void inertia(const double* g, Matrix out) const = 0;
   /// A(t, g), k x n, and b(t, g).
   virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
-  /// dA/dt, db/dt and dI/dt along (t, g) at g' = g xi, where a system knows them; false: it does not.
-  virtual bool rates(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Matrix /*a*/,
-                     Vector /*b*/, Matrix /*inertia*/) const {
+  /// db/dt - (dA/dt) xi, k entries, and (dI/dt) xi, n entries, along (t, g) at g' = g xi, where a system knows them;
+  /// false: it does not.
+  virtual bool rates(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector /*rows*/,
+                     Vector /*momentum*/) const {
     return false;
   }
   /// phi(g).
@@ -85,7 +86,7 @@ class LeftInvariantMechanics : public Mechanics {
 class UnconstrainedMechanics final : public Mechanics {
  public:
   explicit UnconstrainedMechanics(std::shared_ptr<const Mechanics> system)
-      : system_(std::move(system)) {}
+      : system_(std::move(system)), rows_(system_->rows()) {}
   int dim() const override { return system_->dim(); }
   int rows() const override { return 0; }
   bool constant_inertia() const override { return system_->constant_inertia(); }
@@ -93,6 +94,9 @@ class UnconstrainedMechanics final : public Mechanics {
   bool left_invariant() const override { return system_->left_invariant(); }
   void inertia(const double* g, Matrix out) const override { system_->inertia(g, out); }
   void constraints(double, const double*, Matrix, Vector) const override {}
+  bool rates(double t, const double* g, ConstVector xi, Vector, Vector momentum) const override {
+    return system_->rates(t, g, xi, rows_, momentum);
+  }
   bool autonomous() const override { return system_->autonomous(); }
   bool has_force() const override { return system_->has_force(); }
   void force(double t, const double* g, ConstVector xi, Vector out) const override {
@@ -109,6 +113,7 @@ class UnconstrainedMechanics final : public Mechanics {
 
  private:
   std::shared_ptr<const Mechanics> system_;
+  mutable Eigen::VectorXd rows_;  // work space
 };
 
 }  // namespace hamel

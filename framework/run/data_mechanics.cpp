@@ -80,17 +80,19 @@ void DataMechanics::constraints(double t, const double* g, Matrix a, Vector b) c
   }
 }
 
-bool DataMechanics::rates(double t, const double* g, ConstVector xi, Matrix a, Vector b,
-                          Matrix inertia) const {
+bool DataMechanics::rates(double t, const double* g, ConstVector xi, Vector rows,
+                          Vector momentum) const {
   if (!exact_rates_) return false;
   take(g);
   take(t);
   std::fill(slopes_.begin(), slopes_.end(), 0.0);
   if (!rates_.along(values_.data(), xi.data(), slopes_.data())) return false;
   slopes_[time()] = 1;
-  f_.rows.rates(values_, slopes_, a);
-  f_.drift.rates(values_, slopes_, b);
-  f_.inertia.rates(values_, slopes_, inertia);
+  rows.setZero();
+  momentum.setZero();
+  f_.rows.add_rate(values_, slopes_, -1, xi, rows);
+  f_.drift.add_rate(values_, slopes_, 1, Eigen::Matrix<double, 1, 1>::Ones(), rows);
+  f_.inertia.add_rate(values_, slopes_, 1, xi, momentum);
   return true;
 }
 

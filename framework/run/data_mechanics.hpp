@@ -26,10 +26,11 @@ struct FormulaMatrix {
   bool is_constant() const { return entries.empty(); }
   bool is_zero() const { return is_constant() && constant.isZero(0); }
   bool uses(size_t first, size_t last) const;  // variables first <= i < last
-  template <class Out>
-  void rates(std::span<const double> values, std::span<const double> rates, Out&& out) const {
-    out.setZero();
-    for (const Entry& e : entries) out(e.row, e.column) = e.value.rate(values, rates);
+  /// out += factor times the rate of the matrix, times x.
+  template <class X, class Out>
+  void add_rate(std::span<const double> values, std::span<const double> rates, double factor,
+                const X& x, Out&& out) const {
+    for (const Entry& e : entries) out[e.row] += factor * e.value.rate(values, rates) * x[e.column];
   }
   template <class Out>
   void at(std::span<const double> values, Out&& out) const {
@@ -64,8 +65,8 @@ class DataMechanics final : public Mechanics, public Worded {
   bool force_depends_on_velocity() const override { return velocity_force_; }
   void inertia(const double* g, Matrix out) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
-  bool rates(double t, const double* g, ConstVector xi, Matrix a, Vector b,
-             Matrix inertia) const override;
+  bool rates(double t, const double* g, ConstVector xi, Vector rows,
+             Vector momentum) const override;
   void holonomic(const double* g, Vector out) const override;
   void force(double t, const double* g, ConstVector xi, Vector out) const override;
   void inertial_force(const double* g, ConstVector xi, Vector out) const override;

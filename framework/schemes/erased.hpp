@@ -95,9 +95,10 @@ class Erased {
   void constraints(double t, const Element& g, Rows& a, Few& b) const {
     mechanics_->constraints(t, g.data(), a, b);
   }
-  bool rates(double t, const Element& g, const Vector& xi, Rows& a, Few& b, Matrix& inertia) const {
-    return mechanics_->rates(t, g.data(), xi, a, b, inertia);
+  bool rates(double t, const Element& g, const Vector& xi, Few& rows, Vector& momentum) const {
+    return mechanics_->rates(t, g.data(), xi, rows, momentum);
   }
+  bool autonomous() const { return mechanics_->autonomous(); }
   void holonomic(const Element& g, Held& phi) const { mechanics_->holonomic(g.data(), phi); }
   void force(double t, const Element& g, const Vector& xi, Vector& out) const {
     mechanics_->force(t, g.data(), xi, out);

@@ -62,6 +62,7 @@ class Typed : public GroupOperations<Tau> {
   static constexpr bool constant_inertia() { return F::constant_inertia(); }
   static constexpr bool constant_constraints() { return F::constant_constraints(); }
   static constexpr bool has_dual_rates() { return F::has_dual_rates(); }
+  static constexpr bool autonomous() { return is_autonomous<System>(); }
 
   static void velocity(const State& x, Vector& xi) { xi = x; }
   static void carry(const Vector& xi, State& x) { x = xi; }

@@ -129,8 +129,8 @@ Rows Assembly::rows() {
     for (const Prescribed& other : out.prescribed)
       if (other.name == part.name) wrong(part, "prescribed", "this joint is prescribed already");
     if (const int link = joint_of(part, "prescribed"); link >= 0)
-      out.prescribed.push_back(
-          {part.name, link, rate, part.angle, part.of_time});  // the number of the velocity follows
+      out.prescribed.push_back({part.name, link, rate, part.angle, part.of_time,
+                                part.slope});  // the number of the velocity follows
   }
   return out;
 }

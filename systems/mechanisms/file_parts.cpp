@@ -95,7 +95,7 @@ void FileParts::prescribed(const toml::table& table) {
   if (!is_input(table, {"rate", "angle"})) no_range(table);
   if (rate.value && angle.value) read_.toml.wrong(table, "prescribed", "one of rate and angle");
   if (rate.value && rate.constant) m_.prescribe(joint, rate.value(0));
-  else if (rate.value) m_.prescribe(joint, rate.value);
+  else if (rate.value) m_.prescribe(joint, rate.value, {}, rate.slope);
   else if (angle.value && angle.constant) m_.prescribe(joint, angle.slope(0), angle.value);
   else if (angle.value) m_.prescribe(joint, angle.slope, angle.value);
   else m_.prescribe(joint, range);

@@ -42,15 +42,16 @@ void Mechanism::loop(const std::string& name, const std::string& a, const std::s
   loops_.push_back({part(name), options, a, b});
 }
 void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate,
-                          std::function<double(double t)> angle) {
-  rates_.push_back({part(joint), std::move(rate), std::move(angle), true});
+                          std::function<double(double t)> angle,
+                          std::function<double(double t)> slope) {
+  rates_.push_back({part(joint), std::move(rate), std::move(angle), std::move(slope), true, {}});
 }
 void Mechanism::prescribe(const std::string& joint, double rate,
                           std::function<double(double t)> angle) {
-  rates_.push_back({part(joint), [rate](double) { return rate; }, std::move(angle), false, {}});
+  rates_.push_back({part(joint), [rate](double) { return rate; }, std::move(angle), {}, false, {}});
 }
 void Mechanism::prescribe(const std::string& joint, const Range& range) {
-  rates_.push_back({part(joint), {}, {}, false, range});
+  rates_.push_back({part(joint), {}, {}, {}, false, range});
 }
 void Mechanism::ground(double rate, Point velocity) {
   ground_rate_ = rate;

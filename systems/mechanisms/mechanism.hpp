@@ -129,9 +129,11 @@ class Mechanism {
   void loop(const std::string& name, const std::string& a, const std::string& b,
             const LoopOptions& options);
   /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate". With the angle (of a
-  /// slider the position) whose derivative it is, a run starts there.
+  /// slider the position) whose derivative it is, a run starts there. With the derivative of the rate the equations of
+  /// motion are exact; without, they find it by differences.
   void prescribe(const std::string& joint, std::function<double(double t)> rate,
-                 std::function<double(double t)> angle = {});
+                 std::function<double(double t)> angle = {},
+                 std::function<double(double t)> slope = {});
   /// One that does not change, so that there are steady motions; of rate 0 with an angle the joint is held there.
   void prescribe(const std::string& joint, double rate, std::function<double(double t)> angle = {});
   void prescribe(const std::string& joint, const Range& range = {});
@@ -201,6 +203,7 @@ class Mechanism {
   struct RatePart : Part {
     std::function<double(double)> rate;   // empty: an input
     std::function<double(double)> angle;  // empty: that of the start
+    std::function<double(double)> slope;  // of the rate; empty: by differences
     bool of_time = false;                 // not constant
     Range range = {};
   };

@@ -48,7 +48,12 @@ void Multibody::drive(const std::vector<Driver>& drivers,
       continue;
     }
     for (Prescribed& p : rows_.prescribed)
-      if (p.dof == drivers[i].dof) p.rate = at;
+      if (p.dof == drivers[i].dof) {
+        p.rate = at;
+        p.slope = [inputs, i](double t) {
+          return inputs->slopes_at(t)[static_cast<Eigen::Index>(i)];
+        };
+      }
   }
 }
 
@@ -105,6 +110,18 @@ void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const
         write(row, at, a, slots_[i]);
         b[slots_[i]] = row.drift;
       });
+}
+
+bool Multibody::rates(double t, const double* g, ConstVector xi, Vector rows,
+                      Vector momentum) const {
+  rows.setZero();
+  momentum.setZero();
+  Tree& at = constant_inertia_ ? placed(g) : carrying(g);
+  at.move(xi);
+  at.accelerate();
+  if (!constant_rows_) rows_.rates(at, t, varies_, slots_, rows);
+  if (!constant_inertia_) at.add_inertia_rate(momentum);
+  return true;
 }
 
 void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) const {

@@ -45,6 +45,8 @@ class Multibody : public Mechanics {
 
   void inertia(const double* g, Matrix out) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
+  bool rates(double t, const double* g, ConstVector xi, Vector rows,
+             Vector momentum) const override;
   void holonomic(const double* g, Vector out) const override;
   void force(double t, const double* g, ConstVector xi, Vector out) const override;
   void inertial_force(const double* g, ConstVector xi, Vector out) const override;

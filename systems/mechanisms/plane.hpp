@@ -1,6 +1,7 @@
 // What is left of the algebra of screw.hpp where all turns about the third axis and moves across it.
 //
 //   twist (w, v1, v2), wrench (m3, f1, f2): the entries 3 to 5 of those in space
+//   ad_V W = (0, v2 w' - w v2', w v1' - v1 w'),   W = (w', v1', v2')
 //   ad_V^T P = (f1 v2 - f2 v1, f2 w, -f1 w)
 #pragma once
 
@@ -59,6 +60,9 @@ inline void add_in_plane(Inertia& to, const Inertia& more) {
 inline Vec3 momentum_in_plane(const Inertia& i, const Vec3& v) {
   return {i.second(2, 2) * v[0] + i.first[0] * v[2] - i.first[1] * v[1],
           i.mass * v[1] - v[0] * i.first[1], i.mass * v[2] + v[0] * i.first[0]};
+}
+inline Vec3 ad_in_plane(const Vec3& v, const Vec3& w) {
+  return {0, v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]};
 }
 inline Vec3 ad_transpose_in_plane(const Vec3& v, const Vec3& p) {
   return {p[1] * v[2] - p[2] * v[1], p[2] * v[0], -p[1] * v[0]};

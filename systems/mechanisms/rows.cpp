@@ -6,34 +6,10 @@
 
 #include <hamel/groups/so2.hpp>
 
+#include <hamel/systems/mechanisms/touch.hpp>
+
 namespace hamel::mechanisms {
 namespace {
-
-// Where a contact touches, its first horizontal direction, and the vertical: seen from the root.
-struct Touch {
-  Vec3 gamma, q, along;
-  Touch(const Contact& contact, const Tree& tree) {
-    const Rigid here = tree.from_root(contact.carrier);
-    gamma = tree.root_in_world(contact.link).rotation.row(2).transpose();
-    q = here.apply(contact.at);
-    const Vec3 axis = here.rotation.lazyProduct(contact.axis);
-    along = axis;
-    switch (contact.kind) {
-      case ContactKind::wheel:
-      case ContactKind::roller: {
-        const Vec3 up = gamma - gamma.dot(axis) * axis;
-        q -= contact.radius / up.norm() * up;
-        along = axis.cross(gamma).normalized();
-        break;
-      }
-      case ContactKind::blade: break;
-      case ContactKind::ball:
-        q -= contact.radius * gamma;
-        along = tree.root_in_world(contact.link).rotation.row(0).transpose();
-        break;
-    }
-  }
-};
 
 // A force along u at x, both of the world, on a link.
 Wrench on_link(const Tree& tree, int link, const Vec3& x, const Vec3& u) {

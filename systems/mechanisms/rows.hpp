@@ -59,6 +59,7 @@ struct Prescribed {
   std::function<double(double t)> rate;
   std::function<double(double t)> angle;  // where a run starts; empty: anywhere
   bool of_time = false;                   // does the rate change?
+  std::function<double(double t)> slope;  // of the rate; empty: by differences
   int held = -1;                          // the link that stays at this angle; else -1
 };
 
@@ -144,6 +145,10 @@ struct Rows {
     each(
         tree, t, [](size_t) { return true; }, f);
   }
+  /// out[slots[i]] = d/dt (b - A xi) along the motion at constant xi, of the rows that vary; of a tree that moved and
+  /// accelerated.
+  void rates(const Tree& tree, double t, const std::vector<char>& varies,
+             const std::vector<int>& slots, Eigen::Ref<Eigen::VectorXd> out) const;
   /// Where a contact touches the ground, in the world; its height above it.
   Vec3 touches(const Contact& contact, const Tree& tree) const;
   double height(const Contact& contact, const Tree& tree) const {
@@ -163,6 +168,8 @@ struct Rows {
   static void look(const Loop& loop, const Tree& tree, Row* rows);
   // The coordinate of a joint that is held, from where it is held.
   static double beyond(const Prescribed& p, const Tree& tree);
+  void rates(const Contact& contact, const Tree& tree, double* out) const;
+  static void rates(const Loop& loop, const Tree& tree, double* out);
 };
 
 }  // namespace hamel::mechanisms

@@ -58,6 +58,11 @@ inline Wrench force_at(const Vec3& q, const Vec3& u) { return stack(q.cross(u), 
 /// The velocity of the point at q.
 inline Vec3 velocity_at(const Twist& v, const Vec3& q) { return lower(v) + upper(v).cross(q); }
 
+/// ad_V W.
+inline Twist ad(const Twist& v, const Twist& w) {
+  const Vec3 omega = upper(v), a = upper(w);
+  return stack(omega.cross(a), lower(v).cross(a) + omega.cross(lower(w)));
+}
 /// ad_V^T P = (m x omega + f x v, f x omega).
 inline Wrench ad_transpose(const Twist& v, const Wrench& p) {
   const Vec3 m = upper(p), f = lower(p), omega = upper(v);

@@ -9,6 +9,9 @@
 // I_j the inertia and P_j the momentum of link j with all that it carries:
 //   I(g)_ab = s_a^T I_b s_b for a on the way from the root to b,     (composite bodies)
 //   1/2 d(xi^T I xi)_a = s_a^T ad_{V_parent}^T P_a.                 (from d V_j = -ad_{s_a} Ad^-1 V_parent)
+// Along the motion, xi held, with U_j = V_j - V_root the twist of link j against its root and D_j = dV_j/dt:
+//   D_j = D_parent + ad_{U_parent} (V_j - V_parent),   D_root = 0          (ds_a/dt = ad_{U_parent} s_a)
+//   (dI/dt xi)_a = s_a^T (ad_{U_parent}^T P_a + dP_a/dt),   d(I_j V_j)/dt = I_j (D_j - ad_{U_j} V_j) - ad_{U_j}^T I_j V_j.
 // The axis of a hinge or slider is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant on a root.
 // Less is left to do for
 //   planar links  that turn about the vertical of a root which does no more: plane.hpp;
@@ -79,10 +82,22 @@ class Tree {
   /// Twists of all links, seen from their roots; place() first.
   void move(Eigen::Ref<const Eigen::VectorXd> xi);
   Twist twist(int link) const { return link == kGround ? Twist::Zero() : at(link).twist; }
+  Twist root_twist(int link) const {
+    return link == kGround ? Twist::Zero() : at(at(link).root).twist;
+  }
+  /// How they change while xi does not, D; move() first.
+  void accelerate();
+  Twist acceleration(int link) const {
+    return link == kGround ? Twist::Zero() : at(link).acceleration;
+  }
+  /// The twist of a link against its root, U; accelerate() first.
+  Twist against_root(int link) const { return link == kGround ? Twist::Zero() : at(link).against; }
 
   void inertia(Eigen::Ref<Eigen::MatrixXd> out) const;
   /// out += 1/2 d(xi^T I xi); carry() and move() first.
   void add_inertial_force(Eigen::Ref<Eigen::VectorXd> out);
+  /// out += (dI/dt) xi along the motion; carry() and accelerate() first.
+  void add_inertia_rate(Eigen::Ref<Eigen::VectorXd> out);
   /// out += what the weights do on xi; carry() first.
   void add_weight(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) const;
   /// out += sign * what a wrench on a link does on xi; seen from its root. On the ground nothing.
@@ -112,8 +127,8 @@ class Tree {
     Mat<6, 6> columns = Mat<6, 6>::Zero();
     Rigid place, world;  // X; W of a root
     PlaneMotion flat;    // X of a planar link
-    Twist twist = Twist::Zero();
-    Wrench spin_here = Wrench::Zero(), momentum = Wrench::Zero();
+    Twist twist = Twist::Zero(), against = Twist::Zero(), acceleration = Twist::Zero();  // V, U, D
+    Wrench spin_here = Wrench::Zero(), momentum = Wrench::Zero(), momentum_rate = Wrench::Zero();
     Inertia own, carried;  // with all that the link carries
 
     std::array<double, 2> numbers(const double* g) const;

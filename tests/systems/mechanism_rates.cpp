@@ -1,0 +1,194 @@
+// What mechanisms answer to rates(): against differences, and fast motions against what they are known to be.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include <hamel/framework/check/laws.hpp>
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/systems/mechanisms/library.hpp>
+#include <hamel/systems/mechanisms/mechanism_file.hpp>
+#include <hamel/systems/simulate.hpp>
+
+#include "mechanism_systems.hpp"
+
+namespace hamel {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Differences of order 6 at two steps, extrapolated to order 8: truncation and round-off are below 1e-10 of the values.
+template <class F>
+auto slope(F&& f) {
+  const auto coarse = check::derivative(f, 8e-3), fine = check::derivative(f, 4e-3);
+  return ((64 * fine - coarse) / 63).eval();
+}
+
+// rates() at a pose off the rows, in a motion that satisfies none: the formulas need no more than a curve.
+void check_rates(const SystemModel& model) {
+  SCOPED_TRACE(model.name);
+  const Mechanics& mechanics = *model.mechanics;
+  if (mechanics.left_invariant()) return;  // nothing changes
+  const auto geometry = registry().geometry(model.group.name, "exp");
+  const int n = mechanics.dim(), k = mechanics.rows();
+  VectorXd g(geometry->size()), moved(g.size()), xi(n), shift(n), b(k), rows(k), momentum(n);
+  MatrixXd a(k, n), inertia(n, n);
+  geometry->from_coordinates(model.start.configuration, g.data());
+  for (int pose = 0; pose < 3; ++pose) {
+    for (int i = 0; i < n; ++i) {
+      xi[i] = std::sin(3.0 * i + 1 + pose);
+      shift[i] = 0.2 * std::sin(5.0 * i + 2);
+    }
+    geometry->tau(shift.data(), moved.data());
+    geometry->compose(g.data(), moved.data(), g.data());
+    const double t = 0.3 + pose;
+    const auto at = [&](double e) {
+      const VectorXd step = e * xi;
+      geometry->tau(step.data(), moved.data());
+      geometry->compose(g.data(), moved.data(), moved.data());
+      mechanics.constraints(t + e, moved.data(), a, b);
+      mechanics.inertia(moved.data(), inertia);
+    };
+    const VectorXd rows_change = slope([&](double e) -> VectorXd {
+      at(e);
+      return b - a * xi;
+    });
+    const VectorXd momentum_change = slope([&](double e) -> VectorXd {
+      at(e);
+      return inertia * xi;
+    });
+    ASSERT_TRUE(mechanics.rates(t, g.data(), xi, rows, momentum));
+    for (int i = 0; i < k; ++i)
+      EXPECT_NEAR(rows[i], rows_change[i], 1e-8 * (1 + std::abs(rows[i]))) << "row " << i;
+    at(0);
+    for (int i = 0; i < n; ++i) {
+      EXPECT_NEAR(momentum[i], momentum_change[i], 1e-8 * (1 + inertia.norm())) << "velocity " << i;
+    }
+  }
+}
+
+// All joints, contacts and loops, on ground that turns or rests; planar links with and without links that tilt.
+Mechanism contacts(bool space, bool moving_ground) {
+  Mechanism m(space ? moving_ground ? "in space, on a turntable" : "in space" : "on the plane");
+  m.body("a", {.mass = 2, .at = {0.1, 0.2, 0.6}, .inertia = {0.3, 0.4, 0.5}});
+  m.body("b", {.mass = 1, .at = {0.5, 0.1, 0.7}, .inertia = {0.1, 0.02, 0, 0.2, 0.01, 0.15}});
+  m.body("c", {.mass = 0.5, .at = {0.9, 0, 0.4}, .cylinder = {0.1, 0.3}, .axis = {1, 1, 0}});
+  m.body("d", {.mass = 0.7, .at = {0, -0.4, 0.3}, .sphere = 0.3});
+  m.body("e", {.mass = 0.4, .at = {-0.4, 0, 0.5}, .box = {0.1, 0.2, 0.3}});
+  m.body("f", {.mass = 0.3, .at = {-0.6, 0.1, 0.5}, .inertia = {0.01, 0.01, 0.015}});
+  m.body("g", {.mass = 0.6, .at = {0.3, 0.5, 0.35}, .inertia = {0.02, 0.03, 0.02}});
+  m.body("h", {.mass = 0.6, .at = {0.3, -0.5, 0.35}, .inertia = {0.02, 0.03, 0.02}});
+  if (space) m.free("root", "a", {.at = {0, 0, 0.5}});
+  else m.planar("root", "a");
+  m.hinge("h", "a", "b", {.at = {0.3, 0, 0.5}, .axis = {0, 0, 1}});
+  m.slider("s", "b", "c", {.at = {0.7, 0, 0.5}, .axis = {1, 0.2, 0}});
+  m.ball_joint("j", "b", "d", {.at = {0, -0.2, 0.4}});
+  m.universal("u", "a", "e", {.at = {-0.2, 0, 0.5}, .axis = {0, 0, 1}, .axis2 = {0, 1, 0}});
+  m.joint("planar", "p", "e", "f", {.at = {-0.5, 0, 0.5}, .axis = {0, 1, 1}});
+  m.hinge("w", "b", "g", {.at = {0.3, 0.5, 0.35}, .axis = {0, 1, 0}});
+  m.hinge("v", "f", "h", {.at = {0.3, -0.5, 0.35}, .axis = {0, 1, 0}});
+  m.wheel("w", "g", {.at = {0.3, 0.5, 0.35}, .radius = 0.35});
+  m.roller("v", "h", {.at = {0.3, -0.5, 0.35}, .radius = 0.35, .angle = 0.6});
+  m.ball("d", "d", {.at = {0, -0.4, 0.3}, .radius = 0.3});
+  m.blade("c", "c", {.at = {0.9, 0, 0}, .along = {1, 0.3, 0}});
+  m.loop("hinge", "f", "d", {.at = {0, 0.3, 0.4}, .axis = {0.6, 0, 0.8}});
+  m.loop("ball", "c", "ground", {.at = {0.9, 0, 0.3}});
+  m.prescribe("s", [](double t) { return std::sin(3 * t); });
+  if (moving_ground) m.ground(0.7, {0.2, -0.1, 0});
+  m.redundant("drop");
+  return m;
+}
+
+TEST(MechanismRates, AreThoseOfDifferences) {
+  for (const auto& [name, text] : mechanisms::library()) check_rates(mechanism_from(text, name));
+  check_rates(contacts(true, false).model());
+  check_rates(contacts(true, true).model());
+  check_rates(contacts(false, false).model());
+}
+
+// A pendulum whose pivot is shaken, 2 mm at 160 Hz: (J + m l^2) angle'' = m (g + a) (x cos + z sin), a the acceleration of
+// the pivot; by Runge-Kutta 4 with steps of 5 us, error 1e-11.
+TEST(MechanismRates, FollowWhatIsPrescribedFast) {
+  constexpr double mass = 0.2, pivot = 0.1, x = 0.02, z = 0.1, g = 9.81, w = 1000, until = 0.5;
+  const auto with = [&](const std::string& rate) {
+    return mechanism_info(R"toml(
+name = "shaken"
+body = [ { name = "pivot", mass = 0.1, at = [0, 0, 0], sphere = 0.01 },
+         { name = "bob", mass = 0.2, at = [0.02, 0, 0.1], sphere = 0.01 } ]
+joint = [ { name = "shake", kind = "slider", child = "pivot", at = [0, 0, 0], axis = [0, 0, 1] },
+  { name = "swing", kind = "hinge", parent = "pivot", child = "bob", at = [0, 0, 0], axis = [0, 1, 0] } ]
+prescribed = [ { joint = "shake", )toml" +
+                              rate + " } ]",
+                          "shaken.toml");
+  };
+  const double moment = 0.4 * mass * 1e-4 + mass * (x * x + z * z);
+  const auto turn = [&](double t, double angle) {
+    return mass * (g - 2 * w * std::sin(w * t)) * (x * std::cos(angle) + z * std::sin(angle)) /
+           moment;
+  };
+  double angle = 0, rate = 0;
+  constexpr int steps = 100000;
+  const double h = until / steps;
+  for (int i = 0; i < steps; ++i) {
+    const double t = i * h;
+    const double k1 = turn(t, angle), k2 = turn(t + h / 2, angle + h / 2 * rate),
+                 k3 = turn(t + h / 2, angle + h / 2 * rate + h * h / 4 * k1),
+                 k4 = turn(t + h, angle + h * rate + h * h / 2 * k2);
+    angle += h * rate + h * h / 6 * (k1 + k2 + k3);
+    rate += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  const double c = std::cos(angle), s = std::sin(angle), slope = -(x * c + z * s),
+               bend = x * s - z * c;  // of the height of the bob
+  const double force = (pivot + mass) * (g - 2 * w * std::sin(w * until)) +
+                       mass * (slope * turn(until, angle) + bend * rate * rate);
+  for (const char* how : {"rate = \"2*cos(1000*t)\"", "angle = \"0.002*sin(1000*t)\""}) {
+    SCOPED_TRACE(how);
+    Registry mine = registry();
+    mine.add(with(how));
+    const Result result = Simulation(mine, "shaken")
+                              .start({.velocity = {2, 0}})
+                              .scheme("dop853")
+                              .tolerance({.relative = 1e-12})
+                              .until(until)
+                              .run();
+    ASSERT_TRUE(result.status.ok) << result.status.reason;
+    EXPECT_NEAR(result.last.coordinates[0], 0.002 * std::sin(w * until), 1e-10);
+    EXPECT_NEAR(result.last.coordinates[1], angle, 1e-8);
+    EXPECT_NEAR(result.last.velocity[1], rate, 1e-7);
+    EXPECT_NEAR(result.trajectory.column("shake.reaction1").back(), force, 1e-6);
+  }
+}
+
+// A disk that falls from upright until it is nearly flat, when its contact races round the rim.
+TEST(MechanismRates, OfADiskNearlyFlat) {
+  FallingDisk disk;
+  disk.radius = 1;
+  disk.axial_inertia = 0.5;
+  disk.diametral_inertia = 0.25;
+  const double upright = 1.5707963267948966;
+  const Mat<3, 3> r = body_on_plane::leaning(upright).rotation;
+  const Vec<3> omega(0.1, 0, 0.02), v = -omega.cross(r * Vec<3>(0, -disk.radius, 0));
+  const Vec<3> own = r.transpose() * omega, own_v = r.transpose() * v;
+  const auto go = [](Simulation simulation, const Start& start) {
+    const Result result =
+        simulation.start(start).scheme("dop853").tolerance({.relative = 1e-12}).until(2.5).run();
+    EXPECT_TRUE(result.status.ok) << result.status.reason;
+    return result;
+  };
+  Start start = by_parts::disk(disk, upright).model().start, hers_start = disk.start();
+  start.velocity = {omega[0], omega[1], omega[2], v[0], v[1], v[2]};
+  for (int i = 0; i < 9; ++i) hers_start.configuration[static_cast<size_t>(i)] = r(i / 3, i % 3);
+  for (size_t i = 9; i < 12; ++i) hers_start.configuration[i] = i == 11 ? disk.radius : 0;
+  hers_start.velocity = {own[0], own[1], own[2], own_v[0], own_v[1], own_v[2]};
+  const Result ours = go(simulate(by_parts::disk(disk, upright)), start),
+               hers = go(simulate(disk), hers_start);
+  Vec<3> turning(hers.last.velocity[0], hers.last.velocity[1], hers.last.velocity[2]);
+  turning = r * turning;
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(ours.last.velocity[static_cast<size_t>(i)], turning[i], 1e-8) << i;
+  EXPECT_NEAR(ours.last.energy, hers.last.energy, 1e-10);
+}
+
+}  // namespace
+}  // namespace hamel
