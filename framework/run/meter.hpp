@@ -50,8 +50,8 @@ class Meter {
   template <class Archive>
   void carry(Archive& archive) {
     archive(all_, first_, energy_start_, time_start_, last_row_, width_, energy_error_, work_,
-            rows_, exact_lost_, notes_, pulls_, time_, power_, power_time_, start_configuration_,
-            lambda_, balance_);
+            rows_, exact_lost_, notes_, pulls_, time_, power_, power_time_, second_work_,
+            second_power_, second_time_, odd_, start_configuration_, lambda_, balance_);
   }
   /// A run that goes on: the exact motion is followed to here through the times of the rows before.
   void follow_exact(double time);
@@ -63,6 +63,8 @@ class Meter {
   void add(Group&& group, std::span<const double> values);
   void react(const Snapshot& state, bool start = false);
   void add_reactions();
+  void add_second(double power, double at);
+  void look_at_reaction_work();
   void look_at_invariants(const Snapshot& state);
   std::pair<double, double> look_at_exact(const Snapshot& state);
   void settle();
@@ -92,6 +94,9 @@ class Meter {
   std::shared_ptr<const Geometry> geometry_;
   std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without rows
   double time_ = 0, power_ = 0, power_time_ = 0;
+  // Their work by every second state, up to that one.
+  double second_work_ = 0, second_power_ = 0, second_time_ = 0;
+  bool odd_ = false, drifts_ = false;
   Eigen::VectorXd g_, xi_, lambda_;
 };
 

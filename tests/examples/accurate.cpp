@@ -35,7 +35,7 @@ int main() {
   const auto start = run.state();
   bool ok = static_cast<bool>(run.step(2000));
   const double h = run.state().time;
-  const auto middle = run.at(h - 1e-3);  // between the last two nodes
+  const auto middle = run.at(h - 2e-4);  // between the last two nodes
   run.turn_back();
   ok = ok && run.step(2000);
   const double away = hamel::euclidean_distance(run.state().coordinates, start.coordinates);

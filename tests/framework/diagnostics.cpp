@@ -122,6 +122,15 @@ TEST(Diagnostics, DoNotDependOnTheRows) {
   }
 }
 
+/// A sum over few rows is said to be one.
+TEST(Diagnostics, TheWorkOfReactionsOfFewRows) {
+  const auto notes = [](long every) {
+    return simulate("snakeboard").until(10).every(every).run().notes;
+  };
+  EXPECT_THAT(notes(1), Not(Contains(HasSubstr("work of reactions"))));
+  EXPECT_THAT(notes(250), Contains(HasSubstr("the work of reactions is summed over the rows")));
+}
+
 /// Without the constraint the limit of the steps is another motion.
 TEST(Diagnostics, CheckKnowsNothingOfAnotherMotion) {
   const Result run = simulate("suslov")

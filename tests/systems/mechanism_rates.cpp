@@ -68,9 +68,11 @@ void check_rates(const SystemModel& model) {
   }
 }
 
-// All joints, contacts and loops, on ground that turns or rests; planar links with and without links that tilt.
-Mechanism contacts(bool space, bool moving_ground) {
-  Mechanism m(space ? moving_ground ? "in space, on a turntable" : "in space" : "on the plane");
+// All joints and contacts, on ground that turns or rests, with loops or a prescribed joint (which contradict each other);
+// planar links with and without links that tilt.
+Mechanism contacts(bool space, bool moving_ground, bool loops) {
+  Mechanism m(std::string(space ? "in space" : "on the plane") +
+              (moving_ground ? ", on a turntable" : "") + (loops ? ", closed" : ""));
   m.body("a", {.mass = 2, .at = {0.1, 0.2, 0.6}, .inertia = {0.3, 0.4, 0.5}});
   m.body("b", {.mass = 1, .at = {0.5, 0.1, 0.7}, .inertia = {0.1, 0.02, 0, 0.2, 0.01, 0.15}});
   m.body("c", {.mass = 0.5, .at = {0.9, 0, 0.4}, .cylinder = {0.1, 0.3}, .axis = {1, 1, 0}});
@@ -92,9 +94,9 @@ Mechanism contacts(bool space, bool moving_ground) {
   m.roller("v", "h", {.at = {0.3, -0.5, 0.35}, .radius = 0.35, .angle = 0.6});
   m.ball("d", "d", {.at = {0, -0.4, 0.3}, .radius = 0.3});
   m.blade("c", "c", {.at = {0.9, 0, 0}, .along = {1, 0.3, 0}});
-  m.loop("hinge", "f", "d", {.at = {0, 0.3, 0.4}, .axis = {0.6, 0, 0.8}});
-  m.loop("ball", "c", "ground", {.at = {0.9, 0, 0.3}});
-  m.prescribe("s", [](double t) { return std::sin(3 * t); });
+  if (loops) m.loop("hinge", "f", "d", {.at = {0, 0.3, 0.4}, .axis = {0.6, 0, 0.8}});
+  if (loops) m.loop("ball", "c", "ground", {.at = {0.9, 0, 0.3}});
+  if (!loops) m.prescribe("s", [](double t) { return std::sin(3 * t); });
   if (moving_ground) m.ground(0.7, {0.2, -0.1, 0});
   m.redundant("drop");
   return m;
@@ -102,9 +104,10 @@ Mechanism contacts(bool space, bool moving_ground) {
 
 TEST(MechanismRates, AreThoseOfDifferences) {
   for (const auto& [name, text] : mechanisms::library()) check_rates(mechanism_from(text, name));
-  check_rates(contacts(true, false).model());
-  check_rates(contacts(true, true).model());
-  check_rates(contacts(false, false).model());
+  for (const bool space : {true, false}) {
+    for (const bool loops : {true, false}) check_rates(contacts(space, false, loops).model());
+  }
+  check_rates(contacts(true, true, false).model());
 }
 
 // A pendulum whose pivot is shaken, 2 mm at 160 Hz: (J + m l^2) angle'' = m (g + a) (x cos + z sin), a the acceleration of
