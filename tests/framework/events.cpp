@@ -1,8 +1,13 @@
 // Events: located where the motion is known in closed form, stopped at, changed at; output at given times.
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/table.hpp>
 #include <hamel/hamel.hpp>
 
 namespace hamel {
@@ -161,6 +166,28 @@ TEST(Events, ImpactsThatNoRunCanGoOnFrom) {
               testing::HasSubstr("on_event theta=1: at t = "));
   EXPECT_THAT(says("falling_disk", "x=0.01", [](EventState& s) { s.coordinates[11] += 0.3; }),
               testing::HasSubstr("the holonomic constraints do not hold, |phi| = 0.3"));
+}
+
+// What changed the state is no part of a file: a run is not gone on with without it.
+TEST(Events, FilesOfRunsWithImpacts) {
+  namespace fs = std::filesystem;
+  if (hdf5_version().empty()) GTEST_SKIP() << "built without HDF5";
+  const fs::path file =
+      fs::temp_directory_path() / ("hamel_impacts_" + std::to_string(::getpid()) + ".h5");
+  const auto lane = [&] {
+    return simulate("chaplygin_sleigh").until(100).resume(file.string()).record_to(file.string());
+  };
+  const auto wall = [](EventState& s) { s.velocity[1] *= -1; };
+  int rows = 0;
+  Simulation first = simulate("chaplygin_sleigh").until(100).on_event("y=-1", wall);
+  first.record_to(file.string()).observe([&](const Snapshot&) -> bool {
+    if (++rows > 6000) throw std::runtime_error("enough");
+    return true;
+  });
+  EXPECT_THROW(first.run(), std::runtime_error);
+  EXPECT_THAT(lane().mistakes(), testing::Contains(testing::HasSubstr("on_event: y=-1")));
+  EXPECT_THAT(lane().on_event("y=-1", wall).mistakes(), testing::IsEmpty());
+  fs::remove(part_of(file.string()));
 }
 
 // Of its energy and its invariants an impact is no error.
