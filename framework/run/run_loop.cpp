@@ -86,6 +86,7 @@ void RunLoop::go() {
   }
   if (go_on && result_.status.ok && next_ < times_.size()) output(config_.until);
   result_.seconds = elapsed();
+  if (progress && result_.status.ok) progress(1);
   if (!result_.stopped_by_event) kernel_.measure(result_.last);
   result_.steps = node_.step;
   result_.stats = kernel_.stats();

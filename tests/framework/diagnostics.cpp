@@ -190,7 +190,7 @@ TEST(Diagnostics, CheckReportsItsProgress) {
   int late = 0;
   const auto check = [&](double stop_at) {
     simulate("suslov")
-        .until(4000)
+        .until(40)
         .every(1000)
         .with(&Config::check, true)
         .progress([&](double done) {
