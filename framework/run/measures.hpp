@@ -98,7 +98,7 @@ inline void raise(double& largest, double value) {
                                  : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Over the recorded states of one run. NaN: there is no such thing, or it was not finite.
+/// Over the recorded states of one run, and its last. NaN: there is no such thing, or it was not finite.
 struct Measurements {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   double constraint_max = 0;

@@ -91,8 +91,7 @@ Eigen::VectorXd Simulation::Plan::admissible(const EventState& state,
   geometry->from_coordinates(state.coordinates, g.data());
   Eigen::VectorXd phi(mechanics->holonomic_rows());
   mechanics->holonomic(g.data(), phi);
-  // (Of a place that was refused nobody wants to know what holds at the identity.)
-  if (!place_refused && phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-6))
+  if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-6))
     refuse(fmt::format("the holonomic constraints do not hold, |phi| = {:.2g}",
                        phi.lpNorm<Eigen::Infinity>()));
   motion.set(state.time, g);
@@ -172,8 +171,10 @@ void Simulation::Plan::look_at_start() {
   mechanics->constraints(config.from, g.data(), constraints, drift);
   Eigen::VectorXd phi(mechanics->holonomic_rows());
   mechanics->holonomic(g.data(), phi);
-  if (phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
+  // (Of a place that was refused nobody wants to know what holds at the identity.)
+  if (!place_refused && phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
   if (said) return;
+  if (place_refused) constraints.resize(0, n);
   const std::vector<std::string> wrong = check_system_matrices(inertia, constraints, n);
   add(wrong);  // without names
   if (wrong.empty() && !mechanics->constant_inertia()) look_beside_start(g);
