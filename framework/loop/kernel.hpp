@@ -41,7 +41,7 @@ struct KernelSetup {
   bool forces_at_base = false;        // lift: f - dV at the base point instead of the nodes
   double from = 0;                    // the time of the start
   std::vector<double> configuration;  // the element's coordinates there
-  Eigen::VectorXd velocity;           // xi there, n entries, admissible
+  std::vector<double> velocity;       // xi there, n entries, admissible
 };
 
 /// A step that failed and was rescued.
@@ -105,7 +105,7 @@ class Kernel {
   virtual void turn_back() = 0;
   /// Goes on from another state; step: the size of the next. Throws std::invalid_argument when the values are no element.
   virtual void restart(double t, std::span<const double> coordinates,
-                       const Eigen::VectorXd& velocity, double step) = 0;
+                       std::span<const double> velocity, double step) = 0;
   /// Drops what is remembered of forces: after a change of something that they depend on.
   virtual void forget() = 0;
   /// The state at a time within the last step, by the scheme's own dense output; false where it has none.

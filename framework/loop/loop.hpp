@@ -43,7 +43,7 @@ class Loop final : public TimeLoop {
       if (setup.forces_at_base) step_.take_forces_at_base();
     }
     problem_.from_coordinates(setup.configuration, now_->g);
-    typename P::Vector velocity = setup.velocity;
+    typename P::Vector velocity = as_vector(setup.velocity);
     problem_.carry(velocity, now_->x);
     now_->t = setup.from;
     *previous_ = *now_;
@@ -99,9 +99,9 @@ class Loop final : public TimeLoop {
     forget();
   }
   [[gnu::cold]] void restart(double t, std::span<const double> coordinates,
-                             const Eigen::VectorXd& velocity, double step) override {
+                             std::span<const double> velocity, double step) override {
     problem_.from_coordinates(coordinates, now_->g);
-    typename P::Vector xi = velocity;
+    typename P::Vector xi = as_vector(velocity);
     problem_.carry(xi, now_->x);
     now_->t = t;
     *previous_ = *now_;
@@ -124,6 +124,9 @@ class Loop final : public TimeLoop {
   using Memory = typename StepUnknown::Memory;
   static constexpr bool kEstimates = requires(const Step& step) { step.estimated_order(); };
 
+  static Eigen::Map<const Eigen::VectorXd> as_vector(std::span<const double> values) {
+    return {values.data(), static_cast<Eigen::Index>(values.size())};
+  }
   static Step step_of(const Whole& whole, const KernelSetup& setup) {
     if constexpr (std::is_constructible_v<Step, const Whole&, const Tableau&>)
       return Step(whole, *setup.tableau);

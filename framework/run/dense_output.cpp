@@ -24,9 +24,7 @@ Status DenseOutput::at(double t, Snapshot& out) {
   if (!ahead && kernel_.interpolate(t, out)) return {};
   if (ahead) kernel_.node(begin_);
   if (other_ == nullptr) other_ = factory_(setup_);
-  const Eigen::Map<const Eigen::VectorXd> velocity(
-      begin_.velocity.data(), static_cast<Eigen::Index>(begin_.velocity.size()));
-  other_->restart(begin_.time, begin_.coordinates, velocity, t - begin_.time);
+  other_->restart(begin_.time, begin_.coordinates, begin_.velocity, t - begin_.time);
   const Status status = other_->advance(1);
   other_->measure(out);
   out.time = t;

@@ -45,7 +45,7 @@ struct Simulation::Plan {
   void satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g);
   void project();
   void watch();
-  Eigen::VectorXd admissible(const EventState& state, const std::string& event) const;
+  std::vector<double> admissible(const EventState& state, const std::string& event) const;
 };
 
 }  // namespace hamel

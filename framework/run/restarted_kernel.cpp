@@ -25,8 +25,7 @@ void RestartedKernel::begin_anew() {
     setup_.from = origin_ + static_cast<double>(steps_ - origin_steps_) * setup_.step;
   kernel_->node(node);
   setup_.configuration = node.coordinates;
-  setup_.velocity = Eigen::Map<const Eigen::VectorXd>(
-      node.velocity.data(), static_cast<Eigen::Index>(node.velocity.size()));
+  setup_.velocity = node.velocity;
   make();
 }
 
@@ -81,7 +80,7 @@ void RestartedKernel::limit(double t) {
 }
 
 void RestartedKernel::restart(double t, std::span<const double> coordinates,
-                              const Eigen::VectorXd& velocity, double step) {
+                              std::span<const double> velocity, double step) {
   kernel_->restart(t, coordinates, velocity, step);
   Snapshot node;
   state(node);

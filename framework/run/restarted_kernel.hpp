@@ -32,7 +32,7 @@ class RestartedKernel final : public Kernel {
   void limit(double t) override;
   double next_step() const override { return kernel_->next_step(); }
   void turn_back() override { kernel_->turn_back(); }
-  void restart(double t, std::span<const double> coordinates, const Eigen::VectorXd& velocity,
+  void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
                double step) override;
   void forget() override { kernel_->forget(); }
   bool interpolate(double t, Snapshot& out) override;

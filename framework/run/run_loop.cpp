@@ -261,7 +261,7 @@ std::optional<EventState> RunLoop::impact(const Events::Found& event) {
 
 void RunLoop::go_on_from(const EventState& state, const Events::Found& event) {
   ++impacts_met_;
-  const Eigen::VectorXd velocity = plan_.admissible(state, event.name);
+  const std::vector<double> velocity = plan_.admissible(state, event.name);
   const double h = kernel_.next_step();
   kernel_.restart(state.time, state.coordinates, velocity, h);
   if (config_.chooses_steps()) kernel_.limit(config_.until);

@@ -70,8 +70,8 @@ void Simulation::Plan::watch() {
 }
 
 // The velocity of a state after an impact, onto the constraints there in the metric I.
-Eigen::VectorXd Simulation::Plan::admissible(const EventState& state,
-                                             const std::string& event) const {
+std::vector<double> Simulation::Plan::admissible(const EventState& state,
+                                                 const std::string& event) const {
   const auto n = static_cast<Eigen::Index>(system.group.dim);
   const auto refuse = [&](const std::string& why) {
     throw ConfigError({fmt::format("on_event {}: at t = {:.6g} {}", event, state.time, why)});
@@ -85,7 +85,7 @@ Eigen::VectorXd Simulation::Plan::admissible(const EventState& state,
     refuse(error.what());
   }
   Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(), n);
-  if (geometry == nullptr || mechanics->rows() == 0) return xi;
+  if (geometry == nullptr || mechanics->rows() == 0) return to_vector(xi);
   EquationsOfMotion<Erased> motion(Erased(geometry, mechanics));
   Eigen::VectorXd g(geometry->size());
   geometry->from_coordinates(state.coordinates, g.data());
@@ -96,7 +96,7 @@ Eigen::VectorXd Simulation::Plan::admissible(const EventState& state,
                        phi.lpNorm<Eigen::Infinity>()));
   motion.set(state.time, g);
   motion.project(xi);
-  return xi;
+  return to_vector(xi);
 }
 
 // The user's start, else the system's own, else rest at the identity.
@@ -259,7 +259,7 @@ void Simulation::Plan::project() {
 
   setup.geometry = geometry;
   setup.mechanics = mechanics;
-  setup.velocity = velocity;
+  setup.velocity = start.velocity;
   setup.configuration = start.configuration;
 }
 

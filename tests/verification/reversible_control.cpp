@@ -98,8 +98,7 @@ class UsualControl {
     setup.mechanics = run.system().mechanics;
     setup.geometry = registry().geometry(run.system().group.name, "cayley");
     setup.configuration = state_.coordinates;
-    setup.velocity = Eigen::Map<const Eigen::VectorXd>(
-        state_.velocity.data(), static_cast<Eigen::Index>(state_.velocity.size()));
+    setup.velocity = state_.velocity;
     geometry_ = setup.geometry;
     motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, setup.mechanics));
     const KernelFactory* own =
@@ -113,7 +112,7 @@ class UsualControl {
         state_.velocity.data(), static_cast<Eigen::Index>(state_.velocity.size()));
     motion_->solve(state_.time, g, xi);
     const double r = std::sqrt(xi.squaredNorm() + motion_->acceleration().norm());
-    kernel_->restart(state_.time, state_.coordinates, xi, epsilon_ / r);
+    kernel_->restart(state_.time, state_.coordinates, state_.velocity, epsilon_ / r);
     EXPECT_TRUE(kernel_->advance(1));
     kernel_->state(state_);
     return state_;
