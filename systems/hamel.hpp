@@ -7,7 +7,7 @@
 #include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/framework/mechanics/general_system.hpp>
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/study/study.hpp>
 #include <hamel/groups/all.hpp>

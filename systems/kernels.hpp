@@ -8,7 +8,7 @@
 #include <utility>
 
 #include <hamel/framework/loop/loop.hpp>
-#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/schemes/erased.hpp>
 #include <hamel/framework/schemes/left_invariant.hpp>
 #include <hamel/framework/schemes/typed.hpp>

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/schemes/balance.hpp>
 #include <hamel/framework/schemes/boxed.hpp>
 #include <hamel/framework/schemes/boxed_literal.hpp>

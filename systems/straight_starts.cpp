@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include <hamel/framework/run/at_speed.hpp>
+#include <hamel/framework/run/run/at_speed.hpp>
 #include <hamel/systems/falling_disk.hpp>
 #include <hamel/systems/segway.hpp>
 

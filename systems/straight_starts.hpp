@@ -3,7 +3,7 @@
 
 namespace hamel {
 
-/// For start_at_speed (framework/run/at_speed.hpp).
+/// For start_at_speed (framework/run/run/at_speed.hpp).
 void add_starts_at_speed();
 
 }  // namespace hamel

@@ -1,5 +1,4 @@
 // The composition root: the one file that links everything by name.
-#include <hamel/framework/run/data_system.hpp>
 #include <hamel/groups/heisenberg.hpp>
 #include <hamel/solvers/ceres.hpp>
 #include <hamel/solvers/ceres_tiny.hpp>
@@ -48,12 +47,14 @@ void add_solvers(Registry& registry) {
 }
 
 // Files with parts are mechanisms; those of the library go by name.
-void add_mechanisms() {
-  FileKind kind{{"body", "joint", "wheel", "roller", "ball", "blade", "loop"}, mechanism_from, {}};
+void add_mechanisms(Registry& registry) {
+  registry.add(
+      FileKind{{"body", "joint", "wheel", "roller", "ball", "blade", "loop"}, mechanism_from});
   for (const auto& [name, text] : mechanisms::library()) {
-    kind.library.push_back(mechanism_info(text, name + ".toml"));
+    registry.add_deferred(name, [&name = name, &text = text] {
+      return mechanism_info(text, name + ".toml");
+    });
   }
-  add_file_kind(std::move(kind));
 }
 
 Registry make_registry() {
@@ -75,7 +76,7 @@ Registry make_registry() {
   add_vehicles(registry);
   add_driven_vehicles(registry);
   add_system<NTrailer>(registry);
-  add_mechanisms();
+  add_mechanisms(registry);
   add_starts_at_speed();
   return registry;
 }

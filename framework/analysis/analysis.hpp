@@ -14,8 +14,8 @@
 #include <vector>
 
 #include <hamel/framework/analysis/growth.hpp>
-#include <hamel/framework/run/registry.hpp>
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/names/registry.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {
 

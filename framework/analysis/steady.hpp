@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/registry.hpp>
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/names/registry.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {
 

@@ -17,7 +17,7 @@
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/lie/group_info.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
-#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel {
 

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include <hamel/framework/check/group_laws.hpp>
-#include <hamel/framework/run/registry.hpp>
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/names/registry.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 
 namespace hamel {

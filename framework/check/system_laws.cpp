@@ -7,7 +7,7 @@
 #include <Eigen/SVD>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {
 namespace check {

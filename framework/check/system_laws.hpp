@@ -17,7 +17,7 @@
 #include <hamel/framework/check/system_samples.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/mechanics/general_system.hpp>
-#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel {
 

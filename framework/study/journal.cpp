@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/version.hpp>
-#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {

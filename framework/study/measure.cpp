@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <hamel/framework/run/energy_balance.hpp>
+#include <hamel/framework/run/run/energy_balance.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {

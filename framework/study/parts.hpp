@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/measures.hpp>
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/record/measures.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/study/study.hpp>
 
 namespace hamel::study {

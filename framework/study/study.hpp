@@ -19,8 +19,8 @@
 #include <vector>
 
 #include <hamel/framework/io/table.hpp>
-#include <hamel/framework/run/config.hpp>
-#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/names/config.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel {
 

@@ -5,8 +5,8 @@
 
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
-#include <hamel/framework/run/data_system.hpp>
-#include <hamel/framework/run/toml_inputs.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/names/toml_inputs.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel {
@@ -14,7 +14,8 @@ namespace {
 
 class StudyReader {
  public:
-  StudyReader(const std::string& origin) : origin_(origin), read_(origin) {}
+  StudyReader(const std::string& origin, const Registry& registry)
+      : origin_(origin), registry_(registry), read_(origin) {}
 
   StudyConfig file(const std::string& text) {
     const toml::table table = read_.parse(text);
@@ -47,8 +48,9 @@ class StudyReader {
   void refuse_other_kinds(const toml::table& table) const {
     const toml::node* system = table.get("system");
     const auto has = [&](const std::string& key) { return table.contains(key); };
-    const bool parts = std::ranges::any_of(
-        file_kinds(), [&](const FileKind& kind) { return std::ranges::any_of(kind.keys, has); });
+    const bool parts = std::ranges::any_of(registry_.file_kinds(), [&](const FileKind& kind) {
+      return std::ranges::any_of(kind.keys, has);
+    });
     if (system == nullptr && (parts || has("group"))) {
       throw ConfigError(
           {fmt::format("{0}: this file is a system (hamel run {0}), no study; a study of it has "
@@ -187,6 +189,7 @@ class StudyReader {
   }
 
   std::string origin_;
+  const Registry& registry_;
   TomlReader read_;
   StudyConfig config_;
 };
@@ -195,7 +198,7 @@ class StudyReader {
 
 StudyConfig parse_study(const std::string& text, const std::string& origin,
                         const Registry& registry) {
-  StudyReader reader(origin);
+  StudyReader reader(origin, registry);
   StudyConfig config = reader.file(text);
   study::read_data(config);
   std::vector<std::string> mistakes = reader.mistakes();

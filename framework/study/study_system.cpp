@@ -1,6 +1,6 @@
 // The systems of a study: registered ones, and data files as they were when the study began.
 #include <hamel/framework/io/text_file.hpp>
-#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {

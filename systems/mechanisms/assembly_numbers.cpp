@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/systems/mechanisms/assembly.hpp>
 
 namespace hamel {

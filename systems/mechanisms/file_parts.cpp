@@ -1,6 +1,6 @@
 #include <hamel/systems/mechanisms/file_parts.hpp>
 
-#include <hamel/framework/run/toml_parameters.hpp>
+#include <hamel/framework/run/data/toml_parameters.hpp>
 
 namespace hamel::mechanisms {
 

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include <hamel/framework/run/toml_events.hpp>
-#include <hamel/framework/run/toml_parameters.hpp>
+#include <hamel/framework/run/data/toml_events.hpp>
+#include <hamel/framework/run/data/toml_parameters.hpp>
 #include <hamel/systems/mechanisms/file_parts.hpp>
 
 namespace hamel {

@@ -37,7 +37,7 @@
 
 #include <string>
 
-#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
 
 namespace hamel {

@@ -15,7 +15,7 @@
 
 #include "program.hpp"
 
-#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/study/study.hpp>
 #include <hamel/systems/simulate.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>

@@ -8,7 +8,7 @@
 
 #include <hamel/framework/analysis/analysis.hpp>
 #include <hamel/framework/io/text_file.hpp>
-#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
 
 #include "studies.hpp"
 

@@ -1,6 +1,6 @@
 // Fuzz target: a system by data, read, planned, and run for two steps.
-#include <hamel/framework/run/data_system.hpp>
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 
 #include "registry.hpp"
 

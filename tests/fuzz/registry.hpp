@@ -7,7 +7,7 @@
 #include <string>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/run/registry.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel::fuzz {
 

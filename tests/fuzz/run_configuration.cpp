@@ -1,5 +1,5 @@
 // Fuzz target: a run's configuration file, read, written, planned, and run for two steps.
-#include <hamel/framework/run/simulation.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
 
 #include "registry.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <hamel/framework/check/system_laws.hpp>
 #include <hamel/framework/mechanics/coordinate_rates.hpp>
-#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/systems/contact_oscillator.hpp>
 #include <hamel/systems/falling_disk.hpp>
 #include <hamel/systems/segway.hpp>

@@ -7,8 +7,8 @@
 #include <Eigen/Dense>
 
 #include <hamel/framework/analysis/steady.hpp>
-#include <hamel/framework/run/at_speed.hpp>
-#include <hamel/framework/run/data_system.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/run/at_speed.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "mechanism_systems.hpp"

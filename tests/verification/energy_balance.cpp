@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include <hamel/framework/run/data_system.hpp>
-#include <hamel/framework/run/nodal_quadrature.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/run/nodal_quadrature.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product_retraction.hpp>
 #include <hamel/systems/segway.hpp>

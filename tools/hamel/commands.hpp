@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/config.hpp>
+#include <hamel/framework/run/names/config.hpp>
 
 namespace hamel::tools {
 

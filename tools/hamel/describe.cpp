@@ -6,8 +6,8 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
-#include <hamel/framework/run/data_system.hpp>
-#include <hamel/framework/run/events.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 

@@ -7,7 +7,6 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
-#include <hamel/framework/run/data_system.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/simulate.hpp>
 
@@ -15,15 +14,6 @@
 
 namespace hamel::tools {
 namespace {
-
-// Systems of files that go by name.
-std::vector<std::string> library_files() {
-  std::vector<std::string> out;
-  for (const FileKind& kind : file_kinds()) {
-    for (const SystemInfo& info : kind.library) out.push_back(info.name);
-  }
-  return out;
-}
 
 using Json = nlohmann::ordered_json;
 
@@ -157,7 +147,7 @@ std::vector<Table> tables() {
   }
   Table systems{"systems", {"name", "group", "parameters", "summary"}, {}};
   std::vector<std::string> both = all.systems();
-  for (const std::string& name : library_files()) both.push_back(name);
+  for (const std::string& name : all.deferred_systems()) both.push_back(name);
   for (const std::string& name : both) {
     const SystemInfo& info = *all.system(name);
     std::vector<std::string> fields;
@@ -237,7 +227,7 @@ std::vector<Table> markdown_tables() {
   for (const std::string& name : all.systems()) {
     of_systems.add(kind_in_words(*all.system(name)), name);
   }
-  for (const std::string& name : library_files()) of_systems.add("mechanisms by parts", name);
+  for (const std::string& name : all.deferred_systems()) of_systems.add("mechanisms by parts", name);
   const auto package = [](const SolverInfo& info) {
     return info.package.empty() ? "always" : "with " + info.package;
   };

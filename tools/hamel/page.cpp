@@ -12,7 +12,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/version.hpp>
-#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/run/record/result.hpp>
 
 namespace hamel::tools {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/measures.hpp>
+#include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/study/study.hpp>
 
 #include "page.hpp"

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/mechanics/motion_words.hpp>
-#include <hamel/framework/run/run_file.hpp>
+#include <hamel/framework/run/run/recorded_simulation.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"
@@ -36,7 +36,7 @@ ReadRun read_run(const std::string& path) {
   out.name = std::filesystem::path(file.path()).stem();
   out.record = file.record();
   const Config config = file.config();
-  const Integration run = file.simulation(registry()).build();
+  const Integration run = recorded_simulation(file, registry()).build();
   Result& r = out.result;
   r.system = run.system();
   r.config = run.config();

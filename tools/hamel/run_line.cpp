@@ -6,7 +6,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
-#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/run/record/result.hpp>
 
 namespace hamel::tools {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/run/record/result.hpp>
 
 #include "page.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
-#include <hamel/framework/run/events.hpp>
+#include <hamel/framework/run/run/events.hpp>
 
 #include "run_figures.hpp"
 

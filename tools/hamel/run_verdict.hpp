@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/run/record/result.hpp>
 
 namespace hamel::tools {
 

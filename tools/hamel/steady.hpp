@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <hamel/framework/run/config.hpp>
+#include <hamel/framework/run/names/config.hpp>
 
 namespace hamel::tools {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/run/result.hpp>
+#include <hamel/framework/run/record/result.hpp>
 #include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"

@@ -1,0 +1,51 @@
+// The matrices and vectors of a system by data, read from its file. Not installed.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/io/toml_formulas.hpp>
+#include <hamel/framework/run/data/data_mechanics.hpp>
+
+namespace hamel {
+
+/// What may stand in the formulas of a system, beside t and its parameters.
+struct DataNames {
+  std::vector<std::string> coordinates, rates, inputs;
+};
+
+inline std::vector<std::string> operator+(std::vector<std::string> a,
+                                          const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+class DataFormulasReader {
+ public:
+  DataFormulasReader(TomlReader& read, TomlFormulas& formulas, const toml::table& table,
+                     const DataNames& names)
+      : read_(read), formulas_(formulas), table_(table), names_(names) {}
+  /// inputs: those that are variables; others are constants of `formulas`.
+  DataFormulas read(const std::vector<std::string>& inputs);
+  /// Of the formulas read last: "constraints[2, 1]" and its text.
+  const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
+
+ private:
+  using Node = toml::node;
+  using Names = std::vector<std::string>;
+  Eigen::Index dim() const { return static_cast<Eigen::Index>(names_.rates.size()); }
+  void entry(const Node& node, const std::string& key, const Names& variables, FormulaMatrix& out,
+             Eigen::Index i, Eigen::Index j);
+  FormulaMatrix vector(const std::string& key, Eigen::Index size, const Names& variables);
+  void rows(const Node& node, const std::string& key, const Names& variables, FormulaMatrix& out);
+  void inertia(const Node& node, FormulaMatrix& out);
+
+  TomlReader& read_;
+  TomlFormulas& formulas_;
+  const toml::table& table_;
+  const DataNames& names_;
+  std::vector<std::pair<std::string, std::string>> texts_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,270 @@
+#include <hamel/framework/run/data/data_system.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/io/text_file.hpp>
+#include <hamel/framework/run/data/data_drawing.hpp>
+#include <hamel/framework/run/data/data_formulas.hpp>
+#include <hamel/framework/run/data/toml_events.hpp>
+#include <hamel/framework/run/data/toml_parameters.hpp>
+
+namespace hamel {
+namespace {
+
+using Node = toml::node;
+using Names = std::vector<std::string>;
+
+class File {
+ public:
+  File(const Registry& registry, const std::string& origin)
+      : registry_(registry), origin_(origin), read_(origin), formulas_(read_) {}
+
+  SystemModel read(const std::string& text, const Parameters& given) {
+    table_ = read_.parse(text);
+    refuse_other_kinds();
+    model_.name = origin_;
+    if (const Node* node = table_.get("name")) read_.value(*node, "name", model_.name);
+    model_.group = group_of();
+    model_.inputs = read_input_fields(read_, table_);
+    model_.fields = read_parameters(read_, formulas_, table_, model_.name, given);
+    name_all();
+    check_keys();
+    DataFormulasReader matrices(read_, formulas_, table_, names_);
+    DataFormulas driven = matrices.read(names_.inputs);
+    words_.formulas = matrices.texts();
+    stop_at_mistakes();
+    rest();
+    stop_at_mistakes();
+    const std::shared_ptr<const Geometry> geometry = registry_.geometry(model_.group.name, "exp");
+    if (names_.inputs.empty()) {
+      model_.mechanics = mechanics(std::move(driven), geometry);
+      return std::move(model_);
+    }
+    for (const std::string& input : names_.inputs)
+      formulas_.set(input, 0);  // where nothing drives it
+    model_.mechanics = mechanics(matrices.read({}), geometry);
+    model_.drive = [driven, geometry, group = model_.group,
+                    words = words_](std::shared_ptr<const Inputs> inputs) {
+      return std::make_shared<DataMechanics>(driven, group, geometry, std::move(inputs), words);
+    };
+    return std::move(model_);
+  }
+
+ private:
+  void stop_at_mistakes() const {
+    if (!read_.mistakes.empty()) throw ConfigError(read_.mistakes);
+  }
+
+  void refuse_other_kinds() const {
+    const Node* other = table_.get("system");
+    if (other == nullptr) return;
+    throw ConfigError({fmt::format(
+        "{}: this file is {}, no system by data", origin_,
+        other->is_array()
+            ? fmt::format("a study (hamel study {})", origin_)
+            : fmt::format("the configuration of a run (hamel run --config {})", origin_))});
+  }
+
+  // All else depends on the group.
+  GroupInfo group_of() {
+    std::string name;
+    const Node* node = table_.get("group");
+    if (node == nullptr) {
+      std::string others;
+      for (const FileKind& kind : registry_.file_kinds())
+        others += fmt::format(", or tables [[{}]]", kind.keys.front());
+      read_.mistakes.push_back(
+          fmt::format("{}: group: missing, expected the name of a group{}", origin_, others));
+    } else {
+      read_.value(*node, "group", name);
+    }
+    stop_at_mistakes();
+    const auto info = registry_.group_or_product(name);
+    if (!info)
+      read_.mistakes.push_back(
+          fmt::format("{}: {}", read_.place(*node), registry_.missing_group(name)));
+    else if (registry_.geometry(name, "exp") == nullptr)
+      read_.wrong(*node, "group", "a group with the retraction exp");
+    stop_at_mistakes();
+    return *info;
+  }
+
+  // The names of coordinates, rates and inputs, each its own.
+  void name_all() {
+    const std::vector<Component> components = components_of(model_.group);
+    const auto shape = shape_of(model_.group, components);
+    for (const std::string& column : model_.group.columns) {
+      const size_t digits = column.find_first_not_of("0123456789");
+      const bool numbered = digits > 0 && digits != std::string::npos && column[digits] == '_';
+      names_.coordinates.push_back(
+          numbered ? column.substr(digits + 1) + "_" + column.substr(0, digits) : column);
+    }
+    if (names("coordinates", names_.coordinates)) model_.group.columns = names_.coordinates;
+    for (const Component& component : components) names_.rates.push_back(component.name);
+    for (const ShapeCoordinate& s : shape)
+      names_.rates[static_cast<size_t>(s.component)] =
+          names_.coordinates[static_cast<size_t>(s.column)] + "'";
+    const Names usual = names_.rates;
+    for (size_t i = 0; i < usual.size(); ++i) {  // se2*se3 has two v1
+      if (std::count(usual.begin(), usual.end(), usual[i]) > 1)
+        names_.rates[i] = fmt::format("xi{}", i + 1);
+    }
+    names("rates", names_.rates);
+    for (const InputField& input : model_.inputs) names_.inputs.push_back(input.name);
+    Names all{"t"};
+    all = all + names_.coordinates + names_.rates + names_.inputs;
+    for (const auto& [name, value] : formulas_.constants()) all.push_back(name);
+    std::sort(all.begin(), all.end());
+    const auto twice = std::adjacent_find(all.begin(), all.end());
+    if (twice != all.end())
+      read_.mistakes.push_back(fmt::format("{}: two things are called '{}'", origin_, *twice));
+    stop_at_mistakes();
+    words_.rates = names_.rates;
+  }
+  // The names that the file gives in place of these.
+  bool names(const std::string& key, Names& out) {
+    const Node* node = table_.get(key);
+    if (node == nullptr) return false;
+    Names given;
+    const size_t before = read_.mistakes.size();
+    read_.value(*node, key, given);
+    if (read_.mistakes.size() > before) return false;
+    if (given.size() != out.size()) {
+      read_.wrong(*node, key, fmt::format("{} names, got {}", out.size(), given.size()));
+      return false;
+    }
+    for (const std::string& name : given) {
+      if (!Expression::allows(name))
+        read_.wrong(*node, key, fmt::format("names that may stand in a formula, got '{}'", name));
+    }
+    out = given;
+    return true;
+  }
+
+  void check_keys() {
+    static const Names known = {
+        "configuration", "constraints", "contacts",   "coordinates", "draw",  "drift",
+        "events",        "floor",       "force",      "from_above",  "group", "holonomic",
+        "inertia",       "inputs",      "invariants", "momentum",    "name",  "parameters",
+        "potential",     "rates",       "velocity"};
+    for (const auto& [name, node] : table_) {
+      const std::string key(name.str());
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        read_.unknown_key(node, key, known);
+    }
+    if (!table_.contains("inertia"))
+      read_.mistakes.push_back(
+          fmt::format("{}: inertia: missing, expected {} entries", origin_, model_.group.dim));
+  }
+
+  // Start, events, invariants, contacts and drawing.
+  void rest() {
+    const auto start = [&](const std::string& key, size_t count, std::vector<double>& out) {
+      if (const Node* node = table_.get(key))
+        out = formulas_.numbers(*node, key, static_cast<long>(count));
+    };
+    start("configuration", names_.coordinates.size(), model_.start.configuration);
+    start("velocity", names_.rates.size(), model_.start.velocity);
+    start("momentum", names_.rates.size(), model_.start.momentum);
+    if (const Node* both = table_.get("momentum"); both != nullptr && table_.contains("velocity"))
+      read_.wrong(*both, "momentum", "velocity or momentum, not both");
+    model_.events = read_events(read_, formulas_, table_, names_.coordinates, names_.rates);
+    each("invariants", [&](const std::string& name, const Node& node) {
+      if (auto f =
+              formulas_.expression(node, "invariants." + name, names_.coordinates + names_.rates))
+        model_.invariants.push_back({name, of_state(std::move(*f))});
+    });
+    if (const Node* node = table_.get("contacts")) contacts(*node);
+    if (const Node* node = table_.get("floor"))
+      read_.value(*node, "floor", model_.drawing.has_floor);
+    if (const Node* node = table_.get("from_above")) {
+      read_.value(*node, "from_above", model_.drawing.from_above);
+      model_.drawing.has_floor |= model_.drawing.from_above;
+    }
+    if (const Node* node = table_.get("draw"))
+      DataDrawing(read_, formulas_, names_.coordinates).read(*node, model_.drawing);
+  }
+  template <class Visit>
+  void each(const std::string& key, const Visit& visit) {
+    const Node* node = table_.get(key);
+    if (node == nullptr) return;
+    const toml::table* entries = node->as_table();
+    if (entries == nullptr) return read_.wrong(*node, key, "a table");
+    for (const auto& [name, value] : *entries) visit(std::string(name.str()), value);
+  }
+  // A formula of coordinates and rates.
+  static std::function<double(std::span<const double>, std::span<const double>)> of_state(
+      Expression formula) {
+    return [formula = std::move(formula), values = std::vector<double>()](
+               std::span<const double> g, std::span<const double> xi) mutable {
+      values.assign(g.begin(), g.end());
+      values.insert(values.end(), xi.begin(), xi.end());
+      return formula(values);
+    };
+  }
+  void contacts(const Node& node) {
+    const std::vector<double> rows = formulas_.numbers(node, "contacts");
+    const auto count = [&](const char* key) {
+      const Node* list = table_.get(key);
+      return list == nullptr ? 0.0 : static_cast<double>(list->as_array()->size());
+    };
+    const double most = count("constraints") + count("holonomic");
+    for (const double row : rows) {
+      if (row >= 1 && row <= most && row == std::floor(row))
+        model_.contacts.push_back(static_cast<int>(row) - 1);
+      else
+        read_.wrong(node, "contacts", fmt::format("numbers of rows, 1 to {}, got {}", most, row));
+    }
+  }
+
+  std::shared_ptr<const Mechanics> mechanics(DataFormulas f,
+                                             std::shared_ptr<const Geometry> geometry) {
+    if (f.left_invariant())
+      return std::make_shared<WithWords<LeftInvariantMechanics>>(
+          LeftInvariantMechanics(f.inertia.constant, f.rows.constant), words_);
+    return std::make_shared<DataMechanics>(std::move(f), model_.group, std::move(geometry), nullptr,
+                                           words_);
+  }
+
+  const Registry& registry_;
+  std::string origin_;
+  TomlReader read_;
+  TomlFormulas formulas_;
+  toml::table table_;
+  SystemModel model_;
+  DataNames names_;
+  MotionWords words_;
+};
+
+}  // namespace
+
+SystemModel data_system(const Registry& registry, const std::string& text,
+                        const std::string& origin, const Parameters& given) {
+  return File(registry, origin).read(text, given);
+}
+
+std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
+                                                                const std::string& path) {
+  return [&registry, path](const Parameters& given) {
+    return data_system_maker(registry, path, read_text_file("system", path))(given);
+  };
+}
+
+std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
+                                                                const std::string& path,
+                                                                const std::string& text) {
+  return [&registry, path, text](const Parameters& given) {
+    const toml::table table = TomlReader(path).parse(text);
+    for (const FileKind& kind : registry.file_kinds()) {
+      const bool its_own =
+          std::ranges::any_of(kind.keys, [&](const auto& key) { return table.contains(key); });
+      if (its_own) return kind.read(text, path, given);
+    }
+    return data_system(registry, text, path, given);
+  };
+}
+
+}  // namespace hamel

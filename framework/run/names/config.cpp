@@ -1,0 +1,268 @@
+#include <hamel/framework/run/names/config.hpp>
+
+#include <algorithm>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <hamel/framework/io/text_file.hpp>
+#include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/run/names/toml_inputs.hpp>
+
+namespace hamel {
+namespace {
+
+// A TOML basic string.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+      continue;
+    }
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+// A TOML key: bare where it may be.
+std::string key_of(const std::string& name) {
+  const bool bare =
+      !name.empty() &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+          std::string::npos;
+  return bare ? name : quoted(name);
+}
+
+// A value as TOML has it; floats need a point or an exponent.
+template <class Value>
+std::string toml_of(const Value& value) {
+  std::string out = text_of(value);
+  if constexpr (std::is_same_v<Value, std::string>) return quoted(out);
+  if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>)
+    return out.find_first_of(".en") == std::string::npos ? out + ".0" : out;
+  else if constexpr (std::is_class_v<Value> && !std::is_same_v<Value, std::string>) {
+    std::vector<std::string> entries;
+    for (const auto& entry : value) entries.push_back(toml_of(entry));
+    return "[" + join(entries) + "]";
+  }
+  return out;
+}
+
+template <class Value>
+constexpr bool is_text(const Value&) {
+  return std::is_same_v<Value, std::string>;
+}
+
+// An input: a number, the name of a file, or {t = [...], value = [...], hold = true}.
+std::string toml_of_signal(const InputSignal& signal) {
+  if (const double* value = std::get_if<double>(&signal)) return toml_of(*value);
+  const InputTable* table = std::get_if<InputTable>(&signal);
+  if (table == nullptr) return quoted(text_of(signal));
+  return fmt::format("{{t = {}, value = {}, hold = {}}}", toml_of(table->times),
+                     toml_of(table->values), table->hold);
+}
+
+// f(member pointer) for the option of that name.
+template <class F>
+void with_option(const std::string& name, F&& f) {
+  std::vector<std::string> known;
+  bool found = false;
+  Config::fields([&](const Option& option, auto member) {
+    known.emplace_back(option.name);
+    if (option.name != name) return;
+    found = true;
+    f(member);
+  });
+  if (!found) throw ConfigError({unknown_name("option", name, known)});
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string word; std::getline(in, word, ',');) out.push_back(word);
+  return out;
+}
+
+// False where the text is not all of one number.
+bool number(const std::string& text, double& out) {
+  size_t used = 0;
+  try {
+    out = std::stod(text, &used);
+  } catch (const std::exception&) {
+    return false;
+  }
+  return used == text.size();
+}
+
+}  // namespace
+
+std::string text_of(double value) { return fmt::format("{}", value); }
+std::string text_of(std::optional<double> value) { return value ? text_of(*value) : ""; }
+std::string text_of(long value) { return fmt::format("{}", value); }
+std::string text_of(bool value) { return value ? "true" : "false"; }
+std::string text_of(const std::string& value) { return value; }
+std::string text_of(const std::vector<double>& value) { return join(value); }
+std::string text_of(const std::vector<std::string>& value) {
+  return fmt::format("{}", fmt::join(value, ","));
+}
+
+void read_text(const std::string& option, const std::string& text, double& out) {
+  if (!number(text, out))
+    throw ConfigError({fmt::format("{}: '{}' is not a number", option, text)});
+}
+void read_text(const std::string& option, const std::string& text, std::optional<double>& out) {
+  out.reset();
+  if (!text.empty()) read_text(option, text, out.emplace());
+}
+void read_text(const std::string& option, const std::string& text, long& out) {
+  size_t used = 0;
+  try {
+    out = std::stol(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  if (used == 0 || used != text.size())
+    throw ConfigError({fmt::format("{}: '{}' is not a whole number", option, text)});
+}
+void read_text(const std::string& option, const std::string& text, bool& out) {
+  if (text != "true" && text != "false")
+    throw ConfigError({fmt::format("{}: got '{}', expected true or false", option, text)});
+  out = text == "true";
+}
+void read_text(const std::string&, const std::string& text, std::string& out) { out = text; }
+void read_text(const std::string&, const std::string& text, std::vector<std::string>& out) {
+  out = split(text);
+}
+void read_text(const std::string& option, const std::string& text, std::vector<double>& out) {
+  if (text.empty() || text.back() == ',') {
+    throw ConfigError(
+        {fmt::format("{}: got '{}', expected numbers separated by commas", option, text)});
+  }
+  out.clear();
+  for (const std::string& word : split(text)) {
+    if (!number(word, out.emplace_back()))
+      throw ConfigError({fmt::format("{}: '{}' in '{}' is not a number", option, word, text)});
+  }
+}
+
+std::string Config::text(const std::string& option) const {
+  std::string out;
+  with_option(option, [&](auto member) { out = text_of(this->*member); });
+  return out;
+}
+
+void Config::set(const std::string& option, const std::string& text) {
+  with_option(option, [&](auto member) { read_text(option, text, this->*member); });
+}
+
+Config Config::from_toml(const std::string& text, const std::string& origin) {
+  TomlReader read(origin);
+  const toml::table table = read.parse(text);
+  if (const toml::node* node = table.get("system"); node != nullptr && node->is_array())
+    throw ConfigError({fmt::format("{0}: this file is a study (hamel study {0})", origin)});
+  if (table.contains("group") && table.contains("inertia"))
+    throw ConfigError({fmt::format("{0}: this file is a system by data (hamel run {0})", origin)});
+  Config config;
+  for (const auto& [name, node] : table) {
+    const std::string key(name.str());
+    std::vector<std::string> known = {"system", "set", "inputs"};
+    bool found = std::find(known.begin(), known.end(), key) != known.end();
+    if (key == "system") read.value(node, key, config.system);
+    if (key == "set") read.lists(node, key, config.parameters);
+    if (key == "inputs") read_inputs(read, node, config.inputs);
+    const auto take = [&, &entry = node](const Option& option, auto& value) {
+      known.emplace_back(option.name);
+      if (option.name != key) return;
+      found = true;
+      read.value(entry, key, value);
+    };
+    start_fields([&](const Option& option, auto member) { take(option, config.start.*member); });
+    fields([&](const Option& option, auto member) { take(option, config.*member); });
+    if (!found) read.unknown_key(node, key, known);
+  }
+  if (!read.mistakes.empty()) throw ConfigError(read.mistakes);
+  return config;
+}
+
+std::string Config::to_toml() const {
+  std::string out = fmt::format("system = {}\n", quoted(system));
+  start_fields([&](const Option& option, auto member) {
+    if (!(start.*member).empty())
+      out += fmt::format("{} = {}\n", option.name, toml_of(start.*member));
+  });
+  fields([&](const Option& option, auto member) {
+    if (const auto& value = this->*member; text_of(value).empty() && !is_text(value)) return;
+    out += fmt::format("{} = {}\n", option.name, toml_of(this->*member));
+  });
+  if (!parameters.empty()) out += "[set]\n";
+  for (const auto& [name, values] : parameters)
+    out += fmt::format("{} = {}\n", key_of(name), toml_of(values));
+  if (!inputs.empty()) out += "[inputs]\n";
+  for (const auto& [name, signal] : inputs)
+    out += fmt::format("{} = {}\n", key_of(name), toml_of_signal(signal));
+  return out;
+}
+
+long Config::steps() const {
+  return static_cast<long>(std::floor((until - from) / step * (1 + 1e-12) + 1e-9));
+}
+
+std::vector<double> Config::rows() const {
+  if (!output_times.empty() || !output_step) return output_times;
+  const double count = std::floor(std::abs(until - from) / *output_step * (1 + 1e-12) + 1e-9);
+  std::vector<double> out;
+  for (double i = 0; i <= count; ++i)
+    out.push_back(from + std::copysign(i * *output_step, until - from));
+  return out;
+}
+
+std::vector<std::string> Config::mistakes() const {
+  std::vector<std::string> out;
+  const auto refuse = [&](const char* name, double value, const char* expected) {
+    out.push_back(fmt::format("{}: got {}, expected {}", name, value, expected));
+  };
+  const auto look_at = [&](const Option& option, double value) {
+    if (option.allows != nullptr && !option.allows(value))
+      refuse(option.name, value, option.expected);
+  };
+  fields([&](const Option& option, auto member) {
+    using Value = std::remove_cvref_t<decltype(this->*member)>;
+    if constexpr (std::is_arithmetic_v<Value>) look_at(option, static_cast<double>(this->*member));
+    if constexpr (std::is_same_v<Value, std::optional<double>>)
+      if (this->*member) look_at(option, *(this->*member));
+    if constexpr (std::is_same_v<Value, std::vector<double>>)
+      for (const double x : this->*member) look_at(option, x);
+  });
+  const double span = until - from;
+  if (output_step && !output_times.empty())
+    out.push_back("output_times: give them or output_step, not both");
+  if ((output_step || !output_times.empty()) && every != 1)
+    out.push_back("every: the rows are at the output times: leave it out");
+  for (size_t i = 0; i < output_times.size(); ++i) {
+    const double t = output_times[i], sign = span < 0 ? -1 : 1;
+    if (sign * (t - from) < 0 || sign * (until - t) < 0)
+      refuse("output_times", t, fmt::format("times from {} to {}", from, until).c_str());
+    else if (i > 0 && sign * (t - output_times[i - 1]) <= 0)
+      refuse("output_times", t,
+             fmt::format("a time beyond the one before, {}", output_times[i - 1]).c_str());
+  }
+  if (std::isfinite(span) && std::isfinite(step) && step != 0) {
+    if (span / step < 0 && from == 0) refuse("until", until, "the sign of step");
+    else if (span / step < 0)
+      refuse("until", until, fmt::format("a time beyond from, {}, as step has it", from).c_str());
+    else if (chooses_steps()) return out;
+    else if (span / step > 9e15) refuse("until", until, "fewer than 9e15 steps");
+    else if (span != 0 && steps() == 0)
+      refuse("step", step, fmt::format("at most until, {}: no whole step fits", span).c_str());
+  }
+  return out;
+}
+
+Config read_config(const std::string& path) {
+  return Config::from_toml(read_text_file("config", path), path);
+}
+
+}  // namespace hamel

@@ -1,0 +1,169 @@
+// A run as plain data: what the builder fills, the command line overrides, and a file keeps.
+//
+// Config::fields is the one list of a run's options. Files, the command line and its help, the record, the axes
+// of a study and the table of tools/README.md follow from it: one more option is a member here, a line there,
+// and the place that uses it.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/names/input_signals.hpp>
+
+namespace hamel {
+
+/// What is said of one option: a double (or none), long, bool or string, or a list of doubles or strings.
+struct Option {
+  const char* name;  // in files and records; on the command line with dashes, --on-failure
+  const char* unit;  // "" for words, "1" for plain numbers
+  const char* meaning;
+  bool axis = false;                 // whether a study may vary it
+  bool (*allows)(double) = nullptr;  // for numbers, each entry of a list
+  const char* expected = "";         // in words
+};
+
+struct Config {
+  std::string system;
+  Parameters parameters;
+  InputSignals inputs;
+  Start start;
+  std::optional<double> speed;  // in place of a start
+  std::string scheme = "lift";
+  std::string retraction = "cayley";
+  double s = 0.5;
+  std::string solver = "newton";
+  std::string force_at = "nodes";
+  std::string compose = "none";
+  std::string on_failure = "stop";
+  double tolerance = 1e-13;
+  double step = 0.01;
+  std::optional<double> rtol, atol;  // given: steps chosen by the error
+  double from = 0;
+  double until = 20;
+  long every = 1;
+  std::optional<double> output_step;
+  std::vector<double> output_times;
+  std::vector<std::string> events, stop_at;
+  bool check = false;
+  bool force = false;
+  bool no_exact = false;
+
+  /// Calls f(Option, member pointer) for each option; axes in the order in which a study runs through them.
+  template <class F>
+  static void fields(F&& f) {
+    f(Option{"scheme", "", "reading of the method", true}, &Config::scheme);
+    f(Option{"retraction", "", "retraction map", true}, &Config::retraction);
+    f(Option{"s", "1", "discretisation parameter, in [0, 1]", true,
+             [](double x) { return x >= 0 && x <= 1; }, "a number in [0, 1]"},
+      &Config::s);
+    f(Option{"solver", "", "solver of the implicit equation", true}, &Config::solver);
+    f(Option{"force_at", "", "where a step of lift takes the forces: nodes (half at each) or base",
+             true},
+      &Config::force_at);
+    f(Option{"compose", "", "composition: yoshida4 suzuki4 yoshida6 kahan_li6 suzuki_umeno8", true},
+      &Config::compose);
+    f(Option{"on_failure", "",
+             "a failed step: stop, halve (two of half the size, each halved again where it fails), "
+             "or retry:SOLVER",
+             true},
+      &Config::on_failure);
+    f(Option{"tolerance", "1", "residual of each step, relative to the scale of its equation", true,
+             [](double x) { return x > 0 && x < 1; }, "a number in (0, 1)"},
+      &Config::tolerance);
+    f(Option{"step", "s", "step, of either sign; where steps are chosen the first one", true,
+             [](double x) { return std::isfinite(x) && x != 0; }, "a finite number other than 0"},
+      &Config::step);
+    constexpr auto tolerance = [](double x) { return x > 0 && x < 1; };
+    f(Option{"rtol", "1",
+             "steps chosen by the error: relative tolerance (dopri5 tsit5 dop853; lift, balance at "
+             "s = 0.5)",
+             true, tolerance, "a number in (0, 1)"},
+      &Config::rtol);
+    f(Option{"atol", "1", "absolute tolerance beside it; that of rtol where not given", true,
+             tolerance, "a number in (0, 1)"},
+      &Config::atol);
+    f(Option{"speed", "m/s",
+             "start, straight ahead at this speed, for systems that know such a motion", false,
+             [](double v) { return std::isfinite(v); }, "a finite number"},
+      &Config::speed);
+    f(Option{"from", "s", "start time: that of a forced run which goes on", false,
+             [](double x) { return std::isfinite(x); }, "a finite number"},
+      &Config::from);
+    f(Option{"until", "s",
+             "end time, beyond the start in the direction of the step; whole steps only", false,
+             [](double x) { return std::isfinite(x); }, "a finite number"},
+      &Config::until);
+    f(Option{"every", "1", "record every this many steps, first and last always", false,
+             [](double x) { return x >= 1; }, "at least 1"},
+      &Config::every);
+    f(Option{"output_step", "s", "rows at this distance in time, by dense output, instead", false,
+             [](double x) { return x > 0 && std::isfinite(x); }, "a number above 0"},
+      &Config::output_step);
+    f(Option{"output_times", "s", "rows at these times", false,
+             [](double x) { return std::isfinite(x); }, "finite numbers"},
+      &Config::output_times);
+    f(Option{"events", "", "events to locate and record (hamel describe SYSTEM), or COLUMN=VALUE"},
+      &Config::events);
+    f(Option{"stop_at", "", "the same, where the run ends"}, &Config::stop_at);
+    f(Option{"check", "", "estimate the error by two finer runs: half the step, and a quarter"},
+      &Config::check);
+    f(Option{"force", "", "compose a step that is not reversible all the same"}, &Config::force);
+    f(Option{"no_exact", "", "leave out the comparison with the exact motion"}, &Config::no_exact);
+  }
+  /// The same for the members of a Start.
+  template <class F>
+  static void start_fields(F&& f) {
+    f(Option{"configuration", "", "start, in the element's CSV columns"}, &Start::configuration);
+    f(Option{"velocity", "", "start, body components; projected onto the constraint, with a note"},
+      &Start::velocity);
+    f(Option{"momentum", "", "the same as body momentum"}, &Start::momentum);
+  }
+
+  /// An option by name, as text; set throws ConfigError for no such option, or text that does not fit.
+  std::string text(const std::string& option) const;
+  void set(const std::string& option, const std::string& text);
+
+  /// Are steps chosen by the error, with which tolerances?
+  bool chooses_steps() const { return rtol || atol; }
+  double relative() const { return rtol.value_or(0); }
+  double absolute() const { return atol.value_or(relative()); }
+
+  /// The times of the rows where they are given by output_step or output_times, else none.
+  std::vector<double> rows() const;
+  /// The number of whole steps: (until - from) / step rounded down, up to round-off.
+  long steps() const;
+  /// As TOML; reads back to an equal Config.
+  std::string to_toml() const;
+  /// Keys as on the command line. Throws ConfigError with line and column, or the nearest key.
+  static Config from_toml(const std::string& text, const std::string& origin = "config");
+  /// A run that goes on where that of a record (Result::record, `-o x.json`) ended: its system, parameters and options,
+  /// its last state as the start, its time as `from`, for as long again. ConfigError for what is no record.
+  static Config continued(const std::string& record, const std::string& origin = "record");
+  /// Everything wrong with the numbers themselves (names are the registry's business).
+  std::vector<std::string> mistakes() const;
+};
+
+/// Reads a file with from_toml; ConfigError when it cannot be read.
+Config read_config(const std::string& path);
+
+/// The value of an option as text, lists separated by commas, and back: exact for numbers. ConfigError that
+/// begins with `option` for text that does not fit.
+std::string text_of(double value);
+std::string text_of(std::optional<double> value);  // "" for none
+std::string text_of(long value);
+std::string text_of(bool value);
+std::string text_of(const std::string& value);
+std::string text_of(const std::vector<double>& value);
+std::string text_of(const std::vector<std::string>& value);
+void read_text(const std::string& option, const std::string& text, double& out);
+void read_text(const std::string& option, const std::string& text, std::optional<double>& out);
+void read_text(const std::string& option, const std::string& text, long& out);
+void read_text(const std::string& option, const std::string& text, bool& out);
+void read_text(const std::string& option, const std::string& text, std::string& out);
+void read_text(const std::string& option, const std::string& text, std::vector<double>& out);
+void read_text(const std::string& option, const std::string& text, std::vector<std::string>& out);
+
+}  // namespace hamel

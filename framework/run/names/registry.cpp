@@ -1,0 +1,233 @@
+#include <hamel/framework/run/names/registry.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <mutex>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/loop/scaled_equation.hpp>
+#include <hamel/framework/schemes/problem.hpp>
+
+namespace hamel {
+namespace {
+
+template <class Map>
+auto find(const Map& map, const typename Map::key_type& key) -> const typename Map::mapped_type* {
+  const auto it = map.find(key);
+  return it == map.end() ? nullptr : &it->second;
+}
+
+template <class Map>
+std::vector<std::string> names(const Map& map) {
+  std::vector<std::string> out;
+  for (const auto& entry : map) out.push_back(entry.first);
+  return out;
+}
+
+std::string kernel_key(const std::string& problem, const std::string& retraction,
+                       const std::string& scheme) {
+  return fmt::format("{}/{}/{}", problem, retraction, scheme);
+}
+
+class FunctionSolver final : public Solver {
+ public:
+  explicit FunctionSolver(SolveFunction solve) : solve_(std::move(solve)) {}
+  SolveReport solve(const Equation& equation, std::span<double> x, double tolerance) override {
+    equation_.start(equation, x, tolerance);
+    solve_(equation_, x, equation_.target());
+    const int evaluations = equation_.evaluations();
+    return equation_.finish(x, evaluations);
+  }
+
+ private:
+  ScaledEquation equation_;
+  SolveFunction solve_;
+};
+
+}  // namespace
+
+struct Registry::Deferred {
+  std::function<SystemInfo()> make;
+  std::once_flag made;
+  SystemInfo info;
+};
+
+ClaimedOrder SchemeInfo::claim(double s, TauTraits tau, const Mechanics& system,
+                               const std::string& force_at) const {
+  const bool constant =
+      system.constant_inertia() && system.constant_constraints() && !system.has_drift();
+  const bool nodal = places_forces && force_at == "nodes";
+  return claim(s, tau, system.left_invariant() || (nodal && constant));
+}
+ClaimedOrder SchemeInfo::claim(double s, TauTraits tau, bool left_invariant) const {
+  if (!defined(left_invariant)) return {0, false};
+  return claims(uses_s ? s : fixed_s, tau, left_invariant);
+}
+
+std::string problem_key(const std::string& group, int m) { return fmt::format("{}/{}", group, m); }
+std::string problem_key(const std::type_info& mechanics) { return mechanics.name(); }
+
+void Registry::add(GroupInfo info) { groups_[info.name] = std::move(info); }
+void Registry::add(RetractionInfo info) { retractions_[{info.group, info.name}] = std::move(info); }
+void Registry::add(SchemeInfo info) { schemes_[info.name] = std::move(info); }
+void Registry::add(SolverInfo info) {
+  absent_solvers_.erase(info.name);
+  solvers_[info.name] = std::move(info);
+}
+void Registry::add_solver(const std::string& name, const std::string& summary,
+                          SolveFunction solve) {
+  add(SolverInfo{name, summary, "",
+                 [solve = std::move(solve)] { return std::make_shared<FunctionSolver>(solve); }});
+}
+void Registry::add_absent(SolverInfo info) { absent_solvers_[info.name] = std::move(info); }
+void Registry::add_scheme_alias(const std::string& alias, const std::string& scheme) {
+  scheme_aliases_[alias] = scheme;
+}
+void Registry::add(SystemInfo info) { systems_[info.name] = std::move(info); }
+void Registry::add(FileKind kind) { file_kinds_.push_back(std::move(kind)); }
+void Registry::add_deferred(const std::string& name, std::function<SystemInfo()> make) {
+  const auto entry = std::make_shared<Deferred>();
+  entry->make = std::move(make);
+  deferred_[name] = entry;
+}
+void Registry::add_kernel(const std::string& problem, const std::string& retraction,
+                          const std::string& scheme, KernelFactory factory) {
+  kernels_[kernel_key(problem, retraction, scheme)] = std::move(factory);
+}
+
+const GroupInfo* Registry::group(const std::string& name) const { return find(groups_, name); }
+const RetractionInfo* Registry::retraction(const std::string& group,
+                                           const std::string& name) const {
+  return find(retractions_, {group, name});
+}
+const SchemeInfo* Registry::scheme(const std::string& name) const {
+  if (const SchemeInfo* info = find(schemes_, name)) return info;
+  const std::string* target = find(scheme_aliases_, name);
+  return target == nullptr ? nullptr : find(schemes_, *target);
+}
+const SolverInfo* Registry::solver(const std::string& name) const { return find(solvers_, name); }
+const SolverInfo* Registry::absent_solver(const std::string& name) const {
+  return find(absent_solvers_, name);
+}
+const SystemInfo* Registry::system(const std::string& name) const {
+  if (const SystemInfo* info = find(systems_, name)) return info;
+  const auto it = deferred_.find(name);
+  if (it == deferred_.end()) return nullptr;
+  Deferred& entry = *it->second;
+  std::call_once(entry.made, [&] { entry.info = entry.make(); });
+  return &entry.info;
+}
+const KernelFactory* Registry::kernel(const std::string& group, const Mechanics& mechanics,
+                                      const std::string& retraction,
+                                      const std::string& scheme) const {
+  const std::string problem = mechanics.left_invariant()
+                                  ? problem_key(group, mechanics.dim() - mechanics.rows())
+                                  : problem_key(typeid(mechanics));
+  return find(kernels_, kernel_key(problem, retraction, scheme));
+}
+
+namespace {
+
+// "se2*so2^3" -> {"se2", "so2", "so2", "so2"}, no more than kMaxDimension + 1 of them; empty when it cannot be
+// read.
+std::vector<std::string> factors_of(const std::string& name) {
+  std::vector<std::string> out;
+  if (name.ends_with('*')) return out;
+  std::istringstream in(name);
+  for (std::string word; std::getline(in, word, '*');) {
+    long count = 1;
+    if (const size_t hat = word.find('^'); hat != std::string::npos) {
+      const std::string power = word.substr(hat + 1);
+      const auto [end, error] = std::from_chars(power.data(), power.data() + power.size(), count);
+      if (error != std::errc() || end != power.data() + power.size() || count < 0) return {};
+      word.resize(hat);
+    }
+    const auto room = static_cast<long>(kMaxDimension + 1 - out.size());
+    out.insert(out.end(), static_cast<size_t>(std::min(count, room)), word);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<GroupInfo> Registry::group_or_product(const std::string& name) const {
+  if (const GroupInfo* info = group(name)) return *info;
+  std::vector<GroupInfo> factors;
+  for (const std::string& word : factors_of(name)) {
+    const GroupInfo* info = group(word);
+    if (info == nullptr) return {};
+    factors.push_back(*info);
+  }
+  const int dim = std::accumulate(factors.begin(), factors.end(), 0,
+                                  [](int sum, const GroupInfo& info) { return sum + info.dim; });
+  if (factors.empty() || dim > kMaxDimension) return {};
+  return product_info(name, factors);
+}
+
+std::string Registry::missing_group(const std::string& name) const {
+  const std::vector<std::string> factors = factors_of(name);
+  const auto known = [&](const std::string& word) { return group(word) != nullptr; };
+  if (factors.empty() || !std::all_of(factors.begin(), factors.end(), known))
+    return unknown_name("group", name, groups());
+  return fmt::format("group '{}': its dimension is above {}", shortened(name), kMaxDimension);
+}
+
+std::shared_ptr<const Geometry> Registry::geometry(const std::string& group,
+                                                   const std::string& retraction) const {
+  if (const RetractionInfo* info = this->retraction(group, retraction)) return info->geometry;
+  std::vector<std::shared_ptr<const Geometry>> parts;
+  for (const std::string& word : factors_of(group)) {
+    const RetractionInfo* info = this->retraction(word, retraction);
+    if (info == nullptr) return nullptr;
+    parts.push_back(info->geometry);
+  }
+  if (parts.empty()) return nullptr;
+  return std::make_shared<ProductGeometry>(parts);
+}
+
+std::vector<std::string> Registry::retractions_or_common(const std::string& group) const {
+  std::vector<std::string> out = retractions(group);
+  if (!out.empty()) return out;
+  for (const std::string& name : retractions()) {
+    if (geometry(group, name) != nullptr) out.push_back(name);
+  }
+  return out;
+}
+
+std::vector<std::string> Registry::groups() const { return names(groups_); }
+std::vector<std::string> Registry::retractions() const {
+  std::set<std::string> all;
+  for (const auto& [key, info] : retractions_) all.insert(info.name);
+  return {all.begin(), all.end()};
+}
+std::vector<std::string> Registry::retractions(const std::string& group) const {
+  std::vector<std::string> out;
+  for (const auto& [key, info] : retractions_) {
+    if (key.first == group) out.push_back(key.second);
+  }
+  return out;
+}
+std::vector<std::string> Registry::schemes() const { return names(schemes_); }
+std::vector<std::string> Registry::solvers() const { return names(solvers_); }
+std::vector<std::string> Registry::absent_solvers() const { return names(absent_solvers_); }
+std::string Registry::missing_solver(const std::string& name) const {
+  if (const SolverInfo* info = absent_solver(name)) {
+    return fmt::format("solver '{}' needs the package {}: install it and build again", name,
+                       info->package);
+  }
+  return unknown_name("solver", name, solvers());
+}
+std::vector<std::string> Registry::systems() const { return names(systems_); }
+std::vector<std::string> Registry::deferred_systems() const { return names(deferred_); }
+std::vector<std::string> Registry::systems_and_files() const {
+  std::vector<std::string> out = systems();
+  for (std::string& name : deferred_systems()) out.push_back(std::move(name));
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace hamel

@@ -1,0 +1,159 @@
+// The registry: groups, retractions, schemes, solvers, systems by name, and the compiled kernels.
+//
+// A registry is a plain value filled explicitly (systems/systems.cpp fills the library's own); a user's
+// program adds to it with the add_... functions of systems/kernels.hpp, without touching the library.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <typeinfo>
+#include <vector>
+
+#include <hamel/framework/loop/kernel.hpp>
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
+
+namespace hamel {
+
+/// A retraction of one group.
+struct RetractionInfo {
+  std::string name, group, formula, domain;
+  bool symmetric = false;
+  bool one_parameter = false;
+  std::shared_ptr<const Geometry> geometry;  // what erased problems evaluate
+};
+
+using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
+
+/// A scheme's descriptor (schemes/scheme.hpp), and its kernel for any problem.
+struct SchemeInfo {
+  std::string name, formula, source;
+  bool adapted = true;
+  bool uses_s = true;
+  double fixed_s = 0;
+  bool steps_admissible = true;
+  bool left_invariant_only = false;
+  bool explicit_step = false;
+  bool estimates_error = false;
+  bool varies_steps = false;
+  bool places_forces = false;
+  std::function<ClaimedOrder(double s, TauTraits tau, bool left_invariant)> claims;
+  KernelFactory erased = {};
+
+  bool defined(bool left_invariant) const { return left_invariant || !left_invariant_only; }
+  /// What it claims for a run; order 0 where it is not defined.
+  ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) const;
+  /// The same on a system. With forces at the nodes only (lift), constant inertia and rows A xi = 0 do for
+  /// left-invariant: (M43).
+  ClaimedOrder claim(double s, TauTraits tau, const Mechanics& system,
+                     const std::string& force_at) const;
+};
+
+struct SolverInfo {
+  std::string name, summary, source;
+  /// Null for the solver that is compiled into the kernels.
+  std::function<std::shared_ptr<Solver>()> make;
+  std::string method = {};   // what an iteration does
+  std::string stops = {};    // what ends a solve
+  std::string package = {};  // the Debian package that brings it, where one is needed
+};
+
+/// A solver as one function: improves x, the guess, until |F(x)| <= tolerance. F is scaled; the solve is judged
+/// by the best residual evaluated, without a report.
+using SolveFunction =
+    std::function<void(const Equation& equation, std::span<double> x, double tolerance)>;
+
+/// A further TOML format for systems, recognised by its top-level keys.
+struct FileKind {
+  std::vector<std::string> keys;  // any of them; a file of this kind must have the first
+  /// Throws ConfigError with every mistake, file, line and column.
+  std::function<SystemModel(const std::string& text, const std::string& origin,
+                            const Parameters& given)>
+      read;
+};
+
+/// What kernels are compiled for: the type of a system (typeid of its Mechanics), or, left-invariant, group and m.
+std::string problem_key(const std::string& group, int m);
+std::string problem_key(const std::type_info& mechanics);
+
+/// Of products put together by name: a step takes n^3 operations and n^2 numbers.
+constexpr int kMaxDimension = 1000;
+
+class Registry {
+ public:
+  // Adding a name again replaces the earlier entry.
+  void add(GroupInfo info);
+  void add(RetractionInfo info);
+  void add(SchemeInfo info);
+  void add(SolverInfo info);
+  void add(SystemInfo info);
+  void add(FileKind kind);
+  /// A system whose description is made when its name is first asked for: of files that go by name, listed apart.
+  void add_deferred(const std::string& name, std::function<SystemInfo()> make);
+  void add_solver(const std::string& name, const std::string& summary, SolveFunction solve);
+  /// Another name of a scheme, accepted wherever a scheme is named; a scheme of that name goes first.
+  void add_scheme_alias(const std::string& alias, const std::string& scheme);
+  /// A solver that this build lacks, for want of info.package: listed and described, but no solver().
+  void add_absent(SolverInfo info);
+  /// A kernel compiled for one problem: problem_key() with a retraction and a scheme.
+  void add_kernel(const std::string& problem, const std::string& retraction,
+                  const std::string& scheme, KernelFactory factory);
+
+  // Null when there is no such name.
+  const GroupInfo* group(const std::string& name) const;
+  const RetractionInfo* retraction(const std::string& group, const std::string& name) const;
+  const SchemeInfo* scheme(const std::string& name) const;  // by its name or an alias
+  const SolverInfo* solver(const std::string& name) const;
+  const SolverInfo* absent_solver(const std::string& name) const;
+  const SystemInfo* system(const std::string& name) const;
+  /// The kernel compiled for this problem if there is one, else null: the scheme's erased one serves.
+  const KernelFactory* kernel(const std::string& group, const Mechanics& mechanics,
+                              const std::string& retraction, const std::string& scheme) const;
+
+  // Products written "se2*so2^3" that nobody registered are put together from their factors.
+  /// Nothing when a factor is unknown, or the dimension above kMaxDimension.
+  std::optional<GroupInfo> group_or_product(const std::string& name) const;
+  /// The reason why there is no group or product of this name.
+  std::string missing_group(const std::string& name) const;
+  /// Null when a factor has no such retraction.
+  std::shared_ptr<const Geometry> geometry(const std::string& group,
+                                           const std::string& retraction) const;
+  /// The retractions of a group, or those that all factors of a product offer.
+  std::vector<std::string> retractions_or_common(const std::string& group) const;
+
+  // Sorted names.
+  std::vector<std::string> groups() const;
+  std::vector<std::string> retractions() const;
+  std::vector<std::string> retractions(const std::string& group) const;
+  std::vector<std::string> schemes() const;  // without aliases
+  std::vector<std::string> solvers() const;
+  std::vector<std::string> absent_solvers() const;
+  /// The reason why there is no solver of this name: a nearest name, or the package to install.
+  std::string missing_solver(const std::string& name) const;
+  std::vector<std::string> systems() const;
+  /// The systems of add_deferred.
+  std::vector<std::string> deferred_systems() const;
+  /// Both: every name that system(name) accepts.
+  std::vector<std::string> systems_and_files() const;
+  const std::vector<FileKind>& file_kinds() const { return file_kinds_; }
+
+  /// alias -> scheme.
+  const std::map<std::string, std::string>& scheme_aliases() const { return scheme_aliases_; }
+
+ private:
+  std::map<std::string, GroupInfo> groups_;
+  std::map<std::pair<std::string, std::string>, RetractionInfo> retractions_;  // (group, name)
+  std::map<std::string, SchemeInfo> schemes_;
+  std::map<std::string, std::string> scheme_aliases_;
+  std::map<std::string, SolverInfo> solvers_, absent_solvers_;
+  std::map<std::string, SystemInfo> systems_;
+  struct Deferred;
+  std::map<std::string, std::shared_ptr<Deferred>> deferred_;
+  std::vector<FileKind> file_kinds_;
+  std::map<std::string, KernelFactory> kernels_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,143 @@
+#include <hamel/framework/run/record/result.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/run/record/sink.hpp>
+
+namespace hamel {
+
+Trajectory::Trajectory(std::vector<ColumnGroup> groups) : groups_(std::move(groups)) {
+  for (const ColumnGroup& group : groups_)
+    columns_.insert(columns_.end(), group.columns.begin(), group.columns.end());
+}
+
+void Trajectory::thin() {
+  const size_t width = columns_.size(), count = (rows() + 1) / 2;
+  for (size_t i = 1; i < count; ++i)
+    std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(2 * i * width), width,
+                values_.begin() + static_cast<std::ptrdiff_t>(i * width));
+  values_.resize(count * width);
+}
+
+size_t Trajectory::index(const std::string& column) const {
+  const auto it = std::find(columns_.begin(), columns_.end(), column);
+  if (it == columns_.end()) throw ConfigError({unknown_name("column", column, columns_)});
+  return static_cast<size_t>(it - columns_.begin());
+}
+
+bool Trajectory::has(const std::string& column) const {
+  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+}
+
+std::vector<double> Trajectory::column(const std::string& name) const {
+  const size_t j = index(name);
+  std::vector<double> out(rows());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = at(i, j);
+  return out;
+}
+
+std::string Result::method() const {
+  const auto used = [&](const char* option) {
+    return std::find(unused.begin(), unused.end(), option) == unused.end();
+  };
+  return config.scheme + (used("s") ? fmt::format(" (s = {})", config.s) : "") + ", " +
+         config.retraction + (used("solver") ? ", " + config.solver : "") +
+         (config.compose == "none" ? "" : ", composed by " + config.compose);
+}
+
+std::string Result::steps_in_words() const {
+  if (!config.chooses_steps()) return fmt::format("h = {}", config.step);
+  std::string out = config.rtol ? fmt::format("rtol = {}", *config.rtol) : "";
+  if (config.atol) out += fmt::format("{}atol = {}", config.rtol ? ", " : "", *config.atol);
+  return out;
+}
+
+std::string Result::report() const {
+  std::string out =
+      fmt::format("{} on {}: {}, {}\n", system.name, system.group.name, method(), steps_in_words());
+  const double count = static_cast<double>(std::max(steps, 1L));
+  const auto line = [&](const std::string& name, const std::string& value) {
+    out += fmt::format("  {:<22} {}\n", name, value);
+  };
+  if (status.ok) {
+    line("status",
+         fmt::format("ok{}, {} steps{} to t = {:.6g}",
+                     status.reason.empty() ? "" : " (" + status.reason + ")", steps,
+                     stats.rejected > 0 ? fmt::format(" ({} more rejected)", stats.rejected) : "",
+                     last.time));
+  } else {
+    line("status", fmt::format("FAILED in step {} (t = {:.6g}): {}, residual {:.2e}", status.step,
+                               status.time, status.reason, status.residual));
+    line("kept", fmt::format("{} good steps to t = {:.6g}", steps, last.time));
+  }
+  for (const std::string& note : notes) line("note", note);
+  line("final velocity", join(last.velocity));
+  if (std::find(unused.begin(), unused.end(), "solver") == unused.end()) {
+    line("solver", fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
+                               static_cast<double>(stats.iterations) / count, stats.iterations_max,
+                               stats.residual_max));
+  } else {
+    line("evaluations", fmt::format("{} of the equations of motion", stats.evaluations));
+  }
+  if (stats.fallbacks > 0) {
+    const Fallback& first = stats.first_fallbacks.front();
+    line("fallbacks", fmt::format("{} of {} steps; the first, step {} (t = {:.6g}): {}",
+                                  stats.fallbacks, steps, first.step, first.time, first.action));
+  }
+  fields([&](const Quantity& quantity, const char*, auto member) {
+    const double value = this->*member;
+    // NaN: there is no such thing here; of an energy or a constraint, something went wrong.
+    const bool always = member == &Result::energy_error_max || member == &Result::constraint_max;
+    if (*quantity.title == 0 || (!always && std::isnan(value))) return;
+    const bool balance = member == &Result::energy_error_max && std::isfinite(work);
+    line(balance ? "energy balance" : quantity.title,
+         fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
+                     member == &Result::constraint_max ? ", " + constraints_in_words(system) : ""));
+  });
+  for (size_t i = 0; i < events.size() && i < 10; ++i)
+    line("event", fmt::format("{} at t = {:.10g}", events[i].name, events[i].time));
+  if (events.size() > 10) line("event", fmt::format("and {} more", events.size() - 10));
+  for (const InvariantDrift& i : invariants) {
+    line(i.name, fmt::format("{:.6g}, drift {:.2e}", i.start, i.drift_max));
+  }
+  if (std::isfinite(exact_error_max)) {
+    line("against the exact",
+         fmt::format("configuration {:.2e} at the end, velocity {:.2e} at most", exact_error_final,
+                     exact_velocity_error_max));
+  }
+  if (config.check && status.ok) {
+    line("estimated error",
+         std::isnan(estimated_error)
+             ? fmt::format("unknown by {}", finer_runs(config))
+             : fmt::format("{:.2e} of the configuration at the end", estimated_error) +
+                   (std::isnan(observed_order)  // at round-off
+                        ? ""
+                        : fmt::format(", observed order {:.2f}", observed_order)));
+  }
+  line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
+  return out;
+}
+
+const char* finer_runs(const Config& config) {
+  return config.chooses_steps() ? "a tenth and a hundredth of the tolerance"
+                                : "half and a quarter of the step";
+}
+
+void Result::write(const std::string& path) const {
+  if (trajectory.groups().empty() && !path.ends_with(".json")) {
+    throw ConfigError({fmt::format(
+        "write: '{}': the rows of this run are in its files and not in memory; keep_rows() keeps "
+        "some of them",
+        path)});
+  }
+  const std::unique_ptr<Sink> sink = make_sink(path);
+  sink->begin({trajectory.groups(), config.to_toml(), "", record()});
+  sink->rows(trajectory.values());
+  sink->finish(*this);
+}
+
+}  // namespace hamel

@@ -1,0 +1,73 @@
+// A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its page. Not installed.
+//
+// Attributes: config (TOML), files (texts_of_files), start (the record before the first step), build, format. Data sets: the groups of
+// columns; record, the Result's, in the end; resume, checkpoints (run/record/checkpoint.hpp) until then.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/run/names/config.hpp>
+#include <hamel/framework/run/record/sink.hpp>
+
+namespace hamel {
+
+/// The texts of the files that a run reads, its system and inputs: {path: text}, JSON; "" where there is none.
+std::string texts_of_files(const Config& config);
+
+class RunFileSink final : public Sink {
+ public:
+  explicit RunFileSink(std::string path) : path_(std::move(path)) {}
+  ~RunFileSink() override;
+  void begin(const RunHead& head) override;
+  void rows(std::span<const double> values) override { out_->append(values); }
+  bool resumable() const override { return true; }
+  void checkpoint(const std::string& state, const std::string& news) override;
+  /// The first time its file takes the place of one that was there: a run that goes on has written its rows again by then.
+  void flush() override;
+  void finish(const Result& result) override;
+
+ private:
+  std::string path_;
+  bool in_place_ = false;
+  std::unique_ptr<FileLock> lock_;
+  std::unique_ptr<RowFileWriter> out_;
+};
+
+/// What an unfinished run left.
+class RunFile {
+ public:
+  /// path: with or without .part. ConfigError where there is no run.
+  explicit RunFile(const std::string& path);
+  /// Of the whole file, without .part.
+  const std::string& path() const { return path_; }
+  bool finished() const { return rows_.finished(); }
+  std::string record() const { return rows_.record(); }
+  Config config() const;
+  std::string text(const std::string& name) const { return rows_.text(name); }
+  const RowFileReader& table() const { return rows_; }
+  /// Of texts_of_files, by path. ConfigError where it is not there.
+  std::string file(const std::string& path) const;
+
+  /// The last checkpoint that is whole with the rows before it: its state, what came before it piece by piece, and how many
+  /// rows; 0 where there is none. Reads these rows.
+  struct Kept {
+    std::string state;
+    std::vector<std::string> news;
+    std::size_t rows = 0;
+  };
+  Kept kept() const;
+
+ private:
+  std::string path_;
+  RowFileReader rows_;
+};
+
+/// The rows of a finished file, thinned to at most so many. ConfigError where they are not those that were written.
+Trajectory read_rows(const RunFile& file, std::size_t most);
+
+/// What a record says of a run, into a Result that has its system and config.
+void read_record(const std::string& record, Result& out);
+
+}  // namespace hamel

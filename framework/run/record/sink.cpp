@@ -1,0 +1,226 @@
+#include <hamel/framework/run/record/sink.hpp>
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/table.hpp>
+#include <hamel/framework/run/record/run_file.hpp>
+
+namespace hamel {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path) {
+  throw Unfinished(fmt::format("output: cannot write '{}': {}", path, std::strerror(errno)));
+}
+
+// Bytes to a file, plain or compressed, or to standard output.
+class PlainBytes {
+ public:
+  explicit PlainBytes(const std::string& path)
+      : path_(path),
+        lock_(path == "-" ? nullptr : std::make_unique<FileLock>(part_of(path))),
+        file_(path == "-" ? stdout : std::fopen(part_of(path).c_str(), "wb")) {
+    if (file_ == nullptr) refuse(path_);
+  }
+  ~PlainBytes() {
+    if (file_ != nullptr && file_ != stdout) std::fclose(file_);
+  }
+  PlainBytes(const PlainBytes&) = delete;
+  PlainBytes& operator=(const PlainBytes&) = delete;
+  void write(std::string_view bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) refuse(path_);
+  }
+  void flush() {
+    if (std::fflush(file_) != 0) refuse(path_);
+  }
+  void finish() {
+    flush();
+    if (file_ == stdout) return;
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) refuse(path_);
+    finish_file(part_of(path_), path_);
+  }
+
+ private:
+  std::string path_;
+  std::unique_ptr<FileLock> lock_;
+  std::FILE* file_;
+};
+
+class CompressedBytes {
+ public:
+  explicit CompressedBytes(const std::string& path)
+      : path_(path), lock_(part_of(path)), file_(gzopen(part_of(path).c_str(), "wb1")) {
+    if (file_ == nullptr) refuse(path_);
+  }
+  ~CompressedBytes() {
+    if (file_ != nullptr) gzclose(file_);
+  }
+  CompressedBytes(const CompressedBytes&) = delete;
+  CompressedBytes& operator=(const CompressedBytes&) = delete;
+  void write(std::string_view bytes) {
+    if (!bytes.empty() && gzwrite(file_, bytes.data(), static_cast<unsigned>(bytes.size())) == 0)
+      refuse(path_);
+  }
+  void flush() {
+    if (gzflush(file_, Z_SYNC_FLUSH) != Z_OK) refuse(path_);
+  }
+  void finish() {
+    if (gzclose(std::exchange(file_, nullptr)) != Z_OK) refuse(path_);
+    finish_file(part_of(path_), path_);
+  }
+
+ private:
+  std::string path_;
+  FileLock lock_;
+  gzFile file_;
+};
+
+// Names, rows, then the record in lines that begin with #.
+template <class Bytes>
+class CsvSink final : public Sink {
+ public:
+  explicit CsvSink(const std::string& path) : out_(path) {}
+  void begin(const RunHead& head) override {
+    for (const ColumnGroup& group : head.columns) {
+      for (const std::string& name : group.columns) {
+        text_.append(std::string_view(width_++ > 0 ? "," : ""));
+        text_.append(name);
+      }
+    }
+    text_.push_back('\n');
+    put();
+  }
+  void rows(std::span<const double> values) override {
+    std::size_t column = 0;
+    for (const double value : values) {
+      text_.resize(text_.size() + kNumber);
+      char* const begin = text_.data() + text_.size() - kNumber;
+      const auto end =
+          std::to_chars(begin, begin + kNumber, value, std::chars_format::general, 17).ptr;
+      text_.resize(static_cast<std::size_t>(end - text_.data()));
+      text_.push_back(++column == width_ ? '\n' : ',');
+      if (column == width_) column = 0;
+      if (text_.size() > 1 << 16) put();
+    }
+    put();
+  }
+  void flush() override { out_.flush(); }
+  void finish(const Result& result) override {
+    std::istringstream lines(result.record());
+    for (std::string line; std::getline(lines, line);)
+      fmt::format_to(std::back_inserter(text_), "# {}\n", line);
+    put();
+    out_.finish();
+  }
+
+ private:
+  void put() {
+    out_.write({text_.data(), text_.size()});
+    text_.clear();
+  }
+
+  static constexpr std::size_t kNumber = 32;  // bytes of a number at most: -1.7976931348623157e+308
+  Bytes out_;
+  std::size_t width_ = 0;
+  fmt::memory_buffer text_;
+};
+
+class JsonSink final : public Sink {
+ public:
+  explicit JsonSink(std::string path) : path_(std::move(path)) {}
+  void begin(const RunHead&) override {}
+  void rows(std::span<const double>) override {}
+  void finish(const Result& result) override { write_file(path_, result.record() + "\n"); }
+
+ private:
+  std::string path_;
+};
+
+struct Format {
+  const char* extension;
+  std::unique_ptr<Sink> (*make)(const std::string& path);
+};
+
+template <class Made>
+std::unique_ptr<Sink> make(const std::string& path) {
+  return std::make_unique<Made>(path);
+}
+
+constexpr Format kFormats[] = {{".csv", make<CsvSink<PlainBytes>>},
+                               {".csv.gz", make<CsvSink<CompressedBytes>>},
+                               {".h5", make<RunFileSink>},
+                               {".json", make<JsonSink>}};
+
+const Format* format_of(const std::string& path) {
+  if (path == "-") return &kFormats[0];
+  const std::string name = std::filesystem::path(path).filename();
+  const auto* it = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& f) {
+    return name.ends_with(f.extension) && name != f.extension;
+  });
+  return it == std::end(kFormats) ? nullptr : it;
+}
+
+}  // namespace
+
+const std::vector<std::string>& output_formats() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> out;
+    for (const Format& f : kFormats) out.emplace_back(f.extension);
+    return out;
+  }();
+  return all;
+}
+
+std::unique_ptr<Sink> make_sink(const std::string& path) {
+  if (const std::string mistake = record_mistake(path); !mistake.empty())
+    throw ConfigError({mistake});
+  return format_of(path)->make(path);
+}
+
+std::string record_mistake(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension();
+  if (format_of(path) == nullptr)
+    return unknown_name("output format", extension, output_formats()) + " in '" + path + "'";
+  if (path == "-") return "";
+  if (extension == ".h5" && hdf5_version().empty())
+    return fmt::format("output: '{}': this build has no HDF5 (libhdf5-dev)", path);
+  return unwritable(path);
+}
+
+void MemorySink::begin(const RunHead& head) { out_ = Trajectory(head.columns); }
+
+void MemorySink::rows(std::span<const double> values) {
+  const std::size_t width = out_.columns().size();
+  for (std::size_t at = 0; at < values.size(); at += width) {
+    const auto row = values.subspan(at, width);
+    last_.clear();
+    if (seen_++ % stride_ != 0) {
+      last_.assign(row.begin(), row.end());
+      continue;
+    }
+    out_.append(row);
+    if (most_ == 0 || out_.rows() <= most_) continue;
+    out_.thin();
+    stride_ *= 2;
+    if ((seen_ - 1) % stride_ != 0) last_.assign(row.begin(), row.end());
+  }
+}
+
+void MemorySink::finish(const Result&) {
+  if (!last_.empty()) out_.append(last_);
+  out_.stride(stride_);
+}
+
+}  // namespace hamel

@@ -1,0 +1,60 @@
+// Where the rows of a run go as they come: CSV, compressed or to standard output, HDF5, JSON (the record alone), memory.
+// Not installed: the builder's own (Simulation::record_to).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hamel/framework/io/row_file.hpp>
+#include <hamel/framework/run/record/result.hpp>
+
+namespace hamel {
+
+/// What is known before the first row.
+struct RunHead {
+  std::vector<ColumnGroup> columns;
+  std::string config;  // as given, TOML: reads back to the same run
+  std::string files;   // texts_of_files (run_file.hpp)
+  std::string record;  // as it is at the start: everything resolved, nothing computed
+};
+
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual void begin(const RunHead& head) = 0;
+  /// Whole rows, one after the other. Unfinished on failure, as in all that follows.
+  virtual void rows(std::span<const double> values) = 0;
+  /// Can a run go on from it? Then it is told the state at the rows so far; news: what came since the last one.
+  virtual bool resumable() const { return false; }
+  virtual void checkpoint(const std::string& /*state*/, const std::string& /*news*/) {}
+  /// What it has is to be found in its file, now.
+  virtual void flush() {}
+  /// After the last row.
+  virtual void finish(const Result& result) = 0;
+};
+
+/// The sink of a path by its extension, output_formats(); "-" is CSV to standard output.
+std::unique_ptr<Sink> make_sink(const std::string& path);
+
+/// "" where make_sink and its file can be had, else what is in the way.
+std::string record_mistake(const std::string& path);
+
+/// Appends to the trajectory; beyond `most` rows (0: no bound) every second one is dropped, again and again.
+class MemorySink final : public Sink {
+ public:
+  MemorySink(Trajectory& rows, std::size_t most) : out_(rows), most_(most) {}
+  void begin(const RunHead& head) override;
+  void rows(std::span<const double> values) override;
+  void finish(const Result&) override;
+
+ private:
+  Trajectory& out_;
+  std::size_t most_, stride_ = 1, seen_ = 0;
+  std::vector<double> last_;  // row, where it is none of the kept
+};
+
+}  // namespace hamel

@@ -1,0 +1,28 @@
+// The state of a run at any time within its last step, and shortly after it.
+//
+// The explicit pairs have a dense output of their own. Of any other scheme the state at t is where a step of
+// the same scheme, of size t - t_k, leads from the node t_k before: it has the order of the scheme, lies on the group and in the
+// constraints, and runs into the next node.
+#pragma once
+
+#include <memory>
+
+#include <hamel/framework/run/names/registry.hpp>
+
+namespace hamel {
+
+class DenseOutput {
+ public:
+  DenseOutput(Kernel& kernel, KernelFactory factory, KernelSetup setup);
+  /// The state at t, measured. Not ok where the step to it fails.
+  Status at(double t, Snapshot& out);
+
+ private:
+  Kernel& kernel_;
+  KernelFactory factory_;
+  KernelSetup setup_;              // with steps of one size
+  std::unique_ptr<Kernel> other_;  // takes the steps to t
+  Snapshot begin_, now_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,86 @@
+#include <hamel/framework/run/run/energy_balance.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hamel {
+
+EnergyBalance::EnergyBalance(std::shared_ptr<const Geometry> geometry,
+                             const std::shared_ptr<const Mechanics>& mechanics,
+                             std::shared_ptr<const Inputs> inputs)
+    : geometry_(std::move(geometry)),
+      mechanics_(mechanics),
+      active_(geometry_ != nullptr && (mechanics->has_force() || mechanics->has_drift())),
+      inputs_(std::move(inputs)) {
+  if (!active_) return;
+  if (inputs_ != nullptr) changes_ = inputs_->changes();
+  g_.resize(geometry_->size());
+  if (!mechanics->has_drift()) return;
+  motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, mechanics));
+  b_.resize(mechanics->rows());
+  a_.resize(mechanics->rows(), mechanics->dim());
+}
+
+double EnergyBalance::power(const Snapshot& state) {
+  geometry_->from_coordinates(state.coordinates, g_.data());
+  xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
+                                          static_cast<Eigen::Index>(state.velocity.size()));
+  double out = mechanics_->power(state.time, g_.data(), xi_);
+  if (motion_ != nullptr) {
+    mechanics_->constraints(state.time, g_.data(), a_, b_);
+    motion_->solve(state.time, g_, xi_);
+    out += motion_->reaction().dot(b_);
+  }
+  return out;
+}
+
+void EnergyBalance::node(const Snapshot& state) {
+  if (inputs_ != nullptr) {
+    if (inputs_->changes() != changes_ && started_) break_off(last_);
+    changes_ = inputs_->changes();
+    last_ = state;
+  }
+  const double now = power(state);
+  if (started_ && !work_.joins(state.time)) settle();
+  work_.add(state.time, now);
+  if (!started_) energy_start_ = state.energy;
+  started_ = true;
+  raise(energy_max_, state.energy);
+  if (work_.settled()) settle();
+}
+
+void EnergyBalance::row(const Snapshot& state) {
+  waiting_.push_back({state.time, state.energy});
+  if (work_.settled()) settle();
+}
+
+void EnergyBalance::settle() {
+  for (const Recorded& r : waiting_) {
+    work_done_ = done_ + work_.value(r.time);
+    const double defect = r.energy - energy_start_ - work_done_;
+    raise(defect_max_, defect);
+    settled_.push_back({work_done_, defect, scale()});
+  }
+  waiting_.clear();
+}
+
+void EnergyBalance::break_off(const Snapshot& at) {
+  settle();
+  done_ += work_.value(at.time);
+  work_ = NodalQuadrature();
+  work_.add(at.time, power(at));
+}
+
+void EnergyBalance::impact(const Snapshot& before, const Snapshot& after) {
+  break_off(after);
+  last_ = after;
+  energy_start_ += after.energy - before.energy;
+  raise(energy_max_, after.energy);
+}
+
+void EnergyBalance::settled(std::vector<BalancedState>& out) {
+  out.clear();
+  out.swap(settled_);
+}
+
+}  // namespace hamel

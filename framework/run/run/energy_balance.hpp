@@ -1,0 +1,87 @@
+// The energy balance of a run: the energy less what forces and moving constraints have done, (M47) (M48) (M49).
+// Not installed.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/run/record/measures.hpp>
+#include <hamel/framework/run/run/nodal_quadrature.hpp>
+#include <hamel/framework/schemes/erased.hpp>
+
+namespace hamel {
+
+class EnergyBalance {
+ public:
+  /// geometry: null for a group that is not registered; then, and where the energy is kept, it is not active. inputs:
+  /// those of the run, null without.
+  EnergyBalance(std::shared_ptr<const Geometry> geometry,
+                const std::shared_ptr<const Mechanics>& mechanics,
+                std::shared_ptr<const Inputs> inputs);
+  bool active() const { return active_; }
+
+  /// Of each node, from the start on: its step, time, coordinates, velocity and energy.
+  void node(const Snapshot& state);
+  /// A recorded state, between the last two nodes or one of them.
+  void row(const Snapshot& state);
+
+  /// An event changed the state at the last node: its energy is followed from there on.
+  void impact(const Snapshot& before, const Snapshot& after);
+
+  /// Those of the recorded states that are known by now and were not taken before, in their order: one waits for the
+  /// first nodes of the quadrature.
+  void settled(std::vector<BalancedState>& out);
+  /// After the last node: none waits.
+  void finish() { settle(); }
+  /// Over the recorded states that are settled, relative to the largest energy.
+  double error_max() const { return defect_max_ / scale(); }
+  /// Of the energies at the nodes so far.
+  double scale() const { return energy_max_ == 0 ? 1 : energy_max_; }
+  /// At the last recorded state.
+  double work() const { return work_done_; }
+
+  template <class Archive>
+  void carry(Archive& archive) {
+    // The inputs of a run that goes on have changed as often as it was told, and not as often as they were before.
+    bool changed = inputs_ != nullptr && inputs_->changes() != changes_;
+    archive(changed, last_, work_, done_, started_, energy_start_, energy_max_, defect_max_,
+            work_done_, waiting_, settled_);
+    if (inputs_ != nullptr) changes_ = inputs_->changes() - (changed ? 1 : 0);
+  }
+
+ private:
+  // <f, xi> + lambda . b.
+  double power(const Snapshot& state);
+
+  std::shared_ptr<const Geometry> geometry_;
+  std::shared_ptr<const Mechanics> mechanics_;
+  std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without a drift
+  bool active_;
+  // The work at the recorded states that wait.
+  void settle();
+  // The quadrature begins anew at a node: an input jumps or has a kink there, and so has the power, or the state does.
+  void break_off(const Snapshot& at);
+
+  std::shared_ptr<const Inputs> inputs_;
+  long changes_ = 0;      // of the inputs, seen
+  Snapshot last_;         // node, where there are inputs
+  NodalQuadrature work_;  // since the quadrature began, when done_ was done
+  double done_ = 0;
+  bool started_ = false;
+  double energy_start_ = 0, energy_max_ = 0;
+  double defect_max_ = 0, work_done_ = 0;
+  struct Recorded {
+    double time = 0, energy = 0;
+    template <class Archive>
+    void carry(Archive& archive) {
+      archive(time, energy);
+    }
+  };
+  std::vector<Recorded> waiting_;
+  std::vector<BalancedState> settled_;
+  Eigen::VectorXd g_, xi_, b_;
+  Eigen::MatrixXd a_;
+};
+
+}  // namespace hamel

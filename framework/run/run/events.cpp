@@ -1,0 +1,177 @@
+#include <hamel/framework/run/run/events.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include <hamel/framework/mechanics/motion_words.hpp>
+
+namespace hamel {
+namespace {
+
+// A normal reaction, from the equations of motion.
+class NormalReaction {
+ public:
+  NormalReaction(const std::shared_ptr<const Geometry>& geometry,
+                 const std::shared_ptr<const Mechanics>& mechanics, int row)
+      : motion_(std::make_shared<EquationsOfMotion<Erased>>(Erased(geometry, mechanics))),
+        geometry_(geometry),
+        g_(geometry->size()),
+        row_(row) {}
+  double operator()(double t, std::span<const double> coordinates,
+                    std::span<const double> velocity) {
+    geometry_->from_coordinates(coordinates, g_.data());
+    motion_->solve(t, g_,
+                   Eigen::Map<const Eigen::VectorXd>(velocity.data(),
+                                                     static_cast<Eigen::Index>(velocity.size())));
+    return motion_->reaction()[row_];
+  }
+
+ private:
+  std::shared_ptr<EquationsOfMotion<Erased>> motion_;
+  std::shared_ptr<const Geometry> geometry_;
+  Eigen::VectorXd g_;
+  int row_;
+};
+
+// "x=1.5" or "xi2=0".
+bool plane(const SystemModel& system, const std::string& text, Event& out,
+           std::vector<std::string>& mistakes) {
+  const size_t equal = text.find('=');
+  if (equal == std::string::npos) return false;
+  const std::string column = text.substr(0, equal);
+  double value = 0;
+  try {
+    read_text("events", text.substr(equal + 1), value);
+  } catch (const ConfigError& error) {
+    mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
+    return true;
+  }
+  std::vector<std::string> columns = system.group.columns;
+  const size_t coordinates = columns.size();
+  for (int i = 1; i <= system.group.dim; ++i) columns.push_back(fmt::format("xi{}", i));
+  const auto it = std::find(columns.begin(), columns.end(), column);
+  if (it == columns.end()) {
+    mistakes.push_back("events: " + unknown_name("column", column, columns));
+    return true;
+  }
+  const auto i = static_cast<size_t>(it - columns.begin());
+  out = {text, "this column crosses this value", 0,
+         [i, coordinates, value](double, std::span<const double> g, std::span<const double> xi) {
+           return (i < coordinates ? g[i] : xi[i - coordinates]) - value;
+         }};
+  return true;
+}
+
+}  // namespace
+
+std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Geometry> geometry) {
+  std::vector<Event> out = system.events;
+  for (const int row : system.contacts) {
+    std::string name = "contact_lost";
+    if (!words_of(system).reactions.empty()) {  // front.reaction3 -> front.contact_lost
+      const std::string& reaction = words_of(system).reactions[static_cast<size_t>(row)];
+      name = reaction.substr(0, reaction.rfind('.') + 1) + name;
+    } else if (system.contacts.size() > 1) {
+      name += std::to_string(row + 1);
+    }
+    Event event{name, "the normal reaction ceases to push", -1, {}};
+    if (geometry != nullptr) event.value = NormalReaction(geometry, system.mechanics, row);
+    out.push_back(std::move(event));
+  }
+  return out;
+}
+
+Events::Events(const SystemModel& system, std::shared_ptr<const Geometry> geometry,
+               const std::vector<std::string>& names, const std::vector<std::string>& stops,
+               std::vector<std::string>& mistakes) {
+  const std::vector<Event> known = events_of(system, std::move(geometry));
+  const auto watch = [&](const std::string& name, bool stop) {
+    for (Watched& w : watched_) {
+      if (w.event.name == name) {
+        w.stops = w.stops || stop;
+        return;
+      }
+    }
+    Event event;
+    if (plane(system, name, event, mistakes)) {
+      if (event.value) watched_.push_back({std::move(event), stop});
+      return;
+    }
+    std::vector<std::string> offered;
+    for (const Event& e : known) {
+      offered.push_back(e.name);
+      if (e.name == name && e.value) {
+        watched_.push_back({e, stop});
+        return;
+      }
+    }
+    offered.emplace_back("COLUMN=VALUE");
+    mistakes.push_back(unknown_name("event of " + system.name, name, offered));
+  };
+  for (const std::string& name : names) watch(name, false);
+  for (const std::string& name : stops) watch(name, true);
+}
+
+void Events::begin(const Snapshot& state, std::vector<std::string>& mistakes) {
+  time_ = state.time;
+  for (Watched& w : watched_) {
+    w.before = w.event.value(state.time, state.coordinates, state.velocity);
+    if (!std::isfinite(w.before))
+      mistakes.push_back(fmt::format("events: {} is {} at the start", w.event.name, w.before));
+  }
+}
+
+void Events::resume(const Snapshot& state, const std::string& met) {
+  time_ = state.time;
+  for (Watched& w : watched_) {
+    w.before =
+        w.event.name == met ? 0 : w.event.value(state.time, state.coordinates, state.velocity);
+  }
+}
+
+Status Events::look(const Snapshot& state, DenseOutput& dense, std::vector<Found>& found) {
+  found.clear();
+  Status status;
+  Snapshot at;
+  for (Watched& w : watched_) {
+    const double before = w.before,
+                 now = w.event.value(state.time, state.coordinates, state.velocity);
+    w.before = now != 0 ? now : -before;
+    if (before == 0 || !(before * now < 0 || now == 0) || before * w.event.direction > 0) continue;
+    double low = time_, high = state.time;
+    if (now != 0) {
+      const auto value = [&](double t) {
+        if (t == low) return before;
+        if (t == high) return now;
+        if (const Status inside = dense.at(t, at); !inside.ok) status = inside;
+        return w.event.value(t, at.coordinates, at.velocity);
+      };
+      const double width = 1e-12 * std::abs(high - low);
+      std::uintmax_t most = 100;
+      const bool forward = high > low;
+      const auto [a, b] = boost::math::tools::toms748_solve(
+          value, std::min(low, high), std::max(low, high), forward ? before : now,
+          forward ? now : before, [width](double x, double y) { return std::abs(y - x) <= width; },
+          most);
+      high = forward ? b : a;
+    }
+    if (!status.ok) return status;
+    if (const Status there = dense.at(high, at); !there.ok) return there;
+    found.push_back({at, w.event.name, w.stops});
+  }
+  const double sign = state.time >= time_ ? 1 : -1;
+  std::stable_sort(found.begin(), found.end(), [sign](const Found& a, const Found& b) {
+    return sign * a.state.time < sign * b.state.time;
+  });
+  const auto stop =
+      std::find_if(found.begin(), found.end(), [](const Found& f) { return f.stops; });
+  if (stop != found.end()) found.erase(stop + 1, found.end());
+  time_ = state.time;
+  return status;
+}
+
+}  // namespace hamel

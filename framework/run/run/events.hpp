@@ -1,0 +1,60 @@
+// The events of a run: functions of the state that cross zero, found in each step and located on the dense output.
+//
+// A bracket [t_k, t_{k+1}] in which an event changes its sign in its direction is narrowed to 1e-12 of the step by the method of
+// Alefeld, Potra and Shi (Boost.Math, toms748). An event that crosses twice within one step is not seen.
+// Source: Alefeld, Potra, Shi, Algorithm 748, ACM Trans. Math. Software 21 (1995).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/run/record/result.hpp>
+#include <hamel/framework/run/run/dense_output.hpp>
+#include <hamel/framework/schemes/erased.hpp>
+
+namespace hamel {
+
+class Events {
+ public:
+  /// Those of the system by name, and "column=value", where a column of the element or of the velocity crosses a value.
+  /// Adds to mistakes what is no event.
+  Events(const SystemModel& system, std::shared_ptr<const Geometry> geometry,
+         const std::vector<std::string>& names, const std::vector<std::string>& stops,
+         std::vector<std::string>& mistakes);
+  bool any() const { return !watched_.empty(); }
+
+  /// At the start; adds to mistakes an event that is not finite there.
+  void begin(const Snapshot& state, std::vector<std::string>& mistakes);
+  /// After an event that changed the state: it is not met again at once.
+  void resume(const Snapshot& state, const std::string& met);
+  /// Those of the step that leads to `state`, in order of time, up to the first that stops the run.
+  struct Found {
+    Snapshot state;
+    std::string name;
+    bool stops;
+  };
+  Status look(const Snapshot& state, DenseOutput& dense, std::vector<Found>& found);
+
+  template <class Archive>
+  void carry(Archive& archive) {
+    for (Watched& w : watched_) archive(w.before);
+    archive(time_);
+  }
+
+ private:
+  struct Watched {
+    Event event;
+    bool stops;
+    double before = 0;  // its value, of the last state where it was not 0
+  };
+  std::vector<Watched> watched_;
+  double time_ = 0;
+};
+
+/// The events of a system, its own and those of its contacts: "contact_lost", where a normal reaction ceases to push.
+std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Geometry> geometry);
+
+}  // namespace hamel

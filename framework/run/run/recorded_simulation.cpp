@@ -1,0 +1,24 @@
+#include <hamel/framework/run/run/recorded_simulation.hpp>
+
+#include <variant>
+
+#include <hamel/framework/run/data/data_system.hpp>
+
+namespace hamel {
+
+Simulation recorded_simulation(const RunFile& run, const Registry& registry) {
+  Config config = run.config();
+  for (auto& [name, signal] : config.inputs) {
+    if (const auto* table = std::get_if<InputFile>(&signal))
+      signal = read_input_table(name, *table, run.file(table->path));
+  }
+  const std::string& system = config.system;
+  Simulation out =
+      system.ends_with(".toml")
+          ? Simulation(registry, system, data_system_maker(registry, system, run.file(system)))
+          : Simulation(registry, system);
+  out.config(std::move(config));
+  return out;
+}
+
+}  // namespace hamel

@@ -1,0 +1,91 @@
+#include <hamel/framework/run/run/restarted_kernel.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hamel {
+
+RestartedKernel::RestartedKernel(KernelFactory factory, KernelSetup setup)
+    : factory_(std::move(factory)),
+      setup_(std::move(setup)),
+      kernel_(factory_(setup_)),
+      limit_(std::copysign(std::numeric_limits<double>::infinity(), setup_.step)),
+      origin_(setup_.from) {}
+
+void RestartedKernel::begin_anew() {
+  Snapshot node;
+  kernel_->state(node);
+  past_ = stats();
+  steps_ += node.step;
+  setup_.from = node.time;
+  setup_.step = kernel_->next_step();
+  if (setup_.relative == 0 && setup_.absolute == 0)
+    setup_.from = origin_ + static_cast<double>(steps_ - origin_steps_) * setup_.step;
+  kernel_->node(node);
+  setup_.configuration = node.coordinates;
+  setup_.velocity = node.velocity;
+  make();
+}
+
+void RestartedKernel::make() {
+  setup_.first_chosen = false;
+  if (setup_.inputs != nullptr) setup_.inputs->enter(setup_.from, setup_.step);
+  kernel_ = factory_(setup_);
+  kernel_->limit(limit_);
+}
+
+Status RestartedKernel::advance(long count) {
+  Status status = kernel_->advance(count);
+  if (!status.ok) status.step += steps_;
+  return status;
+}
+
+void RestartedKernel::measure(Snapshot& out) const {
+  kernel_->measure(out);
+  out.step += steps_;
+}
+
+void RestartedKernel::state(Snapshot& out) const {
+  kernel_->state(out);
+  out.step += steps_;
+}
+
+bool RestartedKernel::interpolate(double t, Snapshot& out) {
+  if (!kernel_->interpolate(t, out)) return false;
+  out.step += steps_;
+  return true;
+}
+
+const SolverStats& RestartedKernel::stats() const {
+  const SolverStats& now = kernel_->stats();
+  all_ = past_;
+  all_.iterations += now.iterations;
+  all_.evaluations += now.evaluations;
+  all_.iterations_max = std::max(all_.iterations_max, now.iterations_max);
+  all_.residual_max = std::max(all_.residual_max, now.residual_max);
+  all_.rejected += now.rejected;
+  all_.fallbacks += now.fallbacks;
+  for (const Fallback& f : now.first_fallbacks) {
+    if (all_.first_fallbacks.size() == 20) break;
+    all_.first_fallbacks.push_back({f.step + steps_, f.time, f.action});
+  }
+  return all_;
+}
+
+void RestartedKernel::limit(double t) {
+  limit_ = t;
+  kernel_->limit(t);
+}
+
+void RestartedKernel::restart(double t, std::span<const double> coordinates,
+                              std::span<const double> velocity, double step) {
+  kernel_->restart(t, coordinates, velocity, step);
+  Snapshot node;
+  state(node);
+  origin_ = t;
+  origin_steps_ = node.step;
+}
+
+}  // namespace hamel

@@ -1,0 +1,55 @@
+// A kernel that begins anew at its own node when it is told, and counts on: what a run does from there follows from the
+// node alone, and not from what is remembered of the steps before (extrapolation, Jacobians, the error's history, products).
+// A run that goes on from a file is then the undisturbed one, bit for bit. Not installed.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include <hamel/framework/run/names/registry.hpp>
+#include <hamel/framework/run/record/checkpoint.hpp>
+
+namespace hamel {
+
+class RestartedKernel final : public Kernel {
+ public:
+  RestartedKernel(KernelFactory factory, KernelSetup setup);
+  void begin_anew();
+  /// Right after begin_anew(), or in its place.
+  template <class Archive>
+  void carry(Archive& archive) {
+    archive(setup_.from, setup_.configuration, setup_.velocity, setup_.step, limit_, origin_,
+            origin_steps_, steps_, past_);
+    if constexpr (std::is_same_v<Archive, CheckpointReader>) make();
+  }
+
+  Status advance(long count) override;
+  void measure(Snapshot& out) const override;
+  void state(Snapshot& out) const override;
+  const SolverStats& stats() const override;
+  void node(Snapshot& out) const override { kernel_->node(out); }
+  void beginning(Snapshot& out) const override { kernel_->beginning(out); }
+  void limit(double t) override;
+  double next_step() const override { return kernel_->next_step(); }
+  void turn_back() override { kernel_->turn_back(); }
+  void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
+               double step) override;
+  void forget() override { kernel_->forget(); }
+  bool interpolate(double t, Snapshot& out) override;
+
+ private:
+  void make();
+
+  KernelFactory factory_;
+  KernelSetup setup_;
+  std::unique_ptr<Kernel> kernel_;
+  double limit_;
+  // Steps of one size are counted from here, so that a new beginning adds no round-off to the times.
+  double origin_;
+  long origin_steps_ = 0;
+  long steps_ = 0;    // before this kernel was made
+  SolverStats past_;  // of these
+  mutable SolverStats all_;
+};
+
+}  // namespace hamel
