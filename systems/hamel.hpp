@@ -7,11 +7,11 @@
 #include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/framework/mechanics/general_system.hpp>
-#include <hamel/framework/run/run/simulation.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/schemes/composition.hpp>
-#include <hamel/framework/study/study.hpp>
 #include <hamel/groups/all.hpp>
+#include <hamel/simulate.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
 #include <hamel/systems/rolling_disk.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/suslov.hpp>

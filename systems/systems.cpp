@@ -8,7 +8,7 @@
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/n_trailer.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 #include <hamel/systems/straight_starts.hpp>
 
 namespace hamel {

@@ -103,8 +103,8 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
   const Result run = simulation.run();
   Analysis out;
   out.notes = simulation.build().notes();
-  const auto geometry = registry.geometry(run.system.group.name, "exp");
-  std::shared_ptr<const Mechanics> mechanics = run.system.mechanics;
+  const auto geometry = registry.geometry(run.system->group.name, "exp");
+  std::shared_ptr<const Mechanics> mechanics = run.system->mechanics;
   out.left_invariant = mechanics->left_invariant();
   const Eigen::Index n = mechanics->dim(), k = mechanics->rows();
   Vector g(geometry->size()), b(k);

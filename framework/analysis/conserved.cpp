@@ -70,7 +70,7 @@ class Search {
     if (motion > 0) perturb(config.start.velocity);
     const std::string system = config.system;
     const Result run = Simulation(registry_, system).config(config).run();
-    const size_t columns = run.system.group.columns.size();
+    const size_t columns = run.system->group.columns.size();
     const size_t rows = run.status.ok ? run.trajectory.rows() : run.trajectory.rows() / 2;
     if (rows < 2) return;
     Matrix found(static_cast<Eigen::Index>(rows), width());

@@ -9,6 +9,7 @@
 
 #include <hamel/framework/analysis/reduced_flow.hpp>
 #include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel {
 namespace {
@@ -220,7 +221,7 @@ SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, c
 }
 
 SteadyMotion steady_motion(const Registry& registry, const Simulation& run, int family) {
-  const Integration built = run.build();
+  const Run built = run.build();
   return steady_motion(registry, built.system(), built.config().start, family);
 }
 

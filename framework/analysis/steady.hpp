@@ -17,10 +17,11 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {
+
+class Registry;
 
 /// How much a velocity takes part in a mode, 1 the largest.
 struct ModePart {

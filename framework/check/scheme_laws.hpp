@@ -66,13 +66,13 @@ inline OrderMeasurement measure_order(Simulation simulation, double step, double
 /// together. The run with -h starts from the nodal velocity, so that the scheme must keep it
 /// admissible: for a scheme that leaves the constraint give a system without constraints.
 inline double reversal_error(Simulation simulation, long steps) {
-  Integration forward = simulation.build();
+  Run forward = simulation.build();
   const Snapshot start = forward.state();
   if (!forward.step(steps).ok) return std::numeric_limits<double>::quiet_NaN();
   const Snapshot& end = forward.state();
   simulation.start({.configuration = end.coordinates, .velocity = end.velocity, .momentum = {}});
   simulation.step(-simulation.config().step).until(-simulation.config().until);
-  Integration backward = simulation.build();
+  Run backward = simulation.build();
   if (!backward.step(steps).ok) return std::numeric_limits<double>::quiet_NaN();
   const Snapshot& back = backward.state();
   double sum = 0;
@@ -89,7 +89,7 @@ inline double reversal_error(Simulation simulation, long steps) {
 inline double constraint_floor(const Result& result) {
   double size = 1, smallest = 1;
   for (size_t i = 0; i < result.trajectory.rows(); ++i) {
-    for (size_t j = 1; j <= result.system.group.columns.size(); ++j) {
+    for (size_t j = 1; j <= result.system->group.columns.size(); ++j) {
       size = std::max(size, 1 + std::abs(result.trajectory.at(i, j)));
     }
   }
@@ -139,7 +139,7 @@ inline LawReport check_scheme(const Simulation& simulation, ClaimedOrder claim, 
   const Result result = simulated.run();
   if (claim.order > 0) report.push_back({"the run ends", result.status.ok ? 0.0 : 1.0, 0});
   report.push_back({"group defect", result.group_defect_max, 1e-14});
-  const bool constrained = result.system.mechanics->rows() > 0;
+  const bool constrained = result.system->mechanics->rows() > 0;
   if (adapted && !steps_admissible) {
     // The nodes are admissible by construction, the steps are not: nothing to measure.
   } else if (adapted) {
@@ -148,7 +148,7 @@ inline LawReport check_scheme(const Simulation& simulation, ClaimedOrder claim, 
   } else if (constrained && generic) {
     report.push_back({"leaves the constraint, as it says", 1e-6 / result.constraint_max, 1});
   }
-  if (result.system.exact && (adapted || !constrained)) {
+  if (result.system->exact && (adapted || !constrained)) {
     // Of a high order only large steps leave an error to measure, and they are not quite asymptotic.
     const double coarsest = claim.order > 4 ? std::fmin(8 * step, until / 4) : step;
     const int halvings = claim.order > 6 ? 1 : claim.order > 4 ? 2 : 3;

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+extern "C" const int HAMEL_CONTAINERS_ARE = 1;
+
 namespace hamel {
 namespace {
 

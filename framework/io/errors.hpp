@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/built_with.hpp>
+
 namespace hamel {
 
 /// Every mistake found in a configuration; what() is one line per mistake.

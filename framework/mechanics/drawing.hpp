@@ -17,10 +17,10 @@
 #include <vector>
 
 #include <hamel/framework/lie/types.hpp>
+#include <hamel/framework/mechanics/point.hpp>
 
 namespace hamel {
 
-using Point = std::array<double, 3>;
 
 /// Origin of a shape in the body's frame, direction of its own z axis, and colour: "body", "accent", "dark",
 /// "light" or "#rrggbb".

@@ -16,28 +16,13 @@
 
 #include <Eigen/Core>
 
-#include <hamel/framework/mechanics/fields.hpp>
+#include <hamel/framework/mechanics/input_table.hpp>
 
 namespace hamel {
-
-/// One input of a system, as its inputs() states it.
-struct InputField {
-  std::string name, unit, meaning;
-  Range range;
-};
 
 constexpr int kMostInputs = 8;
 /// One value for each input, in the order of inputs(u), without heap.
 using InputValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostInputs, 1>;
-
-/// An input over time: linear between its times, or held from each time to the next. Times increase.
-struct InputTable {
-  std::vector<double> times, values;
-  bool hold = false;
-  bool operator==(const InputTable&) const = default;
-  /// The value at t, on a jump the one behind it; before and behind the times the first and the last.
-  double at(double t) const;
-};
 
 /// The inputs of one run, which owns them.
 class Inputs {

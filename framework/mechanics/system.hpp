@@ -32,19 +32,14 @@
 #include <hamel/framework/lie/group_info.hpp>
 #include <hamel/framework/mechanics/close_names.hpp>
 #include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/mechanics/event.hpp>
 #include <hamel/framework/mechanics/fields.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/mechanics/start.hpp>
 #include <hamel/framework/mechanics/system_members.hpp>
 
 namespace hamel {
-
-/// Where a run starts. Left empty: the system's own. At most one of velocity and momentum.
-struct Start {
-  std::vector<double> configuration = {};  // the element's CSV columns
-  std::vector<double> velocity = {};       // body velocity xi, n entries
-  std::vector<double> momentum = {};       // body momentum mu, n entries
-};
 
 /// The exact motion from a start: t -> (coordinates of g, xi). Call with |t| increasing.
 using ExactFlow = std::function<std::pair<std::vector<double>, std::vector<double>>(double)>;
@@ -54,15 +49,6 @@ struct Invariant {
   std::string name;
   std::function<double(std::span<const double> coordinates, std::span<const double> velocity)>
       value;
-};
-
-/// A function of the state that is zero at an event.
-struct Event {
-  std::string name, meaning;
-  int direction = 0;  // in which it crosses zero as time runs on: +1, -1, or 0 for both
-  std::function<double(double t, std::span<const double> coordinates,
-                       std::span<const double> velocity)>
-      value = {};
 };
 
 /// A system with its parameters set and its type erased.

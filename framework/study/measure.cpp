@@ -45,7 +45,7 @@ class Meter {
   }
 
   // That many steps, every node of them where the balance wants it.
-  Status advance(Integration& run, long steps, const std::atomic<bool>* stop) {
+  Status advance(Run& run, long steps, const std::atomic<bool>* stop) {
     if (!balance_.active()) return study::advance(run, steps, stop);
     Status status;
     for (long i = 0; i < steps && !stopped(stop) && (status = run.step()).ok; ++i)
@@ -53,7 +53,7 @@ class Meter {
     return status;
   }
   // A step that ends at t at the latest.
-  Status step_towards(Integration& run, double t) {
+  Status step_towards(Run& run, double t) {
     const Status status = run.step_towards(t);
     if (status.ok && balance_.active()) balance_.node(run.state());
     return status;
@@ -74,7 +74,7 @@ class Meter {
     all_.compare(state, turned_towards(angles_, state.coordinates, reference_.coordinates[k]),
                  reference_.velocities[k]);
   }
-  void finish(Integration& run) {
+  void finish(Run& run) {
     const SolverStats& stats = run.stats();
     const Snapshot& state = run.state();
     out_.done = true;
@@ -152,7 +152,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
   return xx > 0 && std::isfinite(xy) ? xy / xx : kNotMeasured;
 }
 
-static Status follow(Integration& run, Meter& meter, const StudyReference& reference,
+static Status follow(Run& run, Meter& meter, const StudyReference& reference,
                      const std::atomic<bool>* stop) {
   const long steps = run.config().steps();
   const long intervals = static_cast<long>(reference.times.size()) - 1;
@@ -167,7 +167,7 @@ static Status follow(Integration& run, Meter& meter, const StudyReference& refer
   return {};
 }
 // Steps that are chosen are not cut at the common times: there the dense output is compared.
-static Status follow_chosen(Integration& run, Meter& meter, const StudyReference& reference,
+static Status follow_chosen(Run& run, Meter& meter, const StudyReference& reference,
                             const std::atomic<bool>* stop) {
   const double until = run.config().until;
   for (size_t next = 1; next < reference.times.size() && !stopped(stop);) {
@@ -185,7 +185,7 @@ static Status follow_chosen(Integration& run, Meter& meter, const StudyReference
 StudyMetrics measure(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const StudyReference& reference, const std::atomic<bool>* stop) {
   StudyMetrics out;
-  Integration run = simulation(registry, system, cell.config).build();
+  Run run = simulation(registry, system, cell.config).build();
   const SystemModel& model = run.system();
   const auto geometry = registry.geometry(model.group.name, cell.config.retraction);
   const bool adapted = registry.scheme(cell.config.scheme)->adapted;
@@ -214,7 +214,7 @@ double time_per_step(const Registry& registry, const StudySystem& system, const 
   double nanoseconds = 0;
   long steps = 0;
   for (int i = 0; i < 100 && nanoseconds < kShortest; ++i) {
-    Integration run = simulation.build();
+    Run run = simulation.build();
     const double begin = processor_time();
     if (cell.config.chooses_steps()) run.advance_to(cell.config.until);
     else advance(run, cell.config.steps(), stop);

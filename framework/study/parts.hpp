@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/study/study.hpp>
@@ -27,7 +28,7 @@ SystemModel model(const Registry& registry, const StudySystem& system);
 inline bool stopped(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
 
 /// That many steps, or fewer when one fails or the flag, which is polled on the way, becomes true.
-Status advance(Integration& run, long steps, const std::atomic<bool>* stop);
+Status advance(Run& run, long steps, const std::atomic<bool>* stop);
 
 /// The values of the axis "step".
 std::vector<double> step_sizes(const StudyConfig& config);

@@ -110,7 +110,7 @@ class Convergence {
   Motion follow() const {
     Config config = config_;
     config.step = config.until / static_cast<double>(intervals_ * each_);
-    Integration run = simulation(registry_, system_, config).build();
+    Run run = simulation(registry_, system_, config).build();
     Motion out;
     for (long k = 0; k <= intervals_; ++k) {
       if (k > 0) {
@@ -162,7 +162,7 @@ StudyReference reference(const Registry& registry, const StudyConfig& config,
                          const StudySystem& system, const Config& run,
                          const std::function<void(long)>& stepped, const std::atomic<bool>* stop) {
   const long intervals = common_intervals(config);
-  const Integration start = simulation(registry, system, run).build();
+  const Run start = simulation(registry, system, run).build();
   StudyReference out;
   std::vector<double> times;
   for (long k = 0; k <= intervals; ++k)

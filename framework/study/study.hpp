@@ -20,9 +20,10 @@
 
 #include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/names/config.hpp>
-#include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel {
+
+class Registry;
 
 /// A registered system with its parameters and start, or a file "my_system.toml" (data_system.hpp); the
 /// label is what tables call it.

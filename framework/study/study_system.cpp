@@ -1,18 +1,19 @@
 // The systems of a study: registered ones, and data files as they were when the study began.
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/run/own_system.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
 namespace {
 
 // Null for a name that is neither registered nor a file's.
-Simulation::Maker maker(const Registry& registry, const StudySystem& system) {
+OwnSystem::Maker maker(const Registry& registry, const StudySystem& system) {
   if (system.name.ends_with(".toml"))
     return system.data.empty() ? data_system_maker(registry, system.name)
                                : data_system_maker(registry, system.name, system.data);
   const SystemInfo* info = registry.system(system.name);
-  return info == nullptr ? Simulation::Maker() : info->make;
+  return info == nullptr ? OwnSystem::Maker() : info->make;
 }
 
 }  // namespace
@@ -35,9 +36,9 @@ void read_data(StudyConfig& config) {
 }
 
 Simulation simulation(const Registry& registry, const StudySystem& system, const Config& config) {
-  const Simulation::Maker make = maker(registry, system);
+  const auto make = maker(registry, system);
   Simulation out =
-      make ? Simulation(registry, system.name, make) : Simulation(registry, system.name);
+      make ? Simulation(registry, system.name, OwnSystem{make}) : Simulation(registry, system.name);
   return out.config(config);
 }
 
@@ -51,7 +52,7 @@ SystemModel model(const Registry& registry, const StudySystem& system) {
   return out;
 }
 
-Status advance(Integration& run, long steps, const std::atomic<bool>* stop) {
+Status advance(Run& run, long steps, const std::atomic<bool>* stop) {
   constexpr long kChunk = 256;
   Status status;
   for (; steps > 0 && status.ok && !stopped(stop); steps -= kChunk)

@@ -12,19 +12,10 @@
 #include <string>
 #include <vector>
 
+#include <hamel/systems/mechanisms/signal.hpp>
 #include <hamel/systems/mechanisms/tree.hpp>
 
 namespace hamel::mechanisms {
-
-/// What a signal may depend on.
-struct Now {
-  double t = 0;
-  std::span<const double> coordinates;  // of the element, as in the CSV
-  std::span<const double> velocity;     // xi
-  std::span<const double> inputs;       // of the run, in the order of the system; none: all zero
-};
-/// A number that changes: a torque, a force.
-using Signal = std::function<double(const Now&)>;
 
 struct Spring {
   std::string name;

@@ -1,3 +1,5 @@
+#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
 
 #include <utility>

@@ -23,14 +23,16 @@
 #include <utility>
 #include <vector>
 
-#include <hamel/framework/mechanics/drawing.hpp>
-#include <hamel/framework/mechanics/inputs.hpp>
-#include <hamel/framework/mechanics/motion_words.hpp>
-#include <hamel/framework/mechanics/system.hpp>
-#include <hamel/systems/mechanisms/forces.hpp>
-#include <hamel/systems/mechanisms/joint.hpp>
+#include <hamel/framework/mechanics/event.hpp>
+#include <hamel/framework/mechanics/input_table.hpp>
+#include <hamel/framework/mechanics/point.hpp>
+#include <hamel/systems/mechanisms/signal.hpp>
 
 namespace hamel {
+
+struct MotionWords;
+struct SystemInfo;
+struct SystemModel;
 
 using mechanisms::Now;     // t, coordinates, velocity, inputs
 using mechanisms::Signal;  // Now -> number

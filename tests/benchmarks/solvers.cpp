@@ -77,7 +77,7 @@ void through_hamel(benchmark::State& state, const std::string& solver) {
                                     .step(kStep);
   for (auto _ : state) {
     state.PauseTiming();
-    Integration run = simulation.build();
+    Run run = simulation.build();
     state.ResumeTiming();
     if (!run.step(kSteps)) state.SkipWithError("failed");
   }

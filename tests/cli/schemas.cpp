@@ -17,7 +17,7 @@
 
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/study/study.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 int main() {
   // One step at a time, until the sleigh has turned a quarter.
-  hamel::Integration sleigh = hamel::simulate("chaplygin_sleigh").step(0.01).build();
+  hamel::Run sleigh = hamel::simulate("chaplygin_sleigh").step(0.01).build();
   while (std::abs(sleigh.state().coordinates[0]) < 1.57) {
     if (const hamel::Status status = sleigh.step(); !status) {
       std::cerr << "step " << status.step << ": " << status.reason << "\n";

@@ -11,7 +11,7 @@
 
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so3.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace {
 

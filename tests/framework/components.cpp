@@ -6,7 +6,7 @@
 
 #include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/systems/rolling_disk.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace {
 
@@ -79,7 +79,7 @@ TEST(Components, AWrongShapeIsRefusedBeforeTheRun) {
 // wheels, theta(h) - theta(0) = h theta' + O(h^2).
 TEST(Components, ShapeCoordinatesAreIntegrals) {
   const Result run = simulate("segway").step(1e-4).until(1e-4).run();
-  const auto shape = shape_of(run.system.group, components_of(run.system.group));
+  const auto shape = shape_of(run.system->group, components_of(run.system->group));
   ASSERT_EQ(shape.size(), 3);
   EXPECT_EQ(shape[2].name, "angle_4");
   EXPECT_EQ(shape[2].unit, "rad");

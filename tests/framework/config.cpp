@@ -6,7 +6,7 @@
 #include <fstream>
 #include <limits>
 
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "refusal.hpp"
 

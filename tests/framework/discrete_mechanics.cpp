@@ -14,7 +14,7 @@
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/second_kind.hpp>
 #include <hamel/groups/so3.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "bodies.hpp"
 
@@ -106,7 +106,7 @@ void expect_same_steps() {
   const test::Body<G, K> body;
   const double h = 0.2;
   for (const double s : {0.0, 0.3, 0.5, 1.0}) {
-    Integration run = simulate(body).scheme("lift").s(s).retraction(Tau::name()).step(h).build();
+    Run run = simulate(body).scheme("lift").s(s).retraction(Tau::name()).step(h).build();
     const Snapshot start = run.state();
     const Eigen::MatrixXd frame = hamel_frame(body.inertia(), Eigen::MatrixXd(body.constraints()));
     const DiscreteMechanics<Tau> mechanics(body.inertia(), frame, s, h);

@@ -11,7 +11,7 @@
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/second_kind.hpp>
 #include <hamel/groups/so3.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "bodies.hpp"
 
@@ -39,7 +39,7 @@ struct OneStep {
   OneStep(const std::string& scheme, double parameter) : s(parameter) {
     Start start = body.start();
     for (double& v : start.velocity) v *= 0.7;
-    Integration run =
+    Run run =
         simulate(body).start(start).scheme(scheme).s(s).retraction(Tau::name()).step(h).build();
     const Snapshot before = run.state();
     EXPECT_TRUE(run.step().ok);

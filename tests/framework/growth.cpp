@@ -8,7 +8,7 @@
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/rn.hpp>
 #include <hamel/systems/n_trailer.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so3.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/suslov.hpp>
 
 #include "bodies.hpp"

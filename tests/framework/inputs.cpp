@@ -185,7 +185,7 @@ TEST(InputsOfARun, OfZeroChangeNothing) {
 // What is known of the motion without inputs is not compared with.
 TEST(InputsOfARun, AreNotComparedWithTheMotionWithoutThem) {
   const Result r = cart(0.1).run();
-  EXPECT_FALSE(r.system.exact);
+  EXPECT_FALSE(r.system->exact);
   EXPECT_TRUE(r.invariants.empty());
   EXPECT_TRUE(std::isnan(r.exact_error_max));
 }

@@ -13,7 +13,7 @@
 #include <hamel/groups/se3.hpp>
 #include <hamel/groups/so2.hpp>
 #include <hamel/groups/so3.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "bodies.hpp"
 
@@ -86,7 +86,7 @@ void expect_jacobians(const S& system) {
           mine.add(SolverInfo{"inspector", "", "",
                               [&] { return std::make_shared<Inspector>(worst, points); }});
           Simulation simulation(mine, "body", maker(system));
-          Integration run = simulation.scheme(scheme)
+          Run run = simulation.scheme(scheme)
                                 .s(s)
                                 .retraction(retraction)
                                 .solver("inspector")

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <hamel/framework/run/data/data_system.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace hamel {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/suslov.hpp>
 
 #include "bodies.hpp"
@@ -16,7 +16,7 @@ using namespace hamel;
 /// max |Ad*_{g_k^-1} mu_k - mu at the start| over 200 steps, relative.
 template <class G>
 double momentum_drift(const Simulation& simulation) {
-  Integration run = simulation.build();
+  Run run = simulation.build();
   const auto spatial = [&]() -> Vec<G::dim> {
     const Snapshot& state = run.state();
     const auto g = G::from_coordinates(state.coordinates);

@@ -1,5 +1,6 @@
 // Fuzz target: a system by data, read, planned, and run for two steps.
 #include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/run/own_system.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
 #include "registry.hpp"
@@ -13,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (model.group.dim > kMostFuzzed) return;
     const std::string retraction = fuzz::registry().retractions_or_common(model.group.name).front();
     Simulation(fuzz::registry(), "fuzz.toml",
-               data_system_maker(fuzz::registry(), "fuzz.toml", text))
+               OwnSystem{data_system_maker(fuzz::registry(), "fuzz.toml", text)})
         .retraction(retraction)
         .until(0.02)
         .run()

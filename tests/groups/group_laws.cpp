@@ -5,7 +5,7 @@
 #include <set>
 
 #include <hamel/framework/check/group_laws.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "all_groups.hpp"
 

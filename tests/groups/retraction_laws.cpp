@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <hamel/framework/check/retraction_laws.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "all_groups.hpp"
 

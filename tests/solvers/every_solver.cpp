@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <map>
 
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "made.hpp"
 

@@ -77,7 +77,7 @@ void add_wild(Registry& registry) {
 enum class On { compiled, general };
 
 template <class S>
-Simulation::Maker maker_on(On loop, const S& system) {
+OwnSystem::Maker maker_on(On loop, const S& system) {
   if (loop == On::compiled) return maker(system);
   return [make = maker(system)](const Parameters& given) { return test::erased(make(given)); };
 }
@@ -118,7 +118,7 @@ void expect_no_spurious_root(const S& system, double s, std::map<std::string, Co
                                ? mine.solvers()
                                : std::vector<std::string>{"newton", "hybrid", "wild"};
       for (const std::string& solver : solvers) {
-        Simulation simulation(mine, "given", maker_on(loop, system));
+        Simulation simulation(mine, "given", OwnSystem{maker_on(loop, system)});
         simulation.start({.velocity = {xi.begin(), xi.end()}})
             .scheme(Scheme::name())
             .s(s)
@@ -126,7 +126,7 @@ void expect_no_spurious_root(const S& system, double s, std::map<std::string, Co
             .solver(solver)
             .step(h)
             .until(h);
-        Integration run = simulation.build();
+        Run run = simulation.build();
         Count& count = counts[solver];
         if (!run.step()) {
           ++count.refused;

@@ -5,7 +5,7 @@
 
 #include <hamel/solvers/newton.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/suslov.hpp>
 
 namespace {
@@ -218,7 +218,7 @@ TEST(NewtonInARun, FailsInTheMiddle) {
   EXPECT_GE(r.steps, 1);
   EXPECT_EQ(r.last.step, r.steps);
   // Stepped by hand it fails in the same step, and stays at the last good state.
-  Integration run = simulation.build();
+  Run run = simulation.build();
   EXPECT_TRUE(run.step(r.steps).ok);
   const Snapshot good = run.state();
   EXPECT_FALSE(run.step().ok);

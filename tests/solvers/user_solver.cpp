@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <hamel/systems/contact_oscillator.hpp>
 #include <hamel/systems/falling_disk.hpp>
 #include <hamel/systems/segway.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/snakeboard.hpp>
 
 #include "written_in_cpp.hpp"

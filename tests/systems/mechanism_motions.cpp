@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 
 #include <hamel/systems/mechanisms/mechanism.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace hamel {
 namespace {

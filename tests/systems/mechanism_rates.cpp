@@ -8,7 +8,7 @@
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "mechanism_systems.hpp"
 

@@ -10,7 +10,7 @@
 #include <hamel/framework/check/system_laws.hpp>
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "mechanism_systems.hpp"
 
@@ -31,7 +31,7 @@ Result run(Simulation simulation, const Start& start, double h, double until) {
 
 // What the rows do on xi, A^T lambda, whatever the rows are.
 VectorXd reaction(const Result& result) {
-  const SystemModel& system = result.system;
+  const SystemModel& system = *result.system;
   const auto geometry = registry().geometry(system.group.name, "exp");
   const Mechanics& mechanics = *system.mechanics;
   EquationsOfMotion<Erased> motion(Erased(geometry, system.mechanics));

@@ -12,7 +12,7 @@ namespace {
 bool moves(const SystemModel& model, const Result& run) {
   if (model.mechanics->left_invariant()) return false;
   const Mechanics& mechanics = *model.mechanics;
-  const auto geometry = registry().geometry(run.system.group.name, "cayley");
+  const auto geometry = registry().geometry(run.system->group.name, "cayley");
   Eigen::VectorXd g(geometry->size()), b(mechanics.rows());
   Eigen::MatrixXd a(mechanics.rows(), mechanics.dim());
   const auto columns = static_cast<size_t>(geometry->columns());

@@ -6,7 +6,7 @@
 
 #include <hamel/systems/falling_disk.hpp>
 #include <hamel/systems/rattleback.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace hamel {
 namespace {

@@ -9,7 +9,7 @@
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/run/at_speed.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 #include "mechanism_systems.hpp"
 

@@ -8,7 +8,7 @@
 #include <hamel/framework/check/system_laws.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/suslov.hpp>
 
 namespace {

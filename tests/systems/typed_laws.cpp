@@ -21,7 +21,7 @@
 #include <hamel/systems/rolling_disk.hpp>
 #include <hamel/systems/routh_sphere.hpp>
 #include <hamel/systems/segway.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/snakeboard.hpp>
 #include <hamel/systems/suslov.hpp>
 #include <hamel/systems/suslov_in_potential.hpp>

@@ -8,7 +8,7 @@
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/roller_racer.hpp>
 #include <hamel/systems/segway.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/snakeboard.hpp>
 
 namespace hamel {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <hamel/framework/check/scheme_laws.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace hamel::verification {
 

@@ -10,7 +10,7 @@
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/product_retraction.hpp>
 #include <hamel/systems/segway.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace hamel {
 namespace {

@@ -6,7 +6,7 @@
 #include <hamel/framework/check/scheme_laws.hpp>
 #include <hamel/framework/check/system_laws.hpp>
 #include <hamel/groups/exp.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/simulate_typed.hpp>
 
 namespace {
 

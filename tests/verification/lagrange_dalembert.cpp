@@ -174,7 +174,7 @@ TEST_P(Every, AgreesWithTheMultiplierEquations) {
   state.insert(state.end(), result.config.start.velocity.begin(),
                result.config.start.velocity.end());
   using namespace boost::numeric::odeint;
-  const Equations equations(result.system);
+  const Equations equations(*result.system);
   integrate_adaptive(make_controlled<runge_kutta_fehlberg78<State>>(1e-12, 1e-12), equations, state,
                      0.0, until, 1e-3);
   State end = result.last.coordinates;

@@ -72,15 +72,20 @@ function(hamel_layer path)
     EXPORT_NAME ${layer} VERIFY_INTERFACE_HEADER_SETS ON)
 endfunction()
 
-# hamel::hamel links every layer and brings <hamel/hamel.hpp>, the one header outside a layer.
-function(hamel_umbrella header)
+# hamel::hamel links every layer and brings <hamel/hamel.hpp> and <hamel/simulate.hpp>, the headers outside a layer.
+function(hamel_umbrella)
   list(TRANSFORM HAMEL_ROOMS PREPEND hamel:: OUTPUT_VARIABLE rooms)
   set(root ${PROJECT_BINARY_DIR}/include/umbrella)
-  configure_file(${PROJECT_SOURCE_DIR}/${header} ${root}/hamel/hamel.hpp COPYONLY)  # no link: it is installed
+  set(headers ${ARGN})
+  foreach(header ${ARGN})  # no link: it is installed
+    cmake_path(GET header FILENAME name)
+    configure_file(${PROJECT_SOURCE_DIR}/${header} ${root}/hamel/${name} COPYONLY)
+  endforeach()
+  list(TRANSFORM headers REPLACE "^.*/" "${root}/hamel/")
   add_library(hamel_umbrella INTERFACE)
   add_library(hamel::hamel ALIAS hamel_umbrella)
   target_sources(hamel_umbrella INTERFACE
-    FILE_SET HEADERS BASE_DIRS ${root} FILES ${root}/hamel/hamel.hpp)
+    FILE_SET HEADERS BASE_DIRS ${root} FILES ${headers})
   target_link_libraries(hamel_umbrella
     INTERFACE hamel::systems hamel::solvers hamel::groups ${rooms})
   set_target_properties(hamel_umbrella PROPERTIES

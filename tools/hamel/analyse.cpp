@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/analysis/analysis.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "analyse.hpp"
 #include "commands.hpp"

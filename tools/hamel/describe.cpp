@@ -9,7 +9,7 @@
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/schemes/composition.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "analyse.hpp"
 #include "commands.hpp"

@@ -3,6 +3,8 @@
 #include <iterator>
 #include <map>
 
+#include <hamel/framework/mechanics/inputs.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include "run_figures.hpp"
 
 namespace hamel::tools {

@@ -7,8 +7,9 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/schemes/composition.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
 
@@ -227,7 +228,8 @@ std::vector<Table> markdown_tables() {
   for (const std::string& name : all.systems()) {
     of_systems.add(kind_in_words(*all.system(name)), name);
   }
-  for (const std::string& name : all.deferred_systems()) of_systems.add("mechanisms by parts", name);
+  for (const std::string& name : all.deferred_systems())
+    of_systems.add("mechanisms by parts", name);
   const auto package = [](const SolverInfo& info) {
     return info.package.empty() ? "always" : "with " + info.package;
   };

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "paper_studies.hpp"
 #include "run_page.hpp"
@@ -83,7 +83,7 @@ std::vector<Outcome> with(const std::vector<Outcome>& all, const std::string& ax
 }
 
 std::vector<Series> exact_momentum(const Config& run) {
-  const Integration start = simulate(run.system).config(run).build();
+  const Run start = simulate(run.system).config(run).build();
   Eigen::MatrixXd inertia(start.system().group.dim, start.system().group.dim);
   start.system().mechanics->inertia(nullptr, inertia);
   const ExactFlow flow = start.system().exact(start.config().start);

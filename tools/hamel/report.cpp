@@ -9,7 +9,7 @@
 
 #include <hamel/framework/mechanics/motion_words.hpp>
 #include <hamel/framework/run/run/recorded_simulation.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
 #include "run_figures.hpp"
@@ -36,9 +36,9 @@ ReadRun read_run(const std::string& path) {
   out.name = std::filesystem::path(file.path()).stem();
   out.record = file.record();
   const Config config = file.config();
-  const Integration run = recorded_simulation(file, registry()).build();
+  const Run run = recorded_simulation(file, registry()).build();
   Result& r = out.result;
-  r.system = run.system();
+  r.system = std::make_shared<const SystemModel>(run.system());
   r.config = run.config();
   r.config.inputs = config.inputs;  // by their names
   r.inputs = run.inputs();
@@ -128,12 +128,12 @@ void add_motions(Page& page, const std::vector<ReadRun>& runs) {
   ByName velocities, coordinates;
   for (const ReadRun& run : runs) {
     const Result& r = run.result;
-    const std::vector<Component> names = components_of(r.system);
+    const std::vector<Component> names = components_of(*r.system);
     for (size_t i = 0; i < names.size(); ++i)
       velocities.add(names[i].name, names[i].unit,
                      curve(r, run.name, fmt::format("xi{}", i + 1), false));
-    const std::vector<std::string>&columns = r.system.group.columns,
-          units = units_of_element(r.system.group);
+    const std::vector<std::string>&columns = r.system->group.columns,
+          units = units_of_element(r.system->group);
     for (size_t i = 0; i < columns.size(); ++i)
       coordinates.add(columns[i], i < units.size() ? units[i] : "",
                       curve(r, run.name, columns[i], false));
@@ -145,8 +145,8 @@ void add_motions(Page& page, const std::vector<ReadRun>& runs) {
 std::string systems_of(const std::vector<ReadRun>& runs) {
   std::vector<std::string> names;
   for (const ReadRun& run : runs)
-    if (std::find(names.begin(), names.end(), run.result.system.name) == names.end())
-      names.push_back(run.result.system.name);
+    if (std::find(names.begin(), names.end(), run.result.system->name) == names.end())
+      names.push_back(run.result.system->name);
   return "of " + join(names);
 }
 
@@ -171,7 +171,7 @@ Page compared(const std::vector<ReadRun>& runs) {
   for (const ReadRun& run : runs) {
     const Result& r = run.result;
     std::vector<Cell>& row = rows.emplace_back(std::vector<Cell>{
-        run.name, r.system.name, r.method(), fmt::format("{} of {}", r.steps, r.steps_in_words()),
+        run.name, r.system->name, r.method(), fmt::format("{} of {}", r.steps, r.steps_in_words()),
         r.status.ok ? fmt::format("at t = {:.6g}", r.last.time) : "failed: " + r.status.reason});
     Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
       const std::string name = std::string(quantity.name) + suffix;

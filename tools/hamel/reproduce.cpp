@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <hamel/groups/exp.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 #include <hamel/systems/suslov.hpp>
 
 #include "commands.hpp"
@@ -27,13 +27,13 @@ const Outcome& find(const std::vector<Outcome>& outcomes, const std::string& nam
 // The angle by which the first step of a reading turns the body of figure 1.
 double first_step_angle(const std::string& scheme) {
   const StudyConfig figure = paper_study("figure_1");
-  Integration one = simulate(figure.systems[0].name)
-                        .start(figure.systems[0].start)
-                        .scheme(scheme)
-                        .s(0)
-                        .retraction("exp")
-                        .step(0.01)
-                        .build();
+  Run one = simulate(figure.systems[0].name)
+                .start(figure.systems[0].start)
+                .scheme(scheme)
+                .s(0)
+                .retraction("exp")
+                .step(0.01)
+                .build();
   one.step();
   return Exp<SO3>::tau_inverse(SO3::from_coordinates(one.state().coordinates)).norm();
 }

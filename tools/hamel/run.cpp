@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
 #include "interrupt.hpp"

@@ -8,7 +8,8 @@
 #include <Eigen/Geometry>
 
 #include <hamel/framework/mechanics/motion_words.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/framework/run/names/registry.hpp>
+#include <hamel/systems/by_name.hpp>
 
 namespace hamel::tools {
 namespace {
@@ -19,8 +20,8 @@ constexpr size_t kWindows = 240;  // maxima of errors: as many as a figure shows
 // The first column that the group calls name or ends in _name (a factor of a product), whatever the system calls it; -1 when
 // none is.
 int find_column(const Result& result, const std::string& name) {
-  const auto group = registry().group_or_product(result.system.group.name);
-  const auto& columns = group ? group->columns : result.system.group.columns;
+  const auto group = registry().group_or_product(result.system->group.name);
+  const auto& columns = group ? group->columns : result.system->group.columns;
   for (size_t j = 0; j < columns.size(); ++j) {
     if (columns[j] == name || columns[j].ends_with("_" + name)) return static_cast<int>(j) + 1;
   }
@@ -36,14 +37,14 @@ std::vector<size_t> thin_rows(const Result& result, size_t points) {
 }
 
 std::span<const double> element(const Result& result, size_t row) {
-  return result.trajectory.row(row).subspan(1, result.system.group.columns.size());
+  return result.trajectory.row(row).subspan(1, result.system->group.columns.size());
 }
 
 // The points of bodies whose way is drawn, seen from above; else x and y of the group, where it has them.
 std::vector<Series> paths(const Result& result) {
   std::vector<Series> out;
   const std::vector<size_t> rows = thin_rows(result, 3000);
-  for (const DrawnBody& body : result.system.drawing.bodies) {
+  for (const DrawnBody& body : result.system->drawing.bodies) {
     if (!body.has_trail) continue;
     Series& series = out.emplace_back(Series{body.name, {}, {}});
     for (size_t i : rows) {
@@ -99,7 +100,7 @@ std::vector<SphereCurve> axes_on_sphere(const Result& result) {
 }
 
 std::optional<Animation> animation_of(const Result& result) {
-  const Drawing& drawing = result.system.drawing;
+  const Drawing& drawing = result.system->drawing;
   if (drawing.bodies.empty()) return {};
   Animation out;
   out.title = "Motion";
@@ -119,7 +120,7 @@ std::optional<Animation> animation_of(const Result& result) {
     }
     out.bodies.push_back(std::move(body));
   }
-  const MotionWords& words = words_of(result.system);
+  const MotionWords& words = words_of(*result.system);
   if (words.forces.empty()) return out;
   std::vector<size_t> at;  // their columns
   for (const std::string& name : words.reactions) at.push_back(result.trajectory.index(name));
@@ -181,7 +182,7 @@ double floor_of(const Result& result, const std::string& column) {
 
 void add_motion(Page& page, const Result& r) {
   if (const auto animation = animation_of(r)) page.animation(*animation);
-  if (r.system.drawing.has_floor || r.system.drawing.bodies.empty()) {
+  if (r.system->drawing.has_floor || r.system->drawing.bodies.empty()) {
     const std::vector<Series> ways = paths(r);
     if (moves(ways)) page.path("Path in the plane", {.x = "x [m]", .y = "y [m]"}, ways);
   }

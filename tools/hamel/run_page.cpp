@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 
 #include "run_figures.hpp"
 #include "run_verdict.hpp"
@@ -54,8 +55,8 @@ std::vector<std::string> page_mistakes(const std::string& path) {
 }
 
 Page run_page(const Result& r, const std::string& record) {
-  Page page(fmt::format("{}: {} with {}", r.system.name, r.config.scheme, r.config.retraction),
-            fmt::format("{}: {}, {}", r.system.group.name, r.method(), r.steps_in_words()));
+  Page page(fmt::format("{}: {} with {}", r.system->name, r.config.scheme, r.config.retraction),
+            fmt::format("{}: {}, {}", r.system->group.name, r.method(), r.steps_in_words()));
   const Json values = Json::parse(record);
   std::vector<Mark> events;
   for (const Json& event : values.value("events", Json::array()))

@@ -45,8 +45,8 @@ Series component(const Result& r, const std::string& name, const std::string& co
 
 // The reactions of one part together: a mechanism's rows of phi stand behind all others.
 std::vector<int> rows_by_part(const Result& r) {
-  const std::vector<std::string>& names = words_of(r.system).reactions;
-  std::vector<int> out(static_cast<size_t>(r.system.mechanics->rows()));
+  const std::vector<std::string>& names = words_of(*r.system).reactions;
+  std::vector<int> out(static_cast<size_t>(r.system->mechanics->rows()));
   std::iota(out.begin(), out.end(), 0);
   if (names.empty()) return out;
   const auto part = [&](int row) {
@@ -54,7 +54,7 @@ std::vector<int> rows_by_part(const Result& r) {
     return name.substr(0, name.rfind('.'));
   };
   std::vector<std::string> parts;
-  for (const DrawnForce& force : words_of(r.system).forces) parts.push_back(force.name);
+  for (const DrawnForce& force : words_of(*r.system).forces) parts.push_back(force.name);
   for (const int row : out) parts.push_back(part(row));
   std::stable_sort(out.begin(), out.end(), [&](int a, int b) {
     return std::find(parts.begin(), parts.end(), part(a)) <
@@ -65,7 +65,7 @@ std::vector<int> rows_by_part(const Result& r) {
 
 // Does the k-th contact push? The event says when it ceased to; the rows only what they show. Marks the first that pulls.
 std::string contact_note(const Result& r, const std::string& column, size_t k, Axes& axes) {
-  const std::string event = events_of(r.system, nullptr)[r.system.events.size() + k].name;
+  const std::string event = events_of(*r.system, nullptr)[r.system->events.size() + k].name;
   const auto met = std::find_if(r.events.begin(), r.events.end(),
                                 [&](const EventMet& e) { return e.name == event; });
   const std::string is = fmt::format("`{}` is a normal reaction: ", column);
@@ -100,14 +100,14 @@ void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) 
       "round-off.",
       r.reaction_work);
   for (const int i : rows_by_part(r)) {
-    const std::string column = words_of(r.system).reactions.empty()
+    const std::string column = words_of(*r.system).reactions.empty()
                                    ? fmt::format("lambda{}", i + 1)
-                                   : words_of(r.system).reactions[static_cast<size_t>(i)];
+                                   : words_of(*r.system).reactions[static_cast<size_t>(i)];
     if (!r.trajectory.has(column)) continue;
-    const auto& contacts = r.system.contacts;
+    const auto& contacts = r.system->contacts;
     const auto contact = std::find(contacts.begin(), contacts.end(), i);
     const bool is_contact = contact != contacts.end();
-    const std::string name = with_unit(column, unit_of_reaction(r.system, i));
+    const std::string name = with_unit(column, unit_of_reaction(*r.system, i));
     forces = forces && name != column;
     reactions.push_back(curve(r, is_contact ? name + ", contact" : name, column, false));
     if (is_contact)
@@ -133,8 +133,8 @@ void add_energy_balance(Page& page, const Result& r, const std::vector<Mark>& ma
 }  // namespace
 
 void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
-  const std::vector<std::string>& columns = r.system.group.columns;
-  const std::vector<Component> names = components_of(r.system);
+  const std::vector<std::string>& columns = r.system->group.columns;
+  const std::vector<Component> names = components_of(*r.system);
   ByUnit velocity, momentum, shape;
   for (size_t i = 0; i < names.size(); ++i) {
     const auto& [name, unit] = names[i];
@@ -143,7 +143,7 @@ void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
     momentum.add(dual,
                  component(r, with_unit("mu of " + name, dual), fmt::format("mu{}", i + 1), name));
   }
-  for (const ShapeCoordinate& s : shape_of(r.system.group, names)) {
+  for (const ShapeCoordinate& s : shape_of(r.system->group, names)) {
     const std::string &column = columns[static_cast<size_t>(s.column)],
                       &rate = names[static_cast<size_t>(s.component)].name;
     shape.add(s.unit, component(r, with_unit(rate.ends_with('\'') ? s.name : column, s.unit),
@@ -152,7 +152,7 @@ void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
   velocity.plot(page, {{"rad/s", "Angular velocity"}, {"m/s", "Velocity"}}, "Body velocity xi",
                 marks);
   shape.plot(page, {{"rad", "Angles of the shape"}, {"m", "Places"}}, "Shape", marks);
-  if (r.system.mechanics->rows() > 0) add_reactions(page, r, marks);
+  if (r.system->mechanics->rows() > 0) add_reactions(page, r, marks);
   if (does_work(r)) add_energy_balance(page, r, marks);
   momentum.plot(page, {{"N m s", "Angular momentum in the body"}, {"N s", "Momentum in the body"}},
                 "Body momentum mu", marks);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/mechanics/system.hpp>
 #include "run_figures.hpp"
 
 namespace hamel::tools {
@@ -18,13 +19,14 @@ struct Sizes {
 Sizes sizes_of(const Result& r) {
   Sizes out;
   if (r.trajectory.rows() == 0) return out;
-  const size_t columns = r.system.group.columns.size(), xi = r.trajectory.index("xi1");
+  const size_t columns = r.system->group.columns.size(), xi = r.trajectory.index("xi1");
   const auto start = r.trajectory.row(0).subspan(1, columns);
   for (size_t i = 0; i < r.trajectory.rows(); ++i) {
     const auto row = r.trajectory.row(i);
     out.extent = std::max(out.extent, euclidean_distance(row.subspan(1, columns), start));
     double square = 0;
-    for (const double v : row.subspan(xi, static_cast<size_t>(r.system.group.dim))) square += v * v;
+    for (const double v : row.subspan(xi, static_cast<size_t>(r.system->group.dim)))
+      square += v * v;
     out.speed = std::max(out.speed, std::sqrt(square));
   }
   return out;

@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/analysis/steady.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/names/registry.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "page.hpp"
 #include "run_page.hpp"
@@ -165,7 +167,7 @@ int steady(const SteadyOptions& options) {
   }
   const bool by_speed = vary && vary->name == "speed";
   const Simulation first = at(options, by_speed ? "speed" : "", by_speed ? vary->values[0] : 0);
-  const Integration built = first.build();
+  const Run built = first.build();
   const SystemModel& system = built.system();
   const SteadyMotion motion = steady_motion(registry(), first);
   SteadySweep sweep;

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/schemes/composition.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 
 namespace {
 

@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/mechanics/parameters.hpp>
+#include <hamel/framework/mechanics/start.hpp>
 #include <hamel/framework/run/names/input_signals.hpp>
 
 namespace hamel {

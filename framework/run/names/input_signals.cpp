@@ -10,6 +10,8 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/text_file.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 
 namespace hamel {
 namespace {

@@ -11,10 +11,12 @@
 #include <variant>
 #include <vector>
 
-#include <hamel/framework/mechanics/inputs.hpp>
-#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/mechanics/input_table.hpp>
 
 namespace hamel {
+
+class Inputs;
+struct SystemModel;
 
 /// A table that is read when the run is built.
 struct InputFile {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <hamel/framework/loop/kernel.hpp>
+#include <hamel/framework/loop/snapshot.hpp>
 
 namespace hamel {
 

@@ -9,6 +9,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/version.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/record/run_file.hpp>
 
 namespace hamel {
@@ -67,6 +68,14 @@ Json fallbacks(const SolverStats& stats) {
   return out;
 }
 
+// Options that a run may be without.
+template <class Value>
+constexpr bool MayBeNone = false;
+template <class Value>
+constexpr bool MayBeNone<std::optional<Value>> = true;
+template <class Value>
+constexpr bool MayBeNone<std::vector<Value>> = true;
+
 // What a record calls an option: its "events" are those that were met.
 std::string record_key(const Option& option) {
   return std::string(option.name) == "events" ? "watched" : option.name;
@@ -74,7 +83,7 @@ std::string record_key(const Option& option) {
 
 Json record_of(const Result& r) {
   Json parameters = Json::object();
-  for (const Field& field : r.system.fields) {
+  for (const Field& field : r.system->fields) {
     parameters[field.name] =
         field.value.size() == 1 ? json_of(field.value[0]) : json_of(field.value);
   }
@@ -88,7 +97,7 @@ Json record_of(const Result& r) {
   for (const EventMet& e : r.events) {
     events.push_back({{"name", e.name},
                       {"time", e.time},
-                      {"element", element(r.system.group, e.coordinates)},
+                      {"element", element(r.system->group, e.coordinates)},
                       {"configuration", json_of(e.coordinates)},
                       {"velocity", json_of(e.velocity)}});
   }
@@ -99,9 +108,9 @@ Json record_of(const Result& r) {
   });
   diagnostics["invariants"] = invariants;
   const std::string& system = r.config.system;
-  Json out = {{"system", r.system.name},
+  Json out = {{"system", r.system->name},
               {"system_file", system.ends_with(".toml") ? Json(system) : Json(nullptr)},
-              {"group", r.system.group.name}};
+              {"group", r.system->group.name}};
   Config::fields([&](const Option& option, auto member) {
     const bool used = std::find(r.unused.begin(), r.unused.end(), option.name) == r.unused.end();
     out[record_key(option)] = used ? json_of(r.config.*member) : Json(nullptr);
@@ -122,7 +131,7 @@ Json record_of(const Result& r) {
                                      {"time", r.status.time},
                                      {"residual", json_of(r.status.residual)}}},
       {"final",
-       {{"element", element(r.system.group, r.last.coordinates)},
+       {{"element", element(r.system->group, r.last.coordinates)},
         {"configuration", json_of(r.last.coordinates)},
         {"velocity", json_of(r.last.velocity)},
         {"momentum", json_of(r.last.momentum)},
@@ -189,13 +198,9 @@ void read_record(const std::string& record, Result& out) {
   const auto number = [](const Json& value) {
     return value.is_null() ? Measurements::kNone : value.get<double>();
   };
-  Config::fields([&](const Option& option, auto) {
-    constexpr std::string_view lists[] = {"output_times", "events", "stop_at"};
-    const bool may_be_none =
-        std::string_view(option.name) == "rtol" || std::string_view(option.name) == "atol" ||
-        std::string_view(option.name) == "output_step" ||
-        std::find(std::begin(lists), std::end(lists), option.name) != std::end(lists);
-    if (!may_be_none && json.at(record_key(option)).is_null()) out.unused.push_back(option.name);
+  Config::fields([&](const Option& option, auto member) {
+    const bool unused = json.at(record_key(option)).is_null();
+    if (unused && !MayBeNone<std::remove_cvref_t<decltype(Config().*member)>>) out.unused.push_back(option.name);
   });
   out.notes = json.at("notes").get<std::vector<std::string>>();
   out.status = {json.at("status") == "ok", 0, 0, 0, json.at("reason").get<std::string>()};

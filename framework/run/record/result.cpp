@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/record/sink.hpp>
 
 namespace hamel {
@@ -58,7 +59,7 @@ std::string Result::steps_in_words() const {
 
 std::string Result::report() const {
   std::string out =
-      fmt::format("{} on {}: {}, {}\n", system.name, system.group.name, method(), steps_in_words());
+      fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(), steps_in_words());
   const double count = static_cast<double>(std::max(steps, 1L));
   const auto line = [&](const std::string& name, const std::string& value) {
     out += fmt::format("  {:<22} {}\n", name, value);
@@ -96,7 +97,7 @@ std::string Result::report() const {
     const bool balance = member == &Result::energy_error_max && std::isfinite(work);
     line(balance ? "energy balance" : quantity.title,
          fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
-                     member == &Result::constraint_max ? ", " + constraints_in_words(system) : ""));
+                     member == &Result::constraint_max ? ", " + constraints_in_words(*system) : ""));
   });
   for (size_t i = 0; i < events.size() && i < 10; ++i)
     line("event", fmt::format("{} at t = {:.10g}", events[i].name, events[i].time));

@@ -1,16 +1,22 @@
 // What a run leaves behind: status, trajectory, record, and the ways to read or write them.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/row_file.hpp>
-#include <hamel/framework/loop/kernel.hpp>
+#include <hamel/framework/loop/snapshot.hpp>
 #include <hamel/framework/run/names/config.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 
 namespace hamel {
+
+class Inputs;
+struct SystemModel;
 
 /// The recorded rows: named columns, row-major numbers.
 class Trajectory {
@@ -55,7 +61,7 @@ struct EventMet {
 
 struct Result : Measurements {
   Config config;  // as it was run: start and parameters filled in
-  SystemModel system;
+  std::shared_ptr<const SystemModel> system;  // <hamel/hamel.hpp> has its members
   std::shared_ptr<const Inputs> inputs;  // null without
   std::vector<std::string> unused;       // options that the scheme makes no use of
   std::vector<std::string> notes;  // what the user should know (a start that was projected, ...)

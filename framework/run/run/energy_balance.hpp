@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/run/run/nodal_quadrature.hpp>
 #include <hamel/framework/schemes/erased.hpp>

@@ -13,8 +13,6 @@
 namespace hamel {
 namespace {
 
-constexpr double kMaxNumbers = 5e8;  // 4 GB of doubles
-
 // "stop", "halve", "retry:<solver>"; returns what is wrong.
 std::vector<std::string> read_on_failure(const Config& config, const Registry& registry,
                                          KernelSetup& setup) {
@@ -40,6 +38,56 @@ std::vector<std::string> read_on_failure(const Config& config, const Registry& r
   return {};
 }
 
+void plan_composition(const Config& config, Method& method, Mistakes& mistakes) {
+  std::vector<std::string> names;
+  for (const Composition& c : compositions()) {
+    names.push_back(c.name);
+    if (c.name != config.compose) continue;
+    method.setup.composition = c.coefficients;
+    if (c.coefficients.size() > 1) method.composition_order = c.order;
+  }
+  if (std::find(names.begin(), names.end(), config.compose) == names.end())
+    mistakes.add(unknown_name("composition", config.compose, names));
+}
+
+// The function that makes the system; empty, with a mistake, where there is none of this name.
+std::function<SystemModel(const Parameters&)> maker_of(const Registry& registry,
+                                                       const Config& config, const OwnSystem* own,
+                                                       Mistakes& mistakes) {
+  if (own != nullptr) return own->make;
+  if (config.system.ends_with(".toml")) return data_system_maker(registry, config.system);
+  if (const SystemInfo* info = registry.system(config.system)) return info->make;
+  mistakes.add(unknown_name("system", config.system, registry.systems_and_files()));
+  return {};
+}
+
+// A composition has its order only over a reversible step.
+void check_composition(const Config& config, const SchemeInfo& scheme, const ClaimedOrder& claim,
+                       Mistakes& mistakes) {
+  if (config.compose == "none" || config.force || claim.reversible) return;
+  mistakes.add(
+      fmt::format("compose: {} raises the order of a reversible step, and {} with s = {} and {} "
+                  "claims none here: "
+                  "take s = 0.5 where the scheme has it, or force it",
+                  config.compose, scheme.name, config.s, config.retraction));
+}
+
+// The tolerances, where the scheme can choose its steps by them.
+void choose_steps(const Config& config, const SchemeInfo& scheme, const ClaimedOrder& claim,
+                  Method& method, Mistakes& mistakes) {
+  method.setup.relative = config.relative();
+  method.setup.absolute = config.absolute();
+  method.setup.first_chosen = scheme.estimates_error && config.step == Config().step;
+  if (scheme.estimates_error) return;
+  method.setup.order = method.composition_order > 0 ? method.composition_order : claim.order;
+  if (scheme.varies_steps && claim.reversible) return;
+  mistakes.add(
+      fmt::format("rtol: {}{} takes steps of one size; dopri5, tsit5 and dop853 choose theirs by "
+                  "the error, lift and "
+                  "balance where they are reversible, at s = 0.5",
+                  scheme.name, scheme.uses_s ? fmt::format(" with s = {}", config.s) : ""));
+}
+
 }  // namespace
 
 std::vector<std::string> unused_options(const SchemeInfo& scheme, const Config& config) {
@@ -52,220 +100,202 @@ std::vector<std::string> unused_options(const SchemeInfo& scheme, const Config& 
   return out;
 }
 
-Simulation::Plan Simulation::plan() const {
-  Plan plan;
-  plan.config = config_;
-  plan.add(config_.mistakes());
-  try {
-    add_outputs(plan);
-  } catch (const ConfigError& error) {
-    plan.add(error.mistakes());
-  }
-
-  const bool compiled = kernel_ && config_.scheme == kernel_scheme_.name &&
-                        config_.retraction == kernel_retraction_.name;
-  const SchemeInfo* scheme = compiled ? &kernel_scheme_ : registry_->scheme(config_.scheme);
-  if (scheme == nullptr) {
-    plan.add({unknown_name("scheme", config_.scheme, registry_->schemes())});
+Method plan_method(const Registry& registry, const Config& config, const OwnSystem* own,
+                   Mistakes& mistakes) {
+  Method out;
+  out.compiled = own != nullptr && own->kernel && config.scheme == own->scheme.name &&
+                 config.retraction == own->retraction.name;
+  out.scheme = out.compiled ? &own->scheme : registry.scheme(config.scheme);
+  out.setup.s = config.s;
+  if (out.scheme == nullptr) {
+    mistakes.add(unknown_name("scheme", config.scheme, registry.schemes()));
   } else {
-    plan.config.scheme = scheme->name;  // config_ may name an alias
-    plan.keeps_rows = scheme->adapted;
-    plan.unused = unused_options(*scheme, config_);
-    if (!scheme->uses_s) plan.config.s = scheme->fixed_s;
+    out.unused = unused_options(*out.scheme, config);
+    if (!out.scheme->uses_s) out.setup.s = out.scheme->fixed_s;
   }
-  const SolverInfo* solver = registry_->solver(config_.solver);
-  if (solver == nullptr) plan.add({registry_->missing_solver(config_.solver)});
-  else if (solver->make) plan.setup.solver = solver->make();
-  plan.add(read_on_failure(config_, *registry_, plan.setup));
-  std::vector<std::string> tables;
-  for (const Composition& c : compositions()) {
-    tables.push_back(c.name);
-    if (c.name == config_.compose) plan.setup.composition = c.coefficients;
-  }
-  if (std::find(tables.begin(), tables.end(), config_.compose) == tables.end()) {
-    plan.add({unknown_name("composition", config_.compose, tables)});
-  }
-  const std::string& place = config_.force_at;
-  if (place != "nodes" && place != "base") {
-    plan.add({unknown_name("force_at", place, {"nodes", "base"})});
-  }
-  plan.setup.forces_at_base = place == "base";
+  const SolverInfo* solver = registry.solver(config.solver);
+  if (solver == nullptr) mistakes.add(registry.missing_solver(config.solver));
+  else if (solver->make) out.setup.solver = solver->make();
+  mistakes.add(read_on_failure(config, registry, out.setup));
+  plan_composition(config, out, mistakes);
+  if (config.force_at != "nodes" && config.force_at != "base")
+    mistakes.add(unknown_name("force_at", config.force_at, {"nodes", "base"}));
+  out.setup.forces_at_base = config.force_at == "base";
+  out.setup.from = config.from;
+  out.setup.step = config.step;
+  out.setup.tolerance = config.tolerance;
+  return out;
+}
 
-  // The system with its parameters, which everything below needs.
-  Maker make = make_;
-  if (!make && config_.system.ends_with(".toml")) {
-    make = data_system_maker(*registry_, config_.system);
-  }
-  if (!make) {
-    const SystemInfo* info = registry_->system(config_.system);
-    if (info == nullptr) {
-      plan.add({unknown_name("system", config_.system, registry_->systems_and_files())});
-      return plan;
-    }
-    make = info->make;
-  }
+std::optional<PlannedSystem> plan_system(const Registry& registry, const Config& config,
+                                         const OwnSystem* own, Mistakes& mistakes) {
+  const auto make = maker_of(registry, config, own, mistakes);
+  if (!make) return {};
+  PlannedSystem out;
   try {
-    plan.system = make(config_.parameters);
+    out.model = std::make_shared<SystemModel>(make(config.parameters));
   } catch (const ConfigError& error) {
-    plan.add(error.mistakes());
-    return plan;
+    mistakes.add(error.mistakes());
+    return {};
   } catch (const std::invalid_argument& error) {
-    plan.add({fmt::format("{}: {}", config_.system, error.what())});
-    return plan;
+    mistakes.add(fmt::format("{}: {}", config.system, error.what()));
+    return {};
   }
-  plan.add(out_of_range(plan.system.name, plan.system.fields));
-  plan.notes = no_rigid_body(plan.system.name, plan.system.fields);
-  plan.drive();
-  const std::vector<std::string>& said = words_of(plan.system).notes;
-  plan.notes.insert(plan.notes.end(), said.begin(), said.end());
-  if (plan.system.group.dim == 0) {  // a product by name alone
-    const std::string name = plan.system.group.name;
-    if (auto group = registry_->group_or_product(name)) plan.system.group = *group;
-    else plan.add({registry_->missing_group(name)});
+  SystemModel& system = *out.model;
+  mistakes.add(out_of_range(system.name, system.fields));
+  out.notes = no_rigid_body(system.name, system.fields);
+  if (!config.inputs.empty()) {
+    out.inputs = make_inputs(system, config.inputs, {config.from, config.until}, mistakes.all());
+    if (out.inputs != nullptr) {
+      out.inputs->enter(config.from, config.step);
+      drive(system, out.inputs);
+    }
   }
-  if (plan.system.group.dim == 0) return plan;
+  const std::vector<std::string>& notes = words_of(system).notes;
+  out.notes.insert(out.notes.end(), notes.begin(), notes.end());
+  if (system.group.dim == 0) {  // a product by name alone
+    const std::string name = system.group.name;
+    if (auto group = registry.group_or_product(name)) system.group = *group;
+    else mistakes.add(registry.missing_group(name));
+  }
+  if (system.group.dim == 0) return {};
   try {
-    components_of(plan.system);  // a wrong shape() is said before anything runs
+    components_of(system);  // a wrong shape() is refused before anything runs
   } catch (const ConfigError& error) {
-    plan.add(error.mistakes());
+    mistakes.add(error.mistakes());
   }
-  plan.fill_start();
-  const SystemModel& system = plan.system;
-  const std::string& group = system.group.name;
+  return out;
+}
 
-  // The kernel: the user's own, the one compiled for this problem, or the erased one.
-  const auto& geometry = plan.geometry =
-      compiled ? kernel_retraction_.geometry : registry_->geometry(group, config_.retraction);
-  if (!compiled) {
-    const auto offered = registry_->retractions_or_common(group);
-    if (offered.empty()) {
-      plan.add(
-          {fmt::format("group '{}' is not registered: call hamel::add_group<...>() once, or "
-                       "use simulate<Scheme, Retraction>(system)",
-                       group)});
-    } else if (geometry == nullptr) {
-      plan.add({unknown_name("retraction of " + group, config_.retraction, offered)});
-    }
+KernelFactory plan_kernel(const Registry& registry, const Config& config, const OwnSystem* own,
+                          const PlannedSystem& planned,
+                          const std::shared_ptr<const Geometry>& geometry, Method& method,
+                          Mistakes& mistakes) {
+  if (method.scheme == nullptr) return {};
+  const SchemeInfo& scheme = *method.scheme;
+  const Mechanics& mechanics = *planned.model->mechanics;
+  KernelFactory out;
+  if (!scheme.defined(mechanics.left_invariant())) {
+    mistakes.add(
+        fmt::format("scheme: {} is defined for left-invariant systems only; lift and balance are "
+                    "offered here",
+                    scheme.name));
+    return out;
   }
-  plan.look_at_start();
-  const bool left_invariant = system.mechanics->left_invariant();
-  if (scheme != nullptr && !scheme->defined(left_invariant)) {
-    plan.add(
-        {fmt::format("scheme: {} is defined for left-invariant systems only; lift and balance are "
-                     "offered here",
-                     scheme->name)});
-  } else if (compiled) {
-    plan.kernel = plan.setup.inputs == nullptr ? kernel_ : driven_kernel_;
-    if (!plan.kernel) plan.add({"inputs: the kernel of this run is compiled without them"});
-  } else if (scheme != nullptr && geometry != nullptr) {
-    const KernelFactory* own =
-        registry_->kernel(group, *system.mechanics, config_.retraction, scheme->name);
-    plan.kernel = own != nullptr ? *own : scheme->erased;
+  if (method.compiled) {
+    out = planned.inputs == nullptr ? own->kernel : own->driven;
+    if (!out) mistakes.add("inputs: the kernel of this run is compiled without them");
+  } else if (geometry != nullptr) {
+    const KernelFactory* compiled =
+        registry.kernel(planned.model->group.name, mechanics, config.retraction, scheme.name);
+    out = compiled != nullptr ? *compiled : scheme.erased;
   }
+  if (geometry == nullptr) return out;
+  const ClaimedOrder claim =
+      scheme.claim(method.setup.s, geometry->traits(), mechanics, config.force_at);
+  check_composition(config, scheme, claim, mistakes);
+  if (config.chooses_steps()) choose_steps(config, scheme, claim, method, mistakes);
+  return out;
+}
 
-  if (scheme != nullptr && geometry != nullptr) {
-    plan.check_composition(*scheme, left_invariant);
-    if (config_.chooses_steps()) plan.choose_steps(*scheme, left_invariant);
-  }
+namespace {
 
-  const double rows =
-      config_.output_step       ? std::abs(config_.until - config_.from) / *config_.output_step
-      : config_.chooses_steps() ? 0
-                                : std::abs((config_.until - config_.from) / config_.step) /
-                                      static_cast<double>(config_.every);
-  const auto width = static_cast<double>(system.group.columns.size()) + 2 * system.group.dim + 7;
-  const bool in_memory = records_.empty() && !rows_kept_;
-  const double disk = numbers_that_fit(records_);
-  const double times =
-      config_.output_step ? kMaxNumbers * width : disk;  // of the rows: they are kept
-  const double most = in_memory ? kMaxNumbers : std::min(disk, times);
-  const char* where = in_memory || most < disk ? "memory holds" : "there is room for on the disk";
-  if ((config_.output_step || rows < 9e15) && rows * width > most) {
-    const bool resumed = !resumed_.empty();  // as it was run, and no other way
-    const char* what = resumed ? "continue" : config_.output_step ? "output_step" : "every";
-    std::string mistake =
-        fmt::format("{}: {:.3g} rows would be recorded, more than {}", what, rows, where);
-    if (!resumed && !config_.output_step && 2 * width <= most) {  // the first and the last
-      mistake += fmt::format("; record every {:.0f} steps or more",
-                             std::ceil(rows * static_cast<double>(config_.every) * width / most));
-    }
-    plan.add({mistake});
+// The geometry of the run; null, with a mistake, where group or retraction are not registered.
+std::shared_ptr<const Geometry> plan_geometry(const Registry& registry, const Config& config,
+                                              const OwnSystem* own, const Method& method,
+                                              const std::string& group, Mistakes& mistakes) {
+  if (method.compiled) return own->retraction.geometry;
+  auto out = registry.geometry(group, config.retraction);
+  const auto offered = registry.retractions_or_common(group);
+  if (offered.empty()) {
+    mistakes.add(
+        fmt::format("group '{}' is not registered: call hamel::add_group<...>() once, or "
+                    "use simulate<Scheme, Retraction>(system)",
+                    group));
+  } else if (out == nullptr) {
+    mistakes.add(unknown_name("retraction of " + group, config.retraction, offered));
   }
-  if (scheme != nullptr && !scheme->steps_admissible && plan.mistakes.empty() &&
-      !is_definite(plan.inertia)) {
-    plan.add(
-        {fmt::format("scheme: {} needs a definite inertia; with massless links lift and "
-                     "balance are offered",
-                     scheme->name)});
+  return out;
+}
+
+// The exact motion, where the run can be compared with it.
+void restrict_exact(const RunRequest& request, SystemModel& system,
+                    std::vector<std::string>& notes) {
+  if (request.config.no_exact || !request.impacts.empty()) system.exact = nullptr;
+  if (request.config.from == 0 || !system.exact || system.mechanics->autonomous()) return;
+  system.exact = nullptr;
+  notes.emplace_back("the exact motion is known from t = 0 on only: there is no comparison");
+}
+
+void note_end_and_unused(const Config& config, const Method& method,
+                         std::vector<std::string>& notes) {
+  const double end = config.from + static_cast<double>(config.steps()) * config.step;
+  if (!config.chooses_steps() &&
+      std::abs(end - config.until) > 1e-9 * std::abs(config.until - config.from)) {
+    notes.push_back(fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}",
+                                end, config.step, config.until));
   }
-  if (!plan.mistakes.empty()) return plan;
-  plan.project();
-  plan.watch();
-  if (!plan.mistakes.empty()) return plan;
-  if (const double end = config_.from + static_cast<double>(config_.steps()) * config_.step;
-      !config_.chooses_steps() &&
-      std::abs(end - config_.until) > 1e-9 * std::abs(config_.until - config_.from)) {
-    plan.notes.push_back(
-        fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}", end,
-                    config_.step, config_.until));
+  for (const std::string& option : method.unused) {
+    if (config.text(option) != Config().text(option))
+      notes.push_back(fmt::format("{} is not used by {}", option, method.scheme->name));
   }
-  if (config_.no_exact || !impacts_.empty()) plan.system.exact = nullptr;
-  if (config_.from != 0 && plan.system.exact && !plan.mechanics->autonomous()) {
-    plan.system.exact = nullptr;
-    plan.notes.push_back("the exact motion is known from t = 0 on only: there is no comparison");
+}
+
+// The resolved configuration.
+Config resolved(Config config, const Method& method, const SystemModel& system,
+                const Start& start) {
+  config.scheme = method.scheme->name;  // it may have been an alias
+  config.s = method.setup.s;
+  config.start = start;
+  config.speed.reset();
+  for (const Field& field : system.fields) config.parameters[field.name] = field.value;
+  return config;
+}
+
+}  // namespace
+
+RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnSystem* own,
+                 Mistakes& mistakes) {
+  const Config& config = request.config;
+  RunPlan plan;
+  mistakes.add(config.mistakes());
+  plan.outputs = plan_outputs(request, mistakes);
+  Method method = plan_method(registry, config, own, mistakes);
+  const std::optional<PlannedSystem> planned = plan_system(registry, config, own, mistakes);
+  if (!planned) return plan;
+  SystemModel& system = *planned->model;
+  PlannedStart start = plan_start(system, config, mistakes);
+  plan.geometry = plan_geometry(registry, config, own, method, system.group.name, mistakes);
+  evaluate_start(system, plan.geometry.get(), config.from, start, mistakes);
+  plan.kernel = plan_kernel(registry, config, own, *planned, plan.geometry, method, mistakes);
+  check_rows(request, system.group, mistakes);
+  if (method.scheme != nullptr && !method.scheme->steps_admissible && mistakes.none() &&
+      !is_definite(start.inertia)) {
+    mistakes.add(fmt::format(
+        "scheme: {} needs a definite inertia; with massless links lift and balance are offered",
+        method.scheme->name));
   }
-  plan.setup.from = config_.from;
-  for (const std::string& option : plan.unused) {
-    if (config_.text(option) != Config().text(option)) {
-      plan.notes.push_back(fmt::format("{} is not used by {}", option, plan.config.scheme));
-    }
-  }
-  plan.setup.s = plan.config.s;
-  plan.setup.step = config_.step;
-  plan.setup.tolerance = config_.tolerance;
-  for (const Field& field : system.fields) plan.config.parameters[field.name] = field.value;
+  if (!mistakes.none()) return plan;
+
+  project_start(start);
+  plan.config = resolved(config, method, system, start.start);
+  plan.keeps_rows = method.scheme->adapted;
+  plan.unused = method.unused;
+  plan.events = std::make_unique<Events>(system, plan.geometry, config.events, config.stop_at,
+                                         mistakes.all());
+  plan.events->begin(state_of(start.start, config.from), mistakes.all());
+  plan.notes = planned->notes;
+  plan.notes.insert(plan.notes.end(), start.notes.begin(), start.notes.end());
+  note_end_and_unused(config, method, plan.notes);
+  restrict_exact(request, system, plan.notes);
+  plan.setup = std::move(method.setup);
+  plan.setup.geometry = plan.geometry;
+  plan.setup.mechanics = system.mechanics;
+  plan.setup.inputs = planned->inputs;
+  plan.setup.configuration = start.start.configuration;
+  plan.setup.velocity = start.start.velocity;
+  plan.system = planned->model;
   return plan;
-}
-
-// A composition has its order only over a reversible step.
-void Simulation::Plan::check_composition(const SchemeInfo& scheme, bool left_invariant) {
-  if (config.compose == "none" || config.force || !scheme.defined(left_invariant)) return;
-  const ClaimedOrder claim =
-      scheme.claim(config.s, geometry->traits(), *mechanics, config.force_at);
-  if (claim.reversible) return;
-  add(
-      {fmt::format("compose: {} raises the order of a reversible step, and {} with s = {} and {} "
-                   "claims none here: "
-                   "take s = 0.5 where the scheme has it, or force it",
-                   config.compose, scheme.name, config.s, config.retraction)});
-}
-
-// The tolerances, where the scheme can do with them.
-void Simulation::Plan::choose_steps(const SchemeInfo& scheme, bool left_invariant) {
-  setup.relative = config.relative();
-  setup.absolute = config.absolute();
-  setup.first_chosen = scheme.estimates_error && config.step == Config().step;
-  if (scheme.estimates_error || !scheme.defined(left_invariant)) return;
-  const ClaimedOrder claim =
-      scheme.claim(config.s, geometry->traits(), *mechanics, config.force_at);
-  setup.order = claim.order;
-  for (const Composition& c : compositions()) {
-    if (c.name == config.compose && c.coefficients.size() > 1) setup.order = c.order;
-  }
-  if (scheme.varies_steps && claim.reversible) return;
-  add(
-      {fmt::format("rtol: {}{} takes steps of one size; dopri5, tsit5 and dop853 choose theirs by "
-                   "the error, lift and "
-                   "balance where they are reversible, at s = 0.5",
-                   scheme.name, scheme.uses_s ? fmt::format(" with s = {}", config.s) : "")});
-}
-
-void Simulation::Plan::drive() {
-  if (config.inputs.empty()) return;
-  setup.inputs = make_inputs(system, config.inputs, {config.from, config.until}, mistakes);
-  if (setup.inputs == nullptr) return;
-  setup.inputs->enter(config.from, config.step);
-  hamel::drive(system, setup.inputs);
 }
 
 }  // namespace hamel

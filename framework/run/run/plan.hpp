@@ -1,51 +1,114 @@
-// The plan of a run, checked before the first step. Part of simulation.cpp, not installed.
+// The plan of a run, checked before the first step. Not installed.
+//
+// Five functions, each from values to values; what is wrong is added to one Mistakes.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <hamel/framework/run/run/events.hpp>
+#include <hamel/framework/run/run/own_system.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {
+
+class Mistakes {
+ public:
+  void add(std::string one) { all_.push_back(std::move(one)); }
+  void add(const std::vector<std::string>& more) {
+    all_.insert(all_.end(), more.begin(), more.end());
+  }
+  bool none() const { return all_.empty(); }
+  const std::vector<std::string>& all() const { return all_; }
+  std::vector<std::string>& all() { return all_; }
+  /// Throws ConfigError where there are any.
+  void refuse() const {
+    if (!none()) throw ConfigError(all_);
+  }
+
+ private:
+  std::vector<std::string> all_;
+};
 
 /// The options of a run that a scheme makes no use of: s; solver, tolerance and, but for "halve", on_failure of explicit
 /// ones, which solve no equation. Half an explicit step may succeed where the whole left the domain of tau.
 std::vector<std::string> unused_options(const SchemeInfo& scheme, const Config& config);
 
-/// What the disks of these files have room for; infinite for a pipe, and for files that are compressed or hold no rows.
-double numbers_that_fit(const std::vector<std::string>& files);
+/// The scheme, and what of a kernel's setup follows from names and numbers alone.
+struct Method {
+  const SchemeInfo* scheme = nullptr;  // null: there is none of this name
+  bool compiled = false;               // by the program, for its own types
+  int composition_order = 0;           // 0: one substep
+  std::vector<std::string> unused;     // options
+  KernelSetup setup;
+};
+Method plan_method(const Registry& registry, const Config& config, const OwnSystem* own,
+                   Mistakes& mistakes);
 
-// Everything that a run needs, or all its mistakes.
-struct Simulation::Plan {
-  std::vector<std::string> mistakes, notes, unused;
-  Config config;
-  SystemModel system;
-  Eigen::MatrixXd inertia, constraints;  // at the start
+/// The system with its parameters and inputs.
+struct PlannedSystem {
+  std::shared_ptr<SystemModel> model;
+  std::shared_ptr<Inputs> inputs;
+  std::vector<std::string> notes;
+};
+/// Empty where nothing else can be checked.
+std::optional<PlannedSystem> plan_system(const Registry& registry, const Config& config,
+                                         const OwnSystem* own, Mistakes& mistakes);
+
+/// The start as it was asked for or is the system's own, and I, A, b there.
+struct PlannedStart {
+  Start start;
+  Eigen::MatrixXd inertia, constraints;
   Eigen::VectorXd drift;
+  bool refused = false;  // its configuration: nothing is said of what holds there
+  std::vector<std::string> notes;
+};
+PlannedStart plan_start(const SystemModel& system, const Config& config, Mistakes& mistakes);
+/// I, A, b at the start, checked, and the start moved onto the holonomic rows. geometry: null for a group that is not
+/// registered.
+void evaluate_start(const SystemModel& system, const Geometry* geometry, double t,
+                    PlannedStart& planned, Mistakes& mistakes);
+/// The admissible velocity of a start without mistakes; notes what the projection dropped.
+void project_start(PlannedStart& planned);
+/// Of an admissible start.
+Snapshot state_of(const Start& start, double t);
+/// The velocity of a state after an impact, onto the constraints there in the metric I. ConfigError that names the event.
+std::vector<double> admissible(const SystemModel& system,
+                               const std::shared_ptr<const Geometry>& geometry,
+                               const EventState& state, const std::string& event);
+
+/// What a file keeps, so that the same run can be resumed.
+struct Outputs {
+  std::string request, files;
+};
+Outputs plan_outputs(const RunRequest& request, Mistakes& mistakes);
+/// More rows than memory or disk have room for.
+void check_rows(const RunRequest& request, const GroupInfo& group, Mistakes& mistakes);
+
+/// The kernel: the program's own, the one compiled for this problem, or the one of any problem.
+KernelFactory plan_kernel(const Registry& registry, const Config& config, const OwnSystem* own,
+                          const PlannedSystem& planned,
+                          const std::shared_ptr<const Geometry>& geometry, Method& method,
+                          Mistakes& mistakes);
+
+/// Everything that a run needs.
+struct RunPlan {
+  Config config;
+  std::shared_ptr<const SystemModel> system;
   std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
-  std::shared_ptr<const Mechanics> mechanics;
+  std::vector<std::string> notes, unused;
   bool keeps_rows = true;  // the scheme does
-  bool place_refused = false;
-  std::shared_ptr<Events> events;
+  std::unique_ptr<Events> events;
   KernelSetup setup;
   KernelFactory kernel;
-  // What a file keeps, so that the same run can be gone on with.
-  std::string request, files;
-
-  void add(const std::vector<std::string>& more) {
-    mistakes.insert(mistakes.end(), more.begin(), more.end());
-  }
-  void drive();
-  void fill_start();
-  void check_composition(const SchemeInfo& scheme, bool left_invariant);
-  void choose_steps(const SchemeInfo& scheme, bool left_invariant);
-  void look_at_start();
-  void look_beside_start(const Eigen::VectorXd& g);
-  void satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g);
-  void project();
-  void watch();
-  std::vector<double> admissible(const EventState& state, const std::string& event) const;
+  Outputs outputs;
 };
+/// Complete where there are no mistakes.
+RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnSystem* own,
+                 Mistakes& mistakes);
 
 }  // namespace hamel

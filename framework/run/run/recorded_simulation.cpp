@@ -3,6 +3,7 @@
 #include <variant>
 
 #include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/run/own_system.hpp>
 
 namespace hamel {
 
@@ -15,7 +16,7 @@ Simulation recorded_simulation(const RunFile& run, const Registry& registry) {
   const std::string& system = config.system;
   Simulation out =
       system.ends_with(".toml")
-          ? Simulation(registry, system, data_system_maker(registry, system, run.file(system)))
+          ? Simulation(registry, system, OwnSystem{data_system_maker(registry, system, run.file(system))})
           : Simulation(registry, system);
   out.config(std::move(config));
   return out;

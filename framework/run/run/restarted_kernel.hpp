@@ -30,6 +30,7 @@ class RestartedKernel final : public Kernel {
   void node(Snapshot& out) const override { kernel_->node(out); }
   void beginning(Snapshot& out) const override { kernel_->beginning(out); }
   void limit(double t) override;
+  double limit() const { return limit_; }
   double next_step() const override { return kernel_->next_step(); }
   void turn_back() override { kernel_->turn_back(); }
   void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,

@@ -1,7 +1,7 @@
 // Where a run starts: the user's state or the system's own, onto the constraints, and the events there.
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
@@ -22,56 +22,56 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
-// The speed, or fewer numbers than velocities, stand for the start that the system makes of them. Returns the mistakes.
-std::vector<std::string> fill_from_few(const SystemModel& system, Config& config) {
-  Start& start = config.start;
+// The speed, or fewer numbers than velocities, give the start that the system makes of them.
+Start fill_from_few(const SystemModel& system, const Config& config, Mistakes& mistakes) {
+  const Start& start = config.start;
   const MotionWords& words = words_of(system);
   const size_t given = start.velocity.size();
   try {
-    if (const auto speed = std::exchange(config.speed, {})) {
-      if (!start.configuration.empty() || given > 0 || !start.momentum.empty())
-        return {"speed: give it alone, or configuration with velocity or momentum"};
-      const auto straight = start_at_speed(system, *speed, config.from);
-      if (!straight)
-        return {fmt::format("speed: {} knows no motion by its speed; give velocity", system.name)};
-      start = *straight;
+    if (config.speed) {
+      if (!start.configuration.empty() || given > 0 || !start.momentum.empty()) {
+        mistakes.add("speed: give it alone, or configuration with velocity or momentum");
+      } else if (const auto straight = start_at_speed(system, *config.speed, config.from)) {
+        return *straight;
+      } else {
+        mistakes.add(
+            fmt::format("speed: {} defines no straight motion; give velocity", system.name));
+      }
     } else if (given > 0 && given < static_cast<size_t>(system.group.dim) &&
                given <= words.start_parameters.size() && start.configuration.empty()) {
-      start = words.start_from(start.velocity, config.from);
+      return words.start_from(start.velocity, config.from);
     }
   } catch (const ConfigError& error) {
-    return error.mistakes();
+    mistakes.add(error.mistakes());
   }
-  return {};
+  return start;
 }
 
 // The system's own start at this time; mistakes are added.
-Start own_start(const SystemModel& system, double from, std::vector<std::string>& mistakes) {
+Start own_start(const SystemModel& system, double from, Mistakes& mistakes) {
   const MotionWords& words = words_of(system);
   if (from == 0 || !words.start_from) return system.start;
   try {
     return words.start_from({}, from);
   } catch (const ConfigError& error) {
-    mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
+    mistakes.add(error.mistakes());
     return system.start;
   }
 }
 
 }  // namespace
 
-// The events, at the start.
-void Simulation::Plan::watch() {
-  events = std::make_shared<Events>(system, geometry, config.events, config.stop_at, mistakes);
-  Snapshot state;
-  state.time = config.from;
-  state.coordinates = config.start.configuration;
-  state.velocity = config.start.velocity;
-  events->begin(state, mistakes);
+Snapshot state_of(const Start& start, double t) {
+  Snapshot out;
+  out.time = t;
+  out.coordinates = start.configuration;
+  out.velocity = start.velocity;
+  return out;
 }
 
-// The velocity of a state after an impact, onto the constraints there in the metric I.
-std::vector<double> Simulation::Plan::admissible(const EventState& state,
-                                                 const std::string& event) const {
+std::vector<double> admissible(const SystemModel& system,
+                               const std::shared_ptr<const Geometry>& geometry,
+                               const EventState& state, const std::string& event) {
   const auto n = static_cast<Eigen::Index>(system.group.dim);
   const auto refuse = [&](const std::string& why) {
     throw ConfigError({fmt::format("on_event {}: at t = {:.6g} {}", event, state.time, why)});
@@ -85,6 +85,7 @@ std::vector<double> Simulation::Plan::admissible(const EventState& state,
     refuse(error.what());
   }
   Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(), n);
+  const auto& mechanics = system.mechanics;
   if (geometry == nullptr || mechanics->rows() == 0) return to_vector(xi);
   EquationsOfMotion<Erased> motion(Erased(geometry, mechanics));
   Eigen::VectorXd g(geometry->size());
@@ -99,13 +100,35 @@ std::vector<double> Simulation::Plan::admissible(const EventState& state,
   return to_vector(xi);
 }
 
-// The user's start, else the system's own, else rest at the identity.
-void Simulation::Plan::fill_start() {
-  Start& start = config.start;
-  add(fill_from_few(system, config));
-  if (!start.velocity.empty() && !start.momentum.empty()) {
-    add({"start: give velocity or momentum, not both"});
+namespace {
+
+// What is wrong with the numbers of a velocity or momentum.
+void check_datum(const SystemModel& system, const char* name, const std::vector<double>& values,
+                 bool few, Mistakes& mistakes) {
+  const auto n = static_cast<size_t>(system.group.dim);
+  if (values.empty()) return;
+  if (values.size() != n) {
+    const auto& parameters = words_of(system).start_parameters;
+    const std::string shorter =
+        parameters.empty() || !few
+            ? ""
+            : fmt::format(", or {} without a configuration", join(parameters));
+    mistakes.add(fmt::format("{}: got {} values, expected {} for {}{}", name, values.size(), n,
+                             system.group.name, shorter));
+  } else if (!finite(values)) {
+    mistakes.add(fmt::format("{}: {} is not finite", name, join(values)));
   }
+}
+
+}  // namespace
+
+// The user's start, else the system's own, else rest at the identity.
+PlannedStart plan_start(const SystemModel& system, const Config& config, Mistakes& mistakes) {
+  PlannedStart out;
+  out.start = fill_from_few(system, config, mistakes);
+  Start& start = out.start;
+  if (!start.velocity.empty() && !start.momentum.empty())
+    mistakes.add("start: give velocity or momentum, not both");
   const bool whole =
       !start.configuration.empty() && (!start.velocity.empty() || !start.momentum.empty());
   const Start own = whole ? Start{} : own_start(system, config.from, mistakes);
@@ -113,7 +136,8 @@ void Simulation::Plan::fill_start() {
     start.velocity = own.velocity;
     start.momentum = own.momentum;
     if (start.velocity.empty() && start.momentum.empty()) {
-      add({fmt::format("start: {} has no default start; give velocity or momentum", system.name)});
+      mistakes.add(
+          fmt::format("start: {} has no default start; give velocity or momentum", system.name));
     }
   }
   if (start.configuration.empty()) start.configuration = own.configuration;
@@ -121,119 +145,120 @@ void Simulation::Plan::fill_start() {
   try {
     start.configuration = system.group.element(start.configuration);
   } catch (const std::invalid_argument& error) {
-    add({fmt::format("configuration: {}", error.what())});
+    mistakes.add(fmt::format("configuration: {}", error.what()));
     start.configuration = system.group.identity;
-    place_refused = true;
+    out.refused = true;
   }
-  const auto n = static_cast<size_t>(system.group.dim);
-  for (const auto& [name, values] :
-       {std::pair{"velocity", &start.velocity}, std::pair{"momentum", &start.momentum}}) {
-    if (values->empty()) continue;
-    if (values->size() != n) {
-      const std::string few = words_of(system).start_parameters.empty() || values == &start.momentum
-                                  ? ""
-                                  : fmt::format(", or {} without a configuration",
-                                                join(words_of(system).start_parameters));
-      add({fmt::format("{}: got {} values, expected {} for {}{}", name, values->size(), n,
-                       system.group.name, few)});
-    } else if (!finite(*values)) {
-      add({fmt::format("{}: {} is not finite", name, join(*values))});
-    }
-  }
+  check_datum(system, "velocity", start.velocity, true, mistakes);
+  check_datum(system, "momentum", start.momentum, false, mistakes);
+  return out;
 }
 
-// I, A and b where the run starts, checked.
-void Simulation::Plan::look_at_start() {
-  const int n = system.group.dim;
-  mechanics = system.mechanics;
-  inertia = Eigen::MatrixXd::Identity(n, n);
-  constraints.resize(0, n);
-  Eigen::VectorXd g;
-  if (geometry != nullptr) {
-    g.resize(geometry->size());
-    geometry->from_coordinates(config.start.configuration, g.data());
-  } else if (!mechanics->left_invariant()) {
-    return;
-  }
-  bool said = false;
-  if (const auto* worded = dynamic_cast<const Worded*>(mechanics.get())) {
-    Eigen::VectorXd xi = Eigen::VectorXd::Zero(n);
-    if (config.start.velocity.size() == static_cast<size_t>(n))
-      xi = Eigen::Map<const Eigen::VectorXd>(config.start.velocity.data(), n);
-    const auto wrong = worded->mistakes_at(config.from, g.data(), xi);
-    said = !wrong.empty();
-    add(wrong);
-  }
-  constraints.resize(mechanics->rows(), mechanics->dim());
-  inertia.resize(mechanics->dim(), mechanics->dim());
-  drift.resize(mechanics->rows());
-  mechanics->inertia(g.data(), inertia);
-  mechanics->constraints(config.from, g.data(), constraints, drift);
-  Eigen::VectorXd phi(mechanics->holonomic_rows());
-  mechanics->holonomic(g.data(), phi);
-  // (Of a place that was refused nobody wants to know what holds at the identity.)
-  if (!place_refused && phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13)) satisfy(phi, g);
-  if (said) return;
-  if (place_refused) constraints.resize(0, n);
-  const std::vector<std::string> wrong = check_system_matrices(inertia, constraints, n);
-  add(wrong);  // without names
-  if (wrong.empty() && !mechanics->constant_inertia()) look_beside_start(g);
-}
+namespace {
 
 // An inertia that depends on g may be symmetric at the start only.
-void Simulation::Plan::look_beside_start(const Eigen::VectorXd& g) {
-  const Eigen::Index n = inertia.rows();
+void check_symmetry_beside(const Mechanics& mechanics, const Geometry& geometry,
+                           const Eigen::VectorXd& g, Mistakes& mistakes) {
+  const Eigen::Index n = mechanics.dim();
   Eigen::VectorXd shift(n), there(g.size());
   Eigen::MatrixXd beside(n, n);
   for (int place = 1; place <= 2; ++place) {
     for (Eigen::Index i = 0; i < n; ++i)
       shift[i] = 0.2 * std::sin(static_cast<double>(3 * i + 2 * place));
-    geometry->tau(shift.data(), there.data());
-    geometry->compose(g.data(), there.data(), there.data());
-    mechanics->inertia(there.data(), beside);
+    geometry.tau(shift.data(), there.data());
+    geometry.compose(g.data(), there.data(), there.data());
+    mechanics.inertia(there.data(), beside);
     if (!beside.allFinite()) continue;
     Eigen::Index row = 0, column = 0;
     const double most = (beside - beside.transpose()).cwiseAbs().maxCoeff(&row, &column);
     if (most < 1e-10 * beside.norm()) continue;
-    return add(
-        {fmt::format("inertia: symmetric at the start, but not beside it: entries ({}, {}) "
-                     "and ({}, {}) differ by {:.3g}",
-                     row + 1, column + 1, column + 1, row + 1, most)});
+    return mistakes.add(
+        fmt::format("inertia: symmetric at the start, but not beside it: entries ({}, {}) "
+                    "and ({}, {}) differ by {:.3g}",
+                    row + 1, column + 1, column + 1, row + 1, most));
   }
 }
 
 // Onto phi(g) = 0 by Newton's method, g <- g tau(-I^-1 A^T (A I^-1 A^T)^-1 phi), A the rows of phi: the start may be the
 // last state of a run whose scheme keeps phi only to its order.
-void Simulation::Plan::satisfy(Eigen::VectorXd phi, Eigen::VectorXd& g) {
+void satisfy(const Mechanics& mechanics, const Geometry& geometry, double t, Eigen::VectorXd phi,
+             Eigen::VectorXd& g, PlannedStart& planned, Mistakes& mistakes) {
   constexpr double most = 0.01;
   const Eigen::Index held = phi.size();
   const double off = phi.lpNorm<Eigen::Infinity>();
   for (int k = 0; k < 10 && off <= most && !(phi.lpNorm<Eigen::Infinity>() < 1e-15); ++k) {
-    const Eigen::MatrixXd a = constraints.bottomRows(held);
-    const Eigen::MatrixXd reach = inertia.ldlt().solve(a.transpose());
+    const Eigen::MatrixXd a = planned.constraints.bottomRows(held);
+    const Eigen::MatrixXd reach = planned.inertia.ldlt().solve(a.transpose());
     const Eigen::VectorXd move = -reach * (a * reach).ldlt().solve(phi);
     Eigen::VectorXd turn(g.size());
-    geometry->tau(move.data(), turn.data());
-    geometry->compose(g.data(), turn.data(), g.data());
-    mechanics->inertia(g.data(), inertia);
-    mechanics->constraints(config.from, g.data(), constraints, drift);
-    mechanics->holonomic(g.data(), phi);
+    geometry.tau(move.data(), turn.data());
+    geometry.compose(g.data(), turn.data(), g.data());
+    mechanics.inertia(g.data(), planned.inertia);
+    mechanics.constraints(t, g.data(), planned.constraints, planned.drift);
+    mechanics.holonomic(g.data(), phi);
   }
   if (!(phi.lpNorm<Eigen::Infinity>() < 1e-12)) {
-    add({fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {:.3g}",
-                     join(config.start.configuration), off)});
+    mistakes.add(
+        fmt::format("configuration: {} does not satisfy the holonomic constraint, phi = {:.3g}",
+                    join(planned.start.configuration), off));
     return;
   }
-  geometry->coordinates(g.data(), config.start.configuration.data());
+  geometry.coordinates(g.data(), planned.start.configuration.data());
   if (off > 1e-9) {
-    notes.push_back(fmt::format(
+    planned.notes.push_back(fmt::format(
         "the start's configuration was moved onto the holonomic constraint: phi was {:.3g}", off));
   }
 }
 
+}  // namespace
+
+// I, A and b where the run starts, checked.
+void evaluate_start(const SystemModel& system, const Geometry* geometry, double t,
+                    PlannedStart& planned, Mistakes& mistakes) {
+  const int n = system.group.dim;
+  const Mechanics& mechanics = *system.mechanics;
+  const Start& start = planned.start;
+  planned.inertia = Eigen::MatrixXd::Identity(n, n);
+  planned.constraints.resize(0, n);
+  Eigen::VectorXd g;
+  if (geometry != nullptr) {
+    g.resize(geometry->size());
+    geometry->from_coordinates(start.configuration, g.data());
+  } else if (!mechanics.left_invariant()) {
+    return;
+  }
+  bool said = false;
+  if (const auto* worded = dynamic_cast<const Worded*>(&mechanics)) {
+    Eigen::VectorXd xi = Eigen::VectorXd::Zero(n);
+    if (start.velocity.size() == static_cast<size_t>(n))
+      xi = Eigen::Map<const Eigen::VectorXd>(start.velocity.data(), n);
+    const auto wrong = worded->mistakes_at(t, g.data(), xi);
+    said = !wrong.empty();
+    mistakes.add(wrong);
+  }
+  planned.constraints.resize(mechanics.rows(), mechanics.dim());
+  planned.inertia.resize(mechanics.dim(), mechanics.dim());
+  planned.drift.resize(mechanics.rows());
+  mechanics.inertia(g.data(), planned.inertia);
+  mechanics.constraints(t, g.data(), planned.constraints, planned.drift);
+  Eigen::VectorXd phi(mechanics.holonomic_rows());
+  mechanics.holonomic(g.data(), phi);
+  if (!planned.refused && phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13))
+    satisfy(mechanics, *geometry, t, phi, g, planned, mistakes);
+  if (said) return;
+  if (planned.refused) planned.constraints.resize(0, n);
+  const std::vector<std::string> wrong =
+      check_system_matrices(planned.inertia, planned.constraints, n);
+  mistakes.add(wrong);
+  if (wrong.empty() && !mechanics.constant_inertia())
+    check_symmetry_beside(mechanics, *geometry, g, mistakes);
+}
+
 // The admissible start, E^T I xi = E^T mu, and what the projection dropped.
-void Simulation::Plan::project() {
-  Start& start = config.start;
+void project_start(PlannedStart& planned) {
+  Start& start = planned.start;
+  const auto& [inertia, constraints, drift] =
+      std::tie(planned.inertia, planned.constraints, planned.drift);
   const Eigen::Index n = inertia.rows();
   const Eigen::MatrixXd frame = hamel_frame(inertia, constraints);
   const bool by_velocity = !start.velocity.empty();
@@ -250,17 +275,12 @@ void Simulation::Plan::project() {
   const Eigen::VectorXd dropped =
       datum - (by_velocity ? velocity : Eigen::VectorXd(inertia * velocity));
   if (dropped.norm() > 1e-12 * datum.norm()) {
-    notes.push_back(fmt::format("the start's {} was projected onto {}: dropped ({})",
-                                by_velocity ? "velocity" : "momentum", by_velocity ? "d" : "d*",
-                                join(to_vector(dropped))));
+    planned.notes.push_back(fmt::format("the start's {} was projected onto {}: dropped ({})",
+                                        by_velocity ? "velocity" : "momentum",
+                                        by_velocity ? "d" : "d*", join(to_vector(dropped))));
   }
   start.velocity = to_vector(velocity);
   start.momentum.clear();
-
-  setup.geometry = geometry;
-  setup.mechanics = mechanics;
-  setup.velocity = start.velocity;
-  setup.configuration = start.configuration;
 }
 
 }  // namespace hamel

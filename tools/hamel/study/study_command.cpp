@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/run/record/result.hpp>
-#include <hamel/systems/simulate.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
 #include "interrupt.hpp"

@@ -1,0 +1,47 @@
+// What a run shows of itself: states with their measurements, and counts of its solves. Standard-library types only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <hamel/framework/loop/status.hpp>
+
+namespace hamel {
+
+/// A step that failed and was rescued.
+struct Fallback {
+  long step = 0;
+  double time = 0;  // at its beginning
+  std::string action;
+};
+
+/// Running totals over the steps taken.
+struct SolverStats {
+  long iterations = 0;
+  long evaluations = 0;
+  int iterations_max = 0;  // over one step
+  double residual_max = 0;
+  long rejected = 0;  // steps taken again, smaller
+  long fallbacks = 0;
+  std::vector<Fallback> first_fallbacks;  // at most 20
+};
+
+/// A state with its measurements.
+struct Snapshot {
+  long step = 0;
+  double time = 0;
+  std::vector<double> coordinates;  // of g
+  std::vector<double> velocity;     // nodal body velocity, n
+  std::vector<double> momentum;     // nodal body momentum, n
+  double energy = 0;
+  std::vector<double> row_rates;  // A v of the last step, v recovered from the configurations; k
+  double constraint = 0;          // |A v - b|, holonomic rows left out
+  double holonomic = 0;           // max |phi(g)|
+  double group_defect = 0;        // how far g is from the group
+  double rotation = 0;            // of the last substep, radians; NaN: the group has none
+  double lag = 0;                 // from the velocity of row_rates to the state, s
+  int iterations = 0;             // of the last step, all substeps
+  double residual = 0;            // relative, the largest of the last step's substeps
+};
+
+}  // namespace hamel

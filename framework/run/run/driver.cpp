@@ -1,0 +1,252 @@
+#include <hamel/framework/run/run/driver.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace hamel {
+namespace {
+
+// A run keeps what it has after so many rows or so many steps; not by the clock, so that it is the same each time.
+constexpr long kRows = 4096, kSteps = 65536;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+bool asks_for_rows(const RunRequest& request) {
+  return !request.records.empty() || request.rows_kept || request.observer ||
+         request.config.output_step || !request.config.output_times.empty();
+}
+
+}  // namespace
+
+Driver::Driver(RunPlan plan, RunRequest request, Rows rows)
+    : plan_(std::move(plan)),
+      request_(std::move(request)),
+      recording_(rows == Rows::always || asks_for_rows(request_)),
+      kernel_(std::make_unique<RestartedKernel>(plan_.kernel, plan_.setup)) {
+  make_observers();
+}
+
+void Driver::make_observers() {
+  const Config& config = plan_.config;
+  watching_ = recording_ || plan_.events->any();
+  steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
+  if (!watching_) return;
+  times_ = recording_ ? config.rows() : std::vector<double>();
+  every_node_ = !times_.empty() || plan_.events->any();
+  if (!recording_) return;
+  const auto& mechanics = plan_.setup.mechanics;
+  meter_ = std::make_unique<Meter>(*plan_.system, plan_.config.start, plan_.geometry, mechanics,
+                                   acting(), plan_.setup.inputs);
+  every_node_ = every_node_ || meter_->wants_nodes();
+  for (const std::string& path : request_.records) sinks_.push_back(make_sink(path));
+  if (request_.records.empty() || request_.rows_kept)
+    sinks_.push_back(
+        std::make_unique<MemorySink>(result_.trajectory, request_.rows_kept.value_or(0)));
+  for (const auto& sink : sinks_) resumable_ = resumable_ || sink->resumable();
+}
+
+// The mechanics as the scheme treats it.
+std::shared_ptr<const Mechanics> Driver::acting() const {
+  const auto& mechanics = plan_.setup.mechanics;
+  return plan_.keeps_rows ? mechanics : std::make_shared<UnconstrainedMechanics>(mechanics);
+}
+
+// ---- steps ----------------------------------------------------------------------------------------------------------
+
+Status Driver::refuse(double t, const std::string& reason) const {
+  Snapshot now;
+  kernel_->state(now);
+  return {false, now.step + 1, now.time, 0, fmt::format(fmt::runtime(reason), t)};
+}
+
+// Not ok where a table of an input ends before t.
+Status Driver::covered(double t) const {
+  if (plan_.setup.inputs == nullptr || plan_.setup.inputs->covers(t)) return {};
+  return refuse(t, "the table of an input does not cover t = {:.10g}");
+}
+
+Status Driver::step(long count) {
+  const bool chosen = plan_.config.chooses_steps();
+  const double h = kernel_->next_step();
+  if (plan_.setup.inputs != nullptr && !chosen) {
+    kernel_->state(row_);
+    const double end = row_.time + static_cast<double>(count) * h;
+    if (const Status status = covered(end); !status.ok) return status;
+  }
+  if (chosen) kernel_->limit(std::copysign(kInfinite, h));
+  return advance(count);
+}
+
+Status Driver::step_towards(double t) {
+  if (plan_.config.chooses_steps()) {
+    kernel_->state(row_);
+    if (!((t - row_.time) * kernel_->next_step() > 0)) return refuse(t, "t = {} lies behind");
+    kernel_->limit(t);
+  }
+  return advance(1);
+}
+
+Status Driver::advance_to(double t) {
+  if (const Status status = covered(t); !status.ok) return status;
+  kernel_->state(row_);
+  const double steps = (t - row_.time) / kernel_->next_step();
+  if (plan_.config.chooses_steps()) {
+    if (!(steps >= -1e-9)) return refuse(t, "t = {} lies behind");
+    if (steps <= 0) return {};
+    kernel_->limit(t);
+    return advance(std::numeric_limits<long>::max());
+  }
+  if (!(steps >= -0.5)) return refuse(t, "t = {} lies behind");
+  return advance(std::max(0L, std::lround(steps)));
+}
+
+Status Driver::complete() {
+  if (plan_.config.chooses_steps()) kernel_->limit(plan_.config.until);
+  advance(0, true);
+  if (request_.progress && result_.status.ok) request_.progress(1);
+  return result_.status;
+}
+
+Status Driver::advance(long count, bool to_end) {
+  if (over_) return result_.status;
+  if (!watching_ && !to_end) return result_.status = kernel_->advance(count);
+  try {
+    entered_ = Clock::now();
+    begin();
+    take_steps(count, to_end);
+    seconds_ = elapsed();
+    entered_ = {};
+    comparing_ = {};
+  } catch (...) {
+    rows_to_files_after_failure();
+    throw;
+  }
+  return result_.status;
+}
+
+bool Driver::reached_end() const {
+  return plan_.config.chooses_steps() ? node_.time == plan_.config.until : steps_left_ <= 0;
+}
+
+long Driver::steps_at_once(long count, bool to_end) const {
+  const long most = to_end ? steps_left_ : count;
+  if (every_node_) return 1;
+  const long every = recording_ ? plan_.config.every : kRows;
+  return std::min({every - node_.step % every, most, kRows});
+}
+
+void Driver::take_steps(long count, bool to_end) {
+  const double from = plan_.config.from, until = plan_.config.until;
+  auto next_progress = Clock::now() + std::chrono::milliseconds(200);
+  while (!over_ && (to_end ? !reached_end() : count > 0)) {
+    const long before = node_.step;
+    const long steps = steps_at_once(count, to_end);
+    result_.status = kernel_->advance(steps);
+    kernel_->state(node_);
+    steps_left_ -= steps;
+    count -= steps;
+    bool go_on = true;
+    if (every_node_ && node_.step > before) go_on = observe_step();
+    else if (recording_ && times_.empty() && node_.step % plan_.config.every == 0)
+      go_on = record(node_);
+    if (!go_on) over_ = true;
+    if (!result_.status.ok || node_.step == before) break;  // failed, or at the limit
+    if (to_end && request_.progress && Clock::now() >= next_progress) {
+      request_.progress((node_.time - from) / (until - from));
+      next_progress = Clock::now() + std::chrono::milliseconds(200);
+    }
+    if (!over_ && !(to_end && reached_end()) && (rows_ >= kRows || node_.step - kept_at_ >= kSteps))
+      keep();
+  }
+  if (to_end && !over_ && result_.status.ok) over_ = !output(until);
+}
+
+// The first row.
+void Driver::begin() {
+  if (std::exchange(begun_, true)) return;
+  kernel_->state(node_);
+  if (!recording_ || node_.step > 0) return;
+  kernel_->measure(result_.last);
+  meter_->begin(result_.last);
+  if (meter_->wants_nodes()) meter_->node(node_);
+  over_ = !(times_.empty() ? record(node_) : output(plan_.config.from));
+}
+
+void Driver::turn_back() { kernel_->turn_back(); }
+
+void Driver::input(const std::string& name, double value) {
+  const SystemModel& system = *plan_.system;
+  const size_t i = input_index(system.name, system.inputs, name);
+  if (plan_.setup.inputs == nullptr) {
+    throw ConfigError(
+        {fmt::format("input '{0}': this run was built without inputs: give one a first value, "
+                     ".input(\"{0}\", 0)",
+                     name)});
+  }
+  check_input(system.name, system.inputs[i], value);
+  plan_.setup.inputs->set(i, value);
+}
+
+void Driver::restart(const Start& start) {
+  if (!request_.records.empty() && begun_)
+    throw ConfigError({"restart: the rows of this run are in files: build another"});
+  Mistakes mistakes;
+  Config& config = plan_.config;
+  const Start before = std::exchange(config.start, start);
+  PlannedStart planned = plan_start(*plan_.system, config, mistakes);
+  evaluate_start(*plan_.system, plan_.geometry.get(), config.from, planned, mistakes);
+  if (!mistakes.none()) {
+    config.start = before;
+    mistakes.refuse();
+  }
+  project_start(planned);
+  config.start = planned.start;
+  plan_.setup.configuration = planned.start.configuration;
+  plan_.setup.velocity = planned.start.velocity;
+  kernel_ = std::make_unique<RestartedKernel>(plan_.kernel, plan_.setup);
+  dense_.reset();
+  over_ = false;
+  result_.status = {};
+  if (!watching_) return;
+  plan_.events->begin(state_of(config.start, config.from), mistakes.all());
+  mistakes.refuse();
+  meter_.reset();
+  sinks_.clear();
+  result_ = Result();
+  next_ = 0;
+  recorded_ = -1;
+  rows_ = kept_at_ = impacts_met_ = 0;
+  seconds_ = 0;
+  begun_ = sinks_begun_ = false;
+  make_observers();
+}
+
+DenseOutput& Driver::dense() {
+  if (dense_ == nullptr)
+    dense_ = std::make_unique<DenseOutput>(*kernel_, plan_.kernel, plan_.setup);
+  return *dense_;
+}
+
+const Snapshot& Driver::at(double t) {
+  kernel_->state(row_);
+  const double end = row_.time, slack = 1e-12 * std::abs(kernel_->next_step());
+  kernel_->beginning(row_);
+  if (!(std::min(row_.time, end) - slack <= t && t <= std::max(row_.time, end) + slack)) {
+    throw std::runtime_error(
+        fmt::format("no state at t = {}: the last step is from {} to {}", t, row_.time, end));
+  }
+  const Status status = dense().at(t, row_);
+  if (!status.ok) throw std::runtime_error(fmt::format("no state at t = {}: {}", t, status.reason));
+  return row_;
+}
+
+const Snapshot& Driver::state() {
+  if (result_.stopped_by_event) return result_.last;
+  kernel_->measure(row_);
+  return row_;
+}
+
+}  // namespace hamel

@@ -1,0 +1,109 @@
+// The driver of a run: it takes the steps, and its observers follow them: events with their impacts, rows with their
+// measurements, files and checkpoints. Not installed: what stands behind Run.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <hamel/framework/run/record/run_file.hpp>
+#include <hamel/framework/run/record/sink.hpp>
+#include <hamel/framework/run/run/dense_output.hpp>
+#include <hamel/framework/run/run/events.hpp>
+#include <hamel/framework/run/run/meter.hpp>
+#include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/restarted_kernel.hpp>
+
+namespace hamel {
+
+class Driver {
+ public:
+  /// What becomes of the rows: of a run by hand they are kept where the request asks for it, of a run to its end always.
+  enum class Rows { asked_for, always };
+  /// plan: without mistakes.
+  Driver(RunPlan plan, RunRequest request, Rows rows);
+
+  Status step(long count);
+  Status step_towards(double t);
+  Status advance_to(double t);
+  Status complete();
+  void turn_back();
+  void input(const std::string& name, double value);
+  void restart(const Start& start);
+  const Snapshot& at(double t);
+  const Snapshot& state();
+  /// The run in a file is resumed.
+  void resume(const RunFile& file);
+  /// The last row and the measurements; the run is over. Files are unfinished until close().
+  Result& end();
+  void close();
+
+  const RunPlan& plan() const { return plan_; }
+  const SolverStats& stats() const { return kernel_->stats(); }
+  long impacts_met() const { return impacts_met_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void begin();
+  void make_observers();
+  std::shared_ptr<const Mechanics> acting() const;
+  // Steps, so many, or to the end of the run, each of them followed by the observers.
+  Status advance(long count, bool to_end = false);
+  void take_steps(long count, bool to_end);
+  long steps_at_once(long count, bool to_end) const;
+  bool reached_end() const;
+  Status covered(double t) const;
+  Status refuse(double t, const std::string& reason) const;
+  DenseOutput& dense();
+
+  // What the last step brought; false: the run ends here.
+  bool observe_step();
+  bool observe_event(const Events::Found& event, bool& go_on);
+  void observe_within_step();
+  // Rows at the output times up to t.
+  bool output(double t);
+  bool record(const Snapshot& state);
+  std::optional<EventState> impact(const Events::Found& event) const;
+  void restart_behind(const EventState& state, const Events::Found& event);
+
+  void begin_sinks(const std::vector<ColumnGroup>& columns, const std::string& record);
+  // Complete rows to the sinks.
+  void deliver();
+  // Rows to their files; the run can be resumed from here where a sink keeps its state.
+  void keep();
+  void rows_to_files_after_failure();
+  double elapsed() const;
+  Result head() const;
+  void measure_ends_only();
+  // All that a resumed run needs but the events that were met.
+  template <class Archive>
+  void carry(Archive& archive) {
+    archive(*kernel_, steps_left_, next_, recorded_, result_.seconds, *plan_.events, *meter_);
+  }
+
+  RunPlan plan_;
+  RunRequest request_;
+  bool recording_, watching_ = false, every_node_ = false;
+  std::unique_ptr<RestartedKernel> kernel_;
+  std::unique_ptr<DenseOutput> dense_;  // made when it is first needed
+  std::unique_ptr<Meter> meter_;        // null where nothing is recorded
+  std::vector<std::unique_ptr<Sink>> sinks_;
+  Result result_;
+  Snapshot node_, row_;
+  std::vector<Events::Found> found_;
+  std::vector<double> times_;  // of the rows; empty: every so many steps
+  size_t next_ = 0;
+  long steps_left_ = 0;  // to the end, of one size
+  long recorded_ = -1;
+  bool begun_ = false, over_ = false, sinks_begun_ = false, resumable_ = false;
+  long rows_ = 0, kept_at_ = 0;  // since the last keep(); its step
+  long kept_events_ = 0;         // events that are in the files
+  long impacts_met_ = 0;
+  double seconds_ = 0;  // spent in steps, and in the parts of the run before this one
+  Clock::time_point entered_;
+  Clock::duration comparing_{};  // is no part of the time of a run
+};
+
+}  // namespace hamel

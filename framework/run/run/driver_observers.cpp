@@ -1,0 +1,283 @@
+// What follows the steps of a run: events, impacts, rows, files, checkpoints, and its end.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/run/run/driver.hpp>
+
+namespace hamel {
+
+bool Driver::observe_step() {
+  if (plan_.events->any()) {
+    const Status status = plan_.events->look(node_, dense(), found_);
+    if (!status.ok) {
+      result_.status = status;
+      return false;
+    }
+  }
+  for (const Events::Found& event : found_) {
+    bool go_on = true;
+    if (observe_event(event, go_on)) return go_on;
+  }
+  if (!recording_) return true;
+  if (meter_->wants_nodes()) {
+    observe_within_step();
+    meter_->node(node_);
+  }
+  if (!times_.empty()) return output(node_.time);
+  return node_.step % plan_.config.every == 0 ? record(node_) : true;
+}
+
+// True where the state behind the event is not that of the step: go_on tells whether the run ends there.
+bool Driver::observe_event(const Events::Found& event, bool& go_on) {
+  result_.events.push_back(
+      {event.name, event.state.time, event.state.coordinates, event.state.velocity});
+  const std::optional<EventState> after = event.stops ? std::nullopt : impact(event);
+  if (!event.stops && !after) return false;
+  if (meter_ != nullptr && meter_->wants_nodes()) meter_->node(event.state);
+  go_on = output(event.state.time);  // by the steps before the impact
+  if (!go_on) return true;
+  if (after) {
+    restart_behind(*after, event);
+    return true;
+  }
+  result_.stopped_by_event = true;
+  result_.status.reason = "stopped at " + event.name;
+  result_.last = event.state;
+  if (recording_ && times_.empty()) record(event.state);
+  go_on = false;
+  return true;
+}
+
+// The explicit pairs take long steps with a dense output: the work is not known from their ends alone.
+void Driver::observe_within_step() {
+  kernel_->beginning(row_);
+  const double begin = row_.time;
+  for (const double part : {0.25, 0.5, 0.75}) {
+    if (!kernel_->interpolate(begin + part * (node_.time - begin), row_)) return;
+    meter_->node(row_);
+  }
+}
+
+bool Driver::output(double t) {
+  const double sign = plan_.config.until >= plan_.config.from ? 1 : -1;
+  const double slack = 1e-12 * std::abs(plan_.config.until - plan_.config.from);
+  for (; next_ < times_.size() && sign * (times_[next_] - t) <= slack; ++next_) {
+    if (const Status status = dense().at(times_[next_], row_); !status.ok) {
+      result_.status = status;
+      return false;
+    }
+    if (!record(row_)) return false;
+  }
+  return true;
+}
+
+// state is the kernel's own, to be measured, or one that has been.
+bool Driver::record(const Snapshot& state) {
+  const Snapshot* row = &state;
+  if (&state == &node_) {
+    if (node_.step == recorded_) return true;  // nothing new
+    recorded_ = node_.step;
+    kernel_->measure(result_.last);
+    row = &result_.last;
+  }
+  meter_->take(*row);
+  const auto begin = Clock::now();
+  meter_->compare(*row);
+  comparing_ += Clock::now() - begin;
+  ++rows_;
+  if (!sinks_begun_) {
+    result_.last = *row;
+    Result at_start = head();
+    at_start.status = {false, 0, row->time, 0, "unfinished"};
+    at_start.last = *row;
+    begin_sinks(meter_->columns(), at_start.record());
+    for (const auto& sink : sinks_) sink->flush();
+  }
+  if (!request_.observer || request_.observer(*row)) return true;
+  result_.status.reason = to_string(Reason::stopped);
+  return false;
+}
+
+// The state behind it, where it is another one.
+std::optional<EventState> Driver::impact(const Events::Found& event) const {
+  const auto it = request_.impacts.find(event.name);
+  if (it == request_.impacts.end()) return {};
+  EventState state{event.state.time, event.state.coordinates, event.state.velocity};
+  it->second(state);
+  if (state.coordinates == event.state.coordinates && state.velocity == event.state.velocity)
+    return {};
+  return state;
+}
+
+void Driver::restart_behind(const EventState& state, const Events::Found& event) {
+  ++impacts_met_;
+  const Config& config = plan_.config;
+  const std::vector<double> velocity = admissible(*plan_.system, plan_.geometry, state, event.name);
+  const double h = kernel_->next_step();
+  const double limit = kernel_->limit();
+  kernel_->restart(state.time, state.coordinates, velocity, h);
+  if (config.chooses_steps()) kernel_->limit(limit);
+  else
+    steps_left_ =
+        static_cast<long>(std::floor((config.until - state.time) / h * (1 + 1e-12) + 1e-9));
+  kernel_->state(node_);
+  if (meter_ != nullptr) meter_->impact(event.state, node_);
+  plan_.events->resume(node_, event.name);
+}
+
+// ---- files ----------------------------------------------------------------------------------------------------------
+
+void Driver::begin_sinks(const std::vector<ColumnGroup>& columns, const std::string& record) {
+  const RunHead head{columns, plan_.outputs.request, plan_.outputs.files, record};
+  for (const auto& sink : sinks_) sink->begin(head);
+  sinks_begun_ = true;
+}
+
+void Driver::deliver() {
+  for (const auto& sink : sinks_) sink->rows(meter_->rows());
+  meter_->drop_rows();
+}
+
+void Driver::keep() {
+  rows_ = 0;
+  kept_at_ = node_.step;
+  if (!recording_) return;
+  deliver();
+  if (resumable_) {
+    kernel_->begin_anew();
+    dense_.reset();
+    kernel_->state(node_);
+    result_.seconds = elapsed();
+    CheckpointWriter state, news;
+    carry(state);
+    std::vector<EventMet> met(result_.events.begin() + kept_events_, result_.events.end());
+    kept_events_ = static_cast<long>(result_.events.size());
+    news(met);
+    for (const auto& sink : sinks_) sink->checkpoint(state.bytes(), news.bytes());
+  }
+  for (const auto& sink : sinks_) sink->flush();
+}
+
+void Driver::resume(const RunFile& file) {
+  const RunFile::Kept kept = file.kept();
+  if (kept.state.empty()) return;  // from its start
+  CheckpointReader state(kept.state);
+  carry(state);
+  dense_.reset();
+  kernel_->state(node_);
+  begun_ = true;
+  seconds_ = result_.seconds;
+  kept_at_ = node_.step;
+  for (const std::string& piece : kept.news) {
+    std::vector<EventMet> met;
+    CheckpointReader news(piece);
+    news(met);
+    result_.events.insert(result_.events.end(), met.begin(), met.end());
+  }
+  kept_events_ = static_cast<long>(result_.events.size());
+
+  begin_sinks(file.table().groups(), file.text("start"));
+  constexpr std::size_t piece = 4096;
+  std::vector<double> rows;
+  for (std::size_t at = 0; at < kept.rows; at += piece) {
+    const std::size_t count = std::min(piece, kept.rows - at);
+    file.table().read(at, count, rows);
+    for (const auto& sink : sinks_) sink->rows(rows);
+    for (std::size_t i = 0; i < count; ++i) meter_->follow_exact(rows[i * (rows.size() / count)]);
+  }
+  CheckpointWriter news;
+  news(result_.events);
+  for (const auto& sink : sinks_) {
+    sink->checkpoint(kept.state, news.bytes());
+    sink->flush();
+  }
+}
+
+// The rows that are there reach their files.
+void Driver::rows_to_files_after_failure() {
+  over_ = true;
+  if (!sinks_begun_) return;
+  for (const auto& sink : sinks_) {
+    try {
+      if (!meter_->rows().empty()) sink->rows(meter_->rows());
+      sink->flush();
+    } catch (const std::exception&) {
+    }
+  }
+}
+
+double Driver::elapsed() const {
+  const Clock::duration now =
+      entered_ == Clock::time_point() ? Clock::duration() : Clock::now() - entered_;
+  return seconds_ + std::chrono::duration<double>(now - comparing_).count();
+}
+
+// ---- the end --------------------------------------------------------------------------------------------------------
+
+Result Driver::head() const {
+  Result out;
+  out.config = plan_.config;
+  out.system = plan_.system;
+  out.inputs = plan_.setup.inputs;
+  out.unused = plan_.unused;
+  out.notes = plan_.notes;
+  return out;
+}
+
+// Without rows: start and end alone. The balance of work needs every node, and is not known.
+void Driver::measure_ends_only() {
+  Meter meter(*plan_.system, plan_.config.start, plan_.geometry, plan_.setup.mechanics, acting(),
+              plan_.setup.inputs);
+  if (meter.wants_nodes()) {
+    result_.energy_error_max = Measurements::kNone;
+    result_.notes.emplace_back(
+        "the energy balance is not known: this run kept no rows (keep_rows, record_to)");
+    return;
+  }
+  Snapshot start;
+  plan_.kernel(plan_.setup)->measure(start);
+  meter.begin(start);
+  meter.finish(result_.last);
+  static_cast<Measurements&>(result_) = meter.all();
+}
+
+Result& Driver::end() {
+  try {
+    begin();
+    if (recording_ && !over_ && times_.empty()) record(node_);
+    over_ = true;
+    if (!result_.stopped_by_event) kernel_->measure(result_.last);
+    kernel_->state(node_);
+    Result shell = head();
+    result_.config = std::move(shell.config);
+    result_.system = std::move(shell.system);
+    result_.inputs = std::move(shell.inputs);
+    result_.unused = std::move(shell.unused);
+    result_.notes = std::move(shell.notes);
+    result_.seconds = seconds_;
+    result_.steps = node_.step;
+    result_.stats = kernel_->stats();
+    if (!recording_) {
+      measure_ends_only();
+      return result_;
+    }
+    meter_->finish(result_.last);
+    deliver();
+    static_cast<Measurements&>(result_) = meter_->all();
+    result_.notes.insert(result_.notes.end(), meter_->notes().begin(), meter_->notes().end());
+  } catch (...) {
+    rows_to_files_after_failure();
+    throw;
+  }
+  return result_;
+}
+
+void Driver::close() {
+  for (const auto& sink : sinks_) sink->finish(result_);
+}
+
+}  // namespace hamel

@@ -1,0 +1,47 @@
+// Runs by name, and what there is by name. Standard-library types only.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/mechanics/input_table.hpp>
+#include <hamel/framework/mechanics/parameters.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
+#include <hamel/systems/mechanisms/mechanism.hpp>
+
+namespace hamel {
+
+/// The library's registry, filled on first use; a program may add to it (add_group, add_system, ...).
+/// Not thread-safe while something is being added.
+Registry& registry();
+
+/// A registered system, or one by data ("my_system.toml").
+inline Simulation simulate(std::string system) { return {registry(), std::move(system)}; }
+
+/// A mechanism by parts.
+Simulation simulate(const Mechanism& mechanism);
+
+// What there is by name, sorted. `hamel list` prints the same.
+std::vector<std::string> groups();
+/// Of a group, also of a product "se2*so2^3"; without one all.
+std::vector<std::string> retractions(const std::string& group = "");
+std::vector<std::string> schemes();
+std::vector<std::string> solvers();
+/// Those of files too.
+std::vector<std::string> systems();
+
+/// What is stated about a system.
+struct SystemDescription {
+  std::string name, group;
+  std::string summary, formula, known, source;
+  std::vector<Field> parameters;  // with their defaults
+  std::vector<InputField> inputs;
+  std::vector<std::string> coordinates;  // columns of the element
+  std::vector<std::string> velocities;   // components of xi, in order
+  std::vector<std::string> events;
+};
+/// ConfigError with the nearest name where there is none.
+SystemDescription describe_system(const std::string& name);
+
+}  // namespace hamel
