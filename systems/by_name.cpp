@@ -1,6 +1,6 @@
 #include <hamel/systems/by_name.hpp>
 
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/run/run/own_system.hpp>
 

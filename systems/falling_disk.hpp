@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <hamel/framework/mechanics/general_system.hpp>
@@ -100,6 +101,8 @@ struct FallingDisk {
     return body_on_plane::rolling(g, omega, Contact<double>(g, radius).r);
   }
   Start start() const { return rolling(1.3, {0.1, 0.4, 5}); }
+  /// Upright.
+  Start at_speed(double v) const { return rolling(0.5 * std::numbers::pi, {0, 0, v / radius}); }
 
   void invariants(auto& add) const { add("energy", energy_of(*this)); }
   void events(auto& add) const {

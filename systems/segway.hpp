@@ -97,6 +97,8 @@ struct Segway {
             .momentum = {}};
   }
   Start start() const { return rolling(0.02, 0.6, 1); }
+  /// Upright.
+  Start at_speed(double v) const { return rolling(0, 0, v); }
   /// The rate lambda of the instability of straight upright rolling.
   double growth_rate() const {
     const double total = mass + 2 * wheel_mass + 2 * wheel_inertia / (wheel_radius * wheel_radius);

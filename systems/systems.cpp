@@ -9,7 +9,6 @@
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/by_name.hpp>
-#include <hamel/systems/straight_starts.hpp>
 
 namespace hamel {
 namespace {
@@ -51,9 +50,8 @@ void add_mechanisms(Registry& registry) {
   registry.add(
       FileKind{{"body", "joint", "wheel", "roller", "ball", "blade", "loop"}, mechanism_from});
   for (const auto& [name, text] : mechanisms::library()) {
-    registry.add_deferred(name, [&name = name, &text = text] {
-      return mechanism_info(text, name + ".toml");
-    });
+    registry.add_deferred(
+        name, [&name = name, &text = text] { return mechanism_info(text, name + ".toml"); });
   }
 }
 
@@ -77,7 +75,6 @@ Registry make_registry() {
   add_driven_vehicles(registry);
   add_system<NTrailer>(registry);
   add_mechanisms(registry);
-  add_starts_at_speed();
   return registry;
 }
 

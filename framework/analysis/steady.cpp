@@ -8,7 +8,7 @@
 #include <Eigen/QR>
 
 #include <hamel/framework/analysis/reduced_flow.hpp>
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel {

@@ -43,7 +43,7 @@ struct SteadyMotion {
   int growing() const;
 };
 
-/// The steady motion near a start, its rates named by motion_words.hpp. family: how many zeros there are; -1: those that are
+/// The steady motion near a start, its rates named by components_of(model). family: how many zeros there are; -1: those that are
 /// zero to 1e-7. Throws ConfigError when the system depends on time.
 SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, const Start& guess,
                            int family = -1);

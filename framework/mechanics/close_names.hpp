@@ -21,6 +21,8 @@
     ptential, ptoential)                                                                          \
   X(force, foce, focre, forc, forces, forec, frce, froce)                                         \
   X(start, sart, satrt, starts, statr, strt)                                                      \
+  X(at_speed, a_speed, a_tspeed, at_peed, at_pseed, at_sped, at_spede, at_spee, at_speeds, atspeed, \
+    start_at_speed)                                                                               \
   X(exact, eact, eaxct, exac, exact_motion, exact_solution, exat, exatc, excat, exct)             \
   X(has_exact, ha_exact, ha_sexact, has_eact, has_eaxct, has_exac, has_exact_motion,              \
     has_exact_solution, has_exat, has_exatc, has_excat, has_exct, has_xact, has_xeact,            \

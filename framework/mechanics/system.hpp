@@ -9,6 +9,7 @@
 //   void fields(auto& f);              f("mass", mass, "kg", "what it is", positive): parameters (fields.hpp)
 //   void inputs(auto& u) const;        u("torque", "N m", "what it is", range): what a run may be driven by (inputs.hpp)
 //   Start start() const;               the default start
+//   Start at_speed(double v) const;    straight ahead at v m/s, what a run with `speed` starts from
 //   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
 //   bool has_exact() const;            where the exact motion depends on the parameters
 //   void invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
@@ -21,6 +22,7 @@
 //   static name(), summary(), formula(), known(), source()   words for `hamel describe`
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -29,7 +31,6 @@
 #include <vector>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/lie/group_info.hpp>
 #include <hamel/framework/mechanics/close_names.hpp>
 #include <hamel/framework/mechanics/drawing.hpp>
 #include <hamel/framework/mechanics/event.hpp>
@@ -38,48 +39,9 @@
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/start.hpp>
 #include <hamel/framework/mechanics/system_members.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 
 namespace hamel {
-
-/// The exact motion from a start: t -> (coordinates of g, xi). Call with |t| increasing.
-using ExactFlow = std::function<std::pair<std::vector<double>, std::vector<double>>(double)>;
-
-/// A number that the exact motion keeps.
-struct Invariant {
-  std::string name;
-  std::function<double(std::span<const double> coordinates, std::span<const double> velocity)>
-      value;
-};
-
-/// A system with its parameters set and its type erased.
-struct SystemModel {
-  std::string name;
-  GroupInfo group;
-  std::shared_ptr<const Mechanics> mechanics;
-  std::vector<Field> fields;
-  Start start;
-  /// Empty when nothing is known exactly.
-  std::function<ExactFlow(const Start&)> exact;
-  std::vector<Invariant> invariants;
-  std::vector<Event> events;
-  std::vector<int> contacts;  // the rows whose multiplier is a normal reaction
-  std::vector<std::string>
-      shape;  // names of the coordinates of so2 and rn; empty: those of the group
-  Drawing drawing;
-  std::vector<InputField> inputs;
-  /// The mechanics that these inputs drive; empty where there are none.
-  std::function<std::shared_ptr<const Mechanics>(std::shared_ptr<const Inputs>)> drive;
-};
-
-/// A registered system: its descriptions, its parameters, and how to make it.
-struct SystemInfo {
-  std::string name, summary, formula, known, source;
-  GroupInfo group;
-  std::vector<Field> fields;
-  std::vector<InputField> inputs;
-  /// Throws ConfigError naming every parameter that does not fit.
-  std::function<SystemModel(const Parameters&)> make;
-};
 
 namespace detail {
 
@@ -130,6 +92,19 @@ void tell_drawing(const S& system, Visitor& scene) {
 }
 
 template <class S>
+void add_start_at_speed(const S& system, SystemModel& model) {
+  if constexpr (requires {
+                  { system.at_speed(0.0) } -> std::convertible_to<Start>;
+                }) {
+    model.start_at_speed = [system](double speed, double) { return system.at_speed(speed); };
+  } else {
+    static_assert(
+        !named::at_speed<S>,
+        "at_speed of this system cannot be called: expected a const member Start at_speed(v)");
+  }
+}
+
+template <class S>
 std::vector<Field> fields_of(S system) {
   FieldReader reader;
   tell_fields(system, reader);
@@ -170,9 +145,6 @@ SystemModel erase_words(const S& system) {
   return model;
 }
 
-/// "no constraint", "1 constraint row", "3 constraint rows, 1 holonomic".
-std::string constraints_in_words(const SystemModel& model);
-
 /// Erases a system, parameters as they are. Throws what the system's own members throw.
 template <System S>
 SystemModel erase(const S& system) {
@@ -199,6 +171,7 @@ SystemModel erase(const S& system) {
     static_assert(!named::start<S>,
                   "start of this system cannot be called: expected a const member start()");
   }
+  detail::add_start_at_speed(system, model);
   bool exact = true;
   if constexpr (requires { system.has_exact(); }) {
     exact = system.has_exact();
@@ -271,6 +244,7 @@ SystemModel erase(const S& system) {
   SystemModel model = erase_words(system);
   model.mechanics = system.mechanics();
   model.start = system.start();
+  detail::add_start_at_speed(system, model);
   auto add = [&model](std::string name, auto value) {
     model.invariants.push_back({std::move(name), value});
   };

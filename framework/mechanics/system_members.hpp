@@ -18,7 +18,7 @@ namespace named {
 struct Names {
   int constraints, drift, holonomic, potential, force, start, exact, has_exact, invariants, fields,
       draw, name, summary, formula, known, source, potential_differential, holonomic_differential,
-      inertia_differential, contacts, events, inputs, shape;
+      inertia_differential, contacts, events, inputs, shape, at_speed;
 };
 template <class S, bool = std::is_final_v<S>>
 struct Both : S, Names {};
@@ -59,6 +59,7 @@ HAMEL_NAMED(contacts)
 HAMEL_NAMED(events)
 HAMEL_NAMED(inputs)
 HAMEL_NAMED(shape)
+HAMEL_NAMED(at_speed)
 #undef HAMEL_NAMED
 
 }  // namespace named

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/systems/mechanisms/poses.hpp>
-#include <hamel/systems/mechanisms/speaking.hpp>
+#include <hamel/systems/mechanisms/start_checks.hpp>
 
 namespace hamel {
 namespace {
@@ -27,7 +27,7 @@ std::function<double(std::span<const double>, std::span<const double>)> energy_o
 }
 
 // Without places and forces where nothing depends on the configuration; else null.
-std::shared_ptr<const Mechanics> invariant(const Multibody& system, const MotionWords& words) {
+std::shared_ptr<const Mechanics> invariant(const Multibody& system) {
   if (!system.constant_inertia() || !system.constant_constraints() ||
       !system.constant_potential() || system.has_force() || system.has_drift())
     return nullptr;
@@ -35,8 +35,7 @@ std::shared_ptr<const Mechanics> invariant(const Multibody& system, const Motion
   Eigen::VectorXd b(system.rows());
   system.inertia(system.drawn().data(), inertia);
   system.constraints(0, system.drawn().data(), a, b);
-  return std::make_shared<WithWords<LeftInvariantMechanics>>(LeftInvariantMechanics(inertia, a),
-                                                             words);
+  return std::make_shared<LeftInvariantMechanics>(inertia, a);
 }
 
 }  // namespace
@@ -204,9 +203,9 @@ void Assembly::make_tree() {
   state_inputs();
 }
 
-std::pair<SystemModel, MotionWords> Assembly::outline() {
+SystemModel Assembly::outline() {
   make_tree();
-  return {std::move(model_), std::move(words_)};
+  return std::move(model_);
 }
 
 SystemModel Assembly::model() {
@@ -232,7 +231,7 @@ SystemModel Assembly::model() {
   const std::vector<RowWords> words = system->all_rows().words();
   const std::vector<Said> said = rows_in_words(words);
   const auto starts =
-      std::make_shared<Starts>(system, parts_.name_, model_.group.columns, words_.rates, said);
+      std::make_shared<Starts>(system, parts_.name_, model_.group.columns, model_.rates, said);
   const Redundancy redundancy =
       look_for_redundancy(*system, {system->drawn(), start_configuration(*system, *starts)});
   look_at_redundant(redundancy, said, words);
@@ -240,44 +239,47 @@ SystemModel Assembly::model() {
   system->look_for_constants(poses_around(*system, system->drawn()));
   for (const int row : system->kept()) {
     const RowWords& word = words[static_cast<size_t>(row)];
-    if (word.height) model_.contacts.push_back(static_cast<int>(words_.reactions.size()));
-    words_.reactions.push_back(word.name);
+    if (word.height) model_.contacts.push_back(static_cast<int>(model_.reactions.size()));
+    model_.reactions.push_back(word.name);
   }
 
-  words_.parts = body_names();
+  model_.parts = body_names();
   model_.events = parts_.events_;
   start(starts);
   check_motions(*system, said);
   stop_at_mistakes();
   draw(system);
-  AtStart at_start{said, {}, {}, {}};
-  for (const auto& [row, repeat] : redundancy.repeats) at_start.dropped.push_back(row);
+  StartChecks checks{said, {}, {}, {}};
+  for (const auto& [row, repeat] : redundancy.repeats) checks.dropped.push_back(row);
   for (const auto& part : parts_.motors_)
-    at_start.signals.push_back(
+    checks.signals.push_back(
         {fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});
   for (const auto& part : parts_.forces_)
     for (const Signal& along : part.along)
-      at_start.signals.push_back(
-          {fmt::format("{}force '{}': along", part.where, part.name), along});
-  std::erase_if(at_start.signals, [](const Watched& signal) { return !signal.value; });
+      checks.signals.push_back({fmt::format("{}force '{}': along", part.where, part.name), along});
+  std::erase_if(checks.signals, [](const Watched& signal) { return !signal.value; });
   for (const auto& part : parts_.rates_) {
     if (!part.angle) continue;
     const int link = joint_of(part, "prescribed");
     size_t column = 0;
     for (int j = 0; j < link; ++j) column += type_of(tree.kind(j)).columns.size();
-    at_start.held.push_back(
+    checks.held.push_back(
         {fmt::format("{}prescribed '{}': {}", part.where, part.name, model_.group.columns[column]),
          column, tree.kind(link) == JointKind::hinge, part.angle});
   }
-  const auto driven = [system, at_start, words = words_,
+  const auto driven = [system,
                        drivers = drivers(tree)](const std::shared_ptr<const Inputs>& inputs) {
-    Multibody out = *system;
-    if (inputs != nullptr) out.drive(drivers, inputs);
-    return std::make_shared<Speaking>(out, words, at_start, inputs);
+    const auto out = std::make_shared<Multibody>(*system);
+    if (inputs != nullptr) out->drive(drivers, inputs);
+    return out;
   };
   if (!model_.inputs.empty()) model_.drive = driven;
-  model_.mechanics = invariant(*system, words_);
+  model_.mechanics = invariant(*system);
   if (model_.mechanics == nullptr) model_.mechanics = driven(nullptr);
+  model_.start_mistakes = [driven, checks](double t, const double* g, std::span<const double> xi,
+                                           const std::shared_ptr<const Inputs>& inputs) {
+    return mistakes_at_start(*driven(inputs), checks, inputs.get(), t, g, xi);
+  };
   if (!system->has_force() && !system->has_drift())
     model_.invariants.push_back({"energy", energy_of(system)});
   return std::move(model_);

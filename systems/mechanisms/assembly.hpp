@@ -4,10 +4,9 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
 #include <hamel/systems/mechanisms/multibody.hpp>
 #include <hamel/systems/mechanisms/poses.hpp>
@@ -20,7 +19,8 @@ class Assembly {
   explicit Assembly(const Mechanism& parts) : parts_(parts) {}
   /// Throws ConfigError with all mistakes.
   SystemModel model();
-  std::pair<SystemModel, MotionWords> outline();
+  /// Names, group and inputs alone. Mistakes are left to model().
+  SystemModel outline();
 
  private:
   using Part = Mechanism::Part;
@@ -77,7 +77,6 @@ class Assembly {
   const Mechanism& parts_;
   std::vector<std::string> mistakes_;
   SystemModel model_;
-  MotionWords words_;
   std::vector<mechanisms::Link> links_;
   std::vector<std::string> link_names_;  // of their joints
   std::vector<const Mechanism::JointPart*> link_joints_;

@@ -145,7 +145,7 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
     const std::string text =
         list.empty() ? fmt::format("{} says nothing: no joint moves its body that way", said.what)
                      : fmt::format("{} says nothing beyond {}", said.what, list);
-    if (drop) words_.notes.push_back("row dropped: " + text);
+    if (drop) model_.notes.push_back("row dropped: " + text);
     else
       mistakes_.push_back(fmt::format(
           "{}redundant row: {}; {}, or redundant = \"drop\"", said.where, text,
@@ -162,7 +162,7 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
     for (size_t i = 0; i < words.size(); ++i) some = some || speaks(i);
     if (some) continue;
     const std::string text = "says nothing: the joints between its bodies hold it already";
-    if (drop) words_.notes.push_back(fmt::format("loop '{}' dropped: {}", loop.name, text));
+    if (drop) model_.notes.push_back(fmt::format("loop '{}' dropped: {}", loop.name, text));
     else wrong(loop, "loop", text + "; leave it out");
   }
   stop_at_mistakes();
@@ -217,15 +217,15 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
     mistakes_.push_back(parts_.asks_.where + "asks: " + wrong);
   stop_at_mistakes();
   model_.start = starts->solve(stated, 0, places);
-  words_.start_parameters = asks;
+  model_.start_parameters = asks;
   if (runs) {
-    words_.start_at_speed = [starts, usual](double speed, double t) {
+    model_.start_at_speed = [starts, usual](double speed, double t) {
       std::map<std::string, double> values = usual;
       values["speed"] = speed;
       return starts->solve(values, t);
     };
   }
-  words_.start_from = [starts, asks, stated, usual](std::span<const double> given, double t) {
+  model_.start_from = [starts, asks, stated, usual](std::span<const double> given, double t) {
     std::map<std::string, double> values = given.empty() ? stated : usual;
     for (size_t i = 0; i < given.size(); ++i) values[asks[i]] = given[i];
     return starts->solve(values, t);

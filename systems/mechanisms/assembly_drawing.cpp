@@ -65,7 +65,7 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
     drawing.bodies.push_back(std::move(drawn));
   }
   for (size_t i = 0; i < parts_.contacts_.size(); ++i) {
-    words_.forces.push_back(
+    model_.forces.push_back(
         {parts_.contacts_[i].name,
          [system, i](std::span<const double> coordinates, std::span<const double> reactions) {
            std::vector<double> g(system->drawn().size());

@@ -54,7 +54,7 @@ Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
         body, "body",
         fmt::format("inertia: a moment of {} about some axis, expected none below 0", moments[0]));
   } else if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1])) {
-    words_.notes.push_back(fmt::format(
+    model_.notes.push_back(fmt::format(
         "{}body '{}': no rigid body has the principal moments {}, since {} > {} + {}", body.where,
         body.name, join(std::vector<double>(moments.begin(), moments.end())), moments[2],
         moments[1], moments[0]));
@@ -201,7 +201,7 @@ void Assembly::name_columns() {
     const bool alone = wide && roots == 1 && links_[j].parent == mechanisms::kGround;
     const std::string front = alone ? "" : link_names_[j] + ".";
     for (const std::string& name : type.columns) model_.group.columns.push_back(front + name);
-    for (const std::string& name : type.rates) words_.rates.push_back(front + name);
+    for (const std::string& name : type.rates) model_.rates.push_back(front + name);
   }
   write();
   GroupInfo info = product_info(group, factors);

@@ -1,4 +1,4 @@
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
 
@@ -76,7 +76,7 @@ void Mechanism::force(const std::string& name, const std::string& body,
 }
 
 SystemModel Mechanism::model() const { return Assembly(*this).model(); }
-std::pair<SystemModel, MotionWords> Mechanism::outline() const { return Assembly(*this).outline(); }
+SystemModel Mechanism::outline() const { return Assembly(*this).outline(); }
 
 std::function<SystemModel(const Parameters&)> maker(const Mechanism& mechanism) {
   return [mechanism](const Parameters& given) {
@@ -89,7 +89,7 @@ SystemInfo system_info(const Mechanism& mechanism) {
   SystemInfo info;
   info.name = mechanism.name();
   info.summary = "mechanism by parts";
-  const SystemModel outline = mechanism.outline().first;
+  const SystemModel outline = mechanism.outline();
   info.group = outline.group;
   info.inputs = outline.inputs;
   info.make = maker(mechanism);

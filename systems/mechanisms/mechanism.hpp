@@ -30,7 +30,6 @@
 
 namespace hamel {
 
-struct MotionWords;
 struct SystemInfo;
 struct SystemModel;
 
@@ -176,7 +175,7 @@ class Mechanism {
 
   /// Of model(): name, group and inputs, and the names of velocities, which bodies and joints alone say. Throws
   /// ConfigError where they make no tree.
-  std::pair<SystemModel, MotionWords> outline() const;
+  SystemModel outline() const;
 
   /// Where the next parts, and what else is said next, stand in a file, for messages.
   void place(std::string where) { where_ = std::move(where); }

@@ -1,4 +1,4 @@
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 
@@ -29,7 +29,7 @@ class File {
   }
   SystemModel outline() {
     parameters({});
-    SystemModel out = parts().outline().first;
+    SystemModel out = parts().outline();
     out.fields = fields_;
     return out;
   }
@@ -57,15 +57,15 @@ class File {
     parts.joints();
     parts.inputs();
     stop_at_mistakes();
-    const auto [outline, words] = m.outline();
-    read_.set_names(outline.group.columns, words.rates, outline.inputs);
+    const SystemModel outline = m.outline();
+    read_.set_names(outline.group.columns, outline.rates, outline.inputs);
     check_formula_names();
     parts.contacts();
     parts.chains();
     parts.forces();
     parts.surroundings();
     for (Event& event :
-         read_events(read_.toml, read_.formulas, table_, outline.group.columns, words.rates))
+         read_events(read_.toml, read_.formulas, table_, outline.group.columns, outline.rates))
       m.event(std::move(event));
     stop_at_mistakes();
     return m;

@@ -17,7 +17,7 @@
 
 namespace hamel::mechanisms {
 
-class Multibody : public Mechanics {
+class Multibody final : public Mechanics {
  public:
   /// All rows of `rows`; keep() drops some.
   Multibody(const Tree& tree, Rows rows, Forces forces, std::shared_ptr<const Geometry> geometry);

@@ -90,7 +90,7 @@ TEST_F(MechanismFile, StartsAtASpeed) {
   EXPECT_NEAR(answer({"run", "segway", "--speed", "2", "--until", "0.02"})["start"]["velocity"][1],
               2, 1e-12);
   EXPECT_THAT(run({"run", "suslov", "--speed", "1"}).err,
-              HasSubstr("speed: suslov knows no motion by its speed; give velocity"));
+              HasSubstr("speed: suslov defines no straight motion; give velocity"));
   EXPECT_THAT(run({"run", "segway", "--speed", "1", "--velocity", "0,1,0"}).err,
               HasSubstr("speed: give it alone"));
   EXPECT_EQ(run({"run", "bicycle", "--speed", "fast"}).status, 2);
@@ -231,7 +231,7 @@ TEST_F(MechanismFile, SteadyBicycle) {
 
 TEST_F(MechanismFile, SteadySaysWhatItCannotDo) {
   EXPECT_THAT(run({"steady", "suslov", "--speed", "1"}).err,
-              HasSubstr("knows no motion by its speed"));
+              HasSubstr("defines no straight motion"));
   EXPECT_THAT(run({"steady", "segway", "--vary", "height=1"}).err,
               HasSubstr("expected name=from:to:count"));
   EXPECT_THAT(run({"steady", "segway", "--speed", "1", "--vary", "hight=1:2:3"}).err,

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/systems/rolling_disk.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 

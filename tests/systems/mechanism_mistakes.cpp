@@ -63,7 +63,7 @@ TEST(Mechanisms, SayWhatIsWrongWithTheirParts) {
   Mechanism bar("bar");
   bar.body("a", {.mass = 1, .inertia = {1, 1, 3}});
   bar.planar("floor", "a");
-  EXPECT_THAT(words_of(bar.model()).notes,
+  EXPECT_THAT(bar.model().notes,
               testing::Contains(HasSubstr("no rigid body has the principal moments 1,1,3")));
 }
 
@@ -71,7 +71,7 @@ TEST(Mechanisms, FindRowsThatSayNothingNew) {
   const Mechanism dropping = by_parts::drive({});
   EXPECT_EQ(dropping.model().mechanics->rows(), 3);
   EXPECT_THAT(
-      words_of(dropping.model()).notes,
+      dropping.model().notes,
       testing::Contains(HasSubstr(
           "row dropped: wheel 'left' (does not slip sideways) says nothing beyond wheel 'right' "
           "(does not slip sideways)")));

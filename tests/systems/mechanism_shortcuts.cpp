@@ -91,7 +91,7 @@ Said look(bool plain, const VectorXd& coordinates, const VectorXd& velocities) {
   said.inertia = MatrixXd(said.inertia(columns, columns));
   said.a = MatrixXd(said.a(Eigen::all, columns));
   said.force = VectorXd(said.force(columns));
-  said.reactions = words_of(model).reactions;
+  said.reactions = model.reactions;
   return said;
 }
 

@@ -8,7 +8,6 @@
 
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
-#include <hamel/framework/run/run/at_speed.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 
 #include "mechanism_systems.hpp"
@@ -18,7 +17,7 @@ namespace {
 
 SystemModel model(const std::string& name) { return registry().system(name)->make({}); }
 SteadyMotion at_speed(const SystemModel& system, double speed, int family = -1) {
-  return steady_motion(registry(), system, *start_at_speed(system, speed), family);
+  return steady_motion(registry(), system, system.start_at_speed(speed, 0), family);
 }
 
 // Of M q'' + v C1 q' + (g K0 + v^2 K2) q = 0, q = (lean, steer), with the benchmark's matrices of Meijaard and others 2007.
@@ -262,7 +261,7 @@ std::vector<std::complex<double>> rates_in(const std::vector<std::vector<double>
 // The nonlinear bicycle, upright and disturbed by 1e-6.
 TEST(Bicycle, NonlinearMotionGrowsAndDecaysAtThePublishedRates) {
   for (const double speed : {3.0, 5.0, 7.0}) {
-    Start start = *start_at_speed(model("bicycle"), speed);
+    Start start = model("bicycle").start_at_speed(speed, 0);
     start.velocity[0] = 1e-6;  // roll rate
     const Result result = simulate("bicycle")
                               .start(start)

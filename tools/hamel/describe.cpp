@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/schemes/composition.hpp>
@@ -65,17 +65,16 @@ Json parameters_of(const std::vector<Field>& fields) {
 void add_parts(Json& out, const std::string& name, const SystemModel& model,
                const Parameters& given) {
   const Mechanics& mechanics = *model.mechanics;
-  const MotionWords& words = words_of(model);
-  out["parts"] = words.parts;
-  out["rates"] = words.rates;
-  out["reactions"] = words.reactions;
+  out["parts"] = model.parts;
+  out["rates"] = model.rates;
+  out["reactions"] = model.reactions;
   out["dimension"] = mechanics.dim();
   out["holonomic_rows"] = mechanics.holonomic_rows();
   out["directions"] = mechanics.dim() - mechanics.rows();
   out["verdict"] = verdict(hamel::analyse(registry(), name, given, AnalysisOf::verdict),
                            "--analyse looks at more");
-  out["start_parameters"] = words.start_parameters;
-  if (!words.notes.empty()) out["notes"] = words.notes;
+  out["start_parameters"] = model.start_parameters;
+  if (!model.notes.empty()) out["notes"] = model.notes;
 }
 
 Json inputs_of(const std::vector<InputField>& fields) {
@@ -102,21 +101,19 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
               {"events", events(model)},
               {"known", info.known},
               {"source", info.source}};
-  if (!words_of(model).parts.empty()) add_parts(out, info.name, model, given);
+  if (!model.parts.empty()) add_parts(out, info.name, model, given);
   return out;
 }
 
 // Formulas that have no value where the system starts are said before a run.
 void check_start(const SystemModel& model) {
-  const auto* worded = dynamic_cast<const Worded*>(model.mechanics.get());
   const auto geometry = registry().geometry(model.group.name, "exp");
-  if (worded == nullptr || geometry == nullptr) return;
+  if (!model.start_mistakes || geometry == nullptr) return;
   std::vector<double> g(static_cast<size_t>(geometry->size()));
   geometry->from_coordinates(start_of(model)["configuration"].get<std::vector<double>>(), g.data());
-  Eigen::VectorXd xi = Eigen::VectorXd::Zero(geometry->dim());
-  if (!model.start.velocity.empty())
-    xi = Eigen::Map<const Eigen::VectorXd>(model.start.velocity.data(), xi.size());
-  const auto mistakes = worded->mistakes_at(0, g.data(), xi);
+  std::vector<double> xi = model.start.velocity;
+  if (xi.empty()) xi.assign(static_cast<size_t>(geometry->dim()), 0);
+  const auto mistakes = model.start_mistakes(0, g.data(), xi, nullptr);
   if (!mistakes.empty()) throw ConfigError(mistakes);
 }
 
@@ -138,14 +135,13 @@ Json describe_file(const std::string& path, const Parameters& given) {
               {"inputs", inputs_of(model.inputs)},
               {"start", start_of(model)},
               {"events", events(model)}};
-  const MotionWords& words = words_of(model);
-  if (!words.parts.empty()) {
+  if (!model.parts.empty()) {
     add_parts(out, path, model, given);
     return out;
   }
-  out["rates"] = words.rates;
+  out["rates"] = model.rates;
   out["formulas"] = Json::object();
-  for (const auto& [entry, text] : words.formulas) out["formulas"][entry] = text;
+  for (const auto& [entry, text] : model.formulas) out["formulas"][entry] = text;
   out["invariants"] = Json::array();
   for (const Invariant& invariant : model.invariants) out["invariants"].push_back(invariant.name);
   return out;

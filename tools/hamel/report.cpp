@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/run/recorded_simulation.hpp>
 #include <hamel/systems/by_name.hpp>
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/systems/by_name.hpp>
 
@@ -120,12 +120,12 @@ std::optional<Animation> animation_of(const Result& result) {
     }
     out.bodies.push_back(std::move(body));
   }
-  const MotionWords& words = words_of(*result.system);
-  if (words.forces.empty()) return out;
+  const SystemModel& system = *result.system;
+  if (system.forces.empty()) return out;
   std::vector<size_t> at;  // their columns
-  for (const std::string& name : words.reactions) at.push_back(result.trajectory.index(name));
+  for (const std::string& name : system.reactions) at.push_back(result.trajectory.index(name));
   std::vector<double> reactions(at.size());
-  for (const DrawnForce& drawn : words.forces) {
+  for (const DrawnForce& drawn : system.forces) {
     MovingForce force{drawn.name, {}};
     for (size_t i : rows) {
       for (size_t j = 0; j < at.size(); ++j) reactions[j] = result.trajectory.at(i, at[j]);

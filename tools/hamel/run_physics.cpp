@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/mechanics/components.hpp>
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/run/events.hpp>
 
 #include "run_figures.hpp"
@@ -45,7 +45,7 @@ Series component(const Result& r, const std::string& name, const std::string& co
 
 // The reactions of one part together: a mechanism's rows of phi stand behind all others.
 std::vector<int> rows_by_part(const Result& r) {
-  const std::vector<std::string>& names = words_of(*r.system).reactions;
+  const std::vector<std::string>& names = r.system->reactions;
   std::vector<int> out(static_cast<size_t>(r.system->mechanics->rows()));
   std::iota(out.begin(), out.end(), 0);
   if (names.empty()) return out;
@@ -54,7 +54,7 @@ std::vector<int> rows_by_part(const Result& r) {
     return name.substr(0, name.rfind('.'));
   };
   std::vector<std::string> parts;
-  for (const DrawnForce& force : words_of(*r.system).forces) parts.push_back(force.name);
+  for (const DrawnForce& force : r.system->forces) parts.push_back(force.name);
   for (const int row : out) parts.push_back(part(row));
   std::stable_sort(out.begin(), out.end(), [&](int a, int b) {
     return std::find(parts.begin(), parts.end(), part(a)) <
@@ -100,9 +100,9 @@ void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) 
       "round-off.",
       r.reaction_work);
   for (const int i : rows_by_part(r)) {
-    const std::string column = words_of(*r.system).reactions.empty()
+    const std::string column = r.system->reactions.empty()
                                    ? fmt::format("lambda{}", i + 1)
-                                   : words_of(*r.system).reactions[static_cast<size_t>(i)];
+                                   : r.system->reactions[static_cast<size_t>(i)];
     if (!r.trajectory.has(column)) continue;
     const auto& contacts = r.system->contacts;
     const auto contact = std::find(contacts.begin(), contacts.end(), i);

@@ -21,12 +21,11 @@ bool DataFormulas::left_invariant() const {
 
 DataMechanics::DataMechanics(DataFormulas formulas, const GroupInfo& group,
                              std::shared_ptr<const Geometry> geometry,
-                             std::shared_ptr<const Inputs> given, MotionWords words)
+                             std::shared_ptr<const Inputs> given)
     : f_(std::move(formulas)),
       geometry_(std::move(geometry)),
       rates_(group, geometry_),
       given_(std::move(given)),
-      words_(std::move(words)),
       n_(group.dim),
       own_(static_cast<int>(f_.rows.constant.rows())),
       held_(static_cast<int>(f_.holonomic.constant.rows())),
@@ -144,8 +143,8 @@ double DataMechanics::power(double t, const double* g, ConstVector xi) const {
   return now_.dot(xi);
 }
 
-std::vector<std::string> DataMechanics::mistakes_at(double t, const double* g,
-                                                    ConstVector xi) const {
+std::vector<std::string> DataMechanics::start_mistakes(double t, const double* g,
+                                                       ConstVector xi) const {
   take(g);
   take(t);
   take(xi);

@@ -9,7 +9,6 @@
 #include <hamel/framework/mechanics/coordinate_rates.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
-#include <hamel/framework/mechanics/motion_words.hpp>
 
 namespace hamel {
 
@@ -48,12 +47,11 @@ struct DataFormulas {
   bool left_invariant() const;
 };
 
-class DataMechanics final : public Mechanics, public Worded {
+class DataMechanics final : public Mechanics {
  public:
   /// given: null where no input drives it, and its formulas have none.
   DataMechanics(DataFormulas formulas, const GroupInfo& group,
-                std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Inputs> given,
-                MotionWords words);
+                std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Inputs> given);
   int dim() const override { return n_; }
   int rows() const override { return own_ + held_; }
   int holonomic_rows() const override { return held_; }
@@ -73,9 +71,8 @@ class DataMechanics final : public Mechanics, public Worded {
   double power(double t, const double* g, ConstVector xi) const override;
   double potential(const double* g) const override;
 
-  const MotionWords& words() const override { return words_; }
   /// Formulas, or derivatives of them, that are not finite there.
-  std::vector<std::string> mistakes_at(double t, const double* g, ConstVector xi) const override;
+  std::vector<std::string> start_mistakes(double t, const double* g, ConstVector xi) const;
 
  private:
   size_t time() const { return static_cast<size_t>(geometry_->columns()); }
@@ -88,7 +85,6 @@ class DataMechanics final : public Mechanics, public Worded {
   std::shared_ptr<const Geometry> geometry_;
   CoordinateRates rates_;
   std::shared_ptr<const Inputs> given_;
-  MotionWords words_;
   int n_, own_, held_;
   bool autonomous_, velocity_force_, exact_rates_;
   mutable std::vector<double> values_,

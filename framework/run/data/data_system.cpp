@@ -34,21 +34,28 @@ class File {
     check_keys();
     DataFormulasReader matrices(read_, formulas_, table_, names_);
     DataFormulas driven = matrices.read(names_.inputs);
-    words_.formulas = matrices.texts();
+    model_.formulas = matrices.texts();
     stop_at_mistakes();
     rest();
     stop_at_mistakes();
     const std::shared_ptr<const Geometry> geometry = registry_.geometry(model_.group.name, "exp");
-    if (names_.inputs.empty()) {
-      model_.mechanics = mechanics(std::move(driven), geometry);
-      return std::move(model_);
-    }
     for (const std::string& input : names_.inputs)
       formulas_.set(input, 0);  // where nothing drives it
-    model_.mechanics = mechanics(matrices.read({}), geometry);
-    model_.drive = [driven, geometry, group = model_.group,
-                    words = words_](std::shared_ptr<const Inputs> inputs) {
-      return std::make_shared<DataMechanics>(driven, group, geometry, std::move(inputs), words);
+    const DataFormulas idle = names_.inputs.empty() ? driven : matrices.read({});
+    const auto make = [idle, driven, geometry,
+                       group = model_.group](const std::shared_ptr<const Inputs>& inputs) {
+      return std::make_shared<DataMechanics>(inputs == nullptr ? idle : driven, group, geometry,
+                                             inputs);
+    };
+    if (idle.left_invariant())
+      model_.mechanics =
+          std::make_shared<LeftInvariantMechanics>(idle.inertia.constant, idle.rows.constant);
+    else model_.mechanics = make(nullptr);
+    if (!names_.inputs.empty()) model_.drive = make;
+    model_.start_mistakes = [make](double t, const double* g, std::span<const double> xi,
+                                   const std::shared_ptr<const Inputs>& inputs) {
+      return make(inputs)->start_mistakes(
+          t, g, Eigen::Map<const Eigen::VectorXd>(xi.data(), std::ssize(xi)));
     };
     return std::move(model_);
   }
@@ -122,7 +129,7 @@ class File {
     if (twice != all.end())
       read_.mistakes.push_back(fmt::format("{}: two things are called '{}'", origin_, *twice));
     stop_at_mistakes();
-    words_.rates = names_.rates;
+    model_.rates = names_.rates;
   }
   // The names that the file gives in place of these.
   bool names(const std::string& key, Names& out) {
@@ -220,15 +227,6 @@ class File {
     }
   }
 
-  std::shared_ptr<const Mechanics> mechanics(DataFormulas f,
-                                             std::shared_ptr<const Geometry> geometry) {
-    if (f.left_invariant())
-      return std::make_shared<WithWords<LeftInvariantMechanics>>(
-          LeftInvariantMechanics(f.inertia.constant, f.rows.constant), words_);
-    return std::make_shared<DataMechanics>(std::move(f), model_.group, std::move(geometry), nullptr,
-                                           words_);
-  }
-
   const Registry& registry_;
   std::string origin_;
   TomlReader read_;
@@ -236,7 +234,6 @@ class File {
   toml::table table_;
   SystemModel model_;
   DataNames names_;
-  MotionWords words_;
 };
 
 }  // namespace

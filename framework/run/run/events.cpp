@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <boost/math/tools/toms748_solve.hpp>
 
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 
 namespace hamel {
 namespace {
@@ -72,8 +72,8 @@ std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Ge
   std::vector<Event> out = system.events;
   for (const int row : system.contacts) {
     std::string name = "contact_lost";
-    if (!words_of(system).reactions.empty()) {  // front.reaction3 -> front.contact_lost
-      const std::string& reaction = words_of(system).reactions[static_cast<size_t>(row)];
+    if (!system.reactions.empty()) {  // front.reaction3 -> front.contact_lost
+      const std::string& reaction = system.reactions[static_cast<size_t>(row)];
       name = reaction.substr(0, reaction.rfind('.') + 1) + name;
     } else if (system.contacts.size() > 1) {
       name += std::to_string(row + 1);

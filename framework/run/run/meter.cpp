@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <hamel/framework/mechanics/components.hpp>
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 
 namespace hamel {
 namespace {
@@ -65,7 +65,7 @@ Meter::Meter(const SystemModel& system, const Start& start,
       start_(start),
       balance_(geometry, acting, std::move(inputs)),
       pulls_(system.contacts.size()),
-      reactions_(by_parts(words_of(system).reactions)),
+      reactions_(by_parts(system.reactions)),
       geometry_(std::move(geometry)) {
   if (balance_.active()) {
     notes_.push_back(
@@ -80,7 +80,7 @@ Meter::Meter(const SystemModel& system, const Start& start,
     all_.reaction_work = 0;
     g_.resize(geometry_->size());
     lambda_.resize(mechanics->rows());
-    reactions_ = by_parts(words_of(system).reactions);
+    reactions_ = by_parts(system.reactions);
     for (size_t i = reactions_.size(); i < static_cast<size_t>(lambda_.size()); ++i)
       reactions_.push_back(i);
   }
@@ -248,9 +248,8 @@ void Meter::react(const Snapshot& state, bool start) {
         fmt::format("the contact pulls from t = {:.6g} on, {} < 0: a body that is not held "
                     "would lift off",
                     state.time,
-                    words_of(system_).reactions.empty()
-                        ? fmt::format("lambda{}", row + 1)
-                        : words_of(system_).reactions[static_cast<size_t>(row)]));
+                    system_.reactions.empty() ? fmt::format("lambda{}", row + 1)
+                                              : system_.reactions[static_cast<size_t>(row)]));
   }
 }
 
@@ -278,7 +277,7 @@ void Meter::add_reactions() {
   for (const size_t row : reactions_) lambda.push_back(lambda_[static_cast<Eigen::Index>(row)]);
   const auto describe = [&] {
     ColumnGroup out = numbered("lambda", lambda.size());
-    const std::vector<std::string>& names = words_of(system_).reactions;
+    const std::vector<std::string>& names = system_.reactions;
     for (size_t i = 0; i < names.size(); ++i) out.columns[i] = names[reactions_[i]];
     bool known = false;
     std::vector<std::string> units;

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/mechanics/frame.hpp>
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 
@@ -151,7 +151,7 @@ std::optional<PlannedSystem> plan_system(const Registry& registry, const Config&
       drive(system, out.inputs);
     }
   }
-  const std::vector<std::string>& notes = words_of(system).notes;
+  const std::vector<std::string>& notes = system.notes;
   out.notes.insert(out.notes.end(), notes.begin(), notes.end());
   if (system.group.dim == 0) {  // a product by name alone
     const std::string name = system.group.name;
@@ -266,7 +266,7 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   SystemModel& system = *planned->model;
   PlannedStart start = plan_start(system, config, mistakes);
   plan.geometry = plan_geometry(registry, config, own, method, system.group.name, mistakes);
-  evaluate_start(system, plan.geometry.get(), config.from, start, mistakes);
+  evaluate_start(system, planned->inputs, plan.geometry.get(), config.from, start, mistakes);
   plan.kernel = plan_kernel(registry, config, own, *planned, plan.geometry, method, mistakes);
   check_rows(request, system.group, mistakes);
   if (method.scheme != nullptr && !method.scheme->steps_admissible && mistakes.none() &&

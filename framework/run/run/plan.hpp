@@ -70,8 +70,8 @@ struct PlannedStart {
 PlannedStart plan_start(const SystemModel& system, const Config& config, Mistakes& mistakes);
 /// I, A, b at the start, checked, and the start moved onto the holonomic rows. geometry: null for a group that is not
 /// registered.
-void evaluate_start(const SystemModel& system, const Geometry* geometry, double t,
-                    PlannedStart& planned, Mistakes& mistakes);
+void evaluate_start(const SystemModel& system, const std::shared_ptr<const Inputs>& inputs,
+                    const Geometry* geometry, double t, PlannedStart& planned, Mistakes& mistakes);
 /// The admissible velocity of a start without mistakes; notes what the projection dropped.
 void project_start(PlannedStart& planned);
 /// Of an admissible start.

@@ -8,8 +8,6 @@
 
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
-#include <hamel/framework/mechanics/motion_words.hpp>
-#include <hamel/framework/run/run/at_speed.hpp>
 #include <hamel/framework/run/run/plan.hpp>
 #include <hamel/framework/schemes/erased.hpp>
 
@@ -25,21 +23,20 @@ bool finite(const std::vector<double>& values) {
 // The speed, or fewer numbers than velocities, give the start that the system makes of them.
 Start fill_from_few(const SystemModel& system, const Config& config, Mistakes& mistakes) {
   const Start& start = config.start;
-  const MotionWords& words = words_of(system);
   const size_t given = start.velocity.size();
   try {
     if (config.speed) {
       if (!start.configuration.empty() || given > 0 || !start.momentum.empty()) {
         mistakes.add("speed: give it alone, or configuration with velocity or momentum");
-      } else if (const auto straight = start_at_speed(system, *config.speed, config.from)) {
-        return *straight;
+      } else if (system.start_at_speed) {
+        return system.start_at_speed(*config.speed, config.from);
       } else {
         mistakes.add(
             fmt::format("speed: {} defines no straight motion; give velocity", system.name));
       }
     } else if (given > 0 && given < static_cast<size_t>(system.group.dim) &&
-               given <= words.start_parameters.size() && start.configuration.empty()) {
-      return words.start_from(start.velocity, config.from);
+               given <= system.start_parameters.size() && start.configuration.empty()) {
+      return system.start_from(start.velocity, config.from);
     }
   } catch (const ConfigError& error) {
     mistakes.add(error.mistakes());
@@ -49,10 +46,9 @@ Start fill_from_few(const SystemModel& system, const Config& config, Mistakes& m
 
 // The system's own start at this time; mistakes are added.
 Start own_start(const SystemModel& system, double from, Mistakes& mistakes) {
-  const MotionWords& words = words_of(system);
-  if (from == 0 || !words.start_from) return system.start;
+  if (from == 0 || !system.start_from) return system.start;
   try {
-    return words.start_from({}, from);
+    return system.start_from({}, from);
   } catch (const ConfigError& error) {
     mistakes.add(error.mistakes());
     return system.start;
@@ -108,7 +104,7 @@ void check_datum(const SystemModel& system, const char* name, const std::vector<
   const auto n = static_cast<size_t>(system.group.dim);
   if (values.empty()) return;
   if (values.size() != n) {
-    const auto& parameters = words_of(system).start_parameters;
+    const auto& parameters = system.start_parameters;
     const std::string shorter =
         parameters.empty() || !few
             ? ""
@@ -213,8 +209,9 @@ void satisfy(const Mechanics& mechanics, const Geometry& geometry, double t, Eig
 }  // namespace
 
 // I, A and b where the run starts, checked.
-void evaluate_start(const SystemModel& system, const Geometry* geometry, double t,
-                    PlannedStart& planned, Mistakes& mistakes) {
+void evaluate_start(const SystemModel& system, const std::shared_ptr<const Inputs>& inputs,
+                    const Geometry* geometry, double t, PlannedStart& planned,
+                    Mistakes& mistakes) {
   const int n = system.group.dim;
   const Mechanics& mechanics = *system.mechanics;
   const Start& start = planned.start;
@@ -228,11 +225,10 @@ void evaluate_start(const SystemModel& system, const Geometry* geometry, double 
     return;
   }
   bool said = false;
-  if (const auto* worded = dynamic_cast<const Worded*>(&mechanics)) {
-    Eigen::VectorXd xi = Eigen::VectorXd::Zero(n);
-    if (start.velocity.size() == static_cast<size_t>(n))
-      xi = Eigen::Map<const Eigen::VectorXd>(start.velocity.data(), n);
-    const auto wrong = worded->mistakes_at(t, g.data(), xi);
+  if (system.start_mistakes && geometry != nullptr) {
+    std::vector<double> xi = start.velocity;
+    if (xi.size() != static_cast<size_t>(n)) xi.assign(static_cast<size_t>(n), 0);
+    const auto wrong = system.start_mistakes(t, g.data(), xi, inputs);
     said = !wrong.empty();
     mistakes.add(wrong);
   }

@@ -1,15 +1,23 @@
-#include <hamel/framework/mechanics/motion_words.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
+#include <hamel/framework/io/errors.hpp>
+
 namespace hamel {
+
+std::string constraints_in_words(const SystemModel& model) {
+  const int rows = model.mechanics->rows(), holonomic = model.mechanics->holonomic_rows();
+  if (rows == 0) return "no constraint";
+  return fmt::format("{} constraint row{}{}", rows, rows == 1 ? "" : "s",
+                     holonomic > 0 ? fmt::format(", {} holonomic", holonomic) : "");
+}
 
 std::vector<Component> components_of(const SystemModel& model) {
   std::vector<Component> out = components_of(model.group);
-  const std::vector<std::string>& rates = words_of(model).rates;
-  for (size_t i = 0; i < rates.size(); ++i) out[i].name = rates[i];
+  for (size_t i = 0; i < model.rates.size(); ++i) out[i].name = model.rates[i];
   if (model.shape.empty()) return out;
   const std::vector<ShapeCoordinate> shape = shape_of(model.group, out);
   if (shape.size() != model.shape.size())
@@ -23,10 +31,9 @@ std::vector<Component> components_of(const SystemModel& model) {
 std::string unit_of_reaction(const SystemModel& model, int row) {
   if (std::find(model.contacts.begin(), model.contacts.end(), row) != model.contacts.end())
     return "N";
-  const MotionWords& words = words_of(model);
-  if (words.reactions.empty()) return "";
-  const std::string& name = words.reactions[static_cast<size_t>(row)];
-  const bool force = std::any_of(words.forces.begin(), words.forces.end(), [&](const auto& f) {
+  if (model.reactions.empty()) return "";
+  const std::string& name = model.reactions[static_cast<size_t>(row)];
+  const bool force = std::any_of(model.forces.begin(), model.forces.end(), [&](const auto& f) {
     return f.name == name.substr(0, name.rfind('.'));  // rear.reaction1 is of rear
   });
   return force ? "N" : "";

@@ -1,0 +1,101 @@
+// A system with its type erased: its equations, and what is stated about it beside them.
+//
+// erase() (system.hpp) makes one of a struct; mechanisms and systems by data fill the same members. Whatever is not
+// stated is empty.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/lie/group_info.hpp>
+#include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/drawing.hpp>
+#include <hamel/framework/mechanics/event.hpp>
+#include <hamel/framework/mechanics/fields.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/mechanics/start.hpp>
+
+namespace hamel {
+
+/// The exact motion from a start: t -> (coordinates of g, xi). Call with |t| increasing.
+using ExactFlow = std::function<std::pair<std::vector<double>, std::vector<double>>(double)>;
+
+/// A number that the exact motion keeps.
+struct Invariant {
+  std::string name;
+  std::function<double(std::span<const double> coordinates, std::span<const double> velocity)>
+      value;
+};
+
+/// A force of the multipliers of some rows, drawn as an arrow in the world.
+struct DrawnForce {
+  std::string name;
+  /// The point where it acts [m], and the force [N].
+  std::function<std::pair<Vec<3>, Vec<3>>(std::span<const double> coordinates,
+                                          std::span<const double> reactions)>
+      value;
+};
+
+/// A system with its parameters set and its type erased.
+struct SystemModel {
+  std::string name;
+  GroupInfo group;
+  std::shared_ptr<const Mechanics> mechanics;
+  std::vector<Field> fields;
+  Start start;
+  /// Empty when nothing is known exactly.
+  std::function<ExactFlow(const Start&)> exact;
+  std::vector<Invariant> invariants;
+  std::vector<Event> events;
+  std::vector<int> contacts;  // the rows whose multiplier is a normal reaction
+  std::vector<std::string>
+      shape;  // names of the coordinates of so2 and rn; empty: those of the group
+  Drawing drawing;
+  std::vector<InputField> inputs;
+  /// The mechanics that these inputs drive; empty where there are none. All other members hold with inputs too.
+  std::function<std::shared_ptr<const Mechanics>(std::shared_ptr<const Inputs>)> drive;
+
+  std::vector<std::string> rates;      // names of the velocities; empty: those of the group
+  std::vector<std::string> reactions;  // names of the multipliers
+  std::vector<std::string> parts;      // the bodies of a mechanism
+  std::vector<std::string> notes;      // shown with every run
+  std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
+  std::vector<DrawnForce> forces;
+
+  /// A start at time t from at most as many numbers as start_parameters has names; from none: the system's own start
+  /// at that time. Throws ConfigError where no such motion exists.
+  std::function<Start(std::span<const double>, double t)> start_from;
+  std::vector<std::string> start_parameters;  // "speed", in m/s
+  /// Straight ahead at a speed [m/s]; empty where no straight motion is defined.
+  std::function<Start(double speed, double t)> start_at_speed;
+  /// What is wrong with a state as the start of a run. inputs: null where none drive the run.
+  std::function<std::vector<std::string>(double t, const double* g, std::span<const double> xi,
+                                         const std::shared_ptr<const Inputs>& inputs)>
+      start_mistakes;
+};
+
+/// A registered system: its descriptions, its parameters, and how to make it.
+struct SystemInfo {
+  std::string name, summary, formula, known, source;
+  GroupInfo group;
+  std::vector<Field> fields;
+  std::vector<InputField> inputs;
+  /// Throws ConfigError naming every parameter that does not fit.
+  std::function<SystemModel(const Parameters&)> make;
+};
+
+/// "no constraint", "1 constraint row", "3 constraint rows, 1 holonomic".
+std::string constraints_in_words(const SystemModel& model);
+
+/// The components of xi by the names that the system states, else by those of its group (components.hpp).
+std::vector<Component> components_of(const SystemModel& model);
+
+/// The unit of the multiplier of a row: "N" of contacts, whose rows are forces of size 1; "" where nothing is known.
+std::string unit_of_reaction(const SystemModel& model, int row);
+
+}  // namespace hamel
