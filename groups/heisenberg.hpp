@@ -8,7 +8,9 @@
 // Source: Bloch, Nonholonomic Mechanics and Control (2003), section 1.8.
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/groups/retractions.hpp>
@@ -49,6 +51,24 @@ struct Heisenberg : GroupDefaults<Heisenberg, 3> {
     m(2, 0) = -xi[1];
     m(2, 1) = xi[0];
     return m;
+  }
+
+  static std::vector<std::string> units() { return {"m", "m", "m"}; }
+  static std::vector<Component> components() {
+    return {{"x'", "m/s"}, {"y'", "m/s"}, {"z'", "m/s"}};
+  }
+  /// z' = xi3 + (x xi2 - y xi1)/2.
+  static void coordinate_rates(std::span<const double> x, std::span<const double> xi,
+                               std::span<double> out) {
+    out[0] = xi[0];
+    out[1] = xi[1];
+    out[2] = xi[2] + 0.5 * (x[0] * xi[1] - x[1] * xi[0]);
+  }
+  static void add_pulled_back(std::span<const double> x, std::span<const double> slope,
+                              std::span<double> out) {
+    out[0] += slope[0] - 0.5 * x[1] * slope[2];
+    out[1] += slope[1] + 0.5 * x[0] * slope[2];
+    out[2] += slope[2];
   }
 };
 

@@ -9,6 +9,7 @@
 #include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <string>
+#include <vector>
 
 namespace hamel {
 
@@ -59,6 +60,19 @@ struct Rn : GroupDefaults<Rn<N>, N> {
   static MatT<T, N, N> coad(const VecT<T, N>&) {
     return MatT<T, N, N>::Zero();
   }
+
+  static std::vector<std::string> units() { return std::vector<std::string>(N, "m"); }
+  /// x', y', z', or x1', x2', ...
+  static std::vector<Component> components() {
+    std::vector<Component> out;
+    for (int i = 0; i < N; ++i) {
+      const std::string axis =
+          N <= 3 ? std::string(1, static_cast<char>('x' + i)) : "x" + std::to_string(i + 1);
+      out.push_back({axis + "'", "m/s"});
+    }
+    return out;
+  }
+  static constexpr bool is_shape = true;
 
   /// [[I, x], [0, 1]].
   template <class T>

@@ -10,6 +10,7 @@
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, ch. 2.
 #pragma once
 
+#include <cmath>
 #include <hamel/framework/lie/coordinates.hpp>
 #include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
@@ -129,6 +130,25 @@ struct SE2 {
   }
 
   static std::vector<std::string> columns() { return {"theta", "x", "y"}; }
+  static std::vector<std::string> units() { return {"rad", "m", "m"}; }
+  static std::vector<Component> components() {
+    return {{"omega", "rad/s"}, {"v1", "m/s"}, {"v2", "m/s"}};
+  }
+  /// theta' = omega, (x, y)' = R v.
+  static void coordinate_rates(std::span<const double> x, std::span<const double> xi,
+                               std::span<double> out) {
+    const double c = std::cos(x[0]), s = std::sin(x[0]);
+    out[0] = xi[0];
+    out[1] = c * xi[1] - s * xi[2];
+    out[2] = s * xi[1] + c * xi[2];
+  }
+  static void add_pulled_back(std::span<const double> x, std::span<const double> slope,
+                              std::span<double> out) {
+    const double c = std::cos(x[0]), s = std::sin(x[0]);
+    out[0] += slope[0];
+    out[1] += c * slope[1] + s * slope[2];
+    out[2] += c * slope[2] - s * slope[1];
+  }
   template <class T>
   static Coordinates<T, 3> coordinates(const SE2Element<T>& g) {
     return {g.angle(), g.translation[0], g.translation[1]};

@@ -149,6 +149,28 @@ struct SE3 {
     names.insert(names.end(), {"x", "y", "z"});
     return names;
   }
+  static std::vector<std::string> units() {
+    std::vector<std::string> units = SO3::units();
+    units.insert(units.end(), 3, "m");
+    return units;
+  }
+  static std::vector<Component> components() {
+    std::vector<Component> components = SO3::components();
+    components.insert(components.end(), {{"v1", "m/s"}, {"v2", "m/s"}, {"v3", "m/s"}});
+    return components;
+  }
+  /// R' = R hat(omega), (x, y, z)' = R v.
+  static void coordinate_rates(std::span<const double> x, std::span<const double> xi,
+                               std::span<double> out) {
+    SO3::coordinate_rates(x, xi, out);
+    Eigen::Map<Vec<3>>(out.data() + 9) = Rows(x.data()) * Eigen::Map<const Vec<3>>(xi.data() + 3);
+  }
+  static void add_pulled_back(std::span<const double> x, std::span<const double> slope,
+                              std::span<double> out) {
+    SO3::add_pulled_back(x, slope, out);
+    Eigen::Map<Vec<3>>(out.data() + 3) +=
+        Rows(x.data()).transpose() * Eigen::Map<const Vec<3>>(slope.data() + 9);
+  }
   template <class T>
   static Coordinates<T, 12> coordinates(const SE3Element<T>& g) {
     const auto rotation = SO3::coordinates(g.rotation);
@@ -188,6 +210,9 @@ struct SE3 {
     m.template bottomRightCorner<3, 3>() = a;
     return m;
   }
+
+ private:
+  using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 };
 
 }  // namespace hamel

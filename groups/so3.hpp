@@ -126,6 +126,27 @@ struct SO3 {
   static std::vector<std::string> columns() {
     return {"R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"};
   }
+  static std::vector<std::string> units() { return std::vector<std::string>(9); }
+  static std::vector<Component> components() {
+    return {{"omega1", "rad/s"}, {"omega2", "rad/s"}, {"omega3", "rad/s"}};
+  }
+  /// R' = R hat(xi).
+  static void coordinate_rates(std::span<const double> x, std::span<const double> xi,
+                               std::span<double> out) {
+    const Eigen::Map<const Vec<3>> turn(xi.data());
+    for (std::size_t i = 0; i < 9; i += 3) {  // row by row
+      const Eigen::Map<const Vec<3>> row(x.data() + i);
+      Eigen::Map<Vec<3>>(out.data() + i) = row.cross(turn);
+    }
+  }
+  static void add_pulled_back(std::span<const double> x, std::span<const double> slope,
+                              std::span<double> out) {
+    using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+    const Mat<3, 3> b = Rows(x.data()).transpose() * Rows(slope.data());
+    out[0] += b(2, 1) - b(1, 2);
+    out[1] += b(0, 2) - b(2, 0);
+    out[2] += b(1, 0) - b(0, 1);
+  }
   /// Row by row.
   template <class T>
   static Coordinates<T, 9> coordinates(const MatT<T, 3, 3>& g) {

@@ -27,7 +27,8 @@ template <class X, int R, int C>
 concept Shape =
     std::remove_cvref_t<X>::RowsAtCompileTime == R&& std::remove_cvref_t<X>::ColsAtCompileTime == C;
 
-/// A Lie group G of dimension n. Everything is static and templated on the scalar T:
+/// A Lie group G of dimension n; what it may state beside this: group_defaults.hpp. Everything is static and templated
+/// on the scalar T:
 ///   `template <class T> using Element`   the representation of a group element;
 ///   operations deduce T from their arguments (pass evaluated elements, not Eigen expressions).
 template <class G>

@@ -20,6 +20,12 @@ struct Coordinates : std::array<T, N> {
   operator std::vector<T>() const { return {this->begin(), this->end()}; }
 };
 
+/// A component of the body velocity. The rate of a coordinate ends in ': "pitch'".
+struct Component {
+  std::string name;  // "omega"
+  std::string unit;  // "rad/s"
+};
+
 /// How many coordinates an element of G has.
 template <class G>
 inline constexpr std::size_t coordinate_count =

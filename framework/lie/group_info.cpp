@@ -1,5 +1,6 @@
 #include <hamel/framework/lie/group_info.hpp>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -7,6 +8,29 @@
 extern "C" const int HAMEL_BUILT_WITH = 1;
 
 namespace hamel {
+namespace detail {
+
+void check_factor(const GroupFactor& factor) {
+  const auto check = [&](const char* what, size_t count, int expected) {
+    if (count > 0 && count != static_cast<size_t>(expected)) {
+      throw std::invalid_argument(
+          fmt::format("{}: {}: {} entries, expected {}", factor.name, what, count, expected));
+    }
+  };
+  check("components", factor.components.size(), factor.dim);
+  check("units", factor.units.size(), factor.columns);
+  if (factor.is_shape) check("is_shape: columns", static_cast<size_t>(factor.columns), factor.dim);
+}
+
+void copy_rates(std::span<const double>, std::span<const double> xi, std::span<double> out) {
+  std::copy(xi.begin(), xi.end(), out.begin());
+}
+
+void add_slopes(std::span<const double>, std::span<const double> slope, std::span<double> out) {
+  for (size_t i = 0; i < out.size(); ++i) out[i] += slope[i];
+}
+
+}  // namespace detail
 
 GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors) {
   GroupInfo info;
@@ -19,6 +43,7 @@ GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors) 
     }
     info.identity.insert(info.identity.end(), factors[i].identity.begin(),
                          factors[i].identity.end());
+    info.factors.insert(info.factors.end(), factors[i].factors.begin(), factors[i].factors.end());
   }
   info.element = [name, factors, count = info.columns.size()](std::span<const double> values) {
     if (values.size() != count) {

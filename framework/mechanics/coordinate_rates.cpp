@@ -1,17 +1,12 @@
 #include <hamel/framework/mechanics/coordinate_rates.hpp>
 
 #include <algorithm>
-#include <cmath>
-
-#include <Eigen/Geometry>
+#include <span>
 
 #include <hamel/framework/lie/differences.hpp>
 
 namespace hamel {
 namespace {
-
-using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-using Three = Eigen::Map<const Eigen::Vector3d>;
 
 struct Operations {  // for differentiate_along
   const Geometry& geometry;
@@ -26,8 +21,8 @@ struct Operations {  // for differentiate_along
 }  // namespace
 
 CoordinateRates::CoordinateRates(const GroupInfo& group, std::shared_ptr<const Geometry> geometry)
-    : factors_(simple_factors(group)), geometry_(std::move(geometry)) {
-  const auto unknown = [](const SimpleFactor& f) { return f.name == "heisenberg"; };
+    : factors_(group.factors), geometry_(std::move(geometry)) {
+  const auto unknown = [](const GroupFactor& f) { return f.coordinate_rates == nullptr; };
   if (std::any_of(factors_.begin(), factors_.end(), unknown)) factors_.clear();
 }
 
@@ -35,23 +30,9 @@ void CoordinateRates::add_pulled_back(const double* g, const double* x, const do
                                       Eigen::Ref<Eigen::VectorXd> out) const {
   if (factors_.empty()) return by_differences(g, slope, out);
   double* to = out.data();
-  for (const SimpleFactor& factor : factors_) {
-    if (factor.shape) {
-      for (int i = 0; i < factor.dim; ++i) to[i] += slope[i];
-    } else if (factor.name == "se2") {
-      const double c = std::cos(x[0]), s = std::sin(x[0]);
-      to[0] += slope[0];
-      to[1] += c * slope[1] + s * slope[2];
-      to[2] += c * slope[2] - s * slope[1];
-    } else {  // so3, se3
-      const Rows rotation(x);
-      const Eigen::Matrix3d b = rotation.transpose() * Rows(slope);
-      to[0] += b(2, 1) - b(1, 2);
-      to[1] += b(0, 2) - b(2, 0);
-      to[2] += b(1, 0) - b(0, 1);
-      if (factor.dim == 6)
-        Eigen::Map<Eigen::Vector3d>(to + 3) += rotation.transpose() * Three(slope + 9);
-    }
+  for (const GroupFactor& factor : factors_) {
+    const auto columns = static_cast<size_t>(factor.columns);
+    factor.add_pulled_back({x, columns}, {slope, columns}, {to, static_cast<size_t>(factor.dim)});
     x += factor.columns;
     slope += factor.columns;
     to += factor.dim;
@@ -59,21 +40,9 @@ void CoordinateRates::add_pulled_back(const double* g, const double* x, const do
 }
 
 bool CoordinateRates::along(const double* x, const double* xi, double* out) const {
-  for (const SimpleFactor& factor : factors_) {
-    if (factor.shape) {
-      std::copy(xi, xi + factor.dim, out);
-    } else if (factor.name == "se2") {
-      const double c = std::cos(x[0]), s = std::sin(x[0]);
-      out[0] = xi[0];
-      out[1] = c * xi[1] - s * xi[2];
-      out[2] = s * xi[1] + c * xi[2];
-    } else {  // so3, se3
-      const Rows rotation(x);
-      const Three turn(xi);
-      for (int i = 0; i < 3; ++i)  // rows of R xi^
-        Eigen::Map<Eigen::Vector3d>(out + 3 * i) = Eigen::Vector3d(rotation.row(i)).cross(turn);
-      if (factor.dim == 6) Eigen::Map<Eigen::Vector3d>(out + 9) = rotation * Three(xi + 3);
-    }
+  for (const GroupFactor& factor : factors_) {
+    const auto columns = static_cast<size_t>(factor.columns);
+    factor.coordinate_rates({x, columns}, {xi, static_cast<size_t>(factor.dim)}, {out, columns});
     x += factor.columns;
     out += factor.columns;
     xi += factor.dim;
