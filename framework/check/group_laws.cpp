@@ -1,9 +1,11 @@
 #include <hamel/framework/check/group_laws.hpp>
 
 #include <limits>
+#include <memory>
 
 #include <hamel/framework/check/algebra.hpp>
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/coordinate_rates.hpp>
 
 namespace hamel {
 
@@ -19,6 +21,32 @@ void random_vector(std::mt19937_64& random, double radius, Eigen::Ref<Vector> v)
   v *= radius * uniform(random) / v.norm();
 }
 
+namespace {
+
+// C(g) as the group states it, against the motion of its coordinates.
+LawReport coordinate_rates(const GroupInfo& info, const Geometry& geometry, const Algebra& on,
+                           std::mt19937_64& random) {
+  const CoordinateRates rates(info,
+                              std::shared_ptr<const Geometry>(std::shared_ptr<void>(), &geometry));
+  Largest along, transposed;
+  for (int sample = 0; sample < 20; ++sample) {
+    const Vector first = on.tau(random_vector(random, on.n));
+    const Vector g = on.compose(first, on.tau(random_vector(random, on.n)));
+    const Vector xi = random_vector(random, on.n), x = on.coordinates(g);
+    const Vector slope = random_vector(random, static_cast<int>(x.size()));
+    Vector rate = Vector::Zero(x.size()), pulled_back = Vector::Zero(on.n);
+    if (!rates.along(x.data(), xi.data(), rate.data())) return {};
+    rates.add_pulled_back(g.data(), x.data(), slope.data(), pulled_back);
+    along(
+        (derivative([&](double t) { return on.coordinates(on.compose(g, on.tau(t * xi))); }) - rate)
+            .norm());
+    transposed(std::abs(slope.dot(rate) - pulled_back.dot(xi)));
+  }
+  return {{"d/dt coordinates(g tau(t xi)) = C(g) xi", along.value, differentiated},
+          {"slope . C(g) xi = C(g)^T slope . xi", transposed.value, algebraic}};
+}
+
+}  // namespace
 }  // namespace check
 
 LawReport check_group(const GroupInfo& info, const Geometry& geometry, unsigned long long seed) {
@@ -94,7 +122,7 @@ LawReport check_group(const GroupInfo& info, const Geometry& geometry, unsigned 
 
   const auto count = static_cast<size_t>(geometry.columns());
   const bool named = info.columns.size() == count && info.identity.size() == count && info.dim == n;
-  return {
+  LawReport report = {
       {"(g h) k = g (h k)", associative.value, algebraic},
       {"e g = g = g e", neutral.value, algebraic},
       {"g g^-1 = e = g^-1 g", inverse.value, algebraic},
@@ -112,6 +140,8 @@ LawReport check_group(const GroupInfo& info, const Geometry& geometry, unsigned 
       {"from_coordinates refuses NaN and wrong lengths", refusal.value, 0},
       {"matrix(g h) = matrix(g) matrix(h)", matrix.value, 10 * algebraic},
   };
+  check::append(report, check::coordinate_rates(info, geometry, on, random));
+  return report;
 }
 
 LawReport check_group(const Registry& registry, const std::string& group, unsigned long long seed) {

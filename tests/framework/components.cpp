@@ -4,7 +4,10 @@
 
 #include <set>
 
+#include <hamel/framework/lie/group_defaults.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/groups/heisenberg.hpp>
 #include <hamel/systems/rolling_disk.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 
@@ -88,6 +91,126 @@ TEST(Components, ShapeCoordinatesAreIntegrals) {
     const double moved = run.trajectory.at(1, column) - run.trajectory.at(0, column);
     const double rate = run.trajectory.column("xi" + std::to_string(s.component + 1))[0];
     EXPECT_NEAR(moved / 1e-4, rate, 1e-2) << s.name;
+  }
+}
+
+// A group of a user's own: Heisenberg's in place and velocity of other names, or of none.
+struct OwnExp;
+template <class Own>
+struct OwnGroup : GroupDefaults<Own, 3> {
+  template <class T>
+  using Element = VecT<T, 3>;
+  using Retractions = TypeList<OwnExp>;
+  template <class T = double>
+  static Element<T> identity() {
+    return Element<T>::Zero();
+  }
+  static Vec<3> compose(const Vec<3>& g, const Vec<3>& h) { return Heisenberg::compose(g, h); }
+  static Vec<3> inverse(const Vec<3>& g) { return -g; }
+  static Mat<3, 3> ad(const Vec<3>& xi) { return Heisenberg::ad(xi); }
+  static Mat<3, 3> Ad(const Vec<3>& g) { return Heisenberg::Ad(g); }
+};
+struct Named : OwnGroup<Named> {
+  static std::string name() { return "named"; }
+  static std::vector<std::string> columns() { return {"east", "north", "height"}; }
+  static std::vector<std::string> units() { return {"m", "m", "m2"}; }
+  static std::vector<Component> components() {
+    return {{"eastwards", "m/s"}, {"northwards", "m/s"}, {"upwards", "m2/s"}};
+  }
+  static void coordinate_rates(std::span<const double> x, std::span<const double> xi,
+                               std::span<double> out) {
+    Heisenberg::coordinate_rates(x, xi, out);
+  }
+  static void add_pulled_back(std::span<const double> x, std::span<const double> slope,
+                              std::span<double> out) {
+    Heisenberg::add_pulled_back(x, slope, out);
+  }
+};
+struct Nameless : OwnGroup<Nameless> {
+  static std::string name() { return "nameless"; }
+};
+struct OwnExp : RetractionDefaults<OwnExp, Named> {
+  static constexpr bool symmetric = true, one_parameter = true;
+  static std::string name() { return "exp"; }
+  static Vec<3> tau(const Vec<3>& xi) { return xi; }
+  static Vec<3> tau_inverse(const Vec<3>& g) { return g; }
+  static Mat<3, 3> dtau_right_inverse(const Vec<3>& xi) {
+    return Mat<3, 3>::Identity() - 0.5 * Heisenberg::ad(xi);
+  }
+  static Mat<3, 3> dtau_right_inverse_transpose_derivative(const Vec<3>&, const Vec<3>& p) {
+    return -0.5 * Heisenberg::coad(p);
+  }
+};
+struct Particle {
+  using Group = Named;
+  Mat<3, 3> inertia() const { return Mat<3, 3>::Identity(); }
+};
+
+std::string names_of(const std::vector<Component>& components) {
+  std::string out;
+  for (const Component& c : components) out += c.name + " [" + c.unit + "] ";
+  return out;
+}
+
+TEST(Components, OfAGroupOfAUsersOwn) {
+  add_group<Named>(registry());
+  const Result run =
+      simulate(Particle{}).start({.velocity = {1, 0.5, 0.2}}).retraction("exp").until(1).run();
+  ASSERT_TRUE(run);
+  const std::string names = "eastwards [m/s] northwards [m/s] upwards [m2/s] ";
+  EXPECT_EQ(names_of(components_of(run.system)), names);
+  const std::vector<ColumnGroup>& columns = run.trajectory.groups();
+  const auto group = [&](const std::string& name) {
+    return *std::ranges::find_if(columns, [&](const auto& g) { return g.name == name; });
+  };
+  EXPECT_EQ(group("configuration").unit, "m,m,m2");
+  EXPECT_THAT(group("xi").meaning, testing::HasSubstr("eastwards,northwards,upwards"));
+  EXPECT_EQ(group("xi").unit, "m/s,m/s,m2/s");
+  EXPECT_TRUE(shape_of(run.system.group, components_of(run.system)).empty());
+
+  EXPECT_EQ(names_of(components_of(group_info<Nameless>())), "xi1 [] xi2 [] xi3 [] ");
+  EXPECT_EQ(names_of(components_of(group_info<Product<Rn<1>, Nameless, Rn<1>>>())),
+            "x_1' [m/s] xi2 [] xi3 [] xi4 [] x_3' [m/s] ");
+}
+
+/// By these names in formulas: m g h of a height above a slope, damped eastwards.
+TEST(Components, OfAGroupOfAUsersOwnInFormulas) {
+  add_group<Named>(registry());
+  const SystemModel model = data_system(registry(), R"toml(
+group = "named*so2"
+coordinates = ["east", "north", "height", "roll"]
+inertia = [1, 1, 1, 2]
+constraints = [["north", 0, 1, 0.5]]
+potential = "height*east"
+force = ["-0.1*eastwards", 0, 0, "-roll'"]
+)toml",
+                                        "own.toml");
+  EXPECT_EQ(names_of(components_of(model)),
+            "eastwards [m/s] northwards [m/s] upwards [m2/s] roll' [rad/s] ");
+  const auto geometry = registry().geometry("named*so2", "exp");
+  const std::vector<double> at = {2, 3, 5, 0.4};
+  const Eigen::VectorXd xi = Eigen::Vector4d(1, -1, 0.5, 2);
+  std::vector<double> g(static_cast<size_t>(geometry->size()));
+  geometry->from_coordinates(at, g.data());
+  Eigen::VectorXd force(4), rows(1), momentum(4);
+  model.mechanics->force(0, g.data(), xi, force);
+  // -C^T (height, 0, east, 0), C as of Heisenberg's group, and the damping.
+  EXPECT_TRUE(force.isApprox(Eigen::Vector4d(-5 + 3 - 0.1, -2, -2, -2), 1e-14)) << force;
+  // The rate of the row is exact: north' = -1.
+  ASSERT_TRUE(model.mechanics->rates(0, g.data(), xi, rows, momentum));
+  EXPECT_NEAR(rows[0], 1, 1e-15);
+}
+
+struct TooFewUnits : OwnGroup<TooFewUnits> {
+  static std::string name() { return "too_few"; }
+  static std::vector<std::string> units() { return {"m"}; }
+};
+TEST(Components, AWrongNumberOfUnitsIsRefused) {
+  try {
+    group_info<TooFewUnits>();
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "too_few: units: 1 entries, expected 3");
   }
 }
 

@@ -77,4 +77,23 @@ TEST(SystemMembers, SayWhetherASystemIsLeftInvariant) {
   EXPECT_FALSE(erase(DriftOfPlace{}).mechanics->constant_constraints());
 }
 
+/// Straight ahead at a speed: as a system states it, whatever it is called.
+struct OwnSegway : Skate {
+  static std::string name() { return "segway"; }
+};
+struct StartsAtSpeed : OwnSegway {
+  double scale = 2;
+  Start at_speed(double v) const { return {.configuration = {}, .velocity = {0, scale * v, 0}}; }
+};
+struct DrivenAtSpeed : StartsAtSpeed {
+  void inputs(auto& u) const { u("push", "N", "ahead"); }
+  Vec<3> force(double, const auto&, const auto&, InputValues u) const { return {0, u[0], 0}; }
+};
+TEST(SystemMembers, AStartAtASpeedIsTheSystemsOwn) {
+  EXPECT_FALSE(erase(OwnSegway{}).start_at_speed);
+  const SystemModel model = erase(StartsAtSpeed{});
+  EXPECT_EQ(model.start_at_speed(1.5, 0).velocity, (std::vector<double>{0, 3, 0}));
+  EXPECT_EQ(erase(DrivenAtSpeed{}).start_at_speed(2, 7).velocity, (std::vector<double>{0, 4, 0}));
+}
+
 }  // namespace

@@ -2,6 +2,7 @@
 // by name as a run sees it, products put together at run time included.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include <hamel/framework/check/group_laws.hpp>
@@ -37,6 +38,14 @@ TEST(GroupLaws, HoldByName) {
         EXPECT_TRUE(law.passed()) << name << ": " << law;
       }
     }
+  }
+}
+
+TEST(GroupLaws, EveryRegisteredGroupStatesItsRates) {
+  for (const std::string& name : registry().groups()) {
+    const LawReport report = check_group(registry(), name);
+    const auto rates = [](const LawResult& law) { return law.law.find("C(g) xi") != law.law.npos; };
+    EXPECT_EQ(std::count_if(report.begin(), report.end(), rates), 2) << name;
   }
 }
 
@@ -77,6 +86,13 @@ struct WrongCoad : SO3 {
 struct WrongInverse : SO2 {
   static auto inverse(const SO2::Element<double>& g) { return SO2::compose(g, g); }
 };
+struct WrongRates : SE2 {  // v2 to the right
+  static void coordinate_rates(std::span<const double> x, std::span<const double> xi,
+                               std::span<double> out) {
+    const double mirrored[] = {xi[0], xi[1], -xi[2]};
+    SE2::coordinate_rates(x, mirrored, out);
+  }
+};
 template <class G, class R>
 struct OnGroup : R {  // R, as a retraction of G
   using Group = G;
@@ -90,6 +106,7 @@ TEST(GroupLaws, SeePlantedMistakes) {
   EXPECT_GE((failures(check_group<WrongAd, OnGroup<WrongAd, Exp<SE2>>>())), 3);
   EXPECT_GE((failures(check_group<WrongCoad, OnGroup<WrongCoad, Exp<SO3>>>())), 2);
   EXPECT_GE((failures(check_group<WrongInverse, OnGroup<WrongInverse, Exp<SO2>>>())), 2);
+  EXPECT_GE((failures(check_group<WrongRates, OnGroup<WrongRates, Exp<SE2>>>())), 2);
   EXPECT_THROW(check_group(registry(), "so4"), ConfigError);
 }
 

@@ -50,6 +50,23 @@ struct SL2 : GroupDefaults<SL2, 3> {
                          {-2.0 * a * b, a * a, -b * b},
                          {2.0 * c * d, -c * c, d * d}};
   }
+  static std::vector<Component> components() { return {{"x", "1/s"}, {"y", "1/s"}, {"z", "1/s"}}; }
+  /// g' = g X.
+  static void coordinate_rates(std::span<const double> g, std::span<const double> xi,
+                               std::span<double> out) {
+    for (size_t row : {0u, 2u}) {
+      out[row] = g[row] * xi[0] + g[row + 1] * xi[2];
+      out[row + 1] = g[row] * xi[1] - g[row + 1] * xi[0];
+    }
+  }
+  static void add_pulled_back(std::span<const double> g, std::span<const double> slope,
+                              std::span<double> out) {
+    for (size_t row : {0u, 2u}) {
+      out[0] += g[row] * slope[row] - g[row + 1] * slope[row + 1];
+      out[1] += g[row] * slope[row + 1];
+      out[2] += g[row + 1] * slope[row];
+    }
+  }
   static Mat<2, 2> matrix(const Vec<4>& g) { return Mat<2, 2>{{g[0], g[1]}, {g[2], g[3]}}; }
   static Mat<2, 2> hat(const Vec<3>& xi) { return Mat<2, 2>{{xi[0], xi[1]}, {xi[2], -xi[0]}}; }
 };
