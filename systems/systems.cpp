@@ -4,11 +4,11 @@
 #include <hamel/solvers/ceres_tiny.hpp>
 #include <hamel/solvers/hybrid.hpp>
 #include <hamel/solvers/nlopt.hpp>
+#include <hamel/systems/by_name.hpp>
 #include <hamel/systems/kernels/units.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/n_trailer.hpp>
-#include <hamel/systems/by_name.hpp>
 
 namespace hamel {
 namespace {

@@ -21,7 +21,6 @@
 
 namespace hamel {
 
-
 /// Origin of a shape in the body's frame, direction of its own z axis, and colour: "body", "accent", "dark",
 /// "light" or "#rrggbb".
 struct Look {

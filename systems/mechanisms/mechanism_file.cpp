@@ -1,5 +1,5 @@
-#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 
 #include <utility>

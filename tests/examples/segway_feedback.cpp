@@ -24,8 +24,7 @@ Torques feedback(const hamel::Snapshot& now, double speed, double rate) {
 
 int main() {
   // A first value says that this run has inputs; those not named are 0.
-  hamel::Run segway =
-      hamel::simulate("segway").step(0.001).input("right_torque", 0).build();
+  hamel::Run segway = hamel::simulate("segway").step(0.001).input("right_torque", 0).build();
   constexpr double period = 0.005;
   double largest = 0;
   for (int k = 0; k < 3000; ++k) {  // 15 s

@@ -86,14 +86,14 @@ void expect_none(const S& system, const std::string& compose = "none") {
         Start start = system.start();
         for (double& v : start.velocity) v *= 0.2;
         Run run = simulate(system)
-                              .scheme(scheme)
-                              .s(s)
-                              .retraction(retraction)
-                              .start(start)
-                              .compose(compose)
-                              .with(&Config::force, true)
-                              .step(0.02)
-                              .build();
+                      .scheme(scheme)
+                      .s(s)
+                      .retraction(retraction)
+                      .start(start)
+                      .compose(compose)
+                      .with(&Config::force, true)
+                      .step(0.02)
+                      .build();
         Status status;
         (void)run.step(3);  // the first steps size what is kept
         EXPECT_EQ(counted(run, 20, status), 0)

@@ -87,11 +87,11 @@ void expect_jacobians(const S& system) {
                               [&] { return std::make_shared<Inspector>(worst, points); }});
           Simulation simulation(mine, "body", maker(system));
           Run run = simulation.scheme(scheme)
-                                .s(s)
-                                .retraction(retraction)
-                                .solver("inspector")
-                                .step(h)
-                                .build();
+                        .s(s)
+                        .retraction(retraction)
+                        .solver("inspector")
+                        .step(h)
+                        .build();
           (void)run.step();  // with the guess for the solution, perhaps outside the domain
           EXPECT_EQ(points, 4);
           EXPECT_LE(worst, bound) << G::name() << " " << scheme << " " << retraction << " s = " << s

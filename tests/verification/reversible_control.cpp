@@ -14,8 +14,7 @@ Simulation suslov() { return simulate("suslov_in_potential"); }
 TEST(ReversibleControl, ReturnsToItsStart) {
   for (const std::string system : {"falling_disk", "contact_oscillator"}) {
     for (const std::string scheme : {"lift", "balance"}) {
-      Run run =
-          simulate(system).scheme(scheme).step(0.01).tolerance({.relative = 1e-5}).build();
+      Run run = simulate(system).scheme(scheme).step(0.01).tolerance({.relative = 1e-5}).build();
       const Snapshot start = run.state();
       ASSERT_TRUE(run.step(10000));
       const Snapshot there = run.state();

@@ -200,7 +200,8 @@ void read_record(const std::string& record, Result& out) {
   };
   Config::fields([&](const Option& option, auto member) {
     const bool unused = json.at(record_key(option)).is_null();
-    if (unused && !MayBeNone<std::remove_cvref_t<decltype(Config().*member)>>) out.unused.push_back(option.name);
+    if (unused && !MayBeNone<std::remove_cvref_t<decltype(Config().*member)>>)
+      out.unused.push_back(option.name);
   });
   out.notes = json.at("notes").get<std::vector<std::string>>();
   out.status = {json.at("status") == "ok", 0, 0, 0, json.at("reason").get<std::string>()};

@@ -58,8 +58,8 @@ std::string Result::steps_in_words() const {
 }
 
 std::string Result::report() const {
-  std::string out =
-      fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(), steps_in_words());
+  std::string out = fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(),
+                                steps_in_words());
   const double count = static_cast<double>(std::max(steps, 1L));
   const auto line = [&](const std::string& name, const std::string& value) {
     out += fmt::format("  {:<22} {}\n", name, value);
@@ -95,9 +95,10 @@ std::string Result::report() const {
     const bool always = member == &Result::energy_error_max || member == &Result::constraint_max;
     if (*quantity.title == 0 || (!always && std::isnan(value))) return;
     const bool balance = member == &Result::energy_error_max && std::isfinite(work);
-    line(balance ? "energy balance" : quantity.title,
-         fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
-                     member == &Result::constraint_max ? ", " + constraints_in_words(*system) : ""));
+    line(
+        balance ? "energy balance" : quantity.title,
+        fmt::format("{:.2e}{}{}", value, member == &Result::energy_error_max ? " (relative)" : "",
+                    member == &Result::constraint_max ? ", " + constraints_in_words(*system) : ""));
   });
   for (size_t i = 0; i < events.size() && i < 10; ++i)
     line("event", fmt::format("{} at t = {:.10g}", events[i].name, events[i].time));

@@ -60,10 +60,10 @@ struct EventMet {
 };
 
 struct Result : Measurements {
-  Config config;  // as it was run: start and parameters filled in
+  Config config;                              // as it was run: start and parameters filled in
   std::shared_ptr<const SystemModel> system;  // <hamel/hamel.hpp> has its members
-  std::shared_ptr<const Inputs> inputs;  // null without
-  std::vector<std::string> unused;       // options that the scheme makes no use of
+  std::shared_ptr<const Inputs> inputs;       // null without
+  std::vector<std::string> unused;            // options that the scheme makes no use of
   std::vector<std::string> notes;  // what the user should know (a start that was projected, ...)
   Status status;
   Snapshot last;  // the last good state

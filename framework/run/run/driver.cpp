@@ -197,7 +197,8 @@ void Driver::restart(const Start& start) {
   Config& config = plan_.config;
   const Start before = std::exchange(config.start, start);
   PlannedStart planned = plan_start(*plan_.system, config, mistakes);
-  evaluate_start(*plan_.system, plan_.setup.inputs, plan_.geometry.get(), config.from, planned, mistakes);
+  evaluate_start(*plan_.system, plan_.setup.inputs, plan_.geometry.get(), config.from, planned,
+                 mistakes);
   if (!mistakes.none()) {
     config.start = before;
     mistakes.refuse();

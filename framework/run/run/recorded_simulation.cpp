@@ -16,7 +16,8 @@ Simulation recorded_simulation(const RunFile& run, const Registry& registry) {
   const std::string& system = config.system;
   Simulation out =
       system.ends_with(".toml")
-          ? Simulation(registry, system, OwnSystem{data_system_maker(registry, system, run.file(system))})
+          ? Simulation(registry, system,
+                       OwnSystem{data_system_maker(registry, system, run.file(system))})
           : Simulation(registry, system);
   out.config(std::move(config));
   return out;

@@ -210,8 +210,7 @@ void satisfy(const Mechanics& mechanics, const Geometry& geometry, double t, Eig
 
 // I, A and b where the run starts, checked.
 void evaluate_start(const SystemModel& system, const std::shared_ptr<const Inputs>& inputs,
-                    const Geometry* geometry, double t, PlannedStart& planned,
-                    Mistakes& mistakes) {
+                    const Geometry* geometry, double t, PlannedStart& planned, Mistakes& mistakes) {
   const int n = system.group.dim;
   const Mechanics& mechanics = *system.mechanics;
   const Start& start = planned.start;
