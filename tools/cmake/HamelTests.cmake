@@ -111,20 +111,31 @@ endfunction()
 # tests/compile_errors/<stem>.cpp must fail to compile with a message that matches its first line,
 #   // expect: regular expression
 # seeing <hamel/hamel.hpp> and all layers, or only one layer and those it links: `// layer: framework`.
-# The mistake is inside `#ifdef MISTAKE`: without that macro the file must compile.
-function(hamel_compile_error stem)
-  set(source ${CMAKE_CURRENT_SOURCE_DIR}/compile_errors/${stem}.cpp)
-  set(target hamel_umbrella)
-  file(STRINGS ${source} layer REGEX "^// layer: " LIMIT_COUNT 1)
-  if(layer MATCHES "^// layer: ([a-z]+)")
-    set(target hamel_${CMAKE_MATCH_1})
-  endif()
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+# The mistake is inside `#ifdef MISTAKE`: without that macro the file must compile. Files that see all layers do so
+# together, each in a namespace of its own, as the test compile_errors/without_mistakes.
+function(hamel_compile_errors)
+  set(together "#include <hamel/hamel.hpp>\n")
+  foreach(stem IN LISTS ARGN)
+    set(source ${CMAKE_CURRENT_SOURCE_DIR}/compile_errors/${stem}.cpp)
+    file(STRINGS ${source} layer REGEX "^// layer: " LIMIT_COUNT 1)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+    if(layer MATCHES "^// layer: ([a-z]+)")
+      hamel_expect_compile_error(${stem} ${source} hamel_${CMAKE_MATCH_1} "WITHOUT;WITH")
+    else()
+      hamel_expect_compile_error(${stem} ${source} hamel_umbrella "WITH")
+      string(APPEND together "namespace without_${stem} {\n#include \"${source}\"\n}\n")
+    endif()
+  endforeach()
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/compile_errors/without_mistakes.cpp)
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT "${together}")
+  hamel_expect_compile_error(without_mistakes ${source} hamel_umbrella "WITHOUT")
+endfunction()
+function(hamel_expect_compile_error stem source layer mistake)
   # Never built: it carries the include directories of all that the layer links.
   add_library(compile_error_${stem} OBJECT EXCLUDE_FROM_ALL ${source})
-  target_link_libraries(compile_error_${stem} PRIVATE ${target})
+  target_link_libraries(compile_error_${stem} PRIVATE ${layer})
   add_test(NAME compile_errors/${stem}
-    COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER} -DSOURCE=${source}
+    COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER} -DSOURCE=${source} "-DMISTAKE=${mistake}"
             "-DINCLUDES=$<TARGET_PROPERTY:compile_error_${stem},INCLUDE_DIRECTORIES>"
             -P ${PROJECT_SOURCE_DIR}/tools/cmake/expect_compile_error.cmake)
   set_tests_properties(compile_errors/${stem} PROPERTIES LABELS compile_error TIMEOUT 600)
