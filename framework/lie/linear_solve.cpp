@@ -4,32 +4,47 @@
 #include <cmath>
 
 namespace hamel {
+namespace {
+
+// The row of the largest entry of column k at or below the diagonal.
+int pivot_of(const double* a, int n, int k) {
+  int pivot = k;
+  for (int i = k + 1; i < n; ++i) {
+    if (std::abs(a[k * n + i]) > std::abs(a[k * n + pivot])) pivot = i;
+  }
+  return pivot;
+}
+
+// Of each column of m from the first: subtracts from the rows below k the factors of L, in column k of a, times row k.
+void eliminate(const double* a, double* m, int n, int k, int first, int columns) {
+  for (int j = first; j < columns; ++j) {
+    for (int i = k + 1; i < n; ++i) m[j * n + i] -= a[k * n + i] * m[j * n + k];
+  }
+}
+
+// b <- u^-1 b of one column, with u in the upper triangle of a.
+void substitute_back(const double* a, double* b, int n) {
+  for (int k = n - 1; k >= 0; --k) {
+    b[k] /= a[k * n + k];
+    for (int i = 0; i < k; ++i) b[i] -= a[k * n + i] * b[k];
+  }
+}
+
+}  // namespace
 
 void solve_linear(double* a, double* b, int n, int columns) {
   for (int k = 0; k < n; ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < n; ++i) {
-      if (std::abs(a[k * n + i]) > std::abs(a[k * n + pivot])) pivot = i;
-    }
+    const int pivot = pivot_of(a, n, k);
     if (pivot != k) {
       for (int j = k; j < n; ++j) std::swap(a[j * n + k], a[j * n + pivot]);
       for (int j = 0; j < columns; ++j) std::swap(b[j * n + k], b[j * n + pivot]);
     }
     const double scale = 1 / a[k * n + k];
     for (int i = k + 1; i < n; ++i) a[k * n + i] *= scale;  // the factors of L
-    for (int j = k + 1; j < n; ++j) {
-      for (int i = k + 1; i < n; ++i) a[j * n + i] -= a[k * n + i] * a[j * n + k];
-    }
-    for (int j = 0; j < columns; ++j) {
-      for (int i = k + 1; i < n; ++i) b[j * n + i] -= a[k * n + i] * b[j * n + k];
-    }
+    eliminate(a, a, n, k, k + 1, n);
+    eliminate(a, b, n, k, 0, columns);
   }
-  for (int j = 0; j < columns; ++j) {
-    for (int k = n - 1; k >= 0; --k) {
-      b[j * n + k] /= a[k * n + k];
-      for (int i = 0; i < k; ++i) b[j * n + i] -= a[k * n + i] * b[j * n + k];
-    }
-  }
+  for (int j = 0; j < columns; ++j) substitute_back(a, b + j * n, n);
 }
 
 }  // namespace hamel
