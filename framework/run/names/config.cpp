@@ -219,45 +219,71 @@ std::vector<double> Config::rows() const {
   return out;
 }
 
-std::vector<std::string> Config::mistakes() const {
-  std::vector<std::string> out;
-  const auto refuse = [&](const char* name, double value, const char* expected) {
-    out.push_back(fmt::format("{}: got {}, expected {}", name, value, expected));
-  };
+namespace {
+
+std::string refusal(const char* name, double value, const std::string& expected) {
+  return fmt::format("{}: got {}, expected {}", name, value, expected);
+}
+
+// Values that their own option does not allow.
+void look_at_each(const Config& config, std::vector<std::string>& out) {
   const auto look_at = [&](const Option& option, double value) {
     if (option.allows != nullptr && !option.allows(value))
-      refuse(option.name, value, option.expected);
+      out.push_back(refusal(option.name, value, option.expected));
   };
-  fields([&](const Option& option, auto member) {
-    using Value = std::remove_cvref_t<decltype(this->*member)>;
-    if constexpr (std::is_arithmetic_v<Value>) look_at(option, static_cast<double>(this->*member));
+  config.fields([&](const Option& option, auto member) {
+    using Value = std::remove_cvref_t<decltype(config.*member)>;
+    if constexpr (std::is_arithmetic_v<Value>) look_at(option, static_cast<double>(config.*member));
     if constexpr (std::is_same_v<Value, std::optional<double>>)
-      if (this->*member) look_at(option, *(this->*member));
+      if (config.*member) look_at(option, *(config.*member));
     if constexpr (std::is_same_v<Value, std::vector<double>>)
-      for (const double x : this->*member) look_at(option, x);
+      for (const double x : config.*member) look_at(option, x);
   });
-  const double span = until - from;
-  if (output_step && !output_times.empty())
+}
+
+void look_at_output_times(const Config& config, std::vector<std::string>& out) {
+  const auto& times = config.output_times;
+  if (config.output_step && !times.empty())
     out.push_back("output_times: give them or output_step, not both");
-  if ((output_step || !output_times.empty()) && every != 1)
+  if ((config.output_step || !times.empty()) && config.every != 1)
     out.push_back("every: the rows are at the output times: leave it out");
-  for (size_t i = 0; i < output_times.size(); ++i) {
-    const double t = output_times[i], sign = span < 0 ? -1 : 1;
-    if (sign * (t - from) < 0 || sign * (until - t) < 0)
-      refuse("output_times", t, fmt::format("times from {} to {}", from, until).c_str());
-    else if (i > 0 && sign * (t - output_times[i - 1]) <= 0)
-      refuse("output_times", t,
-             fmt::format("a time beyond the one before, {}", output_times[i - 1]).c_str());
+  const double sign = config.until - config.from < 0 ? -1 : 1;
+  for (size_t i = 0; i < times.size(); ++i) {
+    const double t = times[i];
+    if (sign * (t - config.from) < 0 || sign * (config.until - t) < 0)
+      out.push_back(refusal("output_times", t,
+                            fmt::format("times from {} to {}", config.from, config.until)));
+    else if (i > 0 && sign * (t - times[i - 1]) <= 0)
+      out.push_back(refusal("output_times", t,
+                            fmt::format("a time beyond the one before, {}", times[i - 1])));
   }
-  if (std::isfinite(span) && std::isfinite(step) && step != 0) {
-    if (span / step < 0 && from == 0) refuse("until", until, "the sign of step");
-    else if (span / step < 0)
-      refuse("until", until, fmt::format("a time beyond from, {}, as step has it", from).c_str());
-    else if (chooses_steps()) return out;
-    else if (span / step > 9e15) refuse("until", until, "fewer than 9e15 steps");
-    else if (span != 0 && steps() == 0)
-      refuse("step", step, fmt::format("at most until, {}: no whole step fits", span).c_str());
+}
+
+void look_at_span(const Config& config, std::vector<std::string>& out) {
+  const double from = config.from, until = config.until, step = config.step, span = until - from;
+  if (!std::isfinite(span) || !std::isfinite(step) || step == 0) return;
+  if (span / step < 0 && from == 0) {
+    out.push_back(refusal("until", until, "the sign of step"));
+  } else if (span / step < 0) {
+    out.push_back(
+        refusal("until", until, fmt::format("a time beyond from, {}, as step has it", from)));
+  } else if (config.chooses_steps()) {
+    return;
+  } else if (span / step > 9e15) {
+    out.push_back(refusal("until", until, "fewer than 9e15 steps"));
+  } else if (span != 0 && config.steps() == 0) {
+    out.push_back(
+        refusal("step", step, fmt::format("at most until, {}: no whole step fits", span)));
   }
+}
+
+}  // namespace
+
+std::vector<std::string> Config::mistakes() const {
+  std::vector<std::string> out;
+  look_at_each(*this, out);
+  look_at_output_times(*this, out);
+  look_at_span(*this, out);
   return out;
 }
 
