@@ -1,227 +1,41 @@
 // node test/render.mjs PAGE.html [--screenshot OUT.png] [--narrow OUT.png] [--pdf OUT.pdf] [--fallback OUT.png] [--plain OUT.png]
-// Opens a report in headless Chromium and fails on anything that is not as it should be. Exit status: 0 passed,
-// 1 failed, 2 wrong use, 77 no browser here.
+// node test/render.mjs PAGE.html PAGE.html...
+// Opens reports in one headless Chromium and fails on anything that is not as it should be. Plain pictures are taken of the first by
+// chromium's own commands, of the others and with $HAMEL_BROWSER by the browser that runs. Exit status: 0 passed, 1 failed, 2 wrong use,
+// 77 no browser here.
 
-import { existsSync, readFileSync } from 'node:fs';
-import { resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
-import { launch, PATIENCE } from './browser.mjs';
-import { lookPlainly } from './plain.mjs';
-import { countPixels } from './pixels.mjs';
-import { misfit } from './schema.mjs';
-import { useAnimation, useSphere } from './use_animation.mjs';
-import { useChart, useSaving } from './use_chart.mjs';
-import { useFilters, useHeatmap, useTable } from './use_study.mjs';
+import { existsSync } from 'node:fs';
+import { launch } from './browser.mjs';
+import { look } from './look.mjs';
 
-const [file, ...rest] = process.argv.slice(2);
+const files = [];
 const options = {};
-for (let i = 0; i < rest.length; i += 2) options[rest[i].replace(/^--/, '')] = rest[i + 1];
-if (!file || !existsSync(file)) {
-  console.error('usage: node test/render.mjs PAGE.html [--screenshot|--narrow|--pdf|--fallback|--plain OUT]');
+for (let words = process.argv.slice(2); words.length > 0; words = words.slice(1)) {
+  if (words[0].startsWith('--')) options[words.shift().replace(/^--/, '')] = words[0];
+  else files.push(words[0]);
+}
+const absent = files.filter((file) => !existsSync(file));
+if (files.length === 0 || absent.length > 0 || (files.length > 1 && Object.keys(options).length > 0)) {
+  console.error('usage: node test/render.mjs PAGE.html [--screenshot|--narrow|--pdf|--fallback|--plain OUT]\n       node test/render.mjs PAGE.html...');
+  absent.forEach((file) => console.error(`there is no ${file}`));
   process.exit(2);
 }
 
-let [passed, failed] = [0, 0];
-function check(name, good, detail = '') {
-  if (good) {
-    ++passed;
-  } else {
-    ++failed;
-    console.log(`FAILED ${name}${detail ? `: ${detail}` : ''}`);
-  }
-}
-
-/** Runs in the page before anything else: a browser without WebGL. */
-function takeWebglAway() {
-  for (const kind of [HTMLCanvasElement, OffscreenCanvas]) {
-    const original = kind.prototype.getContext;
-    kind.prototype.getContext = function getContext(name, ...rest) {
-      return /webgl|webgpu/.test(name) ? null : original.call(this, name, ...rest);
-    };
-  }
-}
-
-const STALL = /GPU stall due to ReadPixels/;  // by software WebGL, where a screenshot is taken
-
-/** Opens the page and collects what it should not do. */
-async function open(browser, { webgl = true } = {}) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-  page.setDefaultTimeout(PATIENCE);
-  if (!webgl) await page.addInitScript(takeWebglAway);
-  const complaints = [];
-  page.on('console', (message) => {
-    if (['error', 'warning', 'assert'].includes(message.type()) && !STALL.test(message.text())) complaints.push(`console ${message.type()}: ${message.text()}`);
-  });
-  page.on('pageerror', (error) => complaints.push(`page error: ${error.message}`));
-  page.on('request', (request) => {
-    if (!/^(file|data|blob):/.test(request.url())) complaints.push(`request: ${request.url()}`);
-  });
-  await page.goto(pathToFileURL(resolve(file)).href);
-  await page.waitForSelector('html[data-ready=true]', { state: 'attached' })
-    .catch(() => complaints.push('the page never got ready'));
-  await page.waitForTimeout(150);
-  return { page, complaints };
-}
-
-/** Runs in the page: what was asked for and what is there. */
-function survey() {
-  let blocks = null;
-  try {
-    const data = JSON.parse(document.getElementById('hamel-data').textContent);
-    blocks = data.sections.flatMap((section) => section.blocks ?? []).map((block) => block.kind);
-  } catch { /* reported below */ }
-  const rendered = [...document.querySelectorAll('[data-block]')].map((element) => ({
-    kind: element.dataset.block, problem: element.classList.contains('problem') ? element.textContent : null,
-    figure: element.matches('figure'),
-    labelled: Boolean(element.querySelector('[role=img]')?.getAttribute('aria-label')),
-    captioned: [...element.querySelectorAll('table')].every((t) => t.caption?.textContent.trim()),
-    title: element.querySelector('figcaption, caption')?.textContent ?? '',
-    empty: element.getBoundingClientRect().height < 8,
-  }));
-  return { blocks, rendered, unreadable: document.getElementById('unreadable')?.textContent ?? null,
-    heading: document.querySelector('h1')?.getBoundingClientRect().bottom ?? null };
-}
-
-/** Whether a figure's data hold anything that can be drawn. */
-function drawable() {
-  const data = JSON.parse(document.getElementById('hamel-data').textContent);
-  const good = (v, log) => typeof v === 'number' && (!log || v > 0);
-  return data.sections.flatMap((section) => section.blocks ?? []).map((block) => {
-    if (block.kind === 'sphere') return block.series.some((s) => s.points.filter((p) => p?.every(Number.isFinite)).length > 1);
-    if (block.kind === 'heatmap') return true;  // its scale at least
-    if (block.kind === 'animation') {
-      return block.bodies.some(({ poses, shapes }) => poses[0]?.every(Number.isFinite) &&
-        shapes.some(({ color }) => ['body', 'accent', undefined].includes(color)));
-    }
-    if (!['plot', 'path'].includes(block.kind)) return false;
-    return block.series.flatMap((s) => s.x.filter((x, i) => good(x, block.log_x) && good(s.y[i], block.log_y))).length > 1;
-  });
-}
-
-/** What the drawing of each figure shows, in the order of the page. */
-async function picturesOf(page) {
-  const drawings = await page.locator('figure[data-block] .drawing').all();
-  const pngs = [];
-  for (const drawing of drawings) pngs.push(await drawing.screenshot());
-  return countPixels(page, pngs);
-}
-
-async function checkBlocks(page) {
-  const found = await page.evaluate(survey);
-  check('readable data', found.blocks !== null && !found.unreadable, found.unreadable ?? 'not JSON with sections');
-  if (found.blocks === null) return { expected: [], solid: false };
-  check('title above the fold', found.heading !== null && found.heading < 400);
-  check('number of blocks', found.rendered.length === found.blocks.length,
-    `${found.rendered.length} of ${found.blocks.length} rendered`);
-  const expected = await page.evaluate(drawable);
-  const pictures = await picturesOf(page);
-  found.rendered.forEach((block, i) => {
-    const name = `block ${i + 1} (${block.kind}${block.title ? `, ${block.title}` : ''})`;
-    check(`${name} is shown`, !block.problem && !block.empty && block.kind === found.blocks[i], block.problem ?? 'empty or out of order');
-    check(`${name} has captions`, block.captioned);
-    if (!block.figure) return;
-    check(`${name} has an aria-label`, block.labelled);
-    const { inked, colours } = pictures.shift() ?? { inked: 0, colours: 0 };
-    check(`${name} is not blank`, inked > 200, `${inked} inked pixels`);
-    if (expected[i]) check(`${name} shows curves`, colours > 20, `${colours} coloured pixels`);
-  });
-  return { expected, solid: found.blocks.includes('sphere') || found.blocks.includes('animation') };
-}
-
-async function checkWidth(page, width) {
-  await page.setViewportSize({ width, height: 800 });
-  await page.waitForTimeout(250);
-  const wide = await page.evaluate(() => {
-    const limit = document.documentElement.clientWidth;
-    if (document.documentElement.scrollWidth <= limit) return null;
-    const guilty = [...document.querySelectorAll('main *')].filter((e) => e.getBoundingClientRect().right > limit + 1 && !e.closest('.scroll'));
-    return `${document.documentElement.scrollWidth} > ${limit}: ${guilty.slice(0, 3).map((e) => `${e.tagName}.${e.className}`)}`;
-  });
-  check(`no horizontal overflow at ${width} px`, wide === null, wide ?? '');
-  const cut = await page.evaluate(() => [...document.querySelectorAll('.chart svg')].flatMap((svg) => {
-    const [left, right] = [svg.getBoundingClientRect().left - 1, svg.getBoundingClientRect().right + 1];
-    return [...svg.querySelectorAll('text')].filter((text) => {
-      const box = text.getBoundingClientRect();
-      return box.width > 0 && (box.left < left || box.right > right);
-    }).map((text) => `${svg.closest('figure')?.querySelector('.title')?.textContent}: ${text.textContent}`);
-  }));
-  check(`no words are cut at ${width} px`, cut.length === 0, cut.slice(0, 3).join('; '));
-}
-
-/** A card that gets narrower shrinks its drawing at once: a plain screenshot may come before that is made again. */
-async function checkShrinking(page) {
-  const wide = await page.evaluate(() => {
-    const main = document.querySelector('main');
-    main.style.width = '280px';
-    const out = [...document.querySelectorAll('.chart svg')].filter((svg) => svg.getBoundingClientRect().right > svg.closest('.figure').getBoundingClientRect().right);
-    main.style.width = '';
-    return out.length;
-  });
-  check('drawings shrink with their cards', wide === 0, `${wide} do not`);
-}
-
-/** Uses the page wherever it has something to use: the watch is on complaints. */
-async function useIt(page) {
-  await useChart(page, check);
-  for (const selector of ['.legend .entry', 'thead button']) {
-    const button = page.locator(selector).first();
-    if (!(await button.count())) continue;
-    await button.click();
-    await button.click();
-  }
-  await useSaving(page, check);
-  await useHeatmap(page, check);
-  await useFilters(page, check);
-  await useTable(page, check);
-  await useAnimation(page, check);
-  await useSphere(page, check);
-}
-
-/** On paper every drawing is as wide as its frame at most, in light colours, and none is cut. */
-async function checkPrint(page) {
-  const pdf = await page.pdf({ preferCSSPageSize: true, path: options.pdf });
-  check('prints to PDF', pdf.length > 5000);
-  await page.setViewportSize({ width: 700, height: 1000 });
-  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));  // while the page has the screen's layout
-  await page.emulateMedia({ media: 'print' });
-  const cut = await page.evaluate(() => [...document.querySelectorAll('.drawing')].filter((drawing) => {
-    const frame = drawing.closest('figure').getBoundingClientRect();
-    const inside = ({ left, right }) => left >= frame.left - 1 && right <= frame.right + 1;
-    const picture = drawing.querySelector('svg, canvas').getBoundingClientRect();
-    return picture.width < 100 || picture.height < 60 || frame.bottom < picture.bottom || !inside(picture) || ![...drawing.querySelectorAll('.chart svg text')].every((text) => inside(text.getBoundingClientRect()));
-  }).length);
-  check('every drawing fits the paper', cut === 0, `${cut} do not`);
-  await page.emulateMedia({ media: null });
-  await page.setViewportSize({ width: 1280, height: 800 });
-  await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));
-  await page.waitForTimeout(250);
-}
-
 const browser = await launch();
-const { page, complaints } = await open(browser);
-const odd = misfit(readFileSync(file, 'utf8'));
-check('the data fit schema.json', odd === '', odd);
-const { expected, solid } = await checkBlocks(page);
-await checkWidth(page, 390);
-if (options.narrow) await page.screenshot({ path: options.narrow, fullPage: true });
-await checkWidth(page, 1280);
-if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
-await checkShrinking(page);
-await checkPrint(page);
-await useIt(page);
-if (expected.includes(true) && failed === 0) await lookPlainly(page, file, expected, check, options.plain);
-check('no console message, error or request', complaints.length === 0, complaints.join('; '));
-if (solid) {  // once more without WebGL
-  const flat = await open(browser, { webgl: false });
-  await checkBlocks(flat.page);
-  const figures = '.figure:is(.sphere, .animation)';
-  const silent = await flat.page.locator(figures).filter({ hasNotText: 'without WebGL' }).count();
-  check('without WebGL spheres and bodies are drawn all the same and say so', silent === 0, `${silent} say nothing`);
-  if (options.fallback) await flat.page.locator(figures).first().screenshot({ path: options.fallback });
-  await useAnimation(flat.page, check);
-  check('no console message, error or request without WebGL', flat.complaints.length === 0, flat.complaints.join('; '));
+let failed = false;
+for (const file of files) {
+  let result;
+  try {
+    result = await look(browser, file, { commands: !process.env.HAMEL_BROWSER && file === files[0], options });
+  } catch (error) {
+    result = { passed: 0, failures: [`FAILED ${error.stack}`] };
+    for (const context of browser.contexts()) await context.close();
+  }
+  const { passed, failures } = result;
+  if (files.length > 1) console.log(`${file}:`);
+  failures.forEach((text) => console.log(text));
+  console.log(`${passed} passed, ${failures.length} failed`);
+  failed ||= failures.length > 0;
 }
 await browser.close();
-
-console.log(`${passed} passed, ${failed} failed`);
-process.exit(failed === 0 ? 0 : 1);
+process.exit(failed ? 1 : 0);
