@@ -57,6 +57,15 @@ std::string Result::steps_in_words() const {
   return out;
 }
 
+static std::string estimated_error_in_words(const Result& result) {
+  if (std::isnan(result.estimated_error))
+    return fmt::format("unknown by {}", finer_runs(result.config));
+  std::string out = fmt::format("{:.2e} of the configuration at the end", result.estimated_error);
+  if (!std::isnan(result.observed_order))  // NaN: at round-off
+    out += fmt::format(", observed order {:.2f}", result.observed_order);
+  return out;
+}
+
 std::string Result::report() const {
   std::string out = fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(),
                                 steps_in_words());
@@ -112,13 +121,7 @@ std::string Result::report() const {
                      exact_velocity_error_max));
   }
   if (config.check && status.ok) {
-    line("estimated error",
-         std::isnan(estimated_error)
-             ? fmt::format("unknown by {}", finer_runs(config))
-             : fmt::format("{:.2e} of the configuration at the end", estimated_error) +
-                   (std::isnan(observed_order)  // at round-off
-                        ? ""
-                        : fmt::format(", observed order {:.2f}", observed_order)));
+    line("estimated error", estimated_error_in_words(*this));
   }
   line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
   return out;
