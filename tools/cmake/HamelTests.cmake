@@ -59,8 +59,12 @@ endif()
 #                               of the source tree, HAMEL_SOURCE
 #   HOT               compiled with full optimisation, and without the precompiled header
 #   NEEDS target ...  further libraries to link
+#   PLAIN             left out of sanitized builds: it is about numbers or words, and others there run the same code
 function(hamel_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM;HOT" "TIMEOUT" "LABELS;NEEDS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "PROGRAM;HOT;PLAIN" "TIMEOUT" "LABELS;NEEDS")
+  if(HAMEL_SANITIZE AND (arg_PLAIN OR "slow" IN_LIST arg_LABELS))
+    return()
+  endif()
   if(arg_PROGRAM AND NOT TARGET hamel_program)
     message(STATUS "hamel: test ${name} is left out: it runs the program (HAMEL_BUILD_TOOLS)")
     return()
@@ -84,8 +88,11 @@ function(hamel_test name)
   endif()
 endfunction()
 
-# tests/examples/<stem>.cpp -> build/tests/examples/<stem>, ctest examples/<stem>.
+# tests/examples/<stem>.cpp -> build/tests/examples/<stem>, ctest examples/<stem>. As PLAIN tests.
 function(hamel_example stem)
+  if(HAMEL_SANITIZE)
+    return()
+  endif()
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "ARGS;LABELS")
   hamel_test_executable(example_${stem} examples/${stem})
   target_compile_options(example_${stem} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -192,15 +199,25 @@ function(hamel_page_script name)
 endfunction()
 
 # hamel_page(<name> <file> <arguments of hamel>): ctest page/<name>/write runs the program, which writes
-# the file into the folder page of the tests' build; page/<name> looks at it in headless Chromium.
+# the file into the folder page of the tests' build.
 function(hamel_page name file)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/page)
   file(MAKE_DIRECTORY ${folder})
   add_test(NAME page/${name}/write COMMAND hamel_program ${ARGN} WORKING_DIRECTORY ${folder})
   set_tests_properties(page/${name}/write PROPERTIES
     LABELS page TIMEOUT 300 FIXTURES_SETUP page_${name})
-  hamel_page_script(${name} test/render.mjs ${folder}/${file})
-  set_tests_properties(page/${name} PROPERTIES FIXTURES_REQUIRED page_${name})
+  set_property(DIRECTORY APPEND PROPERTY hamel_page_names page_${name})
+  set_property(DIRECTORY APPEND PROPERTY hamel_page_files ${folder}/${file})
+endfunction()
+
+# ctest page/<name>: one headless Chromium looks at the pages of the hamel_page calls since the last such test.
+function(hamel_look_at_pages name)
+  get_property(pages DIRECTORY PROPERTY hamel_page_names)
+  get_property(files DIRECTORY PROPERTY hamel_page_files)
+  set_property(DIRECTORY PROPERTY hamel_page_names)
+  set_property(DIRECTORY PROPERTY hamel_page_files)
+  hamel_page_script(${name} test/render.mjs ${files})
+  set_tests_properties(page/${name} PROPERTIES FIXTURES_REQUIRED "${pages}")
 endfunction()
 
 # tests/fuzz/<stem>.cpp -> build/tests/fuzz/<stem>. It sees the headers of the systems but links no kernels: the
