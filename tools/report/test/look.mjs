@@ -177,14 +177,7 @@ async function checkPrint(page, check, path) {
   await page.waitForTimeout(250);
 }
 
-/** The checks of a page -> {passed, failures: texts}. `commands`: its plain pictures by chromium's own commands; `options`: files to write. */
-export async function look(browser, file, { commands = false, options = {} } = {}) {
-  let passed = 0;
-  const failures = [];
-  function check(name, good, detail = '') {
-    if (good) ++passed;
-    else failures.push(`FAILED ${name}${detail ? `: ${detail}` : ''}`);
-  }
+async function checkPage(browser, file, check, failures, { commands, options }) {
   const { page, complaints } = await open(browser, file);
   const odd = misfit(readFileSync(file, 'utf8'));
   check('the data fit schema.json', odd === '', odd);
@@ -207,6 +200,21 @@ export async function look(browser, file, { commands = false, options = {} } = {
     if (options.fallback) await flat.page.locator(figures).first().screenshot({ path: options.fallback });
     await useAnimation(flat.page, check);
     check('no console message, error or request without WebGL', flat.complaints.length === 0, flat.complaints.join('; '));
+  }
+}
+
+/** The checks of a page -> {passed, failures: texts}. `commands`: its plain pictures by chromium's own commands; `options`: files to write. */
+export async function look(browser, file, { commands = false, options = {} } = {}) {
+  let passed = 0;
+  const failures = [];
+  function check(name, good, detail = '') {
+    if (good) ++passed;
+    else failures.push(`FAILED ${name}${detail ? `: ${detail}` : ''}`);
+  }
+  try {
+    await checkPage(browser, file, check, failures, { commands, options });
+  } catch (error) {
+    failures.push(`FAILED to go on: ${error.stack}`);
   }
   for (const context of browser.contexts()) await context.close();
   return { passed, failures };

@@ -24,14 +24,7 @@ if (files.length === 0 || absent.length > 0 || (files.length > 1 && Object.keys(
 const browser = await launch();
 let failed = false;
 for (const file of files) {
-  let result;
-  try {
-    result = await look(browser, file, { commands: !process.env.HAMEL_BROWSER && file === files[0], options });
-  } catch (error) {
-    result = { passed: 0, failures: [`FAILED ${error.stack}`] };
-    for (const context of browser.contexts()) await context.close();
-  }
-  const { passed, failures } = result;
+  const { passed, failures } = await look(browser, file, { commands: !process.env.HAMEL_BROWSER && file === files[0], options });
   if (files.length > 1) console.log(`${file}:`);
   failures.forEach((text) => console.log(text));
   console.log(`${passed} passed, ${failures.length} failed`);
