@@ -48,7 +48,7 @@ struct RollingDisk {
   Start start() const {
     return {.configuration = {}, .velocity = {0.7, 2 * radius, 0, 2}, .momentum = {}};
   }
-  auto exact(const Group::Element<double>& g0, const Vec<4>& xi0) const {
+  auto exact(const auto& g0, const auto& xi0) const {
     return one_parameter_motion<Group>(g0, xi0);
   }
   void invariants(auto& add) const {

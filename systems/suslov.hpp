@@ -12,13 +12,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <Eigen/LU>
 
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/so3.hpp>
@@ -67,44 +64,28 @@ struct Suslov {
     return {.configuration = {}, .velocity = {}, .momentum = {1, 1, 0}};
   }
 
-  /// The reduced motion w(t), embedded as Omega(t).
+  /// The reduced motion w(t), embedded as Omega(t): suslov.cpp. Numbers of no alignment, whatever a program is compiled
+  /// with.
   class Velocity {
    public:
-    Velocity(const Suslov& body, const Vec<3>& omega0) {
-      const Vec<3> n = body.normal.normalized();
-      frame_.col(0) = n.unitOrthogonal();
-      frame_.col(1) = n.cross(frame_.col(0));
-      const Mat<3, 3> inertia = body.inertia();
-      const Mat<2, 2> j = frame_.transpose() * inertia * frame_;
-      const Vec<2> k = frame_.transpose() * (inertia * n), b = j.inverse() * k;
-      w0_ = frame_.transpose() * omega0;
-      spread_ = std::sqrt(j.norm() * j.inverse().norm());
-      const double p0 = k.dot(w0_), q0 = b[1] * w0_[0] - b[0] * w0_[1];
-      if (std::abs(p0) <= 1e-15 * inertia.norm() * w0_.norm()) return;  // constant
-      root_det_ = std::copysign(std::sqrt(j.determinant()), p0);
-      a_ = std::hypot(q0, p0 / root_det_);
-      at0_ = std::asinh(q0 * std::sqrt(j.determinant()) / std::abs(p0));
-      solve_ = Mat<2, 2>{{k[0], k[1]}, {b[1], -b[0]}}.inverse();
-    }
+    Velocity(const Suslov& body, const double* omega0);
     Vec<3> operator()(double t) const {
-      if (a_ == 0) return frame_ * w0_;
-      const double x = a_ * t - at0_;
-      const Vec<2> pq = {root_det_ * a_ / std::cosh(x), -a_ * std::tanh(x)};
-      return frame_ * (solve_ * pq);
+      Vec<3> omega;
+      at(t, omega.data());
+      return omega;
     }
     /// A bound on the rates of the motion: |Omega| is bounded through the energy and the moments.
-    double rate() const { return a_ + spread_ * w0_.norm(); }
+    double rate() const { return rate_; }
     bool constant() const { return a_ == 0; }
 
    private:
-    Mat<3, 2> frame_;
-    Mat<2, 2> solve_ = Mat<2, 2>::Zero();
-    Vec<2> w0_;
-    double root_det_ = 0, a_ = 0, at0_ = 0, spread_ = 1;
+    void at(double t, double* omega) const;
+    double frame_[6], solve_[4] = {}, w0_[2];  // 3 x 2, 2 x 2, column by column
+    double root_det_ = 0, a_ = 0, at0_ = 0, rate_ = 0;
   };
 
-  auto exact(const SO3::Element<double>& r0, const Vec<3>& omega0) const {
-    Velocity velocity(*this, omega0);
+  auto exact(const auto& r0, const auto& omega0) const {
+    Velocity velocity(*this, omega0.data());
     Reconstruction<SO3, Velocity> path(r0, velocity, 0.02 / std::max(velocity.rate(), 1e-9));
     auto steady = one_parameter_motion<SO3>(r0, omega0);
     return [velocity, path, steady](double t) mutable {

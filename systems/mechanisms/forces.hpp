@@ -7,8 +7,6 @@
 //   force     three signals, at a point of a body, along the axes of the world or of the body as drawn
 #pragma once
 
-#include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
