@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/groups/se2.hpp>
@@ -80,7 +81,8 @@ struct ChaplyginSleigh {
   Mat<1, 3> constraints() const { return Mat<1, 3>{0, 0, 1}; }
   Start start() const { return {.configuration = {}, .velocity = {0.9, -1, 0}, .momentum = {}}; }
 
-  auto exact(const auto& g0, const auto& xi0) const {
+  template <class V = Vec<3>>
+  auto exact(const SE2::Element<double>& g0, const std::type_identity_t<V>& xi0) const {
     const SleighRates rates(mass, moment + mass * offset * offset, mass * offset, xi0[0], xi0[1]);
     return rates.motion<SE2>(g0, xi0, [](double omega, double v) { return Vec<3>(omega, v, 0); });
   }

@@ -40,21 +40,22 @@ requires requires { typename Scheme::Family; }
 struct FamilyOf<Scheme> {
   using type = typename Scheme::Family;
 };
+template <class Scheme, class P>
+[[gnu::noinline, gnu::cold]] std::unique_ptr<Kernel> make_loop(const KernelSetup& setup) {
+  return std::make_unique<Loop<Scheme, P, Newton>>(setup);
+}
 }  // namespace detail
+
+/// make with a tableau, which lives for ever: of_tableau.cpp.
+KernelFactory of_tableau(std::unique_ptr<Kernel> (*make)(const KernelSetup&),
+                         const Tableau& tableau);
 
 /// The time loop compiled for these types.
 template <class Scheme, class P>
 KernelFactory compile() {
-  if constexpr (requires { Scheme::tableau(); }) {
-    return [](KernelSetup setup) -> std::unique_ptr<Kernel> {
-      setup.tableau = &Scheme::tableau();
-      return std::make_unique<Loop<typename detail::FamilyOf<Scheme>::type, P, Newton>>(setup);
-    };
-  } else {
-    return [](const KernelSetup& setup) -> std::unique_ptr<Kernel> {
-      return std::make_unique<Loop<Scheme, P, Newton>>(setup);
-    };
-  }
+  const auto make = &detail::make_loop<typename detail::FamilyOf<Scheme>::type, P>;
+  if constexpr (requires { Scheme::tableau(); }) return of_tableau(make, Scheme::tableau());
+  else return make;
 }
 
 template <class Scheme>

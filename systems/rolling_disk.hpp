@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <hamel/framework/mechanics/system.hpp>
@@ -48,7 +49,8 @@ struct RollingDisk {
   Start start() const {
     return {.configuration = {}, .velocity = {0.7, 2 * radius, 0, 2}, .momentum = {}};
   }
-  auto exact(const auto& g0, const auto& xi0) const {
+  template <class V = Vec<4>>
+  auto exact(const Group::Element<double>& g0, const std::type_identity_t<V>& xi0) const {
     return one_parameter_motion<Group>(g0, xi0);
   }
   void invariants(auto& add) const {

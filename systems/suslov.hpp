@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -84,7 +85,9 @@ struct Suslov {
     double root_det_ = 0, a_ = 0, at0_ = 0, rate_ = 0;
   };
 
-  auto exact(const auto& r0, const auto& omega0) const {
+  // (A template, so that it costs nothing where it is not called.)
+  template <class V = Vec<3>>
+  auto exact(const SO3::Element<double>& r0, const std::type_identity_t<V>& omega0) const {
     Velocity velocity(*this, omega0.data());
     Reconstruction<SO3, Velocity> path(r0, velocity, 0.02 / std::max(velocity.rate(), 1e-9));
     auto steady = one_parameter_motion<SO3>(r0, omega0);

@@ -4,18 +4,155 @@
 #include <string>
 #include <utility>
 
+#include <hamel/framework/loop/denormals.hpp>
+
 namespace hamel {
 
+TimeLoop::TimeLoop(const KernelSetup& setup)
+    : setup_(setup), h_(setup.step), from_(setup.from), time_(setup.from), t_(setup.from) {}
+
+TimeLoop::~TimeLoop() = default;
+
+Status TimeLoop::advance(long count) {
+  const FlushDenormals flushed;
+  for (long k = 0; k < count; ++k) {
+    const bool chosen = chooses_steps();
+    if (chosen && t_ == limit_) return {};
+    SolveReport report = chosen ? chosen_step() : one_step();
+    if (!report.ok()) [[unlikely]] {
+      if (!chosen || !errors_) {
+        report = recover(report);
+        beginning_ = Beginning::rescue;
+      }
+      if (!report.ok()) return failure(report);
+    }
+    tally(report);
+    time_ = t_;
+  }
+  return {};
+}
+
+inline void TimeLoop::tally(const SolveReport& report) {
+  last_ = report;
+  ++steps_;
+  stats_.iterations += report.iterations;
+  stats_.evaluations += report.evaluations;
+  if (report.iterations > stats_.iterations_max) stats_.iterations_max = report.iterations;
+  if (report.residual > stats_.residual_max) stats_.residual_max = report.residual;
+}
+
+void TimeLoop::turn_back() {
+  count_from(t_);
+  h_ = -h_;
+  limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
+  forget();
+}
+
+void TimeLoop::restart(double t, std::span<const double> coordinates,
+                       std::span<const double> velocity, double step) {
+  put(t, coordinates, velocity);
+  h_ = step;
+  limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
+  count_from(t);
+  forget();
+}
+
+// Steps count from here.
+void TimeLoop::count_from(double t) {
+  from_ = time_ = t;
+  first_ = steps_;
+}
+
+inline SolveReport TimeLoop::one_step() {
+  if (setup_.inputs != nullptr) [[unlikely]]
+    enter_inputs();
+  if (setup_.composition.size() > 1) [[unlikely]]
+    return composed_step();
+  const SolveReport report = substep(0, setup_.composition.front() * h_);
+  beginning_ = Beginning::previous;
+  return report;
+}
+
+// Forces that are remembered from the end of the last step are those of its inputs.
+void TimeLoop::enter_inputs() {
+  setup_.inputs->enter(t_, h_);
+  if (setup_.inputs->changes() == inputs_changed_) return;
+  inputs_changed_ = setup_.inputs->changes();
+  forget_forces();
+}
+
+SolveReport TimeLoop::composed_step() {
+  put_away(Kept::step);
+  beginning_ = Beginning::step;
+  SolveReport total;
+  int place = 0;
+  for (const double coefficient : setup_.composition) {
+    const SolveReport report = substep(place++, coefficient * h_);
+    total.iterations += report.iterations;
+    total.evaluations += report.evaluations;
+    total.residual = std::max(total.residual, report.residual);
+    total.reason = report.reason;
+    if (!total.ok()) {
+      fetch(Kept::step);
+      break;
+    }
+  }
+  return total;
+}
+
+// A step of a size chosen by the error: explicit pairs take one again that is too large.
+SolveReport TimeLoop::chosen_step() {
+  if (errors_) return error_controlled_step();
+  const double end = end_of_step(t_), left = end - t_;
+  h_ = controlled_size(std::pow(setup_.relative + setup_.absolute, 1.0 / setup_.order));
+  const bool cut = std::abs(h_) >= std::abs(left);
+  if (cut) {
+    h_ = left;
+    forget();
+  }
+  const SolveReport report = one_step();
+  if (cut && report.ok()) end_at(t_ = end);
+  return report;
+}
+
+SolveReport TimeLoop::error_controlled_step() {
+  const double end = end_of_step(t_);
+  SolveReport total;
+  const auto taken = errors_->take(h_, end - t_, smallest_step(t_), [&] {
+    error_ = std::numeric_limits<double>::infinity();  // of a step that fails
+    total.evaluations += one_step().evaluations;
+    return error_;
+  });
+  if (taken.whole) end_at(t_ = end);
+  stats_.rejected += taken.rejected;
+  total.reason = taken.reason;
+  return total;
+}
+
+// Where the next step ends at the latest: at the limit, or where an input jumps or bends.
+double TimeLoop::end_of_step(double t) const {
+  if (setup_.inputs == nullptr) return limit_;
+  const double next = setup_.inputs->next_break(t, h_);
+  return (h_ > 0) == (next < limit_) ? next : limit_;
+}
+
+// Above it a chosen step is worth trying.
+double TimeLoop::smallest_step(double t) const {
+  const double span = std::isfinite(limit_) ? limit_ - from_ : std::fmax(t - from_, setup_.step);
+  return 1e-14 * std::abs(span);
+}
+
+// A step has failed, and the state is still that of the last good one: what on_failure asks for.
 SolveReport TimeLoop::recover(SolveReport failed) {
   if (setup_.on_failure == OnFailure::stop) return failed;
-  save();
+  put_away(Kept::rescue);
   const double h = h_;
   if (setup_.composition.size() > 1) forget();  // its first substeps are solved a second time
   SolveReport rescued;
   std::string action;
   if (setup_.on_failure == OnFailure::retry) {
     std::swap(setup_.solver, setup_.fallback);
-    rescued = repeat_step();
+    rescued = one_step();
     std::swap(setup_.solver, setup_.fallback);
     action = "solved by " + setup_.fallback_name;
   } else {
@@ -25,7 +162,7 @@ SolveReport TimeLoop::recover(SolveReport failed) {
     forget();
     action = "taken in " + std::to_string(parts) + " parts";
   }
-  if (!rescued.ok()) restore();
+  if (!rescued.ok()) fetch(Kept::rescue);
   else if (++stats_.fallbacks <= 20) {
     stats_.first_fallbacks.push_back({steps_ + 1, time(), action});
   }
@@ -43,7 +180,7 @@ SolveReport TimeLoop::halve(int level, int& parts) {
   for (int i = 0; i < 2 && total.ok(); ++i) {
     forget();  // of steps of another size
     h_ = half;
-    SolveReport part = repeat_step();
+    SolveReport part = one_step();
     if (part.ok()) ++parts;
     else if (level < 10) {
       const SolveReport finer = halve(level + 1, parts);

@@ -1,74 +1,84 @@
-// What every time loop does, whatever it is compiled for: it counts, and decides what becomes of a step that fails.
+// What every time loop does, whatever it is compiled for: it counts, chooses steps, composes them of substeps, and decides
+// what becomes of one that fails. What depends on the types, a substep first of all, is behind virtual functions that
+// loop.hpp compiles: one call a substep, none inside.
 #pragma once
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 
+#include <hamel/framework/loop/error_control.hpp>
 #include <hamel/framework/loop/kernel.hpp>
 
 namespace hamel {
 
 class TimeLoop : public Kernel {
  public:
+  ~TimeLoop() override;  // in time_loop.cpp, with the vtable (tools/cmake/localise)
+  Status advance(long count) final;
   const SolverStats& stats() const final { return stats_; }
   void limit(double t) final { limit_ = t; }
   double next_step() const final { return h_; }
+  void turn_back() final;
+  void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
+               double step) final;
 
  protected:
-  explicit TimeLoop(const KernelSetup& setup)
-      : setup_(setup), h_(setup.step), from_(setup.from), time_(setup.from) {}
+  explicit TimeLoop(const KernelSetup& setup);
 
-  /// One step of size h_. A step that fails leaves the state alone.
-  virtual SolveReport repeat_step() = 0;
-  /// The state, put away and fetched back.
-  virtual void save() = 0;
-  virtual void restore() = 0;
+  /// A state between steps is put away where a composed or rescued step goes back to when it fails.
+  enum class Kept { step, rescue };
+  /// Where the last step began: at the node before, or at one that was put away.
+  enum class Beginning { previous, step, rescue };
+
+  /// A substep of size h, with what is remembered of the earlier ones of its place in the composition. One that fails
+  /// leaves the state alone. Sets t_, and error_ where errors_ are controlled.
+  virtual SolveReport substep(int place, double h) = 0;
+  virtual void put_away(Kept where) = 0;
+  virtual void fetch(Kept where) = 0;  // sets t_
+  /// Drops what the step remembers of forces.
+  virtual void forget_forces() = 0;
+  /// The size of the next step by a reversible control; h_ where there is none.
+  virtual double controlled_size(double epsilon) = 0;
+  /// The time of the last node is t, but for round-off.
+  virtual void end_at(double t) = 0;
+  /// Another state: as if nothing had been before.
+  virtual void put(double t, std::span<const double> coordinates,
+                   std::span<const double> velocity) = 0;
 
   bool chooses_steps() const { return setup_.relative > 0 || setup_.absolute > 0; }
   double time() const {
     return chooses_steps() ? time_ : from_ + static_cast<double>(steps_ - first_) * h_;
   }
-  /// Where the next step ends at the latest: at the limit, or where an input jumps or bends.
-  double end_of_step(double t) const {
-    if (setup_.inputs == nullptr) [[likely]]
-      return limit_;
-    const double next = setup_.inputs->next_break(t, h_);
-    return (h_ > 0) == (next < limit_) ? next : limit_;
-  }
-  /// Above it a chosen step is worth trying.
-  double smallest_step(double t) const {
-    const double span = std::isfinite(limit_) ? limit_ - from_ : std::fmax(t - from_, setup_.step);
-    return 1e-14 * std::abs(span);
-  }
-  /// Steps count from here.
-  void count_from(double t) {
-    from_ = time_ = t;
-    first_ = steps_;
-  }
-  void tally(const SolveReport& report) {
-    last_ = report;
-    ++steps_;
-    stats_.iterations += report.iterations;
-    stats_.evaluations += report.evaluations;
-    if (report.iterations > stats_.iterations_max) stats_.iterations_max = report.iterations;
-    if (report.residual > stats_.residual_max) stats_.residual_max = report.residual;
-  }
-  /// A step has failed, and the state is still that of the last good one: what on_failure asks for.
-  SolveReport recover(SolveReport failed);
-  Status failure(const SolveReport& report) const;
 
   KernelSetup setup_;
   double h_;
   double limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
-  double from_, time_;  // where steps were first counted; of the last node
+  double from_, time_;  // where steps were first counted; of the last step's end
+  double t_;            // of the node
   long first_ = 0;
   long inputs_changed_ = 0;  // seen
   SolveReport last_;
   long steps_ = 0;
   SolverStats stats_;
+  Beginning beginning_ = Beginning::previous;
+  std::optional<ErrorControl> errors_;  // of explicit pairs whose steps are chosen
+  double error_ = 0;
 
  private:
+  SolveReport one_step();
+  SolveReport composed_step();
+  SolveReport chosen_step();
+  SolveReport error_controlled_step();
+  void enter_inputs();
+  double end_of_step(double t) const;
+  double smallest_step(double t) const;
+  void count_from(double t);
+  void tally(const SolveReport& report);
+  SolveReport recover(SolveReport failed);
   SolveReport halve(int level, int& parts);
+  Status failure(const SolveReport& report) const;
 };
 
 }  // namespace hamel

@@ -40,7 +40,7 @@ class RungeKutta {
   /// Evaluations of the equations of motion in the last step.
   int evaluations() const { return evaluations_; }
 
-  HAMEL_FLATTEN void begin(const Node& node, double h) {
+  void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
     evaluations_ = table_.stages;
@@ -58,7 +58,7 @@ class RungeKutta {
     extended_ = false;
   }
 
-  HAMEL_FLATTEN bool finish(const Unknown& /*x*/, Node& next) const {
+  bool finish(const Unknown& /*x*/, Node& next) const {
     for (int i = 1; i < last(); ++i) {
       if (!stage(i)) return false;
     }

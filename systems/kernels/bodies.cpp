@@ -8,6 +8,7 @@ namespace hamel {
 void add_disk_and_rattleback(Registry& registry) {
   add_compiled<FallingDisk>(registry);
   add_compiled<Rattleback>(registry);
+  add_typed_kernels<Rattleback, Exp<SE3>, Balance>(registry);
 }
 
 }  // namespace hamel
