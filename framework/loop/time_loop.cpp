@@ -11,9 +11,7 @@ namespace hamel {
 TimeLoop::TimeLoop(const KernelSetup& setup)
     : setup_(setup), h_(setup.step), from_(setup.from), time_(setup.from), t_(setup.from) {}
 
-TimeLoop::~TimeLoop() = default;
-
-Status TimeLoop::advance(long count) {
+Status TimeLoop::take_steps(long count) {
   const FlushDenormals flushed;
   for (long k = 0; k < count; ++k) {
     const bool chosen = chooses_steps();
@@ -41,16 +39,14 @@ inline void TimeLoop::tally(const SolveReport& report) {
   if (report.residual > stats_.residual_max) stats_.residual_max = report.residual;
 }
 
-void TimeLoop::turn_back() {
+void TimeLoop::reverse() {
   count_from(t_);
   h_ = -h_;
   limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
   forget();
 }
 
-void TimeLoop::restart(double t, std::span<const double> coordinates,
-                       std::span<const double> velocity, double step) {
-  put(t, coordinates, velocity);
+void TimeLoop::begin_anew(double t, double step) {
   h_ = step;
   limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
   count_from(t);

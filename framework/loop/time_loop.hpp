@@ -15,14 +15,18 @@ namespace hamel {
 
 class TimeLoop : public Kernel {
  public:
-  ~TimeLoop() override;  // in time_loop.cpp, with the vtable (tools/cmake/localise)
-  Status advance(long count) final;
+  // Virtual functions are inline here, so that every library has the vtable and the type of this class (localise makes them
+  // local).
+  Status advance(long count) final { return take_steps(count); }
   const SolverStats& stats() const final { return stats_; }
   void limit(double t) final { limit_ = t; }
   double next_step() const final { return h_; }
-  void turn_back() final;
+  void turn_back() final { reverse(); }
   void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
-               double step) final;
+               double step) final {
+    put(t, coordinates, velocity);
+    begin_anew(t, step);
+  }
 
  protected:
   explicit TimeLoop(const KernelSetup& setup);
@@ -67,6 +71,9 @@ class TimeLoop : public Kernel {
   double error_ = 0;
 
  private:
+  Status take_steps(long count);
+  void reverse();
+  void begin_anew(double t, double step);
   SolveReport one_step();
   SolveReport composed_step();
   SolveReport chosen_step();

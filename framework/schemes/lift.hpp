@@ -120,7 +120,7 @@ class Lift::General {
     place_.join(mu_, rows_, f);
   }
 
-  HAMEL_FLATTEN bool finish(const Unknown& x, Node& next) const {
+  bool finish(const Unknown& x, Node& next) const {
     if ((v_.array() != x.array()).any()) evaluate_again(x);
     if (!problem_.in_domain(step_)) return false;
     m_ += nu_;

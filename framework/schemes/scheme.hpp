@@ -39,7 +39,7 @@ struct SchemeDefaults {
   static constexpr bool steps_admissible = true;
   static constexpr bool explicit_step = false;
   // Steps chosen by the error: explicit ones estimate it, symmetric ones follow a reversible control
-  // (loop/step_control.hpp).
+  // (loop/error_control.hpp, loop/step_control.hpp).
   static constexpr bool estimates_error = false, varies_steps = false;
 };
 
