@@ -40,7 +40,7 @@ class RungeKutta {
   /// Evaluations of the equations of motion in the last step.
   int evaluations() const { return evaluations_; }
 
-  void begin(const Node& node, double h) {
+  HAMEL_FLATTEN void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
     evaluations_ = table_.stages;
@@ -50,7 +50,7 @@ class RungeKutta {
     if (is(end_, node)) {
       x_rates_[0] = x_rates_[at(last())];
     } else if (!is(begin_, node)) {  // else the step is taken again with another size
-      motion_(node.t, node.g, node.x, x_rates_[0]);
+      accelerate(node.t, node.g, node.x, x_rates_[0]);
       ++evaluations_;
     }
     begin_ = node;
@@ -58,7 +58,7 @@ class RungeKutta {
     extended_ = false;
   }
 
-  bool finish(const Unknown& /*x*/, Node& next) const {
+  HAMEL_FLATTEN bool finish(const Unknown& /*x*/, Node& next) const {
     for (int i = 1; i < last(); ++i) {
       if (!stage(i)) return false;
     }
@@ -73,7 +73,7 @@ class RungeKutta {
       problem_.velocity(next.x, xi_);
       self().rate(q_, next.g, xi_, q_rates_[at(last())]);
     }
-    motion_(next.t, next.g, next.x, x_rates_[at(last())]);
+    accelerate(next.t, next.g, next.x, x_rates_[at(last())]);
     end_ = next;
     return next.x.allFinite();
   }
@@ -110,6 +110,11 @@ class RungeKutta {
   bool is(const Node& one, const Node& other) const {
     return one.t == other.t && one.x == other.x && problem_.same(one.g, other.g);
   }
+  // The equations of motion with all that they call, inlined once: a third fewer instructions than calls.
+  HAMEL_FLATTEN [[gnu::noinline]] void accelerate(double t, const Element& g, const State& x,
+                                                  State& rate) const {
+    motion_(t, g, x, rate);
+  }
   // q_ and x_ at stage i.
   void sum(int i) const {
     q_ = q0_;
@@ -121,7 +126,7 @@ class RungeKutta {
       x_ += weight * x_rates_[at(j)];
     }
   }
-  bool stage(int i) const {
+  HAMEL_FLATTEN [[gnu::noinline]] bool stage(int i) const {
     sum(i);
     if constexpr (P::left_invariant && Derived::rate_in_algebra) {
       if (!problem_.in_domain(q_)) return false;
@@ -130,7 +135,7 @@ class RungeKutta {
     }
     problem_.velocity(x_, xi_);
     self().rate(q_, g_, xi_, q_rates_[at(i)]);
-    motion_(from_->t + table_.c[at(i)] * h_, g_, x_, x_rates_[at(i)]);
+    accelerate(from_->t + table_.c[at(i)] * h_, g_, x_, x_rates_[at(i)]);
     return true;
   }
   // Onto the constraints. They must hold to a percent of the velocity before they are imposed: the error of a sound
