@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "paper_studies.hpp"

@@ -113,21 +113,21 @@ std::string RunFile::file(const std::string& path) const {
 Trajectory read_rows(const RunFile& file, std::size_t most) {
   constexpr std::size_t piece = 4096;
   Trajectory out;
-  MemorySink rows(out, most);
-  rows.begin({file.table().groups(), "", "", ""});
+  const std::unique_ptr<Sink> rows = make_memory_sink(out, most);
+  rows->begin({file.table().groups(), "", "", ""});
   std::vector<double> values;
   const std::size_t count = file.table().rows();
   std::uint64_t sum = kNoRows;
   for (std::size_t at = 0; at < count; at += piece) {
     file.table().read(at, std::min(piece, count - at), values);
     sum = checksum_of_rows(sum, values);
-    rows.rows(values);
+    rows->rows(values);
   }
   if (file.table().checksum().value_or(sum) != sum) {
     throw ConfigError(
         {fmt::format("'{}': it is damaged: its rows are not those written", file.path())});
   }
-  rows.finish(Result());
+  rows->finish(Result());
   return out;
 }
 

@@ -199,28 +199,43 @@ std::string record_mistake(const std::string& path) {
   return unwritable(path);
 }
 
-void MemorySink::begin(const RunHead& head) { out_ = Trajectory(head.columns); }
+namespace {
 
-void MemorySink::rows(std::span<const double> values) {
-  const std::size_t width = out_.columns().size();
-  for (std::size_t at = 0; at < values.size(); at += width) {
-    const auto row = values.subspan(at, width);
-    last_.clear();
-    if (seen_++ % stride_ != 0) {
-      last_.assign(row.begin(), row.end());
-      continue;
+class MemorySink final : public Sink {
+ public:
+  MemorySink(Trajectory& rows, std::size_t most) : out_(rows), most_(most) {}
+  void begin(const RunHead& head) override { out_ = Trajectory(head.columns); }
+  void rows(std::span<const double> values) override {
+    const std::size_t width = out_.columns().size();
+    for (std::size_t at = 0; at < values.size(); at += width) {
+      const auto row = values.subspan(at, width);
+      last_.clear();
+      if (seen_++ % stride_ != 0) {
+        last_.assign(row.begin(), row.end());
+        continue;
+      }
+      out_.append(row);
+      if (most_ == 0 || out_.rows() <= most_) continue;
+      out_.thin();
+      stride_ *= 2;
+      if ((seen_ - 1) % stride_ != 0) last_.assign(row.begin(), row.end());
     }
-    out_.append(row);
-    if (most_ == 0 || out_.rows() <= most_) continue;
-    out_.thin();
-    stride_ *= 2;
-    if ((seen_ - 1) % stride_ != 0) last_.assign(row.begin(), row.end());
   }
-}
+  void finish(const Result&) override {
+    if (!last_.empty()) out_.append(last_);
+    out_.stride(stride_);
+  }
 
-void MemorySink::finish(const Result&) {
-  if (!last_.empty()) out_.append(last_);
-  out_.stride(stride_);
+ private:
+  Trajectory& out_;
+  std::size_t most_, stride_ = 1, seen_ = 0;
+  std::vector<double> last_;  // row, where it is none of the kept
+};
+
+}  // namespace
+
+std::unique_ptr<Sink> make_memory_sink(Trajectory& rows, std::size_t most) {
+  return std::make_unique<MemorySink>(rows, most);
 }
 
 }  // namespace hamel

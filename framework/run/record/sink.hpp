@@ -44,17 +44,6 @@ std::unique_ptr<Sink> make_sink(const std::string& path);
 std::string record_mistake(const std::string& path);
 
 /// Appends to the trajectory; beyond `most` rows (0: no bound) every second one is dropped, again and again.
-class MemorySink final : public Sink {
- public:
-  MemorySink(Trajectory& rows, std::size_t most) : out_(rows), most_(most) {}
-  void begin(const RunHead& head) override;
-  void rows(std::span<const double> values) override;
-  void finish(const Result&) override;
-
- private:
-  Trajectory& out_;
-  std::size_t most_, stride_ = 1, seen_ = 0;
-  std::vector<double> last_;  // row, where it is none of the kept
-};
+std::unique_ptr<Sink> make_memory_sink(Trajectory& rows, std::size_t most);
 
 }  // namespace hamel

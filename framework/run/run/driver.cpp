@@ -43,8 +43,7 @@ void Driver::make_observers() {
   every_node_ = every_node_ || meter_->wants_nodes();
   for (const std::string& path : request_.records) sinks_.push_back(make_sink(path));
   if (request_.records.empty() || request_.rows_kept)
-    sinks_.push_back(
-        std::make_unique<MemorySink>(result_.trajectory, request_.rows_kept.value_or(0)));
+    sinks_.push_back(make_memory_sink(result_.trajectory, request_.rows_kept.value_or(0)));
   for (const auto& sink : sinks_) resumable_ = resumable_ || sink->resumable();
 }
 
