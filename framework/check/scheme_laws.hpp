@@ -66,13 +66,13 @@ inline OrderMeasurement measure_order(Simulation simulation, double step, double
 /// together. The run with -h starts from the nodal velocity, so that the scheme must keep it
 /// admissible: for a scheme that leaves the constraint give a system without constraints.
 inline double reversal_error(Simulation simulation, long steps) {
-  Run forward = simulation.build();
+  hamel::Run forward = simulation.build();
   const Snapshot start = forward.state();
   if (!forward.step(steps).ok) return std::numeric_limits<double>::quiet_NaN();
   const Snapshot& end = forward.state();
   simulation.start({.configuration = end.coordinates, .velocity = end.velocity, .momentum = {}});
   simulation.step(-simulation.config().step).until(-simulation.config().until);
-  Run backward = simulation.build();
+  hamel::Run backward = simulation.build();
   if (!backward.step(steps).ok) return std::numeric_limits<double>::quiet_NaN();
   const Snapshot& back = backward.state();
   double sum = 0;

@@ -138,7 +138,7 @@ const std::vector<Ours> kOurs = {
     {"rkmk4"}, {"dopri5", "none", true}, {"tsit5", "none", true}, {"dop853", "none", true}};
 
 Method ours(const Simulation& simulation, const Ours& method) {
-  auto run = std::make_shared<std::unique_ptr<Run>>();
+  auto run = std::make_shared<std::unique_ptr<hamel::Run>>();
   Method out;
   out.family = "hamel";
   out.name = method.compose == "none" ? method.scheme : method.scheme + " " + method.compose;
@@ -152,7 +152,7 @@ Method ours(const Simulation& simulation, const Ours& method) {
   };
   out.prepare = [run, set_up, built = 0.0](double h) mutable {
     if (built == h) return (*run)->restart((*run)->config().start);
-    *run = std::make_unique<Run>(set_up(h).build());
+    *run = std::make_unique<hamel::Run>(set_up(h).build());
     built = h;
   };
   out.run = [run, chosen = method.chosen] {
@@ -263,7 +263,7 @@ void compare(const Case<S, ByHand>& it) {
   using Ode = SundialsOde<ByHand<double>>;
   methods.push_back(sundials_method("ARKODE 5(4)", std::make_shared<Ode>(equations, 5), it.until));
   methods.push_back(sundials_method("CVODE Adams", std::make_shared<Ode>(equations, 0), it.until));
-  const Run built = simulation.build();
+  const hamel::Run built = simulation.build();
   methods.push_back(sundials_method(
       "IDA, multipliers",
       std::make_shared<Multipliers<S>>(built.system(), it.system, built.config().start), it.until));
@@ -286,7 +286,7 @@ void compare(const Case<S, ByHand>& it) {
   std::printf("\n%s, %g s; hamel's most accurate run differs from the reduction by hand by %.1e\n",
               it.name.c_str(), it.until, agreement);
   print(points);
-  Run run = simulation.build();
+  hamel::Run run = simulation.build();
   const Start start = run.config().start;
   const double again = least_of_200([&] { run.restart(start); });
   std::printf("  setting a run up takes %s, starting it again from another state %s\n",

@@ -20,7 +20,7 @@ using namespace hamel;  // a program, not a header
 constexpr long kSteps = 2000;
 
 double seconds_of(const Simulation& simulation) {
-  Run integration = simulation.build();
+  hamel::Run integration = simulation.build();
   (void)integration.step(20);  // a history to extrapolate from
   const auto before = std::chrono::steady_clock::now();
   if (!integration.step(kSteps)) return std::nan("");

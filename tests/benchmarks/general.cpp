@@ -15,7 +15,7 @@ void run(benchmark::State& state, const Simulation& simulation, long steps) {
   double evaluations = 0;
   for (auto _ : state) {
     state.PauseTiming();
-    Run integration = simulation.build();
+    hamel::Run integration = simulation.build();
     (void)integration.step(20);  // a history to extrapolate from
     const long before = integration.stats().evaluations;
     state.ResumeTiming();

@@ -21,7 +21,7 @@ using namespace hamel;  // a program, not a header
 constexpr long kSteps = 500;
 
 // Of this process, so that others on the machine do not count.
-double seconds_of(Run& run, benchmark::State& state) {
+double seconds_of(hamel::Run& run, benchmark::State& state) {
   const std::clock_t begin = std::clock();
   if (!run.step(kSteps)) state.SkipWithError("failed");
   return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
@@ -35,7 +35,7 @@ double median(std::vector<double> values) {
 
 // Blocks of steps in turns, so that both see the same machine.
 void compare(benchmark::State& state, const Simulation& written, const Simulation& parts) {
-  Run hers = written.build(), ours = parts.build();
+  hamel::Run hers = written.build(), ours = parts.build();
   (void)hers.step(20);
   (void)ours.step(20);
   std::vector<double> ratios, times;
@@ -92,7 +92,7 @@ void equations(benchmark::State& state) {
 
 void step(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
-  Run run = simulate(chain(n)).step(0.001).build();
+  hamel::Run run = simulate(chain(n)).step(0.001).build();
   const Start start = run.config().start;
   long taken = 0;
   for (auto _ : state) {  // the first second again and again: later a long chain lies in knots

@@ -39,7 +39,7 @@ void hand(benchmark::State& state, bool (Body::*step)(), double a, double b) {
 void library(benchmark::State& state, const Simulation& simulation) {
   for (auto _ : state) {
     state.PauseTiming();
-    Run run = simulation.build();
+    hamel::Run run = simulation.build();
     state.ResumeTiming();
     if (!run.step(kSteps)) state.SkipWithError("failed");
   }

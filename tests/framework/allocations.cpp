@@ -71,7 +71,7 @@ TEST_F(Allocations, AreCounted) {
   delete numbers;
 }
 
-long counted(Run& run, long steps, Status& status) {
+long counted(hamel::Run& run, long steps, Status& status) {
   const long before = allocations;
   status = run.step(steps);
   return allocations - before;
@@ -85,15 +85,15 @@ void expect_none(const S& system, const std::string& compose = "none") {
         // boxed_literal takes O(1) steps whatever h is: a small start keeps it inside every domain.
         Start start = system.start();
         for (double& v : start.velocity) v *= 0.2;
-        Run run = simulate(system)
-                      .scheme(scheme)
-                      .s(s)
-                      .retraction(retraction)
-                      .start(start)
-                      .compose(compose)
-                      .with(&Config::force, true)
-                      .step(0.02)
-                      .build();
+        hamel::Run run = simulate(system)
+                             .scheme(scheme)
+                             .s(s)
+                             .retraction(retraction)
+                             .start(start)
+                             .compose(compose)
+                             .with(&Config::force, true)
+                             .step(0.02)
+                             .build();
         Status status;
         (void)run.step(3);  // the first steps size what is kept
         EXPECT_EQ(counted(run, 20, status), 0)
@@ -113,7 +113,7 @@ TEST_F(Allocations, NoneOnAProduct) { expect_none(test::Body<Product<SE2, SO2>, 
 TEST_F(Allocations, NoneOnMechanisms) {
   for (const std::string system : {"bicycle", "kick_scooter", "skateboard"}) {
     for (const char* scheme : {"lift", "balance", "rkmk4"}) {
-      Run run = simulate(system).scheme(scheme).step(0.002).build();
+      hamel::Run run = simulate(system).scheme(scheme).step(0.002).build();
       run.step(3);
       Status status;
       EXPECT_EQ(counted(run, 20, status), 0) << system << " " << scheme;
@@ -140,7 +140,7 @@ torque = {}
     for (const double torque : {0.0, 0.1}) {
       Simulation simulation(registry(), "data", data_system_maker(registry(), "data.toml", text));
       if (torque != 0) simulation.input("torque", torque);
-      Run run = simulation.scheme(scheme).step(0.002).build();
+      hamel::Run run = simulation.scheme(scheme).step(0.002).build();
       (void)run.step(3);
       Status status;
       const long of_call = torque == 0 ? 0 : counted(run, 1, status);  // with inputs some a call
@@ -156,7 +156,7 @@ TEST_F(Allocations, NoneOnGeneralSystems) {
       const SchemeInfo& info = *registry().scheme(scheme);
       if (!info.defined(registry().system(system)->make({}).mechanics->left_invariant())) continue;
       for (const double s : {0.0, 0.5}) {
-        Run run = simulate(system).scheme(scheme).s(s).step(0.002).build();
+        hamel::Run run = simulate(system).scheme(scheme).s(s).step(0.002).build();
         run.step(3);  // the first steps size what is kept
         Status status;
         EXPECT_EQ(counted(run, 20, status), 0) << system << " " << scheme << " s = " << s;

@@ -16,7 +16,7 @@ TEST(Denormals, AreFlushedWithinTheLoopOnly) {
 #endif
   const unsigned before = _mm_getcsr();
   // omega of the sleigh decays like e^{-kappa t}: subnormal after about 480 s.
-  Run run = simulate<Lift, Cayley>(ChaplyginSleigh{}).step(0.01).build();
+  hamel::Run run = simulate<Lift, Cayley>(ChaplyginSleigh{}).step(0.01).build();
   int subnormal = 0;
   for (int i = 0; i < 700; ++i) {
     ASSERT_TRUE(run.step(100));

@@ -106,7 +106,7 @@ void expect_same_steps() {
   const test::Body<G, K> body;
   const double h = 0.2;
   for (const double s : {0.0, 0.3, 0.5, 1.0}) {
-    Run run = simulate(body).scheme("lift").s(s).retraction(Tau::name()).step(h).build();
+    hamel::Run run = simulate(body).scheme("lift").s(s).retraction(Tau::name()).step(h).build();
     const Snapshot start = run.state();
     const Eigen::MatrixXd frame = hamel_frame(body.inertia(), Eigen::MatrixXd(body.constraints()));
     const DiscreteMechanics<Tau> mechanics(body.inertia(), frame, s, h);

@@ -66,7 +66,7 @@ TEST(Driver, ByHandIsAsToTheEnd) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
     const Result whole = c.simulation.run();
-    Run run = c.simulation.build();
+    hamel::Run run = c.simulation.build();
     const double until = c.simulation.config().until;
     if (c.simulation.config().chooses_steps()) {
       ASSERT_TRUE(run.advance_to(until));
@@ -92,7 +92,7 @@ TEST(Driver, ByHandIsAsToTheEnd) {
 
 // Steps after advance_to() go on: its end is no limit of theirs.
 TEST(Driver, StepsOnBehindATime) {
-  Run run = simulate("suslov").scheme("dop853").tolerance({1e-8}).build();
+  hamel::Run run = simulate("suslov").scheme("dop853").tolerance({1e-8}).build();
   ASSERT_TRUE(run.advance_to(1));
   EXPECT_EQ(run.state().time, 1);
   ASSERT_TRUE(run.step());
@@ -100,7 +100,7 @@ TEST(Driver, StepsOnBehindATime) {
 }
 
 TEST(Driver, StopsAndStaysAtAnEvent) {
-  Run run = simulate("chaplygin_sleigh").step(0.01).stop_at({"theta=0.5"}).build();
+  hamel::Run run = simulate("chaplygin_sleigh").step(0.01).stop_at({"theta=0.5"}).build();
   Status status;
   for (int k = 0; k < 1000 && status.reason.empty(); ++k) status = run.step();
   ASSERT_TRUE(status);
@@ -114,7 +114,7 @@ TEST(Driver, StopsAndStaysAtAnEvent) {
 
 TEST(Driver, RestartsWithRowsAndEvents) {
   Simulation made = simulate("chaplygin_sleigh").step(0.01).events({"theta=0.5"});
-  Run again = made.keep_rows(1000).build(), fresh = made.build();
+  hamel::Run again = made.keep_rows(1000).build(), fresh = made.build();
   ASSERT_TRUE(again.step(150));
   again.restart(again.config().start);
   ASSERT_TRUE(again.step(200));
@@ -136,7 +136,7 @@ TEST(Driver, WritesFilesByHand) {
   const std::string a = folder / "a.csv", b = folder / "b.csv";
   const Simulation made = simulate("suslov").step(0.01).until(2);
   (void)Simulation(made).record_to(a).run();
-  Run run = Simulation(made).record_to(b).build();
+  hamel::Run run = Simulation(made).record_to(b).build();
   ASSERT_TRUE(run.step(200));
   EXPECT_FALSE(std::filesystem::exists(b));  // b.csv.part
   EXPECT_THAT(refusal([&] { run.restart(run.config().start); }), HasSubstr("rows"));
@@ -148,7 +148,7 @@ TEST(Driver, WritesFilesByHand) {
 
 // Without rows the ends are measured; what needs every node is not known, and the result says so.
 TEST(Driver, MeasuresTheEndsWithoutRows) {
-  Run run = simulate("suslov").set("inertia", {2, 0.3, 0.5, 3, 0.4, 4}).step(0.05).build();
+  hamel::Run run = simulate("suslov").set("inertia", {2, 0.3, 0.5, 3, 0.4, 4}).step(0.05).build();
   ASSERT_TRUE(run.step(100));
   const Result free = run.finish();
   EXPECT_EQ(free.steps, 100);
@@ -156,7 +156,7 @@ TEST(Driver, MeasuresTheEndsWithoutRows) {
   EXPECT_GT(free.energy_error_max, 0);
   EXPECT_LT(free.exact_error_final, 0.1);
   EXPECT_GT(free.exact_error_final, 1e-12);
-  Run forced = simulate("segway").input("left_torque", 1).step(0.01).build();
+  hamel::Run forced = simulate("segway").input("left_torque", 1).step(0.01).build();
   ASSERT_TRUE(forced.step(20));
   const Result driven = forced.finish();
   EXPECT_TRUE(std::isnan(driven.energy_error_max));
@@ -165,9 +165,9 @@ TEST(Driver, MeasuresTheEndsWithoutRows) {
 
 // A run that is moved from and let go, as user code does.
 TEST(Driver, IsMoved) {
-  std::vector<Run> runs;
+  std::vector<hamel::Run> runs;
   for (int k = 0; k < 3; ++k) runs.push_back(simulate("falling_disk").step(0.01).build());
-  for (Run& run : runs) ASSERT_TRUE(run.step(3));
+  for (hamel::Run& run : runs) ASSERT_TRUE(run.step(3));
   runs[0] = std::move(runs[2]);
   EXPECT_TRUE(runs[0].step(2));
   EXPECT_EQ(runs[0].state().step, 5);

@@ -39,7 +39,7 @@ struct OneStep {
   OneStep(const std::string& scheme, double parameter) : s(parameter) {
     Start start = body.start();
     for (double& v : start.velocity) v *= 0.7;
-    Run run =
+    hamel::Run run =
         simulate(body).start(start).scheme(scheme).s(s).retraction(Tau::name()).step(h).build();
     const Snapshot before = run.state();
     EXPECT_TRUE(run.step().ok);

@@ -218,7 +218,7 @@ TEST(RunByHand, KnowWhereTheyAre) {
   for (const double tolerance : {0.0, 1e-6}) {
     Simulation s = simulate("chaplygin_sleigh");
     if (tolerance > 0) s.scheme("tsit5").tolerance({tolerance});
-    Run run = s.build();
+    hamel::Run run = s.build();
     EXPECT_TRUE(run.advance_to(0.7).ok);
     EXPECT_TRUE(run.advance_to(0.7).ok);
     for (const double t : {0.3, std::nan("")}) {

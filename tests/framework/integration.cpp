@@ -19,7 +19,7 @@ using testing::HasSubstr;
 TEST(RunByHand, TakesInputsBetweenSteps) {
   InputTable table{{}, {}, true};
   for (const std::string scheme : {"lift", "balance", "rkmk4", "rk4_projected"}) {
-    Run run = simulate("segway").scheme(scheme).step(0.01).input("left_torque", 0).build();
+    hamel::Run run = simulate("segway").scheme(scheme).step(0.01).input("left_torque", 0).build();
     table.times.clear(), table.values.clear();
     for (int k = 0; k < 20; ++k) {
       const double torque = 3 * std::sin(0.4 * k);
@@ -39,24 +39,24 @@ TEST(RunByHand, TakesInputsBetweenSteps) {
 }
 
 TEST(RunByHand, AdvancesByWholeSteps) {
-  Run run = simulate("chaplygin_sleigh").step(0.1).build();
+  hamel::Run run = simulate("chaplygin_sleigh").step(0.1).build();
   EXPECT_TRUE(run.advance_to(0.3));
   EXPECT_EQ(run.state().step, 3);
   EXPECT_TRUE(run.advance_to(0.3));  // there already
   EXPECT_TRUE(run.advance_to(0.53));
   EXPECT_EQ(run.state().step, 5);
-  Run back = simulate("chaplygin_sleigh").step(-0.1).until(-1).build();
+  hamel::Run back = simulate("chaplygin_sleigh").step(-0.1).until(-1).build();
   EXPECT_TRUE(back.advance_to(-0.3));
   EXPECT_EQ(back.state().step, 3);
 }
 
 TEST(RunByHand, RefusesBadInputs) {
-  Run run = simulate("segway").input("left_torque", 0).build();
+  hamel::Run run = simulate("segway").input("left_torque", 0).build();
   EXPECT_THAT(refusal([&] { run.input("left_torqe", 1); }),
               HasSubstr("did you mean 'left_torque'?"));
   EXPECT_THAT(refusal([&] { run.input("left_torque", std::nan("")); }), HasSubstr("got nan"));
   EXPECT_EQ(refusal([&] { run.input("right_torque", 1); }), "accepted");
-  Run undriven = simulate("segway").build();
+  hamel::Run undriven = simulate("segway").build();
   EXPECT_THAT(refusal([&] { undriven.input("left_torque", 1); }),
               HasSubstr(".input(\"left_torque\", 0)"));
   EXPECT_THAT(refusal([&] { simulate("suslov").build().input("torque", 1); }),
@@ -66,7 +66,7 @@ TEST(RunByHand, RefusesBadInputs) {
 // Beyond its table an input is not known.
 TEST(RunByHand, EndsWithItsTables) {
   Simulation made = simulate("segway").step(0.01).until(1);
-  Run run = made.input("left_torque", InputTable{{0, 1}, {0, 1}}).build();
+  hamel::Run run = made.input("left_torque", InputTable{{0, 1}, {0, 1}}).build();
   EXPECT_TRUE(run.step(100));
   const Status status = run.step();
   EXPECT_FALSE(status);
@@ -96,7 +96,7 @@ TEST(RunByHand, StartsAgain) {
       Simulation simulation = simulate(c.system);
       return simulation.scheme(c.scheme).compose(c.compose).step(0.01);
     };
-    Run again = made().build(), fresh = made().start(c.start).build();
+    hamel::Run again = made().build(), fresh = made().start(c.start).build();
     ASSERT_TRUE(again.step(37));
     (void)again.state();
     again.restart(c.start);
@@ -111,7 +111,7 @@ TEST(RunByHand, StartsAgain) {
     EXPECT_EQ(again.stats().iterations, fresh.stats().iterations);
     EXPECT_EQ(again.state().step, 100);
   }
-  Run run = simulate("suslov").build();
+  hamel::Run run = simulate("suslov").build();
   EXPECT_THAT(refusal([&] {
                 run.restart({.velocity = {1, 2}});
               }),

@@ -86,12 +86,12 @@ void expect_jacobians(const S& system) {
           mine.add(SolverInfo{"inspector", "", "",
                               [&] { return std::make_shared<Inspector>(worst, points); }});
           Simulation simulation(mine, "body", maker(system));
-          Run run = simulation.scheme(scheme)
-                        .s(s)
-                        .retraction(retraction)
-                        .solver("inspector")
-                        .step(h)
-                        .build();
+          hamel::Run run = simulation.scheme(scheme)
+                               .s(s)
+                               .retraction(retraction)
+                               .solver("inspector")
+                               .step(h)
+                               .build();
           (void)run.step();  // with the guess for the solution, perhaps outside the domain
           EXPECT_EQ(points, 4);
           EXPECT_LE(worst, bound) << G::name() << " " << scheme << " " << retraction << " s = " << s

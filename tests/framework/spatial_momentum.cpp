@@ -16,7 +16,7 @@ using namespace hamel;
 /// max |Ad*_{g_k^-1} mu_k - mu at the start| over 200 steps, relative.
 template <class G>
 double momentum_drift(const Simulation& simulation) {
-  Run run = simulation.build();
+  hamel::Run run = simulation.build();
   const auto spatial = [&]() -> Vec<G::dim> {
     const Snapshot& state = run.state();
     const auto g = G::from_coordinates(state.coordinates);

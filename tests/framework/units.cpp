@@ -70,7 +70,7 @@ double relative_residual(const SchemeInfo& scheme, double s, double length, bool
   Simulation simulation(mine, "skate", [model](const Parameters&) { return model; });
   simulation.scheme(scheme.name).s(s).solver("inspector").step(0.1);
   simulation.start({.velocity = {velocity.begin(), velocity.end()}});
-  Run run = simulation.build();
+  hamel::Run run = simulation.build();
   (void)run.step();
   return found;
 }

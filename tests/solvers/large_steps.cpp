@@ -126,7 +126,7 @@ void expect_no_spurious_root(const S& system, double s, std::map<std::string, Co
             .solver(solver)
             .step(h)
             .until(h);
-        Run run = simulation.build();
+        hamel::Run run = simulation.build();
         Count& count = counts[solver];
         if (!run.step()) {
           ++count.refused;

@@ -218,7 +218,7 @@ TEST(NewtonInARun, FailsInTheMiddle) {
   EXPECT_GE(r.steps, 1);
   EXPECT_EQ(r.last.step, r.steps);
   // Stepped by hand it fails in the same step, and stays at the last good state.
-  Run run = simulation.build();
+  hamel::Run run = simulation.build();
   EXPECT_TRUE(run.step(r.steps).ok);
   const Snapshot good = run.state();
   EXPECT_FALSE(run.step().ok);

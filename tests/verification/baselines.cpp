@@ -45,7 +45,7 @@ TEST(Suslov, ContractsAtTheRateUsedHere) {
 /// nodes has its square. The error of lift with the same step does not grow.
 TEST(Gni, IsEndedByAModeThatAlternatesAndGrows) {
   const double h = 0.0125;
-  Run run = suslov("gni", h, 20).build();
+  hamel::Run run = suslov("gni", h, 20).build();
   const auto flow = run.system().exact(run.config().start);
   std::vector<double> across, velocity_error;
   while (run.state().time < 16 - h / 2) {
@@ -87,7 +87,7 @@ TEST(Gni, HasOrderTwoUntilThen) {
 /// the step.
 TEST(Gni, IsNotSavedBySmallerSteps) {
   const auto end = [](double h) {
-    Run run = suslov("gni", h, 40).build();
+    hamel::Run run = suslov("gni", h, 40).build();
     const auto flow = run.system().exact(run.config().start);
     while (run.step().ok && run.state().time < 40) {
       const Snapshot& now = run.state();

@@ -14,7 +14,8 @@ Simulation suslov() { return simulate("suslov_in_potential"); }
 TEST(ReversibleControl, ReturnsToItsStart) {
   for (const std::string system : {"falling_disk", "contact_oscillator"}) {
     for (const std::string scheme : {"lift", "balance"}) {
-      Run run = simulate(system).scheme(scheme).step(0.01).tolerance({.relative = 1e-5}).build();
+      hamel::Run run =
+          simulate(system).scheme(scheme).step(0.01).tolerance({.relative = 1e-5}).build();
       const Snapshot start = run.state();
       ASSERT_TRUE(run.step(10000));
       const Snapshot there = run.state();
@@ -91,7 +92,7 @@ Drift drift_of(const std::vector<double>& t, const std::vector<double>& e) {
 class UsualControl {
  public:
   UsualControl(const std::string& name, double tolerance) : epsilon_(std::sqrt(tolerance)) {
-    Run run = simulate(name).build();
+    hamel::Run run = simulate(name).build();
     state_ = run.state();
     KernelSetup setup;
     setup.mechanics = run.system().mechanics;
@@ -148,7 +149,7 @@ TEST(ReversibleControl, KeepsTheEnergyOfALongMotion) {
         Simulation simulation = simulate(name);
         if (kind == 1) simulation.tolerance({.relative = rtol});
         else simulation.step(end / steps);
-        Run run = simulation.build();
+        hamel::Run run = simulation.build();
         for (int i = 0; i < steps; i += every) {
           ASSERT_TRUE(run.step(every)) << name << " " << kind;
           keep(run.state());
