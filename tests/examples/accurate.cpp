@@ -1,5 +1,5 @@
 // Steps chosen by the error, output at times of one's own, an event that stops a run and one that changes its state.
-#include <hamel/hamel.hpp>
+#include <hamel/simulate.hpp>
 
 #include <cmath>
 #include <iostream>

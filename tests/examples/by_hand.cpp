@@ -2,7 +2,7 @@
 #include <cmath>
 #include <iostream>
 
-#include <hamel/hamel.hpp>
+#include <hamel/simulate.hpp>
 
 int main() {
   // One step at a time, until the sleigh has turned a quarter.

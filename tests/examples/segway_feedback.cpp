@@ -2,7 +2,7 @@
 #include <cmath>
 #include <iostream>
 
-#include <hamel/hamel.hpp>
+#include <hamel/simulate.hpp>
 
 namespace {
 

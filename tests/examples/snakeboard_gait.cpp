@@ -2,7 +2,7 @@
 #include <cmath>
 #include <iostream>
 
-#include <hamel/hamel.hpp>
+#include <hamel/simulate.hpp>
 
 int main() {
   // A gait, 100 rows a second: rotor and axles swing together, the axles against each other.

@@ -1,4 +1,4 @@
-#include <hamel/hamel.hpp>
+#include <hamel/simulate.hpp>
 
 #include <iostream>
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/schemes/composition.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/systems/by_name.hpp>
 
 namespace {

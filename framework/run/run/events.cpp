@@ -66,6 +66,37 @@ bool plane(const SystemModel& system, const std::string& text, Event& out,
   return true;
 }
 
+struct End {
+  double t, value;
+};
+
+// The time behind the crossing of zero between two ends of opposite sign, the later one's side of the bracket.
+template <class Inside>
+double crossing_time(const Inside& inside, End before, End now) {
+  const auto value = [&](double t) {
+    return t == before.t ? before.value : t == now.t ? now.value : inside(t);
+  };
+  const double width = 1e-12 * std::abs(now.t - before.t);
+  std::uintmax_t most = 100;
+  const bool forward = now.t > before.t;
+  const End low = forward ? before : now, high = forward ? now : before;
+  const auto [a, b] = boost::math::tools::toms748_solve(
+      value, low.t, high.t, low.value, high.value,
+      [width](double x, double y) { return std::abs(y - x) <= width; }, most);
+  return forward ? b : a;
+}
+
+// The ones of a step in order of time, up to the first that ends the run.
+void sort_and_cut(std::vector<Events::Found>& found, double sign) {
+  std::stable_sort(found.begin(), found.end(),
+                   [sign](const Events::Found& a, const Events::Found& b) {
+                     return sign * a.state.time < sign * b.state.time;
+                   });
+  const auto stop =
+      std::find_if(found.begin(), found.end(), [](const Events::Found& f) { return f.stops; });
+  if (stop != found.end()) found.erase(stop + 1, found.end());
+}
+
 }  // namespace
 
 std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Geometry> geometry) {
@@ -142,34 +173,19 @@ Status Events::look(const Snapshot& state, DenseOutput& dense, std::vector<Found
                  now = w.event.value(state.time, state.coordinates, state.velocity);
     w.before = now != 0 ? now : -before;
     if (before == 0 || !(before * now < 0 || now == 0) || before * w.event.direction > 0) continue;
-    double low = time_, high = state.time;
+    double crossing = state.time;
     if (now != 0) {
-      const auto value = [&](double t) {
-        if (t == low) return before;
-        if (t == high) return now;
-        if (const Status inside = dense.at(t, at); !inside.ok) status = inside;
+      const auto inside = [&](double t) {
+        if (const Status there = dense.at(t, at); !there.ok) status = there;
         return w.event.value(t, at.coordinates, at.velocity);
       };
-      const double width = 1e-12 * std::abs(high - low);
-      std::uintmax_t most = 100;
-      const bool forward = high > low;
-      const auto [a, b] = boost::math::tools::toms748_solve(
-          value, std::min(low, high), std::max(low, high), forward ? before : now,
-          forward ? now : before, [width](double x, double y) { return std::abs(y - x) <= width; },
-          most);
-      high = forward ? b : a;
+      crossing = crossing_time(inside, {time_, before}, {state.time, now});
     }
     if (!status.ok) return status;
-    if (const Status there = dense.at(high, at); !there.ok) return there;
+    if (const Status there = dense.at(crossing, at); !there.ok) return there;
     found.push_back({at, w.event.name, w.stops});
   }
-  const double sign = state.time >= time_ ? 1 : -1;
-  std::stable_sort(found.begin(), found.end(), [sign](const Found& a, const Found& b) {
-    return sign * a.state.time < sign * b.state.time;
-  });
-  const auto stop =
-      std::find_if(found.begin(), found.end(), [](const Found& f) { return f.stops; });
-  if (stop != found.end()) found.erase(stop + 1, found.end());
+  sort_and_cut(found, state.time >= time_ ? 1 : -1);
   time_ = state.time;
   return status;
 }
