@@ -77,7 +77,7 @@ void through_hamel(benchmark::State& state, const std::string& solver) {
                                     .step(kStep);
   for (auto _ : state) {
     state.PauseTiming();
-    hamel::Run run = simulation.build();
+    Run run = simulation.build();
     state.ResumeTiming();
     if (!run.step(kSteps)) state.SkipWithError("failed");
   }
@@ -95,9 +95,9 @@ void add(const std::string& solver) {
 class Ratios final : public benchmark::ConsoleReporter {
  public:
   Ratios() : ConsoleReporter(OO_None) {}
-  void ReportRuns(const std::vector<hamel::Run>& runs) override {
+  void ReportRuns(const std::vector<Run>& runs) override {
     ConsoleReporter::ReportRuns(runs);
-    for (const hamel::Run& run : runs) {
+    for (const Run& run : runs) {
       if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
       times_[run.run_name.function_name].push_back(run.counters.at("per_step").value);
     }

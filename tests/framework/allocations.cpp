@@ -138,7 +138,8 @@ torque = {}
 )toml";
   for (const char* scheme : {"lift", "balance", "rkmk4"}) {
     for (const double torque : {0.0, 0.1}) {
-      Simulation simulation(registry(), "data", data_system_maker(registry(), "data.toml", text));
+      Simulation simulation(registry(), "data",
+                            OwnSystem{data_system_maker(registry(), "data.toml", text)});
       if (torque != 0) simulation.input("torque", torque);
       hamel::Run run = simulation.scheme(scheme).step(0.002).build();
       (void)run.step(3);

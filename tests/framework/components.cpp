@@ -158,7 +158,7 @@ TEST(Components, OfAGroupOfAUsersOwn) {
       simulate(Particle{}).start({.velocity = {1, 0.5, 0.2}}).retraction("exp").until(1).run();
   ASSERT_TRUE(run);
   const std::string names = "eastwards [m/s] northwards [m/s] upwards [m2/s] ";
-  EXPECT_EQ(names_of(components_of(run.system)), names);
+  EXPECT_EQ(names_of(components_of(*run.system)), names);
   const std::vector<ColumnGroup>& columns = run.trajectory.groups();
   const auto group = [&](const std::string& name) {
     return *std::ranges::find_if(columns, [&](const auto& g) { return g.name == name; });
@@ -166,7 +166,7 @@ TEST(Components, OfAGroupOfAUsersOwn) {
   EXPECT_EQ(group("configuration").unit, "m,m,m2");
   EXPECT_THAT(group("xi").meaning, testing::HasSubstr("eastwards,northwards,upwards"));
   EXPECT_EQ(group("xi").unit, "m/s,m/s,m2/s");
-  EXPECT_TRUE(shape_of(run.system.group, components_of(run.system)).empty());
+  EXPECT_TRUE(shape_of(run.system->group, components_of(*run.system)).empty());
 
   EXPECT_EQ(names_of(components_of(group_info<Nameless>())), "xi1 [] xi2 [] xi3 [] ");
   EXPECT_EQ(names_of(components_of(group_info<Product<Rn<1>, Nameless, Rn<1>>>())),

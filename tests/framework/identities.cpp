@@ -24,7 +24,7 @@ double apart(Simulation a, Simulation b) {
   EXPECT_TRUE(x.status.ok && y.status.ok) << x.status.reason << y.status.reason;
   double worst = 0;
   const size_t columns =
-      1 + x.system.group.columns.size() + static_cast<size_t>(x.system.group.dim);
+      1 + x.system->group.columns.size() + static_cast<size_t>(x.system->group.dim);
   for (size_t i = 0; i < x.trajectory.rows(); ++i) {
     for (size_t j = 0; j < columns; ++j) {
       worst = std::max(worst, std::abs(x.trajectory.at(i, j) - y.trajectory.at(i, j)));
@@ -78,9 +78,11 @@ TEST(Identities, TypedAndNamedPathsAgree) {
 TEST(Identities, CompiledAndErasedProblemsAgree) {
   for (const char* scheme : {"lift", "balance", "boxed", "boxed_literal", "unadapted", "rkmk4"}) {
     for (const char* retraction : {"cayley", "exp"}) {
-      Simulation erased = simulate(full()).retraction(retraction).scheme(scheme);
-      erased.kernel(registry().scheme(scheme)->erased, *registry().scheme(scheme),
-                    *registry().retraction("so3", retraction));
+      const Simulation erased(registry(), "suslov",
+                              OwnSystem{.make = maker(full()),
+                                        .kernel = registry().scheme(scheme)->erased,
+                                        .scheme = *registry().scheme(scheme),
+                                        .retraction = *registry().retraction("so3", retraction)});
       EXPECT_LE(apart(erased, simulate(full()).retraction(retraction).scheme(scheme)), bound)
           << scheme << ", " << retraction;
     }

@@ -85,7 +85,7 @@ void expect_jacobians(const S& system) {
           Registry mine = registry();
           mine.add(SolverInfo{"inspector", "", "",
                               [&] { return std::make_shared<Inspector>(worst, points); }});
-          Simulation simulation(mine, "body", maker(system));
+          Simulation simulation(mine, "body", OwnSystem{maker(system)});
           hamel::Run run = simulation.scheme(scheme)
                                .s(s)
                                .retraction(retraction)

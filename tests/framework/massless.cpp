@@ -14,7 +14,7 @@ std::string skate(const char* mass_across) {
          "]\nconstraints = [[0, 0, 1]]\nvelocity = [1.2, 0.5, 0]\n";
 }
 Simulation of(const std::string& text) {
-  return {registry(), "skate", data_system_maker(registry(), "skate", text)};
+  return {registry(), "skate", OwnSystem{data_system_maker(registry(), "skate", text)}};
 }
 void expect_equal(const Result& a, const Result& b, double tolerance, const std::string& what) {
   ASSERT_TRUE(a.status.ok && b.status.ok) << what << ": " << a.status.reason << b.status.reason;

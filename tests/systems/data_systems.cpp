@@ -30,7 +30,7 @@ std::string example(const std::string& name) {
 }
 
 Simulation by_data(const std::string& text) {
-  return {registry(), "data", data_system_maker(registry(), "data.toml", text)};
+  return {registry(), "data", OwnSystem{data_system_maker(registry(), "data.toml", text)}};
 }
 
 double apart(const std::vector<double>& a, const std::vector<double>& b) {
@@ -67,15 +67,15 @@ void same(Simulation hers, Simulation ours, const Options& o) {
     }
   }
   EXPECT_LT(apart(a.last.velocity, b.last.velocity), o.bound);
-  for (size_t k = 1; k <= static_cast<size_t>(a.system.mechanics->rows()); ++k) {
+  for (size_t k = 1; k <= static_cast<size_t>(a.system->mechanics->rows()); ++k) {
     const std::string name = "lambda" + std::to_string(k);
     EXPECT_LT(apart(a.trajectory.column(name), b.trajectory.column(name)), 100 * o.bound) << name;
   }
-  EXPECT_EQ(a.system.mechanics->has_force(), b.system.mechanics->has_force());
-  EXPECT_EQ(a.system.mechanics->has_drift(), b.system.mechanics->has_drift());
-  EXPECT_EQ(a.system.mechanics->autonomous(), b.system.mechanics->autonomous());
-  EXPECT_EQ(a.system.mechanics->constant_constraints(), b.system.mechanics->constant_constraints());
-  EXPECT_EQ(a.system.mechanics->constant_inertia(), b.system.mechanics->constant_inertia());
+  EXPECT_EQ(a.system->mechanics->has_force(), b.system->mechanics->has_force());
+  EXPECT_EQ(a.system->mechanics->has_drift(), b.system->mechanics->has_drift());
+  EXPECT_EQ(a.system->mechanics->autonomous(), b.system->mechanics->autonomous());
+  EXPECT_EQ(a.system->mechanics->constant_constraints(), b.system->mechanics->constant_constraints());
+  EXPECT_EQ(a.system->mechanics->constant_inertia(), b.system->mechanics->constant_inertia());
 }
 
 // ---- the examples ----------------------------------------------------------------------------------

@@ -35,7 +35,8 @@ force = ["-0.02*omega", "-0.3*v1", 0]
 )";
 
 Simulation skate() {
-  return {registry(), "damped skate", data_system_maker(registry(), "damped skate", kSkate)};
+  return {registry(), "damped skate",
+          OwnSystem{data_system_maker(registry(), "damped skate", kSkate)}};
 }
 
 struct Case {

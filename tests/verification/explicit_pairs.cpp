@@ -191,7 +191,7 @@ TEST(ExplicitPairs, HaveADenseOutputOfTheirOrder) {
       const Result dense = Simulation(one).output(times).run();
       ASSERT_EQ(dense.trajectory.rows(), times.size());
       const size_t columns =
-          dense.system.group.columns.size() + static_cast<size_t>(dense.system.group.dim);
+          dense.system->group.columns.size() + static_cast<size_t>(dense.system->group.dim);
       const auto worst = [&](const Trajectory& a, const Trajectory& b) {
         double out = 0;
         for (size_t i = 0; i < a.rows(); ++i) {

@@ -60,7 +60,7 @@ TEST_P(GeneralOrders, AreAsClaimed) {
           system);
   for (const std::string& scheme : registry().schemes()) {
     const SchemeInfo& info = *registry().scheme(scheme);
-    const bool left_invariant = reference.system.mechanics->left_invariant();
+    const bool left_invariant = reference.system->mechanics->left_invariant();
     if (!info.adapted || !info.defined(left_invariant)) continue;
     for (const std::string retraction : {"exp", "cayley"}) {
       // Where s is not used, one that would show if it were.
