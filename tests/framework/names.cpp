@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <thread>
 #include <vector>
 
@@ -17,7 +18,9 @@ TEST(Registry, DescribesDeferredSystemsWhenAsked) {
   std::atomic<int> made = 0;
   mine.add_deferred("late", [&made] {
     ++made;
-    return SystemInfo{.name = "late"};
+    SystemInfo info;
+    info.name = "late";
+    return info;
   });
   EXPECT_THAT(mine.systems_and_files(), testing::ElementsAre("late"));
   EXPECT_EQ(mine.system("later"), nullptr);
