@@ -13,13 +13,9 @@ namespace hamel {
 void add_left_invariant(Registry& registry) {
   add_left_invariant_on<SO3, 2>(registry);
   // The paper's experiment: 180,000 steps of every reading.
-  add_left_invariant_kernels<SO3, 2, Exp<SO3>, Lift, Balance, Boxed, BoxedLiteral, Unadapted>(
-      registry);
-  add_left_invariant_kernels<SO3, 2, Cayley<SO3>, Balance, Boxed, BoxedLiteral, Unadapted>(
-      registry);
+  add_left_invariant_kernels<SO3, 2, Exp<SO3>, Boxed, BoxedLiteral, Unadapted>(registry);
+  add_left_invariant_kernels<SO3, 2, Cayley<SO3>, Boxed, BoxedLiteral, Unadapted>(registry);
   add_left_invariant_on<SE2, 2>(registry);
-  add_left_invariant_kernels<SE2, 2, Exp<SE2>, Lift>(registry);
-  add_left_invariant_kernels<SE2, 2, Cayley<SE2>, Balance>(registry);
   add_left_invariant_on<RollingDisk::Group, 2>(registry);
   add_left_invariant_on<DifferentialDrive::Group, 2>(registry);
   add_left_invariant_on<Heisenberg, 2>(registry);

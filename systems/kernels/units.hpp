@@ -37,7 +37,9 @@ void add_driven_vehicles(Registry& registry);
 /// The problem of left-invariant systems on G with m = M.
 template <class G, int M>
 void add_left_invariant_on(Registry& registry) {
-  add_left_invariant_kernels<G, M, Cayley<G>, Lift, Rkmk4, Dopri5, Tsit5, Dop853>(registry);
+  add_left_invariant_kernels<G, M, Exp<G>, Lift, Balance>(registry);
+  add_left_invariant_kernels<G, M, Cayley<G>, Lift, Balance, Rkmk4, Dopri5, Tsit5, Dop853>(
+      registry);
 }
 
 /// The kernels of a system with inputs.
