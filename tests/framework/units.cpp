@@ -67,8 +67,7 @@ double relative_residual(const SchemeInfo& scheme, double s, double length, bool
                         return std::make_shared<Inspector>(found, to * Vec<3>(0.01, -0.02, 0.03));
                       }});
   const Vec<3> velocity = to * Vec<3>(0.9, 1.6, 0.3);
-  Simulation simulation(mine, "skate",
-                        OwnSystem{[model](const Parameters&) { return model; }});
+  Simulation simulation(mine, "skate", OwnSystem{[model](const Parameters&) { return model; }});
   simulation.scheme(scheme.name).s(s).solver("inspector").step(0.1);
   simulation.start({.velocity = {velocity.begin(), velocity.end()}});
   hamel::Run run = simulation.build();

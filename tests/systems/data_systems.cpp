@@ -74,7 +74,8 @@ void same(Simulation hers, Simulation ours, const Options& o) {
   EXPECT_EQ(a.system->mechanics->has_force(), b.system->mechanics->has_force());
   EXPECT_EQ(a.system->mechanics->has_drift(), b.system->mechanics->has_drift());
   EXPECT_EQ(a.system->mechanics->autonomous(), b.system->mechanics->autonomous());
-  EXPECT_EQ(a.system->mechanics->constant_constraints(), b.system->mechanics->constant_constraints());
+  EXPECT_EQ(a.system->mechanics->constant_constraints(),
+            b.system->mechanics->constant_constraints());
   EXPECT_EQ(a.system->mechanics->constant_inertia(), b.system->mechanics->constant_inertia());
 }
 

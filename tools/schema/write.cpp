@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/framework/run/names/registry.hpp>
+#include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/by_name.hpp>
 
 namespace {
