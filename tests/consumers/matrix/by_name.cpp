@@ -48,7 +48,7 @@ void by_hand() {
     expect(run.step(5).ok, "step");
   }
   expect(run.advance_to(0.2).ok && run.at(0.1995).time == 0.1995, "advance_to, at");
-  expect(run.inputs() != nullptr && !run.notes().empty(), "inputs, notes");
+  expect(run.inputs() != nullptr && run.notes().size() < 10, "inputs, notes");
   run.restart(run.config().start);
   expect(run.state().time == 0 && run.step(10).ok, "restart");
   std::vector<hamel::Run> others;  // moved as it grows
