@@ -41,8 +41,9 @@ TEST(GroupLaws, HoldByName) {
   }
 }
 
-TEST(GroupLaws, EveryRegisteredGroupStatesItsRates) {
-  for (const std::string& name : registry().groups()) {
+// A group may leave its rates to differences; those of the library state them.
+TEST(GroupLaws, EveryGroupOfTheLibraryStatesItsRates) {
+  for (const char* name : {"heisenberg", "r1", "r2", "r3", "se2", "se2*so2", "se3", "so2", "so3"}) {
     const LawReport report = check_group(registry(), name);
     const auto rates = [](const LawResult& law) { return law.law.find("C(g) xi") != law.law.npos; };
     EXPECT_EQ(std::count_if(report.begin(), report.end(), rates), 2) << name;
