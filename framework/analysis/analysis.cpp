@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <Eigen/QR>
 
 #include <hamel/framework/analysis/conserved.hpp>
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/mechanics/place.hpp>
@@ -114,7 +114,7 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
   mechanics->constraints(0, g.data(), a, b);
   out.n = static_cast<int>(n);
   out.rows = static_cast<int>(k);
-  out.rank = static_cast<int>(Eigen::ColPivHouseholderQR<Matrix>(a).setThreshold(1e-12).rank());
+  out.rank = static_cast<int>(dense::rank(a, 1e-12));
   out.m = out.n - out.rank;
   out.holonomic_rows = mechanics->holonomic_rows();
   out.frame = hamel_frame(inertia, a);

@@ -8,8 +8,8 @@
 #include <random>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 
 namespace hamel::carried {
@@ -122,7 +122,7 @@ std::vector<Matrix> coefficients(Fields& fields, const Path& path, double r, int
     const Matrix v = carried(fields, path, r * node, from, unit);
     values.row(i) = Eigen::Map<const Vector>(v.data(), v.size()).transpose();
   }
-  const Matrix fitted = Eigen::ColPivHouseholderQR<Matrix>(powers).solve(values);
+  const Matrix fitted = dense::solve_pivoted(powers, values);
   std::vector<Matrix> out;
   for (int j = 0; j <= degree; ++j) {
     const Vector row = fitted.row(j).transpose();

@@ -10,9 +10,8 @@
 #include <random>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
+
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
 namespace {
@@ -118,32 +117,28 @@ class Search {
   }
   // An orthonormal basis of the combinations that are zero on all motions.
   Matrix identities() const {
-    const Eigen::JacobiSVD<Matrix> svd(values_, Eigen::ComputeFullV);
+    const dense::Svd svd = dense::svd(values_, Eigen::ComputeFullV);
     const double floor = kIdentity * std::sqrt(static_cast<double>(values_.rows()));
     Eigen::Index rank = 0;
-    while (rank < svd.singularValues().size() && svd.singularValues()[rank] > floor) ++rank;
-    return svd.matrixV().rightCols(width() - rank);
+    while (rank < svd.values.size() && svd.values[rank] > floor) ++rank;
+    return svd.v.rightCols(width() - rank);
   }
   // How many independent combinations are kept; a basis of them.
   void count() {
     const Matrix others = complement(known_);
     const Matrix reduced = changes_ * others;
-    const Eigen::JacobiSVD<Matrix> svd(reduced, Eigen::ComputeFullV);
+    const dense::Svd svd = dense::svd(reduced, Eigen::ComputeFullV);
     kept_.resize(width(), 0);
     for (Eigen::Index i = 0; i < others.cols(); ++i) {
-      const Vector v = others * svd.matrixV().col(i);
+      const Vector v = others * svd.v.col(i);
       if (change(v) <= kKept) append(kept_, v);
     }
     left_ = kept_.cols();
     // Small enough for combinations: R of the changes.
-    Eigen::HouseholderQR<Matrix> qr(changes_);
-    const Eigen::Index rows = std::min(changes_.rows(), width());
-    small_ = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+    small_ = dense::qr(changes_).r;
   }
   static Matrix complement(const Matrix& basis) {
-    Eigen::HouseholderQR<Matrix> qr(basis);
-    const Matrix q = qr.householderQ();
-    return q.rightCols(basis.rows() - basis.cols());
+    return dense::qr(basis).q.rightCols(basis.rows() - basis.cols());
   }
   static void append(Matrix& basis, const Vector& v) {
     basis.conservativeResize(v.size(), basis.cols() + 1);
@@ -184,8 +179,8 @@ class Search {
     Matrix columns(small_.rows(), count);
     for (Eigen::Index i = 0; i < count; ++i)
       columns.col(i) = small_.col(chosen[static_cast<size_t>(i)]);
-    const Eigen::JacobiSVD<Matrix> svd(columns, Eigen::ComputeFullV);
-    const Vector weights = svd.matrixV().col(count - 1);
+    const dense::Svd svd = dense::svd(columns, Eigen::ComputeFullV);
+    const Vector weights = svd.v.col(count - 1);
     Vector v = Vector::Zero(width());
     for (Eigen::Index i = 0; i < count; ++i) v[chosen[static_cast<size_t>(i)]] = weights[i];
     if (weights.cwiseAbs().minCoeff() > 1e-6 && fresh(v).norm() > 1e-6 && change(v) <= kKept)

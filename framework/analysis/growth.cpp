@@ -4,10 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
-
 #include <hamel/framework/analysis/carried_fields.hpp>
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
 namespace {
@@ -48,9 +46,9 @@ Reach reach_of(const std::vector<Generation>& generations, Eigen::Index fields,
     const double size = std::max(generation.size, kNothing * unit);
     const double error = generation.error + tilt * size;
     const Matrix outside = generation.brackets - span * (span.transpose() * generation.brackets);
-    const Eigen::JacobiSVD<Matrix> svd(outside, Eigen::ComputeThinU);
+    const dense::Svd svd = dense::svd(outside, Eigen::ComputeThinU);
     Eigen::Index fresh = 0;
-    const Vector& sizes = svd.singularValues();
+    const Vector& sizes = svd.values;
     const Eigen::Index most = std::min(sizes.size(), possible - span.cols());
     while (fresh < most && sizes[fresh] > 10 * error + kNew * size) ++fresh;
     // A generation at round-off decides nothing, unless no direction is left.
@@ -60,15 +58,14 @@ Reach reach_of(const std::vector<Generation>& generations, Eigen::Index fields,
     }
     if (span.cols() + fresh < possible) {
       Matrix known(rows, span.cols() + fresh);
-      known << span, svd.matrixU().leftCols(fresh);
+      known << span, svd.u.leftCols(fresh);
       out.near_zero = out.near_zero || is_small_only(generation, known);
     }
     if (fresh > 0) {
       tilt = std::max(tilt, error / sizes[fresh - 1]);
       Matrix wider(rows, span.cols() + fresh);
-      wider << span, svd.matrixU().leftCols(fresh);
-      span =
-          Eigen::HouseholderQR<Matrix>(wider).householderQ() * Matrix::Identity(rows, wider.cols());
+      wider << span, svd.u.leftCols(fresh);
+      span = dense::qr(wider).q.leftCols(wider.cols());
     }
     out.dimensions.push_back(static_cast<int>(span.cols()));
     if (span.cols() == possible) break;
@@ -98,9 +95,8 @@ Vector ad(const Geometry& geometry, const Vector& x, const Vector& y) {
   return out;
 }
 Reach constant_reach(const Geometry& geometry, const Matrix& fields) {
-  Eigen::ColPivHouseholderQR<Matrix> qr(fields);
   Reach out{{static_cast<int>(fields.cols())}};
-  Matrix span = qr.householderQ() * Matrix::Identity(fields.rows(), fields.cols()), last = span;
+  Matrix span = dense::pivoted_q(fields).leftCols(fields.cols()), last = span;
   while (true) {
     Matrix wider(fields.rows(), span.cols() + fields.cols() * last.cols());
     wider.leftCols(span.cols()) = span;
@@ -110,13 +106,13 @@ Reach constant_reach(const Geometry& geometry, const Matrix& fields) {
         wider.col(next++) = ad(geometry, fields.col(i).normalized(), last.col(j));
     }
     const Matrix outside = wider - span * (span.transpose() * wider);
-    const Eigen::JacobiSVD<Matrix> svd(outside, Eigen::ComputeThinU);
+    const dense::Svd svd = dense::svd(outside, Eigen::ComputeThinU);
     Eigen::Index fresh = 0;
-    const Vector& sizes = svd.singularValues();
+    const Vector& sizes = svd.values;
     while (fresh < sizes.size() && sizes[fresh] > 1e-10) ++fresh;
     out.near_zero = out.near_zero || (fresh < sizes.size() && sizes[fresh] > 1e-13);
     if (fresh == 0) return out;
-    last = svd.matrixU().leftCols(fresh);
+    last = svd.u.leftCols(fresh);
     Matrix both(fields.rows(), span.cols() + fresh);
     both << span, last;
     span = both;

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel::reduced {
 
@@ -105,7 +104,7 @@ Vector Flow::kept(const Vector& g, const Vector& xi, const Vector& eta, double e
   if (k > 0) {  // the span of the rows, and b, whatever the rows: an orthogonal projector
     mechanics_->constraints(0, g.data(), a, b);
     const Matrix here = a * carry;
-    const Matrix square = (here * here.transpose()).inverse();
+    const Matrix square = dense::inverse(here * here.transpose());
     onto = here.transpose() * square * here;
     drift = here.transpose() * square * b;
   }
@@ -173,14 +172,14 @@ Eigen::Index rank_of(const Vector& singular, double least, double scale) {
 
 Matrix range_of(const Matrix& m, double least, double scale) {
   if (m.cols() == 0) return m;
-  const Eigen::JacobiSVD<Matrix> svd(m, Eigen::ComputeFullU);
-  return svd.matrixU().leftCols(rank_of(svd.singularValues(), least, scale));
+  const dense::Svd svd = dense::svd(m, Eigen::ComputeFullU);
+  return svd.u.leftCols(rank_of(svd.values, least, scale));
 }
 
 Matrix kernel_of(const Matrix& m, double least, double scale) {
   if (m.rows() == 0) return Matrix::Identity(m.cols(), m.cols());
-  const Eigen::JacobiSVD<Matrix> svd(m, Eigen::ComputeFullV);
-  return svd.matrixV().rightCols(m.cols() - rank_of(svd.singularValues(), least, scale));
+  const dense::Svd svd = dense::svd(m, Eigen::ComputeFullV);
+  return svd.v.rightCols(m.cols() - rank_of(svd.values, least, scale));
 }
 
 }  // namespace hamel::reduced

@@ -4,10 +4,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 #include <hamel/framework/analysis/reduced_flow.hpp>
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 
@@ -22,10 +21,8 @@ constexpr double kGood = 1e-9;  // residual of a steady motion
 // What is 1e-10 of the largest column, or of 1, is zero.
 Vector least_norm(const Matrix& a, const Vector& b) {
   if (a.cols() == 0) return Vector(0);
-  Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(a.rows(), a.cols());
   const double most = a.colwise().norm().maxCoeff();
-  decomposition.setThreshold(most < 1 ? std::min(0.5, 1e-10 / std::max(1e-300, most)) : 1e-10);
-  return decomposition.compute(a).solve(b);
+  return dense::least_norm(a, b, most < 1 ? std::min(0.5, 1e-10 / std::max(1e-300, most)) : 1e-10);
 }
 
 Vector to_vector(const std::vector<double>& v) {
@@ -87,10 +84,10 @@ class Finder {
     bounds << whole.bottomRows(flow_.held() + flow_.rows()), orbit.transpose();
     const Matrix basis = kernel_of(bounds, 1e-11);
     const Matrix reduced = basis.transpose() * whole.topRows(2 * n) * basis;
-    const Eigen::EigenSolver<Matrix> solver(reduced);
+    const dense::Eigensystem solver = dense::eigen(reduced);
     std::vector<Eigen::Index> order;
     for (Eigen::Index i = 0; i < reduced.cols(); ++i) order.push_back(i);
-    const auto& values = solver.eigenvalues();
+    const auto& values = solver.values;
     const auto magnitude = [&](Eigen::Index i) { return std::abs(values[i]); };
     std::sort(order.begin(), order.end(),
               [&](auto i, auto j) { return magnitude(i) < magnitude(j); });
@@ -111,12 +108,12 @@ class Finder {
     });
     out.neutral = static_cast<int>(orbit.cols()) + out.family;
     const double size = order.empty() ? 1 : std::max(1.0, values.cwiseAbs().maxCoeff());
-    const Eigen::MatrixXcd left = solver.eigenvectors().inverse();
     for (const Eigen::Index i : order) {
       out.eigenvalues.push_back(values[i]);
-      const double condition = left.row(i).norm();  // inf or NaN of one that has no eigenvector
+      const double condition =
+          solver.left.row(i).norm();  // inf or NaN of one that has no eigenvector
       out.round_off.push_back(size * std::max(1e-9, std::fmin(1e-13 * condition, 1e-6)));
-      const Eigen::VectorXcd both = basis.cast<Complex>() * solver.eigenvectors().col(i);
+      const Eigen::VectorXcd both = basis.cast<Complex>() * solver.vectors.col(i);
       // Where the mode is along the symmetries, which are divided out, as a spin that decays: its velocities.
       const bool moves = both.head(n).norm() > 1e-9 * both.norm();
       const Eigen::VectorXcd mode = moves ? both.head(n) : both.tail(n);

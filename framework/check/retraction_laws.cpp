@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include <Eigen/LU>
-
 #include <hamel/framework/check/algebra.hpp>
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
 
@@ -72,7 +71,7 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
                  p = Eigen::Map<const Vector>(covector.data(), n);
     const Vector g = on.tau(xi);
     const Matrix dR = on.dtau_right(xi), dL_inverse = on.dtau_left_inverse(xi);
-    const double condition = std::max(1.0, dL_inverse.norm() * dL_inverse.inverse().norm());
+    const double condition = std::max(1.0, dL_inverse.norm() * dense::inverse(dL_inverse).norm());
     domain(reached && on.in_domain(xi) ? 0 : 1);
     // dR may come from dR^-1 by elimination: its relative round-off is that of the condition.
     adjoint((dR * dL_inverse - on.Ad(g)).norm() /

@@ -3,10 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
-
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {
@@ -58,12 +56,11 @@ LawReport check_system(const SystemModel& model, double until, const Geometry* g
   const Eigen::MatrixXd& rows = initial.rows;
   report.push_back({"inertia symmetric", (inertia - inertia.transpose()).norm() / inertia.norm(),
                     check::algebraic});
-  const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(inertia).eigenvalues();
+  const Eigen::VectorXd values = dense::symmetric_eigenvalues(inertia);
   report.push_back(
       {"inertia positive definite", values.minCoeff() > 1e-14 * values.maxCoeff() ? 0.0 : 1.0, 0});
   if (rows.rows() > 0) {
-    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
+    const Eigen::VectorXd singular = dense::svd(rows).values;
     report.push_back({"constraint rows independent",
                       singular.minCoeff() > 1e-12 * singular.maxCoeff() ? 0.0 : 1.0, 0});
   }

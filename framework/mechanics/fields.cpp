@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
 namespace {
@@ -30,7 +30,7 @@ std::vector<double> principal_moments(const Field& field) {
     Mat<3, 3> matrix;
     for (size_t i = 0; i < 9; ++i)
       matrix(static_cast<int>(i / 3), static_cast<int>(i % 3)) = v[v.size() == 6 ? upper[i] : i];
-    const Vec<3> values = Eigen::SelfAdjointEigenSolver<Mat<3, 3>>(matrix).eigenvalues();
+    const Vec<3> values = dense::symmetric_eigenvalues(matrix);
     out.assign(values.begin(), values.end());
   }
   std::sort(out.begin(), out.end());

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
 namespace {
@@ -13,29 +12,24 @@ namespace {
 Eigen::MatrixXd basis_of_kernel(const Eigen::MatrixXd& constraints) {
   const auto n = constraints.cols();
   if (constraints.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(constraints.transpose());
-  const Eigen::MatrixXd q = qr.householderQ();
-  return q.rightCols(n - constraints.rows());
+  return dense::qr(constraints.transpose()).q.rightCols(n - constraints.rows());
 }
 
-Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)
-      .eigenvalues();
-}
 bool definite(const Eigen::VectorXd& values) {
   return values.minCoeff() > 1e-14 * values.maxCoeff();
 }
 
 }  // namespace
 
-bool is_definite(const Eigen::MatrixXd& symmetric) { return definite(eigenvalues(symmetric)); }
+bool is_definite(const Eigen::MatrixXd& symmetric) {
+  return definite(dense::symmetric_eigenvalues(symmetric));
+}
 
 void detail::hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& constraints,
                          Eigen::Ref<Eigen::MatrixXd> frame) {
   const Eigen::MatrixXd basis = basis_of_kernel(constraints);
-  const Eigen::LLT<Eigen::MatrixXd> llt(basis.transpose() * inertia * basis);
   // E = B L^-T:  E^T I E = L^-1 (B^T I B) L^-T = Id.
-  frame = llt.matrixL().solve(basis.transpose()).transpose();
+  frame = dense::solve_lower(basis.transpose() * inertia * basis, basis.transpose()).transpose();
 }
 
 std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
@@ -47,7 +41,7 @@ std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
   } else if (!constraints.allFinite()) {
     mistakes.push_back("constraints: an entry is not finite");
   } else if (constraints.rows() > 0) {
-    const auto rank = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(constraints.transpose()).rank();
+    const auto rank = dense::rank(constraints.transpose());
     if (rank < constraints.rows()) {
       mistakes.push_back(fmt::format("constraints: {} rows of rank {}; rows must be independent",
                                      constraints.rows(), rank));
@@ -65,14 +59,16 @@ std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
   } else if (const double asymmetry = (inertia - inertia.transpose()).norm();
              asymmetry > 1e-12 * inertia.norm()) {
     mistakes.push_back(fmt::format("inertia: not symmetric, |I - I'| = {:.3g}", asymmetry));
-  } else if (const Eigen::VectorXd values = eigenvalues(inertia); !definite(values)) {
+  } else if (const Eigen::VectorXd values = dense::symmetric_eigenvalues(inertia);
+             !definite(values)) {
     const bool massless = values.maxCoeff() > 0 && values.minCoeff() > -1e-14 * values.maxCoeff();
     if (!massless || !sound) {
       mistakes.push_back(fmt::format("inertia: not positive definite, eigenvalues {:.6g}",
                                      fmt::join(values.begin(), values.end(), ", ")));
     } else {
       const Eigen::MatrixXd basis = basis_of_kernel(constraints);
-      const Eigen::VectorXd reduced = eigenvalues(basis.transpose() * inertia * basis);
+      const Eigen::VectorXd reduced =
+          dense::symmetric_eigenvalues(basis.transpose() * inertia * basis);
       if (!definite(reduced)) {
         mistakes.push_back(fmt::format(
             "inertia: not positive definite, and not on the admissible velocities either, "

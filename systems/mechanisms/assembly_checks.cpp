@@ -5,10 +5,10 @@
 #include <span>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <hamel/systems/mechanisms/assembly.hpp>
+
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
 
@@ -249,7 +249,7 @@ void Assembly::check_motions(const Multibody& system, const std::vector<Said>& r
   if (k > 0) {
     a = a * unit.asDiagonal();
     a.rowwise().normalize();
-    free = Eigen::FullPivLU<Eigen::MatrixXd>(a).kernel();
+    free = dense::kernel(a);
   }
   if (free.isZero(0)) {
     const Said& last = rows[static_cast<size_t>(system.kept().back())];
@@ -258,12 +258,11 @@ void Assembly::check_motions(const Multibody& system, const std::vector<Said>& r
                     last.where, last.what, k, n));
     return;
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> orthonormal(free);
-  free = orthonormal.householderQ() * Eigen::MatrixXd::Identity(n, free.cols());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(free.transpose() * unit.asDiagonal() *
-                                                              inertia * unit.asDiagonal() * free);
-  if (solver.eigenvalues()[0] > 1e-14 * solver.eigenvalues().maxCoeff()) return;
-  const Eigen::VectorXd idle = free * solver.eigenvectors().col(0);
+  free = dense::qr(free).q.leftCols(free.cols()).eval();
+  const dense::SymmetricEigen energies = dense::symmetric_eigen(
+      free.transpose() * unit.asDiagonal() * inertia * unit.asDiagonal() * free);
+  if (energies.values[0] > 1e-14 * energies.values.maxCoeff()) return;
+  const Eigen::VectorXd idle = free * energies.vectors.col(0);
   std::string list;
   const Part* last = nullptr;
   const Tree& tree = system.tree(g.data());

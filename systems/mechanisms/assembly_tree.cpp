@@ -4,9 +4,10 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <hamel/systems/mechanisms/assembly.hpp>
+
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
 namespace {
@@ -47,7 +48,7 @@ Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
     const Vec3 squares = edges.cwiseAbs2();
     central = (body.mass / 12 * (Vec3::Constant(squares.sum()) - squares)).asDiagonal();
   }
-  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat<3, 3>>(central).eigenvalues();
+  const Vec3 moments = dense::symmetric_eigenvalues(central);
   const double size = moments.cwiseAbs().maxCoeff();
   if (!(moments[0] >= -1e-12 * size)) {
     wrong(

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/QR>
+#include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel::mechanisms {
 namespace {
@@ -39,9 +39,7 @@ Looked::Looked(const Multibody& system, const std::vector<double>& g, double t) 
 
 VectorXd least(const MatrixXd& a, const VectorXd& b) {
   if (a.size() == 0) return VectorXd::Zero(a.cols());
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition(a.rows(), a.cols());
-  decomposition.setThreshold(1e-9);
-  return decomposition.compute(a).solve(b);
+  return dense::least_norm(a, b, 1e-9);
 }
 
 std::vector<std::vector<double>> poses_around(const Multibody& system,

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <Eigen/LU>
 
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/systems/mechanisms/poses.hpp>
 
 namespace hamel::mechanisms {
@@ -182,7 +182,7 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
            " do not go together; leave out a velocity: those that are not given follow");
   }
   // some + N z, N a basis of what is free: least energy where N^T I (some + N z) = 0.
-  const MatrixXd free = Eigen::FullPivLU<MatrixXd>(a).kernel();
+  const MatrixXd free = dense::kernel(a);
   const MatrixXd reduced = free.transpose() * inertia * free;
   const VectorXd z = least(reduced, VectorXd(-(free.transpose() * (inertia * some))));
   const VectorXd velocity = some + free * z;

@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/run/run/plan.hpp>
@@ -184,8 +184,8 @@ void satisfy(const Mechanics& mechanics, const Geometry& geometry, double t, Eig
   const double off = phi.lpNorm<Eigen::Infinity>();
   for (int k = 0; k < 10 && off <= most && !(phi.lpNorm<Eigen::Infinity>() < 1e-15); ++k) {
     const Eigen::MatrixXd a = planned.constraints.bottomRows(held);
-    const Eigen::MatrixXd reach = planned.inertia.ldlt().solve(a.transpose());
-    const Eigen::VectorXd move = -reach * (a * reach).ldlt().solve(phi);
+    const Eigen::MatrixXd reach = dense::solve_symmetric(planned.inertia, a.transpose());
+    const Eigen::VectorXd move = -reach * dense::solve_symmetric(a * reach, phi);
     Eigen::VectorXd turn(g.size());
     geometry.tau(move.data(), turn.data());
     geometry.compose(g.data(), turn.data(), g.data());
@@ -264,7 +264,8 @@ void project_start(PlannedStart& planned) {
   Eigen::VectorXd velocity = frame * mu_bar;
   if (drift.size() > 0) {  // E y + xi_b with A xi_b = b and E^T I xi_b = 0
     const Eigen::VectorXd some =
-        constraints.transpose() * (constraints * constraints.transpose()).ldlt().solve(drift);
+        constraints.transpose() *
+        dense::solve_symmetric(constraints * constraints.transpose(), drift);
     velocity += some - frame * (frame.transpose() * (inertia * some));
   }
   const Eigen::VectorXd dropped =

@@ -1,0 +1,59 @@
+#include <hamel/framework/lie/decompositions.hpp>
+
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+namespace hamel::dense {
+
+Svd svd(const Matrix& m, unsigned options) {
+  const Eigen::JacobiSVD<Matrix> svd(m, options);
+  Svd out{svd.singularValues(), {}, {}};
+  if (svd.computeU()) out.u = svd.matrixU();
+  if (svd.computeV()) out.v = svd.matrixV();
+  return out;
+}
+
+Qr qr(const Matrix& m) {
+  const Eigen::HouseholderQR<Matrix> qr(m);
+  return {qr.householderQ(),
+          qr.matrixQR().topRows(std::min(m.rows(), m.cols())).triangularView<Eigen::Upper>()};
+}
+Eigen::Index rank(const Matrix& m, double threshold) {
+  Eigen::ColPivHouseholderQR<Matrix> qr(m);
+  if (threshold > 0) qr.setThreshold(threshold);
+  return qr.rank();
+}
+Matrix pivoted_q(const Matrix& m) { return Eigen::ColPivHouseholderQR<Matrix>(m).householderQ(); }
+Matrix solve_pivoted(const Matrix& a, const Matrix& b) {
+  return Eigen::ColPivHouseholderQR<Matrix>(a).solve(b);
+}
+Vector least_norm(const Matrix& a, const Vector& b, double threshold) {
+  Eigen::CompleteOrthogonalDecomposition<Matrix> decomposition(a.rows(), a.cols());
+  decomposition.setThreshold(threshold);
+  return decomposition.compute(a).solve(b);
+}
+
+Matrix kernel(const Matrix& m) { return Eigen::FullPivLU<Matrix>(m).kernel(); }
+Matrix inverse(const Matrix& m) { return m.inverse(); }
+Matrix solve_symmetric(const Matrix& a, const Matrix& b) { return a.ldlt().solve(b); }
+Matrix solve_lower(const Matrix& a, const Matrix& b) { return a.llt().matrixL().solve(b); }
+
+SymmetricEigen symmetric_eigen(const Matrix& m) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(m);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+Vector symmetric_eigenvalues(const Matrix& m) {
+  return Eigen::SelfAdjointEigenSolver<Matrix>(m, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Eigensystem eigen(const Matrix& m) {
+  const Eigen::EigenSolver<Matrix> solver(m);
+  return {solver.eigenvalues(), solver.eigenvectors(), solver.eigenvectors().inverse()};
+}
+
+}  // namespace hamel::dense
