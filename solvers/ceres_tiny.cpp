@@ -4,6 +4,7 @@
 
 #include <ceres/tiny_solver.h>
 
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/loop/scaled_equation.hpp>
 
 namespace hamel {
@@ -23,6 +24,23 @@ struct Function {
     equation->evaluate({x, n}, {f, n}, {jacobian, jacobian == nullptr ? 0 : n * n});
     return true;
   }
+};
+
+// The solver of its normal equations: one routine for all sizes, where Eigen's Cholesky costs 3 s of compilation each.
+template <int N>
+class Elimination {
+ public:
+  using Scalar = double;
+  void compute(const Eigen::Matrix<double, N, N>& a) { a_ = a; }
+  const Eigen::Matrix<double, N, 1>& solve(const Eigen::Matrix<double, N, 1>& b) {
+    x_ = b;
+    solve_linear(a_.data(), x_.data(), static_cast<int>(b.size()), 1);
+    return x_;
+  }
+
+ private:
+  Eigen::Matrix<double, N, N> a_;
+  Eigen::Matrix<double, N, 1> x_;
 };
 
 template <int N>
@@ -46,15 +64,15 @@ class Tiny {
       tiny_.options.max_num_iterations = 2;  // the first of them is the guess
       tiny_.Solve(function, &x_);
     }
-    const bool ran_out =
-        !met && tiny_.summary.status == ceres::TinySolver<Function<N>>::HIT_MAX_ITERATIONS;
+    const bool ran_out = !met && tiny_.summary.status == TinySolver::HIT_MAX_ITERATIONS;
     return equation.finish(x, tiny_.summary.iterations,
                            ran_out ? Reason::max_iterations : Reason::stagnated);
   }
 
  private:
   using Parameters = Eigen::Matrix<double, N, 1>;
-  ceres::TinySolver<Function<N>> tiny_;
+  using TinySolver = ceres::TinySolver<Function<N>, Elimination<N>>;
+  TinySolver tiny_;
   Parameters x_;
 };
 
