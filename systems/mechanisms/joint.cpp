@@ -5,13 +5,15 @@
 #include <Eigen/Geometry>
 
 #include <hamel/groups/all.hpp>
+#include <hamel/systems/kernels/geometries.hpp>
 
 namespace hamel::mechanisms {
 namespace {
 
 template <class G>
 JointType make(std::vector<std::string> columns, std::vector<std::string> rates) {
-  return {group_info<G>(), std::make_shared<TypedGeometry<Exp<G>>>(), std::move(columns),
+  WithExp erased = with_exp<G>();
+  return {std::move(erased.group), std::move(erased.geometry), std::move(columns),
           std::move(rates)};
 }
 

@@ -75,9 +75,11 @@ function(hamel_layer path)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
     set_source_files_properties(${arg_KERNELS} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
-    # Small sources share headers: parsed once for eight of them. Not io, where GCC 12 then warns of strings that are not.
-    if(path MATCHES "^framework/" AND NOT path STREQUAL "framework/io")
+    # Small sources share headers: parsed once for eight of them. Not io, where GCC 12 then warns of strings that are not;
+    # nor kernels, each of which takes its own time.
+    if(NOT path STREQUAL "framework/io" AND NOT path STREQUAL "solvers")
       set_target_properties(${target} PROPERTIES UNITY_BUILD ${HAMEL_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+      set_source_files_properties(${arg_KERNELS} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
     hamel_localise(${target})
     if(TARGET hamel_pch)

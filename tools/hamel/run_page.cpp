@@ -14,7 +14,7 @@
 namespace hamel::tools {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 // A value of a record as a cell shows it.
 Cell cell(const Json& value) {
