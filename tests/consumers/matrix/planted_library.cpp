@@ -1,0 +1,3 @@
+#include <Eigen/Core>
+
+Eigen::VectorXd planted(int n) { return Eigen::VectorXd::Ones(n); }
