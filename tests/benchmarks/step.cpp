@@ -54,6 +54,21 @@ Suslov body() {
 const Start kSuslovStart = {.velocity = {1, 0.5, 0}};
 const Start kSleighStart = {.velocity = {0.9, -1, 0}};
 
+// What a user's loop pays beside its steps: a run of its own, or the same one from another start.
+void built(benchmark::State& state, const Simulation& simulation) {
+  for (auto _ : state) {
+    hamel::Run run = simulation.build();
+    if (!run.step()) state.SkipWithError("failed");
+  }
+}
+void restarted(benchmark::State& state, const Simulation& simulation, const Start& start) {
+  hamel::Run run = simulation.build();
+  for (auto _ : state) {
+    run.restart(start);
+    if (!run.step()) state.SkipWithError("failed");
+  }
+}
+
 template <class Step>
 void add_hand(const std::string& name, Step step) {
   benchmark::RegisterBenchmark(name.c_str(), step);
@@ -93,6 +108,11 @@ int main(int argc, char** argv) {
            [](benchmark::State& s) { hand(s, &HandSleigh::step_exp, 0.9, -1); });
   add("sleigh/exp/typed", simulate<Lift, Exp>(ChaplyginSleigh{}).start(kSleighStart).s(0));
   add("sleigh/exp/named", simulate("chaplygin_sleigh").start(kSleighStart).s(0).retraction("exp"));
+
+  const Simulation full = simulate("suslov").set("inertia", kFullInertia).start(kSuslovStart);
+  add_hand("suslov/build and a step", [full](benchmark::State& s) { built(s, full); });
+  add_hand("suslov/restart and a step",
+           [full](benchmark::State& s) { restarted(s, full, kSuslovStart); });
 
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

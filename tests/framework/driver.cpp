@@ -156,6 +156,8 @@ TEST(Driver, MeasuresTheEndsWithoutRows) {
   EXPECT_GT(free.energy_error_max, 0);
   EXPECT_LT(free.exact_error_final, 0.1);
   EXPECT_GT(free.exact_error_final, 1e-12);
+  EXPECT_TRUE(std::isnan(free.seconds));  // no clock is read between such steps
+  EXPECT_THAT(free.record(), HasSubstr("\"seconds\": null"));
   hamel::Run forced = simulate("segway").input("left_torque", 1).step(0.01).build();
   ASSERT_TRUE(forced.step(20));
   const Result driven = forced.finish();

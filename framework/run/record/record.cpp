@@ -146,7 +146,9 @@ Json record_of(const Result& r) {
         {"residual_max", json_of(r.stats.residual_max)}}},
       {"events", events},
       {"fallbacks", {{"count", r.stats.fallbacks}, {"first", fallbacks(r.stats)}}},
-      {"timing", {{"seconds", r.seconds}, {"nanoseconds_per_step", r.seconds * 1e9 / steps}}},
+      {"timing",
+       {{"seconds", json_of(r.seconds)},
+        {"nanoseconds_per_step", json_of(r.seconds * 1e9 / steps)}}},
       {"version", version()},
       {"git", git_hash()},
       {"host", host_name()},
@@ -241,7 +243,7 @@ void read_record(const std::string& record, Result& out) {
   for (const Json& f : fallbacks.at("first"))
     out.stats.first_fallbacks.push_back(
         {f.at("step").get<long>(), number(f.at("time")), f.at("action").get<std::string>()});
-  out.seconds = json.at("timing").at("seconds").get<double>();
+  out.seconds = number(json.at("timing").at("seconds"));
 }
 
 std::string Result::record(int indent) const { return record_of(*this).dump(indent); }

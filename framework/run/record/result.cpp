@@ -123,7 +123,8 @@ std::string Result::report() const {
   if (config.check && status.ok) {
     line("estimated error", estimated_error_in_words(*this));
   }
-  line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
+  if (std::isfinite(seconds))
+    line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
   return out;
 }
 

@@ -72,7 +72,7 @@ struct Result : Measurements {
   std::vector<EventMet> events;
   bool stopped_by_event = false;
   SolverStats stats;
-  double seconds = 0;  // of the time loop, recording included
+  double seconds = 0;  // of the time loop, recording included; NaN of steps by hand without rows
 
   explicit operator bool() const { return status.ok; }
   /// "lift (s = 0.5), cayley, newton": the method, without what the scheme makes no use of.

@@ -258,7 +258,7 @@ Result& Driver::end() {
     result_.inputs = std::move(shell.inputs);
     result_.unused = std::move(shell.unused);
     result_.notes = std::move(shell.notes);
-    result_.seconds = seconds_;
+    result_.seconds = watching_ || seconds_ > 0 ? seconds_ : Measurements::kNone;
     result_.steps = node_.step;
     result_.stats = kernel_->stats();
     if (!recording_) {
