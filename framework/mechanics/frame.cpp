@@ -33,7 +33,8 @@ void detail::hamel_frame(const Eigen::MatrixXd& inertia, const Eigen::MatrixXd& 
 }
 
 std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
-                                               const Eigen::MatrixXd& constraints, int n) {
+                                               const Eigen::MatrixXd& constraints, int n,
+                                               bool driven) {
   std::vector<std::string> mistakes;
   if (constraints.cols() != n) {
     mistakes.push_back(
@@ -45,7 +46,7 @@ std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
     if (rank < constraints.rows()) {
       mistakes.push_back(fmt::format("constraints: {} rows of rank {}; rows must be independent",
                                      constraints.rows(), rank));
-    } else if (rank == n) {
+    } else if (rank == n && !driven) {
       mistakes.push_back(
           fmt::format("constraints: {} independent rows leave no motion in dimension {}", rank, n));
     }

@@ -28,8 +28,9 @@ bool is_definite(const Eigen::MatrixXd& symmetric);
 
 /// The mistakes in an inertia and constraint rows for a group of dimension n: shape, NaN, symmetry, definiteness,
 /// rank. Empty when there are none. Where the inertia is semidefinite, as with massless links, it has to be definite on
-/// ker A.
+/// ker A. As many independent rows as dimensions leave a motion where it is driven, A xi = b with b not 0.
 std::vector<std::string> check_system_matrices(const Eigen::MatrixXd& inertia,
-                                               const Eigen::MatrixXd& constraints, int n);
+                                               const Eigen::MatrixXd& constraints, int n,
+                                               bool driven);
 
 }  // namespace hamel

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -192,6 +193,90 @@ TEST(MechanismMotions, StartWhereTheyArePrescribed) {
                   .empty());
   m.start({{"turn.angle", 0.4}});
   EXPECT_THROW(m.model(), ConfigError);
+}
+
+// Two wheels on one axle, both rates prescribed: what is prescribed decides the motion alone, g' = g (A^-1 b)^.
+//   v = r (w_left + w_right)/2, omega = r (w_right - w_left)/(2 d)
+struct TwoWheels {
+  double radius = 0.1, half = 0.2;  // m
+  static double left(double t) { return 3 + std::sin(t); }
+  static double right(double) { return 2; }
+  double omega(double t) const { return radius * (right(t) - left(t)) / (2 * half); }
+  double speed(double t) const { return radius * (right(t) + left(t)) / 2; }
+  double theta(double t) const { return radius * (2 * t - (3 * t + 1 - std::cos(t))) / (2 * half); }
+
+  Mechanism by_parts() const {
+    Mechanism m("two wheels");
+    m.body("chassis", {.mass = 5, .at = {0.05, 0, 0.1}, .inertia = {0.2, 0.3, 0.4}});
+    m.planar("floor", "chassis");
+    for (const auto& [name, y] : {std::pair("left", half), std::pair("right", -half)}) {
+      const Point at = {0, y, radius}, axis = {0, 1, 0};
+      m.body(name, {.mass = 0.4, .at = at, .cylinder = {radius, 0.03}, .axis = axis});
+      m.hinge(name, "chassis", name, {.at = at, .axis = axis});
+      m.wheel(name, name, {.at = at, .axle = axis, .radius = radius});
+    }
+    m.prescribe("left", left);
+    m.prescribe("right", right);
+    m.redundant("drop");
+    return m;
+  }
+  double kinetic(double t) const {
+    const double v = speed(t), w = omega(t), along = left(t), other = right(t);
+    const double spin = 0.5 * 0.4 * radius * radius;
+    const double across = 0.4 * (3 * radius * radius + 0.03 * 0.03) / 12;
+    return 0.5 * (5 * (v * v + 0.05 * 0.05 * w * w) + 0.4 * w * w) +
+           0.4 * (v * v + half * half * w * w) + across * w * w +
+           0.5 * spin * (along * along + other * other);
+  }
+  // x and y by Simpson's rule.
+  std::array<double, 2> place(double until) const {
+    std::array<double, 2> out{};
+    const int n = 2000;
+    const double h = until / n;
+    for (int i = 0; i <= n; ++i) {
+      const double t = i * h, weight = (i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2) * h / 3;
+      out[0] += weight * speed(t) * std::cos(theta(t));
+      out[1] += weight * speed(t) * std::sin(theta(t));
+    }
+    return out;
+  }
+};
+
+TEST(MechanismMotions, WhatIsPrescribedDecidesAlone) {
+  const TwoWheels two;
+  const double until = 2;
+  const auto [x, y] = two.place(until);
+  for (const char* scheme : {"dop853", "dopri5", "tsit5", "rkmk4", "rk4_projected", "lift",
+                             "balance", "reversible", "gni"}) {
+    const std::string name = scheme;
+    const bool second =
+        name == "lift" || name == "balance" || name == "reversible" || name == "gni";
+    double before = 0;
+    for (const double h : {0.02, 0.01}) {
+      const Result out = simulate(two.by_parts()).scheme(name).step(h).until(until).run();
+      ASSERT_TRUE(out.status.ok) << name << ": " << out.status.reason;
+      const auto& g = out.last.coordinates;
+      const double error = std::hypot(g[0] - two.theta(until), g[1] - x, g[2] - y);
+      if (h == 0.01) {
+        EXPECT_LT(error, second ? 3e-5 : 1e-10) << name;
+        if (second) {
+          EXPECT_NEAR(std::log2(before / error), 2, 0.1) << name;
+        }
+      }
+      before = error;
+      // The motors do all work: reactions of wheels that roll do none.
+      const double work = two.kinetic(until) - two.kinetic(0);
+      EXPECT_NEAR(out.work, work, 1e-12) << name;
+      EXPECT_NEAR(out.reaction_work, work, (second ? 0.1 : 0.02) * h) << name;
+      EXPECT_LT(out.energy_error_max, 1e-13) << name;
+    }
+  }
+  // At the end the torques of the motors: power is the rate of the energy.
+  const Result out = simulate(two.by_parts()).scheme("dop853").step(0.01).until(until).run();
+  const double left = out.trajectory.column("left.reaction4").back(),
+               right = out.trajectory.column("right.reaction4").back(), e = 1e-5;
+  EXPECT_NEAR(left * TwoWheels::left(until) + right * TwoWheels::right(until),
+              (two.kinetic(until + e) - two.kinetic(until - e)) / (2 * e), 1e-8);
 }
 
 // Trunk and two legs with a blade each, the hips prescribed; drawn straight, where both blades say the same. The tree

@@ -108,8 +108,10 @@ int analyse(const DescribeOptions& options) {
              : a.growth.with_drift ? "rows with a drift or with time in them, not left-invariant"
                                    : "not left-invariant");
   fmt::print("  {}\n", verdict(a));
-  fmt::print("  Hamel frame at the start (columns, I-orthonormal)\n");
-  print_rows(a.frame);
+  if (a.m > 0) {
+    fmt::print("  Hamel frame at the start (columns, I-orthonormal)\n");
+    print_rows(a.frame);
+  }
   for (size_t d = 0; d < a.structure.size(); ++d) {
     fmt::print("  structure constants along direction {}: [X_i, X_j]\n", d + 1);
     print_rows(a.structure[d]);

@@ -243,7 +243,7 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
   if (said) return;
   if (planned.refused) planned.constraints.resize(0, n);
   const std::vector<std::string> wrong =
-      check_system_matrices(planned.inertia, planned.constraints, n);
+      check_system_matrices(planned.inertia, planned.constraints, n, mechanics.has_drift());
   mistakes.add(wrong);
   if (wrong.empty() && !mechanics.constant_inertia())
     check_symmetry_beside(mechanics, *geometry, g, mistakes);
