@@ -1,6 +1,8 @@
 // Tables as HDF5 files, by the C API (1.10). Every handle is closed by the object that holds it, and a
 // call that fails throws. The library's printing of its own error stack is switched off.
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include <fmt/format.h>
 
@@ -86,7 +88,8 @@ std::string hdf5_version() {
 void Table::write_hdf5(const std::string& path,
                        const std::map<std::string, std::string>& texts) const {
   begin();
-  const std::string part = path + ".part";
+  const std::string part = part_of(path);
+  errno = 0;
   try {
     // The order of creation is kept, so that the columns come back as they were written.
     const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "H5Pcreate");
@@ -96,9 +99,11 @@ void Table::write_hdf5(const std::string& path,
                       "H5Fcreate");
     for (const auto& [name, value] : texts) write_text(file, name, value);
     for (const TableColumn& column : columns) write_column(file, column);
+    check(H5Fflush(file, H5F_SCOPE_LOCAL), "H5Fflush");  // closing it would not tell
   } catch (const ConfigError& error) {
+    const std::string reason = errno != 0 ? std::strerror(errno) : error.what();
     std::remove(part.c_str());
-    throw Unfinished(fmt::format("output: cannot write '{}' ({})", path, error.what()));
+    throw Unfinished(fmt::format("output: cannot write '{}': {}", path, reason));
   }
   if (std::rename(part.c_str(), path.c_str()) != 0) {
     std::remove(part.c_str());

@@ -3,7 +3,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -219,7 +221,7 @@ Journal::Journal(const std::string& folder, const StudyConfig& config, bool fres
 void Journal::append(const std::string& line) {
   const std::lock_guard lock(mutex_);
   if (std::fputs((line + "\n").c_str(), file_.get()) < 0 || std::fflush(file_.get()) != 0)
-    throw std::runtime_error(fmt::format("cannot write '{}'", path_));
+    throw Unfinished(fmt::format("output: cannot write '{}': {}", path_, std::strerror(errno)));
 }
 
 void Journal::measured(size_t cell, const StudyMetrics& metrics) {

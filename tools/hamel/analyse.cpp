@@ -7,6 +7,7 @@
 
 #include "analyse.hpp"
 #include "commands.hpp"
+#include "screen.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -25,9 +26,9 @@ Json rows_of(const Eigen::MatrixXd& m) {
 
 void print_rows(const Eigen::MatrixXd& m) {
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
-    fmt::print("    ");
-    for (Eigen::Index j = 0; j < m.cols(); ++j) fmt::print(" {:>10.5g}", m(i, j) + 0.0);
-    fmt::print("\n");
+    say("    ");
+    for (Eigen::Index j = 0; j < m.cols(); ++j) say(" {:>10.5g}", m(i, j) + 0.0);
+    say("\n");
   }
 }
 
@@ -97,32 +98,30 @@ int analyse(const DescribeOptions& options) {
                        {"structure_constants", structure},
                        {"conserved", conserved},
                        {"notes", a.notes}};
-    fmt::print("{}\n", json.dump(2));
+    say_json(json);
     return 0;
   }
-  fmt::print("{}: n = {}, {} row{} of rank {}{}{}, {} direction{}; {}\n", options.name, a.n, a.rows,
-             a.rows == 1 ? "" : "s", a.rank,
-             a.holonomic_rows > 0 ? fmt::format(" ({} holonomic)", a.holonomic_rows) : "",
-             a.rank < a.rows ? ", some redundant" : "", a.m, a.m == 1 ? "" : "s",
-             a.left_invariant      ? "left-invariant"
-             : a.growth.with_drift ? "rows with a drift or with time in them, not left-invariant"
-                                   : "not left-invariant");
-  fmt::print("  {}\n", verdict(a));
+  say("{}: n = {}, {} row{} of rank {}{}{}, {} direction{}; {}\n", options.name, a.n, a.rows,
+      a.rows == 1 ? "" : "s", a.rank,
+      a.holonomic_rows > 0 ? fmt::format(" ({} holonomic)", a.holonomic_rows) : "",
+      a.rank < a.rows ? ", some redundant" : "", a.m, a.m == 1 ? "" : "s",
+      a.left_invariant      ? "left-invariant"
+      : a.growth.with_drift ? "rows with a drift or with time in them, not left-invariant"
+                            : "not left-invariant");
+  say("  {}\n", verdict(a));
   if (a.m > 0) {
-    fmt::print("  Hamel frame at the start (columns, I-orthonormal)\n");
+    say("  Hamel frame at the start (columns, I-orthonormal)\n");
     print_rows(a.frame);
   }
   for (size_t d = 0; d < a.structure.size(); ++d) {
-    fmt::print("  structure constants along direction {}: [X_i, X_j]\n", d + 1);
+    say("  structure constants along direction {}: [X_i, X_j]\n", d + 1);
     print_rows(a.structure[d]);
   }
-  fmt::print(
-      "  kept along eight motions of up to 20 s (E energy, J spatial momentum, xi body "
+  say("  kept along eight motions of up to 20 s (E energy, J spatial momentum, xi body "
       "velocity)\n");
-  if (a.conserved.empty()) fmt::print("     nothing among their linear combinations\n");
-  for (const auto& c : a.conserved)
-    fmt::print("     {}   (change {:.1e})\n", c.expression, c.change);
-  for (const std::string& note : a.notes) fmt::print("  {}\n", note);
+  if (a.conserved.empty()) say("     nothing among their linear combinations\n");
+  for (const auto& c : a.conserved) say("     {}   (change {:.1e})\n", c.expression, c.change);
+  for (const std::string& note : a.notes) say("  {}\n", note);
   return 0;
 }
 

@@ -13,6 +13,7 @@
 
 #include "analyse.hpp"
 #include "commands.hpp"
+#include "screen.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -265,10 +266,9 @@ void print(const Json& json) {
   for (const auto& [key, value] : json.items()) {
     if (value.is_array() && value.empty()) continue;
     if (value.is_string()) {
-      if (!value.get<std::string>().empty())
-        fmt::print("  {:<12} {}\n", key, value.get<std::string>());
+      if (!value.get<std::string>().empty()) say("  {:<12} {}\n", key, value.get<std::string>());
     } else if (value.is_array() && !value.empty() && value.front().is_object()) {
-      fmt::print("  {}\n", key);
+      say("  {}\n", key);
       for (const Json& entry : value) {
         std::string line;
         for (const auto& [name, member] : entry.items()) {
@@ -281,13 +281,13 @@ void print(const Json& json) {
                   : name == "symmetric" ? (text == "true" ? "; symmetric" : "; not symmetric")
                                         : fmt::format("  {}", text);
         }
-        fmt::print("    {}\n", line);
+        say("    {}\n", line);
       }
     } else if (value.is_object()) {
       for (const auto& [name, member] : value.items())
-        fmt::print("  {:<12} {} {}\n", name == value.begin().key() ? key : "", name, member.dump());
+        say("  {:<12} {} {}\n", name == value.begin().key() ? key : "", name, member.dump());
     } else {
-      fmt::print("  {:<12} {}\n", key, value.dump());
+      say("  {:<12} {}\n", key, value.dump());
     }
   }
 }
@@ -297,7 +297,7 @@ void print(const Json& json) {
 int describe(const DescribeOptions& options) {
   if (options.analyse) return analyse(options);
   const Json json = description_of(options.name, options.parameters);
-  if (options.json) fmt::print("{}\n", json.dump(2));
+  if (options.json) say_json(json);
   else print(json);
   return 0;
 }

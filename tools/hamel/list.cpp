@@ -12,6 +12,7 @@
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
+#include "screen.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -72,7 +73,7 @@ void print(const Table& table) {
     if (width[widest] == least[widest]) break;
     --width[widest];
   }
-  fmt::print("{}\n", table.kind);
+  say("{}\n", table.kind);
   const auto line = [&](const std::vector<std::string>& cells) {
     std::vector<std::vector<std::string>> lines;
     size_t height = 0;
@@ -85,12 +86,12 @@ void print(const Table& table) {
       for (size_t j = 0; j < cells.size(); ++j)
         text += fmt::format(" {:<{}}", i < lines[j].size() ? lines[j][i] : "", width[j]);
       text.erase(text.find_last_not_of(' ') + 1);
-      fmt::print("{}\n", text);
+      say("{}\n", text);
     }
   };
   line(table.columns);
   for (const auto& row : table.rows) line(row);
-  fmt::print("\n");
+  say("\n");
 }
 
 Json to_json(const Table& table) {
@@ -269,12 +270,12 @@ void print_markdown(const Table& table) {
   const auto line = [](const std::vector<std::string>& cells) {
     std::string text = "|";
     for (const std::string& cell : cells) text += cell.empty() ? " |" : fmt::format(" {} |", cell);
-    fmt::print("{}\n", text);
+    say("{}\n", text);
   };
   line(table.columns);
   std::string rule = "|";
   for (size_t j = 0; j < table.columns.size(); ++j) rule += "---|";
-  fmt::print("{}\n", rule);
+  say("{}\n", rule);
   for (const auto& row : table.rows) line(row);
 }
 
@@ -294,7 +295,7 @@ int list(const ListOptions& options) {
     else json = to_json(table);
   }
   if (!found) throw ConfigError({unknown_name("kind", options.kind, kinds)});
-  if (options.json) fmt::print("{}\n", json.dump(2));
+  if (options.json) say_json(json);
   return 0;
 }
 

@@ -1,8 +1,8 @@
 // hamel: the command line. Names and formats are those of the contract (README, "Command line").
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <functional>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -13,13 +13,43 @@
 
 #include "commands.hpp"
 #include "run_line.hpp"
+#include "screen.hpp"
 #include "steady.hpp"
 
 namespace hamel::tools {
 namespace {
 
 constexpr int kUnfinished = 1, kBadInput = 2;
+
+// The status of what was asked for, unless its text is lost.
+int finish(int status) {
+  try {
+    finish_screen();
+    return status;
+  } catch (const Unfinished& error) {
+    complain("hamel: {}\n", error.what());
+    return status == 0 ? kUnfinished : status;
+  }
+}
+
+// What a command returns; what it throws as a message and a status.
+int carry_out(const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (const ConfigError& error) {
+    for (const std::string& mistake : error.mistakes()) complain("hamel: {}\n", mistake);
+    return kBadInput;
+  } catch (const Unfinished& error) {
+    complain("hamel: {}\n", error.what());
+    return kUnfinished;
+  } catch (const std::exception& error) {
+    complain("hamel: {}\n", error.what());
+    return kBadInput;
+  }
+}
+
 int program(int argc, char** argv) {
+  begin_screen();
   CLI::App app("Geometric integrators for nonholonomic systems on Lie groups.", "hamel");
   app.set_version_flag("--version", fmt::format("hamel {} ({})", version(), git_hash()));
   app.require_subcommand(1);
@@ -162,20 +192,15 @@ int program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
+    std::ostringstream help, mistake;
+    const int status = app.exit(error, help, mistake) == 0 ? 0 : kBadInput;
+    complain("{}", mistake.str());
+    return finish(carry_out([&] {
+      say("{}", help.str());
+      return status;
+    }));
   }
-  try {
-    return command();
-  } catch (const ConfigError& error) {
-    for (const std::string& mistake : error.mistakes()) fmt::print(stderr, "hamel: {}\n", mistake);
-    return kBadInput;
-  } catch (const Unfinished& error) {
-    fmt::print(stderr, "hamel: {}\n", error.what());
-    return kUnfinished;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "hamel: {}\n", error.what());
-    return kBadInput;
-  }
+  return finish(carry_out(command));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "commands.hpp"
 #include "readings.hpp"
+#include "screen.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -261,15 +262,15 @@ class Report {
         fmt::format("The paper's experiment, every reading side by side\n{}", story_.text());
     write_file(path("summary.txt"), text);
     write_file(path("readings.csv"), csv_);
-    if (!options.quiet) fmt::print("{}\n", text);
+    if (!options.quiet) say("{}\n", text);
     if (report_page().empty()) {
-      fmt::print(stderr, "hamel: no report.html: this program was built without node and npm\n");
+      complain("hamel: no report.html: this program was built without node and npm\n");
     } else {
       page_.write(path("report.html"));
     }
     if (!options.quiet) {
-      fmt::print("{:.1f} s; wrote {}, {}{}\n", seconds, path("summary.txt"), path("readings.csv"),
-                 report_page().empty() ? "" : ", " + path("report.html"));
+      say("{:.1f} s; wrote {}, {}{}\n", seconds, path("summary.txt"), path("readings.csv"),
+          report_page().empty() ? "" : ", " + path("report.html"));
     }
   }
   bool ok() const { return ok_; }

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -14,6 +12,7 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "run_page.hpp"
+#include "screen.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -35,7 +34,7 @@ std::string kept(const RunOptions& options) {
 Progress::Progress(std::string what, bool quiet)
     : what_(std::move(what)), active_(!quiet && isatty(STDERR_FILENO) == 1) {}
 Progress::~Progress() {
-  if (active_) fmt::print(stderr, "\r{:70}\r", "");
+  if (active_) write_message(fmt::format("\r{:70}\r", ""));
 }
 void Progress::operator()(double fraction) {
   if (!active_) return;
@@ -55,15 +54,12 @@ void Progress::operator()(double fraction) {
                      : fmt::format(", {} min {:02} s left", rest / 60, rest % 60);
   }
   const int filled = static_cast<int>(30 * fraction);
-  fmt::print(stderr, "\r{:<70}",
-             fmt::format("{} [{:=<{}}{:{}}] {:3.0f}%{}", what_, "", filled, "", 30 - filled,
-                         100 * fraction, left));
-  std::fflush(stderr);
+  const std::string bar = fmt::format("{} [{:=<{}}{:{}}] {:3.0f}%{}", visible(what_), "", filled,
+                                      "", 30 - filled, 100 * fraction, left);
+  write_message(fmt::format("\r{:<70}", bar));
 }
 
 int run(const RunOptions& options) {
-  std::signal(SIGPIPE, SIG_IGN);  // a pipe that was closed, and a limit on files: as a full disk
-  std::signal(SIGXFSZ, SIG_IGN);
   Simulation simulation(registry(), options.config.system);
   simulation.config(options.config).resume(options.resumed);
   for (const std::string& path : options.outputs) simulation.record_to(path);
@@ -94,12 +90,11 @@ int run(const RunOptions& options) {
     }
   }
   if (!options.report.empty()) run_page(result, result.record()).write(options.report);
-  if (options.json) fmt::print("{}\n", result.record());
-  else if (!options.quiet && !rows_to_screen) fmt::print("{}", result.report());
+  if (options.json) say("{}\n", result.record());
+  else if (!options.quiet && !rows_to_screen) say("{}", result.report());
   if (!result.status.ok) {
-    fmt::print(stderr, "hamel: failed in step {} at t = {:.6g}: {} (residual {:.2e})\n",
-               result.status.step, result.status.time, result.status.reason,
-               result.status.residual);
+    complain("hamel: failed in step {} at t = {:.6g}: {} (residual {:.2e})\n", result.status.step,
+             result.status.time, result.status.reason, result.status.residual);
   }
   return result.status.ok ? 0 : 1;
 }

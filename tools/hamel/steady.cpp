@@ -13,6 +13,7 @@
 
 #include "page.hpp"
 #include "run_page.hpp"
+#include "screen.hpp"
 #include "steady.hpp"
 
 namespace hamel::tools {
@@ -81,37 +82,35 @@ std::string modes(const std::vector<ModePart>& parts) {
 }
 
 void print(const std::string& system, const SteadyMotion& motion) {
-  fmt::print("{}: steady motion, residual {:.1e}\n", system, motion.residual);
-  fmt::print("  configuration {}\n  velocity      {}\n", join(motion.element),
-             join(motion.velocity));
-  fmt::print("  neutral       {}, of them {} along the family of steady motions\n", motion.neutral,
-             motion.family);
+  say("{}: steady motion, residual {:.1e}\n", system, motion.residual);
+  say("  configuration {}\n  velocity      {}\n", join(motion.element), join(motion.velocity));
+  say("  neutral       {}, of them {} along the family of steady motions\n", motion.neutral,
+      motion.family);
   const int growing = motion.growing();
-  fmt::print("  {}\n",
-             growing > 0 ? fmt::format("unstable: {} growing", growing) : "no growing mode");
-  fmt::print("  eigenvalues [1/s], and what moves\n");
+  say("  {}\n", growing > 0 ? fmt::format("unstable: {} growing", growing) : "no growing mode");
+  say("  eigenvalues [1/s], and what moves\n");
   for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
     const auto x = motion.eigenvalues[i];
     if (x.imag() < 0) continue;  // told with its conjugate
     const std::string imaginary = x.imag() > 0 ? fmt::format("+- {:.12f}i", x.imag()) : "";
-    fmt::print("    {:>18.12f} {:<21} {}\n", x.real(), imaginary, modes(motion.modes[i]));
+    say("    {:>18.12f} {:<21} {}\n", x.real(), imaginary, modes(motion.modes[i]));
   }
 }
 
 void print(const Vary& vary, const SteadySweep& sweep) {
-  fmt::print("  {:>12}  growing  largest real part [1/s]\n", vary.name);
+  say("  {:>12}  growing  largest real part [1/s]\n", vary.name);
   for (size_t i = 0; i < sweep.values.size(); ++i) {
     const SteadyMotion& motion = sweep.motions[i];
     if (!motion.found) {
-      fmt::print("  {:>12.6g}  no steady motion found\n", sweep.values[i]);
+      say("  {:>12.6g}  no steady motion found\n", sweep.values[i]);
       continue;
     }
     const double most = motion.eigenvalues.empty() ? 0 : motion.eigenvalues[0].real();
-    fmt::print("  {:>12.6g}  {:>7}  {:.9g}\n", sweep.values[i], motion.growing(), most);
+    say("  {:>12.6g}  {:>7}  {:.9g}\n", sweep.values[i], motion.growing(), most);
   }
   for (const auto& crossing : sweep.crossings) {
-    fmt::print("  stability changes at {} = {:.14g}, {}\n", vary.name, crossing.value,
-               crossing.pair ? "a pair of complex eigenvalues" : "a real eigenvalue");
+    say("  stability changes at {} = {:.14g}, {}\n", vary.name, crossing.value,
+        crossing.pair ? "a pair of complex eigenvalues" : "a real eigenvalue");
   }
 }
 
@@ -195,9 +194,9 @@ int steady(const SteadyOptions& options) {
             {{"value", crossing.value}, {"kind", crossing.pair ? "pair" : "real"}});
       }
     }
-    fmt::print("{}\n", out.dump(2));
+    say_json(out);
   } else if (!motion.found && !vary) {
-    fmt::print("{}: no steady motion was found near this start\n", system.name);
+    say("{}: no steady motion was found near this start\n", system.name);
   } else {
     if (motion.found) print(system.name, motion);
     if (vary) print(*vary, sweep);
@@ -209,8 +208,8 @@ int steady(const SteadyOptions& options) {
     page.write(options.report);
   }
   if (motion.found) return 0;
-  fmt::print(stderr, "hamel: no steady motion near this start: a residual of {:.2e} is left\n",
-             motion.residual);
+  complain("hamel: no steady motion near this start: a residual of {:.2e} is left\n",
+           motion.residual);
   return 1;
 }
 

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "screen.hpp"
 #include "study_page.hpp"
 
 namespace hamel::tools {
@@ -35,10 +36,10 @@ void announce(const Study& study, const std::string& folder, bool quiet) {
     steps += static_cast<double>(expected_steps(cell.config)) * (1 + study.config().repeats);
   }
   if (quiet || cells < kMany) return;
-  fmt::print(stderr,
-             "hamel: {} cells, {:.1e} steps in all; each is kept in {} when it is finished, and "
-             "the same command goes on from there\n",
-             cells, steps, folder);
+  complain(
+      "hamel: {} cells, {:.1e} steps in all; each is kept in {} when it is finished, and "
+      "the same command goes on from there\n",
+      cells, steps, folder);
 }
 
 std::string summary(const StudyResult& result) {
@@ -88,23 +89,22 @@ int study(const StudyOptions& options) {
       all += result.cells[i].runs();
       done += result.metrics[i].done;
     }
-    fmt::print(stderr,
-               "hamel: interrupted: {} of {} cells are measured and kept in {}; the same command "
-               "goes on from there\n",
-               done, all, folder);
+    complain(
+        "hamel: interrupted: {} of {} cells are measured and kept in {}; the same command "
+        "goes on from there\n",
+        done, all, folder);
     return 1;
   }
   result.write(folder);
   if (report_page().empty()) {
-    fmt::print(stderr, "hamel: no report.html: this program was built without node and npm\n");
+    complain("hamel: no report.html: this program was built without node and npm\n");
   } else {
     study_page(result).write((fs::path(folder) / "report.html").string());
   }
-  if (options.json) fmt::print("{}\n", result.record());
+  if (options.json) say("{}\n", result.record());
   else if (!options.quiet)
-    fmt::print("{}  written to             {}/: cells.csv, {}record.json{}\n", summary(result),
-               folder, hdf5_version().empty() ? "" : "cells.h5, ",
-               report_page().empty() ? "" : ", report.html");
+    say("{}  written to             {}/: cells.csv, {}record.json{}\n", summary(result), folder,
+        hdf5_version().empty() ? "" : "cells.h5, ", report_page().empty() ? "" : ", report.html");
   return 0;
 }
 
