@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <hamel/framework/run/run/energy_balance.hpp>
+#include <hamel/framework/run/run/meter.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
@@ -60,14 +60,18 @@ class Meter {
   }
   void start(const Snapshot& state) {
     if (balance_.active()) balance_.node(state);
-    row(state);
+    static_cast<void>(row(state));
   }
-  void row(const Snapshot& state) {
+  // Not ok where the state is no good one.
+  Status row(const Snapshot& state) {
+    if (const Reason flaw = flaw_of(state); flaw != Reason::converged)
+      return {false, state.step, state.time, state.residual, to_string(flaw)};
     if (balance_.active()) balance_.row(state);
     if (times_.empty()) energy_start_ = state.energy;
     times_.push_back(state.time);
     energy_.push_back(all_.take(state, energy_start_));
     raise(size_, norm(state.coordinates));
+    return {};
   }
   void compare(const Snapshot& state, size_t k) {
     if (reference_.coordinates.empty()) return;
@@ -160,8 +164,9 @@ static Status follow(Run& run, Meter& meter, const StudyReference& reference,
   for (long row = 1; row <= intervals * rows && !stopped(stop); ++row) {
     const Status status = meter.advance(run, every, stop);
     const Snapshot& state = run.state();
-    meter.row(state);
+    const Status measured = meter.row(state);
     if (!status.ok) return status;
+    if (!measured.ok) return measured;
     if (row % rows == 0) meter.compare(state, static_cast<size_t>(row / rows));
   }
   return {};
@@ -174,8 +179,9 @@ static Status follow_chosen(Run& run, Meter& meter, const StudyReference& refere
     const Status status = meter.step_towards(run, until);
     const Snapshot& state = run.state();
     const double reached = state.time;
-    meter.row(state);
+    const Status measured = meter.row(state);
     if (!status.ok) return status;
+    if (!measured.ok) return measured;
     for (; next < reference.times.size() && reference.times[next] <= reached * (1 + 1e-12); ++next)
       meter.compare(run.at(std::min(reference.times[next], reached)), next);
   }

@@ -216,6 +216,41 @@ TEST_F(Record, FailureInTheFirstStep) {
   EXPECT_EQ(rows, 2u);  // header and start
 }
 
+/// What is not finite is not ok: a step so wild that it cannot be recovered from its two configurations, a velocity whose energy
+/// overflows. What is there of the state before is kept.
+TEST_F(Record, WhatIsNotFiniteIsNotOk) {
+  int wild = 0;
+  for (const char* speed : {"1", "1e3", "1e6", "1e9", "1e12", "1e200"}) {
+    for (const char* scheme : {"rkmk4", "rk4_projected", "dopri5", "lift"}) {
+      for (const auto& [system, others] :
+           std::map<std::string, std::string>{{"suslov", ",1,0"}, {"unicycle_3d", ",2,3,4,5,6"}}) {
+        SCOPED_TRACE(system + " by " + scheme + " at " + speed);
+        const Outcome o = run({"run", system, "--velocity", speed + others, "--scheme", scheme,
+                               "--step", "1", "--until", "5", "-o", "a.csv", "--json"});
+        const Json r = Json::parse(o.out);
+        EXPECT_EQ(o.status, r["status"] == "ok" ? 0 : 1);
+        size_t rows = 0;
+        for (const std::string& line : lines(contents(file("a.csv"))))
+          rows += !line.empty() && line[0] != '#' ? 1u : 0u;
+        EXPECT_GE(rows, 2u);
+        if (r["status"] != "ok") {
+          wild += r["reason"].get<std::string>().find("not finite") != std::string::npos;
+          continue;
+        }
+        for (const char* measured : {"constraint_max", "group_defect_max", "energy_error_max"})
+          EXPECT_TRUE(r["diagnostics"][measured].is_number()) << measured;
+        EXPECT_TRUE(r["final"]["energy"].is_number());
+      }
+    }
+  }
+  EXPECT_GT(wild, 0);
+  const Json turned = record(
+      {"suslov", "--velocity", "1e6,1,0", "--scheme", "rkmk4", "--step", "1", "--until", "5"}, 1);
+  EXPECT_EQ(turned["reason"], "the step left the domain of the retraction");
+  EXPECT_EQ(turned["steps"], 0);
+  EXPECT_TRUE(turned["diagnostics"]["constraint_max"].is_number());
+}
+
 TEST_F(Record, ReportPage) {
   const Outcome o = run({"run", "suslov", "--until", "1", "--report", "page.html", "--quiet"});
   if (o.status == 2 && o.err.find("without the page") != std::string::npos) {

@@ -147,9 +147,9 @@ void Driver::take_steps(long count, bool to_end) {
     kernel_->state(node_);
     steps_left_ -= steps;
     count -= steps;
-    bool go_on = true;
-    if (every_node_ && node_.step > before) go_on = observe_step();
-    else if (recording_ && times_.empty() && node_.step % plan_.config.every == 0)
+    bool go_on = good(node_);
+    if (go_on && every_node_ && node_.step > before) go_on = observe_step();
+    else if (go_on && recording_ && times_.empty() && node_.step % plan_.config.every == 0)
       go_on = record(node_);
     if (!go_on) over_ = true;
     if (!result_.status.ok || node_.step == before) break;  // failed, or at the limit
@@ -220,7 +220,7 @@ void Driver::restart(const Start& start) {
   recorded_ = -1;
   rows_ = kept_at_ = impacts_met_ = 0;
   seconds_ = 0;
-  begun_ = sinks_begun_ = false;
+  begun_ = sinks_begun_ = flawed_ = false;
   make_observers();
 }
 

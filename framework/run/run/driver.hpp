@@ -65,6 +65,8 @@ class Driver {
   // Rows at the output times up to t.
   bool output(double t);
   bool record(const Snapshot& state);
+  // False, and the run has failed, where the state has a flaw; result_.last is the last good one.
+  bool good(const Snapshot& state);
   std::optional<EventState> impact(const Events::Found& event) const;
   void restart_behind(const EventState& state, const Events::Found& event);
 
@@ -97,7 +99,7 @@ class Driver {
   size_t next_ = 0;
   long steps_left_ = 0;  // to the end, of one size
   long recorded_ = -1;
-  bool begun_ = false, over_ = false, sinks_begun_ = false, resumable_ = false;
+  bool begun_ = false, over_ = false, sinks_begun_ = false, resumable_ = false, flawed_ = false;
   long rows_ = 0, kept_at_ = 0;  // since the last keep(); its step
   long kept_events_ = 0;         // events that are in the files
   long impacts_met_ = 0;

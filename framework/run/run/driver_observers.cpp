@@ -77,28 +77,41 @@ bool Driver::output(double t) {
 
 // state is the kernel's own, to be measured, or one that has been.
 bool Driver::record(const Snapshot& state) {
-  const Snapshot* row = &state;
-  if (&state == &node_) {
+  const bool own = &state == &node_;
+  if (own) {
     if (node_.step == recorded_) return true;  // nothing new
     recorded_ = node_.step;
-    kernel_->measure(result_.last);
-    row = &result_.last;
+    kernel_->measure(row_);
   }
-  meter_->take(*row);
+  const bool good_row = good(own ? row_ : state);
+  if (!good_row && sinks_begun_) return false;
+  if (own) std::swap(result_.last, row_);
+  else result_.last = state;
+  const Snapshot& row = result_.last;
+  meter_->take(row);
   const auto begin = Clock::now();
-  meter_->compare(*row);
+  meter_->compare(row);
   comparing_ += Clock::now() - begin;
   ++rows_;
   if (!sinks_begun_) {
-    result_.last = *row;
     Result at_start = head();
-    at_start.status = {false, 0, row->time, 0, "unfinished"};
-    at_start.last = *row;
+    at_start.status = {false, 0, row.time, 0, "unfinished"};
+    at_start.last = row;
     begin_sinks(meter_->columns(), at_start.record());
     for (const auto& sink : sinks_) sink->flush();
   }
-  if (!request_.observer || request_.observer(*row)) return true;
+  if (!good_row) return false;
+  if (!request_.observer || request_.observer(row)) return true;
   result_.status.reason = to_string(Reason::stopped);
+  return false;
+}
+
+bool Driver::good(const Snapshot& state) {
+  const Reason flaw = flaw_of(state);
+  if (flaw == Reason::converged) return true;
+  if (result_.status.ok)
+    result_.status = {false, state.step, result_.last.time, state.residual, to_string(flaw)};
+  flawed_ = true;
   return false;
 }
 
@@ -230,6 +243,11 @@ Result Driver::head() const {
 
 // Without rows: start and end alone. The balance of work needs every node, and is not known.
 void Driver::measure_ends_only() {
+  if (flawed_) {
+    result_.constraint_max = result_.group_defect_max = result_.energy_error_max =
+        Measurements::kNone;
+    return;
+  }
   Meter meter(*plan_.system, plan_.config.start, plan_.geometry, plan_.setup.mechanics, acting(),
               plan_.setup.inputs);
   if (meter.wants_nodes()) {
@@ -250,7 +268,10 @@ Result& Driver::end() {
     begin();
     if (recording_ && !over_ && times_.empty()) record(node_);
     over_ = true;
-    if (!result_.stopped_by_event) kernel_->measure(result_.last);
+    if (!result_.stopped_by_event && !flawed_) {
+      kernel_->measure(row_);
+      if (good(row_) || !recording_) std::swap(result_.last, row_);
+    }
     kernel_->state(node_);
     Result shell = head();
     result_.config = std::move(shell.config);
@@ -259,7 +280,7 @@ Result& Driver::end() {
     result_.unused = std::move(shell.unused);
     result_.notes = std::move(shell.notes);
     result_.seconds = watching_ || seconds_ > 0 ? seconds_ : Measurements::kNone;
-    result_.steps = node_.step;
+    result_.steps = flawed_ && recording_ ? result_.last.step : node_.step;
     result_.stats = kernel_->stats();
     if (!recording_) {
       measure_ends_only();

@@ -1,5 +1,6 @@
 #include <hamel/framework/run/run/meter.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -57,6 +58,16 @@ ColumnGroup body_columns(const char* name, const SystemModel& system, bool dual)
 }
 
 }  // namespace
+
+Reason flaw_of(const Snapshot& state) {
+  const auto finite = [](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+  };
+  if (!finite(state.coordinates) || !finite(state.velocity) || !std::isfinite(state.energy) ||
+      !std::isfinite(state.holonomic) || !std::isfinite(state.group_defect))
+    return Reason::not_finite;
+  return std::isfinite(state.constraint) ? Reason::converged : Reason::outside_domain;
+}
 
 Meter::Meter(const SystemModel& system, const Start& start,
              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,

@@ -17,6 +17,10 @@
 
 namespace hamel {
 
+/// What a state, or a row where it is measured, lacks to be a good one: a number that is not finite, or a step that led to it
+/// and cannot be recovered from its two configurations. Reason::converged where it lacks nothing.
+Reason flaw_of(const Snapshot& state);
+
 class Meter {
  public:
   /// geometry: null for a group that is not registered. acting: mechanics,
