@@ -39,7 +39,7 @@ void write_column(hid_t file, const TableColumn& column) {
     std::vector<const char*> words;
     for (const auto& word : std::get<std::vector<std::string>>(column.values))
       words.push_back(word.c_str());
-    const Handle type = text_type();
+    const Handle type = text_type(H5T_VARIABLE);
     write(type, type, words.data());
   }
 }
@@ -64,7 +64,7 @@ TableColumn read_column(hid_t file, const std::string& name) {
       break;
     default: {
       std::vector<char*> words(size, nullptr);
-      read(text_type(), words.data());
+      read(text_type(H5T_VARIABLE), words.data());
       std::vector<std::string> texts;
       for (char* word : words) {
         texts.emplace_back(word == nullptr ? "" : word);

@@ -16,13 +16,9 @@ using namespace hdf5;
 
 namespace {
 
-std::string read_bytes(hid_t file, const char* name) {
-  const Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, "H5Dopen2"),
-      space(H5Dget_space(set), H5Sclose, "H5Dget_space");
-  std::string out(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)), '\0');
-  if (!out.empty())
-    check(H5Dread(set, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()), "H5Dread");
-  return out;
+bool is_bytes(hid_t set) {
+  const Handle type(H5Dget_type(set), H5Tclose, "H5Dget_type");
+  return H5Tget_class(type) == H5T_INTEGER;
 }
 
 void read_column(hid_t set, hsize_t first, hsize_t count, hsize_t width, double* out) {
@@ -44,6 +40,7 @@ struct RowFileReader::Data {
   std::unique_ptr<Handle> file;
   std::vector<ColumnGroup> groups;
   std::vector<std::unique_ptr<Handle>> sets;
+  std::vector<std::string> texts;  // their names, in the order of creation
   std::size_t rows = 0;
 
   template <class F>
@@ -53,6 +50,20 @@ struct RowFileReader::Data {
     } catch (const ConfigError& error) {
       throw ConfigError({fmt::format("'{}': it is damaged ({})", path, error.what())});
     }
+  }
+
+  // True of files of before there was a checksum.
+  bool texts_are_those_written() const {
+    return attempt([&] {
+      if (H5Aexists(*file, kTexts) <= 0) return true;
+      std::uint64_t sum = kNoRows;
+      for (const std::string& name : texts)
+        sum = checksum_of_text(name, read_bytes(*file, name), sum);
+      for (const ColumnGroup& group : groups) sum = checksum_of_columns(group, sum);
+      if (read_number(*file, kFinished) == 1)
+        sum = checksum_of_text(kRecord, read_bytes(*file, kRecord), sum);
+      return read_number(*file, kTexts) == sum;
+    });
   }
 };
 
@@ -80,9 +91,12 @@ RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<D
     check(H5Literate(file, H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect, &names),
           "H5Literate");
     for (const std::string& name : names) {
-      if (name == kMarks || name == kRecord) continue;
       auto set =
           std::make_unique<Handle>(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "H5Dopen2");
+      if (is_bytes(*set)) {
+        if (name != kMarks && name != kRecord) data_->texts.push_back(name);
+        continue;
+      }
       ColumnGroup group{
           name, read_text(*set, "unit"), read_text(*set, "meaning"), read_text(*set, "frame"), {}};
       const std::string columns = read_text(*set, "columns");
@@ -101,6 +115,7 @@ RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<D
   });
   if (H5Aexists(*data_->file, kFinished) <= 0) refuse("it holds no run (hamel run … -o x.h5)");
   if (data_->sets.empty()) refuse("it holds no rows");
+  if (!data_->texts_are_those_written()) refuse("it is damaged: its texts are not those written");
 }
 
 RowFileReader::~RowFileReader() = default;
@@ -121,8 +136,11 @@ std::optional<std::uint64_t> RowFileReader::checksum() const {
 }
 
 std::string RowFileReader::text(const std::string& name) const {
-  if (H5Aexists(*data_->file, name.c_str()) <= 0) return "";
-  return data_->attempt([&] { return read_text(*data_->file, name); });
+  return data_->attempt([&]() -> std::string {
+    if (has_text(*data_->file, name)) return read_bytes(*data_->file, name);
+    if (H5Aexists(*data_->file, name.c_str()) > 0) return read_text(*data_->file, name);
+    return "";
+  });
 }
 
 void RowFileReader::read(std::size_t first, std::size_t count, std::vector<double>& out) const {

@@ -59,7 +59,7 @@ struct RowFileWriter::Data {
   hsize_t width = 0, rows = 0, marked = 0;
   std::vector<double> column;
   bool given_up = false;
-  std::uint64_t sum = kNoRows;
+  std::uint64_t sum = kNoRows, texts = kNoRows;
 
   // After a failed write the library cannot close the file; it stays as it was last flushed.
   void abandon() {
@@ -97,21 +97,26 @@ RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& g
         H5Fcreate(d.path.c_str(), H5F_ACC_TRUNC, properties, latest_format()), H5Fclose,
         "H5Fcreate");
     const hid_t file = *d.file;
-    for (const auto& [name, value] : texts) write_text(file, name, value);
+    for (const auto& [name, value] : texts) {
+      write_bytes(file, name, value);
+      d.texts = checksum_of_text(name, value, d.texts);
+    }
     write_number(file, kFinished, H5T_STD_U8LE, 0);
     write_number(file, kChecksum, H5T_STD_U64LE, d.sum);
     for (const ColumnGroup& group : groups) {
       const hsize_t width = group.columns.size();
       auto set =
           std::make_unique<Handle>(create(file, group.name, H5T_IEEE_F64LE, kChunkRows, width));
-      write_text(*set, "unit", group.unit);
-      write_text(*set, "meaning", group.meaning);
-      write_text(*set, "frame", group.frame);
-      write_text(*set, "columns", fmt::format("{}", fmt::join(group.columns, ",")));
+      write_fixed_text(*set, "unit", group.unit);
+      write_fixed_text(*set, "meaning", group.meaning);
+      write_fixed_text(*set, "frame", group.frame);
+      write_fixed_text(*set, "columns", fmt::format("{}", fmt::join(group.columns, ",")));
+      d.texts = checksum_of_columns(group, d.texts);
       d.sets.push_back(std::move(set));
       d.widths.push_back(width);
       d.width += width;
     }
+    write_number(file, kTexts, H5T_STD_U64LE, d.texts);
     d.marks = std::make_unique<Handle>(create(file, kMarks, H5T_STD_U8LE, kChunkBytes, 1));
     d.record = std::make_unique<Handle>(create(file, kRecord, H5T_STD_U8LE, kChunkBytes, 1));
     check(H5Fstart_swmr_write(file), "H5Fstart_swmr_write");
@@ -162,6 +167,7 @@ void RowFileWriter::finish(const std::string& record) {
     append_to(*d.record, H5T_NATIVE_UINT8, 0, record.size(), 1, record.data());
     check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
     write_number(*d.file, kChecksum, H5T_STD_U64LE, d.sum);
+    write_number(*d.file, kTexts, H5T_STD_U64LE, checksum_of_text(kRecord, record, d.texts));
     write_number(*d.file, kFinished, H5T_STD_U8LE, 1);
     check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
     d.sets.clear();

@@ -41,6 +41,7 @@ TEST_F(RecordedFaults, DamagedFiles) {
       EXPECT_EQ(o.status, 2);
       EXPECT_THAT(o.err, HasSubstr("'a.h5.part': it is damaged"));
     }
+    EXPECT_FALSE(exists("a.csv.part"));
     for (const char* name : {"a.h5", "a.csv", "a.h5.part"}) std::filesystem::remove(file(name));
   };
   for (const size_t part : {0, 1, 2, 4, 8, 12, 14, 15}) {  // of 16: truncated, a page of zeros
@@ -59,6 +60,42 @@ TEST_F(RecordedFaults, DamagedFiles) {
   EXPECT_EQ(o.status, 2);
   EXPECT_THAT(o.err,
               testing::AnyOf(HasSubstr("'a.h5': it is damaged"), HasSubstr("without the page")));
+}
+
+/// One changed byte of what a run goes on from, or of what its page is made of: refused, and nothing is left.
+TEST_F(RecordedFaults, TextsAreThoseWritten) {
+  const Words sleigh = {"run", "chaplygin_sleigh", "--until", "150", "--set", "mass=61", "--quiet"};
+  ASSERT_EQ(run(with(sleigh, {"-o", "whole.h5"})).status, 0);
+  ASSERT_EQ(run(with(sleigh, {"-o", "cut.h5"}), "ulimit -f 3500 && exec ").status, 1);
+  const std::string cut = contents(file("cut.h5.part")), whole = contents(file("whole.h5"));
+  for (const char* name : {"whole.h5", "cut.h5.part"}) std::filesystem::remove(file(name));
+  const auto changed = [](std::string bytes, const std::string& text) {
+    const size_t at = bytes.find(text);
+    EXPECT_NE(at, std::string::npos) << text;
+    bytes[at + text.size() - 1] ^= 1;
+    return bytes;
+  };
+  const auto refused = [&](const Words& command, const std::string& name) {
+    const Outcome o = run(command);
+    if (o.err.find("without the page") != std::string::npos) return;
+    EXPECT_EQ(o.status, 2) << o.out;
+    EXPECT_THAT(o.err, HasSubstr("it is damaged"));
+    EXPECT_THAT(files(), testing::ElementsAre(name));
+  };
+  // The configuration, the record before the first step, the unit of a column.
+  for (const char* text : {"mass = [6", "until = 1", "\"until\": 1", "\"mass\": 6", "rad/s"}) {
+    SCOPED_TRACE(text);
+    std::ofstream(file("a.h5.part"), std::ios::binary) << changed(cut, text);
+    refused({"run", "--continue", "a.h5", "--quiet", "-o", "a.csv", "-o", "a.csv.gz"}, "a.h5.part");
+    std::filesystem::remove(file("a.h5.part"));
+  }
+  for (const char* text : {"mass = [6", "\"status\": \"o", "\"steps\": 1", "rad/s"}) {
+    SCOPED_TRACE(text);
+    std::ofstream(file("a.h5"), std::ios::binary) << changed(whole, text);
+    refused({"report", "a.h5", "-o", "a.html"}, "a.h5");
+    refused({"run", "--continue", "a.h5", "--quiet", "-o", "a.csv"}, "a.h5");
+    std::filesystem::remove(file("a.h5"));
+  }
 }
 
 /// What a --continue that was killed left beside the file goes with the next run of that name.

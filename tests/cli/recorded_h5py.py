@@ -18,6 +18,28 @@ def hamel(*arguments):
     subprocess.run([program, "run", *arguments, "--quiet"], check=True)
 
 
+def text(run, name):
+    return bytes(run[name][:]).decode()
+
+
+TEXTS = ("build", "config", "files", "format", "record", "start")
+
+
+def as_before(run):
+    """The file as hamel wrote it before texts had a checksum: attributes of variable length."""
+    for name in TEXTS:
+        if name != "record":
+            written = text(run, name)
+            del run[name]
+            run.attrs[name] = "hamel run 1" if name == "format" else written
+    del run.attrs["checksum_of_texts"]
+    for name, values in run.items():
+        if name not in ("record", "resume"):
+            for key, value in dict(values.attrs).items():
+                del values.attrs[key]
+                values.attrs[key] = value.decode()
+
+
 def equal(actual, expected, what):
     if actual != expected:
         sys.exit(f"{what}: {actual!r} is not {expected!r}")
@@ -26,21 +48,21 @@ def equal(actual, expected, what):
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     hamel("rolling_disk", "--until", "50", "-o", "a.h5", "-o", "a.csv", "-o", "a.json")
-    with open("a.csv") as text:
-        table = list(csv.reader(line for line in text if not line.startswith("#")))
+    with open("a.csv") as rows:
+        table = list(csv.reader(line for line in rows if not line.startswith("#")))
     columns = {name: np.array([float(row[j]) for row in table[1:]]) for j, name in enumerate(table[0])}
     with h5py.File("a.h5") as run:
         equal(run.attrs["finished"], 1, "finished")
-        record = json.loads(bytes(run["record"][:]))
-        with open("a.json") as text:
-            equal(record, json.load(text), "record")
+        record = json.loads(text(run, "record"))
+        with open("a.json") as written:
+            equal(record, json.load(written), "record")
         equal(record["system"], "rolling_disk", "system")
-        equal(json.loads(run.attrs["start"])["reason"], "unfinished", "the record at the start")
+        equal(json.loads(text(run, "start"))["reason"], "unfinished", "the record at the start")
         seen = []
         for name, values in run.items():
-            if name in ("record", "resume"):
+            if name in (*TEXTS, "resume"):
                 continue
-            names = values.attrs["columns"].split(",")
+            names = values.attrs["columns"].decode().split(",")
             seen += names
             for j, column in enumerate(names):
                 part = values[:] if len(names) == 1 else values[:, j]
@@ -48,11 +70,20 @@ with tempfile.TemporaryDirectory() as folder:
                     sys.exit(f"{column} is not that of the CSV")
         equal(sorted(seen), sorted(columns), "columns")
         equal(run["configuration"].shape, (5001, 4), "shape")
-        equal(run["t"].attrs["unit"], "s", "unit of t")
-        equal(run["configuration"].attrs["unit"], "rad,m,m,rad", "units of g")
-        equal(run["xi"].attrs["unit"], "rad/s,m/s,m/s,rad/s", "units of xi")
-        equal(run["mu"].attrs["unit"], "N m s,N s,N s,N m s", "units of mu")
-        equal("left trivialisation" in run["xi"].attrs["frame"], True, "frame of xi")
+        equal(run["t"].attrs["unit"], b"s", "unit of t")
+        equal(run["configuration"].attrs["unit"], b"rad,m,m,rad", "units of g")
+        equal(run["xi"].attrs["unit"], b"rad/s,m/s,m/s,rad/s", "units of xi")
+        equal(run["mu"].attrs["unit"], b"N m s,N s,N s,N m s", "units of mu")
+        equal(b"left trivialisation" in run["xi"].attrs["frame"], True, "frame of xi")
+
+    # A file of before has its page, and the next run begins where it ended.
+    with h5py.File("a.h5", "r+") as run:
+        as_before(run)
+    page = subprocess.run([program, "report", "a.h5", "-o", "a.html"], capture_output=True, text=True)
+    equal(page.returncode == 0 or "without the page" in page.stderr, True, "the page of a file of before")
+    hamel("--continue", "a.h5", "-o", "c.json")
+    with open("c.json") as written:
+        equal(json.load(written)["until"], 100.0, "what follows a file of before")
 
     # While it runs, and when it was killed.
     at_work = subprocess.Popen([program, "run", "rolling_disk", "--until", "1e6", "-o", "b.h5", "--quiet"])

@@ -18,7 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "hamel run 1";
+// The one before had texts of variable length, without a checksum.
+constexpr const char *kFormat = "hamel run 2", *kFormatBefore = "hamel run 1";
 
 // Where there is an unfinished run of this file, that one.
 std::string existing(const std::string& path) {
@@ -76,7 +77,7 @@ void RunFileSink::finish(const Result& result) {
 }
 
 RunFile::RunFile(const std::string& path) : path_(whole(path)), rows_(existing(path_)) {
-  if (rows_.text("format") != kFormat)
+  if (const std::string format = rows_.text("format"); format != kFormat && format != kFormatBefore)
     throw ConfigError({fmt::format("'{}': it holds no run (hamel run … -o x.h5)", path_)});
 }
 

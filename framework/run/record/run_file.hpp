@@ -1,7 +1,7 @@
 // A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its page. Not installed.
 //
-// Attributes: config (TOML), files (texts_of_files), start (the record before the first step), build, format. Data sets: the groups of
-// columns; record, the Result's, in the end; resume, checkpoints (run/record/checkpoint.hpp) until then.
+// Data sets: the groups of columns; texts: config (TOML), files (texts_of_files), start (the record before the first step), build,
+// format, and record, the Result's, in the end; resume, checkpoints (run/record/checkpoint.hpp) until then.
 #pragma once
 
 #include <memory>

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -91,8 +92,13 @@ class CompressedBytes {
 template <class Bytes>
 class CsvSink final : public Sink {
  public:
-  explicit CsvSink(const std::string& path) : out_(path) {}
+  explicit CsvSink(std::string path) : path_(std::move(path)) {}
+  ~CsvSink() override {
+    // What holds no row is no beginning of a file.
+    if (out_ && !rows_ && path_ != "-") std::remove(part_of(path_).c_str());
+  }
   void begin(const RunHead& head) override {
+    out_.emplace(path_);
     for (const ColumnGroup& group : head.columns) {
       for (const std::string& name : group.columns) {
         text_.append(std::string_view(width_++ > 0 ? "," : ""));
@@ -103,6 +109,7 @@ class CsvSink final : public Sink {
     put();
   }
   void rows(std::span<const double> values) override {
+    rows_ = true;
     std::size_t column = 0;
     for (const double value : values) {
       text_.resize(text_.size() + kNumber);
@@ -116,23 +123,25 @@ class CsvSink final : public Sink {
     }
     put();
   }
-  void flush() override { out_.flush(); }
+  void flush() override { out_->flush(); }
   void finish(const Result& result) override {
     std::istringstream lines(result.record());
     for (std::string line; std::getline(lines, line);)
       fmt::format_to(std::back_inserter(text_), "# {}\n", line);
     put();
-    out_.finish();
+    out_->finish();
   }
 
  private:
   void put() {
-    out_.write({text_.data(), text_.size()});
+    out_->write({text_.data(), text_.size()});
     text_.clear();
   }
 
   static constexpr std::size_t kNumber = 32;  // bytes of a number at most: -1.7976931348623157e+308
-  Bytes out_;
+  std::string path_;
+  std::optional<Bytes> out_;  // from its beginning on: of a run that is refused nothing is left
+  bool rows_ = false;
   std::size_t width_ = 0;
   fmt::memory_buffer text_;
 };
