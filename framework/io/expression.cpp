@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <iterator>
 #include <numbers>
 #include <optional>
@@ -70,6 +71,8 @@ class Expression::Reader {
     if (text_.size() > kMostCharacters)
       throw ExpressionError(
           fmt::format("{} characters, more than {}", text_.size(), kMostCharacters), 0);
+    if (const size_t at = text_.find('\0'); at != std::string::npos)  // where muParser ends
+      throw ExpressionError("a character U+0000", at);
     try {
       parser_.SetExpr(text_);
       parser_.Eval();  // compiles
@@ -92,6 +95,12 @@ class Expression::Reader {
       if (const size_t there = text_.find(name); !name.empty() && there != std::string::npos)
         throw ExpressionError(cannot_stand(name), there);
     if (error.GetCode() != mu::ecUNASSIGNABLE_TOKEN) throw ExpressionError(error.GetMsg(), at);
+    double number = 0;
+    const char* const begin = text_.data() + at;
+    if (const auto [behind, why] = std::from_chars(begin, text_.data() + text_.size(), number);
+        why == std::errc::result_out_of_range)
+      throw ExpressionError(
+          fmt::format("the number {} is too large or too small", std::string(begin, behind)), at);
     const size_t end = std::min(text_.size(), text_.find_first_not_of(kLetters, at));
     if (end == at) {
       size_t next = at + 1;  // of a letter in UTF-8 all bytes

@@ -23,8 +23,7 @@ constexpr std::array<Lead, 9> kLeads = {{{0x00, 0x7f, 0, 0, 1},
                                          {0xf1, 0xf3, 0x80, 0xbf, 4},
                                          {0xf4, 0xf4, 0x80, 0x8f, 4}}};
 
-}  // namespace
-
+// How many bytes of the text's first character are UTF-8; 0 where it is none.
 std::size_t length_of_utf8(std::string_view text) {
   if (text.empty()) return 0;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -38,6 +37,13 @@ std::size_t length_of_utf8(std::string_view text) {
     return lead.length;
   }
   return 0;
+}
+
+}  // namespace
+
+bool is_utf8(std::string_view text) {
+  while (const std::size_t length = length_of_utf8(text)) text.remove_prefix(length);
+  return text.empty();
 }
 
 std::string visible(std::string_view text) {

@@ -10,7 +10,7 @@ namespace hamel {
 /// bytes that are no UTF-8 as "\xe9".
 std::string visible(std::string_view text);
 
-/// How many bytes of the text's first character are UTF-8 (RFC 3629); 0 where it is none.
-std::size_t length_of_utf8(std::string_view text);
+/// Is all of it UTF-8 (RFC 3629)?
+bool is_utf8(std::string_view text);
 
 }  // namespace hamel

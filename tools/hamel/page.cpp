@@ -224,9 +224,12 @@ void Page::write(const std::string& path) const {
         {"report: this program was built without the page (node and npm were missing "
          "at build time); run tools/setup and build again"});
   }
-  std::string data = data_->page.dump();
-  for (size_t i = 0; (i = data.find("</", i)) != std::string::npos; i += 3)
-    data.replace(i, 2, "<\\/");
+  // No < of a text begins anything within <script>: neither its end nor a comment.
+  std::string data;
+  for (const char c : data_->page.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<') data += "\\u003c";
+    else data += c;
+  }
   write_file(path, std::string(page.substr(0, at)) + data +
                        std::string(page.substr(at + kPlaceholder.size())));
 }

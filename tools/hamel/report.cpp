@@ -42,7 +42,7 @@ ReadRun read_run(const std::string& path) {
   r.config = run.config();
   r.config.inputs = config.inputs;  // by their names
   r.inputs = run.inputs();
-  read_record(out.record, r);
+  read_record(out.record, path, r);
   r.trajectory = read_rows(file, kRowsOfPage);
   return out;
 }

@@ -8,6 +8,7 @@
 
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/io/visible.hpp>
 #include <hamel/framework/run/names/toml_inputs.hpp>
 
 namespace hamel {
@@ -86,15 +87,17 @@ std::vector<std::string> split(const std::string& text) {
   return out;
 }
 
-// False where the text is not all of one number.
-bool number(const std::string& text, double& out) {
+// "", or what a text is instead of a number.
+const char* no_number(const std::string& text, double& out) {
   size_t used = 0;
   try {
     out = std::stod(text, &used);
+  } catch (const std::out_of_range&) {
+    return "is too large or too small for a number (2.3e-308 to 1.7e308)";
   } catch (const std::exception&) {
-    return false;
+    return "is not a number";
   }
-  return used == text.size();
+  return used == text.size() ? "" : "is not a number";
 }
 
 }  // namespace
@@ -110,8 +113,8 @@ std::string text_of(const std::vector<std::string>& value) {
 }
 
 void read_text(const std::string& option, const std::string& text, double& out) {
-  if (!number(text, out))
-    throw ConfigError({fmt::format("{}: '{}' is not a number", option, text)});
+  if (const std::string_view why = no_number(text, out); !why.empty())
+    throw ConfigError({fmt::format("{}: '{}' {}", option, text, why)});
 }
 void read_text(const std::string& option, const std::string& text, std::optional<double>& out) {
   out.reset();
@@ -143,8 +146,8 @@ void read_text(const std::string& option, const std::string& text, std::vector<d
   }
   out.clear();
   for (const std::string& word : split(text)) {
-    if (!number(word, out.emplace_back()))
-      throw ConfigError({fmt::format("{}: '{}' in '{}' is not a number", option, word, text)});
+    if (const std::string_view why = no_number(word, out.emplace_back()); !why.empty())
+      throw ConfigError({fmt::format("{}: '{}' in '{}' {}", option, word, text, why)});
   }
 }
 
@@ -277,10 +280,21 @@ void look_at_span(const Config& config, std::vector<std::string>& out) {
   }
 }
 
+// Records and configurations, which hold the names of files, are UTF-8.
+void look_at_names_of_files(const Config& config, std::vector<std::string>& out) {
+  const auto look_at = [&](const std::string& field, const std::string& path) {
+    if (!is_utf8(path)) out.push_back(fmt::format("{}: the name '{}' is no UTF-8", field, path));
+  };
+  look_at("system", config.system);
+  for (const auto& [name, signal] : config.inputs)
+    if (const auto* file = std::get_if<InputFile>(&signal)) look_at("input " + name, file->path);
+}
+
 }  // namespace
 
 std::vector<std::string> Config::mistakes() const {
   std::vector<std::string> out;
+  look_at_names_of_files(*this, out);
   look_at_each(*this, out);
   look_at_output_times(*this, out);
   look_at_span(*this, out);

@@ -1,4 +1,4 @@
-// The record of a run, and the run that goes on where one ended.
+// The record of a run; record_reader.cpp is the way back.
 #include <algorithm>
 #include <cmath>
 
@@ -35,12 +35,6 @@ Json json_of(const InputSignal& signal) {
     return {{"t", table->times}, {"value", table->values}, {"hold", table->hold}};
   return text_of(signal);
 }
-InputSignal signal_of(const Json& json) {
-  if (json.is_number()) return json.get<double>();
-  if (json.is_string()) return input_signal(json.get<std::string>());
-  return InputTable{json.at("t").get<std::vector<double>>(),
-                    json.at("value").get<std::vector<double>>(), json.at("hold").get<bool>()};
-}
 
 Json matrix(const PlainMatrix& m) {
   Json rows = Json::array();
@@ -66,19 +60,6 @@ Json fallbacks(const SolverStats& stats) {
     out.push_back({{"step", f.step}, {"time", json_of(f.time)}, {"action", f.action}});
   }
   return out;
-}
-
-// Options that a run may be without.
-template <class Value>
-constexpr bool MayBeNone = false;
-template <class Value>
-constexpr bool MayBeNone<std::optional<Value>> = true;
-template <class Value>
-constexpr bool MayBeNone<std::vector<Value>> = true;
-
-// What a record calls an option: its "events" are those that were met.
-std::string record_key(const Option& option) {
-  return std::string(option.name) == "events" ? "watched" : option.name;
 }
 
 Json record_of(const Result& r) {
@@ -113,7 +94,7 @@ Json record_of(const Result& r) {
               {"group", r.system->group.name}};
   Config::fields([&](const Option& option, auto member) {
     const bool used = std::find(r.unused.begin(), r.unused.end(), option.name) == r.unused.end();
-    out[record_key(option)] = used ? json_of(r.config.*member) : Json(nullptr);
+    out[key_in_record(option)] = used ? json_of(r.config.*member) : Json(nullptr);
   });
   out.update(Json{
       {"parameters", parameters},
@@ -158,95 +139,9 @@ Json record_of(const Result& r) {
 
 }  // namespace
 
-// The way back from record_of.
-Config Config::continued(const std::string& record, const std::string& origin) {
-  Config config;
-  try {
-    const Json json = Json::parse(record);
-    const auto path = json.find("system_file");
-    const bool of_file = path != json.end() && path->is_string();
-    config.system = (of_file ? *path : json.at("system")).get<std::string>();
-    fields([&](const Option& option, auto member) {
-      const auto it = json.find(record_key(option));
-      if (it == json.end() || it->is_null() || (it->is_array() && it->empty())) return;
-      std::vector<std::string> texts;
-      for (const Json& entry : it->is_array() ? *it : Json::array({*it}))
-        texts.push_back(entry.is_string() ? entry.get<std::string>() : entry.dump());
-      read_text(option.name, text_of(texts), config.*member);
-    });
-    for (const auto& [name, value] : json.at("parameters").items()) {
-      config.parameters[name] = value.is_array() ? value.get<std::vector<double>>()
-                                                 : std::vector<double>{value.get<double>()};
-    }
-    if (const auto given = json.find("inputs"); given != json.end()) {
-      for (const auto& [name, signal] : given->items()) config.inputs[name] = signal_of(signal);
-    }
-    const Json& last = json.at("final");
-    config.start.configuration = last.at("configuration").get<std::vector<double>>();
-    config.start.velocity = last.at("velocity").get<std::vector<double>>();
-    const double span = config.until - config.from, first = config.from;
-    config.from = json.at("time").get<double>();
-    config.until = config.from + span;
-    for (double& time : config.output_times) time = config.from + (time - first);
-  } catch (const Json::exception& error) {
-    throw ConfigError({fmt::format("{}: not the record of a run (hamel run … -o x.json): {}",
-                                   origin, error.what())});
-  }
-  return config;
+std::string Result::record(int indent) const {
+  return record_of(*this).dump(indent, ' ', false, Json::error_handler_t::replace);
 }
-
-void read_record(const std::string& record, Result& out) {
-  const Json json = Json::parse(record);
-  const auto number = [](const Json& value) {
-    return value.is_null() ? Measurements::kNone : value.get<double>();
-  };
-  Config::fields([&](const Option& option, auto member) {
-    const bool unused = json.at(record_key(option)).is_null();
-    if (unused && !MayBeNone<std::remove_cvref_t<decltype(Config().*member)>>)
-      out.unused.push_back(option.name);
-  });
-  out.notes = json.at("notes").get<std::vector<std::string>>();
-  out.status = {json.at("status") == "ok", 0, 0, 0, json.at("reason").get<std::string>()};
-  if (const Json& failure = json.at("failure"); !failure.is_null()) {
-    out.status.step = failure.at("step").get<long>();
-    out.status.time = failure.at("time").get<double>();
-    out.status.residual = number(failure.at("residual"));
-  }
-  out.steps = json.at("steps").get<long>();
-  const Json& last = json.at("final");
-  out.last.step = out.steps;
-  out.last.time = json.at("time").get<double>();
-  out.last.coordinates = last.at("configuration").get<std::vector<double>>();
-  out.last.velocity = last.at("velocity").get<std::vector<double>>();
-  out.last.momentum = last.at("momentum").get<std::vector<double>>();
-  out.last.energy = number(last.at("energy"));
-  const Json& diagnostics = json.at("diagnostics");
-  Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
-    out.*member = number(diagnostics.at(std::string(quantity.name) + suffix));
-  });
-  for (const auto& [name, drift] : diagnostics.at("invariants").items())
-    out.invariants.push_back({name, number(drift.at("start")), number(drift.at("drift_max"))});
-  for (const Json& event : json.at("events")) {
-    out.events.push_back({event.at("name").get<std::string>(), event.at("time").get<double>(),
-                          event.at("configuration").get<std::vector<double>>(),
-                          event.at("velocity").get<std::vector<double>>()});
-  }
-  const Json& stats = json.at("solver_stats");
-  out.stats.iterations = std::lround(stats.at("iterations_mean").get<double>() *
-                                     static_cast<double>(std::max(out.steps, 1L)));
-  out.stats.iterations_max = stats.at("iterations_max").get<int>();
-  out.stats.rejected = stats.at("rejected").get<long>();
-  out.stats.evaluations = stats.at("evaluations").get<long>();
-  out.stats.residual_max = number(stats.at("residual_max"));
-  const Json& fallbacks = json.at("fallbacks");
-  out.stats.fallbacks = fallbacks.at("count").get<long>();
-  for (const Json& f : fallbacks.at("first"))
-    out.stats.first_fallbacks.push_back(
-        {f.at("step").get<long>(), number(f.at("time")), f.at("action").get<std::string>()});
-  out.seconds = number(json.at("timing").at("seconds"));
-}
-
-std::string Result::record(int indent) const { return record_of(*this).dump(indent); }
 
 std::string host_name() {
   utsname name{};

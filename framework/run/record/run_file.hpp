@@ -67,7 +67,12 @@ class RunFile {
 /// The rows of a finished file, thinned to at most so many. ConfigError where they are not those that were written.
 Trajectory read_rows(const RunFile& file, std::size_t most);
 
-/// What a record says of a run, into a Result that has its system and config.
-void read_record(const std::string& record, Result& out);
+/// What a record says of a run, into a Result that has its system and config. ConfigError, with the place, where it is none.
+void read_record(const std::string& record, const std::string& origin, Result& out);
+
+/// What a record calls an option: its "events" are those that were met.
+inline std::string key_in_record(const Option& option) {
+  return std::string(option.name) == "events" ? "watched" : option.name;
+}
 
 }  // namespace hamel
