@@ -167,6 +167,29 @@ TEST_F(Help, OfEveryCommandHasExamples) {
   EXPECT_THAT(help, HasSubstr("Exit status"));
 }
 
+TEST_F(Help, IsGroupedAndNarrow) {
+  for (const char* command :
+       {"list", "describe", "run", "report", "study", "steady", "reproduce", "help"}) {
+    const std::string help = run({"help", command}).out;
+    EXPECT_THAT(help, HasSubstr(std::string("Usage: hamel ") + command + " "));
+    for (const std::string& line : lines(help)) {
+      EXPECT_LE(line.size(), 100u) << line;
+      EXPECT_FALSE(line.ends_with(' ')) << line;
+    }
+  }
+  const std::string help = run({"help", "run"}).out;
+  const size_t motion = help.find("\nMotion:"), method = help.find("\nMethod:"),
+               output = help.find("\nOutput:");
+  EXPECT_LT(motion, help.find("--velocity"));
+  EXPECT_LT(help.find("--velocity"), method);
+  EXPECT_LT(method, help.find("--scheme"));
+  EXPECT_LT(output, help.find("--output-step"));
+  EXPECT_EQ(help.find("--scheme"), help.rfind("--scheme TEXT"));
+  const Outcome unknown = run({"help", "rum"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'run'?"));
+}
+
 /// The examples that --help prints are commands that work.
 TEST_F(Help, ExamplesOfListAndDescribeWork) {
   for (const char* command : {"list", "describe"}) {

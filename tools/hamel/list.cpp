@@ -12,6 +12,7 @@
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
+#include "help.hpp"
 #include "screen.hpp"
 
 namespace hamel::tools {
@@ -26,27 +27,6 @@ struct Table {
 };
 
 constexpr size_t kWidth = 80;
-
-// The lines of a text, broken behind spaces and commas where it is longer; a longer word stays whole.
-std::vector<std::string> wrapped(const std::string& text, size_t width) {
-  std::vector<std::string> out;
-  std::string line, word;
-  const auto put = [&] {
-    if (!line.empty() && line.size() + word.size() - (word.ends_with(' ') ? 1 : 0) > width) {
-      out.push_back(line);
-      line.clear();
-    }
-    line += word;
-    word.clear();
-  };
-  for (const char c : text) {
-    word += c;
-    if (c == ' ' || c == ',') put();
-  }
-  put();
-  out.push_back(line);
-  return out;
-}
 
 // In kWidth characters: cells of the widest columns are broken.
 void print(const Table& table) {

@@ -12,6 +12,7 @@
 #include <hamel/framework/io/version.hpp>
 
 #include "commands.hpp"
+#include "help.hpp"
 #include "run_line.hpp"
 #include "screen.hpp"
 #include "steady.hpp"
@@ -188,6 +189,24 @@ int program(int argc, char** argv) {
   reproduce_command->add_flag("--quiet", reproduction.quiet, "print nothing but errors");
   reproduce_command->footer("Examples:\n  hamel reproduce\n  hamel reproduce -o build/reproduce");
   reproduce_command->callback([&] { command = [&] { return reproduce(reproduction); }; });
+
+  std::string help_of;
+  CLI::App* help_command = app.add_subcommand("help", "The help of a command");
+  help_command->add_option("COMMAND", help_of, "one of those of hamel --help");
+  help_command->footer("Example:\n  hamel help run");
+  help_command->callback([&] {
+    command = [&] {
+      std::vector<std::string> names;
+      for (const CLI::App* one : app.get_subcommands({})) names.push_back(one->get_name());
+      const bool known = std::find(names.begin(), names.end(), help_of) != names.end();
+      if (!known && !help_of.empty()) throw ConfigError({unknown_name("command", help_of, names)});
+      const CLI::App& asked = known ? *app.get_subcommand(help_of) : app;
+      say("{}", app.get_formatter()->make_help(&asked, known ? "hamel " + help_of : "hamel",
+                                               CLI::AppFormatMode::Normal));
+      return 0;
+    };
+  });
+  set_help(app);
 
   try {
     app.parse(argc, argv);

@@ -8,6 +8,8 @@
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/run/record/result.hpp>
 
+#include "help.hpp"
+
 namespace hamel::tools {
 namespace {
 
@@ -80,6 +82,16 @@ void RunLine::define(CLI::App& app) {
   app.add_option("--report", options.report, "write a self-contained HTML page");
   app.add_flag("--json", options.json, "print the record as JSON");
   app.add_flag("--quiet", options.quiet, "print nothing but errors (and --json)");
+  group_options(app, "Motion",
+                {"--config", "--continue", "--set", "--input", "--configuration", "--velocity",
+                 "--momentum", "--speed", "--from", "--until"});
+  group_options(app, "Method",
+                {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max",
+                 "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
+  group_options(app, "Events and checks", {"--events", "--stop-at", "--check", "--no-exact"});
+  group_options(
+      app, "Output",
+      {"--output", "--every", "--output-step", "--output-times", "--report", "--json", "--quiet"});
   app.footer(
       "Exit status: 0 done, 1 numerical failure (what was computed is written), or interrupted "
       "or disk\n"
