@@ -48,11 +48,12 @@ void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, 
 }
 
 // Why a cell is another one's duplicate: "boxed does not use s: one cell stands for all".
-std::string same_as_above(const StudyConfig& config, const StudyCell& cell,
+std::string same_as_above(const std::vector<StudyValues>& values, const StudyCell& cell,
                           const std::map<std::string, std::string>& same) {
   std::string unused;
-  for (const std::string& axis : study_axes()) {
-    if (same.at(axis) == cell.axes.at(axis) || config.values(axis).size() < 2) continue;
+  for (size_t k = 0; k < values.size(); ++k) {
+    const std::string& axis = study_axes()[k];
+    if (same.at(axis) == cell.axes.at(axis) || values[k].size() < 2) continue;
     unused += (unused.empty() ? "" : ", ") + (same.at(axis).empty() ? axis : cell.axes.at(axis));
   }
   return unused.empty() ? "the same combination stands above"
@@ -60,18 +61,30 @@ std::string same_as_above(const StudyConfig& config, const StudyCell& cell,
                                       cell.config.scheme, unused);
 }
 
-// "" or the reason of the first exclusion that matches.
-std::string excluded_by(const StudyConfig& config, const StudyCell& cell) {
-  for (const StudyExclusion& exclusion : config.exclude) {
-    const bool matches =
-        std::all_of(exclusion.values.begin(), exclusion.values.end(), [&](const auto& entry) {
-          const auto& [axis, values] = entry;
-          return std::find(values.begin(), values.end(), cell.axes.at(axis)) != values.end();
-        });
-    if (matches) return exclusion.why;
+// What is excluded, to be looked up.
+class Exclusions {
+ public:
+  explicit Exclusions(const StudyConfig& config) {
+    for (const StudyExclusion& exclusion : config.exclude) {
+      auto& [why, values] = all_.emplace_back(exclusion.why, Values());
+      for (const auto& [axis, list] : exclusion.values) values[axis] = {list.begin(), list.end()};
+    }
   }
-  return "";
-}
+  // "" or the reason of the first exclusion that matches.
+  std::string of(const StudyCell& cell) const {
+    for (const auto& [why, values] : all_) {
+      if (std::all_of(values.begin(), values.end(), [&](const auto& entry) {
+            return entry.second.contains(cell.axes.at(entry.first));
+          }))
+        return why;
+    }
+    return "";
+  }
+
+ private:
+  using Values = std::map<std::string, std::set<std::string>>;
+  std::vector<std::pair<std::string, Values>> all_;
+};
 
 // The index into each axis for the i-th combination.
 std::vector<size_t> indices(const StudyConfig& config, const std::vector<size_t>& sizes, size_t i) {
@@ -122,6 +135,7 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
   for (const StudySystem& system : config.systems) models.push_back(study::model(registry, system));
   const StudyValues policies = config.values("on_failure");
   const bool halving = std::find(policies.begin(), policies.end(), "halve") != policies.end();
+  const Exclusions exclusions(config);
   std::vector<StudyCell> cells;
   std::set<std::map<std::string, std::string>> seen;
   for (size_t i = 0; i < count; ++i) {
@@ -143,7 +157,7 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     const std::string& group = models[at[0]].group.name;
     std::map<std::string, std::string> same = cell.axes;
     leave_unused(*registry.scheme(cell.config.scheme), halving, same, cell.config);
-    if (cell.why = excluded_by(config, cell); !cell.why.empty()) {
+    if (cell.why = exclusions.of(cell); !cell.why.empty()) {
       cell.skipped = "excluded";
     } else if (registry.geometry(group, cell.config.retraction) == nullptr) {
       cell.skipped = "impossible";
@@ -153,7 +167,7 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
       cell.why = fmt::format("{} is the solver that failed", cell.config.solver);
     } else if (!seen.insert(same).second) {
       cell.skipped = "duplicate";
-      cell.why = same_as_above(config, cell, same);
+      cell.why = same_as_above(values, cell, same);
     } else {
       cell.claimed_order = claim(registry, cell, models[at[0]]);
       cell.axes = std::move(same);

@@ -1,8 +1,10 @@
 // Everything that can be wrong with a study, found before anything runs, each mistake with its place.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <sstream>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -15,7 +17,9 @@ constexpr size_t kMaxCells = 200'000;
 
 class Checks {
  public:
-  Checks(const StudyConfig& study, const Registry& registry) : study_(study), registry_(registry) {}
+  Checks(const StudyConfig& study, const Registry& registry) : study_(study), registry_(registry) {
+    for (const std::string& axis : study_axes()) lists_[axis] = study.values(axis);
+  }
 
   std::vector<std::string> all() {
     plain_numbers();
@@ -25,8 +29,8 @@ class Checks {
     for (const auto& [name, values] : study_.axes)
       if (std::count(study_axes().begin() + 1, study_axes().end(), name) == 0)
         add(name, unknown_name("axis", name, study_axes()));
-    values();
     lengths();
+    values();
     for (size_t i = 0; i < study_.exclude.size(); ++i) exclusion(i);
     if (out_.empty()) combinations();
     return std::move(out_);
@@ -52,14 +56,11 @@ class Checks {
   }
 
   void repeated(const std::string& axis) {
-    const StudyValues values = study_.values(axis);
     if (study_.zipped) return;
+    const StudyValues& values = lists_.at(axis);
+    std::set<std::string> seen;
     for (size_t i = 0; i < values.size(); ++i) {
-      if (std::find(values.begin(), values.begin() + static_cast<long>(i), values[i]) ==
-              values.begin() + static_cast<long>(i) ||
-          values[i].empty()) {
-        continue;
-      }
+      if (values[i].empty() || seen.insert(values[i]).second) continue;
       if (axis == "system") {
         add(fmt::format("system[{}].name", i),
             fmt::format("label: two systems are called '{}'; give each its label", values[i]));
@@ -122,7 +123,7 @@ class Checks {
   // The run with this value on this axis; false, and said, for text that is none.
   bool take(Config& config, const std::string& axis, size_t i) {
     try {
-      config.set(axis, study_.values(axis)[i]);
+      config.set(axis, lists_.at(axis)[i]);
       return true;
     } catch (const ConfigError& error) {
       for (const std::string& mistake : error.mistakes())
@@ -131,29 +132,43 @@ class Checks {
     }
   }
 
+  // Of a long list of numbers runs look at the first ones, and of the others whether they are in their range; where there are
+  // too many combinations, of all.
   void values() {
-    for (const std::string& axis : study_axes()) {
-      for (size_t i = 0; i < study_.values(axis).size(); ++i) {
-        Config config = sound(some_system());
-        if (axis == "system" || !take(config, axis, i)) continue;
+    constexpr size_t kFirst = 100;
+    const StudySystem system = some_system();
+    const Config base = sound(system);
+    Config::fields([&]<class Value>(const Option& option, Value Config::*) {
+      if (!option.axis) return;
+      const std::string axis = option.name;
+      std::vector<std::string> known = base.mistakes();
+      for (size_t i = 0; i < lists_.at(axis).size(); ++i) {
+        Config config = base;
+        if (!take(config, axis, i)) continue;
         if (axis == "retraction") retraction(i, config.retraction);
         else if (axis == "step") step(i, config.step);
-        else value(axis, i, config);
+        else if (too_many_ || (i >= kFirst && std::is_arithmetic_v<Value>))
+          new_mistakes(axis, i, config.mistakes(), known);
+        else value(axis, i, system, base, config);
       }
-    }
+    });
   }
 
   // What a run with this value has to say that one without it has not. What is to be done on failure beside
   // a solver that is not the one to retry with: the two meet in the cells.
-  void value(const std::string& axis, size_t i, Config config) {
-    const StudySystem system = some_system();
-    Config base = sound(system);
+  void value(const std::string& axis, size_t i, const StudySystem& system, Config base,
+             Config config) {
     if (axis == "on_failure") {
       for (const std::string& solver : registry_.solvers())
         if (config.on_failure != "retry:" + solver) config.solver = base.solver = solver;
     }
-    const std::vector<std::string> known = mistakes_of(system, base);
-    for (const std::string& mistake : mistakes_of(system, config))
+    auto [known, fresh] = known_.try_emplace(base.solver);
+    if (fresh) known->second = mistakes_of(system, base);
+    new_mistakes(axis, i, mistakes_of(system, config), known->second);
+  }
+  void new_mistakes(const std::string& axis, size_t i, const std::vector<std::string>& mistakes,
+                    const std::vector<std::string>& known) {
+    for (const std::string& mistake : mistakes)
       if (std::find(known.begin(), known.end(), mistake) == known.end())
         add(fmt::format("{}[{}]", axis, i), mistake);
   }
@@ -182,7 +197,7 @@ class Checks {
     size_t longest = 1, product = 1;
     std::string longest_axis;
     for (const std::string& axis : study_axes()) {
-      const size_t size = study_.values(axis).size();
+      const size_t size = lists_.at(axis).size();
       if (size == 0 && axis != "system" &&
           !study_.where.contains(axis))  // else the file's reader said it
         add(axis, fmt::format("{}: give at least one value", axis));
@@ -191,13 +206,14 @@ class Checks {
       longest = std::max(longest, size);
     }
     if (!study_.zipped) {
-      if (product > kMaxCells)
+      too_many_ = product > kMaxCells;
+      if (too_many_)
         add("", fmt::format("the axes make {} or more combinations, expected at most {}", product,
                             kMaxCells));
       return;
     }
     for (const std::string& axis : study_axes()) {
-      const size_t size = study_.values(axis).size();
+      const size_t size = lists_.at(axis).size();
       if (size > 1 && size != longest)
         add(axis, fmt::format("{}: {} values, but {} has {}: zipped lists are of one length, or of "
                               "one value",
@@ -211,17 +227,24 @@ class Checks {
     if (given.why.empty()) add(prefix, "exclude: say why");
     if (given.values.empty()) add(prefix, "exclude: name at least one axis with its values");
     for (const auto& [axis, values] : given.values) {
-      const std::vector<std::string> known = study_.values(axis);
-      for (const std::string& value : values)
-        if (std::find(known.begin(), known.end(), value) == known.end())
-          add(prefix + "." + axis, "exclude: " + unknown_name(axis, value, known));
+      constexpr size_t kShown = 100;  // values that a message lists
+      const StudyValues known = study_.values(axis);
+      const std::set<std::string> all(known.begin(), known.end());
+      for (const std::string& value : values) {
+        if (all.contains(value)) continue;
+        add(prefix + "." + axis,
+            "exclude: " + (known.size() <= kShown
+                               ? unknown_name(axis, value, known)
+                               : fmt::format("{} is none of the {} values of {}", shortened(value),
+                                             known.size(), axis)));
+      }
     }
   }
 
   // What only shows when the axes meet.
   void combinations() {
-    for (const std::string& axis : study_axes())
-      if (study_.values(axis).empty()) return;
+    for (const auto& [axis, list] : lists_)
+      if (list.empty()) return;
     std::set<std::string> seen;
     size_t count = 0;
     for (const StudyCell& cell : study_cells(study_, registry_)) {
@@ -238,6 +261,9 @@ class Checks {
 
   const StudyConfig& study_;
   const Registry& registry_;
+  std::map<std::string, StudyValues> lists_;               // of all axes
+  bool too_many_ = false;                                  // combinations
+  std::map<std::string, std::vector<std::string>> known_;  // mistakes of the run itself, by solver
   std::vector<std::string> out_;
 };
 

@@ -182,6 +182,34 @@ velocity = [3, 1, 0]
   }
 }
 
+/// Lists of 10,000 are refused, or made to cells, in a time that grows with their length.
+TEST_F(StudyCommand, LongLists) {
+  constexpr int count = 10000;
+  const auto list = [](double from, double to) {
+    std::string out;
+    for (int i = 0; i < count; ++i)
+      out += (i == 0 ? "[" : ", ") + std::to_string(from + (to - from) * i / count);
+    return out + "]\n";
+  };
+  const std::string head = "until = 1\nrepeats = 1\nreference = false\nstep = 0.5\n",
+                    system = "[[system]]\nname = \"suslov\"\n", within = "timeout 20 ";
+  // (24 s)
+  study("title = \"x\"\nuntil = 1\ns = " + list(0, 1) + "tolerance = " + list(1e-3, 2e-2) +
+        "step = " + list(0.01, 0.7) + system);
+  Outcome o = run({"study", "small.toml"}, within);
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("combinations, expected at most 200000"));
+  EXPECT_THAT(o.err, HasSubstr("step: 0.010069 does not divide until"));
+  // One that a scheme makes no use of, and one that is to be excluded.
+  study(head + "scheme = \"boxed\"\ns = " + list(0, 1) + system);
+  EXPECT_EQ(run({"study", "small.toml", "-o", "out", "--quiet"}, within).status, 0);
+  EXPECT_EQ(count - 1, static_cast<int>(this->count(cells("out"), ",duplicate,")));
+  study(head + "s = " + list(0, 1) + system + "[[exclude]]\nwhy = \"x\"\ns = " + list(1, 2));
+  o = run({"study", "small.toml"}, within);
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("exclude: 1.5 is none of the 10000 values of s"));
+}
+
 /// The bar with the time left, on a terminal only.
 TEST_F(StudyCommand, ShowsProgressOnATerminal) {
   std::string longer = kSmall;
