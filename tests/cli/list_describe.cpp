@@ -204,6 +204,37 @@ TEST_F(Help, ExamplesOfListAndDescribeWork) {
   }
 }
 
+/// A hundred bodies free in space are described; what would take hours is refused, or left out with the reason.
+TEST_F(Describe, LargeMechanisms) {
+  std::string text = "name = \"many\"\n";
+  for (int i = 0; i < 100; ++i) {
+    text += "[[body]]\nname = \"b" + std::to_string(i) + "\"\nmass = 1\ninertia = [1, 1, 1]\n";
+    text += "[[joint]]\nname = \"j" + std::to_string(i) + "\"\nkind = \"free\"\nchild = \"b" +
+            std::to_string(i) + "\"\n";
+  }
+  write(text);
+  const Json described = answer({"describe", "system.toml"});
+  EXPECT_EQ(described["dimension"], 600);
+  EXPECT_THAT(described["verdict"].get<std::string>(),
+              HasSubstr("not looked at: system.toml: its dimension 600 is above 100"));
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"describe", "--analyse", "system.toml"}, {"steady", "system.toml"}}) {
+    const Outcome o = run(words, "timeout 20 ");
+    EXPECT_EQ(o.status, 2);
+    EXPECT_THAT(o.err, HasSubstr("its dimension 600 is above 100"));
+  }
+}
+
+/// What takes seconds shows them, on a terminal only.
+TEST_F(Describe, AnalysisShowsItsTime) {
+  if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1)";
+  const std::string command = "cd " + file("") + " && script -qec \"$HAMEL_PROGRAM describe " +
+                              "--analyse tricycle\" /dev/null >seen.txt </dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_THAT(contents(file("seen.txt")), HasSubstr("tricycle is analysed: 1 s"));
+  EXPECT_EQ(run({"describe", "--analyse", "suslov"}).err, "");
+}
+
 TEST_F(Help, Version) {
   const Outcome o = run({"--version"});
   EXPECT_EQ(o.status, 0);

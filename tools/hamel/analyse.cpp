@@ -72,7 +72,10 @@ std::string verdict(const Analysis& a, const char* undecided) {
 }
 
 int analyse(const DescribeOptions& options) {
-  const Analysis a = hamel::analyse(registry(), options.name, options.parameters);
+  const Analysis a = [&] {
+    const Elapsed elapsed(options.name + " is analysed");
+    return hamel::analyse(registry(), options.name, options.parameters);
+  }();
   if (options.json) {
     Json structure = Json::array(), conserved = Json::array();
     for (const auto& c : a.structure) structure.push_back(rows_of(c));

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <hamel/framework/run/names/config.hpp>
@@ -55,6 +56,16 @@ struct StudyOptions {
   bool quiet = false;
 };
 int study(const StudyOptions& options);
+
+/// The seconds that something takes whose end is not known, on standard error; silent when that is no terminal.
+class Elapsed {
+ public:
+  explicit Elapsed(std::string what);
+  ~Elapsed();
+
+ private:
+  std::jthread ticker_;
+};
 
 /// A progress bar with the time left on standard error; silent when that is no terminal.
 class Progress {

@@ -62,6 +62,16 @@ Json parameters_of(const std::vector<Field>& fields) {
   return parameters;
 }
 
+// Whether a mechanism is truly nonholonomic; of a large one that is not looked at.
+std::string verdict_of(const std::string& name, const Parameters& given) {
+  try {
+    return verdict(hamel::analyse(registry(), name, given, AnalysisOf::verdict),
+                   "--analyse looks at more");
+  } catch (const ConfigError& error) {
+    return fmt::format("not looked at: {}", error.what());
+  }
+}
+
 // Of a mechanism: its parts, freedoms and rows by name, and whether it is truly nonholonomic.
 void add_parts(Json& out, const std::string& name, const SystemModel& model,
                const Parameters& given) {
@@ -72,8 +82,7 @@ void add_parts(Json& out, const std::string& name, const SystemModel& model,
   out["dimension"] = mechanics.dim();
   out["holonomic_rows"] = mechanics.holonomic_rows();
   out["directions"] = mechanics.dim() - mechanics.rows();
-  out["verdict"] = verdict(hamel::analyse(registry(), name, given, AnalysisOf::verdict),
-                           "--analyse looks at more");
+  out["verdict"] = verdict_of(name, given);
   out["start_parameters"] = model.start_parameters;
   if (!model.notes.empty()) out["notes"] = model.notes;
 }

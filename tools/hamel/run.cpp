@@ -1,8 +1,5 @@
 // hamel run: one trajectory, its files, its page.
-#include <unistd.h>
-
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -30,34 +27,6 @@ std::string kept(const RunOptions& options) {
 }
 
 }  // namespace
-
-Progress::Progress(std::string what, bool quiet)
-    : what_(std::move(what)), active_(!quiet && isatty(STDERR_FILENO) == 1) {}
-Progress::~Progress() {
-  if (active_) write_message(fmt::format("\r{:70}\r", ""));
-}
-void Progress::operator()(double fraction) {
-  if (!active_) return;
-  const auto now = std::chrono::steady_clock::now();
-  if (first_ < 0) {
-    first_ = fraction;
-    begin_ = now;
-  } else if (now - shown_ < std::chrono::milliseconds(100)) {
-    return;
-  }
-  shown_ = now;
-  const double seconds = std::chrono::duration<double>(now - begin_).count();
-  std::string left;
-  if (fraction > first_ && seconds > 0.3) {
-    const long rest = std::lround(seconds * (1 - fraction) / (fraction - first_));
-    left = rest < 60 ? fmt::format(", {} s left", rest)
-                     : fmt::format(", {} min {:02} s left", rest / 60, rest % 60);
-  }
-  const int filled = static_cast<int>(30 * fraction);
-  const std::string bar = fmt::format("{} [{:=<{}}{:{}}] {:3.0f}%{}", visible(what_), "", filled,
-                                      "", 30 - filled, 100 * fraction, left);
-  write_message(fmt::format("\r{:<70}", bar));
-}
 
 int run(const RunOptions& options) {
   Simulation simulation(registry(), options.config.system);

@@ -22,6 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kMostValues = 100000;
+constexpr int kMostDimension = 100;  // n^4 operations a motion
 
 // name=from:to:count, or name=from:to for 101 values.
 struct Vary {
@@ -168,6 +169,11 @@ int steady(const SteadyOptions& options) {
   const Simulation first = at(options, by_speed ? "speed" : "", by_speed ? vary->values[0] : 0);
   const Run built = first.build();
   const SystemModel& system = built.system();
+  if (system.group.dim > kMostDimension)
+    throw ConfigError(
+        {fmt::format("{}: its dimension {} is above {}, the most whose steady "
+                     "motions are looked for",
+                     system.name, system.group.dim, kMostDimension)});
   const SteadyMotion motion = steady_motion(registry(), first);
   SteadySweep sweep;
   if (vary) {

@@ -12,6 +12,8 @@ namespace {
 
 // A run keeps what it has after so many rows or so many steps; not by the clock, so that it is the same each time.
 constexpr long kRows = 4096, kSteps = 65536;
+// Steps at once where each may be taken in a thousand parts: between them a run may be stopped.
+constexpr long kRescued = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 bool asks_for_rows(const RunRequest& request) {
@@ -134,7 +136,8 @@ long Driver::steps_at_once(long count, bool to_end) const {
   const long most = to_end ? steps_left_ : count;
   if (every_node_) return 1;
   const long every = recording_ ? plan_.config.every : kRows;
-  return std::min({every - node_.step % every, most, kRows});
+  const long piece = plan_.setup.on_failure == OnFailure::stop ? kRows : kRescued;
+  return std::min({every - node_.step % every, most, piece});
 }
 
 void Driver::take_steps(long count, bool to_end) {
