@@ -1,11 +1,13 @@
 // Rows of numbers in an HDF5 file that is written as they come and can be read at any time, also after the writer was
 // killed (single writer, multiple readers: H5F_START_SWMR_WRITE).
 //
-// Each group of columns is a data set, rows x columns (rows alone where it is one number), with unit, meaning, frame and
-// columns as attributes; texts are data sets of bytes. The file's attribute `finished` is 0 until it is closed, and the text
-// `record` empty. The data set `resume` holds marks, pieces of bytes that belong to the rows before them. Each mark, and in the
-// end the attribute `checksum`, has the checksum of all rows before it: HDF5 reads what is missing at the end of a file as
-// zeros, of which its own fletcher32 is zero. The attribute `checksum_of_texts` has that of all texts, the columns' too.
+// Each group of columns is a data set, rows x columns (rows alone where it is one number), with
+// unit, meaning, frame and columns as attributes; texts are data sets of bytes. The file's
+// attribute `finished` is 0 until it is closed, and the text `record` empty. The data set `resume`
+// holds marks, pieces of bytes that belong to the rows before them. Each mark, and in the end the
+// attribute `checksum`, has the checksum of all rows before it: HDF5 reads what is missing at the
+// end of a file as zeros, of which its own fletcher32 is zero. The attribute `checksum_of_texts`
+// has that of all texts, the columns' too.
 #pragma once
 
 #include <cstddef>

@@ -39,7 +39,8 @@ inline Handle latest_format() {
   return {access, H5Pclose, "H5Pcreate"};
 }
 
-// The attributes, numbers that change: finished (0 or 1), the checksum of all rows, and that of all texts.
+// The attributes, numbers that change: finished (0 or 1), the checksum of all rows, and that of all
+// texts.
 constexpr const char *kFinished = "finished", *kChecksum = "checksum",
                      *kTexts = "checksum_of_texts";
 inline void write_number(hid_t file, const char* name, hid_t type, std::uint64_t value) {

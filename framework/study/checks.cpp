@@ -132,8 +132,8 @@ class Checks {
     }
   }
 
-  // Of a long list of numbers runs look at the first ones, and of the others whether they are in their range; where there are
-  // too many combinations, of all.
+  // Of a long list of numbers runs look at the first ones, and of the others whether they are in
+  // their range; where there are too many combinations, of all.
   void values() {
     constexpr size_t kFirst = 100;
     const StudySystem system = some_system();

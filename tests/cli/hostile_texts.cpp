@@ -1,5 +1,6 @@
-// Texts that a user did not write with care: markup, terminal escapes, bytes that are no UTF-8, NUL, numbers that no double holds,
-// records with entries of the wrong type. Each has its place in the message, or is harmless where it is shown.
+// Texts that a user did not write with care: markup, terminal escapes, bytes that are no UTF-8,
+// NUL, numbers that no double holds, records with entries of the wrong type. Each has its place in
+// the message, or is harmless where it is shown.
 #include "program.hpp"
 
 namespace {

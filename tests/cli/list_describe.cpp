@@ -204,7 +204,8 @@ TEST_F(Help, ExamplesOfListAndDescribeWork) {
   }
 }
 
-/// A hundred bodies free in space are described; what would take hours is refused, or left out with the reason.
+/// A hundred bodies free in space are described; what would take hours is refused, or left out with
+/// the reason.
 TEST_F(Describe, LargeMechanisms) {
   std::string text = "name = \"many\"\n";
   for (int i = 0; i < 100; ++i) {

@@ -216,8 +216,8 @@ TEST_F(Record, FailureInTheFirstStep) {
   EXPECT_EQ(rows, 2u);  // header and start
 }
 
-/// What is not finite is not ok: a step so wild that it cannot be recovered from its two configurations, a velocity whose energy
-/// overflows. What is there of the state before is kept.
+/// What is not finite is not ok: a step so wild that it cannot be recovered from its two
+/// configurations, a velocity whose energy overflows. What is there of the state before is kept.
 TEST_F(Record, WhatIsNotFiniteIsNotOk) {
   int wild = 0;
   for (const char* speed : {"1", "1e3", "1e6", "1e9", "1e12", "1e200"}) {

@@ -1,5 +1,5 @@
-// Standard output and standard error that are closed, full or of a limited size: exit statuses and files are those that they
-// were, and what is lost on standard output is not done.
+// Standard output and standard error that are closed, full or of a limited size: exit statuses and
+// files are those that they were, and what is lost on standard output is not done.
 #include "program.hpp"
 
 namespace {

@@ -57,7 +57,8 @@ struct StudyOptions {
 };
 int study(const StudyOptions& options);
 
-/// The seconds that something takes whose end is not known, on standard error; silent when that is no terminal.
+/// The seconds that something takes whose end is not known, on standard error; silent when that is
+/// no terminal.
 class Elapsed {
  public:
   explicit Elapsed(std::string what);

@@ -1,5 +1,5 @@
-// Standard output and standard error: what cannot be written there ends no program, and what is lost on standard output
-// makes its exit status 1.
+// Standard output and standard error: what cannot be written there ends no program, and what is
+// lost on standard output makes its exit status 1.
 #pragma once
 
 #include <string_view>
@@ -10,8 +10,9 @@
 
 namespace hamel::tools {
 
-/// Before any file is opened: closed standard streams get descriptors of their own, so that no file of a run becomes one,
-/// and a closed pipe or a limit on files is an error of the write instead of a signal.
+/// Before any file is opened: closed standard streams get descriptors of their own, so that no file
+/// of a run becomes one, and a closed pipe or a limit on files is an error of the write instead of
+/// a signal.
 void begin_screen();
 
 /// Text on standard output as it is; Unfinished where it cannot be written.

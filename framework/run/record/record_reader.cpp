@@ -1,7 +1,9 @@
-// From the record of a run (record.cpp) back: the run that goes on where it ended, and what was measured.
+// From the record of a run (record.cpp) back: the run that goes on where it ended, and what was
+// measured.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

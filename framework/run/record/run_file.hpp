@@ -1,7 +1,8 @@
 // A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its page. Not installed.
 //
-// Data sets: the groups of columns; texts: config (TOML), files (texts_of_files), start (the record before the first step), build,
-// format, and record, the Result's, in the end; resume, checkpoints (run/record/checkpoint.hpp) until then.
+// Data sets: the groups of columns; texts: config (TOML), files (texts_of_files), start (the record
+// before the first step), build, format, and record, the Result's, in the end; resume, checkpoints
+// (run/record/checkpoint.hpp) until then.
 #pragma once
 
 #include <memory>
@@ -67,7 +68,8 @@ class RunFile {
 /// The rows of a finished file, thinned to at most so many. ConfigError where they are not those that were written.
 Trajectory read_rows(const RunFile& file, std::size_t most);
 
-/// What a record says of a run, into a Result that has its system and config. ConfigError, with the place, where it is none.
+/// What a record says of a run, into a Result that has its system and config. ConfigError, with the
+/// place, where it is none.
 void read_record(const std::string& record, const std::string& origin, Result& out);
 
 /// What a record calls an option: its "events" are those that were met.

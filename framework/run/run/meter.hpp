@@ -17,8 +17,9 @@
 
 namespace hamel {
 
-/// What a state, or a row where it is measured, lacks to be a good one: a number that is not finite, or a step that led to it
-/// and cannot be recovered from its two configurations. Reason::converged where it lacks nothing.
+/// What a state, or a row where it is measured, lacks to be a good one: a number that is not
+/// finite, or a step that led to it and cannot be recovered from its two configurations.
+/// Reason::converged where it lacks nothing.
 Reason flaw_of(const Snapshot& state);
 
 class Meter {
