@@ -1,5 +1,5 @@
-// The Cayley map (I - xi^/2)^-1 (I + xi^/2) in the defining matrices of SO(2), SO(3), SE(2), SE(3); the
-// identity map on R^n. (M33) of framework/schemes/README.md.
+// The Cayley map (I - xi^/2)^-1 (I + xi^/2) in the defining matrices of SO(3), SE(2), SE(3), and of SO(2) as
+// cayley_literal; addition on the commutative groups SO(2) and R^n. (M33) of framework/schemes/README.md.
 //
 // The map is rational. (dR^-1 eta)^ = (I - xi^/2) eta^ (I + xi^/2) is a polynomial, W = omega^, V = v^:
 //   SO(2)    dR^-1 = 1 + omega^2/4
@@ -35,7 +35,19 @@ struct Cayley<Rn<N>> : IdentityRetraction<Cayley<Rn<N>>, Rn<N>> {
 };
 
 template <>
-struct Cayley<SO2> : CayleyDefaults<SO2> {
+struct Cayley<SO2> : AddedAngle<Cayley<SO2>> {
+  static std::string name() { return "cayley"; }
+};
+
+/// For comparison: a step of size x turns by 2 atan(x/2), short of x by x^3/12.
+template <>
+struct CayleyLiteral<SO2> : RetractionDefaults<CayleyLiteral<SO2>, SO2> {
+  static constexpr bool symmetric = true;
+  static constexpr bool commuting = true;
+  static std::string name() { return "cayley_literal"; }
+  static std::string formula() { return CayleyDefaults<SO2>::formula(); }
+  /// What the other factors of a product take.
+  static std::string elsewhere() { return "cayley"; }
   /// ((1 - a^2) + 2 a i)/(1 + a^2), a = omega/2.
   template <class T>
   static SO2Element<T> tau(const VecT<T, 1>& xi) {
@@ -44,7 +56,7 @@ struct Cayley<SO2> : CayleyDefaults<SO2> {
   }
   template <class T>
   static VecT<T, 1> tau_inverse(const SO2Element<T>& g) {
-    return VecT<T, 1>(2.0 * half_angle_tangent(g.c, g.s, "so2 cayley^-1"));
+    return VecT<T, 1>(2.0 * half_angle_tangent(g.c, g.s, "so2 cayley_literal^-1"));
   }
   template <class T>
   static MatT<T, 1, 1> dtau_right(const VecT<T, 1>& xi) {

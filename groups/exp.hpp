@@ -28,6 +28,7 @@
 #include <hamel/groups/so3.hpp>
 #include <numbers>
 #include <string>
+#include <string_view>
 
 namespace hamel {
 
@@ -79,13 +80,12 @@ struct Exp<Rn<N>> : IdentityRetraction<Exp<Rn<N>>, Rn<N>> {
   static std::string name() { return "exp"; }
 };
 
-/// exp(omega) = (cos omega, sin omega).
+/// theta, the unwrapped angle: angles add, so that any retraction of SO(2) is this one (groups/README.md).
 template <class Derived>
-struct CircleExponential : RetractionDefaults<Derived, SO2> {
+struct AddedAngle : RetractionDefaults<Derived, SO2> {
   static constexpr bool symmetric = true;
   static constexpr bool one_parameter = true;
-  static std::string domain() { return "|omega| < pi"; }
-  static std::string formula() { return "tau(omega) = (cos omega, sin omega)"; }
+  static std::string formula() { return "tau(omega) = the rotation by omega, turns counted"; }
 
   template <class T>
   static SO2Element<T> tau(const VecT<T, 1>& xi) {
@@ -95,11 +95,10 @@ struct CircleExponential : RetractionDefaults<Derived, SO2> {
     }
     return SO2::from_angle(xi[0]);
   }
-  /// The angle in (-pi, pi), turns ignored. Throws DomainError at pi.
+  /// The angle with its turns.
   template <class T>
   static VecT<T, 1> tau_inverse(const SO2Element<T>& g) {
-    const T t = half_angle_tangent(g.c, g.s, "so2 exp^-1");
-    return VecT<T, 1>(2.0 * atanc(T(t * t)) * t);
+    return VecT<T, 1>(g.angle());
   }
   template <class T>
   static MatT<T, 1, 1> dtau_right(const VecT<T, 1>&) {
@@ -114,14 +113,17 @@ struct CircleExponential : RetractionDefaults<Derived, SO2> {
                                                                const VecT<T, 1>&) {
     return MatT<T, 1, 1>::Zero();
   }
-  template <class T>
-  static bool in_domain(const VecT<T, 1>& xi) {
-    return xi[0] < std::numbers::pi && xi[0] > -std::numbers::pi;
-  }
 };
 
+/// The angle in (-pi, pi), turns ignored. Throws DomainError at pi.
+template <class T>
+T principal_angle(const SO2Element<T>& g, const std::string_view map) {
+  const T t = half_angle_tangent(g.c, g.s, map);
+  return 2.0 * atanc(T(t * t)) * t;
+}
+
 template <>
-struct Exp<SO2> : CircleExponential<Exp<SO2>> {
+struct Exp<SO2> : AddedAngle<Exp<SO2>> {
   static std::string name() { return "exp"; }
 };
 

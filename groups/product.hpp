@@ -3,7 +3,8 @@
 // Element: the tuple of the factors' elements (part<I>()).
 // Algebra: the factors' coordinates one after another; Ad, ad, dR, dL are block diagonal.
 // Columns carry the number of the factor: 1_theta, 1_x, 1_y, 2_theta.
-// A product offers every retraction that all its factors offer (product_retraction.hpp).
+// A product offers every retraction that all its factors offer (product_retraction.hpp); cayley_literal where one
+// has it, beside cayley on the others.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +50,7 @@ struct Product {
   using Element = ProductElement<T, Gs...>;
   template <std::size_t I>
   using Factor = std::tuple_element_t<I, std::tuple<Gs...>>;
-  /// Those that every factor has.
+  /// Those that every factor has, and cayley_literal.
   using Retractions = typename Concatenate<
       std::conditional_t<(has_retraction<Gs, Exp<Gs>> && ...), TypeList<Exp<Product>>, TypeList<>>,
       std::conditional_t<(has_retraction<Gs, Cayley<Gs>> && ...), TypeList<Cayley<Product>>,
@@ -59,7 +60,10 @@ struct Product {
       std::conditional_t<(has_retraction<Gs, SecondKind<Gs>> && ...), TypeList<SecondKind<Product>>,
                          TypeList<>>,
       std::conditional_t<(has_retraction<Gs, SecondKindSymmetric<Gs>> && ...),
-                         TypeList<SecondKindSymmetric<Product>>, TypeList<>>>::type;
+                         TypeList<SecondKindSymmetric<Product>>, TypeList<>>,
+      std::conditional_t<(has_retraction<Gs, Cayley<Gs>> && ...) &&
+                             (has_retraction<Gs, CayleyLiteral<Gs>> || ...),
+                         TypeList<CayleyLiteral<Product>>, TypeList<>>>::type;
 
   /// Where factor I's coordinates start in the algebra.
   static constexpr std::array<int, sizeof...(Gs)> offsets = [] {

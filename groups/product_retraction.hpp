@@ -12,6 +12,7 @@
 #include <hamel/groups/retractions.hpp>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace hamel {
@@ -126,6 +127,13 @@ template <class... Gs>
 struct Exp<Product<Gs...>> : ProductRetraction<Exp<Gs>...> {};
 template <class... Gs>
 struct Cayley<Product<Gs...>> : ProductRetraction<Cayley<Gs>...> {};
+/// On the factors that have it, Cayley on the others.
+template <class... Gs>
+struct CayleyLiteral<Product<Gs...>>
+    : ProductRetraction<std::conditional_t<has_retraction<Gs, CayleyLiteral<Gs>>, CayleyLiteral<Gs>,
+                                           Cayley<Gs>>...> {
+  static std::string name() { return "cayley_literal"; }
+};
 template <class... Gs>
 struct Polar<Product<Gs...>> : ProductRetraction<Polar<Gs>...> {};
 template <class... Gs>

@@ -3,6 +3,7 @@
 // A retraction is a template over the group, specialised where it exists:
 //   Exp                  exp(xi)                                                      every group
 //   Cayley               (I - xi^/2)^-1 (I + xi^/2) in the defining matrices          every group
+//   CayleyLiteral        the same on SO2, where Cayley adds angles                    SO2
 //   Polar                orthogonal polar factor of I + omega^                        SO3
 //   SecondKind           exp(xi_1 e_1) ... exp(xi_n e_n)                              every group
 //   SecondKindSymmetric  exp(xi_1 e_1/2) ... exp(xi_n e_n) ... exp(xi_1 e_1/2)        every group
@@ -18,6 +19,8 @@ template <class G>
 struct Exp;
 template <class G>
 struct Cayley;
+template <class G>
+struct CayleyLiteral;
 template <class G>
 struct Polar;
 template <class G>

@@ -115,11 +115,11 @@ struct SecondKindSymmetric<Rn<N>> : IdentityRetraction<SecondKindSymmetric<Rn<N>
   static std::string name() { return "second_kind_symmetric"; }
 };
 template <>
-struct SecondKind<SO2> : CircleExponential<SecondKind<SO2>> {
+struct SecondKind<SO2> : AddedAngle<SecondKind<SO2>> {
   static std::string name() { return "second_kind"; }
 };
 template <>
-struct SecondKindSymmetric<SO2> : CircleExponential<SecondKindSymmetric<SO2>> {
+struct SecondKindSymmetric<SO2> : AddedAngle<SecondKindSymmetric<SO2>> {
   static std::string name() { return "second_kind_symmetric"; }
 };
 
@@ -181,7 +181,7 @@ struct SecondKind<SE2> : StagedRetraction<SecondKind<SE2>, SE2, false> {
   /// v = R^T p. DomainError at a rotation by pi.
   template <class T>
   static VecT<T, 3> tau_inverse(const SE2Element<T>& g) {
-    const T omega = Exp<SO2>::tau_inverse(g.rotation)[0];
+    const T omega = principal_angle(g.rotation, "se2 second_kind^-1");
     const VecT<T, 2> v = g.rotation.rotate_back(g.translation);
     return {omega, v[0], v[1]};
   }
@@ -197,9 +197,9 @@ struct SecondKindSymmetric<SE2> : StagedRetraction<SecondKindSymmetric<SE2>, SE2
   /// v = R(omega/2)^T p. DomainError at a rotation by pi.
   template <class T>
   static VecT<T, 3> tau_inverse(const SE2Element<T>& g) {
-    const VecT<T, 1> omega = Exp<SO2>::tau_inverse(g.rotation);
+    const T omega = principal_angle(g.rotation, "se2 second_kind_symmetric^-1");
     const VecT<T, 2> v = Exp<SO2>::tau(VecT<T, 1>(0.5 * omega)).rotate_back(g.translation);
-    return {omega[0], v[0], v[1]};
+    return {omega, v[0], v[1]};
   }
 };
 

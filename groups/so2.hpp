@@ -2,8 +2,9 @@
 //
 // Element: the unit complex number c + i s = exp(i theta) and a count of full turns, so that
 //   angle = atan2(s, c) + 2 pi turns
-// is continuous through composition and inverse. The turns are found from signs, without trigonometry;
-// inverse retractions ignore them.
+// is continuous through composition and inverse. The turns are found from signs, without trigonometry. So
+// counted, the elements are the universal cover of the circle, on which angles add; cayley_literal^-1 ignores
+// the turns.
 // Algebra: the angular velocity, 1 number.
 //   (c, s)(c', s') = (c c' - s s', s c' + c s'),   Ad = 1,   ad = 0
 // Source: Solà, Deray, Atchuthan, A micro Lie theory (arXiv:1812.01537), appendix A.
@@ -54,7 +55,8 @@ struct SO2 {
   static constexpr int dim = 1;
   template <class T>
   using Element = SO2Element<T>;
-  using Retractions = TypeList<Exp<SO2>, Cayley<SO2>, SecondKind<SO2>, SecondKindSymmetric<SO2>>;
+  using Retractions = TypeList<Exp<SO2>, Cayley<SO2>, SecondKind<SO2>, SecondKindSymmetric<SO2>,
+                               CayleyLiteral<SO2>>;
 
   static std::string name() { return "so2"; }
 
@@ -175,9 +177,9 @@ struct SO2 {
 
  private:
   template <class T>
-  static int nearest_integer(const T& x) {
+  static std::int64_t nearest_integer(const T& x) {
     if constexpr (std::is_arithmetic_v<T>) {
-      return std::abs(x) < 1e9 ? static_cast<int>(std::lround(x)) : 0;
+      return std::abs(x) < 1e15 ? std::llround(x) : 0;
     } else {
       return nearest_integer(x.a);  // an automatic-differentiation number: its value
     }

@@ -20,13 +20,15 @@ namespace hamel {
 template <class Tau>
 RetractionInfo retraction_info() {
   static_assert(Retraction<Tau>, "this type does not satisfy hamel::Retraction");
-  return {Tau::name(),
-          Tau::Group::name(),
-          Tau::formula(),
-          Tau::domain(),
-          Tau::symmetric,
-          Tau::one_parameter,
-          std::make_shared<TypedGeometry<Tau>>()};
+  RetractionInfo info{Tau::name(),
+                      Tau::Group::name(),
+                      Tau::formula(),
+                      Tau::domain(),
+                      Tau::symmetric,
+                      Tau::one_parameter,
+                      std::make_shared<TypedGeometry<Tau>>()};
+  if constexpr (requires { Tau::elsewhere(); }) info.elsewhere = Tau::elsewhere();
+  return info;
 }
 
 namespace detail {

@@ -108,7 +108,7 @@ TEST(CayleyInverse, RefusesAHalfTurnAndSaysSo) {
     EXPECT_NE(std::string(error.what()).find("so3 cayley^-1"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("3.14159"), std::string::npos) << error.what();
   }
-  EXPECT_THROW((void)Cayley<SO2>::tau_inverse(SO2Element<double>{-1, 0, 0}), DomainError);
+  EXPECT_THROW((void)CayleyLiteral<SO2>::tau_inverse(SO2Element<double>{-1, 0, 0}), DomainError);
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ TEST(Logarithm, RefusesAHalfTurnAndSaysSo) {
     EXPECT_NE(std::string(error.what()).find("so3 exp^-1"), std::string::npos) << error.what();
   }
   EXPECT_THROW((void)Exp<SE2>::tau_inverse(Exp<SE2>::tau(Vec<3>(pi, 1, 2))), DomainError);
-  EXPECT_THROW((void)Exp<SO2>::tau_inverse(Exp<SO2>::tau(Vec<1>(-pi))), DomainError);
+  EXPECT_NEAR(Exp<SO2>::tau_inverse(Exp<SO2>::tau(Vec<1>(-7 * pi)))[0], -7 * pi, 1e-14);
   const SE3Element<double> half_turn{Vec<3>(-1, 1, -1).asDiagonal(), Vec<3>(1, 2, 3)};
   EXPECT_THROW((void)Exp<SE3>::tau_inverse(half_turn), DomainError);
 }

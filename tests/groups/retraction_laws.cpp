@@ -46,7 +46,35 @@ TEST(ProductRetractions, AreThoseOfAllFactors) {
   static_assert(has_retraction<Pair, Polar<Pair>>);
   EXPECT_EQ(Exp<Disk>::name(), "exp");
   EXPECT_EQ((ProductRetraction<Exp<SE2>, Cayley<SO2>>::name()), "exp*cayley");
-  EXPECT_EQ(Exp<Disk>::domain(), "1: |omega| < pi; 2: |omega| < pi");
+  EXPECT_EQ(Exp<Disk>::domain(), "1: |omega| < pi; 2: all finite xi");
+  static_assert(has_retraction<Disk, CayleyLiteral<Disk>> &&
+                !has_retraction<Pair, CayleyLiteral<Pair>>);
+  EXPECT_EQ(CayleyLiteral<Disk>::name(), "cayley_literal");
+}
+
+/// An angle of ten turns by any retraction but the literal one, by type and by name; the other factors keep theirs.
+TEST(ProductRetractions, AddOnCommutativeFactors) {
+  const Vec<4> xi(0.3, 1, 2, 63);
+  const auto turns = [&]<class R>(std::type_identity<R>) {
+    const auto g = R::tau(xi);
+    const bool literal = R::name() == "cayley_literal";
+    EXPECT_NEAR(g.template part<1>().angle(), literal ? 2 * std::atan(31.5) : 63, 1e-13)
+        << R::name();
+    EXPECT_TRUE(R::in_domain(xi));
+    if (!literal) {
+      EXPECT_NEAR(R::tau_inverse(g)[3], 63, 1e-13) << R::name();
+    }
+    const auto geometry = registry().geometry("se2*so2^1", R::name());
+    ASSERT_NE(geometry, nullptr) << R::name();
+    std::vector<double> out(static_cast<size_t>(geometry->size())), coordinates(4);
+    geometry->tau(xi.data(), out.data());
+    geometry->coordinates(out.data(), coordinates.data());
+    const auto typed = Product<SE2, SO2>::coordinates(g);
+    for (size_t i = 0; i < 4; ++i) EXPECT_EQ(coordinates[i], typed.begin()[i]) << R::name();
+  };
+  Product<SE2, SO2>::Retractions::for_each(turns);
+  EXPECT_NEAR(Cayley<SE2>::tau(Vec<3>(0.3, 1, 2)).rotation.angle(), 2 * std::atan(0.15), 1e-15);
+  EXPECT_EQ(registry().geometry("so3^2", "cayley_literal"), nullptr);
 }
 
 /// The laws must be able to fail: each retraction has one mistake.

@@ -179,9 +179,16 @@ std::string Registry::missing_group(const std::string& name) const {
 std::shared_ptr<const Geometry> Registry::geometry(const std::string& group,
                                                    const std::string& retraction) const {
   if (const RetractionInfo* info = this->retraction(group, retraction)) return info->geometry;
-  std::vector<std::shared_ptr<const Geometry>> parts;
-  for (const std::string& word : factors_of(group)) {
+  const std::vector<std::string> factors = factors_of(group);
+  std::string elsewhere;
+  for (const std::string& word : factors) {
     const RetractionInfo* info = this->retraction(word, retraction);
+    if (info != nullptr && !info->elsewhere.empty()) elsewhere = info->elsewhere;
+  }
+  std::vector<std::shared_ptr<const Geometry>> parts;
+  for (const std::string& word : factors) {
+    const RetractionInfo* info = this->retraction(word, retraction);
+    if (info == nullptr) info = this->retraction(word, elsewhere);
     if (info == nullptr) return nullptr;
     parts.push_back(info->geometry);
   }

@@ -24,6 +24,8 @@ struct RetractionInfo {
   bool symmetric = false;
   bool one_parameter = false;
   std::shared_ptr<const Geometry> geometry;  // what erased problems evaluate
+  /// The retraction of those factors of a product that have none of this name; empty: then it has none either.
+  std::string elsewhere = {};
 };
 
 using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
