@@ -97,7 +97,7 @@ inline double constraint_floor(const Result& result) {
     if (c.name == result.config.compose) smallest = std::abs(c.coefficients.back());
   }
   return 8 * std::numeric_limits<double>::epsilon() * size /
-         std::abs(smallest * result.config.step);
+         std::abs(smallest * result.config.step_or_usual());
 }
 
 /// What to run, and where it is in its asymptotic regime.

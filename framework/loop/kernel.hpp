@@ -2,6 +2,7 @@
 // inside a step. The loop itself is loop.hpp.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -38,7 +39,8 @@ struct KernelSetup {
   const Tableau* tableau = nullptr;   // of explicit schemes that are given by one
   double relative = 0, absolute = 0;  // tolerances that choose the steps; 0: all of size step
   bool first_chosen = false;          // the first too
-  int order = 0;                      // the scheme's, with its composition
+  double largest = std::numeric_limits<double>::infinity();  // of chosen steps
+  int order = 0;                                             // the scheme's, with its composition
   bool forces_at_base = false;        // lift: f - dV at the base point instead of the nodes
   double from = 0;                    // the time of the start
   std::vector<double> configuration;  // the element's coordinates there
@@ -51,8 +53,12 @@ class Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
   virtual ~Kernel() = default;
-  /// count steps. On failure the state is that of the last good step.
+  /// count steps, from node to node. On failure the state is that of the last good step. A step of one size within which
+  /// an input jumps or bends ends there, and the next one where it would have ended.
   virtual Status advance(long count) = 0;
+  /// Those taken, the parts of one counted as one; is the node such a jump or kink?
+  virtual long whole_steps() const = 0;
+  virtual bool off_grid() const = 0;
   /// Measures the current state into out (its vectors are reused).
   virtual void measure(Snapshot& out) const = 0;
   /// The state alone: step, time, coordinates, velocity, momentum, energy.
@@ -62,7 +68,8 @@ class Kernel {
   /// The node itself, and that at the beginning of the last step: time, coordinates, and the velocity that is carried.
   virtual void node(Snapshot& out) const = 0;
   virtual void beginning(Snapshot& out) const = 0;
-  /// Steps that are chosen end at t at the latest, and advance() does nothing there.
+  /// Steps that are chosen end at t at the latest, and advance() does nothing there. One of steps of one size that ends
+  /// at t is not moved to a jump of an input next to it.
   virtual void limit(double t) = 0;
   /// The size of the step that comes next (chosen ones before they are cut at the limit).
   virtual double next_step() const = 0;

@@ -7,6 +7,10 @@
 #include <hamel/framework/loop/denormals.hpp>
 
 namespace hamel {
+namespace {
+// A jump of an input is next to a node, in steps.
+constexpr double kNext = 1e-3;
+}  // namespace
 
 TimeLoop::TimeLoop(const KernelSetup& setup)
     : setup_(setup), h_(setup.step), from_(setup.from), time_(setup.from), t_(setup.from) {}
@@ -16,12 +20,9 @@ Status TimeLoop::take_steps(long count) {
   for (long k = 0; k < count; ++k) {
     const bool chosen = chooses_steps();
     if (chosen && t_ == limit_) return {};
-    SolveReport report = chosen ? chosen_step() : one_step();
+    SolveReport report = chosen ? chosen_step() : fixed_step();
     if (!report.ok()) [[unlikely]] {
-      if (!chosen || !errors_) {
-        report = recover(report);
-        beginning_ = Beginning::rescue;
-      }
+      if (chosen && !errors_) report = rescued(report);
       if (!report.ok()) return failure(report);
     }
     tally(report);
@@ -33,6 +34,7 @@ Status TimeLoop::take_steps(long count) {
 inline void TimeLoop::tally(const SolveReport& report) {
   last_ = report;
   ++steps_;
+  if (!in_parts_) ++whole_;
   stats_.iterations += report.iterations;
   stats_.evaluations += report.evaluations;
   if (report.iterations > stats_.iterations_max) stats_.iterations_max = report.iterations;
@@ -56,7 +58,8 @@ void TimeLoop::begin_anew(double t, double step) {
 // Steps count from here.
 void TimeLoop::count_from(double t) {
   from_ = time_ = t;
-  first_ = steps_;
+  first_ = whole_;
+  in_parts_ = off_grid_ = false;
 }
 
 inline SolveReport TimeLoop::one_step() {
@@ -68,6 +71,49 @@ inline SolveReport TimeLoop::one_step() {
   beginning_ = Beginning::previous;
   return report;
 }
+
+// Of one size, unless an input jumps or bends within it.
+inline SolveReport TimeLoop::fixed_step() {
+  if (setup_.inputs != nullptr && (off_grid_ || setup_.inputs->breaks())) [[unlikely]] {
+    const double end = from_ + static_cast<double>(whole_ - first_ + 1) * h_;
+    const double part = end_of_part(end);
+    if (off_grid_ || part != end) return part_of_step(part, part == end);
+  }
+  const SolveReport report = one_step();
+  if (report.ok()) [[likely]]
+    return report;
+  return rescued(report);
+}
+
+// Where the step to `end` is to end: there, or where an input jumps or bends before. A jump next to the end stands for it,
+// since what is known of a step far smaller than the others is mostly round-off.
+double TimeLoop::end_of_part(double end) const {
+  const double size = std::abs(h_), jump = setup_.inputs->next_break(t_, h_);
+  const double before = std::copysign(1.0, h_) * (end - jump);
+  if (std::abs(before) <= 1e-9 * size || before < (ends_run(end) ? 0 : -kNext * size)) return end;
+  return jump;
+}
+
+// The part of a step to `end`; whole: nothing of the step is left then.
+SolveReport TimeLoop::part_of_step(double end, bool whole) {
+  const double h = h_;
+  const double step_end = from_ + static_cast<double>(whole_ - first_ + 1) * h;
+  time_ = time();
+  off_grid_ = true;
+  forget();  // of steps of another size
+  h_ = end - t_;
+  SolveReport report = one_step();
+  if (!report.ok()) report = rescued(report);
+  h_ = h;
+  forget();
+  if (!report.ok()) return report;
+  end_at(t_ = end);
+  off_grid_ = !whole;
+  in_parts_ = !whole && (ends_run(step_end) || std::abs(step_end - end) > kNext * std::abs(h));
+  return report;
+}
+
+bool TimeLoop::ends_run(double t) const { return std::abs(t - limit_) <= 1e-9 * std::abs(h_); }
 
 // Forces that are remembered from the end of the last step are those of its inputs.
 void TimeLoop::enter_inputs() {
@@ -101,6 +147,7 @@ SolveReport TimeLoop::chosen_step() {
   if (errors_) return error_controlled_step();
   const double end = end_of_step(t_), left = end - t_;
   h_ = controlled_size(std::pow(setup_.relative + setup_.absolute, 1.0 / setup_.order));
+  h_ = std::copysign(std::min(std::abs(h_), setup_.largest), h_);
   const bool cut = std::abs(h_) >= std::abs(left);
   if (cut) {
     h_ = left;
@@ -113,6 +160,7 @@ SolveReport TimeLoop::chosen_step() {
 
 SolveReport TimeLoop::error_controlled_step() {
   const double end = end_of_step(t_);
+  h_ = std::copysign(std::min(std::abs(h_), setup_.largest), h_);
   SolveReport total;
   const auto taken = errors_->take(h_, end - t_, smallest_step(t_), [&] {
     error_ = std::numeric_limits<double>::infinity();  // of a step that fails
@@ -136,6 +184,12 @@ double TimeLoop::end_of_step(double t) const {
 double TimeLoop::smallest_step(double t) const {
   const double span = std::isfinite(limit_) ? limit_ - from_ : std::fmax(t - from_, setup_.step);
   return 1e-14 * std::abs(span);
+}
+
+SolveReport TimeLoop::rescued(const SolveReport& failed) {
+  const SolveReport report = recover(failed);
+  beginning_ = Beginning::rescue;
+  return report;
 }
 
 // A step has failed, and the state is still that of the last good one: what on_failure asks for.

@@ -19,6 +19,8 @@ class TimeLoop : public Kernel {
   // local).
   Status advance(long count) final { return take_steps(count); }
   const SolverStats& stats() const final { return stats_; }
+  long whole_steps() const final { return whole_; }
+  bool off_grid() const final { return off_grid_; }
   void limit(double t) final { limit_ = t; }
   double next_step() const final { return h_; }
   void turn_back() final { reverse(); }
@@ -53,16 +55,18 @@ class TimeLoop : public Kernel {
 
   bool chooses_steps() const { return setup_.relative > 0 || setup_.absolute > 0; }
   double time() const {
-    return chooses_steps() ? time_ : from_ + static_cast<double>(steps_ - first_) * h_;
+    return chooses_steps() || off_grid_ ? time_ : from_ + static_cast<double>(whole_ - first_) * h_;
   }
 
   KernelSetup setup_;
   double h_;
   double limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
-  double from_, time_;  // where steps were first counted; of the last step's end
-  double t_;            // of the node
-  long first_ = 0;
-  long inputs_changed_ = 0;  // seen
+  double from_, time_;          // where steps were first counted; of the last step's end
+  double t_;                    // of the node
+  long first_ = 0, whole_ = 0;  // steps that are no parts: before from_, and all
+  bool in_parts_ = false;       // the node is within a whole step
+  bool off_grid_ = false;       // and in no place of steps of one size
+  long inputs_changed_ = 0;     // seen
   SolveReport last_;
   long steps_ = 0;
   SolverStats stats_;
@@ -77,13 +81,18 @@ class TimeLoop : public Kernel {
   SolveReport one_step();
   SolveReport composed_step();
   SolveReport chosen_step();
+  SolveReport fixed_step();
+  SolveReport part_of_step(double end, bool whole);
   SolveReport error_controlled_step();
   void enter_inputs();
   double end_of_step(double t) const;
+  double end_of_part(double end) const;
+  bool ends_run(double t) const;
   double smallest_step(double t) const;
   void count_from(double t);
   void tally(const SolveReport& report);
   SolveReport recover(SolveReport failed);
+  SolveReport rescued(const SolveReport& failed);
   SolveReport halve(int level, int& parts);
   Status failure(const SolveReport& report) const;
 };

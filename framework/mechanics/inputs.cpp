@@ -116,8 +116,10 @@ double Inputs::next_break(double t, double h) const {
 
 void Inputs::find_cover() {
   first_ = -infinite, last_ = infinite;
+  breaks_ = false;
   for (const InputTable& table : tables_) {
     if (table.times.empty()) continue;
+    breaks_ = breaks_ || table.times.size() > 1;
     first_ = std::max(first_, table.times.front());
     last_ = std::min(last_, table.times.back());
   }

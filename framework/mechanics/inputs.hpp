@@ -43,6 +43,8 @@ class Inputs {
   InputValues slopes_at(double t) const;
   /// From now on constant.
   void set(std::size_t input, double value);
+  /// Is there a table that may jump or bend?
+  bool breaks() const { return breaks_; }
   /// The first time beyond t, in the direction of h, at which a held value jumps or a line bends; infinite where there
   /// is none.
   double next_break(double t, double h) const;
@@ -63,6 +65,7 @@ class Inputs {
   std::vector<bool> smooth_;         // the step lies within it
   InputValues now_;                  // of constants and held tables
   double first_ = 0, last_ = 0;      // covered
+  bool breaks_ = false;
   long changes_ = 0;
 };
 

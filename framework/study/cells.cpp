@@ -11,6 +11,13 @@
 namespace hamel {
 namespace {
 
+// The value of an axis that a study does not name: its runs have a step.
+std::string text_without(const std::string& axis) {
+  Config config;
+  config.step = Config::kUsualStep;
+  return config.completed().text(axis);
+}
+
 // The order that the scheme claims here. A composition reaches its own over a reversible step of order 2.
 int claim(const Registry& registry, const StudyCell& cell, const SystemModel& system) {
   const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
@@ -32,7 +39,7 @@ void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, 
                   Config& run) {
   const auto leave = [&](const char* axis) {
     axes[axis] = "";
-    run.set(axis, Config().text(axis));
+    run.set(axis, text_without(axis));
   };
   const bool chooses = scheme.estimates_error || (scheme.varies_steps && run.s == 0.5);
   if (!chooses) {
@@ -118,7 +125,7 @@ StudyValues StudyConfig::values(const std::string& axis) const {
   if (axis == "system")
     for (const StudySystem& system : systems) out.push_back(system.label);
   else if (const auto given = axes.find(axis); given != axes.end()) out = given->second;
-  else out.push_back(Config().text(axis));
+  else out.push_back(text_without(axis));
   return out;
 }
 

@@ -73,6 +73,7 @@ class Checks {
   // A run that is right but for what a study changes in it.
   Config sound(const StudySystem& system) const {
     Config config;
+    config.step = Config::kUsualStep;
     config.system = system.name;
     config.parameters = system.parameters;
     config.start = system.start;
@@ -146,7 +147,7 @@ class Checks {
         Config config = base;
         if (!take(config, axis, i)) continue;
         if (axis == "retraction") retraction(i, config.retraction);
-        else if (axis == "step") step(i, config.step);
+        else if (axis == "step") step(i, config.step_or_usual());
         else if (too_many_ || (i >= kFirst && std::is_arithmetic_v<Value>))
           new_mistakes(axis, i, config.mistakes(), known);
         else value(axis, i, system, base, config);

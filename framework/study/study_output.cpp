@@ -72,12 +72,11 @@ Table StudyResult::table() const {
     if (!option.axis) return;
     const std::string name = option.name,
                       meaning = fmt::format("axis, {}; empty where it is not used", option.meaning);
-    if constexpr (std::is_arithmetic_v<Value>) {
+    if (std::is_arithmetic_v<Value> || name == "step") {  // a tolerance may be "fixed"
       c.numbers(name, option.unit, meaning, [this, name](size_t i) {
-        Value value{};
-        if (cells[i].axes.at(name).empty()) return kNotMeasured;
-        read_text(name, cells[i].axes.at(name), value);
-        return static_cast<double>(value);
+        double value = kNotMeasured;
+        if (!cells[i].axes.at(name).empty()) read_text(name, cells[i].axes.at(name), value);
+        return value;
       });
     } else {
       c.words(name, meaning, [name](Cell cell, Metrics) { return cell.axes.at(name); });

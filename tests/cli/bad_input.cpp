@@ -31,8 +31,10 @@ TEST_F(BadInput, Numbers) {
   refused({"suslov", "--step", "nan"}, "step: got nan");
   refused({"suslov", "--step", "inf"}, "step: got inf");
   refused({"suslov", "--step", "-0.01"}, "until: got 20");
-  refused({"suslov", "--until", "-1"}, "until: got -1");
-  refused({"suslov", "--until", "1e12"}, "every");
+  refused({"suslov", "--step", "0.01", "--until", "-1"}, "until: got -1");
+  refused({"suslov", "--step", "0.01", "--until", "1e12"}, "every");
+  refused({"suslov", "--until", "1e12"}, "until: 1e+14 rows");
+  refused({"suslov", "--step", "0.01", "--until", "1e300"}, "until");
   refused({"suslov", "--until", "1e300"}, "until");
   refused({"suslov", "--every", "0"}, "every: got 0");
   refused({"suslov", "--every", "1.5"}, "--every");

@@ -70,7 +70,7 @@ TEST_F(Pages, TimesOfTheirOwn) {
 // The estimate is told by what it was made of.
 TEST_F(Pages, HowTheErrorIsKnown) {
   if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
-  EXPECT_THAT(verdict({"rattleback", "--until", "2", "--check"}).second,
+  EXPECT_THAT(verdict({"rattleback", "--step", "0.01", "--until", "2", "--check"}).second,
               HasSubstr("By half and a quarter of the step"));
   EXPECT_THAT(verdict({"falling_disk", "--scheme", "dop853", "--rtol", "1e-8", "--check"}).second,
               HasSubstr("By a tenth and a hundredth of the tolerance"));

@@ -97,9 +97,10 @@ TEST_F(Files, UnwrappedAngles) {
 TEST_F(Files, Every) {
   for (const auto& [every, rows] :
        {std::pair{"1", 11u}, {"3", 5u}, {"5", 3u}, {"10", 2u}, {"1000", 2u}}) {
-    ASSERT_EQ(
-        run({"run", "suslov", "--until", "0.1", "--every", every, "-o", "a.csv", "--quiet"}).status,
-        0);
+    ASSERT_EQ(run({"run", "suslov", "--step", "0.01", "--until", "0.1", "--every", every, "-o",
+                   "a.csv", "--quiet"})
+                  .status,
+              0);
     const Table table = read_csv(contents(file("a.csv")));
     EXPECT_EQ(table.cells.size(), rows) << every;
     EXPECT_EQ(std::stod(table.cells.front()[0]), 0);

@@ -60,7 +60,7 @@ void expect_contract(const Json& r) {
 
 /// Adding a key is free but deliberate: every key of the record is listed here.
 TEST_F(Record, HasExactlyTheseKeys) {
-  const Json r = record({"suslov", "--until", "0.5"});
+  const Json r = record({"suslov", "--step", "0.01", "--until", "0.5"});
   expect_contract(r);
   std::vector<std::string> keys;
   for (const auto& [key, value] : r.items()) keys.push_back(key);
@@ -70,14 +70,14 @@ TEST_F(Record, HasExactlyTheseKeys) {
                         "solver_stats", "timing", "version", "git", "host",
                         // later keys:
                         "tolerance", "on_failure", "from", "until", "every", "check", "force",
-                        "force_at", "no_exact", "speed", "rtol", "atol", "output_step",
+                        "force_at", "no_exact", "speed", "rtol", "atol", "step_max", "output_step",
                         "output_times", "watched", "stop_at", "events", "start", "inputs", "notes",
                         "failure", "fallbacks", "system_file"));
 }
 
 TEST_F(Record, OfEverySystem) {
   for (const char* system : {"suslov", "chaplygin_sleigh", "rolling_disk"}) {
-    const Json r = record({system, "--until", "1"});
+    const Json r = record({system, "--step", "0.01", "--until", "1"});
     expect_contract(r);
     EXPECT_EQ(r["system"], system);
     EXPECT_EQ(r["status"], "ok");
@@ -144,7 +144,13 @@ TEST_F(Record, EveryOptionReachesTheRun) {
 }
 
 TEST_F(Record, TheDefaultsOfTheContract) {
-  const Json r = record({"suslov"});
+  const Json open = record({"suslov"});
+  EXPECT_EQ(open["scheme"], "dop853");
+  EXPECT_EQ(open["rtol"], 1e-8);
+  EXPECT_EQ(open["step"], nullptr);
+  EXPECT_LT(open["steps"], 200);
+  EXPECT_EQ(record({"suslov", "--rtol", "1e-6"})["scheme"], "dop853");
+  const Json r = record({"suslov", "--step", "0.01"});
   EXPECT_EQ(r["scheme"], "lift");
   EXPECT_EQ(r["s"], 0.5);
   EXPECT_EQ(r["retraction"], "cayley");
@@ -162,7 +168,7 @@ TEST_F(Record, BackwardsInTime) {
 }
 
 TEST_F(Record, MomentumIsProjectedWithANote) {
-  const Json r = record({"suslov", "--momentum", "1,1,3", "--until", "0.1"});
+  const Json r = record({"suslov", "--step", "0.01", "--momentum", "1,1,3", "--until", "0.1"});
   ASSERT_EQ(r["notes"].size(), 2u);  // the first: no rigid body has the paper's moments
   EXPECT_THAT(r["notes"][1].get<std::string>(), HasSubstr("momentum was projected"));
   EXPECT_NEAR(r["start"]["velocity"][0].get<double>(), 1, 1e-15);

@@ -159,7 +159,7 @@ TEST_F(Words, OptionsThatASchemeDoesNotUseAreNotEchoed) {
   EXPECT_TRUE(r["s"].is_null());
   EXPECT_EQ(r["solver"], "newton");
   EXPECT_EQ(r["notes"], Json({"s is not used by boxed"}));
-  EXPECT_EQ(record({"chaplygin_sleigh", "--s", "0.3", "--until", "1"})["s"], 0.3);
+  EXPECT_EQ(record({"chaplygin_sleigh", "--s", "0.3", "--step", "0.01", "--until", "1"})["s"], 0.3);
   EXPECT_THAT(run({"run", "chaplygin_sleigh", "--scheme", "rkmk4", "--until", "1"}).out,
               AllOf(HasSubstr("chaplygin_sleigh on se2: rkmk4, cayley, h = 0.01"),
                     Not(HasSubstr("newton")), Not(HasSubstr("s ="))));
@@ -208,7 +208,7 @@ TEST_F(Words, ARunGoesOnWhereARecordEnds) {
   EXPECT_EQ(times, Json({1.0, 1.5, 2.0}));
   write("no.json", "{}");
   EXPECT_THAT(run({"run", "--continue", "no.json"}).err, HasSubstr("not the record of a run"));
-  EXPECT_THAT(run({"run", "suslov", "--from", "1", "--until", "0.5"}).err,
+  EXPECT_THAT(run({"run", "suslov", "--step", "0.01", "--from", "1", "--until", "0.5"}).err,
               HasSubstr("until: got 0.5, expected a time beyond from, 1"));
 }
 
@@ -229,7 +229,7 @@ TEST_F(Words, AnExactMotionThatCannotBeFollowedIsSaidToBeLeftOut) {
   const Json fast = record(
       {"chaplygin_sleigh", "--velocity", "1e12,1e12,0", "--step", "1e-14", "--until", "1e-13"});
   EXPECT_TRUE(fast["diagnostics"]["exact_error_max"].is_number()) << fast["notes"];
-  const Json faster = record({"chaplygin_sleigh", "--velocity", "1,1e12,0"});
+  const Json faster = record({"chaplygin_sleigh", "--velocity", "1,1e12,0", "--step", "0.01"});
   EXPECT_TRUE(faster["diagnostics"]["exact_error_max"].is_null());
   EXPECT_THAT(faster["notes"].dump(), HasSubstr("the exact motion was not followed to t = 0.01"));
   const Json later = record({"snakeboard", "--from", "0.5", "--until", "1"});

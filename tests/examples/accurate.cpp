@@ -31,7 +31,7 @@ int main() {
   std::cout << lane.report() << hits << " hits\n\n";
 
   // The same sleigh by reversible steps of lift, there and back.
-  auto run = hamel::simulate("chaplygin_sleigh").tolerance({.relative = 1e-6}).build();
+  auto run = hamel::simulate("chaplygin_sleigh").scheme("lift").tolerance({.relative = 1e-6}).build();
   const auto start = run.state();
   bool ok = static_cast<bool>(run.step(2000));
   const double h = run.state().time;

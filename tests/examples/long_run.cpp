@@ -7,7 +7,7 @@
 
 int main() {
   const auto disk = [](const char* file) {
-    return hamel::simulate("rolling_disk").until(400).record_to(file);
+    return hamel::simulate("rolling_disk").step(0.01).until(400).record_to(file);
   };
   std::remove("disk.h5.part");  // of an earlier time
   try {

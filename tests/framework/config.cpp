@@ -48,6 +48,7 @@ Config unusual() {
   c.check = c.force = true;
   c.rtol = 1e-7 / 3;
   c.atol = 1e-11;
+  c.step_max = 0.7;
   c.speed = 1.0 / 3;
   c.output_step = 0.1 / 7;
   c.output_times = {0.1, -1.0 / 3};
@@ -82,11 +83,11 @@ TEST(Config, EveryOptionIsInTheListAndGoesByName) {
     EXPECT_EQ(copy.*member, unusual().*member) << option.name;
     EXPECT_THAT(unusual().to_toml(), HasSubstr("\n" + names.back() + " = "));
   });
-  EXPECT_THAT(
-      names, testing::ElementsAre("scheme", "retraction", "s", "solver", "force_at", "compose",
-                                  "on_failure", "tolerance", "step", "rtol", "atol", "speed",
-                                  "from", "until", "every", "output_step", "output_times", "events",
-                                  "stop_at", "check", "force", "no_exact"));
+  EXPECT_THAT(names,
+              testing::ElementsAre("scheme", "retraction", "s", "solver", "force_at", "compose",
+                                   "on_failure", "tolerance", "step", "rtol", "atol", "step_max",
+                                   "speed", "from", "until", "every", "output_step", "output_times",
+                                   "events", "stop_at", "check", "force", "no_exact"));
   EXPECT_THROW(copy.set("tolerence", "1"), ConfigError);
   EXPECT_THROW(copy.set("every", "1.5"), ConfigError);
   EXPECT_THROW(copy.set("step", "0.1x"), ConfigError);
@@ -110,6 +111,43 @@ TEST(Config, ValuesOfEveryTypeAreReadBack) {
   expect_read_back(std::vector<std::string>{"lift", "balance"}, "lift,balance");
   bool flag = false;
   EXPECT_THROW(read_text("check", "yes", flag), ConfigError);
+}
+
+/// The same for the builder, for a file and for the command line: all are a Config.
+TEST(Config, LeavesSchemeAndStepsToTheDefaults) {
+  const Config open = Config{}.completed();
+  EXPECT_EQ(open.scheme, "dop853");
+  EXPECT_EQ(open.rtol, 1e-8);
+  EXPECT_EQ(open.output_step, 0.01);
+  EXPECT_FALSE(open.step);
+  expect_equal(open.completed(), open);
+  const auto by = [](const std::string& option, const std::string& value) {
+    Config config;
+    config.set(option, value);
+    return config.completed();
+  };
+  EXPECT_EQ(by("step", "0.1").scheme, "lift");
+  EXPECT_FALSE(by("step", "0.1").chooses_steps());
+  EXPECT_EQ(by("rtol", "1e-6").scheme, "dop853");
+  EXPECT_EQ(by("rtol", "1e-6").rtol, 1e-6);
+  EXPECT_FALSE(by("rtol", "1e-6").output_step);
+  EXPECT_EQ(by("compose", "suzuki4").scheme, "lift");
+  EXPECT_EQ(by("compose", "suzuki4").step, 0.01);
+  EXPECT_EQ(by("scheme", "rkmk4").step, 0.01);
+  EXPECT_EQ(by("until", "-1").step_or_usual(), -0.01);
+  EXPECT_EQ(by("output_step", "0.5").output_step, 0.5);
+}
+
+TEST(Config, StateTheDefaultsInANote) {
+  const auto notes = [](Simulation run) { return run.until(0.1).run().notes; };
+  EXPECT_THAT(notes(simulate("segway")),
+              testing::Contains("neither scheme nor step given: dop853, steps chosen at rtol = "
+                                "1e-08; the error of the run is not known without --check"));
+  EXPECT_THAT(notes(simulate("suslov")),  // whose exact motion is known
+              testing::Contains("neither scheme nor step given: dop853, steps chosen at rtol = "
+                                "1e-08"));
+  for (const std::string& note : notes(simulate("segway").step(0.01)))
+    EXPECT_THAT(note, testing::Not(HasSubstr("neither")));
 }
 
 TEST(Config, OfAResultRunsAgain) {

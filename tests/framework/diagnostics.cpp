@@ -78,6 +78,46 @@ TEST(Diagnostics, CheckEstimatesTheErrorAndTheOrder) {
   EXPECT_TRUE(std::isnan(simulate("suslov").until(1).run().estimated_error));  // not asked for
 }
 
+/// Ends that agree to round-off show no order: a bound, and no error of 0.
+TEST(Diagnostics, CheckGivesABoundWhereNoOrderIsSeen) {
+  const auto run = [](Simulation cart) {
+    return cart.start({.velocity = {0, 0.5, 0, 5, 5}}).until(1).with(&Config::check, true).run();
+  };
+  for (const Result& r :
+       {run(simulate("differential_drive").step(0.01)), run(simulate("differential_drive"))}) {
+    EXPECT_TRUE(std::isnan(r.observed_order));
+    EXPECT_GT(r.estimated_error, 1e-12);
+    EXPECT_LT(r.estimated_error, 1e-10);
+    EXPECT_THAT(r.report(), HasSubstr("no order was observed"));
+    EXPECT_THAT(r.report(), testing::Not(HasSubstr("0.00e+00 of the configuration")));
+  }
+  const Result chosen = simulate("chaplygin_sleigh")
+                            .scheme("dopri5")
+                            .tolerance({.relative = 1e-6})
+                            .until(2)
+                            .with(&Config::check, true)
+                            .run();
+  EXPECT_THAT(chosen.report(), HasSubstr(" in the tolerance"));
+}
+
+/// The largest step that is chosen, by the error and by the reversible control.
+TEST(Diagnostics, ChosenStepsHaveALargestSize) {
+  for (const char* scheme : {"dop853", "lift"}) {
+    for (const double sign : {1.0, -1.0}) {
+      const Result r = simulate("chaplygin_sleigh")
+                           .scheme(scheme)
+                           .tolerance({.relative = 1e-3})
+                           .with(&Config::step_max, 0.01)
+                           .until(sign)
+                           .run();
+      ASSERT_TRUE(r.status.ok) << r.status.reason;
+      const std::vector<double> t = r.trajectory.column("t");
+      EXPECT_GE(r.steps, 100) << scheme;
+      for (size_t i = 1; i < t.size(); ++i) EXPECT_LE(std::abs(t[i] - t[i - 1]), 0.01 + 1e-15);
+    }
+  }
+}
+
 /// The ends of the three runs are of one time, that of the event where the first one stopped.
 TEST(Diagnostics, CheckOfARunThatStopsAtAnEvent) {
   const auto run = [](Simulation sleigh) {
@@ -125,7 +165,7 @@ TEST(Diagnostics, DoNotDependOnTheRows) {
 /// A sum over few rows is said to be one.
 TEST(Diagnostics, TheWorkOfReactionsOfFewRows) {
   const auto notes = [](long every) {
-    return simulate("snakeboard").until(10).every(every).run().notes;
+    return simulate("snakeboard").step(0.01).until(10).every(every).run().notes;
   };
   EXPECT_THAT(notes(1), Not(Contains(HasSubstr("work of reactions"))));
   EXPECT_THAT(notes(250), Contains(HasSubstr("the work of reactions is summed over the rows")));
@@ -147,8 +187,12 @@ TEST(Diagnostics, CheckKnowsNothingOfAnotherMotion) {
 
 /// A run is not lost by the runs that would check it.
 TEST(Diagnostics, CheckOfARunThatEndsAtOnce) {
-  const Result run =
-      simulate("chaplygin_sleigh").stop_at({"x=-0.001"}).until(20).with(&Config::check, true).run();
+  const Result run = simulate("chaplygin_sleigh")
+                         .step(0.01)
+                         .stop_at({"x=-0.001"})
+                         .until(20)
+                         .with(&Config::check, true)
+                         .run();
   EXPECT_TRUE(run.stopped_by_event);
   EXPECT_TRUE(std::isnan(run.estimated_error));
   EXPECT_THAT(run.notes, Contains(HasSubstr("ended within its first step")));

@@ -285,7 +285,7 @@ TEST(Mistakes, OfEventsAndOutputAreFoundBeforeTheRun) {
   }
   EXPECT_THAT(said(simulate("suslov").scheme("rkmk4").tolerance({.relative = 1e-6})),
               HasSubstr("steps of one size"));
-  EXPECT_THAT(said(simulate("falling_disk").s(0).tolerance({.relative = 1e-6})),
+  EXPECT_THAT(said(simulate("falling_disk").scheme("lift").s(0).tolerance({.relative = 1e-6})),
               HasSubstr("s = 0.5"));
 }
 

@@ -146,8 +146,8 @@ TEST(InputsOfARun, DoWorkThatTheEnergyBalanceCounts) {
 TEST(InputsOfARun, AreThoseOfTypedAndErasedProblems) {
   const InputTable table = {{0, 0.5, 1}, {1, -2, 0.5}, false};
   const auto end = [&](Simulation run) {
-    const Result result = run.input("right_torque", 0.7).input("left_torque", table).until(1).run();
-    return result.last;
+    run.input("right_torque", 0.7).input("left_torque", table);
+    return run.step(0.01).until(1).run().last;
   };
   const Snapshot named = end(simulate("segway"));
   const Snapshot typed = end(simulate<Lift, Cayley>(Segway{}));
@@ -157,7 +157,7 @@ TEST(InputsOfARun, AreThoseOfTypedAndErasedProblems) {
     EXPECT_NEAR(named.velocity[i], erased.velocity[i], 2e-3);  // another tau, order 2
   }
   EXPECT_GT(std::abs(end(simulate("segway")).velocity[0] -
-                     simulate("segway").until(1).run().last.velocity[0]),
+                     simulate("segway").step(0.01).until(1).run().last.velocity[0]),
             0.01);
 }
 
@@ -166,14 +166,14 @@ TEST(InputsOfARun, OfZeroChangeNothing) {
   for (const std::string name : {"differential_drive", "roller_racer", "segway", "snakeboard"}) {
     const SystemInfo& system = *registry().system(name);
     ASSERT_FALSE(system.inputs.empty()) << name;
-    Simulation driven = simulate(name);
+    Simulation driven = simulate(name).step(0.01);
     for (const InputField& input : system.inputs) driven.input(input.name, 0);
-    const Result with = driven.until(1).run(), without = simulate(name).until(1).run();
+    const Result with = driven.until(1).run(), without = simulate(name).step(0.01).until(1).run();
     ASSERT_TRUE(with.status.ok) << name;
     for (size_t i = 0; i < with.last.velocity.size(); ++i)
       EXPECT_NEAR(with.last.velocity[i], without.last.velocity[i], 1e-11) << name;
     for (const InputField& input : system.inputs) {
-      Simulation pushed = simulate(name);
+      Simulation pushed = simulate(name).step(0.01);
       EXPECT_GT(euclidean_distance(pushed.input(input.name, 1).until(1).run().last.velocity,
                                    without.last.velocity),
                 1e-3)

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Simulation simulation(fuzz::registry(), config.system);
     simulation.config(config);
     if (!simulation.mistakes().empty()) throw ConfigError(simulation.mistakes());
-    config.until = 2 * config.step;
+    config.until = 2 * config.step_or_usual();
     config.on_failure = "stop";  // a step that fails may be halved a thousand times
     simulation.config(config).run().record();
   });

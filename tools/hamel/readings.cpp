@@ -115,7 +115,7 @@ void add_figures(Page& page, const std::vector<Outcome>& outcomes,
     if (figure.column == "mu1" && !exact.empty()) series.push_back(exact[0]);
     if (figure.column == "mu2" && !exact.empty()) series.push_back(exact[1]);
     Axes axes{.x = "time t [s]", .y = figure.label, .log_x = false, .log_y = figure.magnitude};
-    axes.floor = figure.floor(outcomes.front().cell.config.step);
+    axes.floor = figure.floor(outcomes.front().cell.config.step_or_usual());
     const std::string& windows = outcomes.front().windows;
     page.plot(
         figure.title, axes, series,

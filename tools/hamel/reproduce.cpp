@@ -192,10 +192,11 @@ class Report {
         rows.push_back({finest.name, e0, e1, e2, std::log2(e0 / e1), std::log2(e1 / e2),
                         finest.measured.exact_velocity_error_max,
                         finest.measured.energy_error_max});
-        Series& line = convergence.emplace_back(Series{
-            finest.name,
-            {runs[0][i].cell.config.step, runs[1][i].cell.config.step, finest.cell.config.step},
-            {e0, e1, e2}});
+        Series& line = convergence.emplace_back(
+            Series{finest.name,
+                   {runs[0][i].cell.config.step_or_usual(), runs[1][i].cell.config.step_or_usual(),
+                    finest.cell.config.step_or_usual()},
+                   {e0, e1, e2}});
         const double order = std::log2(e1 / e2);
         line.fit = Fit{order, fmt::format("order {:.2f}", order)};
         orders += fmt::format("{}`{}` {:.2e} ({:.2f})", i == 0 ? "" : ", ", finest.name, e2, order);
@@ -281,9 +282,9 @@ class Report {
       const Measurements& m = o.measured;
       csv_ += fmt::format("{},{},{},{},{},{:.6e},{:.6e},{:.6e},{:.6e},{:.6e}\n",
                           o.cell.axes.at("system"), o.name, o.cell.config.retraction,
-                          o.cell.config.step, o.status.ok ? "ok" : "failed", m.energy_error_max,
-                          m.exact_error_max, m.exact_velocity_error_max, m.constraint_max,
-                          m.group_defect_max);
+                          o.cell.config.step_or_usual(), o.status.ok ? "ok" : "failed",
+                          m.energy_error_max, m.exact_error_max, m.exact_velocity_error_max,
+                          m.constraint_max, m.group_defect_max);
       ok_ = ok_ && o.status.ok;
     }
   }

@@ -174,7 +174,8 @@ double round_off(const Result& result) {
 }
 
 double floor_of(const Result& result, const std::string& column) {
-  if (column == kConstraint.name) return round_off(result) / std::abs(result.config.step);
+  if (column == kConstraint.name)
+    return round_off(result) / std::abs(result.config.step_or_usual());
   const bool of_size =
       column == kExactError.name || column == kExactVelocityError.name || column == kHolonomic.name;
   return of_size ? round_off(result) : kRoundOff;

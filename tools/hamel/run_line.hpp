@@ -39,6 +39,9 @@ struct RunLine {
           flag, [give] { give(true); }, option.meaning);
     } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
       app.add_option_function<Value>(flag, give, help);
+    } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+      app.add_option_function<double>(
+          flag, [give](const double& value) { give(value); }, help);
     } else {
       const auto read = [this, flag, member](const std::string& text) {
         overrides.emplace_back([=](Config& config) { read_text(flag, text, member(config)); });

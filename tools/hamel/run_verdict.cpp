@@ -53,7 +53,7 @@ class Judge {
         does_work(r_) ? "defect of the energy balance" : "energy error", r_.energy_error_max,
         r_.constraint_max, r_.group_defect_max, r_.steps,
         r_.config.chooses_steps() ? "chosen by the error"
-                                  : fmt::format("of h = {}", r_.config.step),
+                                  : fmt::format("of h = {}", r_.config.step_or_usual()),
         r_.last.time);
     if (!ok_ && !unknown_) text += fmt::format(" **Off by more than {:g} %**.", 100 * kSmallError);
     text += constraint() + energy();
@@ -82,6 +82,12 @@ class Judge {
     const char* finer = finer_runs(r_.config);
     if (std::isfinite(r_.estimated_error)) {
       ok_ = small(r_.estimated_error, size_.extent);
+      if (std::isnan(r_.observed_order)) {
+        return fmt::format(
+            "By {}, which agree to round-off and show no order, its end is off by less than "
+            "**{:.1e}**, unless all stepped over something shorter than a step",
+            finer, r_.estimated_error);
+      }
       return fmt::format("By {} its end is off by about **{:.1e}**{}", finer, r_.estimated_error,
                          part_of(r_.estimated_error, size_.extent));
     }
@@ -96,7 +102,7 @@ class Judge {
 
   // An estimate knows nothing of it: without the constraint it is the error of another motion.
   std::string constraint() {
-    const double floor = zero_ / std::abs(r_.config.step);
+    const double floor = zero_ / std::abs(r_.config.step_or_usual());
     if (r_.constraint_max <= kKeptConstraint * size_.speed + 1e3 * floor) return "";
     if (!std::isfinite(r_.exact_error_max)) ok_ = false;
     return fmt::format(" **The steps leave the constraint**, by up to {:.1e}.", r_.constraint_max);

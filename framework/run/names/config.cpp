@@ -197,7 +197,8 @@ std::string Config::to_toml() const {
       out += fmt::format("{} = {}\n", option.name, toml_of(start.*member));
   });
   fields([&](const Option& option, auto member) {
-    if (const auto& value = this->*member; text_of(value).empty() && !is_text(value)) return;
+    const auto& value = this->*member;
+    if (text_of(value).empty() && (!is_text(value) || text_of(Config().*member).empty())) return;
     out += fmt::format("{} = {}\n", option.name, toml_of(this->*member));
   });
   if (!parameters.empty()) out += "[set]\n";
@@ -210,7 +211,22 @@ std::string Config::to_toml() const {
 }
 
 long Config::steps() const {
-  return static_cast<long>(std::floor((until - from) / step * (1 + 1e-12) + 1e-9));
+  return static_cast<long>(std::floor((until - from) / step_or_usual() * (1 + 1e-12) + 1e-9));
+}
+
+bool Config::leaves_method() const {
+  return scheme.empty() && !step && !chooses_steps() && compose == "none";
+}
+
+Config Config::completed() const {
+  Config out = *this;
+  if (leaves_method()) {
+    out.rtol = kUsualRtol;
+    if (every == 1 && !output_step && output_times.empty()) out.output_step = kUsualStep;
+  }
+  if (scheme.empty()) out.scheme = out.chooses_steps() ? "dop853" : "lift";
+  if (!out.chooses_steps()) out.step = step_or_usual();
+  return out;
 }
 
 std::vector<double> Config::rows() const {
@@ -263,7 +279,8 @@ void look_at_output_times(const Config& config, std::vector<std::string>& out) {
 }
 
 void look_at_span(const Config& config, std::vector<std::string>& out) {
-  const double from = config.from, until = config.until, step = config.step, span = until - from;
+  const double from = config.from, until = config.until, span = until - from;
+  const double step = config.step_or_usual();
   if (!std::isfinite(span) || !std::isfinite(step) || step == 0) return;
   if (span / step < 0 && from == 0) {
     out.push_back(refusal("until", until, "the sign of step"));

@@ -32,7 +32,7 @@ struct Config {
   InputSignals inputs;
   Start start;
   std::optional<double> speed;  // in place of a start
-  std::string scheme = "lift";
+  std::string scheme;           // empty, and step, none: see completed()
   std::string retraction = "cayley";
   double s = 0.5;
   std::string solver = "newton";
@@ -40,8 +40,9 @@ struct Config {
   std::string compose = "none";
   std::string on_failure = "stop";
   double tolerance = 1e-13;
-  double step = 0.01;
+  std::optional<double> step;
   std::optional<double> rtol, atol;  // given: steps chosen by the error
+  std::optional<double> step_max;
   double from = 0;
   double until = 20;
   long every = 1;
@@ -55,7 +56,9 @@ struct Config {
   /// Calls f(Option, member pointer) for each option; axes in the order in which a study runs through them.
   template <class F>
   static void fields(F&& f) {
-    f(Option{"scheme", "", "reading of the method", true}, &Config::scheme);
+    f(Option{"scheme", "",
+             "reading of the method; without one dop853, with a step of one size lift", true},
+      &Config::scheme);
     f(Option{"retraction", "", "retraction map", true}, &Config::retraction);
     f(Option{"s", "1", "discretisation parameter, in [0, 1]", true,
              [](double x) { return x >= 0 && x <= 1; }, "a number in [0, 1]"},
@@ -74,8 +77,11 @@ struct Config {
     f(Option{"tolerance", "1", "residual of each step, relative to the scale of its equation", true,
              [](double x) { return x > 0 && x < 1; }, "a number in (0, 1)"},
       &Config::tolerance);
-    f(Option{"step", "s", "step, of either sign; where steps are chosen the first one", true,
-             [](double x) { return std::isfinite(x) && x != 0; }, "a finite number other than 0"},
+    f(Option{"step", "s",
+             "step, of either sign; where steps are chosen the first one; without one 0.01, or "
+             "chosen at rtol 1e-8 where no scheme is named either",
+             true, [](double x) { return std::isfinite(x) && x != 0; },
+             "a finite number other than 0"},
       &Config::step);
     constexpr auto tolerance = [](double x) { return x > 0 && x < 1; };
     f(Option{"rtol", "1",
@@ -86,6 +92,10 @@ struct Config {
     f(Option{"atol", "1", "absolute tolerance beside it; that of rtol where not given", true,
              tolerance, "a number in (0, 1)"},
       &Config::atol);
+    f(Option{"step_max", "s",
+             "where steps are chosen, the largest: what is shorter may be stepped over, events too",
+             false, [](double x) { return x > 0 && std::isfinite(x); }, "a number above 0"},
+      &Config::step_max);
     f(Option{"speed", "m/s",
              "start, straight ahead at this speed, for systems that know such a motion", false,
              [](double v) { return std::isfinite(v); }, "a finite number"},
@@ -127,6 +137,15 @@ struct Config {
   std::string text(const std::string& option) const;
   void set(const std::string& option, const std::string& text);
 
+  /// With the scheme and the steps that stand where none are given: neither scheme nor step, dop853 at rtol 1e-8 with
+  /// rows every kUsualStep; a step of one size, or a composition of such, lift; rtol or atol, dop853; a scheme, steps of
+  /// kUsualStep.
+  Config completed() const;
+  static constexpr double kUsualStep = 0.01, kUsualRtol = 1e-8;
+  /// Is it all left to completed()?
+  bool leaves_method() const;
+  /// The step; where none is given one of kUsualStep in the direction of the run.
+  double step_or_usual() const { return step.value_or(std::copysign(kUsualStep, until - from)); }
   /// Are steps chosen by the error, with which tolerances?
   bool chooses_steps() const { return rtol || atol; }
   double relative() const { return rtol.value_or(0); }

@@ -51,7 +51,7 @@ std::string Result::method() const {
 }
 
 std::string Result::steps_in_words() const {
-  if (!config.chooses_steps()) return fmt::format("h = {}", config.step);
+  if (!config.chooses_steps()) return fmt::format("h = {}", config.step_or_usual());
   std::string out = config.rtol ? fmt::format("rtol = {}", *config.rtol) : "";
   if (config.atol) out += fmt::format("{}atol = {}", config.rtol ? ", " : "", *config.atol);
   return out;
@@ -60,10 +60,15 @@ std::string Result::steps_in_words() const {
 static std::string estimated_error_in_words(const Result& result) {
   if (std::isnan(result.estimated_error))
     return fmt::format("unknown by {}", finer_runs(result.config));
-  std::string out = fmt::format("{:.2e} of the configuration at the end", result.estimated_error);
-  if (!std::isnan(result.observed_order))  // NaN: at round-off
-    out += fmt::format(", observed order {:.2f}", result.observed_order);
-  return out;
+  if (std::isnan(result.observed_order)) {
+    return fmt::format(
+        "below {:.1e} of the configuration at the end by {}, which agree to round-off: no order "
+        "was observed, and what is shorter than a step may have been stepped over",
+        result.estimated_error, finer_runs(result.config));
+  }
+  return fmt::format("{:.2e} of the configuration at the end, observed order {:.2f}{}",
+                     result.estimated_error, result.observed_order,
+                     result.config.chooses_steps() ? " in the tolerance" : "");
 }
 
 // "omega = 0.25 rad/s, v1 = 1": by names, to six digits but none below round-off of the largest or the error where

@@ -25,6 +25,7 @@ Status DenseOutput::at(double t, Snapshot& out) {
   if (ahead) kernel_.node(begin_);
   if (other_ == nullptr) other_ = factory_(setup_);
   other_->restart(begin_.time, begin_.coordinates, begin_.velocity, t - begin_.time);
+  other_->limit(t);
   const Status status = other_->advance(1);
   other_->measure(out);
   out.time = t;

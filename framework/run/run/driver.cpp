@@ -101,11 +101,20 @@ Status Driver::advance_to(double t) {
     return advance(std::numeric_limits<long>::max());
   }
   if (!(steps >= -0.5)) return refuse(t, "t = {} lies behind");
-  return advance(std::max(0L, std::lround(steps)));
+  const long count = std::max(0L, std::lround(steps));
+  limit_grid(count);
+  return advance(count);
+}
+
+// So many steps of one size from here the run ends: a jump of an input next to that does not move it.
+void Driver::limit_grid(long count) {
+  kernel_->state(row_);
+  kernel_->limit(row_.time + static_cast<double>(count) * kernel_->next_step());
 }
 
 Status Driver::complete() {
   if (plan_.config.chooses_steps()) kernel_->limit(plan_.config.until);
+  else limit_grid(steps_left_);
   advance(0, true);
   if (request_.progress && result_.status.ok) request_.progress(1);
   return result_.status;
@@ -113,7 +122,7 @@ Status Driver::complete() {
 
 Status Driver::advance(long count, bool to_end) {
   if (over_) return result_.status;
-  if (!watching_ && !to_end) return result_.status = kernel_->advance(count);
+  if (!watching_ && !to_end) return result_.status = take_unseen(count);
   try {
     entered_ = Clock::now();
     begin();
@@ -126,6 +135,19 @@ Status Driver::advance(long count, bool to_end) {
     throw;
   }
   return result_.status;
+}
+
+// So many whole steps, or to the limit.
+Status Driver::take_unseen(long count) {
+  long left = count, before = -1;
+  Status status;
+  while (status.ok && left > 0 && std::exchange(before, left) != left) {
+    const long whole = kernel_->whole_steps();
+    status = kernel_->advance(left);
+    left -= kernel_->whole_steps() - whole;
+    if (kernel_->off_grid()) before = -1;
+  }
+  return status;
 }
 
 bool Driver::reached_end() const {
@@ -144,12 +166,11 @@ void Driver::take_steps(long count, bool to_end) {
   const double from = plan_.config.from, until = plan_.config.until;
   auto next_progress = Clock::now() + std::chrono::milliseconds(200);
   while (!over_ && (to_end ? !reached_end() : count > 0)) {
-    const long before = node_.step;
-    const long steps = steps_at_once(count, to_end);
-    result_.status = kernel_->advance(steps);
+    const long before = node_.step, whole = kernel_->whole_steps();
+    result_.status = kernel_->advance(steps_at_once(count, to_end));
     kernel_->state(node_);
-    steps_left_ -= steps;
-    count -= steps;
+    steps_left_ -= kernel_->whole_steps() - whole;
+    count -= kernel_->whole_steps() - whole;
     bool go_on = good(node_);
     if (go_on && every_node_ && node_.step > before) go_on = observe_step();
     else if (go_on && recording_ && times_.empty() && node_.step % plan_.config.every == 0)
@@ -160,7 +181,8 @@ void Driver::take_steps(long count, bool to_end) {
       request_.progress((node_.time - from) / (until - from));
       next_progress = Clock::now() + std::chrono::milliseconds(200);
     }
-    if (!over_ && !(to_end && reached_end()) && (rows_ >= kRows || node_.step - kept_at_ >= kSteps))
+    if (!over_ && !(to_end && reached_end()) && !kernel_->off_grid() &&
+        (rows_ >= kRows || node_.step - kept_at_ >= kSteps))
       keep();
   }
   if (to_end && !over_ && result_.status.ok) over_ = !output(until);
@@ -170,11 +192,14 @@ void Driver::take_steps(long count, bool to_end) {
 void Driver::begin() {
   if (std::exchange(begun_, true)) return;
   kernel_->state(node_);
-  if (!recording_ || node_.step > 0) return;
-  kernel_->measure(result_.last);
-  meter_->begin(result_.last);
-  if (meter_->wants_nodes()) meter_->node(node_);
-  over_ = !(times_.empty() ? record(node_) : output(plan_.config.from));
+  if (node_.step > 0) return;
+  if (recording_) {
+    kernel_->measure(result_.last);
+    meter_->begin(result_.last);
+    if (meter_->wants_nodes()) meter_->node(node_);
+    over_ = !(times_.empty() ? record(node_) : output(plan_.config.from));
+  }
+  if (!over_ && plan_.events->any()) observe_start();
 }
 
 void Driver::turn_back() { kernel_->turn_back(); }

@@ -51,6 +51,8 @@ class Driver {
   std::shared_ptr<const Mechanics> acting() const;
   // Steps, so many, or to the end of the run, each of them followed by the observers.
   Status advance(long count, bool to_end = false);
+  Status take_unseen(long count);
+  void limit_grid(long count);
   void take_steps(long count, bool to_end);
   long steps_at_once(long count, bool to_end) const;
   bool reached_end() const;
@@ -62,6 +64,7 @@ class Driver {
   bool observe_step();
   bool observe_event(const Events::Found& event, bool& go_on);
   void observe_within_step();
+  void observe_start();
   // Rows at the output times up to t.
   bool output(double t);
   bool record(const Snapshot& state);

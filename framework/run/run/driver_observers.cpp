@@ -31,6 +31,20 @@ bool Driver::observe_step() {
   return node_.step % plan_.config.every == 0 ? record(node_) : true;
 }
 
+void Driver::observe_start() {
+  for (const Events::Found& event : plan_.events->lost_at_start(node_)) {
+    result_.events.push_back(
+        {event.name, event.state.time, event.state.coordinates, event.state.velocity});
+    if (event.stops) {
+      kernel_->measure(result_.last);
+      result_.stopped_by_event = over_ = true;
+      result_.status.reason = "stopped at " + event.name;
+      return;
+    }
+    if (const std::optional<EventState> after = impact(event)) return restart_behind(*after, event);
+  }
+}
+
 // True where the state behind the event is not that of the step: go_on tells whether the run ends there.
 bool Driver::observe_event(const Events::Found& event, bool& go_on) {
   result_.events.push_back(
@@ -134,9 +148,11 @@ void Driver::restart_behind(const EventState& state, const Events::Found& event)
   const double limit = kernel_->limit();
   kernel_->restart(state.time, state.coordinates, velocity, h);
   if (config.chooses_steps()) kernel_->limit(limit);
-  else
+  else {
     steps_left_ =
         static_cast<long>(std::floor((config.until - state.time) / h * (1 + 1e-12) + 1e-9));
+    limit_grid(steps_left_);
+  }
   kernel_->state(node_);
   if (meter_ != nullptr) meter_->impact(event.state, node_);
   plan_.events->resume(node_, event.name);

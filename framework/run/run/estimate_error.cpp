@@ -12,6 +12,15 @@ namespace {
 // What step or tolerance is divided by in a finer run.
 double finer_by(const Config& config) { return config.chooses_steps() ? 10 : 2; }
 
+// The run as it was asked for, with the scheme and the steps that it had.
+Config with_method_of(const Config& resolved, Config asked) {
+  asked.scheme = resolved.scheme;
+  asked.step = resolved.step;
+  asked.rtol = resolved.rtol;
+  asked.atol = resolved.atol;
+  return asked;
+}
+
 }  // namespace
 
 // The steps of the first `runs` of this run and the two finer ones, in those of this run; a tenth of the tolerance takes some
@@ -22,14 +31,14 @@ double check_work(const Config& config, int runs) {
 }
 
 // Richardson: with the ends x(h), x(h/2), x(h/4) the order is p = log2(|x(h) - x(h/2)| / |x(h/2) - x(h/4)|), the error of
-// x(h) is |x(h) - x(h/2)| 2^p / (2^p - 1). Nothing is said where p is no order (below 0.5), unless the ends agree to
-// round-off. Where steps are chosen, the same with a tenth and a hundredth of the tolerance in place of h/2, h/4, and p the
+// x(h) is |x(h) - x(h/2)| 2^p / (2^p - 1). Nothing is known where p is no order (below 0.5), unless the ends agree to
+// round-off: then the error is below that, if no run stepped over something. Where steps are chosen, the same with a tenth and a hundredth of the tolerance in place of h/2, h/4, and p the
 // power of the tolerance. The ends are at one time, the last of this run, which may be that of an event.
 void estimate_error(const Registry& registry, const RunRequest& request, const OwnSystem* own,
                     Result& result) {
-  const Config& given = request.config;
+  const Config given = with_method_of(result.config, request.config);
   const double span = std::abs(result.last.time - given.from);
-  if (!given.chooses_steps() && span < std::abs(given.step)) {
+  if (!given.chooses_steps() && span < std::abs(given.step_or_usual())) {
     result.notes.push_back("check: the run ended within its first step: nothing is known");
     return;
   }
@@ -41,7 +50,7 @@ void estimate_error(const Registry& registry, const RunRequest& request, const O
     finer.records.clear();  // the files are this run's
     finer.resumed.clear();
     finer.rows_kept = 1;
-    Config& config = finer.config;
+    Config& config = finer.config = given;
     config.check = false;
     config.no_exact = true;
     config.stop_at.clear();  // it stops when this run did
@@ -53,7 +62,7 @@ void estimate_error(const Registry& registry, const RunRequest& request, const O
       if (config.rtol) *config.rtol /= parts;
       if (config.atol) *config.atol /= parts;
     } else {
-      config.step /= parts;
+      *config.step /= parts;
     }
     finer.observer = [&](const Snapshot& end) {
       ends[k] = end.coordinates;
@@ -82,8 +91,9 @@ void estimate_error(const Registry& registry, const RunRequest& request, const O
   const double second = euclidean_distance(ends[1], ends[2]);
   const double size = euclidean_distance(ends[2], std::vector<double>(ends[2].size(), 0.0));
   const double order = std::log(first / second) / std::log(factor);
-  if (first <= 1e-12 * (1 + size)) {
-    result.estimated_error = first;
+  const double resolved = 1e-12 * (1 + size);
+  if (first <= resolved) {
+    result.estimated_error = resolved;  // a bound
   } else if (order > 0.5) {
     result.estimated_error = first / (1 - std::pow(factor, -order));
     result.observed_order = order;

@@ -120,6 +120,7 @@ Events::Events(const SystemModel& system, std::shared_ptr<const Geometry> geomet
                const std::vector<std::string>& names, const std::vector<std::string>& stops,
                std::vector<std::string>& mistakes) {
   const std::vector<Event> known = events_of(system, std::move(geometry));
+  contacts_.assign(known.begin() + static_cast<std::ptrdiff_t>(system.events.size()), known.end());
   const auto watch = [&](const std::string& name, bool stop) {
     for (Watched& w : watched_) {
       if (w.event.name == name) {
@@ -129,14 +130,14 @@ Events::Events(const SystemModel& system, std::shared_ptr<const Geometry> geomet
     }
     Event event;
     if (plane(system, name, event, mistakes)) {
-      if (event.value) watched_.push_back({std::move(event), stop});
+      if (event.value) watched_.push_back({std::move(event), stop, false});
       return;
     }
     std::vector<std::string> offered;
-    for (const Event& e : known) {
-      offered.push_back(e.name);
-      if (e.name == name && e.value) {
-        watched_.push_back({e, stop});
+    for (size_t i = 0; i < known.size(); ++i) {
+      offered.push_back(known[i].name);
+      if (known[i].name == name && known[i].value) {
+        watched_.push_back({known[i], stop, i >= system.events.size()});
         return;
       }
     }
@@ -154,6 +155,20 @@ void Events::begin(const Snapshot& state, std::vector<std::string>& mistakes) {
     if (!std::isfinite(w.before))
       mistakes.push_back(fmt::format("events: {} is {} at the start", w.event.name, w.before));
   }
+}
+
+std::vector<Events::Found> Events::lost_at_start(const Snapshot& state) const {
+  const auto value = [&](const Event& event) {
+    return event.value(state.time, state.coordinates, state.velocity);
+  };
+  std::vector<Found> out;
+  double largest = 0;
+  for (const Watched& w : watched_) {
+    if (!w.contact) continue;
+    for (const Event& contact : contacts_) largest = std::max(largest, std::abs(value(contact)));
+    if (value(w.event) < -1e-9 * largest) out.push_back({state, w.event.name, w.stops});
+  }
+  return out;
 }
 
 void Events::resume(const Snapshot& state, const std::string& met) {

@@ -37,6 +37,8 @@ class Events {
     bool stops;
   };
   Status look(const Snapshot& state, DenseOutput& dense, std::vector<Found>& found);
+  /// Contacts that pull at the start already: there is no crossing to be found.
+  std::vector<Found> lost_at_start(const Snapshot& state) const;
 
   template <class Archive>
   void carry(Archive& archive) {
@@ -47,10 +49,11 @@ class Events {
  private:
   struct Watched {
     Event event;
-    bool stops;
+    bool stops, contact;
     double before = 0;  // its value, of the last state where it was not 0
   };
   std::vector<Watched> watched_;
+  std::vector<Event> contacts_;  // of the system, watched or not
   double time_ = 0;
 };
 

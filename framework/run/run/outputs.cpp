@@ -108,12 +108,12 @@ Outputs plan_outputs(const RunRequest& request, Mistakes& mistakes) {
 }
 
 void check_rows(const RunRequest& request, const GroupInfo& group, Mistakes& mistakes) {
-  const Config& config = request.config;
+  const Config config = request.config.completed();
   const double span = std::abs(config.until - config.from);
-  const double rows = config.output_step ? span / *config.output_step
-                      : config.chooses_steps()
-                          ? 0
-                          : span / std::abs(config.step) / static_cast<double>(config.every);
+  const double rows = config.output_step       ? span / *config.output_step
+                      : config.chooses_steps() ? 0
+                                               : span / std::abs(config.step_or_usual()) /
+                                                     static_cast<double>(config.every);
   const auto width = static_cast<double>(group.columns.size()) + 2 * group.dim + 7;
   const bool in_memory = request.records.empty() && !request.rows_kept;
   const double disk = numbers_that_fit(request.records);
@@ -124,7 +124,10 @@ void check_rows(const RunRequest& request, const GroupInfo& group, Mistakes& mis
   if (!config.output_step && !(rows < 9e15)) return;
   if (!(rows * width > most)) return;
   const bool resumed = !request.resumed.empty();  // as it was run, and no other way
-  const char* what = resumed ? "continue" : config.output_step ? "output_step" : "every";
+  const char* what = resumed                      ? "continue"
+                     : request.config.output_step ? "output_step"
+                     : config.output_step         ? "until"
+                                                  : "every";
   std::string mistake =
       fmt::format("{}: {:.3g} rows would be recorded, more than {}", what, rows, where);
   if (!resumed && !config.output_step && 2 * width <= most) {  // the first and the last

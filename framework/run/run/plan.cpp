@@ -77,7 +77,8 @@ void choose_steps(const Config& config, const SchemeInfo& scheme, const ClaimedO
                   Method& method, Mistakes& mistakes) {
   method.setup.relative = config.relative();
   method.setup.absolute = config.absolute();
-  method.setup.first_chosen = scheme.estimates_error && config.step == Config().step;
+  if (config.step_max) method.setup.largest = *config.step_max;
+  method.setup.first_chosen = scheme.estimates_error && !config.step;
   if (scheme.estimates_error) return;
   method.setup.order = method.composition_order > 0 ? method.composition_order : claim.order;
   if (scheme.varies_steps && claim.reversible) return;
@@ -122,7 +123,7 @@ Method plan_method(const Registry& registry, const Config& config, const OwnSyst
     mistakes.add(unknown_name("force_at", config.force_at, {"nodes", "base"}));
   out.setup.forces_at_base = config.force_at == "base";
   out.setup.from = config.from;
-  out.setup.step = config.step;
+  out.setup.step = config.step_or_usual();
   out.setup.tolerance = config.tolerance;
   return out;
 }
@@ -147,7 +148,7 @@ std::optional<PlannedSystem> plan_system(const Registry& registry, const Config&
   if (!config.inputs.empty()) {
     out.inputs = make_inputs(system, config.inputs, {config.from, config.until}, mistakes.all());
     if (out.inputs != nullptr) {
-      out.inputs->enter(config.from, config.step);
+      out.inputs->enter(config.from, config.step_or_usual());
       drive(system, out.inputs);
     }
   }
@@ -229,12 +230,15 @@ void restrict_exact(const RunRequest& request, SystemModel& system,
 
 void note_end_and_unused(const Config& config, const Method& method,
                          std::vector<std::string>& notes) {
-  const double end = config.from + static_cast<double>(config.steps()) * config.step;
+  const double step = config.step_or_usual();
+  const double end = config.from + static_cast<double>(config.steps()) * step;
   if (!config.chooses_steps() &&
       std::abs(end - config.until) > 1e-9 * std::abs(config.until - config.from)) {
     notes.push_back(fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}",
-                                end, config.step, config.until));
+                                end, step, config.until));
   }
+  if (config.step_max && !config.chooses_steps())
+    notes.emplace_back("step_max is not used by steps of one size");
   for (const std::string& option : method.unused) {
     if (config.text(option) != Config().text(option))
       notes.push_back(fmt::format("{} is not used by {}", option, method.scheme->name));
@@ -252,11 +256,24 @@ Config resolved(Config config, const Method& method, const SystemModel& system,
   return config;
 }
 
+// Of a system with massless links, whose scheme and step were left open.
+RunPlan plan_by_lift(const Registry& registry, RunRequest request, const OwnSystem* own,
+                     Mistakes& mistakes) {
+  request.config.scheme = "lift";
+  RunPlan plan = plan_run(registry, request, own, mistakes);
+  plan.notes.push_back(fmt::format(
+      "neither scheme nor step given, and the system has massless links: lift, h = {:g}{}",
+      plan.config.step_or_usual(),
+      plan.config.check ? "" : "; the error of the run is not known without --check"));
+  return plan;
+}
+
 }  // namespace
 
 RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnSystem* own,
                  Mistakes& mistakes) {
-  const Config& config = request.config;
+  const bool left_to_us = request.config.leaves_method();
+  const Config config = request.config.completed();
   RunPlan plan;
   mistakes.add(config.mistakes());
   plan.outputs = plan_outputs(request, mistakes);
@@ -267,10 +284,13 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   PlannedStart start = plan_start(system, config, mistakes);
   plan.geometry = plan_geometry(registry, config, own, method, system.group.name, mistakes);
   evaluate_start(system, planned->inputs, plan.geometry.get(), config.from, start, mistakes);
+  if (planned->inputs != nullptr && plan.geometry != nullptr && mistakes.none())
+    check_jumps_of_rates(system, *planned->inputs, *plan.geometry, config, start, mistakes);
   plan.kernel = plan_kernel(registry, config, own, *planned, plan.geometry, method, mistakes);
   check_rows(request, system.group, mistakes);
   if (method.scheme != nullptr && !method.scheme->steps_admissible && mistakes.none() &&
       !is_definite(start.inertia)) {
+    if (left_to_us) return plan_by_lift(registry, request, own, mistakes);
     mistakes.add(fmt::format(
         "scheme: {} needs a definite inertia; with massless links lift and balance are offered",
         method.scheme->name));
@@ -288,6 +308,12 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   plan.notes.insert(plan.notes.end(), start.notes.begin(), start.notes.end());
   note_end_and_unused(config, method, plan.notes);
   restrict_exact(request, system, plan.notes);
+  if (left_to_us) {
+    plan.notes.push_back(fmt::format(
+        "neither scheme nor step given: {}, steps chosen at rtol = {:g}{}", config.scheme,
+        *config.rtol,
+        config.check || system.exact ? "" : "; the error of the run is not known without --check"));
+  }
   plan.setup = std::move(method.setup);
   plan.setup.geometry = plan.geometry;
   plan.setup.mechanics = system.mechanics;

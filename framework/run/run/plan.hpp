@@ -72,6 +72,9 @@ PlannedStart plan_start(const SystemModel& system, const Config& config, Mistake
 /// registered.
 void evaluate_start(const SystemModel& system, const std::shared_ptr<const Inputs>& inputs,
                     const Geometry* geometry, double t, PlannedStart& planned, Mistakes& mistakes);
+/// A held table of an input that is a rate of the rows A xi = b, where it jumps within the run: that would be an impulse.
+void check_jumps_of_rates(const SystemModel& system, const Inputs& inputs, const Geometry& geometry,
+                          const Config& config, const PlannedStart& planned, Mistakes& mistakes);
 /// The admissible velocity of a start without mistakes; notes what the projection dropped.
 void project_start(PlannedStart& planned);
 /// Of an admissible start.

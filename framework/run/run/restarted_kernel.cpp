@@ -19,10 +19,11 @@ void RestartedKernel::begin_anew() {
   kernel_->state(node);
   past_ = stats();
   steps_ += node.step;
+  whole_ += kernel_->whole_steps();
   setup_.from = node.time;
   setup_.step = kernel_->next_step();
   if (setup_.relative == 0 && setup_.absolute == 0)
-    setup_.from = origin_ + static_cast<double>(steps_ - origin_steps_) * setup_.step;
+    setup_.from = origin_ + static_cast<double>(whole_ - origin_steps_) * setup_.step;
   kernel_->node(node);
   setup_.configuration = node.coordinates;
   setup_.velocity = node.velocity;
@@ -82,10 +83,8 @@ void RestartedKernel::limit(double t) {
 void RestartedKernel::restart(double t, std::span<const double> coordinates,
                               std::span<const double> velocity, double step) {
   kernel_->restart(t, coordinates, velocity, step);
-  Snapshot node;
-  state(node);
   origin_ = t;
-  origin_steps_ = node.step;
+  origin_steps_ = whole_steps();
 }
 
 }  // namespace hamel

@@ -19,11 +19,13 @@ class RestartedKernel final : public Kernel {
   template <class Archive>
   void carry(Archive& archive) {
     archive(setup_.from, setup_.configuration, setup_.velocity, setup_.step, limit_, origin_,
-            origin_steps_, steps_, past_);
+            origin_steps_, steps_, whole_, past_);
     if constexpr (std::is_same_v<Archive, CheckpointReader>) make();
   }
 
   Status advance(long count) override;
+  long whole_steps() const override { return whole_ + kernel_->whole_steps(); }
+  bool off_grid() const override { return kernel_->off_grid(); }
   void measure(Snapshot& out) const override;
   void state(Snapshot& out) const override;
   const SolverStats& stats() const override;
@@ -48,8 +50,8 @@ class RestartedKernel final : public Kernel {
   // Steps of one size are counted from here, so that a new beginning adds no round-off to the times.
   double origin_;
   long origin_steps_ = 0;
-  long steps_ = 0;    // before this kernel was made
-  SolverStats past_;  // of these
+  long steps_ = 0, whole_ = 0;  // before this kernel was made
+  SolverStats past_;            // of these
   mutable SolverStats all_;
 };
 

@@ -78,7 +78,7 @@ Result Simulation::run() const {
   RunRequest request = request_;
   if (request_.progress && request_.config.check)
     request.progress = [this](double done) {
-      request_.progress(done / check_work(request_.config, 3));
+      request_.progress(done / check_work(request_.config.completed(), 3));
     };
   Driver driver(std::move(plan), std::move(request), Driver::Rows::always);
   if (!request_.resumed.empty()) driver.resume(RunFile(request_.resumed));

@@ -142,7 +142,7 @@ class StudyPage {
     const std::vector<Series> by_step = curves(
         [&](size_t i) {
           const Config& c = view_.cell(i).config;
-          return c.chooses_steps() ? kNotMeasured : c.step;
+          return c.chooses_steps() ? kNotMeasured : c.step_or_usual();
         },
         true);
     plot("Error against step",
