@@ -219,7 +219,11 @@ SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, c
 
 SteadyMotion steady_motion(const Registry& registry, const Simulation& run, int family) {
   const Run built = run.build();
-  return steady_motion(registry, built.system(), built.config().start, family);
+  const SystemModel& model = built.system();
+  const std::optional<double>& speed = run.config().speed;  // without the push of a file
+  return steady_motion(
+      registry, model,
+      speed ? model.start_at_speed(*speed, built.config().from) : built.config().start, family);
 }
 
 int SteadyMotion::growing() const {

@@ -43,7 +43,9 @@ void Assembly::check_names() {
 }
 
 void Assembly::check_body(const Mechanism::BodyPart& body) {
-  if (!(body.mass >= 0) || !std::isfinite(body.mass))
+  if (std::isnan(body.mass))
+    wrong(body, "body", "mass: not given; a body without one has `mass = 0`");
+  else if (!(body.mass >= 0) || !std::isfinite(body.mass))
     wrong(body, "body", fmt::format("mass: got {}, expected at least 0", body.mass));
   const auto extent = [&](const char* what, std::span<const double> sizes) {
     if (std::ranges::any_of(sizes, [](double size) { return !(size >= 0); }))
@@ -145,7 +147,12 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
     const std::string text =
         list.empty() ? fmt::format("{} says nothing: no joint moves its body that way", said.what)
                      : fmt::format("{} says nothing beyond {}", said.what, list);
-    if (drop) model_.notes.push_back("row dropped: " + text);
+    if (drop)
+      model_.notes.push_back(
+          "row dropped: " + text +
+          (list.empty()
+               ? ""
+               : fmt::format("; the reactions there stand for that of {} too", said.what)));
     else
       mistakes_.push_back(fmt::format(
           "{}redundant row: {}; {}, or redundant = \"drop\"", said.where, text,
@@ -218,15 +225,28 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
   stop_at_mistakes();
   model_.start = starts->solve(stated, 0, places);
   model_.start_parameters = asks;
-  if (runs) {
-    model_.start_at_speed = [starts, usual](double speed, double t) {
-      std::map<std::string, double> values = usual;
+  std::map<std::string, double> pushed = usual;
+  for (const auto& part : parts_.push_) {
+    pushed[part.name] = part.value;
+    model_.push += fmt::format("{}{} = {}", model_.push.empty() ? "" : ", ", part.name, part.value);
+    for (const std::string& wrong : starts->mistakes({part.name}))
+      mistakes_.push_back(part.where + "push: " + wrong);
+  }
+  stop_at_mistakes();
+  const auto at_speed = [starts](const std::map<std::string, double>& others) {
+    return [starts, others](double speed, double t) {
+      std::map<std::string, double> values = others;
       values["speed"] = speed;
       return starts->solve(values, t);
     };
+  };
+  if (runs) {
+    model_.start_at_speed = at_speed(usual);
+    if (!parts_.push_.empty()) model_.start_pushed = at_speed(pushed);
+    model_.turning = starts->turning();
   }
-  model_.start_from = [starts, asks, stated, usual](std::span<const double> given, double t) {
-    std::map<std::string, double> values = given.empty() ? stated : usual;
+  model_.start_from = [starts, asks, stated, pushed](std::span<const double> given, double t) {
+    std::map<std::string, double> values = given.empty() ? stated : pushed;
     for (size_t i = 0; i < given.size(); ++i) values[asks[i]] = given[i];
     return starts->solve(values, t);
   };

@@ -4,6 +4,20 @@
 
 namespace hamel::mechanisms {
 
+// steer.angle = 0.1 is a table in a table to TOML.
+template <class Take>
+void FileParts::numbers(const toml::table& table, const Take& take, const std::string& front) {
+  for (const auto& [name, node] : table) {
+    const std::string key = front + std::string(name.str());
+    if (const toml::table* inner = node.as_table()) {
+      numbers(*inner, take, key + ".");
+    } else {
+      m_.place(read_.toml.place(node) + ": ");
+      take(key, read_.number(node, key));
+    }
+  }
+}
+
 void FileParts::bodies() {
   tables("body", [&](const toml::table& table) {
     std::string name;
@@ -207,21 +221,15 @@ void FileParts::surroundings() {
     m_.asks(names);
   });
   stated("start", [&](const Node& node) {
-    if (const toml::table* table = node.as_table()) start(*table);
-    else read_.toml.wrong(node, "start", "a table");
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return read_.toml.wrong(node, "start", "a table");
+    numbers(*table, [&](const std::string& name, double value) { m_.start(name, value); });
   });
-}
-// steer.angle = 0.1 is a table in a table to TOML.
-void FileParts::start(const toml::table& table, const std::string& front) {
-  for (const auto& [name, node] : table) {
-    const std::string key = front + std::string(name.str());
-    if (const toml::table* inner = node.as_table()) {
-      start(*inner, key + ".");
-    } else {
-      m_.place(read_.toml.place(node) + ": ");
-      m_.start(key, read_.number(node, key));
-    }
-  }
+  stated("push", [&](const Node& node) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return read_.toml.wrong(node, "push", "a table");
+    numbers(*table, [&](const std::string& name, double value) { m_.push(name, value); });
+  });
 }
 
 }  // namespace hamel::mechanisms

@@ -49,7 +49,9 @@ class FileParts {
   void motor(const toml::table& table);
   void no_range(const toml::table& table);
   static bool is_input(const toml::table& table, std::initializer_list<const char*> keys);
-  void start(const toml::table& table, const std::string& front = "");
+  /// take(name, value) for each number of a table that may hold tables, steer.angle = 0.1.
+  template <class Take>
+  void numbers(const toml::table& table, const Take& take, const std::string& front = "");
 
   FileValues& read_;
   const toml::table& table_;

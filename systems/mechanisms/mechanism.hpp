@@ -17,6 +17,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -40,8 +41,8 @@ using mechanisms::Signal;  // Now -> number
 inline const std::string kWorld = "ground";
 
 struct BodyOptions {
-  double mass = 0;       // kg
-  Point at = {0, 0, 0};  // m, the mass centre
+  double mass = std::numeric_limits<double>::quiet_NaN();  // kg, to be given, 0 too
+  Point at = {0, 0, 0};                                    // m, the mass centre
   std::vector<double> inertia =
       {};  // kg m^2: 3 moments, or 6 of the upper triangle, or 9; left out: of the shape
   Point box = {0, 0, 0};              // m, edges; at most one shape
@@ -166,6 +167,9 @@ class Mechanism {
     for (const auto& [name, value] : values) start(name, value);
   }
   void start(const std::string& name, double value) { start_.push_back({part(name), value}); }
+  /// A velocity by name beside the speed of a run that starts at one (`--speed`): a motion to be seen where straight ahead
+  /// there would be none.
+  void push(const std::string& name, double value) { push_.push_back({part(name), value}); }
   /// What a few numbers for a start mean (`--velocity`): names as those of start(). Left out: speed.
   void asks(std::vector<std::string> names) { asks_ = {part("asks"), std::move(names)}; }
 
@@ -240,7 +244,7 @@ class Mechanism {
   std::vector<Event> events_;
   Point gravity_ = {0, 0, -9.81}, ground_velocity_ = {0, 0, 0};
   double ground_rate_ = 0;
-  std::vector<StartPart> start_;
+  std::vector<StartPart> start_, push_;
   AsksPart asks_;
 };
 

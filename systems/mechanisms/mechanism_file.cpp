@@ -73,10 +73,10 @@ class File {
 
   void check_keys() {
     static const std::vector<std::string> known = {
-        "asks",    "ball",       "blade",      "body",      "events", "force", "formula",
-        "gravity", "ground",     "inputs",     "joint",     "known",  "loop",  "motor",
-        "name",    "parameters", "prescribed", "redundant", "roller", "slope", "source",
-        "spring",  "start",      "summary",    "wheel"};
+        "asks",    "ball",       "blade",      "body",    "events",    "force",  "formula",
+        "gravity", "ground",     "inputs",     "joint",   "known",     "loop",   "motor",
+        "name",    "parameters", "prescribed", "push",    "redundant", "roller", "slope",
+        "source",  "spring",     "start",      "summary", "wheel"};
     for (const auto& [name, node] : table_) {
       const std::string key(name.str());
       if (std::find(known.begin(), known.end(), key) == known.end())

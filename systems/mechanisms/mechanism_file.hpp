@@ -28,6 +28,7 @@
 //   [ground]                                  # rate [rad/s], velocity [m/s]: the ground turns and moves
 //   [start]                                   # coordinates and velocities by name, and speed
 //   speed = 2
+//   [push]                                    # velocities beside the speed of --speed: w1 = 0.1
 //   asks = ["speed"]                          # what the numbers of --velocity mean, fewer than velocities
 //
 // Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also of t, those of

@@ -35,14 +35,28 @@ Starts::Starts(std::shared_ptr<const Multibody> system, std::string name,
       rates_(std::move(rates)),
       rows_(std::move(rows)) {}
 
-int Starts::ahead() const {
+int Starts::root() const {
   const Tree& tree = system_->tree(system_->drawn().data());
   for (int link = 0; link < tree.links(); ++link) {
-    if (tree.parent(link) != kGround) continue;
-    if (tree.kind(link) == JointKind::free) return tree.first(link) + 3;
-    if (tree.kind(link) == JointKind::planar) return tree.first(link) + 1;
+    const JointKind kind = tree.kind(link);
+    if (tree.parent(link) == kGround && (kind == JointKind::free || kind == JointKind::planar))
+      return link;
   }
   return -1;
+}
+
+std::vector<int> Starts::turning() const {
+  const int link = root();
+  if (link < 0) return {};
+  const Tree& tree = system_->tree(system_->drawn().data());
+  const int first = tree.first(link);
+  if (tree.kind(link) == JointKind::planar) return {first};
+  return {first, first + 1, first + 2};
+}
+
+int Starts::ahead() const {
+  const std::vector<int> angular = turning();
+  return angular.empty() ? -1 : angular.back() + 1;
 }
 
 int Starts::rate(const std::string& name) const {
@@ -138,7 +152,27 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
   return coordinates;
 }
 
-// Least 1/2 xi^T I xi with A xi = b and the given velocities.
+namespace {
+
+// some + free z -> those of least angular velocity.
+void keep_from_turning(const std::vector<int>& angular, VectorXd& some, MatrixXd& free) {
+  MatrixXd turns(angular.size(), free.cols());
+  VectorXd omega(angular.size());
+  for (size_t i = 0; i < angular.size(); ++i) {
+    turns.row(static_cast<Eigen::Index>(i)) = free.row(angular[i]);
+    omega[static_cast<Eigen::Index>(i)] = some[angular[i]];
+  }
+  if (turns.norm() <= 1e-9 * free.norm()) return;
+  some += free * least(turns, VectorXd(-omega));
+  Eigen::FullPivLU<MatrixXd> decomposition(turns);
+  decomposition.setThreshold(1e-9);
+  free = (free * decomposition.compute(turns).kernel()).eval();
+}
+
+}  // namespace
+
+// Least 1/2 xi^T I xi with A xi = b and the given velocities. At a speed in the drawn pose the root turns as little as
+// these allow; where coordinates are given, a steering angle, keeping it from turning would spin the joints.
 Start Starts::solve(const Values& values, double t, const Places& places) const {
   std::vector<std::string> wrong;
   for (const auto& [name, value] : values) {
@@ -168,7 +202,7 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
     a(row, stated[i].first) = 1;
     b[row] = stated[i].second.second;
   }
-  const VectorXd some = least(a, b);
+  VectorXd some = least(a, b);
   const VectorXd left = a * some - b;  // where rows say what others deny
   if (const double size = 1e-9 * (1 + b.norm()); !(left.norm() <= size)) {
     std::vector<int> rows;
@@ -182,7 +216,11 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
            " do not go together; leave out a velocity: those that are not given follow");
   }
   // some + N z, N a basis of what is free: least energy where N^T I (some + N z) = 0.
-  const MatrixXd free = dense::kernel(a);
+  MatrixXd free = dense::kernel(a);
+  const bool as_drawn = std::ranges::none_of(values, [&](const auto& entry) {
+    return std::ranges::count(columns_, entry.first) > 0;
+  });
+  if (as_drawn && values.contains("speed")) keep_from_turning(turning(), some, free);
   const MatrixXd reduced = free.transpose() * inertia * free;
   const VectorXd z = least(reduced, VectorXd(-(free.transpose() * (inertia * some))));
   const VectorXd velocity = some + free * z;

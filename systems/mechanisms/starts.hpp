@@ -34,6 +34,8 @@ class Starts {
   /// At a time, where prescribed angles hold. Throws ConfigError where the rows forbid these values; places: where these
   /// stand in a file.
   Start solve(const Values& values, double t, const Places& places = {}) const;
+  /// The places of the root's angular velocities, in whose direction ahead is; empty where there is no root.
+  std::vector<int> turning() const;
   /// The coordinates that are prescribed, and what they are at a time.
   Values prescribed(double t) const;
 
@@ -42,6 +44,7 @@ class Starts {
                                     const Places& places = {}) const;
 
  private:
+  int root() const;                         // the first planar or free joint; -1: there is none
   int ahead() const;                        // the velocity that "speed" is; -1: there is none
   int rate(const std::string& name) const;  // -1: no velocity
   /// Throws that these rows and values do not go together, and the text behind them.

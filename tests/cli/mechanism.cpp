@@ -101,8 +101,9 @@ TEST_F(MechanismFile, IsDrivenAndWatched) {
   const json free = answer({"run", "bicycle", "--speed", "5", "--until", "0.1"});
   const json steered =
       answer({"run", "bicycle", "--speed", "5", "--until", "0.1", "--input", "steer.torque=0.5"});
-  EXPECT_NEAR(free["final"]["velocity"][6], 0, 1e-12);
-  EXPECT_GT(std::abs(steered["final"]["velocity"][6].get<double>()), 1e-3);
+  EXPECT_GT(std::abs(steered["final"]["velocity"][6].get<double>() -
+                     free["final"]["velocity"][6].get<double>()),
+            1e-3);
   const json d = answer({"describe", "bicycle"});
   EXPECT_EQ(d["inputs"][0]["name"], "steer.torque");
   EXPECT_EQ(d["inputs"][0]["unit"], "N m");

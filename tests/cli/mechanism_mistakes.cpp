@@ -8,6 +8,7 @@ using testing::HasSubstr;
 
 TEST_F(MechanismMistakes, InBodiesAndJoints) {
   refuses({
+      {kFlat + "[[body]]\nname = \"b\"\n", "9:1: body 'b': mass: not given"},
       {"[[body]]\nname = \"a\"\nmass = \"1/0\"\n", "3:8: mass: expected a finite number, got inf"},
       {"gravity = \"x\"\n" + kFlat, "1:12: gravity: unknown name 'x': there are none"},
       {kFlat + "[[body]]\nname = \"a\"\nmass = 1\n", "9:1: body 'a': this name is taken"},
@@ -26,9 +27,9 @@ TEST_F(MechanismMistakes, InBodiesAndJoints) {
       {"[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 1]\n" + kArm +
            "[[joint]]\nname = \"back\"\nkind = \"hinge\"\nparent = \"b\"\nchild = \"a\"\n",
        "10:1: joint 'arm': 'arm', 'back' go round in a circle that does not reach the ground; "},
-      {kFlat + "[[body]]\nname = \"tip\"\n[[joint]]\nname = \"end\"\nkind = \"hinge\"\n" +
+      {kFlat + "[[body]]\nname = \"tip\"\nmass = 0\n[[joint]]\nname = \"end\"\nkind = \"hinge\"\n" +
            "parent = \"a\"\nchild = \"tip\"\nat = [1, 0, 0]\n",
-       "11:1: joint 'end': body 'tip' and all that it carries have no inertia"},
+       "12:1: joint 'end': body 'tip' and all that it carries have no inertia"},
       {kFlat + "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n" +
            "[[joint]]\nname = \"u\"\nkind = \"universal\"\nparent = \"a\"\nchild = \"b\"\n" +
            "axis2 = [0, 0, 1]\n",
@@ -58,9 +59,10 @@ TEST_F(MechanismMistakes, InContactsAndLoops) {
            "[[blade]]\nname = \"right\"\nbody = \"a\"\nat = [0, -1, 0]\n",
        "13:1: redundant row: blade 'right' (does not slip across its edge) says nothing beyond "
        "blade 'left' (does not slip across its edge); take a part with fewer rows"},
-      {kFlat + "[[body]]\nname = \"post\"\n[[joint]]\nkind = \"weld\"\nchild = \"post\"\n" +
+      {kFlat +
+           "[[body]]\nname = \"post\"\nmass = 0\n[[joint]]\nkind = \"weld\"\nchild = \"post\"\n" +
            "[[wheel]]\nbody = \"post\"\nat = [0, 0, 0.3]\nradius = 0.3\n",
-       "14:1: wheel 'post': body: expected a body that moves, not the ground or what is welded to "
+       "15:1: wheel 'post': body: expected a body that moves, not the ground or what is welded to "
        "it"},
       {"redundant = \"dropp\"\n" + kFlat, "1:13: unknown redundant 'dropp': expected one of"},
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"crank\"\nat = [1, 0, 1]\n" +
@@ -71,9 +73,9 @@ TEST_F(MechanismMistakes, InContactsAndLoops) {
       {kFlat + "[[spring]]\nname = \"s\"\na = \"ground\"\nb = \"ground\"\nto = [1, 0, 0]\n",
        "9:1: spring 's': expected a body that moves at one of its ends, not the ground or what is "
        "welded to it"},
-      {kFlat + "[[body]]\nname = \"post\"\n[[joint]]\nkind = \"weld\"\nparent = \"a\"\n" +
+      {kFlat + "[[body]]\nname = \"post\"\nmass = 0\n[[joint]]\nkind = \"weld\"\nparent = \"a\"\n" +
            "child = \"post\"\n[[spring]]\nname = \"s\"\na = \"a\"\nb = \"post\"\nstiffness = 1\n",
-       "15:1: spring 's': 'a' and 'post' are one rigid body"},
+       "16:1: spring 's': 'a' and 'post' are one rigid body"},
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"rod\"\nat = [1, 0, 1]\n",
        "23:1: loop 'pin': 'rod' and 'rod' are one body"},
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"ground\"\nat = [1, 0, 1]\n",

@@ -122,8 +122,9 @@ TEST(Schemas, RefuseWhatTheReadersRefuse) {
            {"study", "until = 1"},
            {"study", "mode = 'zippd'\n[[system]]\nname = 'suslov'"},
            {"study", "step = [true]\n[[system]]\nname = 'suslov'"},
-           {"mechanism", "[[body]]\nname = 'a'\nmas = 1\n[[joint]]\nkind='free'\nchild='a'"},
-           {"mechanism", "[[body]]\nname = 'a'\n[[joint]]\nkind='fere'\nchild='a'"},
+           {"mechanism",
+            "[[body]]\nname = 'a'\nmass = 1\nmas = 1\n[[joint]]\nkind='free'\nchild='a'"},
+           {"mechanism", "[[body]]\nname = 'a'\nmass = 1\n[[joint]]\nkind='fere'\nchild='a'"},
            {"mechanism", root_body + "[parameters]\nm = '2*3'"},
            {"mechanism", root_body + "[parameters]\nm = { value = 1, least = '0' }"},
            {"mechanism", root_body + "[events]\ne = { value = 'x', direction = 2 }"},
@@ -165,7 +166,7 @@ std::set<std::string> keys_of(const json& object) {
 
 TEST(Schemas, HaveTheKeysOfTheReaders) {
   const std::string system = "group = 'se2'\ninertia = [1, 1, 1]\n";
-  const std::string body = "[[body]]\nname = 'a'\n",
+  const std::string body = "[[body]]\nname = 'a'\nmass = 1\n",
                     joint = "[[joint]]\nkind = 'free'\nchild = 'a'\n";
   // Kind, text with the unknown key, and where its table stands in the schema.
   std::vector<std::tuple<std::string, std::string, std::string>> cases = {

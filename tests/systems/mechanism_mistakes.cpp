@@ -52,10 +52,14 @@ TEST(Mechanisms, SayWhatIsWrongWithTheirParts) {
   EXPECT_THAT(refused(flat), HasSubstr("wheel 'wheel': axle: is vertical"));
   Mechanism light("light");
   light.body("a", {.mass = 1, .inertia = {1, 1, 1}});
-  light.body("tip", {});
+  light.body("tip", {.mass = 0});
   light.planar("floor", "a");
   light.hinge("end", "a", "tip", {.at = {1, 0, 0}});
   EXPECT_THAT(refused(light), HasSubstr("body 'tip' and all that it carries have no inertia"));
+  Mechanism without("without");
+  without.body("a", {.inertia = {1, 1, 1}});
+  without.planar("floor", "a");
+  EXPECT_THAT(refused(without), HasSubstr("body 'a': mass: not given"));
   Mechanism twice = by_parts::racer({});
   twice.motor("steer");
   twice.motor("steer");
@@ -74,7 +78,7 @@ TEST(Mechanisms, FindRowsThatSayNothingNew) {
       dropping.model().notes,
       testing::Contains(HasSubstr(
           "row dropped: wheel 'left' (does not slip sideways) says nothing beyond wheel 'right' "
-          "(does not slip sideways)")));
+          "(does not slip sideways); the reactions there stand for that of wheel 'left'")));
   Mechanism refusing = dropping;
   refusing.redundant("refuse");
   EXPECT_THAT(refused(refusing), HasSubstr("redundant row: wheel 'left' (does not slip sideways)"));

@@ -40,7 +40,7 @@ inline Mechanism drive(const DifferentialDrive& s) {
   for (const double side : {-1.0, 1.0}) {
     const std::string name = side < 0 ? "right" : "left";
     const Point at = {0, side * s.half_track, r};
-    const auto wheel = m.body(name, {.at = at, .inertia = {0, s.wheel_inertia, 0}});
+    const auto wheel = m.body(name, {.mass = 0, .at = at, .inertia = {0, s.wheel_inertia, 0}});
     m.hinge(name, cart, wheel, {.at = at, .axis = {0, 1, 0}});
     m.wheel(name, wheel, {.at = at, .radius = r});
   }
@@ -51,7 +51,7 @@ inline Mechanism drive(const DifferentialDrive& s) {
 inline Mechanism segway(const Segway& s) {
   Mechanism m("segway by parts");
   const double r = s.wheel_radius;
-  m.body("axle", {.at = {0, 0, r}});
+  m.body("axle", {.mass = 0, .at = {0, 0, r}});
   m.body("rider", {.mass = s.mass,
                    .at = {0, 0, r + s.height},
                    .inertia = {s.moments[0], s.moments[1], s.moments[2]}});
@@ -94,7 +94,7 @@ inline Mechanism train(const NTrailer& s) {
 inline Mechanism racer(const RollerRacer& s) {
   Mechanism m("racer");
   m.body("rear", {.mass = s.mass, .inertia = {0, 0, s.moment}});
-  m.body("front", {.at = {s.rear_length, 0, 0}, .inertia = {0, 0, s.front_moment}});
+  m.body("front", {.mass = 0, .at = {s.rear_length, 0, 0}, .inertia = {0, 0, s.front_moment}});
   m.planar("floor", "rear");
   m.hinge("steer", "rear", "front", {.at = {s.rear_length, 0, 0}, .stiffness = s.stiffness});
   m.blade("rear", "rear", {});
@@ -107,7 +107,7 @@ inline Mechanism snakeboard(const Snakeboard& s) {
   Mechanism m("snakeboard by parts");
   const double l = s.half_length;
   m.body("board", {.mass = s.mass, .inertia = {0, 0, s.board_inertia}});
-  m.body("rotor", {.inertia = {0, 0, s.rotor_inertia}});
+  m.body("rotor", {.mass = 0, .inertia = {0, 0, s.rotor_inertia}});
   m.planar("floor", "board");
   m.hinge("psi", "board", "rotor", {});
   const auto rate = [s](double amplitude) {
@@ -116,7 +116,7 @@ inline Mechanism snakeboard(const Snakeboard& s) {
   for (const double side : {1.0, -1.0}) {
     const std::string name = side > 0 ? "front" : "back";
     const Point at = {side * l, 0, 0};
-    m.body(name, {.at = at, .inertia = {0, 0, s.axle_inertia}});
+    m.body(name, {.mass = 0, .at = at, .inertia = {0, 0, s.axle_inertia}});
     m.hinge(name, "board", name, {.at = at});
     m.blade(name + " axle", name, {.at = at});
     m.prescribe(name, rate(side * s.steering_amplitude));
