@@ -179,7 +179,8 @@ TEST_F(Recorded, BadInput) {
   refused({"suslov", "-o", "-", "--json"}, "standard output");
   refused({"--continue", "text.h5"}, "no HDF5 file");
   refused({"--continue", "none.h5"}, "there is no such file");
-  const Words disk = {"run", "rolling_disk", "--until", "1e4", "--quiet", "-o", "a.h5"};
+  const Words disk = {"run", "rolling_disk", "--step", "0.01", "--until",
+                      "1e4", "--quiet",      "-o",     "a.h5"};
   ASSERT_EQ(run(disk, "ulimit -f 4000 && exec ").status, 1);
   const std::string before = contents(file("a.h5.part"));
   refused({"rolling_disk", "-o", "a.h5"}, "--continue a.h5");

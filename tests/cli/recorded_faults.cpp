@@ -26,7 +26,7 @@ TEST_F(RecordedFaults, NoRoomToBegin) {
 
 /// What a damaged file makes of a run is the undisturbed one or a refusal.
 TEST_F(RecordedFaults, DamagedFiles) {
-  const Words words = {"run", "chaplygin_sleigh", "--until", "150", "--quiet"};
+  const Words words = {"run", "chaplygin_sleigh", "--step", "0.01", "--until", "150", "--quiet"};
   ASSERT_EQ(run(with(words, {"-o", "whole.h5", "-o", "whole.csv"})).status, 0);
   ASSERT_EQ(run(with(words, {"-o", "cut.h5"}), "ulimit -f 3500 && exec ").status, 1);
   const std::string cut = contents(file("cut.h5.part")), whole = contents(file("whole.h5"));

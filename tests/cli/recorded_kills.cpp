@@ -96,9 +96,9 @@ TEST_F(RecordedKills, OfACsvLoseNothing) {
 }
 
 TEST_F(RecordedKills, TenMillionRowsTakeNoMemory) {
-  const Outcome o =
-      run({"run", "suslov", "--no-exact", "--until", "100000", "--quiet", "-o", "a.h5"},
-          "ulimit -d 50000 && exec ");
+  const Outcome o = run({"run", "suslov", "--no-exact", "--step", "0.01", "--until", "100000",
+                         "--quiet", "-o", "a.h5"},
+                        "ulimit -d 50000 && exec ");
   EXPECT_EQ(o.status, 0) << o.err;
 }
 
