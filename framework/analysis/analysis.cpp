@@ -14,7 +14,8 @@
 namespace hamel {
 namespace {
 
-constexpr int kMostAnalysed = 100;  // n^4 operations, n^3 numbers
+constexpr int kMostAnalysed = 100;          // n^4 operations, n^3 numbers
+constexpr double kMotionTolerance = 1e-12;  // far below the change that what is conserved may have
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
@@ -90,12 +91,12 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
   Config config;
   config.system = system;
   config.parameters = parameters;
-  config.scheme = "lift";
+  config.scheme = "dop853";
   config.retraction = "exp";
-  config.compose = "kahan_li6";
   config.step = 0.005;
+  config.rtol = kMotionTolerance;
   config.until = 1;
-  config.every = 10;
+  config.output_step = 0.05;
   const int dim = simulation.config(config).build().system().group.dim;
   if (dim > kMostAnalysed)
     throw ConfigError({fmt::format("{}: its dimension {} is above {}, the most that is analysed",
@@ -120,7 +121,8 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
   out.frame = hamel_frame(inertia, a);
 
   out.growth = growth_of(*geometry, *mechanics, g.data(),
-                         what == AnalysisOf::verdict ? kFewFields : kMostFields);
+                         what == AnalysisOf::verdict ? kFewFields : kMostFields,
+                         natural_units(components_of(*run.system), *mechanics, g.data()));
   if (what == AnalysisOf::verdict) return out;
   Frame fields(*geometry, *mechanics, g, out.frame);
   out.structure.assign(static_cast<size_t>(out.m), Matrix::Zero(out.m, out.m));

@@ -15,18 +15,20 @@
 namespace hamel::carried {
 
 Fields::Fields(const Geometry& geometry, const Mechanics& mechanics, const Vector& g,
-               bool with_drift)
+               const Vector& units, bool with_drift)
     : geometry_(geometry),
       mechanics_(mechanics),
       g_(g),
-      at_(g.size()),
+      at_(g),
+      units_(units),
       n_(mechanics.dim()),
       drift_(with_drift ? 1 : 0),
       a_(mechanics.rows(), n_),
       b_(mechanics.rows()) {
   Matrix inertia(n_, n_);
   mechanics.inertia(g.data(), inertia);
-  mechanics.constraints(0, g.data(), a_, b_);
+  inertia = (units_.asDiagonal() * inertia * units_.asDiagonal()).eval();
+  set_rows(0);
   frame_ = hamel_frame(inertia, a_).colwise().normalized();  // of one size, whatever the units
   const Matrix rows = a_.transpose() * a_;
   if (a_.rows() > 0)
@@ -34,11 +36,23 @@ Fields::Fields(const Geometry& geometry, const Mechanics& mechanics, const Vecto
   metric_.compute(inertia);
 }
 
+void Fields::set_rows(double t) {
+  mechanics_.constraints(t, at_.data(), a_, b_);
+  a_ = (a_ * units_.asDiagonal()).eval();
+  for (Eigen::Index i = 0; i < a_.rows(); ++i) {
+    const double size = a_.row(i).norm();
+    if (!(size > 0)) continue;
+    a_.row(i) /= size;
+    b_[i] /= size;
+  }
+}
+
 Matrix Fields::operator()(const Vector& x) {
   const double t = drift_ == 1 ? x[n_] : 0;
-  geometry_.tau(x.data(), at_.data());
+  const Vector step = units_.cwiseProduct(x.head(n_));
+  geometry_.tau(step.data(), at_.data());
   geometry_.compose(g_.data(), at_.data(), at_.data());
-  mechanics_.constraints(t, at_.data(), a_, b_);
+  set_rows(t);
   raised_ = metric_.solve(a_.transpose());
   lambda_.resize(a_.rows(), count());
   lambda_.rightCols(frame_.cols()).noalias() = -a_ * frame_;
@@ -48,8 +62,9 @@ Matrix Fields::operator()(const Vector& x) {
   out.topRows(n_).noalias() = raised_ * lambda_;
   out.topRows(n_).rightCols(frame_.cols()) += frame_;
   for (Eigen::Index i = 0; i < count(); ++i) {
-    double* const xi = out.col(i).data();
-    geometry_.dtau_left_inverse(x.data(), xi, xi);
+    Vector xi = units_.cwiseProduct(out.col(i).head(n_));
+    geometry_.dtau_left_inverse(step.data(), xi.data(), xi.data());
+    out.col(i).head(n_) = xi.cwiseQuotient(units_);
   }
   if (drift_ == 1) out(n_, 0) = 1;
   return out;

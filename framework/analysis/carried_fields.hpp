@@ -25,12 +25,13 @@ using Vector = Eigen::VectorXd;
 /// Of the size of the fields: generations smaller than that are taken for zero.
 constexpr double kNothing = 1e-6;
 
-/// The fields X_0 (where there is one) and X_a at x, t, as columns; the coordinates are x or (x, t). X_a is a vector of the
-/// frame at g, constant in the body, less what the rows forbid of it; X_0 is the least velocity that they ask for, both in
-/// the metric of the inertia at g.
+/// The fields X_0 (where there is one) and X_a at x, t, as columns; the coordinates are x or (x, t), in units of `units`. X_a
+/// is a vector of the frame at g, constant in the body, less what the rows forbid of it; X_0 is the least velocity that they
+/// ask for, both in the metric of the inertia at g.
 class Fields {
  public:
-  Fields(const Geometry& geometry, const Mechanics& mechanics, const Vector& g, bool with_drift);
+  Fields(const Geometry& geometry, const Mechanics& mechanics, const Vector& g, const Vector& units,
+         bool with_drift);
   Eigen::Index coordinates() const { return n_ + drift_; }
   Eigen::Index count() const { return frame_.cols() + drift_; }
   bool with_drift() const { return drift_ == 1; }
@@ -40,7 +41,10 @@ class Fields {
  private:
   const Geometry& geometry_;
   const Mechanics& mechanics_;
-  Vector g_, at_;
+  // A and b in these units, with rows of size 1 in them.
+  void set_rows(double t);
+
+  Vector g_, at_, units_;
   Eigen::Index n_, drift_;
   Matrix a_, frame_;
   Vector b_;

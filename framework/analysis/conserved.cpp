@@ -23,7 +23,7 @@ constexpr double kKept = 1e-9;            // change of a term's unit along a mot
 constexpr double kIdentity = 1e-10;       // of a term's unit: zero
 constexpr double kShort = 1, kLong = 20;  // s
 constexpr int kMotions = 4;               // of either length
-constexpr long kRows = 40;                // of each
+constexpr int kRows = 40;                 // of each
 
 class Search {
  public:
@@ -62,9 +62,7 @@ class Search {
     Config config = first_.config;
     config.from = from;
     config.until = from + length;
-    config.step = 0.005;
-    config.every = std::max(1L, config.steps() / kRows);
-    config.compose = "suzuki_umeno8";
+    config.output_step = length / kRows;
     config.start.configuration = at;
     if (motion > 0) perturb(config.start.velocity);
     const std::string system = config.system;

@@ -82,19 +82,20 @@ int closed_at(const Reach& reach, int possible) {
   return same != d.end() ? *same : d.back() == possible ? possible : -1;
 }
 
-// [x, y] of constant fields, left-invariant and constant in time: columns of n, or n + 1 with time.
-Vector ad(const Geometry& geometry, const Vector& x, const Vector& y) {
+// [x, y] of constant fields, left-invariant and constant in time: columns of n, or n + 1 with time, in these units.
+Vector ad(const Geometry& geometry, const Vector& units, const Vector& x, const Vector& y) {
   const Eigen::Index n = geometry.dim();
+  const Vector xi = units.cwiseProduct(x.head(n)), eta = units.cwiseProduct(y.head(n));
   Vector out = Vector::Zero(x.size()), mu = Vector::Zero(n), row(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     mu[i] = 1;
-    geometry.ad_transpose(x.data(), mu.data(), row.data());
-    out[i] = row.dot(y.head(n));
+    geometry.ad_transpose(xi.data(), mu.data(), row.data());
+    out[i] = row.dot(eta) / units[i];
     mu[i] = 0;
   }
   return out;
 }
-Reach constant_reach(const Geometry& geometry, const Matrix& fields) {
+Reach constant_reach(const Geometry& geometry, const Vector& units, const Matrix& fields) {
   Reach out{{static_cast<int>(fields.cols())}};
   Matrix span = dense::pivoted_q(fields).leftCols(fields.cols()), last = span;
   while (true) {
@@ -103,7 +104,7 @@ Reach constant_reach(const Geometry& geometry, const Matrix& fields) {
     Eigen::Index next = span.cols();
     for (Eigen::Index i = 0; i < fields.cols(); ++i) {
       for (Eigen::Index j = 0; j < last.cols(); ++j)
-        wider.col(next++) = ad(geometry, fields.col(i).normalized(), last.col(j));
+        wider.col(next++) = ad(geometry, units, fields.col(i).normalized(), last.col(j));
     }
     const Matrix outside = wider - span * (span.transpose() * wider);
     const dense::Svd svd = dense::svd(outside, Eigen::ComputeThinU);
@@ -141,11 +142,33 @@ bool has_drift(const Geometry& geometry, const Mechanics& mechanics, const Vecto
 
 }  // namespace
 
-Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* at, int most) {
+std::vector<double> natural_units(const std::vector<Component>& components,
+                                  const Mechanics& mechanics, const double* g) {
+  const Eigen::Index n = mechanics.dim();
+  Matrix inertia(n, n);
+  mechanics.inertia(g, inertia);
+  double mass = 0, moment = 0;  // sums over the lengths, the angles
+  std::vector<double> out(static_cast<size_t>(n), 1);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::string& unit = components[static_cast<size_t>(i)].unit;
+    if (unit == "m/s") mass += inertia(i, i);
+    else if (unit == "rad/s") moment += inertia(i, i);
+    else return out;
+  }
+  if (!(mass > 0 && moment > 0)) return out;
+  for (size_t i = 0; i < out.size(); ++i)
+    if (components[i].unit == "m/s") out[i] = std::sqrt(moment / mass);
+  return out;
+}
+
+Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* at, int most,
+                 const std::vector<double>& given) {
+  Vector units = Vector::Ones(geometry.dim());
+  if (!given.empty()) units = Eigen::Map<const Vector>(given.data(), geometry.dim());
   const Vector g = Eigen::Map<const Vector>(at, geometry.size());
   Growth out;
   out.with_drift = has_drift(geometry, mechanics, g);
-  Fields fields(geometry, mechanics, g, out.with_drift);
+  Fields fields(geometry, mechanics, g, units, out.with_drift);
   const auto all = static_cast<int>(fields.coordinates()),
              possible = all - mechanics.holonomic_rows();
   const Vector here = Vector::Zero(all);
@@ -155,7 +178,7 @@ Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const dou
   if (fields.count() == possible || fields.count() == 0) {
     nearby = static_cast<int>(fields.count());
   } else if (mechanics.constant_constraints()) {
-    reach = constant_reach(geometry, fields(here));
+    reach = constant_reach(geometry, units, fields(here));
     nearby = reach.dimensions.back();
   } else {
     const int deepest = std::min(std::max(all, 4), most);

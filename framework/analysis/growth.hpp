@@ -18,6 +18,7 @@
 #include <vector>
 
 #include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 
 namespace hamel {
@@ -37,8 +38,14 @@ struct Growth {
 /// So many fields in a bracket: more drown in round-off; a few take a tenth of a second where these take ten.
 constexpr int kMostFields = 8, kFewFields = 3;
 
-/// geometry: of a retraction with tau(x) for |x| < 3. Brackets of up to n fields are looked at, `most` of them at most.
+/// geometry: of a retraction with tau(x) for |x| < 3. Brackets of up to n fields are looked at, `most` of them at most. units:
+/// of the n components, in which all are measured; empty: 1.
 Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* g,
-                 int most = kMostFields);
+                 int most = kMostFields, const std::vector<double>& units = {});
+
+/// Units of the components: 1 for angles, for lengths the radius of gyration of the system at g, so that nothing depends on
+/// the unit of lengths; 1 for all where there are only angles, only lengths, or others.
+std::vector<double> natural_units(const std::vector<Component>& components,
+                                  const Mechanics& mechanics, const double* g);
 
 }  // namespace hamel
