@@ -7,6 +7,7 @@
 // Own systems, groups, retractions and schemes, compiled in the program's types: <hamel/hamel.hpp>.
 #pragma once
 
+#include <hamel/framework/analysis/linearisation.hpp>
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/study/study.hpp>

@@ -6,14 +6,18 @@
 //   delta' = nu + ad_delta Ad_g^-1 zeta,   nu' = da(g, xi)(delta, nu) + ad_eta nu,
 // on the perturbations that keep phi = 0 and A xi = b. Those along the symmetries themselves are divided out: what is
 // left are the eigenvalues. As many of them vanish as the steady motions form a family (of all speeds, of all circles).
+// Along a parameter a branch of steady motions is followed from neighbour to neighbour, by a predictor along its tangent
+// (steady_branch.hpp).
 // Source: Meijaard, Papadopoulos, Ruina, Schwab, Linearized dynamics equations for the balance and steer of a bicycle,
 // Proc. R. Soc. A 463 (2007); Zenkov, Bloch, Marsden, The energy-momentum method for the stability of nonholonomic
-// systems, Dynamics and Stability of Systems 13 (1998).
+// systems, Dynamics and Stability of Systems 13 (1998); Govaerts, Numerical Methods for Bifurcations of Dynamical
+// Equilibria (2000).
 #pragma once
 
 #include <complex>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,8 +38,10 @@ struct SteadyMotion {
   bool found = false;                     // else no eigenvalues
   double residual = 0;                    // of Z = X_s, phi and A xi = b
   std::vector<std::complex<double>>
-      eigenvalues;                // 1/s, by real part, largest first; without the neutral ones
-  std::vector<double> round_off;  // of each: a pair that meets another is known badly
+      eigenvalues;  // 1/s, by real part, largest first; without the neutral ones
+  /// Of each, measured: how far it moves when the linearisation changes by its own error. A pair that meets another is
+  /// known badly.
+  std::vector<double> round_off;
   std::vector<std::vector<ModePart>> modes;  // what moves in each
   int neutral = 0;                           // directions of symmetry, and zeros of the family
   int family = 0;                            // of them, zeros of the family
@@ -43,25 +49,69 @@ struct SteadyMotion {
   int growing() const;
 };
 
-/// The steady motion near a start, its rates named by components_of(model). family: how many zeros there are; -1: those that are
-/// zero to 1e-7. Throws ConfigError when the system depends on time.
-SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, const Start& guess,
-                           int family = -1);
-/// The same near the start of a run: also `speed(5)`, of systems that know such a motion.
-SteadyMotion steady_motion(const Registry& registry, const Simulation& run, int family = -1);
+/// The steady motion near a start, its rates named by components_of(model). Throws ConfigError when the system depends on time.
+SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, const Start& guess);
+/// The same near the start of a run: also `speed(5)`, of systems that define such a motion.
+SteadyMotion steady_motion(const Registry& registry, const Simulation& run);
 
-/// Steady motions along a parameter.
+/// What happens to the steady motions where their stability changes, or where a branch ends.
+enum class Bifurcation {
+  pitchfork,         // another branch meets this one, on one side of the value, as two halves
+  transcritical,     // another branch crosses this one
+  fold,              // this branch turns back
+  family,            // at this very value steady motions form a family
+  hopf,              // a pair of complex eigenvalues crosses the imaginary axis
+  hamiltonian_hopf,  // two pairs on the axis meet and leave it
+  none,              // real eigenvalues pass zero, and no other branch was found
+  unknown,           // a branch was lost, without a fold
+};
+/// "pitchfork", "hamiltonian_hopf".
+std::string name_of(Bifurcation kind);
+
+/// A steady motion at a value of the parameter.
+struct SteadyPlace {
+  double value = 0;
+  std::vector<double> element, velocity;
+};
+
+struct SteadyCrossing {
+  double value = 0;
+  double round_off = 0;  // of the value
+  bool pair = false;     // of complex eigenvalues; else a real one
+  Bifurcation kind = Bifurcation::unknown;
+  std::optional<SteadyPlace> other;  // on the branch that meets this one, beside the crossing
+};
+
+/// Where a branch ends before the last value: it turns back (fold), meets another one there as one of its halves
+/// (pitchfork), or was lost. other: on what goes on from there.
+struct SteadyEnd {
+  double value = 0, round_off = 0;
+  Bifurcation kind = Bifurcation::unknown;
+  std::optional<SteadyPlace> other;
+};
+
+/// A branch of steady motions along a parameter.
 struct SteadySweep {
   std::vector<double> values;
-  std::vector<SteadyMotion> motions;
-  struct Crossing {
-    double value;
-    bool pair;  // of complex eigenvalues; else a real one
-  };
-  std::vector<Crossing> crossings;  // where the number of unstable eigenvalues changes, to 1e-10
+  std::vector<SteadyMotion> motions;      // found = false where the branch is not
+  std::vector<SteadyCrossing> crossings;  // where the number of unstable eigenvalues changes
+  std::optional<SteadyEnd> end;
+  std::optional<SteadyPlace> start;   // of a branch that another one meets: where it was entered
+  std::vector<SteadySweep> branches;  // the others that were met and followed, none of them twice
 };
-/// at(value, family) is the motion there.
-SteadySweep sweep_steady(const std::vector<double>& values,
-                         const std::function<SteadyMotion(double value, int family)>& at);
+/// The branch through the steady motion near the start of at(values[0]), or of the first value that has one. Where steady
+/// motions form a family, it is that of the momentum along the start of at(value). others: the branches that meet it are
+/// followed too, and those that meet them.
+SteadySweep sweep_steady(const Registry& registry, const std::vector<double>& values,
+                         const std::function<Simulation(double value)>& at, bool others = false);
+
+/// Which eigenvalue of each motion goes on in which of the next: entry i of a curve is the place of the eigenvalue in
+/// motions[i], or -1 where the curve is not.
+std::vector<std::vector<int>> eigenvalue_curves(const std::vector<SteadyMotion>& motions);
+
+/// A number rounded to the decimals that are known of it.
+double round_to_known(double x, double round_off);
+/// How many decimals these are, 15 at most.
+int known_decimals(double round_off);
 
 }  // namespace hamel

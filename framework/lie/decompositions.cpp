@@ -28,6 +28,11 @@ Eigen::Index rank(const Matrix& m, double threshold) {
   if (threshold > 0) qr.setThreshold(threshold);
   return qr.rank();
 }
+std::vector<int> pivots(const Matrix& m) {
+  const Eigen::ColPivHouseholderQR<Matrix> qr(m);
+  const auto& order = qr.colsPermutation().indices();
+  return {order.begin(), order.end()};
+}
 Matrix pivoted_q(const Matrix& m) { return Eigen::ColPivHouseholderQR<Matrix>(m).householderQ(); }
 Matrix solve_pivoted(const Matrix& a, const Matrix& b) {
   return Eigen::ColPivHouseholderQR<Matrix>(a).solve(b);
@@ -53,7 +58,10 @@ Vector symmetric_eigenvalues(const Matrix& m) {
 
 Eigensystem eigen(const Matrix& m) {
   const Eigen::EigenSolver<Matrix> solver(m);
-  return {solver.eigenvalues(), solver.eigenvectors(), solver.eigenvectors().inverse()};
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+Eigen::VectorXcd eigenvalues(const Matrix& m) {
+  return Eigen::EigenSolver<Matrix>(m, false).eigenvalues();
 }
 
 }  // namespace hamel::dense

@@ -3,6 +3,8 @@
 // this one, since a user's flags may align Eigen's memory differently.
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 namespace hamel::dense {
@@ -26,6 +28,8 @@ struct Qr {
 Qr qr(const Matrix& m);
 /// The rank of m by QR with pivoted columns; threshold: relative to the largest pivot, 0 for Eigen's.
 Eigen::Index rank(const Matrix& m, double threshold = 0);
+/// The columns of m in the order in which QR with pivoted columns takes them.
+std::vector<int> pivots(const Matrix& m);
 /// Q of QR with pivoted columns, square.
 Matrix pivoted_q(const Matrix& m);
 /// x with a x = b, or of least residual, by QR with pivoted columns.
@@ -49,11 +53,12 @@ struct SymmetricEigen {
 SymmetricEigen symmetric_eigen(const Matrix& m);
 Vector symmetric_eigenvalues(const Matrix& m);
 
-/// m vectors = vectors diag(values); the rows of left are the inverse of vectors.
+/// m vectors = vectors diag(values).
 struct Eigensystem {
   Eigen::VectorXcd values;
-  Eigen::MatrixXcd vectors, left;
+  Eigen::MatrixXcd vectors;
 };
 Eigensystem eigen(const Matrix& m);
+Eigen::VectorXcd eigenvalues(const Matrix& m);
 
 }  // namespace hamel::dense

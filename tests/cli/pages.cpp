@@ -122,14 +122,28 @@ TEST_F(Pages, ReactionsOfContactsAreForces) {
   EXPECT_EQ(figure_of(page_of({"chaplygin_sleigh"}), "Reaction forces")["y"], "lambda");
 }
 
-// No line joins the eigenvalues of two branches.
-TEST_F(Pages, EigenvaluesAreDots) {
+// Eigenvalues along a parameter: curves by the names of what moves, one colour in both figures, where nothing grows shaded;
+// what the page was made from.
+TEST_F(Pages, EigenvaluesAreCurves) {
   const json page =
-      page_by({"steady", "bicycle", "--vary", "speed=4:6:3", "--report", "page.html"});
+      page_by({"steady", "bicycle", "--vary", "speed=4:6.5:6", "--report", "page.html"});
   if (page.is_null()) GTEST_SKIP() << "built without the page";
-  const json real = figure_of(page, "Real parts of the eigenvalues");
+  const json real = figure_of(page, "Real parts of the eigenvalues"),
+             imaginary = figure_of(page, "Imaginary parts of the eigenvalues");
   EXPECT_EQ(real["x"], "speed [m/s]");
-  for (const json& series : real["series"]) EXPECT_EQ(series.value("dots", false), true);
+  ASSERT_EQ(real["series"].size(), 4u);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_FALSE(real["series"][i].value("dots", false));
+    EXPECT_EQ(real["series"][i]["name"], imaginary["series"][i]["name"]);
+    EXPECT_EQ(real["series"][i]["y"].size(), 6u);
+  }
+  EXPECT_THAT(real["series"][0]["name"].get<std::string>(), HasSubstr("steer.rate"));
+  ASSERT_EQ(real["bands"].size(), 1u);
+  EXPECT_NEAR(real["bands"][0]["from"], 4.29238253634111, 1e-8);
+  EXPECT_NEAR(real["bands"][0]["to"], 6.02426201538837, 1e-8);
+  const std::string text = page.dump();
+  EXPECT_THAT(text, HasSubstr("hamel steady bicycle --vary speed=4:6.5:6"));
+  EXPECT_THAT(text, HasSubstr("wheelbase"));
   const json segway =
       page_by({"steady", "segway", "--vary", "height=0.5:1:3", "--report", "page.html"});
   EXPECT_EQ(figure_of(segway, "Real parts of the eigenvalues")["x"], "height [m]");

@@ -16,8 +16,8 @@ namespace hamel {
 namespace {
 
 SystemModel model(const std::string& name) { return registry().system(name)->make({}); }
-SteadyMotion at_speed(const SystemModel& system, double speed, int family = -1) {
-  return steady_motion(registry(), system, system.start_at_speed(speed, 0), family);
+SteadyMotion at_speed(const SystemModel& system, double speed) {
+  return steady_motion(registry(), system, system.start_at_speed(speed, 0));
 }
 
 // Of M q'' + v C1 q' + (g K0 + v^2 K2) q = 0, q = (lean, steer), with the benchmark's matrices of Meijaard and others 2007.
@@ -76,16 +76,21 @@ TEST(Bicycle, HasThePublishedEigenvalues) {
 }
 
 TEST(Bicycle, WeavesAndCapsizesAtThePublishedSpeeds) {
-  const SystemModel bicycle = model("bicycle");
   std::vector<double> speeds;
   for (int i = 0; i <= 14; ++i) speeds.push_back(1 + 0.5 * i);
   const SteadySweep sweep =
-      sweep_steady(speeds, [&](double v, int family) { return at_speed(bicycle, v, family); });
+      sweep_steady(registry(), speeds, [](double v) { return simulate("bicycle").speed(v); });
   ASSERT_EQ(sweep.crossings.size(), 2u);
   EXPECT_TRUE(sweep.crossings[0].pair);
   EXPECT_NEAR(sweep.crossings[0].value, 4.29238253634111, 1e-9);
+  EXPECT_EQ(sweep.crossings[0].kind, Bifurcation::hopf);
   EXPECT_FALSE(sweep.crossings[1].pair);
   EXPECT_NEAR(sweep.crossings[1].value, 6.02426201538837, 1e-9);
+  // Hands off on a circle: slower than the capsize speed (Basu-Mandal, Chatterjee, Papadopoulos 2007).
+  EXPECT_EQ(sweep.crossings[1].kind, Bifurcation::pitchfork);
+  ASSERT_TRUE(sweep.crossings[1].other);
+  EXPECT_LT(sweep.crossings[1].other->value, sweep.crossings[1].value);
+  for (const SteadyCrossing& crossing : sweep.crossings) EXPECT_LT(crossing.round_off, 1e-8);
 }
 
 // The wheel's frame turns with it: a symmetry of the body carries it along.
@@ -106,8 +111,9 @@ TEST(Steady, DiskRollsUprightAboveItsThreshold) {
     EXPECT_LT(apart, 1e-10) << spin;
   }
   const SteadySweep sweep = sweep_steady(
-      {1.0, 1.5, 2.0}, [&](double v, int family) { return at_speed(system, v, family); });
+      registry(), {1.0, 1.5, 2.0}, [](double v) { return simulate("falling_disk").speed(v); });
   ASSERT_EQ(sweep.crossings.size(), 1u);
+  EXPECT_EQ(sweep.crossings[0].kind, Bifurcation::none);  // circles are beside it at every speed
   EXPECT_NEAR(sweep.crossings[0].value, r * std::sqrt(a * m * g * r / (c * (c + m * r * r))),
               1e-10);
 }
@@ -115,12 +121,11 @@ TEST(Steady, DiskRollsUprightAboveItsThreshold) {
 TEST(Steady, DiskSpinsUprightAboveItsThreshold) {
   const FallingDisk disk;
   const double m = disk.mass, a = disk.diametral_inertia, r = disk.radius;
-  const auto spinning = [&](double rate, int family) {
+  const auto spinning = [&](double rate) {
     // Upright at pi/2: the vertical is the body's axis e2.
-    return steady_motion(registry(), model("falling_disk"),
-                         disk.rolling(0.5 * std::numbers::pi, {0, rate, 0}), family);
+    return simulate("falling_disk").start(disk.rolling(0.5 * std::numbers::pi, {0, rate, 0}));
   };
-  const SteadySweep sweep = sweep_steady({3.0, 3.5, 4.0, 4.5}, spinning);
+  const SteadySweep sweep = sweep_steady(registry(), {3.0, 3.5, 4.0, 4.5}, spinning);
   ASSERT_EQ(sweep.crossings.size(), 1u);
   EXPECT_NEAR(sweep.crossings[0].value, std::sqrt(m * disk.gravity * r / (a + m * r * r)), 1e-10);
 }
@@ -176,19 +181,16 @@ TEST(Steady, InvertedPendulum) {
     Mechanism m("rod");
     const auto body = m.body("rod", {.mass = 1, .at = {0, 0, 0.5}, .inertia = {0.1, 0.1, 0.01}});
     m.hinge("pivot", "ground", body, {.axis = {0, 1, 0}, .stiffness = stiffness});
-    return m.model();
-  };
-  const auto standing = [&](double stiffness, int family) {
-    return steady_motion(registry(), rod(stiffness), {.configuration = {0}, .velocity = {0}},
-                         family);
+    return simulate(m).start({.configuration = {0}, .velocity = {0}});
   };
   const double mgl = 9.81 * 0.5;
-  const SteadyMotion falls = standing(1, -1);
+  const SteadyMotion falls = steady_motion(registry(), rod(1));
   ASSERT_EQ(falls.eigenvalues.size(), 2u);
   EXPECT_NEAR(falls.eigenvalues[0].real(), std::sqrt((mgl - 1) / (0.1 + 0.25)), 1e-10);
-  const SteadySweep sweep = sweep_steady({1, 4, 7, 10}, standing);
+  const SteadySweep sweep = sweep_steady(registry(), {1, 4, 7, 10}, rod);
   ASSERT_EQ(sweep.crossings.size(), 1u);
   EXPECT_NEAR(sweep.crossings[0].value, mgl, 1e-10);
+  EXPECT_EQ(sweep.crossings[0].kind, Bifurcation::pitchfork);
 }
 
 // A wheel that spins down does nothing but spin: its angle is a symmetry.
@@ -207,11 +209,10 @@ TEST(Steady, ASpinThatDecaysIsNamed) {
 // Backwards the trailers jackknife, each at a rate in proportion to the speed: stability changes at rest, on the grid or
 // off it.
 TEST(Steady, TrailersFoldBackwards) {
-  const SystemModel truck = model("two_trailer_truck");
   for (const std::vector<double>& speeds :
        {std::vector<double>{-6, -3, 0, 3, 6}, std::vector<double>{-6, -7.0 / 3, 4.0 / 3, 5}}) {
-    const SteadySweep sweep =
-        sweep_steady(speeds, [&](double v, int family) { return at_speed(truck, v, family); });
+    const SteadySweep sweep = sweep_steady(
+        registry(), speeds, [](double v) { return simulate("two_trailer_truck").speed(v); });
     ASSERT_EQ(sweep.crossings.size(), 2u);
     for (const auto& crossing : sweep.crossings) EXPECT_NEAR(crossing.value, 0, 1e-10);
   }

@@ -159,9 +159,14 @@ int program(int argc, char** argv) {
   steady_command->add_option(
       "--vary", steadying.vary,
       "name=from:to:count: along a parameter, or speed; where stability changes");
+  steady_command->add_flag("--branches", steadying.branches,
+                           "with --vary: follow the branches that meet it, too");
   steady_command->add_option("--report", steadying.report,
                              "write a self-contained HTML page, with --vary");
-  steady_command->add_flag("--json", steadying.json, "as JSON");
+  steady_command->add_flag("--json", steadying.json,
+                           "as JSON; without --vary with the linearisation: A, B, C");
+  steady_command->add_option("--sample-time", steadying.sample_time,
+                             "with --json: the discrete pair for inputs held so long, in s");
   steady_command->footer(
       "Exit status: 0 done, 1 none found or disk full, 2 bad input.\n"
       "Examples:\n"

@@ -162,6 +162,11 @@ void Page::plot(const std::string& title, const Axes& axes, const std::vector<Se
   if (!axes.slopes.empty()) block["slopes"] = axes.slopes;
   for (const Mark& mark : axes.marks)
     block["marks"].push_back({{"x", number(mark.x, kTimeDigits)}, {"text", mark.text}});
+  for (const Band& band : axes.bands) {
+    block["bands"].push_back({{"from", number(band.from, kTimeDigits)},
+                              {"to", number(band.to, kTimeDigits)},
+                              {"text", band.text}});
+  }
   data_->blocks().push_back(std::move(block));
 }
 void Page::path(const std::string& title, const Axes& axes, const std::vector<Series>& series) {

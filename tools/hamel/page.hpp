@@ -38,6 +38,12 @@ struct Mark {
   std::string text;
 };
 
+/// A part of the x axis, shaded, with this text.
+struct Band {
+  double from = 0, to = 0;
+  std::string text;
+};
+
 /// A selector over a plot: only series whose tag `name` has the chosen value (the first, at the start)
 /// are shown; a series without that tag always is.
 struct Filter {
@@ -52,6 +58,7 @@ struct Axes {
   double floor = 0;  // round-off: a line there, and a fixed axis while the curves stay near it
   std::vector<int> slopes = {};  // triangles of these slopes, on two logarithmic axes
   std::vector<Mark> marks = {};  // events
+  std::vector<Band> bands = {};
 };
 
 class Page {

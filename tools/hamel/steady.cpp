@@ -6,15 +6,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/analysis/steady.hpp>
+#include <hamel/framework/analysis/linearisation.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/systems/by_name.hpp>
 
-#include "page.hpp"
 #include "run_page.hpp"
 #include "screen.hpp"
 #include "steady.hpp"
+#include "steady_page.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -68,16 +68,69 @@ Simulation at(const SteadyOptions& options, const std::string& name, double valu
   return out.config(config);
 }
 
+// To the digits that are known.
 Json eigenvalues_of(const SteadyMotion& motion) {
   Json out = Json::array();
-  for (const auto& x : motion.eigenvalues) out.push_back({x.real(), x.imag()});
+  for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
+    const auto x = motion.eigenvalues[i];
+    out.push_back({round_to_known(x.real(), motion.round_off[i]),
+                   round_to_known(x.imag(), motion.round_off[i])});
+  }
   return out;
 }
 
-std::string modes(const std::vector<ModePart>& parts) {
-  std::string out;
-  for (const ModePart& part : parts) {
-    out += fmt::format("{}{} {:.2f}", out.empty() ? "" : ", ", part.name, part.size);
+Json json_of(const SteadyPlace& place) {
+  return {{"value", place.value}, {"element", place.element}, {"velocity", place.velocity}};
+}
+
+Json json_of(const NumberMatrix& m) {
+  Json out = Json::array();
+  for (int i = 0; i < m.rows; ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < m.columns; ++j) row.push_back(m(i, j));
+    out.push_back(row);
+  }
+  return out;
+}
+
+Json json_of(const Linearisation& linear, const std::optional<double>& sample_time) {
+  Json out = {{"states", linear.states},         {"inputs", linear.inputs},
+              {"quantities", linear.quantities}, {"A", json_of(linear.a)},
+              {"B", json_of(linear.b)},          {"C", json_of(linear.c)},
+              {"values", linear.values},         {"embedding", json_of(linear.embedding)},
+              {"unused_inputs", linear.unused}};
+  if (sample_time) {
+    const DiscretePair pair = linear.sampled(*sample_time);
+    out["discrete"] = {
+        {"sample_time", *sample_time}, {"A", json_of(pair.a)}, {"B", json_of(pair.b)}};
+  }
+  return out;
+}
+
+Json json_of(const SteadySweep& sweep) {
+  Json out = {{"vary", Json::array()}, {"crossings", Json::array()}};
+  for (size_t i = 0; i < sweep.values.size(); ++i) {
+    const SteadyMotion& motion = sweep.motions[i];
+    Json& entry = out["vary"].emplace_back(Json{{"value", sweep.values[i]},
+                                                {"found", motion.found},
+                                                {"eigenvalues", eigenvalues_of(motion)},
+                                                {"round_off", motion.round_off}});
+    if (motion.found)
+      entry["motion"] = {{"element", motion.element}, {"velocity", motion.velocity}};
+  }
+  for (const SteadyCrossing& crossing : sweep.crossings) {
+    out["crossings"].push_back({{"value", round_to_known(crossing.value, crossing.round_off)},
+                                {"round_off", crossing.round_off},
+                                {"kind", crossing.pair ? "pair" : "real"},
+                                {"bifurcation", name_of(crossing.kind)},
+                                {"other", crossing.other ? json_of(*crossing.other) : Json()}});
+  }
+  out["end"] = nullptr;
+  if (const auto& end = sweep.end) {
+    out["end"] = {{"value", round_to_known(end->value, end->round_off)},
+                  {"round_off", end->round_off},
+                  {"bifurcation", name_of(end->kind)},
+                  {"other", end->other ? json_of(*end->other) : Json()}};
   }
   return out;
 }
@@ -92,66 +145,49 @@ void print(const std::string& system, const SteadyMotion& motion) {
   say("  eigenvalues [1/s], and what moves\n");
   for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
     const auto x = motion.eigenvalues[i];
-    if (x.imag() < 0) continue;  // told with its conjugate
-    const std::string imaginary = x.imag() > 0 ? fmt::format("+- {:.12f}i", x.imag()) : "";
-    say("    {:>18.12f} {:<21} {}\n", x.real(), imaginary, modes(motion.modes[i]));
+    const double known = motion.round_off[i];
+    if (x.imag() < -known) continue;  // printed with its conjugate
+    const std::string imaginary =
+        x.imag() > known ? fmt::format("+- {}i", known_text(x.imag(), known)) : "";
+    say("    {:>18} {:<21} {}\n", known_text(x.real(), known), imaginary,
+        modes_text(motion.modes[i]));
   }
 }
 
-void print(const Vary& vary, const SteadySweep& sweep) {
-  say("  {:>12}  growing  largest real part [1/s]\n", vary.name);
+void print(const std::string& name, const SteadySweep& sweep) {
+  say("  {:>12}  growing  largest real part [1/s]\n", name);
   for (size_t i = 0; i < sweep.values.size(); ++i) {
     const SteadyMotion& motion = sweep.motions[i];
     if (!motion.found) {
-      say("  {:>12.6g}  no steady motion found\n", sweep.values[i]);
+      say("  {:>12.6g}  not on this branch\n", sweep.values[i]);
       continue;
     }
-    const double most = motion.eigenvalues.empty() ? 0 : motion.eigenvalues[0].real();
-    say("  {:>12.6g}  {:>7}  {:.9g}\n", sweep.values[i], motion.growing(), most);
+    const bool any = !motion.eigenvalues.empty();
+    say("  {:>12.6g}  {:>7}  {}\n", sweep.values[i], motion.growing(),
+        any ? known_text(motion.eigenvalues[0].real(), motion.round_off[0]) : "0");
   }
-  for (const auto& crossing : sweep.crossings) {
-    say("  stability changes at {} = {:.14g}, {}\n", vary.name, crossing.value,
-        crossing.pair ? "a pair of complex eigenvalues" : "a real eigenvalue");
+  for (const SteadyCrossing& crossing : sweep.crossings) {
+    say("  stability changes at {} = {}\n", name, crossing_text(crossing));
+    if (crossing.other && crossing.kind != Bifurcation::family) print_other(name, *crossing.other);
+  }
+  if (sweep.end) {
+    say("  {}\n", end_text(name, *sweep.end));
+    if (sweep.end->other) print_other(name, *sweep.end->other);
   }
 }
 
-// The unit of what is varied; "" where it has none.
-std::string unit_of(const Vary& vary, const SystemModel& system) {
-  std::string out;
-  Config::fields([&](const Option& option, auto) {
-    if (option.name == vary.name) out = option.unit;
-  });
-  for (const Field& field : system.fields)
-    if (field.name == vary.name) out = field.unit;
-  return out;
-}
-
-// Real and imaginary parts as points: branches meet and part, and nothing says which value goes on in which.
-void add_plots(Page& page, const Vary& vary, const SystemModel& system, const SteadySweep& sweep) {
-  constexpr size_t most = 600;  // values that a figure tells apart
-  Series real{.name = "Real parts of the eigenvalues", .x = {}, .y = {}, .dots = true};
-  real.key = "eigenvalues";
-  Series imaginary = real;
-  imaginary.name = "Imaginary parts of the eigenvalues";
-  const size_t stride = (sweep.values.size() + most - 1) / most;
-  for (size_t i = 0; i < sweep.values.size(); i += stride) {
-    for (const auto& x : sweep.motions[i].eigenvalues) {
-      real.x.push_back(sweep.values[i]);
-      real.y.push_back(x.real());
-      imaginary.x.push_back(sweep.values[i]);
-      imaginary.y.push_back(x.imag());
-    }
-  }
-  std::string note;
-  for (const auto& crossing : sweep.crossings) {
-    note += fmt::format("{}stability changes at {} = {:.10g} ({})", note.empty() ? "" : "; ",
-                        vary.name, crossing.value, crossing.pair ? "complex pair" : "real");
-  }
-  if (stride > 1)
-    note += fmt::format("{}one value in {} is drawn", note.empty() ? "" : "; ", stride);
-  const std::string x = with_unit(vary.name, unit_of(vary, system));
-  page.plot(real.name, {.x = x, .y = "real part [1/s]"}, {real}, note);
-  page.plot(imaginary.name, {.x = x, .y = "imaginary part [rad/s]"}, {imaginary});
+// The system of a line, its parameters and start: what a page can be made again from.
+std::string command_line(const SteadyOptions& options) {
+  std::string out = "hamel steady " + options.config.system;
+  for (const auto& [name, value] : options.config.parameters)
+    out += fmt::format(" --set {}={}", name, join(value));
+  if (options.config.speed) out += fmt::format(" --speed {}", *options.config.speed);
+  const Start& start = options.config.start;
+  if (!start.configuration.empty())
+    out += fmt::format(" --configuration {}", join(start.configuration));
+  if (!start.velocity.empty()) out += fmt::format(" --velocity {}", join(start.velocity));
+  if (!options.vary.empty()) out += " --vary " + options.vary;
+  return out + (options.branches ? " --branches" : "");
 }
 
 }  // namespace
@@ -159,14 +195,20 @@ void add_plots(Page& page, const Vary& vary, const SystemModel& system, const St
 int steady(const SteadyOptions& options) {
   std::optional<Vary> vary;
   if (!options.vary.empty()) vary.emplace(options.vary);
+  if (options.branches && !vary)
+    throw ConfigError({"--branches: branches meet along a parameter; give --vary"});
+  if (options.sample_time && (!options.json || vary))
+    throw ConfigError({"--sample-time: the discrete pair is in --json, without --vary"});
+  if (options.sample_time && !(*options.sample_time > 0 && std::isfinite(*options.sample_time)))
+    throw ConfigError(
+        {fmt::format("--sample-time: got {}, expected a number above 0", *options.sample_time)});
   if (!options.report.empty()) {
     if (!vary)
       throw ConfigError({"--report: the page shows eigenvalues along a parameter; give --vary"});
     if (const auto mistakes = page_mistakes(options.report); !mistakes.empty())
       throw ConfigError(mistakes);
   }
-  const bool by_speed = vary && vary->name == "speed";
-  const Simulation first = at(options, by_speed ? "speed" : "", by_speed ? vary->values[0] : 0);
+  const Simulation first = at(options, vary ? vary->name : "", vary ? vary->values[0] : 0);
   const Run built = first.build();
   const SystemModel& system = built.system();
   if (system.group.dim > kMostDimension)
@@ -177,43 +219,43 @@ int steady(const SteadyOptions& options) {
   const SteadyMotion motion = steady_motion(registry(), first);
   SteadySweep sweep;
   if (vary) {
-    sweep = sweep_steady(vary->values, [&](double value, int family) {
-      return steady_motion(registry(), at(options, vary->name, value), family);
-    });
+    const auto there = [&](double value) { return at(options, vary->name, value); };
+    sweep = sweep_steady(registry(), vary->values, there, options.branches);
   }
+  const bool any = std::any_of(sweep.motions.begin(), sweep.motions.end(),
+                               [](const SteadyMotion& one) { return one.found; });
   if (options.json) {
     Json out = {{"system", options.config.system},
                 {"parameters", Json::object()},
                 {"motion", {{"element", motion.element}, {"velocity", motion.velocity}}},
                 {"residual", motion.residual},
                 {"eigenvalues", eigenvalues_of(motion)},
+                {"round_off", motion.round_off},
                 {"neutral", motion.neutral}};
     for (const Field& field : system.fields) out["parameters"][field.name] = field.value;
+    if (motion.found && !vary)
+      out["linearisation"] = json_of(linearisation(registry(), first), options.sample_time);
     if (vary) {
-      out["vary"] = out["crossings"] = Json::array();
-      for (size_t i = 0; i < sweep.values.size(); ++i) {
-        out["vary"].push_back(
-            {{"value", sweep.values[i]}, {"eigenvalues", eigenvalues_of(sweep.motions[i])}});
-      }
-      for (const auto& crossing : sweep.crossings) {
-        out["crossings"].push_back(
-            {{"value", crossing.value}, {"kind", crossing.pair ? "pair" : "real"}});
+      out.update(json_of(sweep));
+      if (options.branches) out["branches"] = Json::array();
+      for (const SteadySweep& branch : sweep.branches) {
+        Json& entry = out["branches"].emplace_back(json_of(branch));
+        entry["start"] = json_of(*branch.start);
       }
     }
     say_json(out);
-  } else if (!motion.found && !vary) {
-    say("{}: no steady motion was found near this start\n", system.name);
   } else {
     if (motion.found) print(system.name, motion);
-    if (vary) print(*vary, sweep);
+    else if (!vary) say("{}: no steady motion was found near this start\n", system.name);
+    if (vary) print(vary->name, sweep);
+    for (size_t i = 0; i < sweep.branches.size(); ++i) {
+      say("  branch {}, from {} = {:.6g} on\n", i + 2, vary->name, sweep.branches[i].start->value);
+      print(vary->name, sweep.branches[i]);
+    }
   }
-  if (!options.report.empty()) {
-    Page page(fmt::format("{}: steady motions", system.name), "eigenvalues along " + vary->name);
-    page.section("Stability");
-    add_plots(page, *vary, system, sweep);
-    page.write(options.report);
-  }
-  if (motion.found) return 0;
+  if (!options.report.empty())
+    steady_page(vary->name, system, sweep, command_line(options)).write(options.report);
+  if (motion.found || any) return 0;
   complain("hamel: no steady motion near this start: a residual of {:.2e} is left\n",
            motion.residual);
   return 1;

@@ -1,6 +1,7 @@
 // hamel steady; main.cpp reads the command line into its options.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <hamel/framework/run/names/config.hpp>
@@ -8,10 +9,12 @@
 namespace hamel::tools {
 
 struct SteadyOptions {
-  Config config;       // system, parameters, start
-  std::string vary;    // name=from:to:count
-  std::string report;  // --report
+  Config config;          // system, parameters, start
+  std::string vary;       // name=from:to:count
+  bool branches = false;  // follow those that meet it, too
+  std::string report;     // --report
   bool json = false;
+  std::optional<double> sample_time;  // of the discrete pair, in s
 };
 int steady(const SteadyOptions& options);
 

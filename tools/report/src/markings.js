@@ -1,4 +1,4 @@
-// What a plot shows beside its curves: the floor of round-off, moments, slopes.
+// What a plot shows beside its curves: the floor of round-off, moments, bands, slopes.
 
 import { TEXT } from './chart.js';
 import { extent } from './series.js';
@@ -22,8 +22,11 @@ export function markings(block, shown, data) {
       range = [Math.floor(low), Math.ceil(floor + OVER)];
     }
   }
+  const bands = (block.bands ?? []).map(({ from, to, text }) => [{ xAxis: from, name: text }, { xAxis: to }]);
+  const areas = bands.length ? [{ id: 'bands', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markArea: { silent: true, data: bands,
+    itemStyle: { color: 'var(--grid)', opacity: 0.6 }, label: { ...TEXT, fontSize: 11, position: 'insideTop' } } }] : [];
   const series = lines.length ? [{ id: 'marks', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markLine: { silent: true, symbol: 'none', data: lines } }] : [];
-  return { series: [...series, ...triangles(block.slopes, shown, data)], range };
+  return { series: [...areas, ...series, ...triangles(block.slopes, shown, data)], range };
 }
 
 /** A triangle of each slope, under the curves, over the middle third of the x axis. */

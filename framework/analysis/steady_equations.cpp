@@ -1,0 +1,186 @@
+#include <hamel/framework/analysis/steady_equations.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/run/names/registry.hpp>
+
+namespace hamel::reduced {
+namespace {
+
+Vector to_vector(const std::vector<double>& v) {
+  return Eigen::Map<const Vector>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+std::shared_ptr<const Geometry> geometry_of(const Registry& registry, const SystemModel& model) {
+  if (!model.mechanics->autonomous())
+    throw ConfigError({fmt::format("{}: depends on time: it has no steady motion", model.name)});
+  auto geometry = registry.geometry(model.group.name, "exp");
+  if (geometry == nullptr)
+    throw ConfigError(
+        {fmt::format("{}: group '{}' has no retraction exp", model.name, model.group.name)});
+  return geometry;
+}
+
+}  // namespace
+
+Vector least_norm(const Matrix& a, const Vector& b, double least) {
+  if (a.cols() == 0) return Vector(0);
+  const double most = a.colwise().norm().maxCoeff();
+  return dense::least_norm(a, b, most < 1 ? std::min(0.5, least / std::max(1e-300, most)) : least);
+}
+
+SteadyEquations::SteadyEquations(const Registry& registry, const SystemModel& model,
+                                 const Start& guess)
+    : geometry_(geometry_of(registry, model)),
+      flow_(geometry_, model.mechanics),
+      guess_g_(geometry_->size()),
+      guess_xi_(to_vector(guess.velocity)) {
+  geometry_->from_coordinates(
+      guess.configuration.empty() ? model.group.identity : guess.configuration, guess_g_.data());
+  along_ = flow_.momentum(guess_g_, guess_xi_).normalized();
+  for (const Component& component : components_of(model)) names_.push_back(component.name);
+}
+
+const Matrix& SteadyEquations::symmetries() const {
+  if (!has_symmetries_) symmetries_ = flow_.symmetries(guess_g_);
+  has_symmetries_ = true;
+  return symmetries_;
+}
+
+Matrix SteadyEquations::orbit(const SteadyPoint& at) const {
+  return range_of(flow_.orbit(symmetries(), at.g, at.xi), 1e-9, 1);
+}
+
+Vector SteadyEquations::field(const Vector& g, const Vector& xi) const {
+  Vector z(2 * dim());
+  z << xi, flow_.acceleration(g, xi);
+  return z;
+}
+
+SteadyPoint SteadyEquations::at(Vector g, Vector xi) const {
+  const Vector z = field(g, xi);
+  SteadyPoint out{.g = std::move(g), .xi = std::move(xi), .generator = {}};
+  out.generator = symmetries() * least_norm(flow_.orbit(symmetries(), out.g, out.xi), z);
+  out.residual = equations(out.generator, out.g, out.xi).norm() / (1 + z.norm());
+  return out;
+}
+
+Vector SteadyEquations::equations(const Vector& generator, const Vector& g,
+                                  const Vector& xi) const {
+  Vector out(2 * dim() + flow_.held() + flow_.rows());
+  out << field(g, xi) - flow_.orbit(generator, g, xi), flow_.holonomic(g), flow_.slip(g, xi);
+  return out;
+}
+
+Vector SteadyEquations::values(const SteadyPoint& at, bool held) const {
+  Vector out = equations(at.generator, at.g, at.xi);
+  if (!held) return out;
+  out.conservativeResize(out.size() + 1);
+  out[out.size() - 1] = along_.dot(at.xi - guess_xi_);
+  return out;
+}
+
+Matrix SteadyEquations::derivative(const SteadyPoint& at, double unit) const {
+  const int n = dim();
+  Matrix out = Matrix::Zero(2 * n + flow_.held() + flow_.rows(), 2 * n);
+  for (int j = 0; j < 2 * n; ++j) {
+    const Vector along = Vector::Unit(n, j % n);
+    const bool velocity = j >= n;
+    // Accelerations are quadratic in xi, so that the step may grow with it.
+    const double step = velocity ? unit * std::max(1.0, at.xi.norm()) : unit;
+    differentiate(step, [&](double e, double weight) {
+      out.col(j) +=
+          weight * (velocity ? equations(at.generator, at.g, at.xi + e * along)
+                             : equations(at.generator, flow_.moved(at.g, e * along), at.xi));
+    });
+  }
+  return out;
+}
+
+Matrix SteadyEquations::slope(const SteadyPoint& at, bool held) const {
+  const Matrix of_state = derivative(at, kStep);
+  const Matrix orbit = this->orbit(at);
+  Matrix out = Matrix::Zero(of_state.rows() + (held ? 1 : 0), of_state.cols() + orbit.cols());
+  out.topLeftCorner(of_state.rows(), of_state.cols()) = of_state;
+  out.topRightCorner(orbit.rows(), orbit.cols()) = -orbit;
+  if (held) {
+    out.block(of_state.rows(), dim(), 1, dim()) = along_.transpose();
+  }
+  return out;
+}
+
+Vector SteadyEquations::find(SteadyPoint& at, bool held, int steps) const {
+  const int n = dim();
+  Vector moved = Vector::Zero(2 * n);
+  double reach = 1;
+  for (int k = 0; k < steps && at.residual > 1e-14 && reach > 1e-3; ++k) {
+    Vector step = -least_norm(slope(at, held), values(at, held)).head(2 * n);
+    const double most = 0.5 * (1 + at.xi.norm());
+    step *= reach * std::min(1.0, most / std::max(1e-300, step.norm()));
+    const SteadyPoint next = this->at(flow_.moved(at.g, step.head(n)), at.xi + step.tail(n));
+    if (next.residual < at.residual) {
+      at = next;
+      moved += step;
+      reach = std::min(1.0, 2 * reach);
+    } else {
+      reach = at.residual < kGood ? 0 : reach / 2;
+    }
+  }
+  return moved;
+}
+
+SteadyPoint SteadyEquations::find_near_guess(bool& held) const {
+  SteadyPoint out = guess();
+  held = true;
+  find(out, true);
+  if (out.residual < kGood) {
+    // Held is what can be chosen: of isolated steady motions nothing is.
+    const Singular all = singular(out, false);
+    const Matrix beside = this->beside(out, all, (all.values.array() < kNull * all.size).count());
+    held = (along_.transpose() * beside.bottomRows(dim())).norm() > 1e-6;
+    return out;
+  }
+  SteadyPoint other = guess();
+  find(other, false);
+  if (!(other.residual < out.residual)) return out;
+  held = false;
+  return other;
+}
+
+SteadyEquations::Singular SteadyEquations::singular(const SteadyPoint& at, bool held) const {
+  const Matrix whole = slope(at, held);
+  const dense::Svd svd = dense::svd(whole, Eigen::ComputeFullV);
+  Singular out{.values = Vector::Zero(whole.cols()), .right = svd.v.topRows(2 * dim())};
+  const Vector& values = svd.values;
+  out.values.tail(values.size()) = values.reverse();
+  out.right = out.right.rowwise().reverse().eval();
+  out.size = values.size() > 0 ? values[0] : 0;
+  return out;
+}
+
+Matrix SteadyEquations::beside(const SteadyPoint& at, const Singular& singular,
+                               Eigen::Index count) const {
+  const Matrix orbit = this->orbit(at);
+  const Matrix null = singular.right.leftCols(count);
+  return range_of(null - orbit * (orbit.transpose() * null), 1e-6, 1);
+}
+
+ReducedLinearisation SteadyEquations::linearise(const SteadyPoint& at) const {
+  const int n = dim();
+  ReducedLinearisation out;
+  out.orbit = orbit(at);
+  const Matrix whole = derivative(at, kStep);  // of W, phi, A xi - b
+  Matrix bounds(flow_.held() + flow_.rows() + out.orbit.cols(), 2 * n);
+  bounds << whole.bottomRows(flow_.held() + flow_.rows()), out.orbit.transpose();
+  out.basis = kernel_of(bounds, 1e-11);
+  out.flow = out.basis.transpose() * whole.topRows(2 * n) * out.basis;
+  for (const double unit : {0.8 * kStep, 1.25 * kStep})
+    out.again.push_back(out.basis.transpose() * derivative(at, unit).topRows(2 * n) * out.basis);
+  return out;
+}
+
+}  // namespace hamel::reduced

@@ -1,0 +1,92 @@
+// The equations of steady motions of one system, and Newton's method on them. For steady*.cpp, not installed.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/analysis/reduced_flow.hpp>
+#include <hamel/framework/analysis/steady.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
+
+namespace hamel::reduced {
+
+/// Residual of a steady motion.
+constexpr double kGood = 1e-9;
+/// Of the largest singular value: those of directions along which steady motions lie.
+constexpr double kNull = 1e-11;
+
+/// The point (g, xi), and the generator (zeta, eta) of the symmetry that carries it.
+struct SteadyPoint {
+  Vector g, xi, generator;
+  double residual = 0;
+};
+
+/// The linearisation about a steady motion, without the symmetries: z = (delta, nu) = basis y, y' = flow y.
+struct ReducedLinearisation {
+  Matrix basis, flow;  // orthonormal columns
+  Matrix orbit;        // the directions divided out
+  std::vector<Matrix>
+      again;  // flow by differences of other sizes: it is known as well as these agree
+};
+
+/// Least-norm solution of a x = b: what is `least` of the largest column, or of 1, is zero.
+Vector least_norm(const Matrix& a, const Vector& b, double least = 1e-10);
+
+class SteadyEquations {
+ public:
+  /// Throws ConfigError when the system depends on time.
+  SteadyEquations(const Registry& registry, const SystemModel& model, const Start& guess);
+
+  int dim() const { return flow_.dim(); }
+  const Flow& flow() const { return flow_; }
+  const Geometry& geometry() const { return *geometry_; }
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// The direction in which momentum may be held: that of the guess, or another.
+  const Vector& along() const { return along_; }
+  double guess_momentum() const { return flow_.momentum(guess_g_, guess_xi_).norm(); }
+  void hold_along(Vector along) { along_ = std::move(along); }
+
+  /// The directions (delta, nu) of the symmetries there: orthonormal columns.
+  Matrix orbit(const SteadyPoint& at) const;
+  /// With the best generator there.
+  SteadyPoint at(Vector g, Vector xi) const;
+  SteadyPoint guess() const { return at(guess_g_, guess_xi_); }
+  /// F = (W, phi, A xi - b); and, held, the momentum along the guess less that of the guess.
+  Vector values(const SteadyPoint& at, bool held) const;
+  /// dF by (delta, nu), and by the carrier: 2n columns, and one for each direction of the orbit.
+  Matrix slope(const SteadyPoint& at, bool held) const;
+  /// Newton's method with least-norm steps, halved where the residual does not fall. Returns the sum of the steps (delta, nu).
+  Vector find(SteadyPoint& at, bool held, int steps = 60) const;
+  /// Near the guess, with its momentum where that can be held; sets held.
+  SteadyPoint find_near_guess(bool& held) const;
+  /// The singular values of slope(), least first, and the right singular vectors, as columns (delta, nu).
+  struct Singular {
+    Vector values;
+    Matrix right;
+    double size = 0;  // the largest value
+  };
+  Singular singular(const SteadyPoint& at, bool held) const;
+  /// The first of these vectors without their part along the symmetries: orthonormal columns (delta, nu).
+  Matrix beside(const SteadyPoint& at, const Singular& singular, Eigen::Index count) const;
+
+  ReducedLinearisation linearise(const SteadyPoint& at) const;
+  /// family: how many zeros of the family there are; -1: those that are zero to 1e-7 or their round-off.
+  SteadyMotion motion(const SteadyPoint& at, int family) const;
+
+ private:
+  const Matrix& symmetries() const;
+  Vector field(const Vector& g, const Vector& xi) const;
+  Vector equations(const Vector& generator, const Vector& g, const Vector& xi) const;
+  Matrix derivative(const SteadyPoint& at, double step) const;
+
+  std::shared_ptr<const Geometry> geometry_;
+  Flow flow_;
+  Vector guess_g_, guess_xi_, along_;
+  std::vector<std::string> names_;
+  mutable Matrix symmetries_;  // once they are asked for
+  mutable bool has_symmetries_ = false;
+};
+
+}  // namespace hamel::reduced

@@ -1,0 +1,217 @@
+// hamel steady --vary: branches are followed, crossings are what they are, and only digits that are known are printed.
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+namespace {
+
+using namespace hamel::test;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+class Steady : public CommandLine {
+ protected:
+  json sweep(const std::string& file, const std::string& vary, bool branches = false) {
+    std::vector<std::string> line = {"steady", file, "--vary", vary, "--json"};
+    if (branches) line.push_back("--branches");
+    const Outcome o = run(line);
+    EXPECT_EQ(o.status, 0) << o.err;
+    return json::parse(o.out);
+  }
+  std::string particle(const std::string& text) {
+    return write("particle.toml", text + "[parameters]\np = 1\n");
+  }
+};
+
+// A bob on a hinge on a shaft that turns at a prescribed rate: 1 m, 9.81 m/s^2.
+std::string hoop(double angle) {
+  return R"toml([parameters]
+rate = { value = 4, unit = "rad/s" }
+[[body]]
+name = "shaft"
+mass = 1
+at = [0, 0, 0]
+inertia = [0.1, 0.1, 0.1]
+[[body]]
+name = "bob"
+mass = 1
+at = [0, 0, -1]
+inertia = [0, 0, 0]
+[[joint]]
+name = "shaft"
+kind = "hinge"
+child = "shaft"
+axis = [0, 0, 1]
+[[joint]]
+name = "arm"
+kind = "hinge"
+parent = "shaft"
+child = "bob"
+axis = [0, 1, 0]
+[[prescribed]]
+joint = "shaft"
+rate = "rate"
+[start]
+arm.angle = )toml" +
+         std::to_string(angle) + "\n";
+}
+
+/// Hanging, stable up to sqrt(g/l), where the tilted motions begin, cos = g/(l rate^2); no other change, whatever the guess
+/// and whichever way.
+TEST_F(Steady, BobOnATurningShaft) {
+  const double critical = std::sqrt(9.81);
+  for (const char* vary : {"rate=2:6:9", "rate=6:2:9", "rate=2.9:5.3:4"}) {
+    for (const double angle : {0.0, 0.5}) {
+      const json s = sweep(write("hoop.toml", hoop(angle)), vary, true);
+      ASSERT_EQ(s["crossings"].size(), 1u) << vary;
+      const json& crossing = s["crossings"][0];
+      EXPECT_NEAR(crossing["value"], critical, 1e-10);
+      EXPECT_LT(crossing["round_off"], 1e-9);
+      EXPECT_EQ(crossing["bifurcation"], "pitchfork");
+      EXPECT_EQ(crossing["kind"], "real");
+      const double rate = crossing["other"]["value"], tilt = crossing["other"]["element"][1];
+      EXPECT_GT(rate, critical);
+      EXPECT_NEAR(std::cos(tilt), 9.81 / (rate * rate), 1e-9);
+      // The other branch, stable, up to the last value; it ends where it began.
+      ASSERT_EQ(s["branches"].size(), 1u);
+      EXPECT_TRUE(s["branches"][0]["crossings"].empty());
+      for (const json& at : s["branches"][0]["vary"]) {
+        const double there = at["value"];
+        EXPECT_EQ(at["found"], there > critical) << there;
+        if (there > critical) {
+          const double angle_there = at["motion"]["element"][1];
+          EXPECT_NEAR(std::cos(angle_there), 9.81 / (there * there), 1e-9);
+        }
+      }
+      EXPECT_EQ(s["branches"][0]["end"]["bifurcation"], "pitchfork");
+      EXPECT_NEAR(s["branches"][0]["end"]["value"], critical, 1e-5);
+    }
+  }
+}
+
+/// From the tilted motion, towards slower rates: the branch ends, and says where and on what.
+TEST_F(Steady, ATiltedBranchEndsAtThePitchfork) {
+  const std::string file = write("hoop.toml", hoop(1.1));
+  const Outcome o = run({"steady", file, "--vary", "rate=5:2:7"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("not on this branch"));
+  EXPECT_THAT(o.out, HasSubstr("the branch ends at rate = 3.13"));
+  EXPECT_THAT(o.out, HasSubstr("pitchfork"));
+  EXPECT_THAT(o.out, Not(HasSubstr("stability changes")));
+}
+
+// V = x^3/3 - p x: x = sqrt(p), which turns back at 0 into -sqrt(p).
+TEST_F(Steady, Fold) {
+  const std::string file = particle(
+      "group = \"r1\"\ninertia = [1]\npotential = \"x1^3/3 - p*x1\"\nconfiguration = [1]\n"
+      "velocity = [0]\n");
+  const json s = sweep(file, "p=1:-1:9", true);
+  EXPECT_EQ(s["end"]["bifurcation"], "fold");
+  EXPECT_NEAR(s["end"]["value"], 0, 1e-8);
+  EXPECT_LT(s["end"]["other"]["element"][0], 0);
+  ASSERT_EQ(s["branches"].size(), 1u);
+  EXPECT_EQ(s["branches"][0]["vary"][0]["found"], true);
+  EXPECT_NEAR(s["branches"][0]["vary"][0]["motion"]["element"][0], -1, 1e-10);
+  EXPECT_NEAR(s["branches"][0]["vary"][0]["eigenvalues"][0][0], std::sqrt(2), 1e-9);
+}
+
+// V = x^3/3 - p x^2/2: x = 0 and x = p cross at 0.
+TEST_F(Steady, Transcritical) {
+  const std::string file = particle(
+      "group = \"r1\"\ninertia = [1]\npotential = \"x1^3/3 - p*x1^2/2\"\nconfiguration = [0]\n"
+      "velocity = [0]\n");
+  const json s = sweep(file, "p=-1:1:6", true);
+  ASSERT_EQ(s["crossings"].size(), 1u);
+  EXPECT_EQ(s["crossings"][0]["bifurcation"], "transcritical");
+  EXPECT_NEAR(s["crossings"][0]["value"], 0, 1e-10);
+  ASSERT_EQ(s["branches"].size(), 1u);
+  for (const json& at : s["branches"][0]["vary"]) {
+    ASSERT_EQ(at["found"], true);
+    EXPECT_NEAR(at["motion"]["element"][0], at["value"], 1e-10);
+  }
+}
+
+// x'' = -x + p x' - x'^3: rest loses its stability to an oscillation at p = 0.
+TEST_F(Steady, Hopf) {
+  const std::string file = particle(
+      "group = \"r1\"\ninertia = [1]\npotential = \"0.5*x1^2\"\nforce = [\"p*x1' - x1'^3\"]\n"
+      "configuration = [0]\nvelocity = [0]\n");
+  const json s = sweep(file, "p=-1:1:4");
+  ASSERT_EQ(s["crossings"].size(), 1u);
+  EXPECT_EQ(s["crossings"][0]["bifurcation"], "hopf");
+  EXPECT_EQ(s["crossings"][0]["kind"], "pair");
+  EXPECT_NEAR(s["crossings"][0]["value"], 0, 1e-10);
+  EXPECT_TRUE(s["crossings"][0]["other"].is_null());
+}
+
+// x'' = p x + 0.6 y', y'' = p y - 0.6 x': a hill that a turning frame makes stable up to p = 0.3^2.
+TEST_F(Steady, HamiltonianHopf) {
+  const std::string file = particle(
+      "group = \"r2\"\ninertia = [1, 1]\npotential = \"-0.5*p*(x1^2 + x2^2)\"\n"
+      "force = [\"0.6*x2'\", \"-0.6*x1'\"]\nconfiguration = [0, 0]\nvelocity = [0, 0]\n");
+  const json s = sweep(file, "p=0.02:0.2:5");
+  ASSERT_EQ(s["crossings"].size(), 1u);
+  EXPECT_EQ(s["crossings"][0]["bifurcation"], "hamiltonian_hopf");
+  EXPECT_NEAR(s["crossings"][0]["value"], 0.09, 1e-11);
+  EXPECT_LT(s["crossings"][0]["round_off"], 1e-10);
+  const Outcome o = run({"steady", file, "--vary", "p=0.02:0.2:5"});
+  EXPECT_THAT(o.out, HasSubstr("stability changes at p = 0.0900000000"));
+}
+
+/// A fourfold -1 and a fourfold 0 in one block of four: the digits that are printed are right, and none that is wrong is.
+TEST_F(Steady, DigitsThatAreKnown) {
+  const std::string critical = particle(
+      "group = \"r2\"\ninertia = [1, 1]\n"
+      "force = [\"-2*x1' - x1 + x2\", \"-2*x2' - x2\"]\nconfiguration = [0, 0]\n"
+      "velocity = [0, 0]\n");
+  const json s = json::parse(run({"steady", critical, "--json"}).out);
+  ASSERT_EQ(s["eigenvalues"].size(), 4u);
+  for (size_t i = 0; i < 4; ++i) {
+    EXPECT_GT(s["round_off"][i], 1e-6);
+    EXPECT_NEAR(s["eigenvalues"][i][0], -1, s["round_off"][i]);
+    EXPECT_NEAR(s["eigenvalues"][i][1], 0, s["round_off"][i]);
+  }
+  EXPECT_THAT(run({"steady", critical}).out, Not(HasSubstr("0.99999")));
+  const std::string drifting = particle(
+      "group = \"r2\"\ninertia = [1, 1]\n"
+      "force = [\"p*x2 - 1e-3*x1^3\", \"-x2^3\"]\nconfiguration = [0, 0]\nvelocity = [0, 0]\n");
+  const json zero = json::parse(run({"steady", drifting, "--json"}).out);
+  EXPECT_TRUE(zero["eigenvalues"].empty()) << zero["eigenvalues"];
+  EXPECT_EQ(zero["neutral"], 4);
+}
+
+/// A, B, C by names, and the pair for a sample time; for small h it is 1 + A h and B h.
+TEST_F(Steady, LinearisationForControl) {
+  const json s = answer({"steady", "segway", "--speed", "1", "--sample-time", "1e-6"});
+  const json& linear = s["linearisation"];
+  const size_t n = linear["states"].size();
+  EXPECT_THAT(linear["states"].get<std::vector<std::string>>(), testing::Contains("pitch"));
+  EXPECT_EQ(linear["inputs"], json({"right_torque", "left_torque"}));
+  ASSERT_EQ(linear["A"].size(), n);
+  ASSERT_EQ(linear["B"].size(), n);
+  EXPECT_EQ(linear["C"].size(), linear["quantities"].size());
+  const json& pair = linear["discrete"];
+  EXPECT_EQ(pair["sample_time"], 1e-6);
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = 0; j < n; ++j) {
+      const double a = linear["A"][i][j], sampled = pair["A"][i][j];
+      EXPECT_NEAR(sampled, (i == j ? 1 : 0) + 1e-6 * a, 1e-9);
+    }
+    for (size_t j = 0; j < 2; ++j) {
+      const double b = linear["B"][i][j], sampled = pair["B"][i][j];
+      EXPECT_NEAR(sampled, 1e-6 * b, 1e-9);
+    }
+  }
+  EXPECT_THAT(run({"steady", "segway", "--sample-time", "-1", "--json"}).err,
+              HasSubstr("--sample-time"));
+}
+
+TEST_F(Steady, BranchesNeedAParameter) {
+  EXPECT_THAT(run({"steady", "bicycle", "--speed", "5", "--branches"}).err,
+              HasSubstr("give --vary"));
+}
+
+}  // namespace

@@ -1,0 +1,29 @@
+// The page of steady motions along a parameter, and their texts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <hamel/framework/analysis/steady.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
+
+#include "page.hpp"
+
+namespace hamel::tools {
+
+/// A number with the decimals that are known of it.
+std::string known_text(double x, double round_off);
+/// "steer.rate 1.00, w1 0.31".
+std::string modes_text(const std::vector<ModePart>& parts);
+/// "4.29238253634, a pair of complex eigenvalues crosses the imaginary axis (Hopf)".
+std::string crossing_text(const SteadyCrossing& crossing);
+std::string end_text(const std::string& name, const SteadyEnd& end);
+
+/// Prints where the branch begins that meets this one.
+void print_other(const std::string& name, const SteadyPlace& place);
+
+/// Eigenvalues along the parameter `name`; command: the line that it is from.
+Page steady_page(const std::string& name, const SystemModel& system, const SteadySweep& sweep,
+                 const std::string& command);
+
+}  // namespace hamel::tools
