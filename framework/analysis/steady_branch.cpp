@@ -164,6 +164,32 @@ std::optional<BranchNode> Branch::beside(const BranchNode& from, const Vector& v
   }
 }
 
+// Where q' = 0 between a node and the one `length` further on its tangent, by the Illinois method.
+BranchNode Branch::level(const BranchNode& here, double length, double behind) {
+  const Eigen::Index z = here.tangent.size() - 1;
+  double a = 0, b = length, fa = here.tangent[z], fb = behind;
+  BranchNode at = here;
+  for (int i = 0, side = 0; i < 16 && std::abs(b - a) > 1e-9 * length; ++i) {
+    const double x = (fb * a - fa * b) / (fb - fa);
+    if (!(std::abs(x) > 0)) break;
+    const auto middle = beside(here, x * here.tangent);
+    if (!middle) break;
+    at = *middle;
+    const double f = at.tangent[z];
+    if (std::abs(f) < 1e-10) break;
+    if ((f > 0) == (fb > 0)) {
+      b = x, fb = f;
+      if (side == 1) fa /= 2;
+      side = 1;
+    } else {
+      a = x, fa = f;
+      if (side == -1) fb /= 2;
+      side = -1;
+    }
+  }
+  return at;
+}
+
 std::optional<Branch::Turn> Branch::turn(const BranchNode& from, double value) {
   const Eigen::Index z = from.tangent.size() - 1;
   const double ahead = value > from.value ? 1 : -1;
@@ -182,27 +208,7 @@ std::optional<Branch::Turn> Branch::turn(const BranchNode& from, double value) {
       length = std::min(0.05, 1.5 * length);
       continue;
     }
-    // q' = 0 in between, by the Illinois method.
-    double a = 0, b = length, fa = here.tangent[z], fb = next->tangent[z];
-    BranchNode at = here;
-    for (int i = 0, side = 0; i < 16 && std::abs(b - a) > 1e-9 * length; ++i) {
-      const double x = (fb * a - fa * b) / (fb - fa);
-      if (!(std::abs(x) > 0)) break;
-      const auto middle = beside(here, x * here.tangent);
-      if (!middle) break;
-      at = *middle;
-      const double f = at.tangent[z];
-      if (std::abs(f) < 1e-10) break;
-      if ((f > 0) == (fb > 0)) {
-        b = x, fb = f;
-        if (side == 1) fa /= 2;
-        side = 1;
-      } else {
-        a = x, fa = f;
-        if (side == -1) fb /= 2;
-        side = -1;
-      }
-    }
+    const BranchNode at = level(here, length, next->tangent[z]);
     // q = q0 - c s^2: the error of s counts as its square.
     const double error = std::max(1e-12, std::pow(at.tangent[z], 2)) * scale_;
     return Turn{.at = at, .behind = *next, .round_off = error * (1 + std::abs(at.value) / scale_)};

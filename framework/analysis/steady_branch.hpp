@@ -5,6 +5,7 @@
 // F_z z' + F_q q' = 0 (least norm, the symmetries divided out); F_q by differences of systems beside the value. At a given
 // value Newton's method starts from z + z' dq. The step is halved until the trapezium rule holds on it: what Newton's method
 // corrects is dq/2 times the change of the tangent, up to a quarter. A correction onto another branch has none of that.
+// Along a family of steady motions, where Newton's method has its choice, only the size of the correction is held.
 // At a fold q' = 0; past it the branch is followed by its length: Newton's method across the tangent.
 #pragma once
 
@@ -53,6 +54,7 @@ class Branch {
 
  private:
   std::optional<BranchNode> step_to(const BranchNode& from, double value);
+  BranchNode level(const BranchNode& here, double length, double behind);
 
   const Registry& registry_;
   System at_;

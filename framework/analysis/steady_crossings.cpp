@@ -98,6 +98,17 @@ double Crossings::measure(const SteadyMotion& motion) const {
   return axis.size() < 2 ? -std::numeric_limits<double>::infinity() : -(axis[0] * axis[1]).real();
 }
 
+// Of measure(): what is known of the eigenvalues that cross.
+double Crossings::error_at(const SteadyMotion& motion) const {
+  double known = 1e-15;
+  for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
+    const double round_off = motion.round_off[i];
+    if (std::abs(motion.eigenvalues[i].real()) > 10 * round_off) continue;
+    known = std::max(known, mirrored_ ? round_off * round_off : round_off);
+  }
+  return known;
+}
+
 void Crossings::locate(const BranchMotion& a, const BranchMotion& b) {
   BranchMotion low = a, high = b;
   double x0 = a.node.value, x1 = b.node.value, f0 = measure(a.motion), f1 = measure(b.motion);
@@ -126,19 +137,12 @@ void Crossings::locate(const BranchMotion& a, const BranchMotion& b) {
   }
   const BranchMotion& at =
       std::abs(measure(low.motion)) < std::abs(measure(high.motion)) ? low : high;
-  if (!mirrored_) {  // a pair that is one no longer where it crosses
-    const double imaginary = std::abs(at.motion.eigenvalues[index_].imag());
-    pair_ = pair_ && imaginary > at.motion.round_off[index_];
-  }
+  const double imaginary = std::abs(at.motion.eigenvalues[index_].imag());
+  pair_ = pair_ && (mirrored_ || imaginary > at.motion.round_off[index_]);  // else one no longer
   SteadyCrossing out{.value = at.node.value, .pair = pair_, .other = {}};
-  double known = 1e-15;
-  for (size_t i = 0; i < at.motion.eigenvalues.size(); ++i) {
-    const double round_off = at.motion.round_off[i];
-    if (std::abs(at.motion.eigenvalues[i].real()) > 10 * round_off) continue;
-    known = std::max(known, mirrored_ ? round_off * round_off : round_off);
-  }
-  out.round_off = std::max({1e-14 * scale, std::min(scale, (known + std::abs(measure(at.motion))) /
-                                                               std::max(1e-300, std::abs(slope)))});
+  const double error = error_at(at.motion) + std::abs(measure(at.motion));
+  out.round_off =
+      std::max(1e-14 * scale, std::min(scale, error / std::max(1e-300, std::abs(slope))));
   classify(out, at);
   out_.push_back(out);
 }

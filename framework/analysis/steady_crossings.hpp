@@ -30,6 +30,7 @@ class Crossings {
   void look(const BranchMotion& a, const BranchMotion& b);
   std::optional<BranchMotion> on_branch(double value);
   double measure(const SteadyMotion& motion) const;
+  double error_at(const SteadyMotion& motion) const;
   void locate(const BranchMotion& a, const BranchMotion& b);
   void classify(SteadyCrossing& crossing, const BranchMotion& at);
 
