@@ -1,12 +1,16 @@
-// The Cayley map (I - xi^/2)^-1 (I + xi^/2) in the defining matrices of SO(3), SE(2), SE(3), and of SO(2) as
-// cayley_literal; addition on the commutative groups SO(2) and R^n. (M33) of framework/schemes/README.md.
+// The Cayley map (I - xi^/2)^-1 (I + xi^/2) in the defining matrices of SO(3), SE(2), SE(3), and of
+// SO(2) as cayley_literal; addition on the commutative groups SO(2) and R^n. (M33) of
+// framework/schemes/README.md.
 //
-// The map is rational. (dR^-1 eta)^ = (I - xi^/2) eta^ (I + xi^/2) is a polynomial, W = omega^, V = v^:
+// The map is rational. (dR^-1 eta)^ = (I - xi^/2) eta^ (I + xi^/2) is a polynomial, W = omega^, V =
+// v^:
 //   SO(2)    dR^-1 = 1 + omega^2/4
-//   SO(3)    dR^-1 = I - W/2 + omega omega^T/4                          dR = (I + W/2)/(1 + |omega|^2/4)
-//   SE(2)    dR^-1 = I - ad/2 + omega xi e_omega^T/4                    dR = (I + ad/2)/(1 + omega^2/4)
-//   SE(3)    dR^-1 = I - ad/2 + [[omega omega^T, 0], [W V, 0]]/4        dR = [[P, 0], [V P/2, Q]],
-//                                                                       P = dR of SO(3), Q = (I - W/2)^-1
+//   SO(3)    dR^-1 = I - W/2 + omega omega^T/4                          dR = (I + W/2)/(1 +
+//   |omega|^2/4) SE(2)    dR^-1 = I - ad/2 + omega xi e_omega^T/4                    dR = (I +
+//   ad/2)/(1 + omega^2/4) SE(3)    dR^-1 = I - ad/2 + [[omega omega^T, 0], [W V, 0]]/4        dR =
+//   [[P, 0], [V P/2, Q]],
+//                                                                       P = dR of SO(3), Q = (I -
+//                                                                       W/2)^-1
 // The rotation angle is 2 atan(|omega|/2), less than pi; the inverse is singular at pi.
 // Source: Kobilarov, Marsden, Discrete geometric optimal control on Lie groups (2011);
 // Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.8.3.
@@ -19,8 +23,8 @@
 
 namespace hamel {
 
-/// Common base of the Cayley maps. Each has solve_even_transposed(xi, c, m) = (1 + c even)^-T m, where
-/// dR_xi^-1 = 1 + odd + even in xi (M13).
+/// Common base of the Cayley maps. Each has solve_even_transposed(xi, c, m) = (1 + c even)^-T m,
+/// where dR_xi^-1 = 1 + odd + even in xi (M13).
 template <class G>
 struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {
   static constexpr bool symmetric = true;
@@ -78,7 +82,8 @@ struct CayleyLiteral<SO2> : RetractionDefaults<CayleyLiteral<SO2>, SO2> {
 
 template <>
 struct Cayley<SO3> : CayleyDefaults<SO3> {
-  /// dR^-1 is quadratic in xi, so the weight of its even part is one (framework/schemes/hamel_form.hpp).
+  /// dR^-1 is quadratic in xi, so the weight of its even part is one
+  /// (framework/schemes/hamel_form.hpp).
   static double quadratic_weight(double /*x*/) { return 1.0; }
   static double angle_squared(const Vec<3>& xi) { return xi.dot(xi); }
   /// I + (omega^ + omega^2/2)/(1 + |omega|^2/4).
@@ -145,7 +150,8 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
 
 template <>
 struct Cayley<SE2> : CayleyDefaults<SE2> {
-  /// dR^-1 is quadratic in xi, so the weight of its even part is one (framework/schemes/hamel_form.hpp).
+  /// dR^-1 is quadratic in xi, so the weight of its even part is one
+  /// (framework/schemes/hamel_form.hpp).
   static double quadratic_weight(double /*x*/) { return 1.0; }
   static double angle_squared(const Vec<3>& xi) { return xi[0] * xi[0]; }
   /// (cay omega, (I - omega J/2)^-1 v).
@@ -217,7 +223,8 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     xi.template tail<3>() = g.translation - t.cross(g.translation);
     return xi;
   }
-  /// [[P, 0], [v^ P/2, Q]]: P = dR on SO(3), Q = (I - omega^/2)^-1 = I + a (omega^/2 + (omega^)^2/4).
+  /// [[P, 0], [v^ P/2, Q]]: P = dR on SO(3), Q = (I - omega^/2)^-1 = I + a (omega^/2 +
+  /// (omega^)^2/4).
   template <class T>
   static MatT<T, 6, 6> dtau_right(const VecT<T, 6>& xi) {
     const VecT<T, 3> omega = xi.template head<3>(), v = xi.template tail<3>();
@@ -280,7 +287,8 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     out.tail<3>() = force;
     return out;
   }
-  /// [[N(omega, m) + (v.f I - f v^T)/4, -(f + omega x f/2)^/2], [-f^/2, 0]], N the derivative on SO(3).
+  /// [[N(omega, m) + (v.f I - f v^T)/4, -(f + omega x f/2)^/2], [-f^/2, 0]], N the derivative on
+  /// SO(3).
   template <class T>
   static MatT<T, 6, 6> dtau_right_inverse_transpose_derivative(const VecT<T, 6>& xi,
                                                                const VecT<T, 6>& p) {

@@ -8,11 +8,11 @@
 //   exp(W)      = I + sinc W + cosc W^2
 //   dR exp      = I + cosc W + sinc3 W^2
 //   (dR exp)^-1 = I - W/2 + cotc W^2
-// SE(3) is SO(3) over the dual numbers: its lower left blocks are derivatives of these along v, which need d/dx
-// of each coefficient. Below x = 1/4 (theta = 1/2) every function is a Taylor polynomial whose truncation is
-// below one ulp, so that a typical step needs no trigonometry. The functions whose closed form cancels use a
-// longer polynomial up to x = 8.
-// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, III.4.
+// SE(3) is SO(3) over the dual numbers: its lower left blocks are derivatives of these along v,
+// which need d/dx of each coefficient. Below x = 1/4 (theta = 1/2) every function is a Taylor
+// polynomial whose truncation is below one ulp, so that a typical step needs no trigonometry. The
+// functions whose closed form cancels use a longer polynomial up to x = 8. Source: Hairer, Lubich,
+// Wanner, Geometric Numerical Integration, III.4.
 #pragma once
 
 #include <array>

@@ -1,19 +1,23 @@
-// exp, the exponential map, on R^n, SO(2), SO(3), SE(2) and SE(3). (M32) of framework/schemes/README.md.
+// exp, the exponential map, on R^n, SO(2), SO(3), SE(2) and SE(3). (M32) of
+// framework/schemes/README.md.
 //
-// Coefficients sinc, cosc, sinc3, cotc of groups/dexp.hpp at x = |omega|^2; W = omega^; t the Gibbs vector.
+// Coefficients sinc, cosc, sinc3, cotc of groups/dexp.hpp at x = |omega|^2; W = omega^; t the Gibbs
+// vector.
 //   SO(3)    exp omega  = I + sinc W + cosc W^2
 //            log R      = 2 atan|t| t/|t|
 //            dR         = I + cosc W + sinc3 W^2
 //            dR^-1      = I - W/2 + cotc W^2
 //            N(omega, p) = d/domega [(dR^-1)^T p]
-//                        = -p^/2 + cotc (omega.p I + omega p^T - 2 p omega^T) + 2 cotc' (W^2 p) omega^T
+//                        = -p^/2 + cotc (omega.p I + omega p^T - 2 p omega^T) + 2 cotc' (W^2 p)
+//                        omega^T
 //   SE(2)    exp xi     = (exp omega, (sinc I + omega cosc J) v)
 //            dR^-1      = I - ad/2 + cotc ad^2
 //   SE(3)    exp xi     = (exp omega, dR_omega v)       dR_omega that of SO(3)
-//            dR^-1      = [[P, 0], [dP, P]]             P(omega) that of SO(3), dP its derivative along v
+//            dR^-1      = [[P, 0], [dP, P]]             P(omega) that of SO(3), dP its derivative
+//            along v
 // The SE(3) blocks are the SO(3) formulas over the dual numbers omega + eps v, eps^2 = 0.
-// exp is symmetric, exp(-xi) = exp(xi)^-1, and one-parameter, exp(s xi) exp(t xi) = exp((s + t) xi).
-// Source: Iserles, Munthe-Kaas, Nørsett, Zanna, Lie-group methods (2000), appendix B.
+// exp is symmetric, exp(-xi) = exp(xi)^-1, and one-parameter, exp(s xi) exp(t xi) = exp((s + t)
+// xi). Source: Iserles, Munthe-Kaas, Nørsett, Zanna, Lie-group methods (2000), appendix B.
 #pragma once
 
 #include <cmath>
@@ -80,7 +84,8 @@ struct Exp<Rn<N>> : IdentityRetraction<Exp<Rn<N>>, Rn<N>> {
   static std::string name() { return "exp"; }
 };
 
-/// theta, the unwrapped angle: angles add, so that any retraction of SO(2) is this one (groups/README.md).
+/// theta, the unwrapped angle: angles add, so that any retraction of SO(2) is this one
+/// (groups/README.md).
 template <class Derived>
 struct AddedAngle : RetractionDefaults<Derived, SO2> {
   static constexpr bool symmetric = true;

@@ -2,8 +2,8 @@
 //
 //   (x, y, z)(a, b, c) = (x + a, y + b, z + c + (x b - y a)/2)
 //   [e1, e2] = e3, all other brackets zero
-// In these coordinates exp(xi) = xi. The Cayley map of the strictly upper triangular 3 x 3 matrices is the same
-// map: (I - X/2)^-1 (I + X/2) = I + X + X^2/2 where X^3 = 0.
+// In these coordinates exp(xi) = xi. The Cayley map of the strictly upper triangular 3 x 3 matrices
+// is the same map: (I - X/2)^-1 (I + X/2) = I + X + X^2/2 where X^3 = 0.
 //   dR_xi = I + ad_xi/2,   dR_xi^-1 = I - ad_xi/2
 // Source: Bloch, Nonholonomic Mechanics and Control (2003), section 1.8.
 #pragma once

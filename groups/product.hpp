@@ -3,8 +3,8 @@
 // Element: the tuple of the factors' elements (part<I>()).
 // Algebra: the factors' coordinates one after another; Ad, ad, dR, dL are block diagonal.
 // Columns carry the number of the factor: 1_theta, 1_x, 1_y, 2_theta.
-// A product offers every retraction that all its factors offer (product_retraction.hpp); cayley_literal where one
-// has it, beside cayley on the others.
+// A product offers every retraction that all its factors offer (product_retraction.hpp);
+// cayley_literal where one has it, beside cayley on the others.
 #pragma once
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 //
 //   tau(xi_1, xi_2, ...) = (tau_1(xi_1), tau_2(xi_2), ...);   dR, dL are block diagonal.
 // Exp<Product<SE2, SO2>> and its like take the same family for every factor;
-// ProductRetraction<Exp<SE2>, Cayley<SO2>> mixes families. The headers of the factors' retractions are to be
-// included too.
+// ProductRetraction<Exp<SE2>, Cayley<SO2>> mixes families. The headers of the factors' retractions
+// are to be included too.
 #pragma once
 
 #include <cstddef>

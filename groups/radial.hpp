@@ -1,7 +1,8 @@
 // Radial retractions of SO(3): tau(omega) = exp(f(theta) n), omega = theta n.
 // (M34) of framework/schemes/README.md.
 //
-// With f(theta) = theta phi(x), x = theta^2, phi smooth, phi(0) = 1 and W = omega^, nothing cancels at 0:
+// With f(theta) = theta phi(x), x = theta^2, phi smooth, phi(0) = 1 and W = omega^, nothing cancels
+// at 0:
 //   tau    = I + phi sinc(f^2) W + phi^2 cosc(f^2) W^2
 //   dL     = f' n n^T + (sin f/theta)(I - n n^T) - ((1 - cos f)/theta) n^
 //   dR^-1  = alpha I - W/2 + beta omega omega^T
@@ -13,7 +14,8 @@
 //   tau    = I + W/r + W^2/(r (r + 1))
 //   alpha  = (r + 1)/2
 //   beta   = (2 r + 1)/(2 (r + 1))
-// Source: P. Tsiotras, J. Junkins, H. Schaub, Higher-order Cayley transforms (1997); the derivatives above.
+// Source: P. Tsiotras, J. Junkins, H. Schaub, Higher-order Cayley transforms (1997); the
+// derivatives above.
 #pragma once
 
 #include <cmath>

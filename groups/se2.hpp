@@ -1,7 +1,8 @@
 // SE(2): motions of the plane.
 //
-// Element: rotation R (with an unwrapped angle, groups/so2.hpp) and translation p in space coordinates.
-// Algebra: (omega, v1, v2), angular first, in body coordinates. With J = [[0, -1], [1, 0]]:
+// Element: rotation R (with an unwrapped angle, groups/so2.hpp) and translation p in space
+// coordinates. Algebra: (omega, v1, v2), angular first, in body coordinates. With J = [[0, -1], [1,
+// 0]]:
 //   (R, p)(R', p')              = (R R', p + R p')
 //   (R, p)^-1                   = (R^T, -R^T p)
 //   Ad_(R,p) (omega, v)         = (omega, R v - omega J p)

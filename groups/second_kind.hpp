@@ -1,4 +1,5 @@
-// Canonical coordinates of the second kind and their symmetric version. (M35) of framework/schemes/README.md.
+// Canonical coordinates of the second kind and their symmetric version. (M35) of
+// framework/schemes/README.md.
 //
 //   second_kind             tau(xi) = exp(xi_1 e_1) exp(xi_2 e_2) ... exp(xi_n e_n)
 //   second_kind_symmetric   tau(xi) = exp(xi_1 e_1/2) ... exp(xi_n e_n) ... exp(xi_1 e_1/2)
@@ -16,7 +17,8 @@
 //   y = cos(xi_3/2) sin(xi_2/2)
 //   z = sin(xi_3/2)
 // which are spherical coordinates: every rotation by less than pi is reached, without gimbal lock.
-// Source: Owren, Marthinsen, Integration methods based on canonical coordinates of the second kind (2001).
+// Source: Owren, Marthinsen, Integration methods based on canonical coordinates of the second kind
+// (2001).
 #pragma once
 
 #include <array>
@@ -133,7 +135,8 @@ struct SecondKind<SO3> : StagedRetraction<SecondKind<SO3>, SO3, false> {
     return abs(xi[0]) < std::numbers::pi && abs(xi[1]) < std::numbers::pi / 2 &&
            abs(xi[2]) < std::numbers::pi;
   }
-  /// xi_2 = asin R13, xi_1 = atan2(-R23, R33), xi_3 = atan2(-R12, R11). DomainError at |xi_2| = pi/2.
+  /// xi_2 = asin R13, xi_1 = atan2(-R23, R33), xi_3 = atan2(-R12, R11). DomainError at |xi_2| =
+  /// pi/2.
   template <class T>
   static VecT<T, 3> tau_inverse(const MatT<T, 3, 3>& g) {
     using std::atan2;

@@ -2,10 +2,9 @@
 //
 // Element: the unit complex number c + i s = exp(i theta) and a count of full turns, so that
 //   angle = atan2(s, c) + 2 pi turns
-// is continuous through composition and inverse. The turns are found from signs, without trigonometry. So
-// counted, the elements are the universal cover of the circle, on which angles add; cayley_literal^-1 ignores
-// the turns.
-// Algebra: the angular velocity, 1 number.
+// is continuous through composition and inverse. The turns are found from signs, without
+// trigonometry. So counted, the elements are the universal cover of the circle, on which angles
+// add; cayley_literal^-1 ignores the turns. Algebra: the angular velocity, 1 number.
 //   (c, s)(c', s') = (c c' - s s', s c' + c s'),   Ad = 1,   ad = 0
 // Source: Solà, Deray, Atchuthan, A micro Lie theory (arXiv:1812.01537), appendix A.
 #pragma once

@@ -104,7 +104,8 @@ struct SO3 {
     const T volume = abs(g.col(0).dot(g.col(1).cross(g.col(2))) - 1.0);
     return orthogonality < volume ? volume : orthogonality;
   }
-  /// How far g turns, in [0, pi]: its axis times 2 sin is the vector of R - R^T, its trace 1 + 2 cos.
+  /// How far g turns, in [0, pi]: its axis times 2 sin is the vector of R - R^T, its trace 1 + 2
+  /// cos.
   static double rotation_angle(const Mat<3, 3>& g) {
     const double sine = std::hypot(g(2, 1) - g(1, 2), g(0, 2) - g(2, 0), g(1, 0) - g(0, 1));
     return std::atan2(sine, g.trace() - 1);

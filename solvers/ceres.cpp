@@ -16,7 +16,8 @@ class Cost final : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(size);
     columns_.resize(static_cast<size_t>(size * size));
   }
-  // Ceres takes the Jacobian by rows. Values that are not finite are kept from it: it would log them.
+  // Ceres takes the Jacobian by rows. Values that are not finite are kept from it: it would log
+  // them.
   bool Evaluate(const double* const* parameters, double* f, double** jacobians) const override {
     const size_t n = static_cast<size_t>(num_residuals());
     double* rows = jacobians == nullptr ? nullptr : jacobians[0];

@@ -26,7 +26,8 @@ struct Function {
   }
 };
 
-// The solver of its normal equations: one routine for all sizes, where Eigen's Cholesky costs 3 s of compilation each.
+// The solver of its normal equations: one routine for all sizes, where Eigen's Cholesky costs 3 s
+// of compilation each.
 template <int N>
 class Elimination {
  public:
@@ -57,7 +58,8 @@ class Tiny {
     tiny_.options.cost_threshold = 0.5 * target * target;
     tiny_.options.max_num_iterations = 50;
     tiny_.Solve(function, &x_);
-    // TinySolver tests its cost threshold at the guess already; a guess that meets it is corrected once.
+    // TinySolver tests its cost threshold at the guess already; a guess that meets it is corrected
+    // once.
     const bool met = tiny_.summary.iterations == 0 && equation.residual() > 0;
     if (met) {
       tiny_.options.cost_threshold = 0;

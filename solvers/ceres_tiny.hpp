@@ -1,11 +1,11 @@
 // ceres_tiny: Levenberg-Marquardt on 1/2|F|^2, ceres::TinySolver.
 //
 //   (J'J + u D) dx = -J'F,   u the inverse of the trust region's radius, D = diag(J'J).
-// Its tolerances are absolute: with the defaults it stops after one step on an equation scaled by h, at
-// 2e-10. Here F is scaled, the cost threshold is 1/2 target^2, function and gradient tolerance are 0
-// and the radius starts at 1e16, so that the first step is Newton's.
-// The normal equations square the condition number: the equation must be well conditioned.
-// Source: Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, 2004; Ceres 2.1.
+// Its tolerances are absolute: with the defaults it stops after one step on an equation scaled by
+// h, at 2e-10. Here F is scaled, the cost threshold is 1/2 target^2, function and gradient
+// tolerance are 0 and the radius starts at 1e16, so that the first step is Newton's. The normal
+// equations square the condition number: the equation must be well conditioned. Source: Madsen,
+// Nielsen, Tingleff, Methods for non-linear least squares problems, 2004; Ceres 2.1.
 #pragma once
 
 #include <memory>

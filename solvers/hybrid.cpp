@@ -7,8 +7,9 @@
 
 #include <hamel/framework/loop/scaled_equation.hpp>
 
-// The update of a QR factorisation by u v^T, R in s: MINPACK's r1updt. Where a component of the spike w is zero, Eigen 3.4 puts
-// the identity into v_givens instead of w_givens, which then has no value there (uncoupled equations).
+// The update of a QR factorisation by u v^T, R in s: MINPACK's r1updt. Where a component of the
+// spike w is zero, Eigen 3.4 puts the identity into v_givens instead of w_givens, which then has no
+// value there (uncoupled equations).
 template <>
 void Eigen::internal::r1updt<double>(MatrixXd& s, const VectorXd& u,
                                      std::vector<JacobiRotation<double>>& v_givens,

@@ -1,9 +1,9 @@
 // hybrid: Powell's hybrid method, Eigen's port of MINPACK's hybrj.
 //
-// A dogleg between the Gauss-Newton and the gradient step inside a trust region; the Jacobian once, then
-// Broyden's rank-one updates of its QR factors. Its return value is ignored: at xtol = 1e-15 it reports "not
-// making progress" in 44 of 100 solves that are at the solution.
-// Source: Powell, A hybrid method for nonlinear equations, 1970; More, Garbow, Hillstrom, MINPACK-1.
+// A dogleg between the Gauss-Newton and the gradient step inside a trust region; the Jacobian once,
+// then Broyden's rank-one updates of its QR factors. Its return value is ignored: at xtol = 1e-15
+// it reports "not making progress" in 44 of 100 solves that are at the solution. Source: Powell, A
+// hybrid method for nonlinear equations, 1970; More, Garbow, Hillstrom, MINPACK-1.
 #pragma once
 
 #include <memory>

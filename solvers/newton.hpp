@@ -1,16 +1,16 @@
 // newton: Newton's method with the Jacobian kept while it contracts well, also from step to step.
 //
 //   x <- x - J^-1 F(x),   accepted when |F(x)| <= tolerance * scale, F evaluated at the x returned.
-// Along a trajectory J changes by O(h) a step and the extrapolated guess is good, so that one correction
-// with the last J usually suffices. J is evaluated anew when a correction does not cut |F| by ten, and for the
-// next step when more than one correction was needed (by two, more than 2 + 2 n/5, where J is made of
-// differences). A fresh correction that does not reduce |F| is halved, up to ten times.
-// At least one correction is made: a guess that already meets the tolerance would leave its extrapolation
-// error, always of one sign, in every step. A residual that stops falling is accepted at the round-off floor
-// (64 eps), else the solve has stagnated. The iteration aims two digits below the tolerance, so that the error
-// left by a kept Jacobian does not add up over the steps.
-// Compiled into the kernels: fixed sizes, no heap, no virtual call.
-// Source: Kelley, Solving Nonlinear Equations with Newton's Method, SIAM 2003, ch. 1-2.
+// Along a trajectory J changes by O(h) a step and the extrapolated guess is good, so that one
+// correction with the last J usually suffices. J is evaluated anew when a correction does not cut
+// |F| by ten, and for the next step when more than one correction was needed (by two, more than 2 +
+// 2 n/5, where J is made of differences). A fresh correction that does not reduce |F| is halved, up
+// to ten times. At least one correction is made: a guess that already meets the tolerance would
+// leave its extrapolation error, always of one sign, in every step. A residual that stops falling
+// is accepted at the round-off floor (64 eps), else the solve has stagnated. The iteration aims two
+// digits below the tolerance, so that the error left by a kept Jacobian does not add up over the
+// steps. Compiled into the kernels: fixed sizes, no heap, no virtual call. Source: Kelley, Solving
+// Nonlinear Equations with Newton's Method, SIAM 2003, ch. 1-2.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@
 
 namespace hamel {
 
-/// J^-1: in closed form up to 4 x 4, as a matrix up to 16 x 16 (it only steers, and is used many times), by LU
-/// beyond.
+/// J^-1: in closed form up to 4 x 4, as a matrix up to 16 x 16 (it only steers, and is used many
+/// times), by LU beyond.
 template <class Jacobian>
 class Inverse {
   static constexpr int size = Jacobian::RowsAtCompileTime;
@@ -80,7 +80,8 @@ struct Newton {
   }
   static std::string source() { return "Kelley 2003"; }
 
-  /// The factors of the last Jacobian, kept from one step of a run to the next, and the work space of a solve.
+  /// The factors of the last Jacobian, kept from one step of a run to the next, and the work space
+  /// of a solve.
   template <class Unknown>
   struct Memory {
     using Jacobian = typename StepEquation<Unknown>::Jacobian;
@@ -139,8 +140,8 @@ struct Newton {
   }
 
  private:
-  // What is aimed at: two digits below the tolerance, at most to the round-off of a residual. A kept
-  // Jacobian leaves an error of one sign, which must not add up over the steps.
+  // What is aimed at: two digits below the tolerance, at most to the round-off of a residual. A
+  // kept Jacobian leaves an error of one sign, which must not add up over the steps.
   static constexpr double aim(double tolerance) {
     return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
   }
@@ -148,8 +149,9 @@ struct Newton {
   static constexpr double kRoundOff =  // of |F|^2, relative
       64 * 64 * std::numeric_limits<double>::epsilon() * std::numeric_limits<double>::epsilon();
 
-  // Is a J that has taken |F|^2 from before to after good enough for the next correction? It should cut |F|
-  // by ten; where it is made of differences and costs 2 n + 1 residuals by two, or reach the round-off.
+  // Is a J that has taken |F|^2 from before to after good enough for the next correction? It should
+  // cut |F| by ten; where it is made of differences and costs 2 n + 1 residuals by two, or reach
+  // the round-off.
   static bool worth_keeping(bool exact, double before, double after, double scale) {
     if (exact) return after <= 0.01 * before;
     return after <= 0.25 * before || after <= kRoundOff * scale;
@@ -160,7 +162,8 @@ struct Newton {
   [[gnu::noinline]] static SolveReport iterate(const StepEquation<Unknown>& step, Unknown& x,
                                                double tolerance, double scale,
                                                Memory<Unknown>& memory, SolveReport report) {
-    // A Jacobian in closed form costs little more than a residual, one of differences 2 n + 1: it is kept longer.
+    // A Jacobian in closed form costs little more than a residual, one of differences 2 n + 1: it
+    // is kept longer.
     const bool exact = step.exact();
     const double accepted = tolerance * tolerance * scale, round_off = kRoundOff * scale;
     const double target = std::min(aim(tolerance), tolerance), aimed = target * target * scale;

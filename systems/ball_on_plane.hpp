@@ -1,8 +1,8 @@
 // Shared by the balls that roll on the plane z = 0 without slipping.
 //
-//   SO(3) x R^2: the rotation R and the position (x, y) of the centre, which stays at the height rho;
-//   xi = (omega in the body, x', y'). With w = R omega the contact moves at
-//   (x' - rho w_y, y' + rho w_x): 0 on a plane at rest, the plane's own velocity on one that moves.
+//   SO(3) x R^2: the rotation R and the position (x, y) of the centre, which stays at the height
+//   rho; xi = (omega in the body, x', y'). With w = R omega the contact moves at (x' - rho w_y, y'
+//   + rho w_x): 0 on a plane at rest, the plane's own velocity on one that moves.
 #pragma once
 
 #include <utility>

@@ -3,10 +3,10 @@
 //   SO(3) x R^2, xi = (omega in the body, x', y'), table turning at Omega about the origin:
 //   l = 1/2 I |omega|^2 + 1/2 m (x'^2 + y'^2),  with w = R omega in space:
 //   x' - rho w_y = -Omega y,   y' + rho w_x = Omega x       (affine).
-// The centre's velocity turns at the constant rate k = Omega I/(I + m rho^2) (2/7 of the table's for a solid
-// ball, 2/5 for a shell), w_z is constant, and R follows from w. The moving energy
-// E - Omega (m (x y' - y x') + I w_z) is conserved.
-// Source: Earnshaw 1844; Weltner, Am. J. Phys. 47 (1979); Fasso and Sansonetto 2016 (moving energy).
+// The centre's velocity turns at the constant rate k = Omega I/(I + m rho^2) (2/7 of the table's
+// for a solid ball, 2/5 for a shell), w_z is constant, and R follows from w. The moving energy E -
+// Omega (m (x y' - y x') + I w_z) is conserved. Source: Earnshaw 1844; Weltner, Am. J. Phys. 47
+// (1979); Fasso and Sansonetto 2016 (moving energy).
 #pragma once
 
 #include <cmath>

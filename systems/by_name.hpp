@@ -12,8 +12,8 @@
 
 namespace hamel {
 
-/// The library's registry, filled on first use; a program may add to it (add_group, add_system, ...).
-/// Not thread-safe while something is being added.
+/// The library's registry, filled on first use; a program may add to it (add_group, add_system,
+/// ...). Not thread-safe while something is being added.
 Registry& registry();
 
 /// A registered system, or one by data ("my_system.toml").

@@ -1,10 +1,11 @@
-// chaplygin_ball: a ball with its mass centre at its centre and unequal moments, rolling on a plane.
+// chaplygin_ball: a ball with its mass centre at its centre and unequal moments, rolling on a
+// plane.
 //
 //   SO(3) x R^2, xi = (omega in the body, x', y'), l = 1/2 omega^T I omega + 1/2 m (x'^2 + y'^2),
 //   with w = R omega:  x' = rho w_y,  y' = -rho w_x.
-// With D = m rho^2 and gamma = R^T e_z the momentum about the contact, M = (I + D) omega - D (omega.gamma) gamma,
-// is fixed in space.
-// Source: Chaplygin 1903; Borisov, Mamaev and Kilin; Duistermaat, Chaplygin's sphere (2004).
+// With D = m rho^2 and gamma = R^T e_z the momentum about the contact, M = (I + D) omega - D
+// (omega.gamma) gamma, is fixed in space. Source: Chaplygin 1903; Borisov, Mamaev and Kilin;
+// Duistermaat, Chaplygin's sphere (2004).
 #pragma once
 
 #include <string>

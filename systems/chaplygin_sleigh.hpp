@@ -22,7 +22,8 @@
 
 namespace hamel {
 
-/// (omega, v) of m v' = b omega^2, k omega' = -b v omega in closed form, and the motion it leads along.
+/// (omega, v) of m v' = b omega^2, k omega' = -b v omega in closed form, and the motion it leads
+/// along.
 struct SleighRates {
   double u, w, kappa, c;  // w carries the sign of omega(0)
   bool constant;

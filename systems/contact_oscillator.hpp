@@ -1,9 +1,12 @@
-// contact_oscillator: a continuously variable transmission, the stress test of nonholonomic integrators.
+// contact_oscillator: a continuously variable transmission, the stress test of nonholonomic
+// integrators.
 //
-//   R^3, l = 1/2 (x'^2 + y'^2 + z'^2) - 1/2 (x^2 + z^2) - 1/2 k y^2,   x' + f(y) z' = 0,  f = ratio + y.
-// The driving oscillator y is free: its energy is conserved, and so is the total energy. Every integrator that
-// is not both reversible and integrable on this system may drift (Modin and Verdier).
-// Source: McLachlan and Perlmutter 2006; Modin and Verdier, What makes nonholonomic integrators work? (2020).
+//   R^3, l = 1/2 (x'^2 + y'^2 + z'^2) - 1/2 (x^2 + z^2) - 1/2 k y^2,   x' + f(y) z' = 0,  f = ratio
+//   + y.
+// The driving oscillator y is free: its energy is conserved, and so is the total energy. Every
+// integrator that is not both reversible and integrable on this system may drift (Modin and
+// Verdier). Source: McLachlan and Perlmutter 2006; Modin and Verdier, What makes nonholonomic
+// integrators work? (2020).
 #pragma once
 
 #include <string>

@@ -5,7 +5,8 @@
 
 namespace hamel {
 
-/// (g, xi) -> 1/2 xi^T I xi + V(g), of the system's inertia() or inertia(g), and its potential(g) if it has one.
+/// (g, xi) -> 1/2 xi^T I xi + V(g), of the system's inertia() or inertia(g), and its potential(g)
+/// if it has one.
 template <class S>
 auto energy_of(const S& system) {
   return [system](const auto& g, const Vec<S::Group::dim>& xi) {

@@ -2,14 +2,17 @@
 //
 //   SE(3), body frame at the centre with axis e3, plane z = 0, z up; xi = (omega, v) of the centre.
 //   l = 1/2 A (w1^2 + w2^2) + 1/2 C w3^2 + 1/2 m |v|^2 - m g z.
-// With gamma = R^T e_z and r = -rho (gamma - gamma_3 e3)/|...| from the centre to the contact, the contact
-// rests: v + omega x r = 0. Its two horizontal parts are rows of A; the vertical one is the differential of
+// With gamma = R^T e_z and r = -rho (gamma - gamma_3 e3)/|...| from the centre to the contact, the
+// contact rests: v + omega x r = 0. Its two horizontal parts are rows of A; the vertical one is the
+// differential of
 //   phi = z - rho sqrt(gamma_1^2 + gamma_2^2) = 0.
-// Steady motions (theta axis to vertical, alpha precession rate about the vertical, w3 the spin about the axis):
+// Steady motions (theta axis to vertical, alpha precession rate about the vertical, w3 the spin
+// about the axis):
 //   (C + m rho^2) w3 alpha sin(theta) = A alpha^2 sin(theta) cos(theta) - m g rho cos(theta).
 // Upright rolling is stable when w3^2 > A m g rho / (C (C + m rho^2)); upright spinning when
 // w^2 > m g rho / (A + m rho^2).
-// Source: Neimark and Fufaev, Dynamics of Nonholonomic Systems (1972), ch. V; O'Reilly, Nonlinear Dyn. 10 (1996).
+// Source: Neimark and Fufaev, Dynamics of Nonholonomic Systems (1972), ch. V; O'Reilly, Nonlinear
+// Dyn. 10 (1996).
 #pragma once
 
 #include <cmath>
@@ -95,7 +98,8 @@ struct FallingDisk {
 
   static std::vector<int> contacts() { return {2}; }
 
-  /// At x = y = 0 with the axis at theta from the vertical and rolling without slip with body rates omega.
+  /// At x = y = 0 with the axis at theta from the vertical and rolling without slip with body rates
+  /// omega.
   Start rolling(double theta, const Vec<3>& omega) const {
     const Element g = body_on_plane::leaning(theta, radius * std::sin(theta));
     return body_on_plane::rolling(g, omega, Contact<double>(g, radius).r);

@@ -1,6 +1,6 @@
 // Compiling kernels, and adding to a registry: the one place where groups, retractions, schemes and
-// Newton meet. A user's program adds its own with the add_... functions; the library's own are added
-// in systems.cpp, their kernels compiled in the units of systems/kernels/.
+// Newton meet. A user's program adds its own with the add_... functions; the library's own are
+// added in systems.cpp, their kernels compiled in the units of systems/kernels/.
 #pragma once
 
 #include <memory>
@@ -108,8 +108,9 @@ void add_system(Registry& registry) {
   registry.add(system_info<S>());
 }
 
-// Kernels are worth their time to compile where a system or a kind of system runs much and often: one takes
-// about a second, and runs two to five times faster than the erased one, with the same results.
+// Kernels are worth their time to compile where a system or a kind of system runs much and often:
+// one takes about a second, and runs two to five times faster than the erased one, with the same
+// results.
 
 /// Kernels of the schemes for the left-invariant systems on G with m admissible directions.
 template <class G, int M, class Tau, class... Schemes>

@@ -1,18 +1,20 @@
-// rattleback: half an ellipsoid that rolls on a plane on its round side and prefers one sense of spin.
+// rattleback: half an ellipsoid that rolls on a plane on its round side and prefers one sense of
+// spin.
 //
 //   SE(3), body frame at the mass centre with the axes of the ellipsoid, z up; xi = (omega, v).
 //   l = 1/2 omega^T I omega + 1/2 m |v|^2 - m g z,  I = R3(delta) diag(I1, I2, I3) R3(delta)^T:
-// the axes of inertia are turned by delta about e3 against those of the surface. The centre of the ellipsoid
-// is at d e3. With gamma = R^T e_z, D = diag(a1, a2, a3), the contact lies at
+// the axes of inertia are turned by delta about e3 against those of the surface. The centre of the
+// ellipsoid is at d e3. With gamma = R^T e_z, D = diag(a1, a2, a3), the contact lies at
 //   r = d e3 - D^2 gamma / sqrt(gamma^T D^2 gamma)
-// from the mass centre, and rests: v + omega x r = 0. Its horizontal parts are rows of A (along the axes x
-// and y of space: R (v + omega x r)); the vertical one is the differential of the height of the contact,
+// from the mass centre, and rests: v + omega x r = 0. Its horizontal parts are rows of A (along the
+// axes x and y of space: R (v + omega x r)); the vertical one is the differential of the height of
+// the contact,
 //   phi = z + gamma . r = z + d gamma_3 - sqrt(gamma^T D^2 gamma) = 0.
-// Spun in one sense the rattleback keeps spinning for long; spun in the other it starts to rattle and reverses.
-// The energy is conserved. The default body is large and slow: it rocks at about 10 rad/s and reverses within
-// 20 s. The stone of Kane and Levinson (semi_axes 0.2, 0.03, 0.02; depth 0.01; inertia 2e-4, 1.6e-3, 1.7e-3; skew
-// 0.0143) rocks at 100 rad/s.
-// Source: Walker 1896; Kane and Levinson, Int. J. Non-Linear Mech. 17 (1982); Garcia and Hubbard 1988.
+// Spun in one sense the rattleback keeps spinning for long; spun in the other it starts to rattle
+// and reverses. The energy is conserved. The default body is large and slow: it rocks at about 10
+// rad/s and reverses within 20 s. The stone of Kane and Levinson (semi_axes 0.2, 0.03, 0.02; depth
+// 0.01; inertia 2e-4, 1.6e-3, 1.7e-3; skew 0.0143) rocks at 100 rad/s. Source: Walker 1896; Kane
+// and Levinson, Int. J. Non-Linear Mech. 17 (1982); Garcia and Hubbard 1988.
 #pragma once
 
 #include <cmath>

@@ -1,7 +1,8 @@
 // From an exact body velocity xi(t) to the exact configuration: g' = g xi(t), to round-off.
 //
-// Sixth-order Magnus with three Gauss-Legendre points (Blanes, Casas, Oteo, Ros, The Magnus expansion
-// and some of its applications, Phys. Rep. 470 (2009), eq. 252-253), applied to (g^-1)' = -xi g^-1:
+// Sixth-order Magnus with three Gauss-Legendre points (Blanes, Casas, Oteo, Ros, The Magnus
+// expansion and some of its applications, Phys. Rep. 470 (2009), eq. 252-253), applied to (g^-1)' =
+// -xi g^-1:
 //   a1 = h x2,  a2 = sqrt(15)/3 h (x3 - x1),  a3 = 10/3 h (x3 - 2 x2 + x1),  x_i = -xi(t + c_i h),
 //   C1 = [a1, a2],  C2 = -1/60 [a1, 2 a3 + C1],
 //   W = a1 + a3/12 + 1/240 [-20 a1 - a3 + C1, a2 + C2],   g(t + h) = g(t) exp(-W).

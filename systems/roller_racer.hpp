@@ -1,13 +1,14 @@
-// roller_racer: two bodies with a hinge between them, each on one axle; the rider swings the handlebar.
+// roller_racer: two bodies with a hinge between them, each on one axle; the rider swings the
+// handlebar.
 //
-//   SE(2) x S^1, xi = (omega, v1, v2, phi'), origin at the rear axle, the hinge at a e1, phi the angle of
-//   the front body, whose axle trails the hinge by b; its mass is left out, its moment is I_f:
-//   l = 1/2 m (v1^2 + v2^2) + 1/2 I omega^2 + 1/2 I_f (omega + phi')^2 - 1/2 k phi^2,
-//   v2 = 0,   -sin phi v1 + cos phi (v2 + a omega) - b (omega + phi') = 0,
-// with the torque T cos(Omega t) on phi, and that of the input. Neither wheel is driven, and no symmetry points forwards: the momentum is
-// not conserved, and swinging the handlebar propels the racer. Without torque the energy is conserved.
-// Source: Krishnaprasad and Tsakiris, Oscillations, SE(2)-snakes and motion control: a study of the
-// roller racer, Dynamical Systems 16 (2001).
+//   SE(2) x S^1, xi = (omega, v1, v2, phi'), origin at the rear axle, the hinge at a e1, phi the
+//   angle of the front body, whose axle trails the hinge by b; its mass is left out, its moment is
+//   I_f: l = 1/2 m (v1^2 + v2^2) + 1/2 I omega^2 + 1/2 I_f (omega + phi')^2 - 1/2 k phi^2, v2 = 0,
+//   -sin phi v1 + cos phi (v2 + a omega) - b (omega + phi') = 0,
+// with the torque T cos(Omega t) on phi, and that of the input. Neither wheel is driven, and no
+// symmetry points forwards: the momentum is not conserved, and swinging the handlebar propels the
+// racer. Without torque the energy is conserved. Source: Krishnaprasad and Tsakiris, Oscillations,
+// SE(2)-snakes and motion control: a study of the roller racer, Dynamical Systems 16 (2001).
 #pragma once
 
 #include <cmath>

@@ -2,8 +2,8 @@
 //
 //   SO(3) x R^2, xi = (omega in the body, x', y'), l = 1/2 I |omega|^2 + 1/2 m (x'^2 + y'^2),
 //   with w = R omega:  x' = rho w_y,  y' = -rho w_x.
-// omega is constant in the body and in space although the structure constants of d do not vanish, and the centre
-// moves on a straight line. A wrong sign in a scheme is therefore visible at once.
+// omega is constant in the body and in space although the structure constants of d do not vanish,
+// and the centre moves on a straight line. A wrong sign in a scheme is therefore visible at once.
 // Source: Neimark and Fufaev 1972; Bloch, Krishnaprasad, Marsden and Murray 1996.
 #pragma once
 

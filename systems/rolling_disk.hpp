@@ -2,9 +2,9 @@
 //
 //   SE(2) x SO(2), xi = (omega, v1, v2, phi'), e1 along the rolling direction:
 //   l = 1/2 J_yaw omega^2 + 1/2 m (v1^2 + v2^2) + 1/2 J_spin phi'^2,   v1 = R phi',  v2 = 0.
-// omega and phi' are constant, so the motion is one-parameter, g(t) = g0 exp(t xi): the contact point
-// runs on a circle of radius R phi'/omega.
-// Source: Bloch, Nonholonomic Mechanics and Control (2003), section 1.4.
+// omega and phi' are constant, so the motion is one-parameter, g(t) = g0 exp(t xi): the contact
+// point runs on a circle of radius R phi'/omega. Source: Bloch, Nonholonomic Mechanics and Control
+// (2003), section 1.4.
 #pragma once
 
 #include <string>

@@ -1,15 +1,17 @@
-// routh_sphere: a ball whose mass centre lies off its centre, on an axis of symmetry, rolling on a plane.
+// routh_sphere: a ball whose mass centre lies off its centre, on an axis of symmetry, rolling on a
+// plane.
 //
 //   SO(3) x R^2, xi = (omega in the body, x', y' of the centre of the ball), mass centre at a e3,
 //   l = 1/2 omega^T I omega + 1/2 m |(x', y', 0) + R (omega x a e3)|^2 - m g a gamma_3,
 //   with w = R omega, gamma = R^T e_z:  x' = rho w_y,  y' = -rho w_x.
 // The metric depends on R: it couples the rotation with the translation in space.
-// Routh's sphere has I1 = I2. With r = -rho gamma - a e3 from the mass centre to the contact three functions are
-// conserved there: the energy,
+// Routh's sphere has I1 = I2. With r = -rho gamma - a e3 from the mass centre to the contact three
+// functions are conserved there: the energy,
 //   Jellett's omega^T I r   and   Routh's omega_3 sqrt(I1 I3 + m r^T I r).
-// With three different moments it is Chaplygin's top, which keeps the energy and no other function in general.
-// Source: Routh, Advanced Rigid Dynamics (1884), art. 243; Cushman, Routh's sphere, Rep. Math. Phys. 42 (1998);
-// Borisov, Kazakov, Sataev, Regul. Chaotic Dyn. 19 (2014), on Chaplygin's top.
+// With three different moments it is Chaplygin's top, which keeps the energy and no other function
+// in general. Source: Routh, Advanced Rigid Dynamics (1884), art. 243; Cushman, Routh's sphere,
+// Rep. Math. Phys. 42 (1998); Borisov, Kazakov, Sataev, Regul. Chaotic Dyn. 19 (2014), on
+// Chaplygin's top.
 #pragma once
 
 #include <cmath>

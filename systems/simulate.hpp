@@ -1,8 +1,9 @@
-// <hamel/simulate.hpp>: hamel by name. Runs, stepping by hand, events, inputs, files, mechanisms by parts, studies and
-// steady motions, with standard-library types only: a program that includes this one compiles in a second, and cannot
-// disagree with the library about alignment, flags or Eigen.
+// <hamel/simulate.hpp>: hamel by name. Runs, stepping by hand, events, inputs, files, mechanisms by
+// parts, studies and steady motions, with standard-library types only: a program that includes this
+// one compiles in a second, and cannot disagree with the library about alignment, flags or Eigen.
 //
-//   auto result = hamel::simulate("kick_scooter").speed(2).scheme("lift").step(0.01).until(10).run();
+//   auto result =
+//   hamel::simulate("kick_scooter").speed(2).scheme("lift").step(0.01).until(10).run();
 //
 // Own systems, groups, retractions and schemes, compiled in the program's types: <hamel/hamel.hpp>.
 #pragma once

@@ -42,7 +42,8 @@ constexpr auto problem_of() {
 }
 }  // namespace detail
 
-/// A system object with the scheme and the retraction named by type; nothing needs to be registered.
+/// A system object with the scheme and the retraction named by type; nothing needs to be
+/// registered.
 ///   hamel::simulate<hamel::Lift, hamel::Cayley>(Sleigh{.a = 0.3})
 template <class Scheme, template <class> class Tau, class S>
 Simulation simulate(const S& system) {

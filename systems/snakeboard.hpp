@@ -5,14 +5,16 @@
 //     + 1/2 J_1 ((omega + front')^2 + (omega + back')^2),
 //   -sin(front) v1 + cos(front) (v2 + l omega) = 0,   -sin(back) v1 + cos(back) (v2 - l omega) = 0,
 // and the rider's motion prescribes the rotor and the axles (affine rows):
-//   psi = psi_a sin(Omega t),   front = front_0 + phi_a sin(Omega t),   back = back_0 - phi_a sin(Omega t).
+//   psi = psi_a sin(Omega t),   front = front_0 + phi_a sin(Omega t),   back = back_0 - phi_a
+//   sin(Omega t).
 // and whatever rates the inputs add to these three. Without them:
-// the rows of the axles leave one direction X(front, back) in se(2). With N = diag(J + J_0 + 2 J_1, m, m) and
-// X^T N X = 1 the motion is (omega, v) = sigma X and, as [X, X] = 0, a quadrature:
+// the rows of the axles leave one direction X(front, back) in se(2). With N = diag(J + J_0 + 2 J_1,
+// m, m) and X^T N X = 1 the motion is (omega, v) = sigma X and, as [X, X] = 0, a quadrature:
 //   sigma' = -X_omega q',   q = J_0 psi' + J_1 (front' + back').
-// For front = -back = phi and J + J_0 + 2 J_1 = m l^2, X sqrt(m) = (sin(phi)/l, cos(phi), 0): the equations
-// u = S cos(phi), l theta' = S sin(phi), m S' = -(J_0/l) psi'' sin(phi) of Ostrowski.
-// Source: Lewis, Ostrowski, Murray and Burdick, Nonholonomic mechanics and locomotion: the snakeboard (1994).
+// For front = -back = phi and J + J_0 + 2 J_1 = m l^2, X sqrt(m) = (sin(phi)/l, cos(phi), 0): the
+// equations u = S cos(phi), l theta' = S sin(phi), m S' = -(J_0/l) psi'' sin(phi) of Ostrowski.
+// Source: Lewis, Ostrowski, Murray and Burdick, Nonholonomic mechanics and locomotion: the
+// snakeboard (1994).
 #pragma once
 
 #include <algorithm>

@@ -6,9 +6,9 @@
 //   J w' = p w~,  p = k.w;   q = k^T J^-1 w~;   p' = p q,  q' = -p^2 / det J.
 // Hence, with A^2 = q0^2 + p0^2 / det J and sinh(A t0) = q0 sqrt(det J) / |p0|,
 //   q = -A tanh A(t - t0),   p = sign(p0) sqrt(det J) A sech A(t - t0),
-// and w from the linear system k.w = p, -b1 w2 + b2 w1 = q, b = J^-1 k. The motion is heteroclinic: it
-// tends to the line p = 0. If k = 0 (n a principal axis) or p0 = 0, Omega is constant.
-// Source: Suslov 1902; Fedorov, Kozlov, Various aspects of n-dimensional rigid body dynamics (1995).
+// and w from the linear system k.w = p, -b1 w2 + b2 w1 = q, b = J^-1 k. The motion is heteroclinic:
+// it tends to the line p = 0. If k = 0 (n a principal axis) or p0 = 0, Omega is constant. Source:
+// Suslov 1902; Fedorov, Kozlov, Various aspects of n-dimensional rigid body dynamics (1995).
 #pragma once
 
 #include <algorithm>
@@ -65,8 +65,8 @@ struct Suslov {
     return {.configuration = {}, .velocity = {}, .momentum = {1, 1, 0}};
   }
 
-  /// The reduced motion w(t), embedded as Omega(t): suslov.cpp. Numbers of no alignment, whatever a program is compiled
-  /// with.
+  /// The reduced motion w(t), embedded as Omega(t): suslov.cpp. Numbers of no alignment, whatever a
+  /// program is compiled with.
   class Velocity {
    public:
     Velocity(const Suslov& body, const double* omega0);

@@ -1,8 +1,8 @@
 // veselova: a rigid body whose angular velocity along a direction fixed in space is forbidden.
 //
 //   SO(3), l = 1/2 omega^T I omega, omega.gamma = 0 with gamma = R^T e_z.
-// Conserved: the energy, and |K|^2 with K = I omega - (I omega.gamma) gamma (K turns in the body only).
-// Source: Veselova 1986; Veselov and Veselova 1988; Fedorov and Jovanovic 2004.
+// Conserved: the energy, and |K|^2 with K = I omega - (I omega.gamma) gamma (K turns in the body
+// only). Source: Veselova 1986; Veselov and Veselova 1988; Fedorov and Jovanovic 2004.
 #pragma once
 
 #include <string>

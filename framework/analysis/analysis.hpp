@@ -1,12 +1,13 @@
 // Analysis of a system: frame, brackets, conserved quantities (`hamel describe --analyse`).
 //
-// Frame and brackets at the start. X_a(g) = P(g) e_a, e_a the Hamel frame at g0 and P(g) the projection
-// onto ker A(g) along I^-1 A^T; in left trivialisation
+// Frame and brackets at the start. X_a(g) = P(g) e_a, e_a the Hamel frame at g0 and P(g) the
+// projection onto ker A(g) along I^-1 A^T; in left trivialisation
 //   [X, Y](g) = dY(g) X - dX(g) Y + ad_{X(g)} Y(g).
-// The growth of d, d + [d, d], ... decides whether the constraint is integrable (no growth) and how many brackets
-// span the tangent space (Chow). growth.hpp has it, the drift of affine rows and the tolerances.
-// Conserved quantities are found numerically, not proved: combinations of energy, body velocities and spatial
-// momenta Ad*_{g^-1} mu that change by 1e-9 of their terms at most along eight motions of 1 and 20 s.
+// The growth of d, d + [d, d], ... decides whether the constraint is integrable (no growth) and how
+// many brackets span the tangent space (Chow). growth.hpp has it, the drift of affine rows and the
+// tolerances. Conserved quantities are found numerically, not proved: combinations of energy, body
+// velocities and spatial momenta Ad*_{g^-1} mu that change by 1e-9 of their terms at most along
+// eight motions of 1 and 20 s.
 #pragma once
 
 #include <optional>
@@ -32,7 +33,8 @@ struct Analysis {
   Eigen::MatrixXd frame;                   // E at the start, n x m
   std::vector<Eigen::MatrixXd> structure;  // c^d_ab: entry d, at (a, b): [X_a, X_b] along X_d, on d
   Growth growth;  // dim d, dim (d + [d, d]), ...; affine rows with their drift
-  /// Are the rows integrable, spanned by differentials of functions of g (of g and t with a drift)? Empty: not decided.
+  /// Are the rows integrable, spanned by differentials of functions of g (of g and t with a drift)?
+  /// Empty: not decided.
   std::optional<bool> integrable() const;
   struct Conserved {
     std::string expression;  // "E", "0.5 J3 - ..."
@@ -42,7 +44,8 @@ struct Analysis {
   std::vector<std::string> notes;  // how the start was projected
 };
 
-/// verdict: by brackets of few fields, and without what is conserved: ten times faster, and not always decided.
+/// verdict: by brackets of few fields, and without what is conserved: ten times faster, and not
+/// always decided.
 enum class AnalysisOf { all, verdict };
 
 /// Throws ConfigError as Simulation::run does, and above dimension 100.

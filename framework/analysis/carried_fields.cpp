@@ -79,7 +79,8 @@ struct Piece {
 };
 using Path = std::vector<Piece>;
 
-// One step of order 8: midpoint rules of 2, 4, 6, 8 substeps, extrapolated (Hairer, Norsett, Wanner, II.9).
+// One step of order 8: midpoint rules of 2, 4, 6, 8 substeps, extrapolated (Hairer, Norsett,
+// Wanner, II.9).
 Vector flow(Fields& fields, const Vector& controls, double length, const Vector& start) {
   constexpr int rules = 4;
   std::array<Vector, rules> table;
@@ -127,7 +128,8 @@ Matrix carried(Fields& fields, const Path& path, double e, const Vector& from, d
   return out;
 }
 
-// Taylor coefficients of e -> V(e) from Chebyshev nodes in [-r, r]: entry j is the coefficient of (e/r)^j.
+// Taylor coefficients of e -> V(e) from Chebyshev nodes in [-r, r]: entry j is the coefficient of
+// (e/r)^j.
 std::vector<Matrix> coefficients(Fields& fields, const Path& path, double r, int degree,
                                  const Vector& from, double unit) {
   Matrix powers(degree + 1, degree + 1), values(degree + 1, fields.coordinates() * fields.count());

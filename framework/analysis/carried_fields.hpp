@@ -1,13 +1,14 @@
-// Brackets of many fields without differences of differences: fields carried back along paths. For growth.cpp
-// only, not installed.
+// Brackets of many fields without differences of differences: fields carried back along paths. For
+// growth.cpp only, not installed.
 //
-// In the coordinates x of g tau(x), along a path of constant controls u in pieces of random lengths, all scaled
-// with e, the field X_b at the end, carried back to the start, is
+// In the coordinates x of g tau(x), along a path of constant controls u in pieces of random
+// lengths, all scaled with e, the field X_b at the end, carried back to the start, is
 //   V_b(e) = sum_j e^j/j! (sum over the pieces of ad_{u_1} ... ad_{u_j} X_b),
-// so that the Taylor coefficients up to order j of random paths span all brackets of at most j + 1 fields, those
-// with factors that vanish at g among them. Paths are integrated by extrapolated midpoint rules of order 8, tangents
-// carried by sixth-order differences of the flow, coefficients fitted on Chebyshev nodes, each for several radii.
-// Source: Sussmann, Orbits of families of vector fields, Trans. AMS 180 (1973).
+// so that the Taylor coefficients up to order j of random paths span all brackets of at most j + 1
+// fields, those with factors that vanish at g among them. Paths are integrated by extrapolated
+// midpoint rules of order 8, tangents carried by sixth-order differences of the flow, coefficients
+// fitted on Chebyshev nodes, each for several radii. Source: Sussmann, Orbits of families of vector
+// fields, Trans. AMS 180 (1973).
 #pragma once
 
 #include <vector>
@@ -25,9 +26,10 @@ using Vector = Eigen::VectorXd;
 /// Of the size of the fields: generations smaller than that are taken for zero.
 constexpr double kNothing = 1e-6;
 
-/// The fields X_0 (where there is one) and X_a at x, t, as columns; the coordinates are x or (x, t), in units of `units`. X_a
-/// is a vector of the frame at g, constant in the body, less what the rows forbid of it; X_0 is the least velocity that they
-/// ask for, both in the metric of the inertia at g.
+/// The fields X_0 (where there is one) and X_a at x, t, as columns; the coordinates are x or (x,
+/// t), in units of `units`. X_a is a vector of the frame at g, constant in the body, less what the
+/// rows forbid of it; X_0 is the least velocity that they ask for, both in the metric of the
+/// inertia at g.
 class Fields {
  public:
   Fields(const Geometry& geometry, const Mechanics& mechanics, const Vector& g, const Vector& units,
@@ -52,7 +54,8 @@ class Fields {
   Matrix raised_, lambda_;
 };
 
-/// A generation of brackets, those of j + 1 fields: the coefficients of order j of all paths, |(e/r)^j| = 1 at the radius
+/// A generation of brackets, those of j + 1 fields: the coefficients of order j of all paths,
+/// |(e/r)^j| = 1 at the radius
 // where they are best known, and how well that is.
 struct Generation {
   Matrix brackets;

@@ -1,7 +1,8 @@
-// Columns of different units are compared as numbers without one: each is divided by its largest value over all
-// motions. A combination is kept when it changes by 1e-9 at most along every motion, with each motion's largest value
-// of its terms for unit. Those that are zero on every motion (the rows, and what follows from them) are no more than
-// identities, and combinations that differ by one count once, in the form with the fewest terms.
+// Columns of different units are compared as numbers without one: each is divided by its largest
+// value over all motions. A combination is kept when it changes by 1e-9 at most along every motion,
+// with each motion's largest value of its terms for unit. Those that are zero on every motion (the
+// rows, and what follows from them) are no more than identities, and combinations that differ by
+// one count once, in the form with the fewest terms.
 #include <hamel/framework/analysis/conserved.hpp>
 
 #include <algorithm>
@@ -57,7 +58,8 @@ class Search {
  private:
   Eigen::Index width() const { return static_cast<Eigen::Index>(names_.size()); }
 
-  // A motion, from the time of its place on; of one that fails the first half, far from where it did.
+  // A motion, from the time of its place on; of one that fails the first half, far from where it
+  // did.
   void follow(int motion, double from, double length, const std::vector<double>& at) {
     Config config = first_.config;
     config.from = from;

@@ -23,8 +23,8 @@ struct Reach {
   bool round_off = false;  // what the next one adds is not told from round-off
   bool near_zero = false;  // a bracket that is left out is small, but not zero
 };
-// Is what a generation has outside a span known not to be zero? Each coordinate has its own errors: those of
-// z' = 1e-12 y x' are far below those of x'.
+// Is what a generation has outside a span known not to be zero? Each coordinate has its own errors:
+// those of z' = 1e-12 y x' are far below those of x'.
 bool is_small_only(const Generation& generation, const Matrix& span) {
   const Matrix& b = generation.brackets;
   const Vector size = b.cwiseAbs().rowwise().maxCoeff(), error = generation.errors + 1e-15 * size,
@@ -82,7 +82,8 @@ int closed_at(const Reach& reach, int possible) {
   return same != d.end() ? *same : d.back() == possible ? possible : -1;
 }
 
-// [x, y] of constant fields, left-invariant and constant in time: columns of n, or n + 1 with time, in these units.
+// [x, y] of constant fields, left-invariant and constant in time: columns of n, or n + 1 with time,
+// in these units.
 Vector ad(const Geometry& geometry, const Vector& units, const Vector& x, const Vector& y) {
   const Eigen::Index n = geometry.dim();
   const Vector xi = units.cwiseProduct(x.head(n)), eta = units.cwiseProduct(y.head(n));

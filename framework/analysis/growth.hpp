@@ -1,18 +1,20 @@
 // The growth d, d + [d, d], ... of brackets of admissible directions at a configuration.
 //
-// Time is a coordinate, t' = 1, where b != 0 or A, b depend on it: then d is spanned by the fields X_a of ker A
-// and by X_0 = d/dt + (the particular velocity, A xi = b), and the rows are integrable, with phi(t, g) = 0 for
-// integrals, exactly when the X_a and X_0 are closed under brackets. Dimensions are counted without X_0.
+// Time is a coordinate, t' = 1, where b != 0 or A, b depend on it: then d is spanned by the fields
+// X_a of ker A and by X_0 = d/dt + (the particular velocity, A xi = b), and the rows are
+// integrable, with phi(t, g) = 0 for integrals, exactly when the X_a and X_0 are closed under
+// brackets. Dimensions are counted without X_0.
 //
-// Constant fields of constant rows: linear algebra with the structure constants. Else random combinations of all
-// brackets of 1, 2, ... fields, at g and at a configuration nearby (carried_fields.hpp). Ranks nearby are generic: d stays
-// closed from the first generation on that adds nothing there, and no configuration has more directions than that. At g
-// itself brackets may pause and go on (z' = y^2 x' at y = 0: 2, 2, 3).
-// Tolerances: a direction is new when it is above 1e-6 of its generation and ten times above the generation's
-// error, measured by computing it twice. A generation whose error exceeds 1e-4 of it (from six or seven fields on) is
-// not decided, nor is any beyond it. Generations below 1e-6 of the fields are taken for zero. Where such a small
-// bracket is ten times above the errors of its own coordinates, nothing is decided: z' = 1e-12 y x' is not
-// integrable, and no more than that distinguishes it.
+// Constant fields of constant rows: linear algebra with the structure constants. Else random
+// combinations of all brackets of 1, 2, ... fields, at g and at a configuration nearby
+// (carried_fields.hpp). Ranks nearby are generic: d stays closed from the first generation on that
+// adds nothing there, and no configuration has more directions than that. At g itself brackets may
+// pause and go on (z' = y^2 x' at y = 0: 2, 2, 3). Tolerances: a direction is new when it is above
+// 1e-6 of its generation and ten times above the generation's error, measured by computing it
+// twice. A generation whose error exceeds 1e-4 of it (from six or seven fields on) is not decided,
+// nor is any beyond it. Generations below 1e-6 of the fields are taken for zero. Where such a small
+// bracket is ten times above the errors of its own coordinates, nothing is decided: z' = 1e-12 y x'
+// is not integrable, and no more than that distinguishes it.
 #pragma once
 
 #include <vector>
@@ -35,16 +37,18 @@ struct Growth {
   bool decided() const { return dimensions.back() == nearby; }
 };
 
-/// So many fields in a bracket: more drown in round-off; a few take a tenth of a second where these take ten.
+/// So many fields in a bracket: more drown in round-off; a few take a tenth of a second where these
+/// take ten.
 constexpr int kMostFields = 8, kFewFields = 3;
 
-/// geometry: of a retraction with tau(x) for |x| < 3. Brackets of up to n fields are looked at, `most` of them at most. units:
-/// of the n components, in which all are measured; empty: 1.
+/// geometry: of a retraction with tau(x) for |x| < 3. Brackets of up to n fields are looked at,
+/// `most` of them at most. units: of the n components, in which all are measured; empty: 1.
 Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* g,
                  int most = kMostFields, const std::vector<double>& units = {});
 
-/// Units of the components: 1 for angles, for lengths the radius of gyration of the system at g, so that nothing depends on
-/// the unit of lengths; 1 for all where there are only angles, only lengths, or others.
+/// Units of the components: 1 for angles, for lengths the radius of gyration of the system at g, so
+/// that nothing depends on the unit of lengths; 1 for all where there are only angles, only
+/// lengths, or others.
 std::vector<double> natural_units(const std::vector<Component>& components,
                                   const Mechanics& mechanics, const double* g);
 

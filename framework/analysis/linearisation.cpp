@@ -64,8 +64,9 @@ Matrix column_slopes(const SteadyEquations& equations, const SteadyPoint& at,
   return out;
 }
 
-// Names of the 2n numbers, a coordinate that is the integral of a component by its own, and of the columns; and how much
-// each of the numbers is preferred as a state: shape, then other displacements, then velocities.
+// Names of the 2n numbers, a coordinate that is the integral of a component by its own, and of the
+// columns; and how much each of the numbers is preferred as a state: shape, then other
+// displacements, then velocities.
 struct Names {
   std::vector<std::string> numbers, columns;
   Vector preference;
@@ -91,7 +92,8 @@ Names names_of(const SystemModel& model) {
   return out;
 }
 
-// B in the coordinates of the basis: what a unit of each input adds to the acceleration. Inputs of rates are left out.
+// B in the coordinates of the basis: what a unit of each input adds to the acceleration. Inputs of
+// rates are left out.
 Matrix input_slopes(const SteadyEquations& equations,
                     const std::shared_ptr<const Geometry>& geometry, const SystemModel& model,
                     const SteadyPoint& at, const Matrix& basis, Linearisation& out) {

@@ -1,12 +1,15 @@
-// The flow of a system and its symmetries, pointwise and by values only. For steady.cpp, not installed.
+// The flow of a system and its symmetries, pointwise and by values only. For steady.cpp, not
+// installed.
 //
-//   Z(g, xi) = (xi, a(g, xi)):  I a = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,  A a = db/dt - (dA/dt) xi.
-// A pair (zeta, eta) of the algebra moves g to exp(e zeta) g exp(e eta), so that xi becomes Ad_exp(-e eta) xi:
+//   Z(g, xi) = (xi, a(g, xi)):  I a = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,  A a = db/dt -
+//   (dA/dt) xi.
+// A pair (zeta, eta) of the algebra moves g to exp(e zeta) g exp(e eta), so that xi becomes
+// Ad_exp(-e eta) xi:
 //   X_(zeta, eta)(g, xi) = (Ad_g^-1 zeta + eta, -ad_eta xi),
-// and is a symmetry where inertia, ker A, drift, force and phi go with it. The left factor is the symmetry of the space
-// around (a level ground), the right one that of the body (a disk and its axis).
-// Derivatives are central differences of order 10, 11 points 0.01 apart: round-off 1e-13, truncation h^10/2772 of the
-// eleventh derivative.
+// and is a symmetry where inertia, ker A, drift, force and phi go with it. The left factor is the
+// symmetry of the space around (a level ground), the right one that of the body (a disk and its
+// axis). Derivatives are central differences of order 10, 11 points 0.01 apart: round-off 1e-13,
+// truncation h^10/2772 of the eleventh derivative.
 #pragma once
 
 #include <memory>
@@ -54,8 +57,8 @@ class Flow {
   Matrix ad(const Vector& xi) const;
   Matrix Ad_inverse(const Vector& g) const;
 
-  /// A basis of the symmetries that move something, columns (zeta, eta), found at a few places near g. What moves nothing
-  /// anywhere, as (zeta, -zeta) of a commutative factor, is left out.
+  /// A basis of the symmetries that move something, columns (zeta, eta), found at a few places near
+  /// g. What moves nothing anywhere, as (zeta, -zeta) of a commutative factor, is left out.
   Matrix symmetries(const Vector& g) const;
   /// The columns X_s(g, xi) of these symmetries.
   Matrix orbit(const Matrix& symmetries, const Vector& g, const Vector& xi) const;
@@ -68,8 +71,8 @@ class Flow {
   std::shared_ptr<const Mechanics> mechanics_;
 };
 
-/// Orthonormal bases of the range and of the kernel. Singular values below `least` of the largest are none; those of a
-/// matrix that is all round-off beside `scale` all are.
+/// Orthonormal bases of the range and of the kernel. Singular values below `least` of the largest
+/// are none; those of a matrix that is all round-off beside `scale` all are.
 Matrix range_of(const Matrix& m, double least, double scale = 0);
 Matrix kernel_of(const Matrix& m, double least, double scale = 0);
 

@@ -40,8 +40,9 @@ std::vector<Complex> eigenvalues_of(const Matrix& m) {
   return {values.begin(), values.end()};
 }
 
-// How far each eigenvalue moves when the linearisation changes by its own errors: three times the most. Those of a Jordan
-// block move like a root of them, whatever their condition number. noise: of the entries, at least round-off.
+// How far each eigenvalue moves when the linearisation changes by its own errors: three times the
+// most. Those of a Jordan block move like a root of them, whatever their condition number. noise:
+// of the entries, at least round-off.
 std::vector<double> measured_round_off(const ReducedLinearisation& linear, double noise,
                                        const std::vector<Complex>& values) {
   constexpr double safety = 3;
@@ -117,7 +118,8 @@ SteadyMotion SteadyEquations::motion(const SteadyPoint& at, int family) const {
     out.round_off.push_back(round_off[i]);
     const Eigen::VectorXcd both =
         linear.basis.cast<Complex>() * solver.vectors.col(static_cast<Eigen::Index>(i));
-    // Where the mode is along the symmetries, which are divided out, as a spin that decays: its velocities.
+    // Where the mode is along the symmetries, which are divided out, as a spin that decays: its
+    // velocities.
     const bool moves = both.head(n).norm() > 1e-9 * both.norm();
     const Eigen::VectorXcd mode = moves ? both.head(n) : both.tail(n);
     out.modes.push_back(parts_of(mode, names_));

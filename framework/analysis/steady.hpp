@@ -1,17 +1,18 @@
 // Steady motions and their stability: relative equilibria of a system (`hamel steady`).
 //
-// A motion is steady when a symmetry carries it along: Z = X_s of reduced_flow.hpp for some symmetry s, with phi = 0 and
-// A xi = b. It is found by Newton's method (least-norm steps) near a guess. Seen from the frame that goes with s the field
-// W = Z - X_s vanishes there, and its linearisation in (delta, nu), g exp(e delta), xi + e nu, is
+// A motion is steady when a symmetry carries it along: Z = X_s of reduced_flow.hpp for some
+// symmetry s, with phi = 0 and A xi = b. It is found by Newton's method (least-norm steps) near a
+// guess. Seen from the frame that goes with s the field W = Z - X_s vanishes there, and its
+// linearisation in (delta, nu), g exp(e delta), xi + e nu, is
 //   delta' = nu + ad_delta Ad_g^-1 zeta,   nu' = da(g, xi)(delta, nu) + ad_eta nu,
-// on the perturbations that keep phi = 0 and A xi = b. Those along the symmetries themselves are divided out: what is
-// left are the eigenvalues. As many of them vanish as the steady motions form a family (of all speeds, of all circles).
-// Along a parameter a branch of steady motions is followed from neighbour to neighbour, by a predictor along its tangent
-// (steady_branch.hpp).
-// Source: Meijaard, Papadopoulos, Ruina, Schwab, Linearized dynamics equations for the balance and steer of a bicycle,
-// Proc. R. Soc. A 463 (2007); Zenkov, Bloch, Marsden, The energy-momentum method for the stability of nonholonomic
-// systems, Dynamics and Stability of Systems 13 (1998); Govaerts, Numerical Methods for Bifurcations of Dynamical
-// Equilibria (2000).
+// on the perturbations that keep phi = 0 and A xi = b. Those along the symmetries themselves are
+// divided out: what is left are the eigenvalues. As many of them vanish as the steady motions form
+// a family (of all speeds, of all circles). Along a parameter a branch of steady motions is
+// followed from neighbour to neighbour, by a predictor along its tangent (steady_branch.hpp).
+// Source: Meijaard, Papadopoulos, Ruina, Schwab, Linearized dynamics equations for the balance and
+// steer of a bicycle, Proc. R. Soc. A 463 (2007); Zenkov, Bloch, Marsden, The energy-momentum
+// method for the stability of nonholonomic systems, Dynamics and Stability of Systems 13 (1998);
+// Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria (2000).
 #pragma once
 
 #include <complex>
@@ -39,8 +40,8 @@ struct SteadyMotion {
   double residual = 0;                    // of Z = X_s, phi and A xi = b
   std::vector<std::complex<double>>
       eigenvalues;  // 1/s, by real part, largest first; without the neutral ones
-  /// Of each, measured: how far it moves when the linearisation changes by its own error. A pair that meets another is
-  /// known badly.
+  /// Of each, measured: how far it moves when the linearisation changes by its own error. A pair
+  /// that meets another is known badly.
   std::vector<double> round_off;
   std::vector<std::vector<ModePart>> modes;  // what moves in each
   int neutral = 0;                           // directions of symmetry, and zeros of the family
@@ -49,7 +50,8 @@ struct SteadyMotion {
   int growing() const;
 };
 
-/// The steady motion near a start, its rates named by components_of(model). Throws ConfigError when the system depends on time.
+/// The steady motion near a start, its rates named by components_of(model). Throws ConfigError when
+/// the system depends on time.
 SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, const Start& guess);
 /// The same near the start of a run: also `speed(5)`, of systems that define such a motion.
 SteadyMotion steady_motion(const Registry& registry, const Simulation& run);
@@ -82,8 +84,8 @@ struct SteadyCrossing {
   std::optional<SteadyPlace> other;  // on the branch that meets this one, beside the crossing
 };
 
-/// Where a branch ends before the last value: it turns back (fold), meets another one there as one of its halves
-/// (pitchfork), or was lost. other: on what goes on from there.
+/// Where a branch ends before the last value: it turns back (fold), meets another one there as one
+/// of its halves (pitchfork), or was lost. other: on what goes on from there.
 struct SteadyEnd {
   double value = 0, round_off = 0;
   Bifurcation kind = Bifurcation::unknown;
@@ -99,14 +101,14 @@ struct SteadySweep {
   std::optional<SteadyPlace> start;   // of a branch that another one meets: where it was entered
   std::vector<SteadySweep> branches;  // the others that were met and followed, none of them twice
 };
-/// The branch through the steady motion near the start of at(values[0]), or of the first value that has one. Where steady
-/// motions form a family, it is that of the momentum along the start of at(value). others: the branches that meet it are
-/// followed too, and those that meet them.
+/// The branch through the steady motion near the start of at(values[0]), or of the first value that
+/// has one. Where steady motions form a family, it is that of the momentum along the start of
+/// at(value). others: the branches that meet it are followed too, and those that meet them.
 SteadySweep sweep_steady(const Registry& registry, const std::vector<double>& values,
                          const std::function<Simulation(double value)>& at, bool others = false);
 
-/// Which eigenvalue of each motion goes on in which of the next: entry i of a curve is the place of the eigenvalue in
-/// motions[i], or -1 where the curve is not.
+/// Which eigenvalue of each motion goes on in which of the next: entry i of a curve is the place of
+/// the eigenvalue in motions[i], or -1 where the curve is not.
 std::vector<std::vector<int>> eigenvalue_curves(const std::vector<SteadyMotion>& motions);
 
 /// A number rounded to the decimals that are known of it.

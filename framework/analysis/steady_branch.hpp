@@ -1,12 +1,14 @@
-// A branch of steady motions along a parameter, followed by a predictor along its tangent and Newton's method. For
-// steady_sweep.cpp, steady_crossings.cpp; not installed.
+// A branch of steady motions along a parameter, followed by a predictor along its tangent and
+// Newton's method. For steady_sweep.cpp, steady_crossings.cpp; not installed.
 //
-// Unknowns z = (delta, nu) and q = value / scale. On the branch F(z, q) = 0, and its tangent (z', q') solves
-// F_z z' + F_q q' = 0 (least norm, the symmetries divided out); F_q by differences of systems beside the value. At a given
-// value Newton's method starts from z + z' dq. The step is halved until the trapezium rule holds on it: what Newton's method
-// corrects is dq/2 times the change of the tangent, up to a quarter. A correction onto another branch has none of that.
-// Along a family of steady motions, where Newton's method has its choice, only the size of the correction is held.
-// At a fold q' = 0; past it the branch is followed by its length: Newton's method across the tangent.
+// Unknowns z = (delta, nu) and q = value / scale. On the branch F(z, q) = 0, and its tangent (z',
+// q') solves F_z z' + F_q q' = 0 (least norm, the symmetries divided out); F_q by differences of
+// systems beside the value. At a given value Newton's method starts from z + z' dq. The step is
+// halved until the trapezium rule holds on it: what Newton's method corrects is dq/2 times the
+// change of the tangent, up to a quarter. A correction onto another branch has none of that. Along
+// a family of steady motions, where Newton's method has its choice, only the size of the correction
+// is held. At a fold q' = 0; past it the branch is followed by its length: Newton's method across
+// the tangent.
 #pragma once
 
 #include <functional>
@@ -39,7 +41,8 @@ class Branch {
   /// The node at another value, by as many steps as it needs; here: the last node reached.
   std::optional<BranchNode> advance(const BranchNode& from, double value, BranchNode& here);
   std::optional<BranchNode> advance(const BranchNode& from, double value);
-  /// Where the branch turns back between a node that advance() could not leave and a value, and a node behind it.
+  /// Where the branch turns back between a node that advance() could not leave and a value, and a
+  /// node behind it.
   struct Turn {
     BranchNode at, behind;
     double round_off;

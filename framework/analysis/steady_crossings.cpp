@@ -57,7 +57,8 @@ std::optional<BranchMotion> Crossings::on_branch(double value) {
   return out;
 }
 
-// By real part the eigenvalue at each place is a continuous function of the value: each that changes its sign has a zero.
+// By real part the eigenvalue at each place is a continuous function of the value: each that
+// changes its sign has a zero.
 void Crossings::look(const BranchMotion& a, const BranchMotion& b) {
   if (a.motion.eigenvalues.size() != b.motion.eigenvalues.size()) return;
   const bool rises = b.motion.growing() > a.motion.growing();

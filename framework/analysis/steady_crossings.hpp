@@ -1,11 +1,12 @@
-// Where the number of unstable eigenvalues changes along a branch, and what meets it there. For steady_sweep.cpp, not
-// installed.
+// Where the number of unstable eigenvalues changes along a branch, and what meets it there. For
+// steady_sweep.cpp, not installed.
 //
-// A crossing is the zero of a smooth function of the value: of the real part that changes its sign; where eigenvalues l and
-// -l* of a system without damping meet on the axis, which they reach like a root, of (l + l*)^2/4 or l^2, -w^2 on the
-// other side.
-// At a crossing of a real eigenvalue F_z has one kernel vector v more than beside it, or no branch meets it. On another
-// branch, at z + e v + ..., q is q0 + a e + b e^2: transcritical where its sign changes with that of e, else a pitchfork.
+// A crossing is the zero of a smooth function of the value: of the real part that changes its sign;
+// where eigenvalues l and -l* of a system without damping meet on the axis, which they reach like a
+// root, of (l + l*)^2/4 or l^2, -w^2 on the other side. At a crossing of a real eigenvalue F_z has
+// one kernel vector v more than beside it, or no branch meets it. On another branch, at z + e v +
+// ..., q is q0 + a e + b e^2: transcritical where its sign changes with that of e, else a
+// pitchfork.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// The equations of steady motions of one system, and Newton's method on them. For steady*.cpp, not installed.
+// The equations of steady motions of one system, and Newton's method on them. For steady*.cpp, not
+// installed.
 #pragma once
 
 #include <memory>
@@ -22,7 +23,8 @@ struct SteadyPoint {
   double residual = 0;
 };
 
-/// The linearisation about a steady motion, without the symmetries: z = (delta, nu) = basis y, y' = flow y.
+/// The linearisation about a steady motion, without the symmetries: z = (delta, nu) = basis y, y' =
+/// flow y.
 struct ReducedLinearisation {
   Matrix basis, flow;  // orthonormal columns
   Matrix orbit;        // the directions divided out
@@ -57,22 +59,26 @@ class SteadyEquations {
   Vector values(const SteadyPoint& at, bool held) const;
   /// dF by (delta, nu), and by the carrier: 2n columns, and one for each direction of the orbit.
   Matrix slope(const SteadyPoint& at, bool held) const;
-  /// Newton's method with least-norm steps, halved where the residual does not fall. Returns the sum of the steps (delta, nu).
+  /// Newton's method with least-norm steps, halved where the residual does not fall. Returns the
+  /// sum of the steps (delta, nu).
   Vector find(SteadyPoint& at, bool held, int steps = 60) const;
   /// Near the guess, with its momentum where that can be held; sets held.
   SteadyPoint find_near_guess(bool& held) const;
-  /// The singular values of slope(), least first, and the right singular vectors, as columns (delta, nu).
+  /// The singular values of slope(), least first, and the right singular vectors, as columns
+  /// (delta, nu).
   struct Singular {
     Vector values;
     Matrix right;
     double size = 0;  // the largest value
   };
   Singular singular(const SteadyPoint& at, bool held) const;
-  /// The first of these vectors without their part along the symmetries: orthonormal columns (delta, nu).
+  /// The first of these vectors without their part along the symmetries: orthonormal columns
+  /// (delta, nu).
   Matrix beside(const SteadyPoint& at, const Singular& singular, Eigen::Index count) const;
 
   ReducedLinearisation linearise(const SteadyPoint& at) const;
-  /// family: how many zeros of the family there are; -1: those that are zero to 1e-7 or their round-off.
+  /// family: how many zeros of the family there are; -1: those that are zero to 1e-7 or their
+  /// round-off.
   SteadyMotion motion(const SteadyPoint& at, int family) const;
 
  private:

@@ -11,7 +11,8 @@ namespace {
 
 using namespace reduced;
 
-// One branch over the values: from the first on, or from a place beside a crossing, towards later or earlier values.
+// One branch over the values: from the first on, or from a place beside a crossing, towards later
+// or earlier values.
 class Sweep {
  public:
   Sweep(Branch& branch, const std::vector<double>& values) : branch_(branch), values_(values) {

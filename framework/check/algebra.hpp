@@ -1,4 +1,5 @@
-// A geometry as functions of Eigen's vectors, for the laws; an element is its packed numbers. Not installed.
+// A geometry as functions of Eigen's vectors, for the laws; an element is its packed numbers. Not
+// installed.
 #pragma once
 
 #include <limits>
@@ -149,9 +150,9 @@ struct Algebra {
     }
     return inside;
   }
-  /// The change of xi, in units of round-off, that the coordinates of tau(xi) do not show. An entry of
-  /// 1e-12 resolves 1e-12 of round-off, one of 1 + 1e-12 resolves 1: with q(tau(xi + d)) = q + J d and
-  /// each entry known to |q| (at least |xi|), it is the norm of the pseudo-inverse of J/|q|.
+  /// The change of xi, in units of round-off, that the coordinates of tau(xi) do not show. An entry
+  /// of 1e-12 resolves 1e-12 of round-off, one of 1 + 1e-12 resolves 1: with q(tau(xi + d)) = q + J
+  /// d and each entry known to |q| (at least |xi|), it is the norm of the pseudo-inverse of J/|q|.
   double resolution(const Vector& xi) const {
     const Vector size = coordinates(tau(xi)).cwiseAbs().cwiseMax(xi.norm());
     const Matrix j = slopes([&](const Vector& d) { return tau(xi + d); });
@@ -161,7 +162,8 @@ struct Algebra {
   }
 };
 
-/// d/dd of tau(xi + d) taken back to e on the right or left, in the algebra: dR or dL, by differences.
+/// d/dd of tau(xi + d) taken back to e on the right or left, in the algebra: dR or dL, by
+/// differences.
 class NumericalDerivative {
  public:
   explicit NumericalDerivative(const Geometry& geometry) : geometry_(geometry) {

@@ -1,13 +1,14 @@
 // The laws of a retraction map, measured, by name and by type, also of a user's own.
 //
-//   for (const auto& law : hamel::check_retraction(hamel::registry(), "se3", "cayley")) std::cout << law << "\n";
-//   for (const auto& law : hamel::check_retraction<Cayley<SO3>>()) std::cout << law << "\n";
-// By name: the laws as far as a run sees the map, through Geometry. By type also the functions that Geometry does
-// not pass on, Newton's derivative among them.
+//   for (const auto& law : hamel::check_retraction(hamel::registry(), "se3", "cayley")) std::cout
+//   << law << "\n"; for (const auto& law : hamel::check_retraction<Cayley<SO3>>()) std::cout << law
+//   << "\n";
+// By name: the laws as far as a run sees the map, through Geometry. By type also the functions that
+// Geometry does not pass on, Newton's derivative among them.
 //
 // Points: |xi| from 1e-12 to 0.999 of the way to the edge of the domain (or 3 if there is none).
-// Bounds (laws.hpp) are relative to the size of the maps involved; differences are taken no nearer to the edge than
-// 0.7 of the way, where the seventh derivatives are still moderate.
+// Bounds (laws.hpp) are relative to the size of the maps involved; differences are taken no nearer
+// to the edge than 0.7 of the way, where the seventh derivatives are still moderate.
 #pragma once
 
 #include <algorithm>
@@ -40,8 +41,8 @@ struct Point {
 /// Twelve random directions with twelve lengths each.
 std::vector<Point> points(const Geometry& geometry, unsigned long long seed);
 
-/// A flag as a law: what is claimed must hold; what is denied must be seen to fail, but on an abelian
-/// group it may hold by accident.
+/// A flag as a law: what is claimed must hold; what is denied must be seen to fail, but on an
+/// abelian group it may hold by accident.
 double flag(bool claimed, double violation, bool abelian);
 
 }  // namespace check

@@ -1,14 +1,16 @@
-// The laws of a scheme, measured on a run: order against the exact motion, time reversal, constraint
-// residual, group defect. For anything that hamel::Simulation can run: registered by name, a system
-// object, or types of your own.
+// The laws of a scheme, measured on a run: order against the exact motion, time reversal,
+// constraint residual, group defect. For anything that hamel::Simulation can run: registered by
+// name, a system object, or types of your own.
 //
-//   for (const auto& law : hamel::check_scheme(hamel::registry(), {.system = "my_system", .s = 0.5}))
+//   for (const auto& law : hamel::check_scheme(hamel::registry(), {.system = "my_system", .s =
+//   0.5}))
 //     std::cout << law << "\n";
 // What a scheme claims is SchemeInfo::claim; nothing here knows any scheme by name.
-// Bounds: orders 0.05 (order 2 to 4), 0.1 (order 1) and 0.9 (above 4, at large steps; tests/verification/explicit_pairs is strict), the finest pair of three halvings;
-// reversal 1e-10 (each solve leaves up to 1e-13 of the momentum, some hundred of them, and the motion
-// may amplify them); constraint residual 8 eps (1 + |coordinates|)/|h|, since xi is recovered from
-// differences of configurations that carry a few eps; group defect 1e-14 (45 eps).
+// Bounds: orders 0.05 (order 2 to 4), 0.1 (order 1) and 0.9 (above 4, at large steps;
+// tests/verification/explicit_pairs is strict), the finest pair of three halvings; reversal 1e-10
+// (each solve leaves up to 1e-13 of the momentum, some hundred of them, and the motion may amplify
+// them); constraint residual 8 eps (1 + |coordinates|)/|h|, since xi is recovered from differences
+// of configurations that carry a few eps; group defect 1e-14 (45 eps).
 #pragma once
 
 #include <algorithm>
@@ -29,8 +31,8 @@ namespace hamel {
 struct OrderMeasurement {
   std::vector<double> step, configuration, velocity;
 
-  /// log2 of the ratio of the last two errors; infinite when both are round-off (the scheme is exact
-  /// there), NaN when a run failed.
+  /// log2 of the ratio of the last two errors; infinite when both are round-off (the scheme is
+  /// exact there), NaN when a run failed.
   static double slope(const std::vector<double>& error, double floor = 1e-11) {
     const double coarse = error[error.size() - 2], fine = error.back();
     if (coarse < floor && fine < floor) return std::numeric_limits<double>::infinity();
@@ -149,7 +151,8 @@ inline LawReport check_scheme(const Simulation& simulation, ClaimedOrder claim, 
     report.push_back({"leaves the constraint, as it says", 1e-6 / result.constraint_max, 1});
   }
   if (result.system->exact && (adapted || !constrained)) {
-    // Of a high order only large steps leave an error to measure, and they are not quite asymptotic.
+    // Of a high order only large steps leave an error to measure, and they are not quite
+    // asymptotic.
     const double coarsest = claim.order > 4 ? std::fmin(8 * step, until / 4) : step;
     const int halvings = claim.order > 6 ? 1 : claim.order > 4 ? 2 : 3;
     const OrderMeasurement measured = measure_order(simulation, coarsest, until, halvings);

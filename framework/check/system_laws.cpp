@@ -11,7 +11,8 @@ namespace hamel {
 namespace check {
 namespace {
 
-// Inputs that are zero change neither f nor b; each that is one changes f or b somewhere near the start.
+// Inputs that are zero change neither f nor b; each that is one changes f or b somewhere near the
+// start.
 void inputs_of_zero(const SystemModel& model, const Geometry& geometry, const Start& start,
                     LawReport& report) {
   Eigen::VectorXd g(geometry.size());

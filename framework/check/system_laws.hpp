@@ -1,9 +1,10 @@
-// The laws of a system, measured: `hamel::check_system(MySystem{})` on the type, with the equations of
-// motion; `hamel::check_system(registry, "my_system")` by name, everything that needs no group algebra.
+// The laws of a system, measured: `hamel::check_system(MySystem{})` on the type, with the equations
+// of motion; `hamel::check_system(registry, "my_system")` by name, everything that needs no group
+// algebra.
 //
 // Bounds: algebraic 1e-12 relative; derivatives along the exact motion 1e-9 relative, by central
-// differences of order 6 with step 4e-3 (round-off 1e-13, truncation below 1e-10 for rates up to 10);
-// the exact motion against lift composed to order 8, 1e-9.
+// differences of order 6 with step 4e-3 (round-off 1e-13, truncation below 1e-10 for rates up to
+// 10); the exact motion against lift composed to order 8, 1e-9.
 #pragma once
 
 #include <cmath>
@@ -25,12 +26,12 @@ namespace hamel {
 LawReport check_system(const SystemModel& model, double until = 5,
                        const Geometry* geometry = nullptr);
 
-/// A registered system: the laws above for its defaults, its parameters, and its exact motion against
-/// lift composed to order 8. ConfigError on an unknown name.
+/// A registered system: the laws above for its defaults, its parameters, and its exact motion
+/// against lift composed to order 8. ConfigError on an unknown name.
 LawReport check_system(const Registry& registry, const std::string& name, double until = 5);
 
-/// The differentials of potential, holonomic rows and inertia, automatic or by hand, against sixth-order
-/// differences along g tau(e eta) with step 4e-3 (error below 1e-9).
+/// The differentials of potential, holonomic rows and inertia, automatic or by hand, against
+/// sixth-order differences along g tau(e eta) with step 4e-3 (error below 1e-9).
 template <class S, class R>
 LawReport check_differentials(const S& system,
                               const typename S::Group::template Element<double>& g) {

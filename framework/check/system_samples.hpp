@@ -1,5 +1,5 @@
-// What the laws of a system look at: its matrices at a configuration, an admissible start, other values of
-// its parameters.
+// What the laws of a system look at: its matrices at a configuration, an admissible start, other
+// values of its parameters.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,8 @@
 namespace hamel {
 namespace check {
 
-/// I, A and b at a configuration; geometry: of any retraction, for systems that are not left-invariant.
+/// I, A and b at a configuration; geometry: of any retraction, for systems that are not
+/// left-invariant.
 struct Matrices {
   Eigen::MatrixXd inertia, rows;
   Eigen::VectorXd drift;
@@ -56,8 +57,8 @@ inline Start admissible_start(const SystemModel& model, const Geometry* geometry
   return start;
 }
 
-/// Another value of a parameter: doubled (whole numbers stay whole), and something else for 0, which
-/// stays only where the system takes neither 0.25 nor 1.
+/// Another value of a parameter: doubled (whole numbers stay whole), and something else for 0,
+/// which stays only where the system takes neither 0.25 nor 1.
 inline std::vector<double> changed_value(const SystemInfo& info, const Field& field) {
   for (const double for_zero : {0.25, 1.0, 0.0}) {
     std::vector<double> value = field.value;

@@ -1,4 +1,5 @@
-// The containers that the library was compiled with: a program with others does not link, and the symbol says why.
+// The containers that the library was compiled with: a program with others does not link, and the
+// symbol says why.
 #pragma once
 
 #ifdef _GLIBCXX_DEBUG

@@ -1,8 +1,9 @@
 // Numbers that stand as a formula in a file: "m*g*sin(slope)", over named variables and constants.
 //
-// The language is muParser's: + - * / ^, comparisons, && ||, a ? b : c, the functions of expression.cpp, and pi. Names may
-// have dots (steer.angle) and end in ' (theta'). muParser reads the text; what it read is kept as a list of instructions,
-// which is evaluated, and differentiated exactly: by all variables backwards, along one direction forwards.
+// The language is muParser's: + - * / ^, comparisons, && ||, a ? b : c, the functions of
+// expression.cpp, and pi. Names may have dots (steer.angle) and end in ' (theta'). muParser reads
+// the text; what it read is kept as a list of instructions, which is evaluated, and differentiated
+// exactly: by all variables backwards, along one direction forwards.
 #pragma once
 
 #include <map>
@@ -30,8 +31,8 @@ class ExpressionError : public std::invalid_argument {
 /// One object serves one thread at a time. Evaluation takes no memory.
 class Expression {
  public:
-  /// A formula over these variables; those with a name that is not allowed cannot stand in it. Throws ExpressionError,
-  /// with the nearest name for one that is unknown.
+  /// A formula over these variables; those with a name that is not allowed cannot stand in it.
+  /// Throws ExpressionError, with the nearest name for one that is unknown.
   Expression(const std::string& text, const std::vector<std::string>& variables,
              const std::map<std::string, double>& constants = {});
   /// Its value; values in the order of the variables.
@@ -57,7 +58,8 @@ class Expression {
 
  private:
   enum class Op { add, subtract, multiply, square, rule, choose };
-  // slots[to] = rule(slots[a], slots[b]), of the commonest rules without a call; choose: slots[a] ? slots[b] : slots[c].
+  // slots[to] = rule(slots[a], slots[b]), of the commonest rules without a call; choose: slots[a] ?
+  // slots[b] : slots[c].
   struct Instruction {
     Op op;
     const Rule* rule;

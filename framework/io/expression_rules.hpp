@@ -1,4 +1,5 @@
-// The functions and operators of a formula, each with its derivatives. Part of expression.cpp, not installed.
+// The functions and operators of a formula, each with its derivatives. Part of expression.cpp, not
+// installed.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Tables as HDF5 files, by the C API (1.10). Every handle is closed by the object that holds it, and a
-// call that fails throws. The library's printing of its own error stack is switched off.
+// Tables as HDF5 files, by the C API (1.10). Every handle is closed by the object that holds it,
+// and a call that fails throws. The library's printing of its own error stack is switched off.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>

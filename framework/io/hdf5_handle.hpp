@@ -33,7 +33,8 @@ inline void check(herr_t status, const char* what) {
   if (status < 0) throw ConfigError({fmt::format("hdf5: {} failed", what)});
 }
 
-// Before anything else: no printing, and nothing at the program's exit, where it would write to a full disk again.
+// Before anything else: no printing, and nothing at the program's exit, where it would write to a
+// full disk again.
 inline void begin() {
   static const herr_t once = H5dont_atexit();
   static_cast<void>(once);

@@ -34,7 +34,8 @@ void finish_file(const std::string& part, const std::string& path) {
                                std::strerror(on_disk ? errno : reason), part));
 }
 
-// (Of the open file, not of the process, and apart from those by which HDF5 keeps readers away from a file.)
+// (Of the open file, not of the process, and apart from those by which HDF5 keeps readers away from
+// a file.)
 static struct flock whole_file() {
   struct flock out = {};
   out.l_type = F_WRLCK;
@@ -86,7 +87,8 @@ void write_file(const std::string& path, const std::string& text) {
   }
 }
 
-// Asked, not tried: a file that is made for a moment stays there when the program is killed at that moment.
+// Asked, not tried: a file that is made for a moment stays there when the program is killed at that
+// moment.
 std::string unwritable(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) return "output: an empty path";

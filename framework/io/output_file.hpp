@@ -1,4 +1,5 @@
-// Files that appear whole under their name: written beside it, as name.part, and renamed when they are done.
+// Files that appear whole under their name: written beside it, as name.part, and renamed when they
+// are done.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +7,8 @@
 
 namespace hamel {
 
-/// What was written is kept beside the file, as name.part, and is no whole: a full disk, a pipe that was closed.
+/// What was written is kept beside the file, as name.part, and is no whole: a full disk, a pipe
+/// that was closed.
 struct Unfinished : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,5 +1,5 @@
-// Rows of numbers in an HDF5 file that is written as they come and can be read at any time, also after the writer was
-// killed (single writer, multiple readers: H5F_START_SWMR_WRITE).
+// Rows of numbers in an HDF5 file that is written as they come and can be read at any time, also
+// after the writer was killed (single writer, multiple readers: H5F_START_SWMR_WRITE).
 //
 // Each group of columns is a data set, rows x columns (rows alone where it is one number), with
 // unit, meaning, frame and columns as attributes; texts are data sets of bytes. The file's

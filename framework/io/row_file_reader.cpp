@@ -78,7 +78,8 @@ RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<D
   if (H5Fis_hdf5(path.c_str()) <= 0) refuse("it is no HDF5 file");
   data_->attempt([&] {
     const Handle access = latest_format();
-    // What another writes may be read again until it is whole; what is damaged stays so, at every level of the file.
+    // What another writes may be read again until it is whole; what is damaged stays so, at every
+    // level of the file.
     if (!locked(path)) check(H5Pset_metadata_read_attempts(access, 1), "H5Pset_metadata");
     hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
     if (file < 0) file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);

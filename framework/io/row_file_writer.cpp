@@ -42,7 +42,8 @@ void append_to(hid_t set, hid_t type, hsize_t at, hsize_t count, hsize_t width, 
 
 }  // namespace
 
-// As FNV-1a, by numbers instead of bytes; turned, so that a sign counts as much as what is behind the point.
+// As FNV-1a, by numbers instead of bytes; turned, so that a sign counts as much as what is behind
+// the point.
 std::uint64_t checksum_of_rows(std::uint64_t before, std::span<const double> rows) {
   constexpr std::uint64_t prime = 1099511628211u;
   for (const double value : rows)

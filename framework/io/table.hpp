@@ -1,8 +1,8 @@
 // A table with named columns, each with its unit and meaning: written as CSV and as HDF5.
 //
-// In the CSV a number that is not finite is an empty field. In the HDF5 file each column is a data set
-// of its own name, numbers as 64-bit floats (NaN where there is none) or integers, texts as UTF-8
-// strings; `unit` and `meaning` are its attributes, further texts attributes of the file.
+// In the CSV a number that is not finite is an empty field. In the HDF5 file each column is a data
+// set of its own name, numbers as 64-bit floats (NaN where there is none) or integers, texts as
+// UTF-8 strings; `unit` and `meaning` are its attributes, further texts attributes of the file.
 #pragma once
 
 #include <map>
@@ -30,7 +30,8 @@ struct Table {
   /// The column; ConfigError naming the nearest when there is none.
   const TableColumn& column(const std::string& name) const;
   std::string csv() const;
-  /// The file appears whole or not at all. ConfigError when it cannot be written, or without HDF5 in the build.
+  /// The file appears whole or not at all. ConfigError when it cannot be written, or without HDF5
+  /// in the build.
   void write_hdf5(const std::string& path, const std::map<std::string, std::string>& texts) const;
 };
 

@@ -8,8 +8,8 @@ namespace hamel {
 /// What a file of a user, or a text in its place, holds at most.
 constexpr size_t kMaxText = 4'000'000;  // characters
 
-/// The text of a file. ConfigError "what: cannot read 'path': ..." when it is not there, larger than kMaxText,
-/// or no regular file: a pipe may keep a program waiting for ever.
+/// The text of a file. ConfigError "what: cannot read 'path': ..." when it is not there, larger
+/// than kMaxText, or no regular file: a pipe may keep a program waiting for ever.
 std::string read_text_file(const std::string& what, const std::string& path);
 
 }  // namespace hamel

@@ -1,5 +1,5 @@
-// Numbers of a TOML file, which may be formulas of its parameters, and formulas of more (expression.hpp). Mistakes have
-// the place of the character. Not installed.
+// Numbers of a TOML file, which may be formulas of its parameters, and formulas of more
+// (expression.hpp). Mistakes have the place of the character. Not installed.
 #pragma once
 
 #include <cmath>

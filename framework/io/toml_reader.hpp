@@ -1,5 +1,5 @@
-// Reads nodes of a TOML table into fields and gathers the mistakes, each with its place. Not installed, since it
-// needs toml++.
+// Reads nodes of a TOML table into fields and gathers the mistakes, each with its place. Not
+// installed, since it needs toml++.
 #pragma once
 
 #include <concepts>
@@ -19,8 +19,8 @@ class TomlReader {
  public:
   explicit TomlReader(const std::string& origin) : origin_(origin) {}
 
-  /// ConfigError with its place when text is not TOML, longer than kMaxText, or nested so deep that toml++ and its
-  /// tables, which work by recursion, would run out of stack.
+  /// ConfigError with its place when text is not TOML, longer than kMaxText, or nested so deep that
+  /// toml++ and its tables, which work by recursion, would run out of stack.
   toml::table parse(const std::string& text) const;
 
   /// The node as the type of `out`, else a mistake; one entry is a list too.

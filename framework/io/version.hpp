@@ -9,8 +9,8 @@ namespace hamel {
 /// "0.1.0".
 std::string_view version();
 
-/// The commit, 12 hexadecimal digits, with "-dirty" when the tree had changes and then, when these are of the
-/// sources, "-" with a hash of them; "unknown" outside a clone.
+/// The commit, 12 hexadecimal digits, with "-dirty" when the tree had changes and then, when these
+/// are of the sources, "-" with a hash of them; "unknown" outside a clone.
 std::string_view git_hash();
 
 /// "GCC 12.2.0".

@@ -1,17 +1,19 @@
 // A retraction from tau alone: every derivative by automatic differentiation (ceres::Jet).
 //
-// From `name`, `symmetric` and a templated `tau` follow the inverse, dR, dL and the Newton derivative:
+// From `name`, `symmetric` and a templated `tau` follow the inverse, dR, dL and the Newton
+// derivative:
 //   struct MyMap : hamel::AutoRetraction<MyMap, hamel::SO3> {
 //     static std::string name() { return "my_map"; }
 //     static constexpr bool symmetric = true;
 //     template <class T> static hamel::MatT<T, 3, 3> tau(const hamel::VecT<T, 3>& xi) { ... }
 //   };
-// With q the coordinates of an element near e (G::coordinates, templated) and J = d q(tau(d))/dd at d = 0:
+// With q the coordinates of an element near e (G::coordinates, templated) and J = d q(tau(d))/dd at
+// d = 0:
 //   dR_xi    = J^+ d/dd q(tau(xi + d) tau(xi)^-1)
 //   tau^-1   : xi += dL_xi^-1 J^+ (q(tau(xi)^-1 g) - q(e)),  Newton's method on the group
-// ceres::Jet does not nest (no double * Jet<Jet>); d/dxi[dR^-T p], which only steers Newton, is therefore a
-// difference quotient of the exact dR^-1.
-// Cost: one to two orders of magnitude above a closed form. This header alone includes <ceres/jet.h>.
+// ceres::Jet does not nest (no double * Jet<Jet>); d/dxi[dR^-T p], which only steers Newton, is
+// therefore a difference quotient of the exact dR^-1. Cost: one to two orders of magnitude above a
+// closed form. This header alone includes <ceres/jet.h>.
 #pragma once
 
 #include <string>
@@ -44,7 +46,8 @@ struct AutoRetraction : RetractionDefaults<Derived, G> {
   }
   static Mat<dim, dim> dtau_right_inverse(const Vec<dim>& xi) { return inverse_of(dtau_right(xi)); }
   static Mat<dim, dim> dtau_left_inverse(const Vec<dim>& xi) { return inverse_of(dtau_left(xi)); }
-  /// d/dxi[dR^-T p]: central differences of order 6 of the exact dR^-1, step 1e-3, error about 1e-12.
+  /// d/dxi[dR^-T p]: central differences of order 6 of the exact dR^-1, step 1e-3, error about
+  /// 1e-12.
   static Mat<dim, dim> dtau_right_inverse_transpose_derivative(const Vec<dim>& xi,
                                                                const Vec<dim>& p) {
     constexpr double step = 1e-3;
@@ -61,7 +64,8 @@ struct AutoRetraction : RetractionDefaults<Derived, G> {
     return m;
   }
 
-  /// Newton from xi = 0, steps at most 1 long. Throws DomainError when 100 steps do not reach round-off.
+  /// Newton from xi = 0, steps at most 1 long. Throws DomainError when 100 steps do not reach
+  /// round-off.
   static Vec<dim> tau_inverse(const typename G::template Element<double>& g) {
     const std::vector<double> start = G::coordinates(G::template identity<double>());
     Vec<dim> xi = Vec<dim>::Zero();

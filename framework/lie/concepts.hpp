@@ -1,7 +1,7 @@
 // The concepts Group and Retraction: a comment per requirement.
 //
-// Conventions (framework/README.md): left trivialisation, xi = g^-1 g' in the algebra, mu in its dual;
-// coadjoint maps are plain transposes, Ad*_g = (Ad_g)^T, ad*_xi = (ad_xi)^T.
+// Conventions (framework/README.md): left trivialisation, xi = g^-1 g' in the algebra, mu in its
+// dual; coadjoint maps are plain transposes, Ad*_g = (Ad_g)^T, ad*_xi = (ad_xi)^T.
 #pragma once
 
 #include <concepts>
@@ -21,14 +21,14 @@ struct DomainError : std::domain_error {
   using std::domain_error::domain_error;
 };
 
-/// A fixed-size matrix or vector (or expression) of R rows and C columns. convertible_to does not suffice:
-/// Eigen declares conversions that then fail to compile.
+/// A fixed-size matrix or vector (or expression) of R rows and C columns. convertible_to does not
+/// suffice: Eigen declares conversions that then fail to compile.
 template <class X, int R, int C>
 concept Shape =
     std::remove_cvref_t<X>::RowsAtCompileTime == R&& std::remove_cvref_t<X>::ColsAtCompileTime == C;
 
-/// A Lie group G of dimension n; what it may state beside this: group_defaults.hpp. Everything is static and templated
-/// on the scalar T:
+/// A Lie group G of dimension n; what it may state beside this: group_defaults.hpp. Everything is
+/// static and templated on the scalar T:
 ///   `template <class T> using Element`   the representation of a group element;
 ///   operations deduce T from their arguments (pass evaluated elements, not Eigen expressions).
 template <class G>
@@ -53,7 +53,8 @@ concept Group = requires(const typename G::template Element<double>& g, const Ve
   { G::defect(g) } -> std::convertible_to<double>;
   // Defining (or homogeneous) matrix.
   {G::matrix(g)};
-  // CSV columns of an element: names, values, and back (std::invalid_argument when not in the group).
+  // CSV columns of an element: names, values, and back (std::invalid_argument when not in the
+  // group).
   { G::columns() } -> std::convertible_to<std::vector<std::string>>;
   { G::coordinates(g) } -> std::convertible_to<std::vector<double>>;
   { G::coordinates(g).count } -> std::convertible_to<std::size_t>;  // Coordinates<double, N>
@@ -69,7 +70,8 @@ struct TauTraits {
 };
 
 /// A retraction map tau: algebra -> G with tau(0) = e and tau'(0) = id.
-/// dR tau_xi eta = (d/de tau(xi + e eta)) tau(xi)^-1, dL tau_xi eta = tau(xi)^-1 d/de tau(xi + e eta).
+/// dR tau_xi eta = (d/de tau(xi + e eta)) tau(xi)^-1, dL tau_xi eta = tau(xi)^-1 d/de tau(xi + e
+/// eta).
 template <class R>
 concept Retraction = requires(const Vec<R::Group::dim>& xi, const Vec<R::Group::dim>& p,
                               const typename R::Group::template Element<double>& g) {
@@ -91,7 +93,8 @@ concept Retraction = requires(const Vec<R::Group::dim>& xi, const Vec<R::Group::
   // (dR^-1)^T p and (dL^-1)^T p, evaluated in each step.
   { R::dtau_right_inverse_transpose(xi, p) } -> Shape<R::Group::dim, 1>;
   { R::dtau_left_inverse_transpose(xi, p) } -> Shape<R::Group::dim, 1>;
-  // For Newton's Jacobian: the n x n matrix of d/dxi [ (dR tau_xi)^-T p ] with the covector p held fixed.
+  // For Newton's Jacobian: the n x n matrix of d/dxi [ (dR tau_xi)^-T p ] with the covector p held
+  // fixed.
   { R::dtau_right_inverse_transpose_derivative(xi, p) } -> Shape<R::Group::dim, R::Group::dim>;
   // Is xi inside the ball (or box) on which tau is a diffeomorphism with inverse tau_inverse?
   { R::in_domain(xi) } -> std::convertible_to<bool>;

@@ -13,7 +13,8 @@
 
 namespace hamel {
 
-/// The coordinates of an element. Their number is fixed, so that a step that reads them allocates nothing.
+/// The coordinates of an element. Their number is fixed, so that a step that reads them allocates
+/// nothing.
 template <class T, std::size_t N>
 struct Coordinates : std::array<T, N> {
   static constexpr std::size_t count = N;
@@ -58,8 +59,8 @@ void check_coordinates(std::span<const double> values) {
                               to_text(*bad) + ", expected a finite number");
 }
 
-/// The element nearest to finite values that are not one, as after a Runge-Kutta stage. A group whose
-/// from_coordinates refuses such values defines nearest(values).
+/// The element nearest to finite values that are not one, as after a Runge-Kutta stage. A group
+/// whose from_coordinates refuses such values defines nearest(values).
 template <class G>
 typename G::template Element<double> nearest_element(std::span<const double> values) {
   if constexpr (requires { G::nearest(values); }) return G::nearest(values);

@@ -1,6 +1,6 @@
-// Decompositions of matrices whose sizes are known at run time only, compiled once: each costs seconds of
-// compilation wherever it is instantiated. For sources of the library: no installed header includes
-// this one, since a user's flags may align Eigen's memory differently.
+// Decompositions of matrices whose sizes are known at run time only, compiled once: each costs
+// seconds of compilation wherever it is instantiated. For sources of the library: no installed
+// header includes this one, since a user's flags may align Eigen's memory differently.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace hamel::dense {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// m = u diag(values) v^T, the largest value first; u, v empty where the options do not ask for them.
+/// m = u diag(values) v^T, the largest value first; u, v empty where the options do not ask for
+/// them.
 struct Svd {
   Vector values;
   Matrix u, v;
@@ -26,7 +27,8 @@ struct Qr {
   Matrix r;  // upper triangular, as many rows as the smaller size
 };
 Qr qr(const Matrix& m);
-/// The rank of m by QR with pivoted columns; threshold: relative to the largest pivot, 0 for Eigen's.
+/// The rank of m by QR with pivoted columns; threshold: relative to the largest pivot, 0 for
+/// Eigen's.
 Eigen::Index rank(const Matrix& m, double threshold = 0);
 /// The columns of m in the order in which QR with pivoted columns takes them.
 std::vector<int> pivots(const Matrix& m);

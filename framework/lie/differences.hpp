@@ -1,5 +1,5 @@
-// Derivatives by central differences of order 6, for functions that are known by their values only: along g tau(e eta),
-// and in time.
+// Derivatives by central differences of order 6, for functions that are known by their values only:
+// along g tau(e eta), and in time.
 //
 //   f' = (45 (f_1 - f_-1) - 9 (f_2 - f_-2) + (f_3 - f_-3)) / (60 h) + h^6 f^(7) / 140
 #pragma once
@@ -12,9 +12,9 @@
 
 namespace hamel {
 
-/// d/de f(g tau(e eta)) is the sum of weight * f(moved) over the calls of add(e, weight), moved = g tau(e eta).
-/// operations: tau(xi, out), compose(g, h, out). step (n numbers) and moved (an element) are the caller's work
-/// space.
+/// d/de f(g tau(e eta)) is the sum of weight * f(moved) over the calls of add(e, weight), moved = g
+/// tau(e eta). operations: tau(xi, out), compose(g, h, out). step (n numbers) and moved (an
+/// element) are the caller's work space.
 template <class Operations, class From, class Vector, class Element, class Add>
 void differentiate_along(const Operations& operations, const From& g, const Vector& eta,
                          Vector& step, Element& moved, Add&& add) {
@@ -34,9 +34,9 @@ void differentiate_along(const Operations& operations, const From& g, const Vect
   }
 }
 
-/// out = df/dt of a function of time whose scale nobody knows: of units 14 ms, 4 ms, ... 1 ns the one at which the
-/// derivative changes least, or no more than by round-off. f(t) returns a vector that holds until the next call; work
-/// has two of its size.
+/// out = df/dt of a function of time whose scale nobody knows: of units 14 ms, 4 ms, ... 1 ns the
+/// one at which the derivative changes least, or no more than by round-off. f(t) returns a vector
+/// that holds until the next call; work has two of its size.
 template <class Function, class Vector>
 void differentiate_in_time(double t, Function&& f, std::array<Vector, 2>& work, Vector& out) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();

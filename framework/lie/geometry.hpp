@@ -1,8 +1,9 @@
 // A group with a retraction, its type erased: what the steps of erased problems evaluate.
 //
-// An element is a block of numbers as its group lays it out (Packing), vectors are n numbers, matrices
-// n x n column-major. Products are put together from their factors at run time (ProductGeometry), so
-// that "se2*so2^30" needs no kernel of its own. A virtual call costs about 2 ns.
+// An element is a block of numbers as its group lays it out (Packing), vectors are n numbers,
+// matrices n x n column-major. Products are put together from their factors at run time
+// (ProductGeometry), so that "se2*so2^30" needs no kernel of its own. A virtual call costs about 2
+// ns.
 #pragma once
 
 #include <algorithm>
@@ -58,7 +59,8 @@ class Geometry {
   virtual void Ad_transpose(const double* g, const double* mu, double* out) const = 0;
   virtual void ad_transpose(const double* xi, const double* mu, double* out) const = 0;
   virtual void Ad(const double* g, const double* xi, double* out) const = 0;
-  // tau; tau^-1 (false outside its range); the matrix dR; dR^T m; dR^-T p; dL^-1 eta; is xi in the domain?
+  // tau; tau^-1 (false outside its range); the matrix dR; dR^T m; dR^-T p; dL^-1 eta; is xi in the
+  // domain?
   virtual void tau(const double* xi, double* out) const = 0;
   virtual bool tau_inverse(const double* g, double* out) const = 0;
   virtual void dtau_right(const double* xi, double* matrix) const = 0;
@@ -79,7 +81,8 @@ class Geometry {
   virtual void nearest(std::span<const double> values, double* out) const = 0;
 };
 
-/// Functions called in a step are flattened: a kernel's unit is too large for the compiler to inline them itself.
+/// Functions called in a step are flattened: a kernel's unit is too large for the compiler to
+/// inline them itself.
 template <class Tau>
 class TypedGeometry final : public Geometry {
   using G = typename Tau::Group;

@@ -29,7 +29,8 @@ struct PlainMatrix {
 /// A linear map at the element with coordinates x; out has the size of the result.
 using MapAt = void (*)(std::span<const double> x, std::span<const double> v, std::span<double> out);
 
-/// A group that is no product, by what it states of its velocities and coordinates (group_defaults.hpp).
+/// A group that is no product, by what it states of its velocities and coordinates
+/// (group_defaults.hpp).
 struct GroupFactor {
   std::string name;  // "se2"
   int dim = 0, columns = 0;

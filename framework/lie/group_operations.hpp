@@ -1,5 +1,6 @@
-// The operations of a group with a retraction on elements of its own type, with out-parameters: what the
-// steps of schemes call where the types are known. geometry.hpp has the same operations with the type erased.
+// The operations of a group with a retraction on elements of its own type, with out-parameters:
+// what the steps of schemes call where the types are known. geometry.hpp has the same operations
+// with the type erased.
 #pragma once
 
 #include <concepts>

@@ -1,5 +1,5 @@
-// Linear equations of a dozen unknowns. One routine for all sizes: Eigen's decompositions cost seconds of compilation for
-// each size, and a heap where the size is known at run time only.
+// Linear equations of a dozen unknowns. One routine for all sizes: Eigen's decompositions cost
+// seconds of compilation for each size, and a heap where the size is known at run time only.
 #pragma once
 
 #include <type_traits>
@@ -8,8 +8,9 @@
 
 namespace hamel {
 
-/// b <- a^-1 b by elimination with partial pivoting; a is n x n, b is n x columns, both column-major, a is overwritten.
-/// NaN or infinite where a is singular. Source: Golub, Van Loan, Matrix Computations, 3.4.
+/// b <- a^-1 b by elimination with partial pivoting; a is n x n, b is n x columns, both
+/// column-major, a is overwritten. NaN or infinite where a is singular. Source: Golub, Van Loan,
+/// Matrix Computations, 3.4.
 void solve_linear(double* a, double* b, int n, int columns);
 
 /// m^-1: in closed form up to 4 x 4.

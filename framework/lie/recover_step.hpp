@@ -3,8 +3,8 @@
 //
 //   tau_s(xi)          = tau(-s xi)^-1 tau((1-s) xi) = Delta,   Delta = g_k^-1 g_{k+1}
 //   tau_s^-1 d(tau_s)  = Ad_{f1^-1} (s dR_{-s xi} + (1-s) dR_{(1-s) xi}) dxi
-// By tau^-1 when tau_s = tau, else by Newton's method on the group with the rest tau^-1(tau_s(xi)^-1 Delta).
-// The floor of a constraint residual so recovered is about eps / h.
+// By tau^-1 when tau_s = tau, else by Newton's method on the group with the rest
+// tau^-1(tau_s(xi)^-1 Delta). The floor of a constraint residual so recovered is about eps / h.
 #pragma once
 
 #include <limits>

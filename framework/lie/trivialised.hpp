@@ -1,9 +1,9 @@
 // Derivatives of trivialised maps: (M36) of framework/schemes/README.md.
 //
-// R = dR tau_z (n x n), D(z, p) = d/dz [ R^-T p ] with p fixed, K(mu) eta = (ad_eta)^T mu, f = tau(z). With every
-// covector on the right held fixed:
-//   (a)  d/dz [ R^T m ]            = -R^T D(z, R^T m)                  (differentiate R^-T (R^T m) = m)
-//   (b)  d/dz [ Ad_f^T m ]         =  K(Ad_f^T m) dL tau_z             (f varies as f dL dz)
+// R = dR tau_z (n x n), D(z, p) = d/dz [ R^-T p ] with p fixed, K(mu) eta = (ad_eta)^T mu, f =
+// tau(z). With every covector on the right held fixed:
+//   (a)  d/dz [ R^T m ]            = -R^T D(z, R^T m)                  (differentiate R^-T (R^T m)
+//   = m) (b)  d/dz [ Ad_f^T m ]         =  K(Ad_f^T m) dL tau_z             (f varies as f dL dz)
 //   (c)  d/dz [ Ad_{f^-1}^T mu ]   = -K(Ad_{f^-1}^T mu) R              (f varies as (R dz) f)
 //   (d)  d/dz [ dL^T mu ]          = -R^T ( D(z, R^T m) + K(m) R ),  m = Ad_{f^-1}^T mu
 // where (d) is (a) and (c) applied to dL^T mu = R^T Ad_{f^-1}^T mu.
@@ -14,9 +14,11 @@
 
 namespace hamel {
 
-/// m0 of the cotangent lift at the base point, m1 = m0 + nu, by (M13) of framework/schemes/README.md:
+/// m0 of the cotangent lift at the base point, m1 = m0 + nu, by (M13) of
+/// framework/schemes/README.md:
 ///   s dR_{z0}^T m0 + (1-s) dR_{z1}^T (m0 + nu) = p,            z0 = -s xi, z1 = (1-s) xi
-///   m0 = A_0^T M^-T (A_1^T p - (1-s) nu),                      A_i = dR_{z_i}^-1, M = s A_1 + (1-s) A_0
+///   m0 = A_0^T M^-T (A_1^T p - (1-s) nu),                      A_i = dR_{z_i}^-1, M = s A_1 +
+///   (1-s) A_0
 /// No dR is formed. Where A is quadratic, A(xi) = 1 + odd + even (Cayley), the odd parts cancel:
 ///   M = 1 + s (1-s) even(xi),
 /// which the retraction solves in closed form.

@@ -1,6 +1,7 @@
 // Fixed-size linear algebra, named once.
 //
-// Vectors are columns. n is the dimension of the group, m = n - k the number of admissible directions.
+// Vectors are columns. n is the dimension of the group, m = n - k the number of admissible
+// directions.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +9,11 @@
 
 #include <Eigen/Core>
 
-// A program may be compiled with other flags than the library (-march=native, -fsanitize=address, ...), which
-// change how Eigen aligns and takes memory. So the library keeps its own copies of Eigen's functions
-// (tools/cmake/localise), and no memory that Eigen took on one side is given back on the other.
-// What must be the same on both sides is in the name of a symbol: else the program does not link, and the name
-// says why.
+// A program may be compiled with other flags than the library (-march=native, -fsanitize=address,
+// ...), which change how Eigen aligns and takes memory. So the library keeps its own copies of
+// Eigen's functions (tools/cmake/localise), and no memory that Eigen took on one side is given back
+// on the other. What must be the same on both sides is in the name of a symbol: else the program
+// does not link, and the name says why.
 static_assert(std::is_same_v<Eigen::Index, std::ptrdiff_t> && !Eigen::MatrixXd::IsRowMajor,
               "hamel needs Eigen as it is: without EIGEN_DEFAULT_TO_ROW_MAJOR and "
               "EIGEN_DEFAULT_DENSE_INDEX_TYPE");
@@ -31,8 +32,8 @@ namespace hamel {
 [[gnu::used]] static const int* const built_with = &HAMEL_BUILT_WITH;
 }
 
-/// Before a function on the hot path: everything it calls is inlined into it. Not under the sanitizers, where that
-/// costs minutes of compilation.
+/// Before a function on the hot path: everything it calls is inlined into it. Not under the
+/// sanitizers, where that costs minutes of compilation.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define HAMEL_FLATTEN
 #elif defined(__has_feature)  // clang

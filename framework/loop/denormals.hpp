@@ -1,5 +1,5 @@
-// Numbers below the normal range, flushed to zero for a while: a velocity that decays for ever would else slow
-// every operation on it twenty times. Nothing of the size of a round-off changes.
+// Numbers below the normal range, flushed to zero for a while: a velocity that decays for ever
+// would else slow every operation on it twenty times. Nothing of the size of a round-off changes.
 #pragma once
 
 #if defined(__SSE2__)

@@ -1,9 +1,10 @@
 // Steps of explicit pairs, chosen by the error.
 //
-// A step of size h whose estimate err (1 at the tolerance, O(h^k)) is above 1 is taken again; the next one is
+// A step of size h whose estimate err (1 at the tolerance, O(h^k)) is above 1 is taken again; the
+// next one is
 //   h clip(0.85 err^-a err_before^b, 0.2, 5),   a = 0.7/k,  b = 0.4/k,
-// which does not grow after a rejection, (M45). Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
-// II.4 (PI control: Gustafsson).
+// which does not grow after a rejection, (M45). Source: Hairer, Norsett, Wanner, Solving Ordinary
+// Differential Equations I, II.4 (PI control: Gustafsson).
 #pragma once
 
 #include <cmath>
@@ -22,8 +23,9 @@ class ErrorControl {
     long rejected;  // steps before it
     bool whole;     // it ends at the limit
   };
-  /// A step of size h, and of the time left at most: taken again, smaller, until its error is good. h is then the size of the
-  /// next. take_step() says the error of a step of size h; one above 1 leaves the state alone.
+  /// A step of size h, and of the time left at most: taken again, smaller, until its error is good.
+  /// h is then the size of the next. take_step() says the error of a step of size h; one above 1
+  /// leaves the state alone.
   template <class TakeStep>
   Taken take(double& h, double left, double smallest, TakeStep&& take_step) {
     constexpr int most = 100;
@@ -41,7 +43,8 @@ class ErrorControl {
   }
 
  private:
-  // Is a step of size h with this error good? Changes h to the next one, or to that of the repetition.
+  // Is a step of size h with this error good? Changes h to the next one, or to that of the
+  // repetition.
   bool accept(double error, double& h) {
     if (!(error <= 1)) {
       rejected_ = true;

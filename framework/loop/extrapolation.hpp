@@ -1,7 +1,7 @@
 // The first guess of a step: the polynomial through up to six earlier solutions, continued.
 //
-// With backward differences D^0 x = x_k, D^j x = D^{j-1} x_k - D^{j-1} x_{k-1}, the polynomial of degree p - 1 through
-// p solutions has the value D^0 + ... + D^{p-1} at the next step.
+// With backward differences D^0 x = x_k, D^j x = D^{j-1} x_k - D^{j-1} x_{k-1}, the polynomial of
+// degree p - 1 through p solutions has the value D^0 + ... + D^{p-1} at the next step.
 #pragma once
 
 #include <array>

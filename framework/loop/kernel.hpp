@@ -1,5 +1,5 @@
-// What the run-time layer holds of a compiled time loop: one virtual call per run or per recorded row, none
-// inside a step. The loop itself is loop.hpp.
+// What the run-time layer holds of a compiled time loop: one virtual call per run or per recorded
+// row, none inside a step. The loop itself is loop.hpp.
 #pragma once
 
 #include <limits>
@@ -53,8 +53,9 @@ class Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
   virtual ~Kernel() = default;
-  /// count steps, from node to node. On failure the state is that of the last good step. A step of one size within which
-  /// an input jumps or bends ends there, and the next one where it would have ended.
+  /// count steps, from node to node. On failure the state is that of the last good step. A step of
+  /// one size within which an input jumps or bends ends there, and the next one where it would have
+  /// ended.
   virtual Status advance(long count) = 0;
   /// Those taken, the parts of one counted as one; is the node such a jump or kink?
   virtual long whole_steps() const = 0;
@@ -65,22 +66,26 @@ class Kernel {
   virtual void state(Snapshot& out) const = 0;
   virtual const SolverStats& stats() const = 0;
 
-  /// The node itself, and that at the beginning of the last step: time, coordinates, and the velocity that is carried.
+  /// The node itself, and that at the beginning of the last step: time, coordinates, and the
+  /// velocity that is carried.
   virtual void node(Snapshot& out) const = 0;
   virtual void beginning(Snapshot& out) const = 0;
-  /// Steps that are chosen end at t at the latest, and advance() does nothing there. One of steps of one size that ends
-  /// at t is not moved to a jump of an input next to it.
+  /// Steps that are chosen end at t at the latest, and advance() does nothing there. One of steps
+  /// of one size that ends at t is not moved to a jump of an input next to it.
   virtual void limit(double t) = 0;
   /// The size of the step that comes next (chosen ones before they are cut at the limit).
   virtual double next_step() const = 0;
-  /// Time runs the other way: h changes its sign, and steps that are chosen are taken back as they came.
+  /// Time runs the other way: h changes its sign, and steps that are chosen are taken back as they
+  /// came.
   virtual void turn_back() = 0;
-  /// Goes on from another state; step: the size of the next. Throws std::invalid_argument when the values are no element.
+  /// Goes on from another state; step: the size of the next. Throws std::invalid_argument when the
+  /// values are no element.
   virtual void restart(double t, std::span<const double> coordinates,
                        std::span<const double> velocity, double step) = 0;
   /// Drops what is remembered of forces: after a change of something that they depend on.
   virtual void forget() = 0;
-  /// The state at a time within the last step, by the scheme's own dense output; false where it has none.
+  /// The state at a time within the last step, by the scheme's own dense output; false where it has
+  /// none.
   virtual bool interpolate(double t, Snapshot& out) = 0;
 };
 

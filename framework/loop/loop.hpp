@@ -1,7 +1,7 @@
-// The one time loop: a scheme's substep over a problem, the solver, and the measurements. Compiled for (scheme, problem,
-// solver): with fixed sizes there is no heap and no virtual call in a substep. What is done with substeps does not depend
-// on the types and is compiled once (time_loop.hpp); what is seldom done with a step's equation goes through
-// step_equation.hpp.
+// The one time loop: a scheme's substep over a problem, the solver, and the measurements. Compiled
+// for (scheme, problem, solver): with fixed sizes there is no heap and no virtual call in a
+// substep. What is done with substeps does not depend on the types and is compiled once
+// (time_loop.hpp); what is seldom done with a step's equation goes through step_equation.hpp.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// The measurements of a state, from the configurations: nothing that a step has just set is measured by itself.
+// The measurements of a state, from the configurations: nothing that a step has just set is
+// measured by itself.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +23,8 @@ struct LastStep {
   double h;  // of the last substep; 0 before the first
 };
 
-/// A v of the last substep, v recovered from its two configurations (xi at the start); for holonomic rows the change of
-/// phi. Returns |A v - b| over the other rows.
+/// A v of the last substep, v recovered from its two configurations (xi at the start); for
+/// holonomic rows the change of phi. Returns |A v - b| over the other rows.
 template <class P>
 [[gnu::cold]] double recover_rates(const P& problem, const LastStep<typename P::Element>& last,
                                    double s, const typename P::Vector& xi,

@@ -1,8 +1,8 @@
 // The principal root of a step's equation.
 //
-// Far from the identity the equation of a step can have roots that have nothing to do with the motion, inside the
-// domain of tau too. The principal root is where the solution y of F(y; lambda h) = 0 arrives that begins at
-// lambda = 0. Following the path costs some thirty solves.
+// Far from the identity the equation of a step can have roots that have nothing to do with the
+// motion, inside the domain of tau too. The principal root is where the solution y of F(y; lambda
+// h) = 0 arrives that begins at lambda = 0. Following the path costs some thirty solves.
 #pragma once
 
 #include <algorithm>
@@ -34,21 +34,24 @@ class PrincipalRoot {
     follow(step, h, size + small, std::min(1e-9, tolerance));
     step.begin(h);
     if ((x - end_).squaredNorm() <= 1e-10 * size + small) return true;
-    // Where the equation is ill-conditioned (masses of 1 and 1e6, the row of a height at h = 1e-6) one root has many
-    // solutions to within round-off: between two of them F stays small, between two roots it does not.
+    // Where the equation is ill-conditioned (masses of 1 and 1e6, the row of a height at h = 1e-6)
+    // one root has many solutions to within round-off: between two of them F stays small, between
+    // two roots it does not.
     trial_ = 0.5 * (x + end_);
     step.equation.residual(trial_, memory_.f);
     return memory_.f.squaredNorm() <= 1e-16 * step.equation.scale_squared();
   }
 
  private:
-  // A step from rest is so small on the path that the round-off of its rows (of lengths) is above the tolerance, which is
-  // relative to its size: the path needs no more than to be told from others.
+  // A step from rest is so small on the path that the round-off of its rows (of lengths) is above
+  // the tolerance, which is relative to its size: the path needs no more than to be told from
+  // others.
   static bool near(const SolveReport& report) {
     return report.ok() || (report.reason == Reason::stagnated && report.residual <= 1e-5);
   }
-  // To end_: the solution for lambda h at lambda = 1, by steps that move it by 3 percent at most; NaN where the path
-  // ends before. It starts where there is one root, which is not always next to the scheme's guess.
+  // To end_: the solution for lambda h at lambda = 1, by steps that move it by 3 percent at most;
+  // NaN where the path ends before. It starts where there is one root, which is not always next to
+  // the scheme's guess.
   void follow(const StepOnPath<Unknown>& step, double h, double size, double tolerance) {
     constexpr double lost = std::numeric_limits<double>::quiet_NaN();
     double at = 1e-3;

@@ -1,9 +1,10 @@
-// F/scale as solvers see it: every evaluation counted, the best point kept, and the certificate made once.
+// F/scale as solvers see it: every evaluation counted, the best point kept, and the certificate
+// made once.
 //
-// What a library reports ("converged", "round-off limited") does not count. A solve is judged by the
-// residual |F(x)|/scale that was evaluated at the x it leaves. Its target is that of Newton
-// (solvers/newton.hpp): two digits below the tolerance, and at least one point other than the guess, whose
-// extrapolation error, always of one sign, would else stay in every step.
+// What a library reports ("converged", "round-off limited") does not count. A solve is judged by
+// the residual |F(x)|/scale that was evaluated at the x it leaves. Its target is that of Newton
+// (solvers/newton.hpp): two digits below the tolerance, and at least one point other than the
+// guess, whose extrapolation error, always of one sign, would else stay in every step.
 #pragma once
 
 #include <cmath>
@@ -23,8 +24,8 @@ class ScaledEquation final : public Equation {
   ScaledEquation();
   ~ScaledEquation() override;
 
-  /// Begins a solve. patience: evaluations without a residual half as large, after which a point within
-  /// the tolerance is good enough.
+  /// Begins a solve. patience: evaluations without a residual half as large, after which a point
+  /// within the tolerance is good enough.
   void start(const Equation& equation, std::span<const double> guess, double tolerance,
              int patience = 3);
 

@@ -1,4 +1,5 @@
-// What a run shows of itself: states with their measurements, and counts of its solves. Standard-library types only.
+// What a run shows of itself: states with their measurements, and counts of its solves.
+// Standard-library types only.
 #pragma once
 
 #include <string>

@@ -20,7 +20,8 @@ class Equation {
   /// F(x); and dF/dx when jacobian is not empty.
   virtual void evaluate(std::span<const double> x, std::span<double> f,
                         std::span<double> jacobian) const = 0;
-  /// How often F is evaluated for F with its Jacobian: more than once where that is made of differences.
+  /// How often F is evaluated for F with its Jacobian: more than once where that is made of
+  /// differences.
   virtual int jacobian_cost() const { return 1; }
 };
 

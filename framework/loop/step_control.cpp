@@ -3,7 +3,8 @@
 namespace hamel {
 namespace {
 
-// G, by a symmetric difference along the motion: odd whatever its error, and wide, so that round-off does not show.
+// G, by a symmetric difference along the motion: odd whatever its error, and wide, so that
+// round-off does not show.
 double growth(MotionRate& motion) {
   const double size = motion.here(), d = 0.01 / size;
   const double before = motion.beside(-d), after = motion.beside(d);

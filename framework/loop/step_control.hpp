@@ -2,10 +2,11 @@
 //
 // h = eps / rho at every step, rho carried from one to the next by
 //   rho_{n+1/2} = rho_{n-1/2} + eps G(z_n),   G = d/dt log r,   r(z)^2 = |xi|^2 + |xi'|   (1/s^2),
-// so that rho follows r, (M46). r is even in time and G odd: the steps of a motion, taken back, are the same, which no controller
-// that looks back at an error can do. rho_{1/2} = r(z_0) + eps/2 G(z_0). eps = tolerance^{1/p} for a step of order p.
-// Source: Hairer, Soderlind, Explicit, time reversible, adaptive step size control, SIAM J. Sci. Comput. 26 (2005);
-// Hairer, Lubich, Wanner, VIII.3.
+// so that rho follows r, (M46). r is even in time and G odd: the steps of a motion, taken back, are
+// the same, which no controller that looks back at an error can do. rho_{1/2} = r(z_0) + eps/2
+// G(z_0). eps = tolerance^{1/p} for a step of order p. Source: Hairer, Soderlind, Explicit, time
+// reversible, adaptive step size control, SIAM J. Sci. Comput. 26 (2005); Hairer, Lubich, Wanner,
+// VIII.3.
 #pragma once
 
 #include <cmath>

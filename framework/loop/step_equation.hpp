@@ -1,5 +1,6 @@
-// The equation of a step behind virtual functions. What is seldom done with it (a second correction, a Jacobian, the
-// search for the principal root, a solver from outside) is compiled once for its unknowns, not once for each step.
+// The equation of a step behind virtual functions. What is seldom done with it (a second
+// correction, a Jacobian, the search for the principal root, a solver from outside) is compiled
+// once for its unknowns, not once for each step.
 #pragma once
 
 #include <algorithm>
@@ -32,15 +33,17 @@ class StepEquation {
   /// Does the step state its Jacobian?
   virtual bool exact() const = 0;
 
-  /// F and dF/dx, or dF/dz with x + from_frame(z) (in_frame). The step's own Jacobian, else central differences,
-  /// error about 1e-10: a Jacobian only steers the solver. Returns how often F was evaluated.
+  /// F and dF/dx, or dF/dz with x + from_frame(z) (in_frame). The step's own Jacobian, else central
+  /// differences, error about 1e-10: a Jacobian only steers the solver. Returns how often F was
+  /// evaluated.
   int linearise(const Unknown& x, Unknown& f, Jacobian& j, Differences<Unknown>& work,
                 bool in_frame) const {
     if (exact()) {
       exact_linearise(x, f, j);
       return 1;
     }
-    // By a part of x; of a step of almost nothing, from rest, what the round-off of a place does not hide.
+    // By a part of x; of a step of almost nothing, from rest, what the round-off of a place does
+    // not hide.
     const double size = std::max(x.template lpNorm<Eigen::Infinity>(), 1e-3);
     const double shift = std::cbrt(std::numeric_limits<double>::epsilon()) * size;
     const Eigen::Index count = x.size();

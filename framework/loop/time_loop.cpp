@@ -85,8 +85,9 @@ inline SolveReport TimeLoop::fixed_step() {
   return rescued(report);
 }
 
-// Where the step to `end` is to end: there, or where an input jumps or bends before. A jump next to the end stands for it,
-// since what is known of a step far smaller than the others is mostly round-off.
+// Where the step to `end` is to end: there, or where an input jumps or bends before. A jump next to
+// the end stands for it, since what is known of a step far smaller than the others is mostly
+// round-off.
 double TimeLoop::end_of_part(double end) const {
   const double size = std::abs(h_), jump = setup_.inputs->next_break(t_, h_);
   const double before = std::copysign(1.0, h_) * (end - jump);

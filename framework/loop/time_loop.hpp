@@ -1,6 +1,7 @@
-// What every time loop does, whatever it is compiled for: it counts, chooses steps, composes them of substeps, and decides
-// what becomes of one that fails. What depends on the types, a substep first of all, is behind virtual functions that
-// loop.hpp compiles: one call a substep, none inside.
+// What every time loop does, whatever it is compiled for: it counts, chooses steps, composes them
+// of substeps, and decides what becomes of one that fails. What depends on the types, a substep
+// first of all, is behind virtual functions that loop.hpp compiles: one call a substep, none
+// inside.
 #pragma once
 
 #include <cmath>
@@ -15,8 +16,8 @@ namespace hamel {
 
 class TimeLoop : public Kernel {
  public:
-  // Virtual functions are inline here, so that every library has the vtable and the type of this class (localise makes them
-  // local).
+  // Virtual functions are inline here, so that every library has the vtable and the type of this
+  // class (localise makes them local).
   Status advance(long count) final { return take_steps(count); }
   const SolverStats& stats() const final { return stats_; }
   long whole_steps() const final { return whole_; }
@@ -38,8 +39,9 @@ class TimeLoop : public Kernel {
   /// Where the last step began: at the node before, or at one that was put away.
   enum class Beginning { previous, step, rescue };
 
-  /// A substep of size h, with what is remembered of the earlier ones of its place in the composition. One that fails
-  /// leaves the state alone. Sets t_, and error_ where errors_ are controlled.
+  /// A substep of size h, with what is remembered of the earlier ones of its place in the
+  /// composition. One that fails leaves the state alone. Sets t_, and error_ where errors_ are
+  /// controlled.
   virtual SolveReport substep(int place, double h) = 0;
   virtual void put_away(Kept where) = 0;
   virtual void fetch(Kept where) = 0;  // sets t_

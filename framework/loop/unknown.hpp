@@ -1,10 +1,13 @@
-// The unknown x of a step: guessed from its last values, solved for, and held to be the principal root.
+// The unknown x of a step: guessed from its last values, solved for, and held to be the principal
+// root.
 //
 // A root is taken for the principal one (principal_root.hpp)
-//   - if a correction or two with the kept Jacobian gave it, or it is within a percent of the extrapolation, and the
+//   - if a correction or two with the kept Jacobian gave it, or it is within a percent of the
+//   extrapolation, and the
 //     roots before it were principal;
 //   - else if the path from h = 0 leads to it.
-// Otherwise it is refused, as is a root outside the domain (measured by tests/solvers/large_steps.cpp).
+// Otherwise it is refused, as is a root outside the domain (measured by
+// tests/solvers/large_steps.cpp).
 #pragma once
 
 #include <span>
@@ -56,7 +59,8 @@ class StepUnknown {
   }
 
  private:
-  // So many corrections with a kept Jacobian do not change the root; those by differences are kept longer.
+  // So many corrections with a kept Jacobian do not change the root; those by differences are kept
+  // longer.
   static constexpr int kSure = HasJacobian<Step> ? 1 : 2;
 
   [[gnu::noinline, gnu::cold]] bool is_principal(Step& step, const Node& node, double h,

@@ -1,7 +1,7 @@
-// Names close to those of a system's members: a letter left out or exchanged with its neighbour, the singular, a
-// longer form. A function of such a name would never be called, and constraint() for constraints() would
-// run an unconstrained body without a word: it is refused at compile time where the member itself is not there.
-// Words of their own (star, stat, fore) are left out.
+// Names close to those of a system's members: a letter left out or exchanged with its neighbour,
+// the singular, a longer form. A function of such a name would never be called, and constraint()
+// for constraints() would run an unconstrained body without a word: it is refused at compile time
+// where the member itself is not there. Words of their own (star, stat, fore) are left out.
 #pragma once
 
 #include <hamel/framework/mechanics/system_members.hpp>

@@ -1,7 +1,9 @@
-// Names and units of the components of the body velocity, and of the coordinates that some of them are the rates of.
+// Names and units of the components of the body velocity, and of the coordinates that some of them
+// are the rates of.
 //
-// Each group states its own (GroupFactor, lie/group_info.hpp): omega, v1, v2 of the motions of the plane. A product that
-// has several factors alike writes the number of the factor behind them: angle_2'.
+// Each group states its own (GroupFactor, lie/group_info.hpp): omega, v1, v2 of the motions of the
+// plane. A product that has several factors alike writes the number of the factor behind them:
+// angle_2'.
 #pragma once
 
 #include <string>
@@ -11,20 +13,23 @@
 
 namespace hamel {
 
-/// The names of dim components, factor by factor; xi1, xi2, ... without units where a factor states none.
+/// The names of dim components, factor by factor; xi1, xi2, ... without units where a factor states
+/// none.
 std::vector<Component> components_of(const GroupInfo& group);
 
-/// Units of the element's columns; "" for the entries of a rotation matrix and where a factor states none.
+/// Units of the element's columns; "" for the entries of a rotation matrix and where a factor
+/// states none.
 std::vector<std::string> units_of_element(const GroupInfo& group);
 
-/// Coordinate `column` of the element is the integral of component `component`: its name without the ', its unit without
-/// the "/s".
+/// Coordinate `column` of the element is the integral of component `component`: its name without
+/// the ', its unit without the "/s".
 struct ShapeCoordinate {
   int column, component;
   std::string name, unit;
 };
 
-/// The coordinates of the factors that are shape: joint angles, and places that are no part of a rigid motion.
+/// The coordinates of the factors that are shape: joint angles, and places that are no part of a
+/// rigid motion.
 std::vector<ShapeCoordinate> shape_of(const GroupInfo& group,
                                       const std::vector<Component>& components);
 

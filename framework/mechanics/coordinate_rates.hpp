@@ -1,8 +1,9 @@
 // From derivatives by the coordinates of an element to derivatives along the group.
 //
-// C(g) takes a body velocity xi to the rates of the coordinates (CSV columns). Each factor of the group states its own
-// (GroupFactor, lie/group_info.hpp): of the motions of the plane theta' = omega, (x, y)' = R v. Where one states none,
-// differences of order 6 replace them for the whole group.
+// C(g) takes a body velocity xi to the rates of the coordinates (CSV columns). Each factor of the
+// group states its own (GroupFactor, lie/group_info.hpp): of the motions of the plane theta' =
+// omega, (x, y)' = R v. Where one states none, differences of order 6 replace them for the whole
+// group.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
-// Drawing of a system: bodies made of a few shapes, and the place of each as a function of the configuration.
+// Drawing of a system: bodies made of a few shapes, and the place of each as a function of the
+// configuration.
 //
 //   void draw(auto& scene) const {
 //     scene.floor();
@@ -21,8 +22,8 @@
 
 namespace hamel {
 
-/// Origin of a shape in the body's frame, direction of its own z axis, and colour: "body", "accent", "dark",
-/// "light" or "#rrggbb".
+/// Origin of a shape in the body's frame, direction of its own z axis, and colour: "body",
+/// "accent", "dark", "light" or "#rrggbb".
 struct Look {
   Point at = {0, 0, 0};
   Point axis = {0, 0, 1};
@@ -65,7 +66,8 @@ struct Placement {
   Mat<3, 3> rotation = Mat<3, 3>::Identity();
 };
 
-/// A body that moves in the plane: at (x, y), turned by theta about the vertical, z above the floor.
+/// A body that moves in the plane: at (x, y), turned by theta about the vertical, z above the
+/// floor.
 inline Placement planar(double x, double y, double theta, double z = 0) {
   const double c = std::cos(theta), s = std::sin(theta);
   return {Vec<3>(x, y, z), Mat<3, 3>{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};

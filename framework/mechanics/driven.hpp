@@ -1,8 +1,9 @@
-// A system with its inputs: itself a system, whose force and drift are those of S and what the inputs add at the time.
+// A system with its inputs: itself a system, whose force and drift are those of S and what the
+// inputs add at the time.
 //
 //   force(t, g, xi) + force(t, g, xi, u(t)),   drift(t, g) + drift(t, g, u(t))
-// A run with inputs is one of Driven<S>, so that no scheme, problem or measurement knows of them, and a run without is
-// one of S.
+// A run with inputs is one of Driven<S>, so that no scheme, problem or measurement knows of them,
+// and a run without is one of S.
 #pragma once
 
 #include <memory>

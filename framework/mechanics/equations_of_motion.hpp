@@ -2,9 +2,9 @@
 //
 // Lagrange-d'Alembert with multipliers, d/dt along the motion:
 //   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,   A xi' = db/dt - (dA/dt) xi.
-// (dI/dt) xi and db/dt - (dA/dt) xi: by one dual number where the problem has its formulas over any scalar, its own where
-// it has them (Mechanics::rates), else by differences along g tau(e xi) at t, and in t at g (lie/differences.hpp). A
-// left-invariant problem has y' in closed form.
+// (dI/dt) xi and db/dt - (dA/dt) xi: by one dual number where the problem has its formulas over any
+// scalar, its own where it has them (Mechanics::rates), else by differences along g tau(e xi) at t,
+// and in t at g (lie/differences.hpp). A left-invariant problem has y' in closed form.
 #pragma once
 
 #include <array>
@@ -81,15 +81,16 @@ class EquationsOfMotion {
     }
     apply_root_transpose(work_, acceleration_);
   }
-  /// What depends on (t, g) alone. With W^T W = I^-1 (W lower triangular), Y = W A^T and c = W change:
-  /// Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
+  /// What depends on (t, g) alone. With W^T W = I^-1 (W lower triangular), Y = W A^T and c = W
+  /// change: Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
   void set(double t, const Element& g) {
     if (!known_ || !problem_.constant_inertia()) problem_.inertia(g, inertia_);
     if (problem_.rows() > 0 && (!known_ || !problem_.constant_constraints()))
       problem_.constraints(t, g, a_, b_);
     factor(t, g);
   }
-  /// The smallest v in the metric I with A v = c, A and I those of the last set(); returns its size, v . I v.
+  /// The smallest v in the metric I with A v = c, A and I those of the last set(); returns its
+  /// size, v . I v.
   double smallest(const Few& c, Vector& v) {
     reaction_ = c;
     solve_gram(reaction_);
@@ -97,8 +98,8 @@ class EquationsOfMotion {
     apply_root_transpose(work_, v);
     return work_.squaredNorm();
   }
-  /// Moves xi onto A xi = b in the metric I (A, b, I those of the last set()); returns the squared sizes of what was added, and
-  /// of xi.
+  /// Moves xi onto A xi = b in the metric I (A, b, I those of the last set()); returns the squared
+  /// sizes of what was added, and of xi.
   std::pair<double, double> project(Vector& xi) {
     apply_inertia(xi, momentum_);
     const double size = momentum_.dot(xi);
@@ -201,7 +202,8 @@ class EquationsOfMotion {
       }
       return;
     }
-    // w_i = (e_i - sum_{j<i} (w_j I e_i) w_j) / its length: Gram-Schmidt on e_i in the metric I, row by row.
+    // w_i = (e_i - sum_{j<i} (w_j I e_i) w_j) / its length: Gram-Schmidt on e_i in the metric I,
+    // row by row.
     for (int i = 0; i < n; ++i) {
       for (int l = 0; l <= i; ++l) work_[l] = l == i ? 1 : 0;
       for (int j = 0; j < i; ++j) {
@@ -216,8 +218,9 @@ class EquationsOfMotion {
       for (int l = 0; l <= i; ++l) root_(i, l) = scale * work_[l];
     }
   }
-  // With massless links I is definite on ker A only. I + kappa A^T A has the same motions, as the term it adds to
-  // the momentum is a reaction: (I + kappa A^T A) xi' = change + A^T (lambda + kappa A xi').
+  // With massless links I is definite on ker A only. I + kappa A^T A has the same motions, as the
+  // term it adds to the momentum is a reaction: (I + kappa A^T A) xi' = change + A^T (lambda +
+  // kappa A xi').
   [[gnu::noinline, gnu::cold]] void find_stiff_root(double t, const Element& g) {
     problem_.constraints(t, g, a_, b_);
     stiffness_ = inertia_.trace() / a_.squaredNorm();

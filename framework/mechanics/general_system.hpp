@@ -1,4 +1,5 @@
-// From a system's struct to Mechanics: formulas as stated, their differentials by automatic differentiation.
+// From a system's struct to Mechanics: formulas as stated, their differentials by automatic
+// differentiation.
 //
 // A system whose inertia, constraint or forces depend on the configuration states, beside Group:
 //   inertia() or inertia(g)                      n x n
@@ -8,13 +9,13 @@
 //   potential(g)                                 V, a number
 //   force(g, xi) or force(t, g, xi)              f, n entries in the dual (controls, friction)
 //   force(t, g, xi, u), drift(t, g, u)           what inputs add to them (inputs.hpp)
-// Written as templates on the element (`const auto& g`), potential, holonomic and inertia are differentiated
-// automatically (ceres::Jet, seeded along g tau(eta)). By hand, where speed counts:
+// Written as templates on the element (`const auto& g`), potential, holonomic and inertia are
+// differentiated automatically (ceres::Jet, seeded along g tau(eta)). By hand, where speed counts:
 //   potential_differential(g)   n entries, <dV, eta> = d/de V(g tau(e eta))
 //   holonomic_differential(g)   r x n
 //   inertia_differential(g, xi) n entries, 1/2 d(xi^T I(g) xi)
-// check/system_laws.hpp compares the two. constraints(g) and holonomic_differential(g) as templates spare the
-// explicit schemes six evaluations for dA/dt.
+// check/system_laws.hpp compares the two. constraints(g) and holonomic_differential(g) as templates
+// spare the explicit schemes six evaluations for dA/dt.
 #pragma once
 
 #include <memory>
@@ -165,16 +166,16 @@ class Formulas {
 #if HAMEL_HAS_JET
   using Dual = ceres::Jet<double, 1>;
   using DualElement = typename G::template Element<Dual>;
-  /// Are A and I formulas over any scalar (templates on the element), and b constant? Then one dual number
-  /// carries their rates.
+  /// Are A and I formulas over any scalar (templates on the element), and b constant? Then one dual
+  /// number carries their rates.
   static constexpr bool has_dual_rates() {
     constexpr bool rows = own == 0 || requires(const S& s) { s.constraints(); }
     || dual_constraints();
     return rows && (r == 0 || dual_differential()) && (constant_inertia() || dual_inertia()) &&
            (!has_drift<S>() || has_constant_drift<S>());
   }
-  /// A and I with dA/dt and dI/dt along the curve g tau(e xi), of which `moving` is the first-order jet; what is constant
-  /// is left as it is.
+  /// A and I with dA/dt and dI/dt along the curve g tau(e xi), of which `moving` is the first-order
+  /// jet; what is constant is left as it is.
   void dual_rates(const DualElement& moving, Mat<k, n>& a, Mat<k, n>& a_rate, Mat<n, n>& inertia,
                   Mat<n, n>& inertia_rate) const {
     const auto split = [](const auto& from, auto&& to, auto&& rate) {

@@ -14,12 +14,14 @@ struct InputField {
   Range range;
 };
 
-/// An input over time: linear between its times, or held from each time to the next. Times increase.
+/// An input over time: linear between its times, or held from each time to the next. Times
+/// increase.
 struct InputTable {
   std::vector<double> times, values;
   bool hold = false;
   bool operator==(const InputTable&) const = default;
-  /// The value at t, on a jump the one behind it; before and behind the times the first and the last.
+  /// The value at t, on a jump the one behind it; before and behind the times the first and the
+  /// last.
   double at(double t) const;
 };
 

@@ -1,10 +1,13 @@
-// The inputs of a run: torques and rates that a user gives as constants, as tables over time, or while it runs.
+// The inputs of a run: torques and rates that a user gives as constants, as tables over time, or
+// while it runs.
 //
-// A system states its inputs like its parameters, and what they add to its forces and drifts; where all are zero, nothing:
-//   void inputs(auto& u) const;        u("torque", "N m", "on the handlebar", between(-5, 5));  name, unit, meaning, range
-//   force(t, g, xi, u)                 n entries in the dual, added to force(t, g, xi)
-//   drift(t, g, u)                     k entries, added to b of A xi = b
-// u[i] is the value of the i-th. A run without inputs is that of the system without them (driven.hpp).
+// A system states its inputs like its parameters, and what they add to its forces and drifts; where
+// all are zero, nothing:
+//   void inputs(auto& u) const;        u("torque", "N m", "on the handlebar", between(-5, 5));
+//   name, unit, meaning, range force(t, g, xi, u)                 n entries in the dual, added to
+//   force(t, g, xi) drift(t, g, u)                     k entries, added to b of A xi = b
+// u[i] is the value of the i-th. A run without inputs is that of the system without them
+// (driven.hpp).
 #pragma once
 
 #include <cmath>
@@ -32,10 +35,10 @@ class Inputs {
   const std::vector<InputField>& fields() const { return fields_; }
   /// One for each field; no times and one value where it is constant.
   const std::vector<InputTable>& tables() const { return tables_; }
-  /// A step from t to t + h begins. A table that is held has the value of the middle of the step all through it, so that
-  /// round-off in the times of the nodes does not decide on which side of a jump they lie; one that is linear is in a
-  /// step between two of its times the line through them, beyond them too: methods that differentiate b(t) by
-  /// differences see no kink at their nodes.
+  /// A step from t to t + h begins. A table that is held has the value of the middle of the step
+  /// all through it, so that round-off in the times of the nodes does not decide on which side of a
+  /// jump they lie; one that is linear is in a step between two of its times the line through them,
+  /// beyond them too: methods that differentiate b(t) by differences see no kink at their nodes.
   void enter(double t, double h);
   /// The values at a time of the step.
   InputValues at(double t) const;
@@ -45,8 +48,8 @@ class Inputs {
   void set(std::size_t input, double value);
   /// Is there a table that may jump or bend?
   bool breaks() const { return breaks_; }
-  /// The first time beyond t, in the direction of h, at which a held value jumps or a line bends; infinite where there
-  /// is none.
+  /// The first time beyond t, in the direction of h, at which a held value jumps or a line bends;
+  /// infinite where there is none.
   double next_break(double t, double h) const;
   /// Do the tables cover t, up to round-off?
   bool covers(double t) const {

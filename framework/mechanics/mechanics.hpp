@@ -1,10 +1,11 @@
 // A nonholonomic system, its type erased; everything may depend on the configuration.
 //
 //   L(g, xi) = 1/2 xi^T I(g) xi - V(g),   force f(t, g, xi) in the dual of the algebra
-//   A(t, g) xi = b(t, g)                  k rows; the last of them are the differentials of the holonomic rows
-//   phi(g) = 0                            holonomic rows, imposed at the ends of each step, (M19)
-// general_system.hpp derives a Mechanics from a system's struct. A system whose dimension is a parameter derives
-// from Mechanics itself (systems/n_trailer.hpp).
+//   A(t, g) xi = b(t, g)                  k rows; the last of them are the differentials of the
+//   holonomic rows phi(g) = 0                            holonomic rows, imposed at the ends of
+//   each step, (M19)
+// general_system.hpp derives a Mechanics from a system's struct. A system whose dimension is a
+// parameter derives from Mechanics itself (systems/n_trailer.hpp).
 #pragma once
 
 #include <memory>
@@ -39,8 +40,8 @@ class Mechanics {
   virtual void inertia(const double* g, Matrix out) const = 0;
   /// A(t, g), k x n, and b(t, g).
   virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
-  /// db/dt - (dA/dt) xi, k entries, and (dI/dt) xi, n entries, along (t, g) at g' = g xi, where a system knows them;
-  /// false: it does not.
+  /// db/dt - (dA/dt) xi, k entries, and (dI/dt) xi, n entries, along (t, g) at g' = g xi, where a
+  /// system knows them; false: it does not.
   virtual bool rates(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector /*rows*/,
                      Vector /*momentum*/) const {
     return false;

@@ -13,8 +13,8 @@ struct Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
   bool open = false;  // least and most themselves are left out
-  // The moments of inertia of a rigid body: a note where one exceeds the sum of the other two. As 6 or 9
-  // numbers the upper triangle or the rows of the matrix, whose eigenvalues are looked at.
+  // The moments of inertia of a rigid body: a note where one exceeds the sum of the other two. As 6
+  // or 9 numbers the upper triangle or the rows of the matrix, whose eigenvalues are looked at.
   bool moments = false;
   double transverse = 0;  // of one moment: that about both other axes
 

@@ -1,16 +1,17 @@
 // Inertia and constraint at one configuration, and a frame of the admissible velocities there.
 //
-// With D = diag(I), a massless direction taken as the lightest other, and A D^-1/2 = [L 0] O^T, O the product of k Householder reflections, the last m = n - k
-// columns of D^-1/2 O are E, a basis of ker A with E^T D E = 1. The equations of a step, E^T r = 0 (r a
-// momentum) and c = 0 (k rows of velocities), are the n numbers
+// With D = diag(I), a massless direction taken as the lightest other, and A D^-1/2 = [L 0] O^T, O
+// the product of k Householder reflections, the last m = n - k columns of D^-1/2 O are E, a basis
+// of ker A with E^T D E = 1. The equations of a step, E^T r = 0 (r a momentum) and c = 0 (k rows of
+// velocities), are the n numbers
 //   (c_i / |D^-1/2 a_i|, E^T r) = 0,   a_i row i of A,                                       (*)
 // all of them square roots of an energy. The admissible velocity of a momentum mu is
-//   xi = D^-1/2 O (L^-1 b, 0) + E y,   E^T I xi = E^T mu   (A xi = b; I xi - mu is a reaction A^T lambda).
-// The frame turns smoothly with the configuration. Corrections of a velocity are made in it too (from_frame):
-// the Jacobian of a step is then 1 + O(h) (h instead of 1 for a holonomic row) and changes so little from step to
-// step that it can be kept.
-// E is that of (M5), (*) is (M39) of framework/schemes/README.md.
-// Source: Golub, Van Loan, Matrix Computations, 5.1 (Householder).
+//   xi = D^-1/2 O (L^-1 b, 0) + E y,   E^T I xi = E^T mu   (A xi = b; I xi - mu is a reaction A^T
+//   lambda).
+// The frame turns smoothly with the configuration. Corrections of a velocity are made in it too
+// (from_frame): the Jacobian of a step is then 1 + O(h) (h instead of 1 for a holonomic row) and
+// changes so little from step to step that it can be kept. E is that of (M5), (*) is (M39) of
+// framework/schemes/README.md. Source: Golub, Van Loan, Matrix Computations, 5.1 (Householder).
 #pragma once
 
 #include <cmath>
@@ -195,7 +196,8 @@ class Place {
     const double* v = &reflections_(from(j), j);
     add(-factors_[j] * dot(v, y + from(j), left(j)), v, y + from(j), left(j));
   }
-  // The first index of reflection j. With sizes known at compile time all loops have n rounds and unroll.
+  // The first index of reflection j. With sizes known at compile time all loops have n rounds and
+  // unroll.
   int from(int j) const { return N == Eigen::Dynamic ? j : 0; }
   int left(int j) const { return N == Eigen::Dynamic ? n_ - j : N; }
   // L^-1 c, to the first k entries.

@@ -4,22 +4,27 @@
 //   using Group = ...;                 the configuration group, of dimension n
 //   auto inertia() const;              n x n symmetric positive definite, l(xi) = 1/2 xi^T I xi
 //   auto constraints() const;          k x n rows A of full rank, A xi = 0 (k = 0: leave it out)
-// (inertia(g), constraints(g), holonomic(g), potential(g), ... for those that are not left-invariant:
-// general_system.hpp) and, where it has them,
-//   void fields(auto& f);              f("mass", mass, "kg", "what it is", positive): parameters (fields.hpp)
-//   void inputs(auto& u) const;        u("torque", "N m", "what it is", range): what a run may be driven by (inputs.hpp)
-//   Start start() const;               the default start
-//   Start at_speed(double v) const;    straight ahead at v m/s, what a run with `speed` starts from
-//   auto exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing
-//   bool has_exact() const;            where the exact motion depends on the parameters
-//   void invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
-//   std::vector<int> contacts() const; the rows of A whose multiplier is a contact's normal reaction, which
-//                                      pushes where it is positive (differentials of a height, counted from 0)
-//   void events(auto& add) const;      add("name", "what it is", direction, [](double t, const auto& g, const auto& xi) {
-//                                      return ...; }): zero at the event; direction +1, -1, or 0 for both ways
-//   static shape()                     names of the coordinates of the group's factors so2 and rn, in order: {"right", "left"}
-//   void draw(auto& scene) const;      how the report page shows it (drawing.hpp)
-//   static name(), summary(), formula(), known(), source()   words for `hamel describe`
+// (inertia(g), constraints(g), holonomic(g), potential(g), ... for those that are not
+// left-invariant: general_system.hpp) and, where it has them,
+//   void fields(auto& f);              f("mass", mass, "kg", "what it is", positive): parameters
+//   (fields.hpp) void inputs(auto& u) const;        u("torque", "N m", "what it is", range): what a
+//   run may be driven by (inputs.hpp) Start start() const;               the default start Start
+//   at_speed(double v) const;    straight ahead at v m/s, what a run with `speed` starts from auto
+//   exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing bool
+//   has_exact() const;            where the exact motion depends on the parameters void
+//   invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
+//   std::vector<int> contacts() const; the rows of A whose multiplier is a contact's normal
+//   reaction, which
+//                                      pushes where it is positive (differentials of a height,
+//                                      counted from 0)
+//   void events(auto& add) const;      add("name", "what it is", direction, [](double t, const
+//   auto& g, const auto& xi) {
+//                                      return ...; }): zero at the event; direction +1, -1, or 0
+//                                      for both ways
+//   static shape()                     names of the coordinates of the group's factors so2 and rn,
+//   in order: {"right", "left"} void draw(auto& scene) const;      how the report page shows it
+//   (drawing.hpp) static name(), summary(), formula(), known(), source()   words for `hamel
+//   describe`
 #pragma once
 
 #include <concepts>
@@ -120,8 +125,8 @@ std::vector<InputField> inputs_of(const S& system) {
 
 }  // namespace detail
 
-/// How a system that is not left-invariant becomes Mechanics; defined in general_system.hpp, which its
-/// file includes.
+/// How a system that is not left-invariant becomes Mechanics; defined in general_system.hpp, which
+/// its file includes.
 template <class S>
 struct MechanicsOf {
   static std::shared_ptr<const Mechanics> make(const S& system);
@@ -221,8 +226,9 @@ SystemModel erase(const S& system) {
   return model;
 }
 
-/// A system whose dimension is one of its parameters: it names its group ("se2*so2^5") and gives its
-/// Mechanics itself. start() as for any system; invariants(add), events(add) and draw(scene) see coordinates.
+/// A system whose dimension is one of its parameters: it names its group ("se2*so2^5") and gives
+/// its Mechanics itself. start() as for any system; invariants(add), events(add) and draw(scene)
+/// see coordinates.
 template <class S>
 concept RunTimeSystem = requires(const S& s) {
   { s.group() } -> std::convertible_to<std::string>;

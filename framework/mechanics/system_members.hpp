@@ -1,9 +1,9 @@
 // What a system's struct states, read off its members; and that none of them is overlooked.
 //
-// A member counts when it can be called as its form says. One of that name that cannot (drift(t) alone, a
-// force that is not const) would be left out without a word, so it is refused at compile time: named::x<S>
-// asks whether S has a function x of any signature. Deriving from S and from a struct with an x of its own
-// makes the name x ambiguous exactly then.
+// A member counts when it can be called as its form says. One of that name that cannot (drift(t)
+// alone, a force that is not const) would be left out without a word, so it is refused at compile
+// time: named::x<S> asks whether S has a function x of any signature. Deriving from S and from a
+// struct with an x of its own makes the name x ambiguous exactly then.
 #pragma once
 
 #include <type_traits>

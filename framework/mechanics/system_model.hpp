@@ -1,7 +1,7 @@
 // A system with its type erased: its equations, and what is stated about it beside them.
 //
-// erase() (system.hpp) makes one of a struct; mechanisms and systems by data fill the same members. Whatever is not
-// stated is empty.
+// erase() (system.hpp) makes one of a struct; mechanisms and systems by data fill the same members.
+// Whatever is not stated is empty.
 #pragma once
 
 #include <functional>
@@ -57,7 +57,8 @@ struct SystemModel {
       shape;  // names of the coordinates of so2 and rn; empty: those of the group
   Drawing drawing;
   std::vector<InputField> inputs;
-  /// The mechanics that these inputs drive; empty where there are none. All other members hold with inputs too.
+  /// The mechanics that these inputs drive; empty where there are none. All other members hold with
+  /// inputs too.
   std::function<std::shared_ptr<const Mechanics>(std::shared_ptr<const Inputs>)> drive;
 
   std::vector<std::string> rates;      // names of the velocities; empty: those of the group
@@ -67,13 +68,14 @@ struct SystemModel {
   std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
   std::vector<DrawnForce> forces;
 
-  /// A start at time t from at most as many numbers as start_parameters has names; from none: the system's own start
-  /// at that time. Throws ConfigError where no such motion exists.
+  /// A start at time t from at most as many numbers as start_parameters has names; from none: the
+  /// system's own start at that time. Throws ConfigError where no such motion exists.
   std::function<Start(std::span<const double>, double t)> start_from;
   std::vector<std::string> start_parameters;  // "speed", in m/s
   /// Straight ahead at a speed [m/s]; empty where no straight motion is defined.
   std::function<Start(double speed, double t)> start_at_speed;
-  /// The same with the push of the file, with which a run starts, and in words: "w1 = 0.1"; empty where there is none.
+  /// The same with the push of the file, with which a run starts, and in words: "w1 = 0.1"; empty
+  /// where there is none.
   std::function<Start(double speed, double t)> start_pushed;
   std::string push;
   /// The velocities with which the root turns, by their places; empty where there is no root.
@@ -97,10 +99,12 @@ struct SystemInfo {
 /// "no constraint", "1 constraint row", "3 constraint rows, 1 holonomic".
 std::string constraints_in_words(const SystemModel& model);
 
-/// The components of xi by the names that the system states, else by those of its group (components.hpp).
+/// The components of xi by the names that the system states, else by those of its group
+/// (components.hpp).
 std::vector<Component> components_of(const SystemModel& model);
 
-/// The unit of the multiplier of a row: "N" of contacts, whose rows are forces of size 1; "" where nothing is known.
+/// The unit of the multiplier of a row: "N" of contacts, whose rows are forces of size 1; "" where
+/// nothing is known.
 std::string unit_of_reaction(const SystemModel& model, int row);
 
 }  // namespace hamel

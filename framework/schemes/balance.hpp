@@ -1,12 +1,13 @@
-// balance: the paper's printed inverse map with barred momenta, both equations balanced on d at the base point.
+// balance: the paper's printed inverse map with barred momenta, both equations balanced on d at the
+// base point.
 //
-// The nodal momenta are embedded, mu_i = I(g_i) xi_i. Unknowns v = xi/h and w = xi_1. With z0 = -s xi,
-// z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g f1, m_i = Ad*_{f_i^-1} mu_i,
+// The nodal momenta are embedded, mu_i = I(g_i) xi_i. Unknowns v = xi/h and w = xi_1. With z0 = -s
+// xi, z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g f1, m_i = Ad*_{f_i^-1} mu_i,
 // nu = h force(t + s h, g, v), both equations of the cotangent lift are balanced on d at g:
 //   E(g)^T ( s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 - I(g) v ) = 0,   A(g) v = b(t + s h, g),
 //   E(g)^T ( m1 - m0 - nu ) = 0,                                   A(g1) w = b(t + h, g1),
-// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one (*) of mechanics/place.hpp, in the frame at g. On a
-// left-invariant problem v = E y and w = E y1: 2 m unknowns, no rows.
+// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one (*) of mechanics/place.hpp,
+// in the frame at g. On a left-invariant problem v = E y and w = E y1: 2 m unknowns, no rows.
 // Derivatives: (c) and (d) of lie/trivialised.hpp.
 #pragma once
 
@@ -15,7 +16,8 @@
 
 namespace hamel {
 
-/// ends_only: (1) in full, the velocity of the step is admissible at the ends only (reversible.hpp).
+/// ends_only: (1) in full, the velocity of the step is admissible at the ends only
+/// (reversible.hpp).
 template <class P, bool ends_only>
 class BalanceStep {
   using Vector = typename P::Vector;

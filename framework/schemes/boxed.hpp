@@ -1,6 +1,7 @@
 // boxed: the paper's boxed formulas with their slips repaired; left-invariant systems only.
 //
-// s = 0 and nu = 0 in the cotangent lift, the known momentum barred, mu_k = I xi_k; the unknown is v = xi/h:
+// s = 0 and nu = 0 in the cotangent lift, the known momentum barred, mu_k = I xi_k; the unknown is
+// v = xi/h:
 //   E^T ( (dR_{hv})^T mu_k - I v ) = 0,   A v = 0,
 //   xi_{k+1} the admissible velocity of Ad_{tau(hv)}^T mu_k,   g_{k+1} = g_k tau(hv).
 // What Ad^T carries out of d* is dropped, and with it the second order: the scheme has order 1.

@@ -1,12 +1,12 @@
 // boxed_literal: the paper's boxes exactly as typeset, with iota* in front of both lines.
 //
-// Kept only so that the paper's figure can be reproduced. As printed the right side is t I Omega with
-// xi = t Omega, so that the step size cancels, and the update carries the sign of the inverse:
+// Kept only so that the paper's figure can be reproduced. As printed the right side is t I Omega
+// with xi = t Omega, so that the step size cancels, and the update carries the sign of the inverse:
 //   E^T ( (dR_v)^T mu_k - I v ) = 0,   A v = 0   (no h),
 //   xi_{k+1} the admissible velocity of Ad_{tau(v)^-1}^T mu_k,   g_{k+1} = g_k tau(v).
-// mu_k is the vector printed as (Pi_1, Pi_2, 0): the covector of d* without a part along the Euclidean complement of
-// d, mu_k = (1 - A^T (A A^T)^-1 A) I xi_k. For a diagonal inertia that is I Omega.
-// Not an approximation of anything: its first step is an O(1) jump whatever h is.
+// mu_k is the vector printed as (Pi_1, Pi_2, 0): the covector of d* without a part along the
+// Euclidean complement of d, mu_k = (1 - A^T (A A^T)^-1 A) I xi_k. For a diagonal inertia that is I
+// Omega. Not an approximation of anything: its first step is an O(1) jump whatever h is.
 #pragma once
 
 #include <Eigen/LU>

@@ -1,8 +1,10 @@
-// dop853: the explicit pair of order 8 of Dormand and Prince, with estimates of order 5 and 3, as a Munthe-Kaas method
-// (munthe_kaas.hpp). Twelve evaluations a step; dense output of order 7 by three more.
+// dop853: the explicit pair of order 8 of Dormand and Prince, with estimates of order 5 and 3, as a
+// Munthe-Kaas method (munthe_kaas.hpp). Twelve evaluations a step; dense output of order 7 by three
+// more.
 //
 // The matrix of the dense output is the nested form of their code, contd8, multiplied out.
-// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.5, II.6; their code dop853.f.
+// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.5, II.6; their
+// code dop853.f.
 #pragma once
 
 #include <hamel/framework/schemes/munthe_kaas.hpp>

@@ -1,11 +1,13 @@
-// dopri5: the explicit pair 5(4) of Dormand and Prince as a Munthe-Kaas method (munthe_kaas.hpp). Six evaluations a step;
-// dense output of order 5 by two more.
+// dopri5: the explicit pair 5(4) of Dormand and Prince as a Munthe-Kaas method (munthe_kaas.hpp).
+// Six evaluations a step; dense output of order 5 by two more.
 //
-// Its own dense output, of order 4, gives the states at 1/3 and 2/3 of the step, with an error of O(h^5); the slopes there, those
-// at the ends and y_1 fix the polynomial of degree 5 whose error is O(h^6) as that of the nodes ("bootstrapping").
-// Source: Dormand, Prince, A family of embedded Runge-Kutta formulae (1980); Shampine, Some practical Runge-Kutta formulas,
-// Math. Comp. 46 (1986); Enright, Jackson, Norsett, Thomsen, Interpolants for Runge-Kutta formulas, ACM Trans. Math. Software 12
-// (1986); Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.5, II.6.
+// Its own dense output, of order 4, gives the states at 1/3 and 2/3 of the step, with an error of
+// O(h^5); the slopes there, those at the ends and y_1 fix the polynomial of degree 5 whose error is
+// O(h^6) as that of the nodes ("bootstrapping"). Source: Dormand, Prince, A family of embedded
+// Runge-Kutta formulae (1980); Shampine, Some practical Runge-Kutta formulas, Math. Comp. 46
+// (1986); Enright, Jackson, Norsett, Thomsen, Interpolants for Runge-Kutta formulas, ACM Trans.
+// Math. Software 12 (1986); Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
+// II.5, II.6.
 #pragma once
 
 #include <hamel/framework/schemes/munthe_kaas.hpp>

@@ -1,10 +1,11 @@
 // energy_preserving: a discrete-gradient step for left-invariant systems.
 //
-//   I (xi_1 - xi_0) = h ad*_W I W + A^T lambda,   W = (xi_0 + xi_1)/2,   A xi_1 = 0,   g_1 = g_0 tau(h W).
-// Paired with W: <ad*_W I W, W> = 0 and A W = 0, so that 1/2 xi^T I xi is kept to round-off. Order 2.
-// Weakness: the energy is all that is kept; the trajectory has the error of any method of order 2.
-// Source: Celledoni, Farre Puiggali, Hoiseth, Martin de Diego, Energy-preserving integrators applied to
-// nonholonomic systems, J. Nonlinear Sci. 29 (2019).
+//   I (xi_1 - xi_0) = h ad*_W I W + A^T lambda,   W = (xi_0 + xi_1)/2,   A xi_1 = 0,   g_1 = g_0
+//   tau(h W).
+// Paired with W: <ad*_W I W, W> = 0 and A W = 0, so that 1/2 xi^T I xi is kept to round-off.
+// Order 2. Weakness: the energy is all that is kept; the trajectory has the error of any method of
+// order 2. Source: Celledoni, Farre Puiggali, Hoiseth, Martin de Diego, Energy-preserving
+// integrators applied to nonholonomic systems, J. Nonlinear Sci. 29 (2019).
 #pragma once
 
 #include <hamel/framework/schemes/scheme.hpp>

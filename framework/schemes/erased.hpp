@@ -1,5 +1,5 @@
-// A problem whose types are known at run time only: systems by data, products put together by name, and
-// whatever has no kernel of its own. Vectors are allocated once, by whoever keeps them.
+// A problem whose types are known at run time only: systems by data, products put together by name,
+// and whatever has no kernel of its own. Vectors are allocated once, by whoever keeps them.
 #pragma once
 
 #include <memory>

@@ -1,15 +1,16 @@
 // gni: reflect the momentum at the node, then take a free variational step.
 //
-// The momentum p- = I v- that arrives at a node leaves it as p+ = 2 p~ - p-, p~ = I xi the part of p- that no
-// reaction can carry (mechanics/place.hpp); as velocities v+ = 2 xi - v-. Then the unconstrained step of the cotangent
-// lift, mu0 = p+, p- = mu1: lift of the problem without its rows, which starts from v+ and ends in v-. A node carries v-.
-// Order 2 (s = 1/2, or V = f = 0 with a symmetric tau). Weakness: |det| of the map is 1, while systems
-// such as Suslov's with full inertia contract phase volume, e^{-A t}: the momentum across the constraint, O(h) at
-// the start, is multiplied by -e^{+A h} in a step, the nodes see its square, h^2 e^{2 A t}, and half the step
-// puts the end of the run off by log(2)/A only. The velocity of a step is admissible to O(h) only. A teaching
-// baseline. Measured: tests/verification/baselines.cpp.
-// Source: Ferraro, Iglesias, Martin de Diego, Momentum and energy preserving integrators for nonholonomic
-// dynamics, Nonlinearity 21 (2008).
+// The momentum p- = I v- that arrives at a node leaves it as p+ = 2 p~ - p-, p~ = I xi the part of
+// p- that no reaction can carry (mechanics/place.hpp); as velocities v+ = 2 xi - v-. Then the
+// unconstrained step of the cotangent lift, mu0 = p+, p- = mu1: lift of the problem without its
+// rows, which starts from v+ and ends in v-. A node carries v-. Order 2 (s = 1/2, or V = f = 0 with
+// a symmetric tau). Weakness: |det| of the map is 1, while systems such as Suslov's with full
+// inertia contract phase volume, e^{-A t}: the momentum across the constraint, O(h) at the start,
+// is multiplied by -e^{+A h} in a step, the nodes see its square, h^2 e^{2 A t}, and half the step
+// puts the end of the run off by log(2)/A only. The velocity of a step is admissible to O(h) only.
+// A teaching baseline. Measured: tests/verification/baselines.cpp. Source: Ferraro, Iglesias,
+// Martin de Diego, Momentum and energy preserving integrators for nonholonomic dynamics,
+// Nonlinearity 21 (2008).
 #pragma once
 
 #include <hamel/framework/schemes/lift.hpp>

@@ -1,16 +1,18 @@
 // lift in the Hamel frame, contracted once: structure constants instead of matrices.
 //
-// Let A(xi) = dR_xi^-1 = 1 + O + w(x) Q, O odd (linear) and Q even (quadratic) in xi, x = |omega|^2, as for exp and
-// Cayley on SO(3) and SE(2), tau symmetric. The end momenta of lift are mu0(xi) and mu1 = mu0(-xi), with
+// Let A(xi) = dR_xi^-1 = 1 + O + w(x) Q, O odd (linear) and Q even (quadratic) in xi, x =
+// |omega|^2, as for exp and Cayley on SO(3) and SE(2), tau symmetric. The end momenta of lift are
+// mu0(xi) and mu1 = mu0(-xi), with
 //   s = 0, 1, or exp:     mu0 = A(xi)^T p
-//   s = 1/2, Cayley:      mu0 = (1 + 2 O + Q + O (1 + Q)^-1 O)^T p at xi/2, where O (1 + Q)^-1 O = O^2
-// (the odd parts of C = (dR_{xi/2} + dR_{-xi/2})^T/2 cancel, and Q is z times a row, O z = -ad_z z/2 = 0).
-// Both are p plus a part linear in xi plus a weight times a quadratic one. With xi = h E y, p = I E y,
-// y = (u, v) in R^2, E^T I E = Id:
+//   s = 1/2, Cayley:      mu0 = (1 + 2 O + Q + O (1 + Q)^-1 O)^T p at xi/2, where O (1 + Q)^-1 O =
+//   O^2
+// (the odd parts of C = (dR_{xi/2} + dR_{-xi/2})^T/2 cancel, and Q is z times a row, O z = -ad_z
+// z/2 = 0). Both are p plus a part linear in xi plus a weight times a quadratic one. With xi = h E
+// y, p = I E y, y = (u, v) in R^2, E^T I E = Id:
 //   E^T mu0 = y + h b(y, y) + h^2 w(h^2 g(y, y)) t(y, y, y),   E^T mu1 = the same with -h,
-// where b (2 x 3, on u^2, uv, v^2), t (2 x 4, on u^3, u^2 v, u v^2, v^3) and g (3) are constants of the body:
-// b holds the structure constants of the frame. They are found from mu0 itself by polarisation at |xi| about
-// 1, with an error of a few eps.
+// where b (2 x 3, on u^2, uv, v^2), t (2 x 4, on u^3, u^2 v, u v^2, v^3) and g (3) are constants of
+// the body: b holds the structure constants of the frame. They are found from mu0 itself by
+// polarisation at |xi| about 1, with an error of a few eps.
 #pragma once
 
 #include <utility>

@@ -1,8 +1,8 @@
 // A left-invariant system with m fixed: one Hamel frame for all configurations.
 //
 //   l(xi) = 1/2 xi^T I xi,   d = ker A,   E: n x m, columns an I-orthonormal basis of d.
-// Coordinates on d are y = E^T I xi, and on its dual mu_bar = E^T mu; since E^T I E = Id, y = mu_bar: a node
-// carries y, and the equations of a step are E^T r = 0 (m numbers).
+// Coordinates on d are y = E^T I xi, and on its dual mu_bar = E^T mu; since E^T I E = Id, y =
+// mu_bar: a node carries y, and the equations of a step are E^T r = 0 (m numbers).
 #pragma once
 
 #include <memory>
@@ -18,7 +18,8 @@ class LeftInvariant : public GroupOperations<Tau> {
  public:
   using Group = Group_;
   static constexpr bool left_invariant = true;
-  /// Steps state their Jacobians in closed form; on larger groups differences spare a minute of compilation.
+  /// Steps state their Jacobians in closed form; on larger groups differences spare a minute of
+  /// compilation.
   static constexpr bool has_jacobians = Group::dim <= 3;
   static constexpr int n = Group::dim, m = M, k = n - M;
   using typename GroupOperations<Tau>::Element;

@@ -1,20 +1,25 @@
-// lift: the paper's definition D^{D*} = (iota* x iota*) o D^{T*} o T pi*, read literally. It is the discrete
-// Lagrange-d'Alembert scheme of L_d(g0, g1) = h L(g, xi/h).
+// lift: the paper's definition D^{D*} = (iota* x iota*) o D^{T*} o T pi*, read literally. It is the
+// discrete Lagrange-d'Alembert scheme of L_d(g0, g1) = h L(g, xi/h).
 //
-// Unknown v = xi/h. With z0 = -s xi, z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g f1,
+// Unknown v = xi/h. With z0 = -s xi, z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g
+// f1,
 //   p = I(g) v,   nu = h F(t + s h, g, v),   C = (s dR_{z0} + (1-s) dR_{z1})^T.
 // Momenta carried to the base point, m_i = Ad*_{f_i^-1} mu_i, satisfy (lie/trivialised.hpp)
 //   (1)  s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 = p,     (2)  m1 - m0 = nu,
 // hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu), m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i. The step solves
 //   E(g0)^T (mu0 - I(g0) xi_0) = 0,    A(g) v = b(t + s h, g),   phi(g1) = 0 in place of its rows,
-// in the frame at g0 ((*) of mechanics/place.hpp), and xi_1 is the admissible velocity of mu1 at g1.
+// in the frame at g0 ((*) of mechanics/place.hpp), and xi_1 is the admissible velocity of mu1 at
+// g1.
 //
-// Forces at the nodes, (M43): nu = h d(v^T I(g) v)/2 only, and f - dV is taken at both ends with half of h,
-//   E(g0)^T (mu0 - I(g0) xi_0 - h/2 F0) = 0,   mu1 + h/2 F1 in place of mu1,   F_i = (f - dV)(t_i, g_i, v).
+// Forces at the nodes, (M43): nu = h d(v^T I(g) v)/2 only, and f - dV is taken at both ends with
+// half of h,
+//   E(g0)^T (mu0 - I(g0) xi_0 - h/2 F0) = 0,   mu1 + h/2 F1 in place of mu1,   F_i = (f - dV)(t_i,
+//   g_i, v).
 //
-// On a left-invariant problem v = E y, nu = 0 and m unknowns remain: E^T mu0 = mu_bar_k, mu_bar_{k+1} = E^T mu1. At
-// s = 0, at s = 1 for a symmetric tau, and at every s for a one-parameter tau (exp), mu0 = (dR_xi)^-T I xi/h.
-// Source: Vivek, Martin de Diego, Banavar; Cortes and Martinez 2001; Fedorov and Zenkov 2005; Kobilarov 2010.
+// On a left-invariant problem v = E y, nu = 0 and m unknowns remain: E^T mu0 = mu_bar_k,
+// mu_bar_{k+1} = E^T mu1. At s = 0, at s = 1 for a symmetric tau, and at every s for a
+// one-parameter tau (exp), mu0 = (dR_xi)^-T I xi/h. Source: Vivek, Martin de Diego, Banavar; Cortes
+// and Martinez 2001; Fedorov and Zenkov 2005; Kobilarov 2010.
 #pragma once
 
 #include <hamel/framework/lie/trivialised.hpp>
@@ -32,9 +37,10 @@ struct Lift : SchemeDefaults {
   static constexpr bool varies_steps = true;
   static constexpr bool places_forces = true;
   static constexpr bool reduced = true;
-  /// Left-invariant: a symmetric tau gives order 2 for every s. The step is reversible at s = 1/2, and at s = 0 and 1
-  /// when tau is symmetric; between them only when tau(a xi) and tau(b xi) commute too (exp, Cayley, polar):
-  /// tau_s(xi)^-1 = tau((1-s) xi)^-1 tau(-s xi) is tau_s(-xi) only then.
+  /// Left-invariant: a symmetric tau gives order 2 for every s. The step is reversible at s = 1/2,
+  /// and at s = 0 and 1 when tau is symmetric; between them only when tau(a xi) and tau(b xi)
+  /// commute too (exp, Cayley, polar): tau_s(xi)^-1 = tau((1-s) xi)^-1 tau(-s xi) is tau_s(-xi)
+  /// only then.
   static ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) {
     const bool half = s == 0.5;
     if (!left_invariant) return {half ? 2 : 1, half};
@@ -103,7 +109,8 @@ class Lift::General {
     }
     inertia_ = place_.inertia;
     target_ = inertia_.lazyProduct(node.x);
-    // |mu0| + |I xi/h| + |h force| in the units of (*); at rest without force those of unit velocities.
+    // |mu0| + |I xi/h| + |h force| in the units of (*); at rest without force those of unit
+    // velocities.
     const double size = 2 * place_.size(target_) + std::abs(h) * place_.size(force_);
     scale_squared_ = size > 0 ? size * size : problem_.dim();
     if (nodal_) {
@@ -204,7 +211,8 @@ class Lift::General {
   const Node* from_ = nullptr;
   double h_ = 0, scale_squared_ = 0;
   Vector target_;
-  // Work: the place at place_g_ (g0, and g1 once finished), and what the last x determined. Allocated once.
+  // Work: the place at place_g_ (g0, and g1 once finished), and what the last x determined.
+  // Allocated once.
   mutable typename P::Place place_;
   mutable typename P::Element place_g_;
   mutable double place_time_ = kNothing;

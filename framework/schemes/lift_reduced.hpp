@@ -1,4 +1,5 @@
-// The step of lift on a left-invariant problem: m unknowns, (M17), in the Hamel form where that exists. Part of lift.hpp.
+// The step of lift on a left-invariant problem: m unknowns, (M17), in the Hamel form where that
+// exists. Part of lift.hpp.
 #pragma once
 
 #include <hamel/framework/schemes/hamel_form.hpp>

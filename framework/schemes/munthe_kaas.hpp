@@ -1,14 +1,15 @@
-// Runge-Kutta-Munthe-Kaas methods on the equations of motion: what rkmk4, dopri5, tsit5 and dop853 share, a step given by
-// its tableau (runge_kutta.hpp), (M44).
+// Runge-Kutta-Munthe-Kaas methods on the equations of motion: what rkmk4, dopri5, tsit5 and dop853
+// share, a step given by its tableau (runge_kutta.hpp), (M44).
 //
 // The coordinates are those of the algebra at the start of the step, g = g_0 tau(eta), in which
 //   eta' = dL tau_eta^-1 xi.
-// With the exact dL tau^-1 every tableau keeps its order with every tau; without it the order would be 2.
-// Error of a step: the largest of
+// With the exact dL tau^-1 every tableau keeps its order with every tau; without it the order would
+// be 2. Error of a step: the largest of
 //   |e_eta,i| / (atol + rtol),   |e_xi,i| / (atol + rtol max |xi_i|):
 // a unit of a coordinate is of size 1, since a displacement has no origin.
 // Dense output: that of the tableau in (eta, x), then onto the constraints as a node.
-// Source: Munthe-Kaas, High order Runge-Kutta methods on manifolds (1999); Hairer, Lubich, Wanner, IV.8.
+// Source: Munthe-Kaas, High order Runge-Kutta methods on manifolds (1999); Hairer, Lubich, Wanner,
+// IV.8.
 #pragma once
 
 #include <hamel/framework/schemes/runge_kutta.hpp>

@@ -1,9 +1,10 @@
 // The problem of a step: a nonholonomic system on a group with a retraction, as the schemes see it.
 //
 // Three models of one concept:
-//   LeftInvariant<G, M, Tau>   constant inertia and rows, m fixed: the velocity is carried as y, xi = E y
-//   Typed<System, Tau>         whatever C++ type describes the system: fixed sizes, nothing virtual
-//   Erased                     run-time sizes: systems by data, products put together by name
+//   LeftInvariant<G, M, Tau>   constant inertia and rows, m fixed: the velocity is carried as y, xi
+//   = E y Typed<System, Tau>         whatever C++ type describes the system: fixed sizes, nothing
+//   virtual Erased                     run-time sizes: systems by data, products put together by
+//   name
 // A step is a template over the problem; nothing in it knows which of the three it has, but for
 // `if constexpr (Problem::left_invariant)`, where constants have been contracted.
 #pragma once
@@ -14,7 +15,8 @@
 
 namespace hamel {
 
-/// A node: time, element, and the admissible velocity in the coordinates in which a problem carries it.
+/// A node: time, element, and the admissible velocity in the coordinates in which a problem carries
+/// it.
 template <class Problem>
 struct Node {
   double t = 0;
@@ -24,8 +26,8 @@ struct Node {
       : g(problem.element()), x(Problem::State::Zero(problem.state_size())) {}
 };
 
-/// What a step may ask. Sizes: n = dim(), k = rows(), the last held() of them differentials of holonomic
-/// rows. Out-parameters have their size before a call. Elements: Problem::Element.
+/// What a step may ask. Sizes: n = dim(), k = rows(), the last held() of them differentials of
+/// holonomic rows. Out-parameters have their size before a call. Elements: Problem::Element.
 template <class P>
 concept Problem = requires(const P& problem, typename P::Element& g, typename P::Vector& v,
                            typename P::State& x, typename P::Matrix& inertia, typename P::Rows& a,

@@ -1,11 +1,12 @@
-// rk4_projected: classical RK4 in the coordinates of the trajectory file, projected (runge_kutta.hpp).
-// What a user writes by hand.
+// rk4_projected: classical RK4 in the coordinates of the trajectory file, projected
+// (runge_kutta.hpp). What a user writes by hand.
 //
 // The coordinates are the columns q(g) of the element (nine for a rotation), in which
 //   q' = d/de q(g tau(e xi)) at e = 0.
-// Between the stages they leave the group; the element is the one nearest to them. Weakness: no structure but
-// what the projections put back; energy and holonomic rows drift as those of rkmk4 (rkmk4.hpp).
-// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4 (projection methods).
+// Between the stages they leave the group; the element is the one nearest to them. Weakness: no
+// structure but what the projections put back; energy and holonomic rows drift as those of rkmk4
+// (rkmk4.hpp). Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.4 (projection
+// methods).
 #pragma once
 
 #include <hamel/framework/schemes/runge_kutta.hpp>

@@ -1,11 +1,13 @@
-// What explicit schemes on the equations of motion share: a Runge-Kutta method given by its tableau.
+// What explicit schemes on the equations of motion share: a Runge-Kutta method given by its
+// tableau.
 //
 // In coordinates q of the element of its own choice, a scheme integrates
 //   q' = rate(q, xi),   x' = a(t, g, x)   (mechanics/equations_of_motion.hpp),   g = element(q).
-// At the end of a step g goes to the group and xi onto A xi = b, orthogonally in the metric I. A scheme that
-// keeps the holonomic rows (Derived::keeps_rows) moves g onto phi = 0 before, g <- g tau(v) with the smallest v in that metric
-// that has A v = (0, -phi): the change is of the size of the step's error, so that the order stays.
-// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.1 to II.6; Hairer, Lubich, Wanner, IV.4.
+// At the end of a step g goes to the group and xi onto A xi = b, orthogonally in the metric I. A
+// scheme that keeps the holonomic rows (Derived::keeps_rows) moves g onto phi = 0 before, g <- g
+// tau(v) with the smallest v in that metric that has A v = (0, -phi): the change is of the size of
+// the step's error, so that the order stays. Source: Hairer, Norsett, Wanner, Solving Ordinary
+// Differential Equations I, II.1 to II.6; Hairer, Lubich, Wanner, IV.4.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +22,9 @@
 
 namespace hamel {
 
-/// Derived gives start(g, q), element(q, g) -> bool (false outside the domain of the coordinates), rate(q, g, xi, out),
-/// keeps_rows(), and rate_in_algebra: rate does not look at g. Q: the type of the coordinates.
+/// Derived gives start(g, q), element(q, g) -> bool (false outside the domain of the coordinates),
+/// rate(q, g, xi, out), keeps_rows(), and rate_in_algebra: rate does not look at g. Q: the type of
+/// the coordinates.
 template <class Derived, class P, class Q>
 class RungeKutta {
  public:
@@ -110,7 +113,8 @@ class RungeKutta {
   bool is(const Node& one, const Node& other) const {
     return one.t == other.t && one.x == other.x && problem_.same(one.g, other.g);
   }
-  // The equations of motion with all that they call, inlined once: a third fewer instructions than calls.
+  // The equations of motion with all that they call, inlined once: a third fewer instructions than
+  // calls.
   HAMEL_FLATTEN [[gnu::noinline]] void accelerate(double t, const Element& g, const State& x,
                                                   State& rate) const {
     motion_(t, g, x, rate);
@@ -138,8 +142,9 @@ class RungeKutta {
     accelerate(from_->t + table_.c[at(i)] * h_, g_, x_, x_rates_[at(i)]);
     return true;
   }
-  // Onto the constraints. They must hold to a percent of the velocity before they are imposed: the error of a sound
-  // step is a small part of that. It is not where the equations of motion are nearly singular.
+  // Onto the constraints. They must hold to a percent of the velocity before they are imposed: the
+  // error of a sound step is a small part of that. It is not where the equations of motion are
+  // nearly singular.
   bool settle(Node& node) const {
     constexpr double most = 0.01;
     double off = 0;  // squared, of the rows of phi, in the metric

@@ -1,5 +1,5 @@
-// What a scheme is: a descriptor (name, formula, source, claims, as data that tests measure) and a template
-// Step over the problem.
+// What a scheme is: a descriptor (name, formula, source, claims, as data that tests measure) and a
+// template Step over the problem.
 //
 //   struct MyScheme : hamel::SchemeDefaults {
 //     static std::string name(), formula(), source();
@@ -7,9 +7,10 @@
 //     template <class Problem> class Step;      // problem.hpp says what a step may ask
 //   };
 // A Step takes the node it starts from to the next one. In between it is an equation F(x) = 0:
-//   Step(problem, s), size(), begin(node, h), guess(x), scale_squared(), residual(x, f), finish(x, next).
-// An explicit step has size() = 0, no residual, and evaluations(): of the equations of motion in the last step.
-// One that is given by a Tableau is made as Step(problem, tableau).
+//   Step(problem, s), size(), begin(node, h), guess(x), scale_squared(), residual(x, f), finish(x,
+//   next).
+// An explicit step has size() = 0, no residual, and evaluations(): of the equations of motion in
+// the last step. One that is given by a Tableau is made as Step(problem, tableau).
 #pragma once
 
 #include <concepts>
@@ -38,8 +39,8 @@ struct SchemeDefaults {
   /// The velocity of a step, not of its ends only, satisfies A xi = b.
   static constexpr bool steps_admissible = true;
   static constexpr bool explicit_step = false;
-  // Steps chosen by the error: explicit ones estimate it, symmetric ones follow a reversible control
-  // (loop/error_control.hpp, loop/step_control.hpp).
+  // Steps chosen by the error: explicit ones estimate it, symmetric ones follow a reversible
+  // control (loop/error_control.hpp, loop/step_control.hpp).
   static constexpr bool estimates_error = false, varies_steps = false;
 };
 
@@ -55,14 +56,15 @@ concept SchemeStep = Problem<typename Step::Problem> &&
   step.begin(node, h);
   // The next node; false when the step leaves the domain of the retraction.
   { done.finish(x, next) } -> std::convertible_to<bool>;
-  // A first x, when there is no history to extrapolate from; the squared size of the terms that F balances; F.
+  // A first x, when there is no history to extrapolate from; the squared size of the terms that F
+  // balances; F.
   done.guess(x);
   { done.scale_squared() } -> std::convertible_to<double>;
   done.residual(x, f);
 };
 
-/// Corrections in coordinates of the step's own choice, in which its Jacobian changes little along a motion:
-/// from_frame(z), z -> dx in place?
+/// Corrections in coordinates of the step's own choice, in which its Jacobian changes little along
+/// a motion: from_frame(z), z -> dx in place?
 template <class Step>
 concept HasFrame = requires(const Step& step, typename Step::Unknown& z) {
   step.from_frame(z);

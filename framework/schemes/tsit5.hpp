@@ -1,8 +1,8 @@
-// tsit5: the explicit pair 5(4) of Tsitouras as a Munthe-Kaas method (munthe_kaas.hpp). Six evaluations a step; dense
-// output of order 4 without another one.
+// tsit5: the explicit pair 5(4) of Tsitouras as a Munthe-Kaas method (munthe_kaas.hpp). Six
+// evaluations a step; dense output of order 4 without another one.
 //
-// Source: Tsitouras, Runge-Kutta pairs of order 5(4) satisfying only the first column simplifying assumption, Computers
-// and Mathematics with Applications 62 (2011).
+// Source: Tsitouras, Runge-Kutta pairs of order 5(4) satisfying only the first column simplifying
+// assumption, Computers and Mathematics with Applications 62 (2011).
 #pragma once
 
 #include <hamel/framework/schemes/munthe_kaas.hpp>

@@ -1,8 +1,8 @@
 // unadapted: the paper's T*G integrator, run on the constrained system as if nothing bound it.
 //
-// It is lift of the problem without its rows: with nu = 0 it conserves the spatial momentum Ad*_{g^-1} mu to round-off,
-// and it leaves the constraint at once: the paper's negative control. For the free body (no constraint rows) it and
-// lift are the same variational integrator.
+// It is lift of the problem without its rows: with nu = 0 it conserves the spatial momentum
+// Ad*_{g^-1} mu to round-off, and it leaves the constraint at once: the paper's negative control.
+// For the free body (no constraint rows) it and lift are the same variational integrator.
 #pragma once
 
 #include <hamel/framework/schemes/lift.hpp>

@@ -18,7 +18,8 @@ std::string text_without(const std::string& axis) {
   return config.completed().text(axis);
 }
 
-// The order that the scheme claims here. A composition reaches its own over a reversible step of order 2.
+// The order that the scheme claims here. A composition reaches its own over a reversible step of
+// order 2.
 int claim(const Registry& registry, const StudyCell& cell, const SystemModel& system) {
   const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
   if (cell.config.chooses_steps()) return 1;  // of the tolerance
@@ -33,8 +34,8 @@ int claim(const Registry& registry, const StudyCell& cell, const SystemModel& sy
   return plain.order;
 }
 
-// What a scheme makes no use of is empty in `axes` and the default in `run`, so that one cell stands for all
-// values.
+// What a scheme makes no use of is empty in `axes` and the default in `run`, so that one cell
+// stands for all values.
 void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, std::string>& axes,
                   Config& run) {
   const auto leave = [&](const char* axis) {

@@ -1,4 +1,5 @@
-// Everything that can be wrong with a study, found before anything runs, each mistake with its place.
+// Everything that can be wrong with a study, found before anything runs, each mistake with its
+// place.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -155,8 +156,8 @@ class Checks {
     });
   }
 
-  // What a run with this value has to say that one without it has not. What is to be done on failure beside
-  // a solver that is not the one to retry with: the two meet in the cells.
+  // What a run with this value has to say that one without it has not. What is to be done on
+  // failure beside a solver that is not the one to retry with: the two meet in the cells.
   void value(const std::string& axis, size_t i, const StudySystem& system, Config base,
              Config config) {
     if (axis == "on_failure") {

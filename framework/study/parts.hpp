@@ -36,8 +36,8 @@ std::vector<double> step_sizes(const StudyConfig& config);
 /// How many equal intervals of [0, until] have ends that every step reaches; at most 400.
 long common_intervals(const StudyConfig& config);
 
-/// The exact motion of a system at the ends of those intervals, else a converged one. `run` is any of its
-/// cells, `stepped` is told the steps taken. Without times when stop became true on the way.
+/// The exact motion of a system at the ends of those intervals, else a converged one. `run` is any
+/// of its cells, `stepped` is told the steps taken. Without times when stop became true on the way.
 StudyReference reference(const Registry& registry, const StudyConfig& config,
                          const StudySystem& system, const Config& run,
                          const std::function<void(long)>& stepped, const std::atomic<bool>* stop);
@@ -54,13 +54,15 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
 double time_per_step(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const std::atomic<bool>* stop);
 
-/// Measured orders and the distances between solvers, from all cells together; angles of each system.
+/// Measured orders and the distances between solvers, from all cells together; angles of each
+/// system.
 void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
              const std::vector<std::vector<bool>>& angles,
              const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics);
 
-/// The columns of the table that a cell which was run has: f(Quantity, member pointer) for what one run of it
-/// leaves, which the journal keeps too, f(Quantity, function of cell, metrics, reference) for what follows.
+/// The columns of the table that a cell which was run has: f(Quantity, member pointer) for what one
+/// run of it leaves, which the journal keeps too, f(Quantity, function of cell, metrics, reference)
+/// for what follows.
 template <class F>
 void measured_columns(F&& f) {
   using C = const StudyCell&;

@@ -1,6 +1,7 @@
-// What cells are compared with: the exact motion where the system has one, else lift at s = 1/2 composed to
-// order 6 (Kahan and Li), with steps halved until two of them agree. Their difference is the bound. As the
-// order is 6, the first step need not be finer than those of the cells, and may be coarser.
+// What cells are compared with: the exact motion where the system has one, else lift at s = 1/2
+// composed to order 6 (Kahan and Li), with steps halved until two of them agree. Their difference
+// is the bound. As the order is 6, the first step need not be finer than those of the cells, and
+// may be coarser.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -34,8 +35,8 @@ double apart(const std::vector<bool>& angles, const Motion& a, const Motion& b) 
   return out;
 }
 
-// Steps in each interval of the first run: the finest step of the cells, or a coarser one from which the
-// step can be halved three times.
+// Steps in each interval of the first run: the finest step of the cells, or a coarser one from
+// which the step can be halved three times.
 long first_steps_each(const StudyConfig& config) {
   const long intervals = common_intervals(config);
   const std::vector<double> steps = step_sizes(config);
@@ -71,7 +72,8 @@ class Convergence {
     config_.rtol = config_.atol = std::nullopt;
   }
 
-  // Halves the step until two motions agree to round-off, or there agree no better than the pair before.
+  // Halves the step until two motions agree to round-off, or there agree no better than the pair
+  // before.
   StudyReference find() {
     const std::string method =
         fmt::format("lift, s = {}, {}, {}", config_.s, config_.retraction, kTable);

@@ -75,7 +75,8 @@ void Runner::run() {
   if (failure_) std::rethrow_exception(failure_);
 }
 
-// References first, then cells whose reference is there, then timings. Nothing: no more, or stopped.
+// References first, then cells whose reference is there, then timings. Nothing: no more, or
+// stopped.
 std::optional<Runner::Piece> Runner::next() {
   std::unique_lock lock(mutex_);
   while (!stopped(stop_) && !failure_) {

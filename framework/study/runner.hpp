@@ -1,6 +1,6 @@
-// The threads of a study: references, cells and rounds of timings, each piece of work taken by the next
-// thread that is free. What a piece yields depends on its system or cell alone, so the number of threads
-// changes nothing but the times.
+// The threads of a study: references, cells and rounds of timings, each piece of work taken by the
+// next thread that is free. What a piece yields depends on its system or cell alone, so the number
+// of threads changes nothing but the times.
 #pragma once
 
 #include <atomic>

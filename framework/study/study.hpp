@@ -1,13 +1,13 @@
-// A comparative study: one run ("cell") for each combination of systems and of the values of those options
-// that the study varies, all measured in the same way.
+// A comparative study: one run ("cell") for each combination of systems and of the values of those
+// options that the study varies, all measured in the same way.
 //
 //   auto config = hamel::read_study("readings.toml", hamel::registry());
 //   auto result = hamel::Study(hamel::registry(), config).threads(2).folder("out").run();
 //   result.write("out");   // cells.csv, cells.h5, record.json
 //
-// Each cell is run once with recording (its errors, counts and drifts: the same whatever the number of
-// threads), then timed in rounds over all cells, so that a slow moment of the machine meets all alike.
-// What is measured and from what: framework/study/README.md.
+// Each cell is run once with recording (its errors, counts and drifts: the same whatever the number
+// of threads), then timed in rounds over all cells, so that a slow moment of the machine meets all
+// alike. What is measured and from what: framework/study/README.md.
 #pragma once
 
 #include <atomic>
@@ -25,8 +25,8 @@ namespace hamel {
 
 class Registry;
 
-/// A registered system with its parameters and start, or a file "my_system.toml" (data_system.hpp); the
-/// label is what tables call it.
+/// A registered system with its parameters and start, or a file "my_system.toml" (data_system.hpp);
+/// the label is what tables call it.
 struct StudySystem {
   std::string label, name;
   Parameters parameters = {};
@@ -35,7 +35,8 @@ struct StudySystem {
   std::string data = {};     // the file's text: a study reads it once, at its beginning
 };
 
-/// Combinations that are left out: one entry per axis named, any of its values; axes not named match all.
+/// Combinations that are left out: one entry per axis named, any of its values; axes not named
+/// match all.
 struct StudyExclusion {
   std::map<std::string, std::vector<std::string>> values;
   std::string why;
@@ -90,7 +91,8 @@ StudyConfig read_study(const std::string& path, const Registry& registry);
 struct StudyCell {
   size_t system = 0;   // index into the systems
   Config config = {};  // ready to run
-  /// The value on each axis as a word; of a cell that is run, empty where its scheme makes no use of it.
+  /// The value on each axis as a word; of a cell that is run, empty where its scheme makes no use
+  /// of it.
   std::map<std::string, std::string> axes;
   std::string skipped;  // "" (it is run), "excluded", "impossible" or "duplicate"
   std::string why;
@@ -181,11 +183,13 @@ class Study {
   Study& folder(std::string path);
   /// Forgets the journal that is there.
   Study& fresh(bool forget = true);
-  /// Called now and then, from one thread at a time, with the fraction of the work done, references too.
+  /// Called now and then, from one thread at a time, with the fraction of the work done, references
+  /// too.
   Study& progress(std::function<void(double)> report);
   /// Polled every few hundred steps: true abandons what is in flight and returns.
   Study& stop(const std::atomic<bool>* flag);
-  /// Throws ConfigError before anything runs: a folder that cannot be written, another study's journal.
+  /// Throws ConfigError before anything runs: a folder that cannot be written, another study's
+  /// journal.
   StudyResult run() const;
 
  private:

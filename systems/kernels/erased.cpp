@@ -1,4 +1,5 @@
-// Every scheme for problems whose types are known at run time only. One more scheme: its #include and its line.
+// Every scheme for problems whose types are known at run time only. One more scheme: its #include
+// and its line.
 #include <hamel/framework/schemes/dop853.hpp>
 #include <hamel/framework/schemes/dopri5.hpp>
 #include <hamel/framework/schemes/energy_preserving.hpp>

@@ -1,5 +1,5 @@
-// The groups with exp, their types erased, as their units compile them: made by type they cost 4 s of
-// compilation each.
+// The groups with exp, their types erased, as their units compile them: made by type they cost 4 s
+// of compilation each.
 #pragma once
 
 #include <memory>

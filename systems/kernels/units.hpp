@@ -31,8 +31,8 @@ void add_disk_and_rattleback(Registry& registry);
 void add_vehicles(Registry& registry);
 void add_driven_vehicles(Registry& registry);
 
-// Which kernels there are, what each gains and what it costs: the table in tests/README.md. rkmk4, dopri5, tsit5 and dop853
-// share one.
+// Which kernels there are, what each gains and what it costs: the table in tests/README.md. rkmk4,
+// dopri5, tsit5 and dop853 share one.
 
 /// The problem of left-invariant systems on G with m = M.
 template <class G, int M>

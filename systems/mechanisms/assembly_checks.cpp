@@ -252,7 +252,8 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
   };
 }
 
-// Massless bodies in the middle of a chain, axes that coincide: a motion that the rows admit and no inertia resists.
+// Massless bodies in the middle of a chain, axes that coincide: a motion that the rows admit and no
+// inertia resists.
 void Assembly::check_motions(const Multibody& system, const std::vector<Said>& rows) {
   std::vector<double> g(system.drawn().size());
   system.geometry().from_coordinates(model_.start.configuration, g.data());

@@ -1,4 +1,5 @@
-// Assembly: numbers that no part can have. Those of a file are finite; a user's program may state any.
+// Assembly: numbers that no part can have. Those of a file are finite; a user's program may state
+// any.
 #include <algorithm>
 #include <cmath>
 #include <span>

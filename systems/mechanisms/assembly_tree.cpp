@@ -160,8 +160,8 @@ void Assembly::link(const Mechanism::JointPart& joint) {
   }
 }
 
-// The frame of a joint has its third axis along `axis`; that of a free or planar one on the parent is the parent's
-// own, at the height of the joint for a planar one.
+// The frame of a joint has its third axis along `axis`; that of a free or planar one on the parent
+// is the parent's own, at the height of the joint for a planar one.
 void Assembly::add_link(int parent, JointKind kind, const Mechanism::JointPart& joint,
                         const Point& axis, const std::string& suffix) {
   const bool turned = kind != JointKind::free && kind != JointKind::ball;

@@ -1,4 +1,5 @@
-// Values in the file of a mechanism: numbers, points, and formulas of parameters, time and state. Not installed.
+// Values in the file of a mechanism: numbers, points, and formulas of parameters, time and state.
+// Not installed.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +54,8 @@ class FileValues {
     const auto values = formulas.numbers(node, key, 3);
     return {values[0], values[1], values[2]};
   }
-  /// A formula of t, coordinates, velocities, inputs and parameters; of_time becomes true where t stands in it.
+  /// A formula of t, coordinates, velocities, inputs and parameters; of_time becomes true where t
+  /// stands in it.
   Signal signal(const Node& node, const std::string& key, bool& of_time) {
     const auto formula = formulas.expression(node, key, names_);
     if (!formula) return {};

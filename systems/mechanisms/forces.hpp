@@ -1,10 +1,12 @@
 // The forces of a mechanism: gravity, springs, dampers, motors, given forces.
 //
-//   gravity   V = -sum m a . x                        a the acceleration of gravity, of any direction
-//   spring    V = 1/2 k (l - l_0)^2, f = -c l'        l: the distance of two points, or the coordinate of a hinge
+//   gravity   V = -sum m a . x                        a the acceleration of gravity, of any
+//   direction spring    V = 1/2 k (l - l_0)^2, f = -c l'        l: the distance of two points, or
+//   the coordinate of a hinge
 //             or slider; c its damper
 //   motor     f on one velocity of a joint, a signal
-//   force     three signals, at a point of a body, along the axes of the world or of the body as drawn
+//   force     three signals, at a point of a body, along the axes of the world or of the body as
+//   drawn
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// The joints of a mechanism: a group each, its embedding in the motions of space, the names of its numbers.
+// The joints of a mechanism: a group each, its embedding in the motions of space, the names of its
+// numbers.
 //
 //   kind     group   motion of the child against the parent, in the joint's frame
 //   free     se3     any
@@ -7,8 +8,8 @@
 //   slider   r1      along the axis
 //   ball     so3     turning about the point
 //
-// xi of a joint is its left-trivialised velocity, so that the child moves against the parent with the twist S xi in
-// the joint's frame on the child, S constant.
+// xi of a joint is its left-trivialised velocity, so that the child moves against the parent with
+// the twist S xi in the joint's frame on the child, S constant.
 #pragma once
 
 #include <memory>

@@ -2,18 +2,17 @@
 //
 //   hamel::Mechanism m("scooter");
 //   const auto deck = m.body("deck", {.mass = 5, .at = {0.3, 0, 0.1}, .box = {0.8, 0.2, 0.05}});
-//   const auto fork = m.body("fork", {.mass = 2, .at = {0.7, 0, 0.4}, .inertia = {0.1, 0.1, 0.01}});
-//   m.planar("road", deck);
-//   m.hinge("steer", deck, fork, {.at = {0.7, 0, 0}, .axis = {0, 0, 1}});
-//   m.blade("rear", deck, {.at = {0, 0, 0}});
-//   m.blade("front", fork, {.at = {0.7, 0, 0}});
+//   const auto fork = m.body("fork", {.mass = 2, .at = {0.7, 0, 0.4}, .inertia = {0.1, 0.1,
+//   0.01}}); m.planar("road", deck); m.hinge("steer", deck, fork, {.at = {0.7, 0, 0}, .axis = {0,
+//   0, 1}}); m.blade("rear", deck, {.at = {0, 0, 0}}); m.blade("front", fork, {.at = {0.7, 0, 0}});
 //   m.start({{"speed", 2}, {"steer.angle", 0.3}});
 //   hamel::simulate(m).until(10).run();
 //
-// All points and directions are those of one pose of the whole mechanism, as drawn: x ahead, z up, the ground z = 0.
-// That pose is the default start. Moments of inertia are about the mass centre, along the axes of that pose.
-// Parts are named; names are checked when the mechanism is used (model()), all mistakes at once.
-// The same parts in a file: mechanism_file.hpp. What is computed: tree.hpp, rows.hpp, forces.hpp.
+// All points and directions are those of one pose of the whole mechanism, as drawn: x ahead, z up,
+// the ground z = 0. That pose is the default start. Moments of inertia are about the mass centre,
+// along the axes of that pose. Parts are named; names are checked when the mechanism is used
+// (model()), all mistakes at once. The same parts in a file: mechanism_file.hpp. What is computed:
+// tree.hpp, rows.hpp, forces.hpp.
 #pragma once
 
 #include <functional>
@@ -130,13 +129,15 @@ class Mechanism {
   /// A joint that closes a chain: its points, and axes, coincide.
   void loop(const std::string& name, const std::string& a, const std::string& b,
             const LoopOptions& options);
-  /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate". With the angle (of a
-  /// slider the position) whose derivative it is, a run starts there. With the derivative of the rate the equations of
-  /// motion are exact; without, they find it by differences.
+  /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate".
+  /// With the angle (of a slider the position) whose derivative it is, a run starts there. With the
+  /// derivative of the rate the equations of motion are exact; without, they find it by
+  /// differences.
   void prescribe(const std::string& joint, std::function<double(double t)> rate,
                  std::function<double(double t)> angle = {},
                  std::function<double(double t)> slope = {});
-  /// One that does not change, so that there are steady motions; of rate 0 with an angle the joint is held there.
+  /// One that does not change, so that there are steady motions; of rate 0 with an angle the joint
+  /// is held there.
   void prescribe(const std::string& joint, double rate, std::function<double(double t)> angle = {});
   void prescribe(const std::string& joint, const Range& range = {});
   /// The ground turns about the origin [rad/s] and moves [m/s].
@@ -149,36 +150,39 @@ class Mechanism {
   void gravity(Point acceleration) { gravity_ = acceleration; }
   void spring(const std::string& name, const std::string& a, const std::string& b,
               const SpringOptions& options);
-  /// A torque [N m] or force [N] in a hinge or slider: a signal, or an input of the run, "steer.torque", "lift.force".
-  /// of_time: may the signal use t? If not, there are steady motions.
+  /// A torque [N m] or force [N] in a hinge or slider: a signal, or an input of the run,
+  /// "steer.torque", "lift.force". of_time: may the signal use t? If not, there are steady motions.
   void motor(const std::string& joint, Signal effort, bool of_time = true);
   void motor(const std::string& joint, const Range& range = {});
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
-  /// An input of the run that signals may use: Now::inputs, behind those of motors and prescribed joints.
+  /// An input of the run that signals may use: Now::inputs, behind those of motors and prescribed
+  /// joints.
   void input(const InputField& field) { inputs_.push_back({part(field.name), field}); }
 
   /// An event of a run (--events, --stop-at), a function of time, coordinates and velocities.
   void event(Event event) { events_.push_back(std::move(event)); }
 
-  /// The start: coordinates and velocities by name, and "speed", that of the first planar or free root joint ahead. Those
-  /// that are not given follow from the rows: coordinates stay near the drawn pose, velocities have the least energy.
+  /// The start: coordinates and velocities by name, and "speed", that of the first planar or free
+  /// root joint ahead. Those that are not given follow from the rows: coordinates stay near the
+  /// drawn pose, velocities have the least energy.
   void start(const std::map<std::string, double>& values) {
     start_.clear();
     for (const auto& [name, value] : values) start(name, value);
   }
   void start(const std::string& name, double value) { start_.push_back({part(name), value}); }
-  /// A velocity by name beside the speed of a run that starts at one (`--speed`): a motion to be seen where straight ahead
-  /// there would be none.
+  /// A velocity by name beside the speed of a run that starts at one (`--speed`): a motion to be
+  /// seen where straight ahead there would be none.
   void push(const std::string& name, double value) { push_.push_back({part(name), value}); }
-  /// What a few numbers for a start mean (`--velocity`): names as those of start(). Left out: speed.
+  /// What a few numbers for a start mean (`--velocity`): names as those of start(). Left out:
+  /// speed.
   void asks(std::vector<std::string> names) { asks_ = {part("asks"), std::move(names)}; }
 
   const std::string& name() const { return name_; }
   /// The system. Throws ConfigError with all mistakes, each with the name of its part.
   SystemModel model() const;
 
-  /// Of model(): name, group and inputs, and the names of velocities, which bodies and joints alone say. Throws
-  /// ConfigError where they make no tree.
+  /// Of model(): name, group and inputs, and the names of velocities, which bodies and joints alone
+  /// say. Throws ConfigError where they make no tree.
   SystemModel outline() const;
 
   /// Where the next parts, and what else is said next, stand in a file, for messages.

@@ -1,7 +1,7 @@
 // A tree of bodies with its rows and forces as Mechanics: what the schemes step.
 //
-// Nothing here takes memory once it is built. Work space and the last two placements are kept (a step asks for its base
-// point and its end in turns), so that an object serves one run at a time.
+// Nothing here takes memory once it is built. Work space and the last two placements are kept (a
+// step asks for its base point and its end in turns), so that an object serves one run at a time.
 #pragma once
 
 #include <array>
@@ -61,7 +61,8 @@ class Multibody final : public Mechanics {
   const std::vector<double>& drawn() const { return trees_[0].drawn(); }
   /// The tree at g.
   const Tree& tree(const double* g) const { return placed(g); }
-  /// The force of the kept rows of a contact (counted as in all_rows()) with these multipliers, in the world.
+  /// The force of the kept rows of a contact (counted as in all_rows()) with these multipliers, in
+  /// the world.
   Vec3 reaction(size_t contact, const double* g, std::span<const double> multipliers) const;
   /// phi of all rows of each(), 0 where it is none, and their A.
   void look(double t, const double* g, Matrix a, Vector b, Vector phi) const;

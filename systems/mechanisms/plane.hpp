@@ -1,4 +1,5 @@
-// What is left of the algebra of screw.hpp where all turns about the third axis and moves across it.
+// What is left of the algebra of screw.hpp where all turns about the third axis and moves across
+// it.
 //
 //   twist (w, v1, v2), wrench (m3, f1, f2): the entries 3 to 5 of those in space
 //   ad_V W = (0, v2 w' - w v2', w v1' - v1 w'),   W = (w', v1', v2')

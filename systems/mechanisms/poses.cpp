@@ -82,7 +82,8 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
   return out;
 }
 
-// Gram-Schmidt on the rows of unit length, those of phi first: what is left of a row below 1e-9 is none.
+// Gram-Schmidt on the rows of unit length, those of phi first: what is left of a row below 1e-9 is
+// none.
 std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<double>& g,
                                     std::vector<int> rows, const std::vector<double>& times) {
   const std::vector<RowWords> words = system.all_rows().words();
@@ -131,7 +132,8 @@ Redundancy look_for_redundancy(const Multibody& system,
                                const std::vector<std::vector<double>>& places) {
   const std::vector<double> times = {0, -1.3, 0.7, 1.9, 5.3, 14.1, 37.7, 101.3};  // s, of no period
   const std::vector<RowWords> words = system.all_rows().words();
-  // A row of phi that is zero in all poses says nothing: in the plane no contact changes its height.
+  // A row of phi that is zero in all poses says nothing: in the plane no contact changes its
+  // height.
   std::vector<int> speaking;
   const auto around = poses_around(system, places.front());
   for (size_t i = 0; i < words.size(); ++i) {

@@ -1,4 +1,5 @@
-// Poses that satisfy the rows of a mechanism, to look at it away from the drawn pose; rows that repeat others.
+// Poses that satisfy the rows of a mechanism, to look at it away from the drawn pose; rows that
+// repeat others.
 #pragma once
 
 #include <map>
@@ -23,13 +24,13 @@ Eigen::VectorXd least(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 /// Poses that share nothing, near g: g tau(eta), the rows left aside.
 std::vector<std::vector<double>> poses_around(const Multibody& system,
                                               const std::vector<double>& g);
-/// Poses near g on phi = 0 of all rows, reached by moves that satisfy the rows, but for prescribed rates: these move to
-/// where the joint is at other times. g first. Rows may be dependent.
+/// Poses near g on phi = 0 of all rows, reached by moves that satisfy the rows, but for prescribed
+/// rates: these move to where the joint is at other times. g first. Rows may be dependent.
 std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
                                                const std::vector<double>& g);
 
-/// Moves g onto phi(g) = 0 of all rows by the least change of the velocities that are free to change; returns the
-/// largest |phi| left.
+/// Moves g onto phi(g) = 0 of all rows by the least change of the velocities that are free to
+/// change; returns the largest |phi| left.
 double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g);
 
 /// What a row that is a combination of others says.
@@ -37,7 +38,8 @@ struct Repeat {
   std::vector<int> others;
   bool contradicts = false;  // its b is not the same combination of theirs
 };
-/// Those of these rows that are combinations of others at g, and whether they agree with them at these times.
+/// Those of these rows that are combinations of others at g, and whether they agree with them at
+/// these times.
 std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<double>& g,
                                     std::vector<int> rows, const std::vector<double>& times);
 

@@ -63,8 +63,8 @@ std::vector<RowWords> Rows::words() const {
   return out;
 }
 
-// The rows are wrenches fixed in the carrier where that only turns about the vertical, but for those of a ball, which are
-// along the world's axes, and on ground that moves.
+// The rows are wrenches fixed in the carrier where that only turns about the vertical, but for
+// those of a ball, which are along the world's axes, and on ground that moves.
 void Rows::look_at(const Tree& tree) {
   for (Contact& contact : contacts) {
     contact.carrier = contact.link;

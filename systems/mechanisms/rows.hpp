@@ -1,19 +1,24 @@
 // The constraint rows of a mechanism: contacts with the ground, closed chains, prescribed rates.
 //
-// With q the point of contact, gamma the vertical, seen from the root, and u a horizontal direction:
-//   u . (v + omega x q) = u . v_ground(q),    and where the height z(q) may change, z(q) = 0, whose differential is
-//   gamma . (v + omega x q): q may move in the body, but only along the ground.
-//   wheel   q = c - r (gamma - (gamma.n) n)/|...|: below the centre c, in the plane across the axle n;
+// With q the point of contact, gamma the vertical, seen from the root, and u a horizontal
+// direction:
+//   u . (v + omega x q) = u . v_ground(q),    and where the height z(q) may change, z(q) = 0, whose
+//   differential is gamma . (v + omega x q): q may move in the body, but only along the ground.
+//   wheel   q = c - r (gamma - (gamma.n) n)/|...|: below the centre c, in the plane across the axle
+//   n;
 //           u along n x gamma (rolling), then gamma x (n x gamma) (sideways)
-//   roller  the same q; u = cos(a) rolling + sin(a) sideways, a the angle of its rollers (0: omniwheel, 45 deg:
+//   roller  the same q; u = cos(a) rolling + sin(a) sideways, a the angle of its rollers (0:
+//   omniwheel, 45 deg:
 //           mecanum wheel)
 //   blade   q a point of the body; u = gamma x d, d the direction of the blade
 //   ball    q = c - r gamma; u along the world's x and y
-//   loop    a hinge or ball joint between links a, b: e_i . (x_b - x_a) = 0, for a hinge with axis n also
+//   loop    a hinge or ball joint between links a, b: e_i . (x_b - x_a) = 0, for a hinge with axis
+//   n also
 //           e_1 . n_b = e_2 . n_b = 0; e_i and n fixed in a
-//   prescribed  one velocity of a joint, xi_i = rate(t); of one that is held at an angle also that, coordinate = angle
-// Source: Neimark and Fufaev, Dynamics of Nonholonomic Systems (1972); Campion, Bastin, d'Andrea-Novel, IEEE Trans.
-// Robotics and Automation 12 (1996).
+//   prescribed  one velocity of a joint, xi_i = rate(t); of one that is held at an angle also that,
+//   coordinate = angle
+// Source: Neimark and Fufaev, Dynamics of Nonholonomic Systems (1972); Campion, Bastin,
+// d'Andrea-Novel, IEEE Trans. Robotics and Automation 12 (1996).
 #pragma once
 
 #include <array>
@@ -70,7 +75,8 @@ struct Ground {
   bool moves() const { return rate != 0 || !velocity.isZero(0); }
 };
 
-/// One row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and phi.
+/// One row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and
+/// phi.
 struct Row {
   int link = kGround, other = kGround;
   Wrench wrench = Wrench::Zero(), other_wrench = Wrench::Zero();
@@ -145,8 +151,8 @@ struct Rows {
     each(
         tree, t, [](size_t) { return true; }, f);
   }
-  /// out[slots[i]] = d/dt (b - A xi) along the motion at constant xi, of the rows that vary; of a tree that moved and
-  /// accelerated.
+  /// out[slots[i]] = d/dt (b - A xi) along the motion at constant xi, of the rows that vary; of a
+  /// tree that moved and accelerated.
   void rates(const Tree& tree, double t, const std::vector<char>& varies,
              const std::vector<int>& slots, Eigen::Ref<Eigen::VectorXd> out) const;
   /// Where a contact touches the ground, in the world; its height above it.

@@ -1,6 +1,7 @@
 // d/dt (b - A xi) of the rows along the motion, xi held.
 //
-// The power of a wrench F on a link changes by F' . V + F . D, D the change of its twist (tree.hpp); seen from the root
+// The power of a wrench F on a link changes by F' . V + F . D, D the change of its twist
+// (tree.hpp); seen from the root
 //   F = (q x u, u),   F' = (q' x u + q x u', u'),
 // and for a wrench fixed in a link that moves with U against its root by F . (D - ad_U V).
 #include <cmath>

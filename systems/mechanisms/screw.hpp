@@ -1,9 +1,9 @@
-// Rigid motions, twists, wrenches and inertias of bodies: the algebra of the recursions over a tree of bodies.
+// Rigid motions, twists, wrenches and inertias of bodies: the algebra of the recursions over a tree
+// of bodies.
 //
-//   twist  V = (omega, v), 6 numbers, v the velocity of the point of the body that is at the frame's origin
-//   wrench F = (moment about the origin, force); power F . V
-//   Ad_X (omega, v) = (R omega, R v + p x R omega),   X = (R, p)
-//   ad_V (a, b) = (omega x a, v x a + omega x b)
+//   twist  V = (omega, v), 6 numbers, v the velocity of the point of the body that is at the
+//   frame's origin wrench F = (moment about the origin, force); power F . V Ad_X (omega, v) = (R
+//   omega, R v + p x R omega),   X = (R, p) ad_V (a, b) = (omega x a, v x a + omega x b)
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation (1994), ch. 2.
 #pragma once
 
@@ -53,7 +53,8 @@ inline Rigid operator*(const Rigid& x, const Rigid& y) {
   return {x.rotation.lazyProduct(y.rotation), x.apply(y.position)};
 }
 
-/// The force along u at the point q: its power is u . (v + omega x q), the velocity of that point along u.
+/// The force along u at the point q: its power is u . (v + omega x q), the velocity of that point
+/// along u.
 inline Wrench force_at(const Vec3& q, const Vec3& u) { return stack(q.cross(u), u); }
 /// The velocity of the point at q.
 inline Vec3 velocity_at(const Twist& v, const Vec3& q) { return lower(v) + upper(v).cross(q); }
@@ -69,7 +70,8 @@ inline Wrench ad_transpose(const Twist& v, const Wrench& p) {
   return stack(m.cross(omega) + f.cross(lower(v)), f.cross(omega));
 }
 
-/// Mass [kg], first moment [kg m] and moment of inertia about the frame's origin [kg m^2]; they add.
+/// Mass [kg], first moment [kg m] and moment of inertia about the frame's origin [kg m^2]; they
+/// add.
 struct Inertia {
   double mass = 0;
   Vec3 first = Vec3::Zero();

@@ -32,8 +32,8 @@ struct StartChecks {
   std::vector<Held> held;
 };
 
-/// Signals without a value, prescribed coordinates elsewhere, and rows that repeat or contradict others, at (t, g, xi).
-/// system: driven by the inputs, which may be null.
+/// Signals without a value, prescribed coordinates elsewhere, and rows that repeat or contradict
+/// others, at (t, g, xi). system: driven by the inputs, which may be null.
 std::vector<std::string> mistakes_at_start(const Multibody& system, const StartChecks& checks,
                                            const Inputs* inputs, double t, const double* g,
                                            std::span<const double> xi);

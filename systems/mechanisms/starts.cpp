@@ -171,8 +171,9 @@ void keep_from_turning(const std::vector<int>& angular, VectorXd& some, MatrixXd
 
 }  // namespace
 
-// Least 1/2 xi^T I xi with A xi = b and the given velocities. At a speed in the drawn pose the root turns as little as
-// these allow; where coordinates are given, a steering angle, keeping it from turning would spin the joints.
+// Least 1/2 xi^T I xi with A xi = b and the given velocities. At a speed in the drawn pose the root
+// turns as little as these allow; where coordinates are given, a steering angle, keeping it from
+// turning would spin the joints.
 Start Starts::solve(const Values& values, double t, const Places& places) const {
   std::vector<std::string> wrong;
   for (const auto& [name, value] : values) {
@@ -217,9 +218,8 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
   }
   // some + N z, N a basis of what is free: least energy where N^T I (some + N z) = 0.
   MatrixXd free = dense::kernel(a);
-  const bool as_drawn = std::ranges::none_of(values, [&](const auto& entry) {
-    return std::ranges::count(columns_, entry.first) > 0;
-  });
+  const bool as_drawn = std::ranges::none_of(
+      values, [&](const auto& entry) { return std::ranges::count(columns_, entry.first) > 0; });
   if (as_drawn && values.contains("speed")) keep_from_turning(turning(), some, free);
   const MatrixXd reduced = free.transpose() * inertia * free;
   const VectorXd z = least(reduced, VectorXd(-(free.transpose() * (inertia * some))));

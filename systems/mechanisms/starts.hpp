@@ -1,4 +1,5 @@
-// Where a mechanism starts: coordinates and velocities that satisfy its rows, from those that are stated.
+// Where a mechanism starts: coordinates and velocities that satisfy its rows, from those that are
+// stated.
 #pragma once
 
 #include <map>
@@ -31,10 +32,11 @@ class Starts {
          std::vector<std::string> columns, std::vector<std::string> rates, std::vector<Said> rows);
   /// Mistakes in these names; "speed" is that of the first planar or free root joint ahead.
   std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
-  /// At a time, where prescribed angles hold. Throws ConfigError where the rows forbid these values; places: where these
-  /// stand in a file.
+  /// At a time, where prescribed angles hold. Throws ConfigError where the rows forbid these
+  /// values; places: where these stand in a file.
   Start solve(const Values& values, double t, const Places& places = {}) const;
-  /// The places of the root's angular velocities, in whose direction ahead is; empty where there is no root.
+  /// The places of the root's angular velocities, in whose direction ahead is; empty where there is
+  /// no root.
   std::vector<int> turning() const;
   /// The coordinates that are prescribed, and what they are at a time.
   Values prescribed(double t) const;

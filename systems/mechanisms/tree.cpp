@@ -10,8 +10,8 @@
 namespace hamel::mechanisms {
 namespace {
 
-// The element with this motion in the joint's frame: of a joint that is drawn at rest the identity, of one against
-// the ground's own frame the place of the body.
+// The element with this motion in the joint's frame: of a joint that is drawn at rest the identity,
+// of one against the ground's own frame the place of the body.
 std::vector<double> element_of(JointKind kind, const Rigid& x) {
   const JointType& type = type_of(kind);
   std::vector<double> values = type.group.identity;
@@ -26,8 +26,8 @@ std::vector<double> element_of(JointKind kind, const Rigid& x) {
   return element;
 }
 
-// P iota C^-1 as a constant and what two numbers of the element are to be multiplied with: cos and sin of the angle, or
-// the way along the axis and nothing.
+// P iota C^-1 as a constant and what two numbers of the element are to be multiplied with: cos and
+// sin of the angle, or the way along the axis and nothing.
 std::array<Rigid, 3> terms_of(const Link& link) {
   const Rigid& p = link.on_parent;
   const Rigid after = link.on_child.inverse();
@@ -92,7 +92,8 @@ Tree::Tree(const std::vector<Link>& links) {
   carry();
 }
 
-// Its parent planar, its axis vertical, or across that for a slider; no part of its motion leaves the plane.
+// Its parent planar, its axis vertical, or across that for a slider; no part of its motion leaves
+// the plane.
 void Tree::look_for_planar(Node& node) const {
   const bool is_root = node.link.parent == kGround;
   if (!is_root && (!at(node.link.parent).planar || node.link.kind == JointKind::planar)) return;

@@ -1,25 +1,31 @@
 // A tree of bodies: placements, twists, inertia and its differential, by recursion from the roots.
 //
-// A link is a rigid body with the joint that carries it; its parent is another link or the ground. All is drawn in one
-// pose of the whole mechanism, in which the frame of every link is that of the world. With P and C the frame of the
-// joint as drawn, on the parent and on the child, iota(g_j) the motion of the joint (joint.hpp):
+// A link is a rigid body with the joint that carries it; its parent is another link or the ground.
+// All is drawn in one pose of the whole mechanism, in which the frame of every link is that of the
+// world. With P and C the frame of the joint as drawn, on the parent and on the child, iota(g_j)
+// the motion of the joint (joint.hpp):
 //   M_j = M_parent J_j,   J_j = P iota(g_j) C^-1,   V_j = Ad_{J_j}^-1 V_parent + Ad_C S xi_j.
-// A root link carries all others: quantities of a tree are seen from its root, X_j the place of link j there, W that
-// of the root in the world. So seen the columns s of Ad_C S are Ad_{X_j} Ad_C S, twists and wrenches add, and with
-// I_j the inertia and P_j the momentum of link j with all that it carries:
+// A root link carries all others: quantities of a tree are seen from its root, X_j the place of
+// link j there, W that of the root in the world. So seen the columns s of Ad_C S are Ad_{X_j} Ad_C
+// S, twists and wrenches add, and with I_j the inertia and P_j the momentum of link j with all that
+// it carries:
 //   I(g)_ab = s_a^T I_b s_b for a on the way from the root to b,     (composite bodies)
-//   1/2 d(xi^T I xi)_a = s_a^T ad_{V_parent}^T P_a.                 (from d V_j = -ad_{s_a} Ad^-1 V_parent)
-// Along the motion, xi held, with U_j = V_j - V_root the twist of link j against its root and D_j = dV_j/dt:
-//   D_j = D_parent + ad_{U_parent} (V_j - V_parent),   D_root = 0          (ds_a/dt = ad_{U_parent} s_a)
-//   (dI/dt xi)_a = s_a^T (ad_{U_parent}^T P_a + dP_a/dt),   d(I_j V_j)/dt = I_j (D_j - ad_{U_j} V_j) - ad_{U_j}^T I_j V_j.
-// The axis of a hinge or slider is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant on a root.
-// Less is left to do for
+//   1/2 d(xi^T I xi)_a = s_a^T ad_{V_parent}^T P_a.                 (from d V_j = -ad_{s_a} Ad^-1
+//   V_parent)
+// Along the motion, xi held, with U_j = V_j - V_root the twist of link j against its root and D_j =
+// dV_j/dt:
+//   D_j = D_parent + ad_{U_parent} (V_j - V_parent),   D_root = 0          (ds_a/dt = ad_{U_parent}
+//   s_a) (dI/dt xi)_a = s_a^T (ad_{U_parent}^T P_a + dP_a/dt),   d(I_j V_j)/dt = I_j (D_j -
+//   ad_{U_j} V_j) - ad_{U_j}^T I_j V_j.
+// The axis of a hinge or slider is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant on a
+// root. Less is left to do for
 //   planar links  that turn about the vertical of a root which does no more: plane.hpp;
-//   rotors        that carry nothing and whose inertia their own turning does not change (wheels): it is their
+//   rotors        that carry nothing and whose inertia their own turning does not change (wheels):
+//   it is their
 //                 parent's, but for the momentum of their spin, and they need no place.
 // Cost: O(links * depth) for I(g), O(links) for all else.
-// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 6; Park, Bobrow, Ploen, A Lie group formulation of
-// robot dynamics, Int. J. Robotics Research 14 (1995).
+// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 6; Park, Bobrow, Ploen, A Lie
+// group formulation of robot dynamics, Int. J. Robotics Research 14 (1995).
 #pragma once
 
 #include <array>
@@ -118,7 +124,8 @@ class Tree {
     bool planar = false, rotor = false, on_root = false;
     Mat<6, 6> directions = Mat<6, 6>::Zero();  // Ad_C S; of a hinge or slider Ad_P S
     Rigid after;                               // C^-1
-    // P iota C^-1 = the first + two numbers of the element times the others, and for a planar joint its shift.
+    // P iota C^-1 = the first + two numbers of the element times the others, and for a planar joint
+    // its shift.
     std::array<Rigid, 3> terms;
     Inertia inertia;               // with that of the rotors
     Wrench spin = Wrench::Zero();  // momentum of a rotor at unit rate, seen from its parent
@@ -134,7 +141,8 @@ class Tree {
     std::array<double, 2> numbers(const double* g) const;
     Rigid across(const double* g) const;  // from the parent
     PlaneMotion across_in_plane(const double* g) const;
-    /// What a wrench does on velocity i; of one on a planar link only its entries in the plane count.
+    /// What a wrench does on velocity i; of one on a planar link only its entries in the plane
+    /// count.
     double along(int i, const Wrench& wrench) const {
       return planar ? in_plane(columns.col(i)).dot(in_plane(wrench)) : columns.col(i).dot(wrench);
     }

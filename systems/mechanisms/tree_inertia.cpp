@@ -43,8 +43,8 @@ HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
   }
 }
 
-// A column of I(g), and the row that mirrors it: what a momentum does on the first `count` velocities of a link and on
-// those of all that carry it.
+// A column of I(g), and the row that mirrors it: what a momentum does on the first `count`
+// velocities of a link and on those of all that carry it.
 void Tree::write(const Node* from, int count, int column, const Wrench& momentum, double* out,
                  Eigen::Index stride) const {
   for (;;) {

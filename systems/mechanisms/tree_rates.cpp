@@ -64,7 +64,8 @@ HAMEL_FLATTEN void Tree::add_inertia_rate(Eigen::Ref<Eigen::VectorXd> out) {
       const Vec3 force = ad_transpose_in_plane(in_plane(parent.against), in_plane(node.momentum)) +
                          in_plane(node.momentum_rate);
       out[node.dof] += in_plane(node.columns.col(0)).dot(force);
-    } else {  // the axes of a ball joint turn with the child, that of a hinge or slider with the parent
+    } else {  // the axes of a ball joint turn with the child, that of a hinge or slider with the
+              // parent
       const Twist& carrier = node.count > 1 ? node.against : parent.against;
       const Wrench force = ad_transpose(carrier, node.momentum) + node.momentum_rate;
       for (int i = 0; i < node.count; ++i) out[node.dof + i] += node.columns.col(i).dot(force);

@@ -1,11 +1,12 @@
 // Time to an accuracy: hamel's methods, Boost.odeint and SUNDIALS, in one run.
 //
 //   build/tests/benchmarks/accuracy [--quick] [system ...]
-// The error is the largest difference of the element's columns and of xi at the end of the run from a reference: the
-// equations reduced by hand (hand_reduced.hpp) in long double by Fehlberg's 7(8) at 1e-17. What hamel's own most
-// accurate run differs from it by is printed first. Every method is scanned over its step or tolerance, and takes for
-// each error the cheapest setting that reaches it; its time is the least of many repetitions, from the start to the
-// end, with nothing recorded. SUNDIALS where libsundials-dev is installed (tools/setup --peers).
+// The error is the largest difference of the element's columns and of xi at the end of the run from
+// a reference: the equations reduced by hand (hand_reduced.hpp) in long double by Fehlberg's 7(8)
+// at 1e-17. What hamel's own most accurate run differs from it by is printed first. Every method is
+// scanned over its step or tolerance, and takes for each error the cheapest setting that reaches
+// it; its time is the least of many repetitions, from the start to the end, with nothing recorded.
+// SUNDIALS where libsundials-dev is installed (tools/setup --peers).
 #include <boost/numeric/odeint.hpp>
 
 #include <chrono>

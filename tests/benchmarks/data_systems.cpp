@@ -1,8 +1,9 @@
 // Systems by data beside the same systems as C++ structs, in one run.
 //
 //   build/tests/benchmarks/data_systems --benchmark_counters_tabular=true
-// Counters: seconds a step of the file and of the struct, and their ratio, which is to be at most 5. "compiled" is the
-// struct with a kernel of its own types, "by name" the struct on the erased problem, as simulate(MySystem{}) runs it.
+// Counters: seconds a step of the file and of the struct, and their ratio, which is to be at
+// most 5. "compiled" is the struct with a kernel of its own types, "by name" the struct on the
+// erased problem, as simulate(MySystem{}) runs it.
 #include <chrono>
 #include <cmath>
 

@@ -1,8 +1,9 @@
 // Time per step of general systems, by name.
 //
 //   build/tests/benchmarks/general --benchmark_counters_tabular=true
-// The counter "per_step" is the time of one step, "evaluations" how often the equation was evaluated in it.
-// The explicit Runge-Kutta-Munthe-Kaas method, four accelerations a step, is measured beside lift and balance.
+// The counter "per_step" is the time of one step, "evaluations" how often the equation was
+// evaluated in it. The explicit Runge-Kutta-Munthe-Kaas method, four accelerations a step, is
+// measured beside lift and balance.
 #include <benchmark/benchmark.h>
 
 #include <hamel/hamel.hpp>

@@ -1,7 +1,9 @@
-// The equations of four systems, reduced by hand as a user of an integrator of ordinary differential equations would.
+// The equations of four systems, reduced by hand as a user of an integrator of ordinary
+// differential equations would.
 //
-// Rotations are unit quaternions q = (w, x, y, z), q' = 1/2 q (0, omega); nothing keeps their length, answers divide
-// by it. Each is a right-hand side over any scalar for Boost.odeint and SUNDIALS:
+// Rotations are unit quaternions q = (w, x, y, z), q' = 1/2 q (0, omega); nothing keeps their
+// length, answers divide by it. Each is a right-hand side over any scalar for Boost.odeint and
+// SUNDIALS:
 //   State, size          y, and its length
 //   operator()(y, dy, t) y' = f(y)
 //   start(), answer(y)   y of hamel's start; the element's CSV columns and xi of y
@@ -98,8 +100,9 @@ struct SleighByHand {
   }
 };
 
-/// y = (psi, theta, phi, x, y, w1, w2, w3): precession, lean, spin; rates on e1 horizontal, e2 from the contact to the
-/// centre, e3 the axis. With c3 = w2 cot(theta), e_z = sin(theta) e2 + cos(theta) e3,
+/// y = (psi, theta, phi, x, y, w1, w2, w3): precession, lean, spin; rates on e1 horizontal, e2 from
+/// the contact to the centre, e3 the axis. With c3 = w2 cot(theta), e_z = sin(theta) e2 +
+/// cos(theta) e3,
 ///   (A + m r^2) w1' = A c3 w2 - (C + m r^2) w2 w3 - m g r cos(theta),
 ///   A w2' = C w1 w3 - A c3 w1,   (C + m r^2) w3' = m r^2 w1 w2,   v = r (-w3 e1 + w1 e3).
 template <class T>
@@ -146,7 +149,8 @@ struct DiskByHand {
   }
 };
 
-/// y = (omega, q, x, y): with gamma = R^T e_z, s = sqrt(gamma^T D^2 gamma), r = d e3 - D^2 gamma / s, v = r x omega,
+/// y = (omega, q, x, y): with gamma = R^T e_z, s = sqrt(gamma^T D^2 gamma), r = d e3 - D^2 gamma /
+/// s, v = r x omega,
 ///   (I + m (r.r - r r^T)) omega' = -omega x I omega + m r x (r' x omega + omega x v + g gamma).
 template <class T>
 struct RattlebackByHand {

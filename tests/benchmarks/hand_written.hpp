@@ -1,7 +1,8 @@
-// Loops written by hand for one system, one retraction and s = 0: plain doubles, the zeros of the problem used,
-// the same Newton policy, guess, tolerance and re-normalisation as the library's.
+// Loops written by hand for one system, one retraction and s = 0: plain doubles, the zeros of the
+// problem used, the same Newton policy, guess, tolerance and re-normalisation as the library's.
 //
-// Unknown: the two admissible velocities (a, b); equation E^T (dR_xi)^-T I xi/h = mu on those two rows.
+// Unknown: the two admissible velocities (a, b); equation E^T (dR_xi)^-T I xi/h = mu on those two
+// rows.
 #pragma once
 
 #include <array>
@@ -128,7 +129,8 @@ struct HandSuslov {
   }
 
   bool step_exp() {
-    // (dR^-1)^T p = p + x cross p/2 + c x cross (x cross p), c = (1 - g)/t^2, g = (t/2) cot(t/2), t = |x|.
+    // (dR^-1)^T p = p + x cross p/2 + c x cross (x cross p), c = (1 - g)/t^2, g = (t/2) cot(t/2), t
+    // = |x|.
     const auto equations = [this](Pair w, bool jacobian) {
       const double p1 = i11 * w.a + i12 * w.b, p2 = i12 * w.a + i22 * w.b,
                    p3 = i13 * w.a + i23 * w.b;
@@ -188,8 +190,8 @@ struct HandSleigh {
     sine = k * ns;
   }
 
-  // With w = h omega, v = h v1 and p = I xi/h = (J omega, m v1, m a omega): the two rows of (dR^-1)^T p
-  // (sign = +1) or (dL^-1)^T p (sign = -1); e = 1/4 for Cayley, c(w) for exp.
+  // With w = h omega, v = h v1 and p = I xi/h = (J omega, m v1, m a omega): the two rows of
+  // (dR^-1)^T p (sign = +1) or (dL^-1)^T p (sign = -1); e = 1/4 for Cayley, c(w) for exp.
   bool step_cayley() {
     const auto rows = [this](Pair u, double sign) {
       const double w = h * u.a, v = h * u.b, p1 = about_blade * u.a, p2 = mass * u.b,

@@ -1,6 +1,7 @@
-// The leanest loops for one system, one retraction and s = 0, as a numerical analyst writes them: cubic extrapolation,
-// Newton with the analytic Jacobian until the correction is below 1e-9 of the solution (the next one is below
-// round-off), no renormalisation, no tolerance on the residual, no statistics.
+// The leanest loops for one system, one retraction and s = 0, as a numerical analyst writes them:
+// cubic extrapolation, Newton with the analytic Jacobian until the correction is below 1e-9 of the
+// solution (the next one is below round-off), no renormalisation, no tolerance on the residual, no
+// statistics.
 #pragma once
 
 namespace hamel::benchmarks {

@@ -1,9 +1,11 @@
-// Time per step of mechanisms by parts: against the systems written by hand, and along a chain of n bodies.
+// Time per step of mechanisms by parts: against the systems written by hand, and along a chain of n
+// bodies.
 //
 //   build/tests/benchmarks/mechanisms
-// segway and n_trailer: "per_step" is the time of one step of lift, "ratio" that of the parts to the written system,
-// which runs between them in turns. chain: a snake in space of n bodies; "equations" is I(g), A(g) and the force once, at
-// a place and velocity not seen before, "step" a whole step with its dense solve.
+// segway and n_trailer: "per_step" is the time of one step of lift, "ratio" that of the parts to
+// the written system, which runs between them in turns. chain: a snake in space of n bodies;
+// "equations" is I(g), A(g) and the force once, at a place and velocity not seen before, "step" a
+// whole step with its dense solve.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// Each library called by hand on the 2 x 2 equation of a step, for comparison in benchmarks/solvers.cpp. The
-// residual |F|/scale is driven to the target that hamel aims for, no further.
+// Each library called by hand on the 2 x 2 equation of a step, for comparison in
+// benchmarks/solvers.cpp. The residual |F|/scale is driven to the target that hamel aims for, no
+// further.
 #pragma once
 
 #include <array>

@@ -1,7 +1,9 @@
-// Time of a recorded row: 200,000 steps of suslov, every one a row, into nothing that is kept, memory, and files.
+// Time of a recorded row: 200,000 steps of suslov, every one a row, into nothing that is kept,
+// memory, and files.
 //
 //   build/tests/benchmarks/recording
-// The counter "per_row" is the time of a step and its row; what a file costs is its difference from "thinned".
+// The counter "per_row" is the time of a step and its row; what a file costs is its difference from
+// "thinned".
 #include <benchmark/benchmark.h>
 
 #include <filesystem>

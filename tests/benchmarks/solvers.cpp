@@ -1,10 +1,12 @@
 // Time per step of each solver: through hamel, and the raw library called by hand, in one run.
 //
-//   build/tests/benchmarks/solvers --benchmark_enable_random_interleaving=true --benchmark_repetitions=9
-// The table at the end holds medians and their ratio. The equation: lift with Cayley at s = 0, Suslov with
-// full inertia, h = 0.1, two unknowns, tolerance 1e-13. By hand is: the same step class and the same
-// extrapolated guess, the library's own interface with the equation inlined, stopped at the same residual with the
-// options that it needs for that (solvers/README.md); nothing counted, kept or certified.
+//   build/tests/benchmarks/solvers --benchmark_enable_random_interleaving=true
+//   --benchmark_repetitions=9
+// The table at the end holds medians and their ratio. The equation: lift with Cayley at s = 0,
+// Suslov with full inertia, h = 0.1, two unknowns, tolerance 1e-13. By hand is: the same step class
+// and the same extrapolated guess, the library's own interface with the equation inlined, stopped
+// at the same residual with the options that it needs for that (solvers/README.md); nothing
+// counted, kept or certified.
 #include <algorithm>
 #include <cstdio>
 #include <map>

@@ -1,9 +1,9 @@
 // Time per step: a hand-written loop, the typed path and the named path, in one run.
 //
 //   build/tests/benchmarks/step --benchmark_counters_tabular=true
-// Every benchmark takes 2000 steps of h = 0.01 from the same start; the counter "per_step" is the time
-// of one. The hand-written loops are for s = 0: hand_written.hpp with the library's own policies, lean.hpp with as little
-// as the problem needs; s = 1/2 is shown beside them.
+// Every benchmark takes 2000 steps of h = 0.01 from the same start; the counter "per_step" is the
+// time of one. The hand-written loops are for s = 0: hand_written.hpp with the library's own
+// policies, lean.hpp with as little as the problem needs; s = 1/2 is shown beside them.
 #include <benchmark/benchmark.h>
 
 #include <hamel/hamel.hpp>

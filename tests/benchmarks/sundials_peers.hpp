@@ -1,5 +1,6 @@
-// SUNDIALS 6 as a user calls it: CVODE (Adams) and ARKODE (explicit pairs) on the equations reduced by hand, IDA on the
-// equations with multipliers. What is allocated is allocated once; a run is a ReInit and the way to the end.
+// SUNDIALS 6 as a user calls it: CVODE (Adams) and ARKODE (explicit pairs) on the equations reduced
+// by hand, IDA on the equations with multipliers. What is allocated is allocated once; a run is a
+// ReInit and the way to the end.
 #pragma once
 
 #include <algorithm>
@@ -151,8 +152,9 @@ struct Positions<SE3> {
   }
 };
 
-/// The equations with multipliers, y = (positions, xi, lambda), of index 1 (of index 2, with A xi = 0, IDA's first
-/// steps fail at tolerances below 1e-5 on the disk), the errors of lambda not controlled:
+/// The equations with multipliers, y = (positions, xi, lambda), of index 1 (of index 2, with A xi =
+/// 0, IDA's first steps fail at tolerances below 1e-5 on the disk), the errors of lambda not
+/// controlled:
 ///   g' = g xi,   I xi' = ad*_xi I xi + F + A^T lambda,   A(g) xi' + (dA/dt) xi = 0.
 template <class S>
 class Multipliers {

@@ -66,7 +66,8 @@ force = [0, "-0.6*theta_2'"]
   EXPECT_EQ(r["system"], "two oscillators");
 }
 
-/// A force that has no value at the end of a step: the step fails, and the states before it are kept.
+/// A force that has no value at the end of a step: the step fails, and the states before it are
+/// kept.
 TEST_F(DataSystem, AValueThatIsNotFiniteIsNoStep) {
   const std::string path = write(
       "group = \"r1\"\ninertia = [1]\ncoordinates = [\"x\"]\nforce = [\"sqrt(0.495 - "
@@ -249,8 +250,8 @@ TEST_F(DataSystem, AnalysisSeesWhatASystemIs) {
   const json ball = analysis("chaplygin_ball");
   EXPECT_EQ(ball["growth"].back(), 5);
   EXPECT_EQ(analysis("suslov")["growth"], json({2, 3}));
-  // One direction is always closed; with the drift of its prescribed shape the board goes anywhere, and the
-  // three rows of the shape are functions of time.
+  // One direction is always closed; with the drift of its prescribed shape the board goes anywhere,
+  // and the three rows of the shape are functions of time.
   const json board = analysis("snakeboard");
   EXPECT_EQ(board["growth"], json({1, 2, 3}));
   EXPECT_TRUE(board["affine"]);
@@ -278,7 +279,8 @@ TEST_F(DataSystem, DescribesNoStartWithoutAValue) {
   EXPECT_THAT(o.err, HasSubstr("system.toml:3:13: potential: 'ln(x1)' is -inf at the start"));
 }
 
-/// The page calls coordinates and rates as the file does, and knows which of them are places all the same.
+/// The page calls coordinates and rates as the file does, and knows which of them are places all
+/// the same.
 TEST_F(DataSystem, NamesTheCurvesOfThePage) {
   auto figures = curves({write(R"(
 group = "se2*so2"

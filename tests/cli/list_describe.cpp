@@ -109,7 +109,8 @@ TEST_F(Describe, ASystemSaysEverything) {
   EXPECT_THAT(names, testing::ElementsAre("mass", "inertia", "offset"));
 }
 
-/// dla, discrete Lagrange-d'Alembert, is lift: described as such, run as such, and the record says lift.
+/// dla, discrete Lagrange-d'Alembert, is lift: described as such, run as such, and the record says
+/// lift.
 TEST_F(Describe, AnAliasOfAScheme) {
   Json dla = answer({"describe", "dla"});
   const Json lift = answer({"describe", "lift"});

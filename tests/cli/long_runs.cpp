@@ -1,4 +1,5 @@
-// The paper's 30 minutes, 180,000 steps of h = 0.01, every one of them measured; and the reproduction.
+// The paper's 30 minutes, 180,000 steps of h = 0.01, every one of them measured; and the
+// reproduction.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -19,8 +20,8 @@ class LongRuns : public CommandLine {
   }
 };
 
-/// Bounds: group defect 1e-14, constraint residual 2e-13 (its floor is eps/h), Omega constant to 1e-12 over
-/// 1800 s with lift at every s.
+/// Bounds: group defect 1e-14, constraint residual 2e-13 (its floor is eps/h), Omega constant to
+/// 1e-12 over 1800 s with lift at every s.
 TEST_F(LongRuns, KeepGroupAndConstraint) {
   for (const char* scheme : {"lift", "balance"}) {
     for (const char* retraction : {"exp", "cayley"}) {

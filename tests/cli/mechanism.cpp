@@ -46,7 +46,8 @@ TEST_F(MechanismFile, RunsAsTheSystem) {
   }
 }
 
-/// Every file of the library runs a second and keeps its energy or its balance; its columns carry the parts' names.
+/// Every file of the library runs a second and keeps its energy or its balance; its columns carry
+/// the parts' names.
 TEST_F(MechanismFile, OfTheLibraryRun) {
   int seen = 0;
   for (const auto& entry : std::filesystem::directory_iterator(
@@ -72,7 +73,8 @@ TEST_F(MechanismFile, OfTheLibraryRun) {
   }
 }
 
-/// A speed on the command line, in a file, as the few numbers of --velocity; the record has the start that it is.
+/// A speed on the command line, in a file, as the few numbers of --velocity; the record has the
+/// start that it is.
 TEST_F(MechanismFile, StartsAtASpeed) {
   const json by_speed = answer({"run", "bicycle", "--speed", "5", "--until", "0.02"});
   EXPECT_NEAR(by_speed["start"]["velocity"][3], 5, 1e-12);
@@ -132,7 +134,8 @@ TEST_F(MechanismFile, RefusesAParameterItDoesNotHave) {
   EXPECT_THAT(o.err, HasSubstr("did you mean 'offset'?"));
 }
 
-/// A named input in a force and in another joint's motor, that of a motor in a force; not driven they are 0.
+/// A named input in a force and in another joint's motor, that of a motor in a force; not driven
+/// they are 0.
 TEST_F(MechanismFile, FormulasUseInputs) {
   const std::string cart = write(R"toml([[body]]
 name = "cart"
@@ -169,7 +172,8 @@ wind = { unit = "N", meaning = "along x", least = -5, most = 5 }
     for (std::string& input : inputs) words.insert(words.end(), {"--input", std::move(input)});
     return answer(words);
   };
-  // The momentum of the whole in the world: the wind's impulse is 2 (1 + 1/2) N s, that along y 0.5 N s.
+  // The momentum of the whole in the world: the wind's impulse is 2 (1 + 1/2) N s, that along y 0.5
+  // N s.
   const json end = driven({"wind=2", "turn.torque=0.5"})["final"];
   const double theta = end["configuration"][0], angle = end["configuration"][3];
   const double omega = end["velocity"][0], v1 = end["velocity"][1], v2 = end["velocity"][2],

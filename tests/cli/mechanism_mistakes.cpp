@@ -1,4 +1,5 @@
-// What is wrong with the file of a mechanism: each mistake names the part, its file, line and column, before anything runs.
+// What is wrong with the file of a mechanism: each mistake names the part, its file, line and
+// column, before anything runs.
 #include "mechanism_texts.hpp"
 
 namespace {
@@ -198,7 +199,8 @@ TEST_F(MechanismMistakes, InNamesAndNumbers) {
               HasSubstr("dimension 1001, expected at most 1000"));
 }
 
-/// Parts may have any name; what cannot stand in a formula is left out of them, which a mistake says.
+/// Parts may have any name; what cannot stand in a formula is left out of them, which a mistake
+/// says.
 TEST_F(MechanismMistakes, InFormulasOfJointsWithAnyName) {
   for (const std::string name : {"left arm", "left-arm", "3rd", "дрель", "sin"}) {
     const std::string arm = "[[body]]\nname = \"" + name +

@@ -23,7 +23,8 @@ TEST_F(MechanismRows, ThatRepeatOthersAtTheStart) {
             0);
 }
 
-/// Dropped is what agrees: three wheels on one axle, a prescribed one beside two, on ground that moves.
+/// Dropped is what agrees: three wheels on one axle, a prescribed one beside two, on ground that
+/// moves.
 TEST_F(MechanismRows, ThatContradictOthers) {
   std::string cart = "redundant = \"drop\"\n" + kFlat + "at = [0, 0, 0]\n";
   for (const std::string side : {"0.3", "-0.3", "0"})

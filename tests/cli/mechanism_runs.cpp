@@ -1,4 +1,5 @@
-// Mechanisms in files: where they start, what stops them, which have steady motions, with roots of any kind.
+// Mechanisms in files: where they start, what stops them, which have steady motions, with roots of
+// any kind.
 #include <cmath>
 #include <numbers>
 
@@ -110,7 +111,8 @@ TEST_F(MechanismRuns, StartsAtTheSpeedOfItsFirstRoot) {
   EXPECT_NEAR(ballbot["start"]["velocity"][3], 1, 1e-12);
 }
 
-/// Of t, coordinates and rates by name: the pendulum, let go at 1 rad, is upright when its angle is 0.
+/// Of t, coordinates and rates by name: the pendulum, let go at 1 rad, is upright when its angle is
+/// 0.
 TEST_F(MechanismRuns, StopsAtEvents) {
   const std::string text = kTwo + R"toml([events]
 upright = { value = "pivot.angle", meaning = "the pendulum hangs", direction = -1 }
@@ -132,7 +134,8 @@ pivot.angle = 1
               HasSubstr("did you mean 'pivot.angle'?"));
 }
 
-/// A motor that slows a wheel and a rate that does not change leave a skate its steady motions; one of t does not.
+/// A motor that slows a wheel and a rate that does not change leave a skate its steady motions; one
+/// of t does not.
 TEST_F(MechanismRuns, SteadyWhereNoFormulaIsOfTime) {
   const std::string skate = R"toml([[body]]
 name = "deck"
@@ -187,7 +190,8 @@ joint = "fan"
   EXPECT_THAT(steady("3", "\"0.1*t\"").err, HasSubstr("depends on time"));
 }
 
-/// A wheel whose joint is prescribed: the contact and the joint have the name of the body, their reactions do not.
+/// A wheel whose joint is prescribed: the contact and the joint have the name of the body, their
+/// reactions do not.
 TEST_F(MechanismRuns, EveryReactionHasItsOwnName) {
   std::ofstream(file("cart.toml")) << R"toml(
 [[body]]
@@ -274,8 +278,9 @@ speed = 2
 joint = "steer"
 )toml";
 
-/// A constant angle is held while a steady motion is sought, and its rate leaves the mechanism its steady motions: on a
-/// circle of radius 0.75 m / tan 0.2, the bob where its spring bears weight and centrifugal force.
+/// A constant angle is held while a steady motion is sought, and its rate leaves the mechanism its
+/// steady motions: on a circle of radius 0.75 m / tan 0.2, the bob where its spring bears weight
+/// and centrifugal force.
 TEST_F(MechanismRuns, SteadyWhereAnAngleIsHeld) {
   for (const char* angle : {"0.2", "\"0.4/2\"", "\"0.2 + 2*pi\""}) {
     const Outcome o =
@@ -298,7 +303,8 @@ TEST_F(MechanismRuns, SteadyWhereAnAngleIsHeld) {
               HasSubstr("depends on time"));
 }
 
-/// What brackets span does not depend on the unit of lengths: the kick scooter of the library, in mm.
+/// What brackets span does not depend on the unit of lengths: the kick scooter of the library, in
+/// mm.
 TEST_F(MechanismRuns, GrowsAlikeInAnyUnit) {
   const std::string millimetres = R"toml(name = "kick_scooter_mm"
 gravity = 9810

@@ -1,5 +1,5 @@
-// The data of a report page, as tools/report/README.md describes them. The page here is its placeholder alone, so that
-// what is written is the JSON.
+// The data of a report page, as tools/report/README.md describes them. The page here is its
+// placeholder alone, so that what is written is the JSON.
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -96,7 +96,8 @@ TEST(PageData, PlotWithFloorSlopesAndMarks) {
   EXPECT_EQ(b["series"][0]["key"], "omega");
 }
 
-// Of each window the largest, and the last window like the others: a small last value is no fall of the curve.
+// Of each window the largest, and the last window like the others: a small last value is no fall of
+// the curve.
 TEST(PageData, MaximaOverWindows) {
   std::vector<double> x, y;
   for (int i = 0; i < 1000; ++i) {

@@ -45,7 +45,8 @@ TEST_F(Pages, OkMeansRight) {
             "note");
 }
 
-// Backwards, far from t = 0, and ended right behind a node: the times of a page are all there, and rise in its motion.
+// Backwards, far from t = 0, and ended right behind a node: the times of a page are all there, and
+// rise in its motion.
 TEST_F(Pages, TimesOfTheirOwn) {
   if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
   for (const std::vector<std::string>& words :
@@ -122,8 +123,8 @@ TEST_F(Pages, ReactionsOfContactsAreForces) {
   EXPECT_EQ(figure_of(page_of({"chaplygin_sleigh"}), "Reaction forces")["y"], "lambda");
 }
 
-// Eigenvalues along a parameter: curves by the names of what moves, one colour in both figures, where nothing grows shaded;
-// what the page was made from.
+// Eigenvalues along a parameter: curves by the names of what moves, one colour in both figures,
+// where nothing grows shaded; what the page was made from.
 TEST_F(Pages, EigenvaluesAreCurves) {
   const json page =
       page_by({"steady", "bicycle", "--vary", "speed=4:6.5:6", "--report", "page.html"});
@@ -214,7 +215,8 @@ TEST_F(Comparisons, FilesOfOneNameAreToldApart) {
   EXPECT_EQ(omega["y"], "omega [rad/s]");
   EXPECT_EQ(figure_of(page, "theta")["y"], "theta [rad]");
   EXPECT_EQ(figure_of(page, "x")["y"], "x [m]");
-  // As on the page of one run: of the constraint over the step, here the smaller one; of the group alone.
+  // As on the page of one run: of the constraint over the step, here the smaller one; of the group
+  // alone.
   EXPECT_GT(residual["floor"], 1000 * figure_of(page, "Group defect")["floor"].get<double>());
   EXPECT_EQ(figure_of(page, "Group defect")["floor"], 2.2e-16);
   EXPECT_EQ(figure_of(page, "Energy error, or defect of the energy balance")["floor"], 2.2e-16);

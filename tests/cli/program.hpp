@@ -1,4 +1,5 @@
-// Runs the program whose path is in $HAMEL_PROGRAM, as a shell would: arguments, output, exit status.
+// Runs the program whose path is in $HAMEL_PROGRAM, as a shell would: arguments, output, exit
+// status.
 #pragma once
 
 #include <fcntl.h>
@@ -88,8 +89,8 @@ class CommandLine : public testing::Test {
     return out;
   }
 
-  /// Runs the program in its folder, where out and err go to files beside it. before: what the shell does first; behind: what the
-  /// output goes through.
+  /// Runs the program in its folder, where out and err go to files beside it. before: what the
+  /// shell does first; behind: what the output goes through.
   Outcome run(const std::vector<std::string>& arguments, const std::string& before = "",
               const std::string& behind = "") const {
     const std::string out = folder_.string() + ".out", err = folder_.string() + ".err";
@@ -114,7 +115,8 @@ class CommandLine : public testing::Test {
     arguments.insert(arguments.begin(), "run");
     return answer(std::move(arguments), status);
   }
-  /// The data of the page that these arguments write to this file; null where the program was built without the page.
+  /// The data of the page that these arguments write to this file; null where the program was built
+  /// without the page.
   nlohmann::json page_by(const std::vector<std::string>& arguments,
                          const std::string& name = "page.html") const {
     const Outcome outcome = run(arguments);

@@ -1,4 +1,5 @@
-// Rows are written as they come: every format, what is left of a run that was ended, and the run that goes on from there.
+// Rows are written as they come: every format, what is left of a run that was ended, and the run
+// that goes on from there.
 #include "recorded.hpp"
 
 #include <chrono>
@@ -18,7 +19,8 @@ TEST_F(Recorded, EveryFormatHasTheSameRows) {
   EXPECT_EQ(o.out, contents(file("a.csv"))) << "-o - is the CSV, and nothing else";
   ASSERT_EQ(std::system(("gzip -dk " + file("a.csv.gz") + " -c > " + file("b.csv")).c_str()), 0);
   EXPECT_EQ(contents(file("b.csv")), contents(file("a.csv")));
-  // A file to go on from is made of pieces that begin anew: the same to round-off, and the same each time.
+  // A file to go on from is made of pieces that begin anew: the same to round-off, and the same
+  // each time.
   ASSERT_EQ(run(with(suslov, {"--quiet", "-o", "a.h5", "-o", "c.csv"})).status, 0);
   EXPECT_EQ(rows("c.csv"), rows("a.csv")) << "one piece";
   EXPECT_THAT(files(), testing::UnorderedElementsAre("a.csv", "a.csv.gz", "a.json", "b.csv",
@@ -30,7 +32,8 @@ struct Case {
   Words words;
 };
 
-// Each goes on from the middle of its run after its file became too large, and is then the undisturbed run, to the last bit.
+// Each goes on from the middle of its run after its file became too large, and is then the
+// undisturbed run, to the last bit.
 TEST_F(Recorded, GoesOnBitForBit) {
   std::ofstream(file("torque.csv")) << "t,value\n0,0\n40,3\n41,-2\n300,1\n";
   const std::vector<Case> cases = {

@@ -1,4 +1,5 @@
-// Full disks, damaged files, what a kill left, files that are gone: what becomes of a run that is recorded.
+// Full disks, damaged files, what a kill left, files that are gone: what becomes of a run that is
+// recorded.
 #include "recorded.hpp"
 
 namespace {
@@ -9,7 +10,8 @@ using testing::HasSubstr;
 
 class RecordedFaults : public Recorded {};
 
-/// A disk that is full from the start, or soon: a message, and what goes by the name of rows has some.
+/// A disk that is full from the start, or soon: a message, and what goes by the name of rows has
+/// some.
 TEST_F(RecordedFaults, NoRoomToBegin) {
   for (int blocks = 0; blocks < 40; ++blocks) {  // of 512 bytes
     for (const Words& outputs : {Words{"-o", "a.h5"}, Words{"-o", "b.csv", "-o", "a.h5"}}) {
@@ -146,7 +148,8 @@ TEST_F(RecordedFaults, NeedsNoOtherFile) {
   EXPECT_TRUE(page_of_file("b.h5") == b);
 }
 
-/// A page or a record for which there is no room: what was written before it is there, which is no bad input.
+/// A page or a record for which there is no room: what was written before it is there, which is no
+/// bad input.
 TEST_F(RecordedFaults, NoRoomForTheLast) {
   for (const Words& last : {Words{"-o", "a.json"}, Words{"--report", "a.html", "-o", "a.csv"}}) {
     const Outcome o = run(with({"run", "suslov", "--until", "0.01", "--quiet"}, last),

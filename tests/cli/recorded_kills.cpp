@@ -1,5 +1,5 @@
-// kill -9 at 50 random moments of a run that is recorded: what was written is there, is taken for no whole, and the run that
-// goes on is the undisturbed one. 10^7 rows take no memory.
+// kill -9 at 50 random moments of a run that is recorded: what was written is there, is taken for
+// no whole, and the run that goes on is the undisturbed one. 10^7 rows take no memory.
 #include "recorded.hpp"
 
 #include <chrono>

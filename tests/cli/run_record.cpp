@@ -13,7 +13,8 @@ using testing::HasSubstr;
 
 class Record : public CommandLine {};
 
-/// Keys of the record (tools/README.md) and their types: s string, n number, i integer, o object, a array, ? null too.
+/// Keys of the record (tools/README.md) and their types: s string, n number, i integer, o object, a
+/// array, ? null too.
 void expect_keys(const Json& object, const std::vector<std::pair<std::string, char>>& keys,
                  const std::string& where) {
   for (const auto& [key, type] : keys) {
@@ -187,8 +188,8 @@ TEST_F(Record, QuietAndText) {
   EXPECT_TRUE(Json::accept(run({"run", "suslov", "--until", "0.1", "--quiet", "--json"}).out));
 }
 
-/// Exit status 1: the step leaves the domain of exp. The good steps are written, and the record has the place and
-/// the reason.
+/// Exit status 1: the step leaves the domain of exp. The good steps are written, and the record has
+/// the place and the reason.
 TEST_F(Record, ANumericalFailureKeepsWhatWasComputed) {
   const Outcome o =
       run({"run", "chaplygin_sleigh", "--velocity", "0.02,-3,0", "--retraction", "exp", "--step",

@@ -1,5 +1,5 @@
-// The JSON schemas of the four kinds of TOML files: every file of the repository fits its own, and each schema has the keys
-// that the reader of its files accepts, no more and no fewer.
+// The JSON schemas of the four kinds of TOML files: every file of the repository fits its own, and
+// each schema has the keys that the reader of its files accepts, no more and no fewer.
 #include <filesystem>
 #include <regex>
 #include <set>

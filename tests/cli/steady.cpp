@@ -1,4 +1,5 @@
-// hamel steady --vary: branches are followed, crossings are what they are, and only digits that are known are printed.
+// hamel steady --vary: branches are followed, crossings are what they are, and only digits that are
+// known are printed.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -59,8 +60,8 @@ arm.angle = )toml" +
          std::to_string(angle) + "\n";
 }
 
-/// Hanging, stable up to sqrt(g/l), where the tilted motions begin, cos = g/(l rate^2); no other change, whatever the guess
-/// and whichever way.
+/// Hanging, stable up to sqrt(g/l), where the tilted motions begin, cos = g/(l rate^2); no other
+/// change, whatever the guess and whichever way.
 TEST_F(Steady, BobOnATurningShaft) {
   const double critical = std::sqrt(9.81);
   for (const char* vary : {"rate=2:6:9", "rate=6:2:9", "rate=2.9:5.3:4"}) {
@@ -161,7 +162,8 @@ TEST_F(Steady, HamiltonianHopf) {
   EXPECT_THAT(o.out, HasSubstr("stability changes at p = 0.0900000000"));
 }
 
-/// A fourfold -1 and a fourfold 0 in one block of four: the digits that are printed are right, and none that is wrong is.
+/// A fourfold -1 and a fourfold 0 in one block of four: the digits that are printed are right, and
+/// none that is wrong is.
 TEST_F(Steady, DigitsThatAreKnown) {
   const std::string critical = particle(
       "group = \"r2\"\ninertia = [1, 1]\n"

@@ -15,7 +15,8 @@ using Json = nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// 39 cells of 2 systems x 3 schemes x 2 retractions x 2 s x 3 steps; polar is not on se2, boxed does not use s.
+// 39 cells of 2 systems x 3 schemes x 2 retractions x 2 s x 3 steps; polar is not on se2, boxed
+// does not use s.
 constexpr const char* kSmall = R"(title = "Small"
 until = 2
 repeats = 2

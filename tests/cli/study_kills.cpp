@@ -1,4 +1,5 @@
-// kill -9 at 50 random moments: nothing that was finished is lost, and the results are those of an undisturbed study.
+// kill -9 at 50 random moments: nothing that was finished is lost, and the results are those of an
+// undisturbed study.
 #include <chrono>
 #include <random>
 #include <thread>

@@ -51,8 +51,8 @@ name = "chaplygin_sleigh"
                            Not(HasSubstr("] solver, "))));
 }
 
-/// Verdicts state a name and a number, also when all cells of a scheme have failed and when there is nothing to
-/// compare with.
+/// Verdicts state a name and a number, also when all cells of a scheme have failed and when there
+/// is nothing to compare with.
 TEST_F(StudyCommand, VerdictsNameWhatTheyCompare) {
   Outcome o = run({"study", study(R"(until = 12
 retraction = "exp"
@@ -82,7 +82,8 @@ velocity = [3, 1, 0]
                            Not(HasSubstr("nan"))));
 }
 
-/// A system's file is part of the study: its mistakes have both places, and its change is another study.
+/// A system's file is part of the study: its mistakes have both places, and its change is another
+/// study.
 TEST_F(StudyCommand, SystemsMayBeFiles) {
   const std::string name =
       study("until = 2\nstep = [0.2, 0.1]\n[[system]]\nname = \"bowl.toml\"\n");
@@ -102,7 +103,8 @@ TEST_F(StudyCommand, SystemsMayBeFiles) {
   EXPECT_THAT(o.err, HasSubstr("here:  bowl.toml: contacts = [1]"));
 }
 
-/// A control that leaves the constraint alone is exact where the free motion keeps it; it never wins without a word.
+/// A control that leaves the constraint alone is exact where the free motion keeps it; it never
+/// wins without a word.
 TEST_F(StudyCommand, AControlDoesNotWinWithoutAWarning) {
   const Outcome o = run({"study", study(R"(until = 4
 scheme = ["lift", "unadapted"]

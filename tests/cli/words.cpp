@@ -20,7 +20,8 @@ class Words : public CommandLine {
       "configuration = [0.3, 1, 2]\nvelocity = [1, 0.5, 0]\nforce = [\"-0.1*omega\", 0, 0]\n";
 };
 
-// ---- describe --------------------------------------------------------------------------------------
+// ---- describe
+// --------------------------------------------------------------------------------------
 
 TEST_F(Words, DescribeHasTheStartWithItsConfiguration) {
   const Json disk = answer({"describe", "falling_disk"})["start"];
@@ -64,7 +65,8 @@ TEST_F(Words, AFileOfAnotherKindIsCalledByItsKind) {
   says({"study", "run.toml"}, "the configuration of a run (hamel run --config run.toml)");
 }
 
-/// What describe claims of gni and of energy_preserving is what is measured on Suslov's body with full inertia.
+/// What describe claims of gni and of energy_preserving is what is measured on Suslov's body with
+/// full inertia.
 TEST_F(Words, DescribeClaimsWhatIsMeasured) {
   const auto order = [&](const char* scheme, const char* retraction, const char* s,
                          const char* of) {
@@ -96,7 +98,8 @@ TEST_F(Words, DescribeClaimsWhatIsMeasured) {
   EXPECT_NEAR(order("energy_preserving", "second_kind", "0.5", "exact_velocity_error_max"), 2, 0.1);
 }
 
-// ---- describe --analyse ------------------------------------------------------------------------------
+// ---- describe --analyse
+// ------------------------------------------------------------------------------
 
 class Analysis : public Words {
  protected:
@@ -128,7 +131,8 @@ class Analysis : public Words {
   }
 };
 
-/// Columns have units: of a heavy body the energy is large beside its velocities, of a light one small.
+/// Columns have units: of a heavy body the energy is large beside its velocities, of a light one
+/// small.
 TEST_F(Analysis, KeepsTheEnergyAndNothingElseWhateverTheUnits) {
   for (const auto& [mass, moment] : {std::pair{1e4, 1e4}, {1.0, 0.1}, {1e-9, 1e-12}})
     EXPECT_EQ(kept({sleigh(mass, moment, 1e-3)}), std::vector<std::string>{"E"}) << mass;
@@ -147,7 +151,8 @@ TEST_F(Analysis, TakesParameters) {
   EXPECT_EQ(run({"describe", "cayley", "--set", "a=0"}).status, 2);
 }
 
-// ---- options that are not used --------------------------------------------------------------------------
+// ---- options that are not used
+// --------------------------------------------------------------------------
 
 TEST_F(Words, OptionsThatASchemeDoesNotUseAreNotEchoed) {
   Json r = record({"chaplygin_sleigh", "--scheme", "rkmk4", "--until", "1"});
@@ -181,9 +186,11 @@ TEST_F(Words, NumbersThatAreNoneAreNotPrinted) {
   }
 }
 
-// ---- runs that go on ---------------------------------------------------------------------------------
+// ---- runs that go on
+// ---------------------------------------------------------------------------------
 
-/// The torque of the roller racer knows the time: a run in two parts is the whole, with the time of the second.
+/// The torque of the roller racer knows the time: a run in two parts is the whole, with the time of
+/// the second.
 TEST_F(Words, ARunGoesOnWhereARecordEnds) {
   for (const char* system : {"roller_racer", "snakeboard", "falling_disk", "chaplygin_sleigh"}) {
     const Json whole = record({system, "--until", "2", "--step", "0.02"});
@@ -212,7 +219,8 @@ TEST_F(Words, ARunGoesOnWhereARecordEnds) {
               HasSubstr("until: got 0.5, expected a time beyond from, 1"));
 }
 
-// ---- the exact motion ----------------------------------------------------------------------------------
+// ---- the exact motion
+// ----------------------------------------------------------------------------------
 
 TEST_F(Words, TheExactMotionCanBeLeftOut) {
   const Json with = record({"chaplygin_sleigh", "--until", "1"}),
@@ -224,7 +232,8 @@ TEST_F(Words, TheExactMotionCanBeLeftOut) {
   EXPECT_THAT(contents(file("a.csv")), Not(HasSubstr("exact_error,")));
 }
 
-/// At 1e12 rad/s the path would take 1e15 evaluations; from a later time a rider's motion has no closed form here.
+/// At 1e12 rad/s the path would take 1e15 evaluations; from a later time a rider's motion has no
+/// closed form here.
 TEST_F(Words, AnExactMotionThatCannotBeFollowedIsSaidToBeLeftOut) {
   const Json fast = record(
       {"chaplygin_sleigh", "--velocity", "1e12,1e12,0", "--step", "1e-14", "--until", "1e-13"});
@@ -241,7 +250,8 @@ TEST_F(Words, AnExactMotionThatCannotBeFollowedIsSaidToBeLeftOut) {
             1e-3);
 }
 
-// ---- the terminal ----------------------------------------------------------------------------------------
+// ---- the terminal
+// ----------------------------------------------------------------------------------------
 
 TEST_F(Words, ListsFitEightyColumns) {
   for (const std::string& line : lines(run({"list"}).out)) EXPECT_LE(line.size(), 80u) << line;

@@ -1,4 +1,5 @@
-// expect: static assertion failed: drift of this system cannot be called: expected a const member drift\(\)
+// expect: static assertion failed: drift of this system cannot be called: expected a const member
+// drift\(\)
 #include <hamel/hamel.hpp>
 
 struct Skate {

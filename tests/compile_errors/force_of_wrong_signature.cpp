@@ -1,4 +1,5 @@
-// expect: static assertion failed: force of this system cannot be called: expected a const member force\(g, xi\)
+// expect: static assertion failed: force of this system cannot be called: expected a const member
+// force\(g, xi\)
 #include <hamel/hamel.hpp>
 
 struct Body {

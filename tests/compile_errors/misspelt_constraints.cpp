@@ -1,4 +1,5 @@
-// expect: static assertion failed: this system has a function 'constraint', which is never called, and no 'constraints'
+// expect: static assertion failed: this system has a function 'constraint', which is never called,
+// and no 'constraints'
 #include <hamel/hamel.hpp>
 
 struct Sleigh {

@@ -1,4 +1,5 @@
-// expect: static assertion failed: this system has a function 'potental', which is never called, and no 'potential'
+// expect: static assertion failed: this system has a function 'potental', which is never called,
+// and no 'potential'
 #include <hamel/hamel.hpp>
 
 struct Top {

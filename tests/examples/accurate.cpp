@@ -1,4 +1,5 @@
-// Steps chosen by the error, output at times of one's own, an event that stops a run and one that changes its state.
+// Steps chosen by the error, output at times of one's own, an event that stops a run and one that
+// changes its state.
 #include <hamel/simulate.hpp>
 
 #include <cmath>
@@ -31,7 +32,8 @@ int main() {
   std::cout << lane.report() << hits << " hits\n\n";
 
   // The same sleigh by reversible steps of lift, there and back.
-  auto run = hamel::simulate("chaplygin_sleigh").scheme("lift").tolerance({.relative = 1e-6}).build();
+  auto run =
+      hamel::simulate("chaplygin_sleigh").scheme("lift").tolerance({.relative = 1e-6}).build();
   const auto start = run.state();
   bool ok = static_cast<bool>(run.step(2000));
   const double h = run.state().time;

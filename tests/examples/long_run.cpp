@@ -1,4 +1,5 @@
-// A long run that loses nothing: written as it goes, stopped half way, gone on with. The end is the undisturbed run's.
+// A long run that loses nothing: written as it goes, stopped half way, gone on with. The end is the
+// undisturbed run's.
 #include <hamel/simulate.hpp>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// A system whose constraint depends on the configuration and is affine: a skate on a turning table, held
-// to its centre by a spring. Nothing but physics is stated; the gradient of V is automatic.
+// A system whose constraint depends on the configuration and is affine: a skate on a turning table,
+// held to its centre by a spring. Nothing but physics is stated; the gradient of V is automatic.
 #include <hamel/hamel.hpp>
 
 #include <cmath>

@@ -1,5 +1,6 @@
-// A system whose constraint rows depend on the configuration: the nonholonomic particle, z' = y x', in a
-// potential of the user's own. Registered, run by name and against its invariant x' sqrt(1 + y^2).
+// A system whose constraint rows depend on the configuration: the nonholonomic particle, z' = y x',
+// in a potential of the user's own. Registered, run by name and against its invariant x' sqrt(1 +
+// y^2).
 #include <hamel/hamel.hpp>
 
 #include <cmath>

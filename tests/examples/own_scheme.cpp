@@ -5,11 +5,12 @@
 
 #include <hamel/hamel.hpp>
 
-// The equations of motion I xi' = ad*_xi I xi + A^T lambda by the implicit midpoint rule; the configuration follows
-// by g_{k+1} = g_k tau(h w) with the mean velocity w = (xi_k + xi_{k+1})/2, which is the unknown:
+// The equations of motion I xi' = ad*_xi I xi + A^T lambda by the implicit midpoint rule; the
+// configuration follows by g_{k+1} = g_k tau(h w) with the mean velocity w = (xi_k + xi_{k+1})/2,
+// which is the unknown:
 //   E^T ( 2 I (w - xi_k) - h ad*_w I w ) = 0,   A w = 0,   xi_{k+1} = 2 w - xi_k.
-// (ad*_w I w).w = I w.[w, w] = 0: the energy is kept. (Celledoni and others, Energy-preserving integrators and the
-// structure of B-series.)
+// (ad*_w I w).w = I w.[w, w] = 0: the energy is kept. (Celledoni and others, Energy-preserving
+// integrators and the structure of B-series.)
 struct ReducedMidpoint : hamel::SchemeDefaults {
   static std::string name() { return "reduced_midpoint"; }
   static std::string formula() { return "I (xi_1 - xi_0) = h ad*_w I w + A' lambda, w the mean"; }

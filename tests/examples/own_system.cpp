@@ -1,4 +1,5 @@
-// A system of your own states its physics, nothing else. Run by object, by name, and compiled whole.
+// A system of your own states its physics, nothing else. Run by object, by name, and compiled
+// whole.
 #include <algorithm>
 #include <cmath>
 #include <iostream>

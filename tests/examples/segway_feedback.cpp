@@ -6,9 +6,9 @@
 
 namespace {
 
-// The motors' torques at a state, to run at `speed` and turn at `rate`. From M v' + m b p'' = T / R and
-// m b v' + (I2 + m b^2) p'' = m g b p - T, T the sum of both, the gains on (pitch, pitch', v - speed) put the poles to
-// -1, -3 and -4 per second.
+// The motors' torques at a state, to run at `speed` and turn at `rate`. From M v' + m b p'' = T / R
+// and m b v' + (I2 + m b^2) p'' = m g b p - T, T the sum of both, the gains on (pitch, pitch', v -
+// speed) put the poles to -1, -3 and -4 per second.
 struct Torques {
   double right, left;
 };

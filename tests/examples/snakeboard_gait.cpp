@@ -1,4 +1,5 @@
-// A snakeboard whose rider moves as a table says: the rates of the rotor and of the axles over time.
+// A snakeboard whose rider moves as a table says: the rates of the rotor and of the axles over
+// time.
 #include <cmath>
 #include <iostream>
 
@@ -25,7 +26,8 @@ int main() {
                           .run();
   std::cout << driven.report();
 
-  // It is the swing that the system has of itself, but for the straight lines between the rows of the table.
+  // It is the swing that the system has of itself, but for the straight lines between the rows of
+  // the table.
   const auto own = hamel::simulate("snakeboard").step(0.01).until(10).run();
   const double apart = std::hypot(driven.last.coordinates[1] - own.last.coordinates[1],
                                   driven.last.coordinates[2] - own.last.coordinates[2]);

@@ -1,5 +1,5 @@
-// A unicycle with a reaction wheel, put together by parts, balanced by the linear-quadratic regulator of its linearisation
-// at 100 Hz. It falls without.
+// A unicycle with a reaction wheel, put together by parts, balanced by the linear-quadratic
+// regulator of its linearisation at 100 Hz. It falls without.
 #include <cmath>
 #include <iostream>
 #include <map>

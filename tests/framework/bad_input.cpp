@@ -1,5 +1,5 @@
-// Mistakes are reported before anything runs: one ConfigError with every mistake, each with the value given, the
-// values expected and the nearest name.
+// Mistakes are reported before anything runs: one ConfigError with every mistake, each with the
+// value given, the values expected and the nearest name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -138,7 +138,8 @@ TEST(BadInput, AnInadmissibleStartIsProjectedWithANote) {
   EXPECT_NEAR(r.config.start.velocity[2], 0, 1e-16);
 }
 
-// ---- systems of a user --------------------------------------------------------------------------------
+// ---- systems of a user
+// --------------------------------------------------------------------------------
 
 template <int K>
 struct Loose {
@@ -216,7 +217,8 @@ TEST(BadInput, AllAtOnce) {
   }
 }
 
-// ---- files ---------------------------------------------------------------------------------------------
+// ---- files
+// ---------------------------------------------------------------------------------------------
 
 TEST(BadInput, RowsThatAreNotInMemory) {
   namespace fs = std::filesystem;

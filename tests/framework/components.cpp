@@ -78,8 +78,8 @@ TEST(Components, AWrongShapeIsRefusedBeforeTheRun) {
   }
 }
 
-// A shape coordinate is the integral of its component: over one small step of the exact flow of the segway's
-// wheels, theta(h) - theta(0) = h theta' + O(h^2).
+// A shape coordinate is the integral of its component: over one small step of the exact flow of the
+// segway's wheels, theta(h) - theta(0) = h theta' + O(h^2).
 TEST(Components, ShapeCoordinatesAreIntegrals) {
   const Result run = simulate("segway").step(1e-4).until(1e-4).run();
   const auto shape = shape_of(run.system->group, components_of(run.system->group));

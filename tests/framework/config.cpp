@@ -1,4 +1,5 @@
-// Config reads back exactly the text that it prints; a file with a mistake is refused with line and column.
+// Config reads back exactly the text that it prints; a file with a mistake is refused with line and
+// column.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// A velocity that decays for ever does not end in subnormal numbers, which would slow every step twenty times; the
-// caller's own floating-point mode is untouched.
+// A velocity that decays for ever does not end in subnormal numbers, which would slow every step
+// twenty times; the caller's own floating-point mode is untouched.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,8 +1,10 @@
-// lift is the discrete Lagrange-d'Alembert scheme (M15): an independent implementation, by numerical
-// differentiation of L_d(g0, g1) = h l(tau_s^-1(g0^-1 g1)/h), takes the same steps.
+// lift is the discrete Lagrange-d'Alembert scheme (M15): an independent implementation, by
+// numerical differentiation of L_d(g0, g1) = h l(tau_s^-1(g0^-1 g1)/h), takes the same steps.
 //
-//   < mu_k, eta > = -d/de L_d(g_k tau(e eta), g_{k+1}),   < mu_{k+1}, eta > = d/de L_d(g_k, g_{k+1} tau(e eta)),
-// both on d only, with g_{k+1} = g_k tau_s(h E y). No dtau, no Ad*, no Jacobian of the library enters.
+//   < mu_k, eta > = -d/de L_d(g_k tau(e eta), g_{k+1}),   < mu_{k+1}, eta > = d/de L_d(g_k, g_{k+1}
+//   tau(e eta)),
+// both on d only, with g_{k+1} = g_k tau_s(h E y). No dtau, no Ad*, no Jacobian of the library
+// enters.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -96,8 +98,8 @@ class DiscreteMechanics {
 };
 
 /// The differences of order 6 with step 2e-3 carry 1e-16 |L_d|/2e-3, 1e-12 with L_d near 1, and a
-/// truncation of (2e-3)^6 L_d^(7)/140 below 1e-12; eight steps add up to some 1e-11. h = 0.2 makes a
-/// wrong term of order h^2 visible as 1e-2.
+/// truncation of (2e-3)^6 L_d^(7)/140 below 1e-12; eight steps add up to some 1e-11. h = 0.2 makes
+/// a wrong term of order h^2 visible as 1e-2.
 constexpr double bound = 1e-9;
 
 template <class Tau, int K>

@@ -1,4 +1,5 @@
-// One driver: a run stepped by hand has the events, impacts, rows, files and measurements of one that runs to its end.
+// One driver: a run stepped by hand has the events, impacts, rows, files and measurements of one
+// that runs to its end.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -79,7 +80,8 @@ TEST(Driver, ByHandIsAsToTheEnd) {
     }
     const Result by_hand = run.finish();
     ASSERT_GT(whole.trajectory.rows(), 2u);
-    // (An impact lies between nodes: by hand the last step may pass the end time by a part of a step.)
+    // (An impact lies between nodes: by hand the last step may pass the end time by a part of a
+    // step.)
     if (std::string(c.name) == "an impact between nodes") {
       ASSERT_GE(whole.events.size(), 1u);
       EXPECT_EQ(whole.events.size(), by_hand.events.size());

@@ -1,6 +1,6 @@
-// One step of balance, boxed and boxed_literal satisfies (M20), (M21) and (M22), written here with differences
-// of tau alone: xi recovered from the two configurations, dL and dR by numerical differentiation, Ad by
-// conjugation.
+// One step of balance, boxed and boxed_literal satisfies (M20), (M21) and (M22), written here with
+// differences of tau alone: xi recovered from the two configurations, dL and dR by numerical
+// differentiation, Ad by conjugation.
 #include <gtest/gtest.h>
 
 #include <hamel/framework/check/algebra.hpp>
@@ -19,8 +19,8 @@ namespace {
 
 using namespace hamel;
 
-/// Differences of order 6 carry 1e-11; a step of h = 0.2 with |xi| near 0.3 shows a wrong weight, sign or
-/// transposition as 1e-2 and more.
+/// Differences of order 6 carry 1e-11; a step of h = 0.2 with |xi| near 0.3 shows a wrong weight,
+/// sign or transposition as 1e-2 and more.
 constexpr double bound = 1e-9;
 
 template <class Tau>

@@ -1,4 +1,5 @@
-// Events: located where the motion is known in closed form, stopped at, changed at; output at given times.
+// Events: located where the motion is known in closed form, stopped at, changed at; output at given
+// times.
 #include <unistd.h>
 
 #include <cmath>
@@ -35,7 +36,8 @@ TEST(Events, AreLocatedOnTheSleigh) {
   }
 }
 
-// x = asinh-shaped: from (0, 0, 0) with x' = c, y' = w it is x = c/w asinh(w t), so that x = 1 at t = sinh(w/c)/w.
+// x = asinh-shaped: from (0, 0, 0) with x' = c, y' = w it is x = c/w asinh(w t), so that x = 1 at t
+// = sinh(w/c)/w.
 TEST(Events, AreLocatedOnTheParticleAndStopTheRun) {
   const double c = 1, w = 0.7, time = std::sinh(w / c) / w;
   for (const std::string scheme : {"dopri5", "dop853"}) {
@@ -56,8 +58,8 @@ TEST(Events, AreLocatedOnTheParticleAndStopTheRun) {
   }
 }
 
-// The centre of the ball circles with the rate Omega I/(I + m r^2); from (d, 0) at speed y' = rate d it crosses x = 0 after a
-// quarter of a turn.
+// The centre of the ball circles with the rate Omega I/(I + m r^2); from (d, 0) at speed y' = rate
+// d it crosses x = 0 after a quarter of a turn.
 TEST(Events, AreLocatedOnTheTurntable) {
   const Result r = simulate("ball_on_turntable")
                        .scheme("dop853")
@@ -79,7 +81,8 @@ TEST(Events, AreLocatedOnTheTurntable) {
     EXPECT_NEAR(crossings[i] - crossings[i - 1], M_PI / std::abs(rate), 1e-10);
 }
 
-// With a scheme of order 2 and steps of one size the same event is met to its order, on the group and in the constraint.
+// With a scheme of order 2 and steps of one size the same event is met to its order, on the group
+// and in the constraint.
 TEST(Events, AreLocatedWithGeometricSteps) {
   const Result exact = simulate("rattleback")
                            .scheme("dop853")
@@ -103,7 +106,8 @@ TEST(Events, AreLocatedWithGeometricSteps) {
   }
 }
 
-// A ball thrown from a slope: at y = 0 its velocity turns round; it comes back to its height, and the times are known.
+// A ball thrown from a slope: at y = 0 its velocity turns round; it comes back to its height, and
+// the times are known.
 TEST(Events, LetTheCallerChangeTheState) {
   int met = 0;
   const Result r = simulate("nonholonomic_particle")
@@ -124,8 +128,9 @@ TEST(Events, LetTheCallerChangeTheState) {
   EXPECT_DOUBLE_EQ(r.last.time, 6);
 }
 
-// A ball that falls under g and comes back from the floor x2 = 0: rows within the step of an impact are of the motion before it,
-// the last state is a row, and there is no comparison with the motion that knows no floor.
+// A ball that falls under g and comes back from the floor x2 = 0: rows within the step of an impact
+// are of the motion before it, the last state is a row, and there is no comparison with the motion
+// that knows no floor.
 TEST(Events, RowsAroundAnImpact) {
   const auto bounce = [] {
     return simulate("nonholonomic_particle")

@@ -62,7 +62,8 @@ TEST(Growth, SeesAHolonomicConstraint) {
   EXPECT_TRUE(closed.decided());
 }
 
-/// z' = e y x' is not integrable for any e. Brackets that small are near the errors of others; they are not called zero.
+/// z' = e y x' is not integrable for any e. Brackets that small are near the errors of others; they
+/// are not called zero.
 template <int Exponent>
 struct Faint : Point<3> {
   Mat<1, 3> constraints(const Vec<3>& g) const { return {-std::pow(10.0, Exponent) * g[1], 0, 1}; }
@@ -73,8 +74,8 @@ TEST(Growth, SmallIsNotZero) {
   EXPECT_THAT(growth(Faint<-8>{}, {0.3, 0.2, 0.1}).dimensions, ElementsAre(2, 3));
 }
 
-/// y' = cos 3t is integrable with time; y' = sin x is not, though ker A = span(d/dx) is closed; nor is
-/// y' = t x', whose ker A is closed at every t.
+/// y' = cos 3t is integrable with time; y' = sin x is not, though ker A = span(d/dx) is closed; nor
+/// is y' = t x', whose ker A is closed at every t.
 struct Driven : Point<2> {
   Mat<1, 2> constraints() const { return {0, 1}; }
   Vec<1> drift(double t, const auto& /*g*/) const { return Vec<1>(std::cos(3 * t)); }
@@ -96,7 +97,8 @@ TEST(Growth, BracketsWithTheDrift) {
   EXPECT_THAT(tilting.dimensions, ElementsAre(1, 2));
 }
 
-/// A car with n trailers needs n + 2 fields; here for each n, one direction more by each generation.
+/// A car with n trailers needs n + 2 fields; here for each n, one direction more by each
+/// generation.
 TEST(Growth, AsDeepAsTrailersNeed) {
   for (int trailers = 1; trailers <= 4; ++trailers) {
     NTrailer system;
@@ -112,8 +114,8 @@ TEST(Growth, AsDeepAsTrailersNeed) {
   }
 }
 
-// Few fields are enough to see that rows are not integrable, and holonomic rows leave fewer directions. The ball is small: its
-// fields turn fast.
+// Few fields are enough to see that rows are not integrable, and holonomic rows leave fewer
+// directions. The ball is small: its fields turn fast.
 TEST(Growth, FewFieldsAndHolonomicRows) {
   for (const auto& [name, directions] : {std::pair{"falling_disk", 5}, {"ballbot", 8}}) {
     const Analysis quick = analyse(registry(), name, {}, AnalysisOf::verdict);

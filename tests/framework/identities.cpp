@@ -1,5 +1,5 @@
-// Identities between runs: tau_s of polar at s = 1/2 is Cayley, exp does not depend on s, the named and
-// the typed path agree, and a run with a fixed m agrees with one with m chosen at run time.
+// Identities between runs: tau_s of polar at s = 1/2 is Cayley, exp does not depend on s, the named
+// and the typed path agree, and a run with a fixed m agrees with one with m chosen at run time.
 #include <gtest/gtest.h>
 
 #include <hamel/groups/cayley.hpp>

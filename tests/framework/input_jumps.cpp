@@ -1,5 +1,5 @@
-// An input that jumps or bends between the nodes of steps of one size: the steps go there and on, so that every scheme
-// keeps its order, and a step that is constant in the torque is exact.
+// An input that jumps or bends between the nodes of steps of one size: the steps go there and on,
+// so that every scheme keeps its order, and a step that is constant in the torque is exact.
 //
 // The cart of differential_drive under equal torques u on both wheels: M v' = 2 u / R (inputs.cpp).
 #include <gmock/gmock.h>
@@ -97,7 +97,8 @@ TEST(InputJumps, AndKinksAreNodes) {
   }
 }
 
-/// The estimate of --check is that of the error: with a friction-like force the runs differ by their order.
+/// The estimate of --check is that of the error: with a friction-like force the runs differ by
+/// their order.
 TEST(InputJumps, AreSeenByACheck) {
   const InputTable right = {{0, 0.37, 1}, {0.3, -0.3, -0.3}, true};
   const auto end = [&](double h) {

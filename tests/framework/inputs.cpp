@@ -1,9 +1,9 @@
-// The inputs of a run: what they do to a motion that is known in closed form, on which side of a jump a step lies, their
-// work in the energy balance, and what bad ones get.
+// The inputs of a run: what they do to a motion that is known in closed form, on which side of a
+// jump a step lies, their work in the energy balance, and what bad ones get.
 //
-// The cart of differential_drive runs straight under equal torques u on both wheels: M v' = 2 u / R, M = m + 2 J_w / R^2.
-// In a step with a constant torque lift, balance, their compositions and rkmk4 are exact in v, so the bound is round-off:
-// 1e-12 over 200 steps.
+// The cart of differential_drive runs straight under equal torques u on both wheels: M v' = 2 u /
+// R, M = m + 2 J_w / R^2. In a step with a constant torque lift, balance, their compositions and
+// rkmk4 are exact in v, so the bound is round-off: 1e-12 over 200 steps.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -67,7 +67,8 @@ TEST(InputsOfARun, DriveTheCartExactly) {
   }
 }
 
-// Steps chosen by the error end where a held input jumps: a step across would not be exact, whatever its tolerance.
+// Steps chosen by the error end where a held input jumps: a step across would not be exact,
+// whatever its tolerance.
 TEST(InputsOfARun, EndChosenStepsAtTheirJumps) {
   for (const char* scheme : {"dopri5", "dop853", "lift"}) {
     Simulation run = cart(kHeld);
@@ -93,7 +94,8 @@ TEST(InputsOfARun, EndChosenStepsAtTheirKinks) {
   for (const double kink : {0.3, 0.7}) EXPECT_NE(std::find(t.begin(), t.end(), kink), t.end());
 }
 
-// The same run backwards: a step that ends at a jump sees the value before it, in its own direction.
+// The same run backwards: a step that ends at a jump sees the value before it, in its own
+// direction.
 TEST(InputsOfARun, RunBackwards) {
   for (const InputSignal& torque : {InputSignal(kHeld), InputSignal(kLinear)}) {
     const Result there = cart(torque).run();
@@ -110,8 +112,8 @@ TEST(InputsOfARun, RunBackwards) {
   }
 }
 
-// Rates that are given by lines: their b(t) is differentiated by differences, which must not see the kinks at the nodes
-// nor the end of the table, which is that of the run.
+// Rates that are given by lines: their b(t) is differentiated by differences, which must not see
+// the kinks at the nodes nor the end of the table, which is that of the run.
 TEST(InputsOfARun, KeepTheOrderWhereTheirLinesMeetAtNodes) {
   const auto end = [](double h) {
     const InputTable bent = {{0, 0.3, 0.7, 1}, {0, 0.6, 0.2, 0.5}, false};
@@ -130,7 +132,8 @@ TEST(InputsOfARun, KeepTheOrderWhereTheirLinesMeetAtNodes) {
   EXPECT_NEAR(std::log2(coarse / half), 4, 0.2);
 }
 
-// The work of the torques is that of a quadrature which begins anew where the power jumps. rkmk4 is exact in x too.
+// The work of the torques is that of a quadrature which begins anew where the power jumps. rkmk4 is
+// exact in x too.
 TEST(InputsOfARun, DoWorkThatTheEnergyBalanceCounts) {
   for (const long every : {1L, 7L, 50L}) {
     const Result r = cart(kHeld).scheme("rkmk4").every(every).run();

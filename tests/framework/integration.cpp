@@ -1,4 +1,5 @@
-// A run that is stepped by hand: inputs from the caller's loop, times to advance to, and another start.
+// A run that is stepped by hand: inputs from the caller's loop, times to advance to, and another
+// start.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -76,7 +77,8 @@ TEST(RunByHand, EndsWithItsTables) {
   EXPECT_TRUE(run.step());
 }
 
-// Another start gives what a run that is built for it gives, to the last bit: nothing is left of the motion before.
+// Another start gives what a run that is built for it gives, to the last bit: nothing is left of
+// the motion before.
 TEST(RunByHand, StartsAgain) {
   struct Case {
     const char *system, *scheme, *compose;

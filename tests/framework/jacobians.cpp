@@ -1,6 +1,6 @@
 // The analytic Jacobian of every scheme's equation, for every registered retraction, against
-// differences, at points of large xi. It is read through framework/loop/solver.hpp by a user's solver, so that the
-// test covers the interface too: F, dF/dx, size and scale.
+// differences, at points of large xi. It is read through framework/loop/solver.hpp by a user's
+// solver, so that the test covers the interface too: F, dF/dx, size and scale.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -67,9 +67,9 @@ class Inspector final : public Solver {
   std::mt19937_64 random_{5};
 };
 
-/// Differences of order 6 with step 2e-3: round-off 2e-13, truncation (2e-3)^6/140 times the seventh
-/// derivative, which for |xi| up to 2 stays below 1e5: 1e-13 to 1e-10. The Newton derivative of
-/// differentiated maps is itself accurate to 1e-12. A missing term is of order |xi|.
+/// Differences of order 6 with step 2e-3: round-off 2e-13, truncation (2e-3)^6/140 times the
+/// seventh derivative, which for |xi| up to 2 stays below 1e5: 1e-13 to 1e-10. The Newton
+/// derivative of differentiated maps is itself accurate to 1e-12. A missing term is of order |xi|.
 constexpr double bound = 1e-8;
 
 template <class S>

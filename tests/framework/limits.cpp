@@ -1,4 +1,5 @@
-// What users' files and names may ask for at most: a clear refusal, never a crash, a wait or a gigabyte.
+// What users' files and names may ask for at most: a clear refusal, never a crash, a wait or a
+// gigabyte.
 #include <sys/stat.h>
 
 #include <fstream>
@@ -44,7 +45,8 @@ std::vector<std::vector<std::string>> refusals(const std::string& text) {
   return out;
 }
 
-/// Half a million levels of each kind of nesting end toml++, which works by recursion, in a stack overflow.
+/// Half a million levels of each kind of nesting end toml++, which works by recursion, in a stack
+/// overflow.
 TEST(Limits, DepthOfToml) {
   constexpr int kDeep = 500'000;
   for (const std::string& text :
@@ -60,7 +62,8 @@ TEST(Limits, DepthOfToml) {
   }
 }
 
-/// What only looks deep is read: dots and brackets in strings and comments, lists of floats, long tables.
+/// What only looks deep is read: dots and brackets in strings and comments, lists of floats, long
+/// tables.
 TEST(Limits, WhatIsNotDeep) {
   for (const std::string& text :
        {"# " + repeated("[.", 1000), "velocity = [" + repeated("1.5, ", 1000) + "1.5]",

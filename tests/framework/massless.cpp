@@ -1,5 +1,5 @@
-// Links without mass: I is semidefinite and definite on ker A. What moves is what moves with any mass that the
-// constraint holds still.
+// Links without mass: I is semidefinite and definite on ker A. What moves is what moves with any
+// mass that the constraint holds still.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// The frame of the general schemes (framework/mechanics/place.hpp) against its definition, on random full
-// inertias and rows, for sizes known at compile time and at run time.
+// The frame of the general schemes (framework/mechanics/place.hpp) against its definition, on
+// random full inertias and rows, for sizes known at compile time and at run time.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -62,7 +62,8 @@ void expect_definition(const Given& system, std::mt19937& random) {
   EXPECT_LT((reaction - system.a.transpose() * lambda).norm(),
             1e-13 * (1 + system.i.norm() * xi.norm() + system.a.norm() * lambda.norm()));
 
-  // (*) is c_i / |D^-1/2 a_i| and E^T r, E of n - k columns: zero for reactions alone, unit in the metric D.
+  // (*) is c_i / |D^-1/2 a_i| and E^T r, E of n - k columns: zero for reactions alone, unit in the
+  // metric D.
   typename Place<N, K>::Few c(k);
   for (double& x : c) x = normal(random);
   const Vector root = system.i.diagonal().cwiseSqrt();

@@ -1,5 +1,6 @@
-// Free motion conserves the spatial momentum Ad*_{g^-1} mu to round-off; so does unadapted on any system, since it
-// ignores the constraint (M23). A wrong sign in the momentum update breaks this law at once.
+// Free motion conserves the spatial momentum Ad*_{g^-1} mu to round-off; so does unadapted on any
+// system, since it ignores the constraint (M23). A wrong sign in the momentum update breaks this
+// law at once.
 #include <gtest/gtest.h>
 
 #include <hamel/groups/exp.hpp>
@@ -34,9 +35,9 @@ double momentum_drift(const Simulation& simulation) {
   return worst / start.norm();
 }
 
-/// Each step leaves the residual of its solve in mu_0 = mu_k, so that the law is measured with every
-/// solve driven to the round-off floor; then 200 steps add 200 times a few eps times the condition of
-/// the frame and of Ad: 1e-13 was seen on SE(3).
+/// Each step leaves the residual of its solve in mu_0 = mu_k, so that the law is measured with
+/// every solve driven to the round-off floor; then 200 steps add 200 times a few eps times the
+/// condition of the frame and of Ad: 1e-13 was seen on SE(3).
 constexpr double bound = 1e-12;
 constexpr SolverOptions to_the_floor = {.tolerance = 1e-16};
 

@@ -171,7 +171,8 @@ TEST(Study, SolversAgree) {
   EXPECT_EQ(compared, (config.axes["solver"].size() - 1) * 2 * 3);
 }
 
-/// A stopped study returns its finished cells; continued in the same folder it equals one that was not stopped.
+/// A stopped study returns its finished cells; continued in the same folder it equals one that was
+/// not stopped.
 TEST(Study, StopsAndGoesOn) {
   const TemporaryFolder folder;
   StudyConfig config = small();
@@ -214,7 +215,8 @@ TEST(Table, QuotesWhatNeedsIt) {
   EXPECT_THROW(table.column("y"), ConfigError);
 }
 
-/// Angles that are not wrapped are compared by what is left of full turns; other columns as numbers.
+/// Angles that are not wrapped are compared by what is left of full turns; other columns as
+/// numbers.
 TEST(Study, ComparesAnglesAsAngles) {
   const std::vector<bool> angles = study::angle_columns(*registry().group_or_product("se2*so2*r2"));
   EXPECT_THAT(angles, testing::ElementsAre(true, false, false, true, false, false));

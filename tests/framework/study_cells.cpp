@@ -34,8 +34,9 @@ class DataFile : public testing::Test {
   const std::string path = folder / "skate.toml";
 };
 
-/// A file's system is a system: its cells end where `hamel run` of the file does, and its claims are those of
-/// a system with a potential: with the forces at the nodes lift has order 2 at every s, as without them.
+/// A file's system is a system: its cells end where `hamel run` of the file does, and its claims
+/// are those of a system with a potential: with the forces at the nodes lift has order 2 at every
+/// s, as without them.
 TEST_F(DataFile, IsASystem) {
   write(kSkate);
   StudyConfig config = small();
@@ -56,8 +57,8 @@ TEST_F(DataFile, IsASystem) {
   }
 }
 
-/// The text belongs to the study: it is read once, another text is another study, and its mistakes are found
-/// before anything runs.
+/// The text belongs to the study: it is read once, another text is another study, and its mistakes
+/// are found before anything runs.
 TEST_F(DataFile, BelongsToTheStudy) {
   write(kSkate);
   StudyConfig config = small();
@@ -74,8 +75,8 @@ TEST_F(DataFile, BelongsToTheStudy) {
   EXPECT_THAT(mistakes_of(config), Each(HasSubstr("cannot read '" + path + "'")));
 }
 
-/// rkmk4 solves no equation: one cell for all solvers and tolerances, with neither in the table; what it does
-/// about a failure matters where halves are tried, as they may succeed.
+/// rkmk4 solves no equation: one cell for all solvers and tolerances, with neither in the table;
+/// what it does about a failure matters where halves are tried, as they may succeed.
 TEST(StudyCells, ExplicitSchemesUseNoSolver) {
   StudyConfig config = small();
   config.axes["scheme"] = {"lift", "rkmk4"};
@@ -138,8 +139,8 @@ TEST(StudyCells, AxesGoByName) {
                                          Contains(HasSubstr("s: 'half' is not a number"))));
 }
 
-/// Steps chosen by the error stand beside steps of one size: a pair uses its tolerance, rkmk4 its step, lift either; their order is
-/// the power of the tolerance, 1, and no group mixes the two.
+/// Steps chosen by the error stand beside steps of one size: a pair uses its tolerance, rkmk4 its
+/// step, lift either; their order is the power of the tolerance, 1, and no group mixes the two.
 TEST(StudyCells, TolerancesStandBesideSteps) {
   StudyConfig config = parse_study(R"(until = 4
 repeats = 1

@@ -1,4 +1,5 @@
-// A journal is read as it is found: damaged lines are left out with a note, and their work is done again.
+// A journal is read as it is found: damaged lines are left out with a note, and their work is done
+// again.
 #include <fstream>
 #include <sstream>
 
@@ -69,7 +70,8 @@ TEST_F(StudyJournal, DamagedLinesAreComputedAgain) {
   EXPECT_THAT(resumed(lines_).notes, testing::IsEmpty());
 }
 
-/// Lengths and indices are checked too, under a checksum that is right: they end up in loops over other lists.
+/// Lengths and indices are checked too, under a checksum that is right: they end up in loops over
+/// other lists.
 TEST_F(StudyJournal, LengthsAndIndicesAreChecked) {
   const auto with = [&](size_t i, auto change) {
     std::vector<std::string> lines = lines_;

@@ -1,5 +1,5 @@
-// The certificate of a solve does not depend on the unit of length: |F|/scale of every general scheme is the same
-// for a body in metres and in millimetres, where momenta mix N m s with N s.
+// The certificate of a solve does not depend on the unit of length: |F|/scale of every general
+// scheme is the same for a body in metres and in millimetres, where momenta mix N m s with N s.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +12,8 @@
 namespace hamel {
 namespace {
 
-/// |F|/scale at a velocity near the solution, for a skate of the plane in units of 1/length metres; with a
-/// constant force along the body.
+/// |F|/scale at a velocity near the solution, for a skate of the plane in units of 1/length metres;
+/// with a constant force along the body.
 double relative_residual(const SchemeInfo& scheme, double s, double length, bool forced) {
   class Pushed final : public Mechanics {
    public:

@@ -1,5 +1,5 @@
-// Fuzz target: the lines of a study's journal, and what is made of them. Input that begins with '!' is given the
-// checksums that it lacks, so that what stands behind them is reached.
+// Fuzz target: the lines of a study's journal, and what is made of them. Input that begins with '!'
+// is given the checksums that it lacks, so that what stands behind them is reached.
 #include <sstream>
 
 #include <hamel/framework/study/journal.hpp>

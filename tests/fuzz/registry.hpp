@@ -1,4 +1,5 @@
-// What the fuzz targets run on: a few groups and systems, all of it erased, so that little is compiled.
+// What the fuzz targets run on: a few groups and systems, all of it erased, so that little is
+// compiled.
 #pragma once
 
 #include <cstdint>

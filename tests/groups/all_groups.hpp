@@ -1,4 +1,5 @@
-// The registered groups by type. That none is missing: tests/groups/group_laws.cpp, Groups.AreThoseOfTheRegistry.
+// The registered groups by type. That none is missing: tests/groups/group_laws.cpp,
+// Groups.AreThoseOfTheRegistry.
 #pragma once
 
 #include <hamel/framework/lie/retraction_defaults.hpp>

@@ -91,7 +91,8 @@ TEST(AutoRetraction, EqualsTheClosedForms) {
   }
 }
 
-/// tau reaches rotations by less than about 1 rad only: Newton must report it instead of returning a value.
+/// tau reaches rotations by less than about 1 rad only: Newton must report it instead of returning
+/// a value.
 struct Bounded : AutoRetraction<Bounded, SO2> {
   static std::string name() { return "bounded"; }
   static constexpr bool symmetric = true;

@@ -1,4 +1,5 @@
-// from_coordinates refuses values that are not in the group and names the values given and expected.
+// from_coordinates refuses values that are not in the group and names the values given and
+// expected.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Every registered group obeys the group axioms (framework/check/group_laws.hpp, where the bounds are): by type, and
-// by name as a run sees it, products put together at run time included.
+// Every registered group obeys the group axioms (framework/check/group_laws.hpp, where the bounds
+// are): by type, and by name as a run sees it, products put together at run time included.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// A reference in 80 digits: small matrices of mpfr::mpreal, exponentials and dexp from their series.
+// A reference in 80 digits: small matrices of mpfr::mpreal, exponentials and dexp from their
+// series.
 #pragma once
 
 #include <mpreal.h>

@@ -1,5 +1,6 @@
-// Every registered retraction of every registered group obeys the laws (framework/check/retraction_laws.hpp, where the
-// bounds are): by type, Newton's derivative included, and by name as a run sees it.
+// Every registered retraction of every registered group obeys the laws
+// (framework/check/retraction_laws.hpp, where the bounds are): by type, Newton's derivative
+// included, and by name as a run sees it.
 #include <gtest/gtest.h>
 
 #include <hamel/framework/check/retraction_laws.hpp>
@@ -52,7 +53,8 @@ TEST(ProductRetractions, AreThoseOfAllFactors) {
   EXPECT_EQ(CayleyLiteral<Disk>::name(), "cayley_literal");
 }
 
-/// An angle of ten turns by any retraction but the literal one, by type and by name; the other factors keep theirs.
+/// An angle of ten turns by any retraction but the literal one, by type and by name; the other
+/// factors keep theirs.
 TEST(ProductRetractions, AddOnCommutativeFactors) {
   const Vec<4> xi(0.3, 1, 2, 63);
   const auto turns = [&]<class R>(std::type_identity<R>) {

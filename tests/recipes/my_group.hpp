@@ -1,4 +1,5 @@
-// Affine maps of the line, z -> e^u z + b, with exp: (u, b)(v, c) = (u + v, b + e^u c). [e1, e2] = e2.
+// Affine maps of the line, z -> e^u z + b, with exp: (u, b)(v, c) = (u + v, b + e^u c). [e1, e2] =
+// e2.
 #pragma once
 
 #include <cmath>
@@ -26,7 +27,8 @@ struct MyGroup : GroupDefaults<MyGroup, 2> {
   static Mat<2, 2> ad(const Vec<2>& xi) { return Mat<2, 2>{{0, 0}, {-xi[1], xi[0]}}; }
 };
 
-/// (x, y f(x)) with f = (e^x - 1)/x, of which dR^-1 = [[1, 0], [a, 1/f]], a = y (f - f')/f = y c(x).
+/// (x, y f(x)) with f = (e^x - 1)/x, of which dR^-1 = [[1, 0], [a, 1/f]], a = y (f - f')/f = y
+/// c(x).
 template <>
 struct Exp<MyGroup> : RetractionDefaults<Exp<MyGroup>, MyGroup> {
   static constexpr bool symmetric = true, one_parameter = true;

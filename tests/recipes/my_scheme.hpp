@@ -1,4 +1,5 @@
-// my_scheme: explicit Euler on the group, g_1 = g_0 tau(h xi_0), I xi_1 = I xi_0 + h (ad*_xi I xi + force) + A^T lambda.
+// my_scheme: explicit Euler on the group, g_1 = g_0 tau(h xi_0), I xi_1 = I xi_0 + h (ad*_xi I xi +
+// force) + A^T lambda.
 #pragma once
 
 #include <hamel/framework/schemes/scheme.hpp>

@@ -36,7 +36,8 @@ TEST(CeresTiny, DefaultsStopEarlyAndOursDoNot) {
   EXPECT_LE(equation.residual(x), 1e-13);
 }
 
-/// 1/2|F|^2 of a double root: the normal equations are singular there, and the residual left is reported.
+/// 1/2|F|^2 of a double root: the normal equations are singular there, and the residual left is
+/// reported.
 TEST(CeresTiny, ADoubleRootIsReportedAsItIs) {
   const Made equation(
       1, [](const Vector& x) { return Vector(Vector::Constant(1, (x[0] - 1) * (x[0] - 1))); },

@@ -120,8 +120,8 @@ Simulation moderate(const std::string& system, const std::string& scheme,
   return simulate(system).scheme(scheme).s(0.3).retraction(retraction).solver(solver).step(0.02);
 }
 
-/// Registered means solved: every system, scheme and retraction. Only a minimiser may refuse, with a
-/// reason. boxed_literal takes O(1) steps whatever h is: it may leave the domain.
+/// Registered means solved: every system, scheme and retraction. Only a minimiser may refuse, with
+/// a reason. boxed_literal takes O(1) steps whatever h is: it may leave the domain.
 TEST(EverySolver, SolvesEveryStep) {
   long refused = 0, all = 0;
   std::map<std::string, long> refusals;
@@ -131,7 +131,8 @@ TEST(EverySolver, SolvesEveryStep) {
       if (!defined(scheme, system)) continue;
       for (const std::string& retraction : registry().retractions_or_common(group)) {
         for (const std::string& solver : registry().solvers()) {
-          // The general loop is slow under a minimiser of a dozen unknowns: a few steps, and not those.
+          // The general loop is slow under a minimiser of a dozen unknowns: a few steps, and not
+          // those.
           if (!compiled(system) && (minimises(solver) || retraction.starts_with("second")))
             continue;
           const double until = compiled(system) ? 0.6 : 0.1;

@@ -198,8 +198,8 @@ TEST(AbsentSolver, NoneIsForgotten) {
   }
 }
 
-/// A principal root is not refused where the equation is ill-conditioned: masses of 1 and 1e6, or steps so small that
-/// the row of a height hardly sees the velocity.
+/// A principal root is not refused where the equation is ill-conditioned: masses of 1 and 1e6, or
+/// steps so small that the row of a height hardly sees the velocity.
 TEST(Failure, ThePrincipalRootIsTakenWhereTheEquationIsIllConditioned) {
   const Result trailer =
       simulate("n_trailer").set("trailer_mass", 1e6).set("mass", 1).step(1e-4).until(0.01).run();

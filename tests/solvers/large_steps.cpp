@@ -1,9 +1,9 @@
 // Large steps: no solver returns a root other than the principal one.
 //
-// One step from random starts, |xi| to 4, h = 0.2 ... 2, compared with the principal root (M40), found here
-// independently by continuation from a small h: small fixed steps of h, plain Newton, no step control. A result of
-// the library must be that root or be refused. The solver "wild" starts from a random point instead of the guess
-// and finds roots that no other finds.
+// One step from random starts, |xi| to 4, h = 0.2 ... 2, compared with the principal root (M40),
+// found here independently by continuation from a small h: small fixed steps of h, plain Newton, no
+// step control. A result of the library must be that root or be refused. The solver "wild" starts
+// from a random point instead of the guess and finds roots that no other finds.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -22,8 +22,8 @@ namespace {
 
 using namespace hamel;
 
-/// The momentum after one step along the branch that begins at h = 0; empty when the branch ends, or the
-/// root leaves the domain, or passes so close to a fold that the two cannot be told apart.
+/// The momentum after one step along the branch that begins at h = 0; empty when the branch ends,
+/// or the root leaves the domain, or passes so close to a fold that the two cannot be told apart.
 template <class Step>
 std::vector<double> by_continuation(Step& step, const Node<typename Step::Problem>& node,
                                     double h) {

@@ -1,4 +1,5 @@
-// Newton on equations made for it: iterations, tolerance, the round-off floor, and every way to fail.
+// Newton on equations made for it: iterations, tolerance, the round-off floor, and every way to
+// fail.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -159,7 +160,8 @@ TEST(Newton, LargerThanFour) {
   EXPECT_LE((a * x - Vec<6>::Ones()).norm(), 1e-14);
 }
 
-// ---- in a run ----------------------------------------------------------------------------------------
+// ---- in a run
+// ----------------------------------------------------------------------------------------
 
 Simulation full_suslov() {
   return simulate("suslov").set("inertia", {2, .3, .5, 3, .4, 4}).start({.velocity = {1, 0.5, 0}});
@@ -205,7 +207,8 @@ TEST(NewtonInARun, AStepOutsideTheDomainKeepsTheGoodSteps) {
   for (const double x : r.last.velocity) EXPECT_TRUE(std::isfinite(x));
 }
 
-/// The sleigh turns faster and faster until it is reversed: with h = 1.2 some good steps come first.
+/// The sleigh turns faster and faster until it is reversed: with h = 1.2 some good steps come
+/// first.
 TEST(NewtonInARun, FailsInTheMiddle) {
   Simulation simulation = simulate("chaplygin_sleigh")
                               .start({.velocity = {0.02, -3, 0}})

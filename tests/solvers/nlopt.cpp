@@ -1,4 +1,5 @@
-// NLopt's return value is ignored: ROUNDOFF_LIMITED at the solution counts as solved, a stall does not.
+// NLopt's return value is ignored: ROUNDOFF_LIMITED at the solution counts as solved, a stall does
+// not.
 #include <gtest/gtest.h>
 
 #include <nlopt.h>
@@ -31,8 +32,8 @@ double half_square(unsigned n, const double* x, double* gradient, void* data) {
   return 0.5 * f.squaredNorm();
 }
 
-/// Called by hand without a tolerance SLSQP ends "round-off limited" or after all its evaluations, and
-/// is at the solution.
+/// Called by hand without a tolerance SLSQP ends "round-off limited" or after all its evaluations,
+/// and is at the solution.
 TEST(Nlopt, RoundOffLimitedAtTheSolutionIsSolved) {
   Made equation = test::like_a_step(2, 0.1);
   nlopt_opt raw = nlopt_create(NLOPT_LD_SLSQP, 2);

@@ -1,5 +1,5 @@
-// A user's solver crosses framework/loop/solver.hpp and gives the same trajectory: one function, a class with a
-// report of its own, and one that fails.
+// A user's solver crosses framework/loop/solver.hpp and gives the same trajectory: one function, a
+// class with a report of its own, and one that fails.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -80,8 +80,8 @@ TEST(UserSolver, GivesTheSameTrajectory) {
           const Result other = run(solver);
           ASSERT_TRUE(other.status.ok) << solver << " " << system << " " << scheme << ": "
                                        << other.status.reason << " " << other.status.residual;
-          // 100 steps, each solve good to 1e-13 of the momentum, which the velocity multiplies by the
-          // inverse of the inertia (up to 20 for the disk).
+          // 100 steps, each solve good to 1e-13 of the momentum, which the velocity multiplies by
+          // the inverse of the inertia (up to 20 for the disk).
           for (size_t i = 0; i < other.last.coordinates.size(); ++i) {
             EXPECT_NEAR(other.last.coordinates[i], reference.last.coordinates[i], 1e-9)
                 << solver << " " << system << " " << scheme << " " << retraction;

@@ -1,4 +1,5 @@
-// Systems by data against the same systems as C++ structs, along trajectories: every formula that a file may state.
+// Systems by data against the same systems as C++ structs, along trajectories: every formula that a
+// file may state.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +48,8 @@ struct Options {
   double bound = 1e-11;
 };
 
-// The largest difference over the whole trajectory: coordinates, velocities, momenta, multipliers, energy.
+// The largest difference over the whole trajectory: coordinates, velocities, momenta, multipliers,
+// energy.
 void same(Simulation hers, Simulation ours, const Options& o) {
   SCOPED_TRACE(o.scheme);
   for (Simulation* s : {&hers, &ours}) {
@@ -79,7 +81,8 @@ void same(Simulation hers, Simulation ours, const Options& o) {
   EXPECT_EQ(a.system->mechanics->constant_inertia(), b.system->mechanics->constant_inertia());
 }
 
-// ---- the examples ----------------------------------------------------------------------------------
+// ---- the examples
+// ----------------------------------------------------------------------------------
 
 TEST(DataSystems, ContactOscillator) {
   for (const char* scheme : {"lift", "balance", "rkmk4"}) {
@@ -110,7 +113,8 @@ TEST(DataSystems, KickScooter) {
   same(simulate(Scooter{}), by_data(text), {.inputs = {{"torque", 0.05}}});
 }
 
-// ---- what the examples do not have: I(g), phi(g), b(t, g), contacts, events, invariants --------------
+// ---- what the examples do not have: I(g), phi(g), b(t, g), contacts, events, invariants
+// --------------
 
 TEST(DataSystems, InertiaThatDependsOnTheConfiguration) {
   same(simulate(Segway{}), by_data(R"toml(
@@ -193,7 +197,8 @@ back_rate = {}
        {.inputs = {{"rotor_rate", 0.2}, {"front_rate", 0.02}, {"back_rate", -0.03}}});
 }
 
-// ---- laws -------------------------------------------------------------------------------------------
+// ---- laws
+// -------------------------------------------------------------------------------------------
 
 TEST(DataSystems, KeepTheLawsOfASystem) {
   for (const char* name : {"contact_oscillator.toml", "particle_in_potential.toml",

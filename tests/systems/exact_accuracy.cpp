@@ -1,7 +1,8 @@
-// Exact motions in closed form where a rate in their denominators goes to zero, against 80 digits of the
-// textbook formulas, which divide by it.
+// Exact motions in closed form where a rate in their denominators goes to zero, against 80 digits
+// of the textbook formulas, which divide by it.
 //
-// Bound: 1e-14 of the size of the motion, a few units of round-off for each of the dozen operations.
+// Bound: 1e-14 of the size of the motion, a few units of round-off for each of the dozen
+// operations.
 #include <gtest/gtest.h>
 
 #include <mpreal.h>

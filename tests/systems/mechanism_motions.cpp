@@ -1,4 +1,5 @@
-// Closed chains and prescribed joints along trajectories, against motions that are known by other means.
+// Closed chains and prescribed joints along trajectories, against motions that are known by other
+// means.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -58,7 +59,8 @@ struct FourBar {
     return m;
   }
 
-  // At an angle of the crank: those of coupler and rocker in the world, V, and twice the kinetic energy at unit rate.
+  // At an angle of the crank: those of coupler and rocker in the world, V, and twice the kinetic
+  // energy at unit rate.
   struct Seen {
     double coupler, rocker, potential, moment;
   };
@@ -87,7 +89,8 @@ struct FourBar {
   }
 };
 
-// No row of it is nonholonomic. Its angles, the rate of its energy, and the time that it takes, by quadrature.
+// No row of it is nonholonomic. Its angles, the rate of its energy, and the time that it takes, by
+// quadrature.
 TEST(MechanismMotions, FourBarFollowsItsAngleEquation) {
   const FourBar bars;
   const double until = 0.25;
@@ -128,8 +131,8 @@ TEST(MechanismMotions, FourBarFromRestBySmallSteps) {
   EXPECT_TRUE(chosen.status.ok) << chosen.status.reason;
 }
 
-// Two rods that close a triangle with the ground swing about its side there, 45 degrees from the vertical:
-// 1/2 J phi'^2 - m g l/2 cos phi, J = J_t + m l^2/4 of both together.
+// Two rods that close a triangle with the ground swing about its side there, 45 degrees from the
+// vertical: 1/2 J phi'^2 - m g l/2 cos phi, J = J_t + m l^2/4 of both together.
 TEST(MechanismMotions, TriangleSwingsAsAPhysicalPendulum) {
   const double mass = 1, length = 1, width = 0.05;
   Mechanism m("triangle");
@@ -154,7 +157,8 @@ TEST(MechanismMotions, TriangleSwingsAsAPhysicalPendulum) {
     EXPECT_NEAR(whole.last.coordinates[i], whole.config.start.configuration[i], 1e-9) << i;
   EXPECT_NEAR(whole.last.velocity[0], rate * half, 1e-8);
   EXPECT_NEAR(quarter.last.velocity[0], 0, 1e-8);
-  // The corner between the rods is off the drawn plane by its distance from the side times the sine of the angle.
+  // The corner between the rods is off the drawn plane by its distance from the side times the sine
+  // of the angle.
   EXPECT_NEAR(std::abs(quarter.last.coordinates[5]), half * std::sin(2 * std::asin(modulus)), 1e-9);
 }
 
@@ -195,7 +199,8 @@ TEST(MechanismMotions, StartWhereTheyArePrescribed) {
   EXPECT_THROW(m.model(), ConfigError);
 }
 
-// Two wheels on one axle, both rates prescribed: what is prescribed decides the motion alone, g' = g (A^-1 b)^.
+// Two wheels on one axle, both rates prescribed: what is prescribed decides the motion alone, g' =
+// g (A^-1 b)^.
 //   v = r (w_left + w_right)/2, omega = r (w_right - w_left)/(2 d)
 struct TwoWheels {
   double radius = 0.1, half = 0.2;  // m
@@ -279,8 +284,8 @@ TEST(MechanismMotions, WhatIsPrescribedDecidesAlone) {
               (two.kinetic(until + e) - two.kinetic(until - e)) / (2 * e), 1e-8);
 }
 
-// Trunk and two legs with a blade each, the hips prescribed; drawn straight, where both blades say the same. The tree
-// grows from the trunk, or from the left leg.
+// Trunk and two legs with a blade each, the hips prescribed; drawn straight, where both blades say
+// the same. The tree grows from the trunk, or from the left leg.
 Mechanism roller_walker(bool from_trunk) {
   Mechanism m("roller walker");
   const std::vector<double> moments = {1, 1, 0.1};
@@ -358,7 +363,8 @@ TEST(Mechanisms, RunTheExampleOfTheirHeader) {
   EXPECT_NEAR(run.config.start.velocity[0], 2 * std::tan(0.3) / 0.7, 1e-12);
 }
 
-/// A needle on a ship, 5e13 times as heavy: what holds and drives the small one is no round-off of the large one.
+/// A needle on a ship, 5e13 times as heavy: what holds and drives the small one is no round-off of
+/// the large one.
 TEST(Mechanisms, LightPartsOnHeavyOnes) {
   const double inertia = 1e-6, stiffness = 1e-6, angle = 0.5;
   const auto ship = [](bool upright) {

@@ -1,4 +1,5 @@
-// What mechanisms answer to rates(): against differences, and fast motions against what they are known to be.
+// What mechanisms answer to rates(): against differences, and fast motions against what they are
+// known to be.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,14 +19,16 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Differences of order 6 at two steps, extrapolated to order 8: truncation and round-off are below 1e-10 of the values.
+// Differences of order 6 at two steps, extrapolated to order 8: truncation and round-off are below
+// 1e-10 of the values.
 template <class F>
 auto slope(F&& f) {
   const auto coarse = check::derivative(f, 8e-3), fine = check::derivative(f, 4e-3);
   return ((64 * fine - coarse) / 63).eval();
 }
 
-// rates() at a pose off the rows, in a motion that satisfies none: the formulas need no more than a curve.
+// rates() at a pose off the rows, in a motion that satisfies none: the formulas need no more than a
+// curve.
 void check_rates(const SystemModel& model) {
   SCOPED_TRACE(model.name);
   const Mechanics& mechanics = *model.mechanics;
@@ -68,8 +71,8 @@ void check_rates(const SystemModel& model) {
   }
 }
 
-// All joints and contacts, on ground that turns or rests, with loops or a prescribed joint (which contradict each other);
-// planar links with and without links that tilt.
+// All joints and contacts, on ground that turns or rests, with loops or a prescribed joint (which
+// contradict each other); planar links with and without links that tilt.
 Mechanism contacts(bool space, bool moving_ground, bool loops) {
   Mechanism m(std::string(space ? "in space" : "on the plane") +
               (moving_ground ? ", on a turntable" : "") + (loops ? ", closed" : ""));
@@ -110,8 +113,8 @@ TEST(MechanismRates, AreThoseOfDifferences) {
   check_rates(contacts(true, true, false).model());
 }
 
-// A pendulum whose pivot is shaken, 2 mm at 160 Hz: (J + m l^2) angle'' = m (g + a) (x cos + z sin), a the acceleration of
-// the pivot; by Runge-Kutta 4 with steps of 5 us, error 1e-11.
+// A pendulum whose pivot is shaken, 2 mm at 160 Hz: (J + m l^2) angle'' = m (g + a) (x cos + z
+// sin), a the acceleration of the pivot; by Runge-Kutta 4 with steps of 5 us, error 1e-11.
 TEST(MechanismRates, FollowWhatIsPrescribedFast) {
   constexpr double mass = 0.2, pivot = 0.1, x = 0.02, z = 0.1, g = 9.81, w = 1000, until = 0.5;
   const auto with = [&](const std::string& rate) {

@@ -1,5 +1,6 @@
-// What mechanisms save (links in the plane, wheels as parts of what carries them, rows that stay) changes nothing: the
-// same mechanism with a free root, and with wheels a little out of round, says the same.
+// What mechanisms save (links in the plane, wheels as parts of what carries them, rows that stay)
+// changes nothing: the same mechanism with a free root, and with wheels a little out of round, says
+// the same.
 #include <algorithm>
 #include <cmath>
 

@@ -133,7 +133,8 @@ inline std::vector<double> turned(const Mat<3, 3>& r, const Vec<3>& d) {
   return out;
 }
 
-/// Drawn where the system starts, with its axis at theta to the vertical: its rotation there is the identity.
+/// Drawn where the system starts, with its axis at theta to the vertical: its rotation there is the
+/// identity.
 inline Mechanism disk(const FallingDisk& s, double theta) {
   Mechanism m("disk by parts");
   const auto g = body_on_plane::leaning(theta, s.radius * std::sin(theta));

@@ -1,4 +1,5 @@
-// Mechanisms by parts: their recursions against differences, and against the registered systems along trajectories.
+// Mechanisms by parts: their recursions against differences, and against the registered systems
+// along trajectories.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +22,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using testing::HasSubstr;
 
-// The order-6 composition makes the schemes agree to round-off also where the groups are not the same.
+// The order-6 composition makes the schemes agree to round-off also where the groups are not the
+// same.
 Result run(Simulation simulation, const Start& start, double h, double until) {
   simulation.start(start).compose("kahan_li6").step(h).until(until);
   Result result = simulation.run();
@@ -77,7 +79,8 @@ TEST(Mechanisms, AreTheRegisteredSystems) {
   same(KnifeEdgeOnIncline{}, by_parts::incline({}));
 }
 
-// The system measures the headings of its trailers against the car, the mechanism against the one before.
+// The system measures the headings of its trailers against the car, the mechanism against the one
+// before.
 TEST(Mechanisms, AreTheTrain) {
   const NTrailer system;
   const auto against_the_last = [](std::vector<double> values, size_t first) {
@@ -98,7 +101,8 @@ TEST(Mechanisms, AreTheTrain) {
   }
 }
 
-// A body in space: its rotation, drawn as the identity, times r is that of the system; positions the same.
+// A body in space: its rotation, drawn as the identity, times r is that of the system; positions
+// the same.
 std::vector<double> turned(const std::vector<double>& coordinates, const Mat<3, 3>& r) {
   Mat<3, 3> g;
   for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = coordinates[static_cast<size_t>(i)];
@@ -128,7 +132,8 @@ TEST(Mechanisms, AreTheDiskThatFalls) {
   }
 }
 
-// The system has the group so3*r2 and its mass centre, the mechanism se3 and the centre of the ball.
+// The system has the group so3*r2 and its mass centre, the mechanism se3 and the centre of the
+// ball.
 template <class S>
 void same_ball(const S& system, const Mechanism& parts) {
   const Result hers = run(simulate(system), {}, 0.002, 1);
@@ -230,7 +235,8 @@ TEST(Mechanisms, DifferentiateAsDifferencesDo) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatrixXd>(inertia).eigenvalues().minCoeff(), 0);
 }
 
-// Wheels with rollers at +-45 degrees under a cart: r rate = v1 -+ v2 -+ (l + w) omega, as in Campion and others 1996.
+// Wheels with rollers at +-45 degrees under a cart: r rate = v1 -+ v2 -+ (l + w) omega, as in
+// Campion and others 1996.
 TEST(Mechanisms, RollAsMecanumWheelsDo) {
   const double r = 0.05, l = 0.3, w = 0.2;
   Mechanism m("mecanum");
@@ -300,7 +306,8 @@ TEST(Mechanisms, AreAddedByName) {
   EXPECT_EQ(by_name.trajectory.columns()[1], "theta");
 }
 
-// A motor and a prescribed joint whose signals are inputs of the run do what the same signals do in the mechanism.
+// A motor and a prescribed joint whose signals are inputs of the run do what the same signals do in
+// the mechanism.
 TEST(Mechanisms, AreDrivenByInputs) {
   const auto make = [](bool inputs) {
     Mechanism m = by_parts::racer({.stiffness = 0, .torque = 0});

@@ -1,5 +1,5 @@
-// Parameters that make no physical sense are refused, for every registered system: the range that each of its
-// fields states, at the edges.
+// Parameters that make no physical sense are refused, for every registered system: the range that
+// each of its fields states, at the edges.
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -65,8 +65,8 @@ TEST(ParameterRanges, EdgesAreRefusedOrRun) {
   EXPECT_GT(accepted, 200);
 }
 
-/// What no body has less than none of is never negative, and what is divided by never zero: a system that
-/// forgets to state a range fails here.
+/// What no body has less than none of is never negative, and what is divided by never zero: a
+/// system that forgets to state a range fails here.
 TEST(ParameterRanges, MassesMomentsAndLengthsHaveOne) {
   for (const std::string& system : registry().systems()) {
     for (const Field& field : registry().system(system)->fields) {
@@ -114,7 +114,8 @@ TEST(ParameterRanges, OfOneParameterByAnother) {
               Contains(HasSubstr("'offset' of routh_sphere: got 0.15, expected in [-0.1, 0.1]")));
 }
 
-/// A system given in C++ states ranges of its own, and its members are checked where nothing was set.
+/// A system given in C++ states ranges of its own, and its members are checked where nothing was
+/// set.
 struct Puck {
   using Group = SE2;
   double mass = 1;

@@ -24,7 +24,8 @@ bool moves(const SystemModel& model, const Result& run) {
   return false;
 }
 
-/// Constraints that rest do no work: lambda . A v, the v of lift's steps recovered from the configurations.
+/// Constraints that rest do no work: lambda . A v, the v of lift's steps recovered from the
+/// configurations.
 TEST(Reactions, DoNoWorkWhereTheConstraintRests) {
   int seen = 0;
   for (const std::string& system : registry().systems()) {
@@ -54,8 +55,9 @@ TEST(Reactions, WorkWhereTheStepsLeaveTheConstraint) {
   EXPECT_GT(largest, 1e-5);
 }
 
-/// A normal reaction can push only: a disk with a slow turn that falls over is pulled from t = 0.56 s on, and that is said
-/// with its first time. Rolling as it starts by default it is pushed all the way.
+/// A normal reaction can push only: a disk with a slow turn that falls over is pulled from t = 0.56
+/// s on, and that is said with its first time. Rolling as it starts by default it is pushed all the
+/// way.
 TEST(Reactions, OfAContactThatPullsIsNoted) {
   const auto notes = [](const Result& run) {
     std::string all;
@@ -75,7 +77,8 @@ TEST(Reactions, OfAContactThatPullsIsNoted) {
   EXPECT_EQ(notes(simulate("falling_disk").until(5).run()).find("pulls"), std::string::npos);
 }
 
-/// On a turning table nothing but the reactions works on the ball: its energy changes by their work, to O(h^2).
+/// On a turning table nothing but the reactions works on the ball: its energy changes by their
+/// work, to O(h^2).
 TEST(Reactions, OfAMovingConstraintFeedInTheEnergy) {
   const auto balance = [](double h) {
     const Result run = simulate("ball_on_turntable").step(h).until(2).run();

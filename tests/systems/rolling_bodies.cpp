@@ -1,4 +1,5 @@
-// Bodies that roll on a plane: their known invariants, steady motions and thresholds, found by simulation.
+// Bodies that roll on a plane: their known invariants, steady motions and thresholds, found by
+// simulation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -154,8 +155,9 @@ TEST(FallingDisk, UprightRollingIsStableAboveTheKnownRate) {
   }
 }
 
-/// Chaplygin's top: three different moments. Names of the axes e1, e2 exchanged by a quarter turn, the motion in space is
-/// the same; the energy is kept, and Routh's integral is not among its invariants.
+/// Chaplygin's top: three different moments. Names of the axes e1, e2 exchanged by a quarter turn,
+/// the motion in space is the same; the energy is kept, and Routh's integral is not among its
+/// invariants.
 TEST(RollingBodies, ChaplyginsTop) {
   const double c = std::cos(0.5), s = std::sin(0.5);
   const auto top = [](double first, double second, const std::vector<double>& configuration,

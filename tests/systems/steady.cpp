@@ -20,7 +20,8 @@ SteadyMotion at_speed(const SystemModel& system, double speed) {
   return steady_motion(registry(), system, system.start_at_speed(speed, 0));
 }
 
-// Of M q'' + v C1 q' + (g K0 + v^2 K2) q = 0, q = (lean, steer), with the benchmark's matrices of Meijaard and others 2007.
+// Of M q'' + v C1 q' + (g K0 + v^2 K2) q = 0, q = (lean, steer), with the benchmark's matrices of
+// Meijaard and others 2007.
 Eigen::VectorXcd published(double v) {
   using Pair = Eigen::Matrix2d;
   const Pair m{{80.81722, 2.31941332208709}, {2.31941332208709, 0.29784188199686}};
@@ -86,7 +87,8 @@ TEST(Bicycle, WeavesAndCapsizesAtThePublishedSpeeds) {
   EXPECT_EQ(sweep.crossings[0].kind, Bifurcation::hopf);
   EXPECT_FALSE(sweep.crossings[1].pair);
   EXPECT_NEAR(sweep.crossings[1].value, 6.02426201538837, 1e-9);
-  // Hands off on a circle: slower than the capsize speed (Basu-Mandal, Chatterjee, Papadopoulos 2007).
+  // Hands off on a circle: slower than the capsize speed (Basu-Mandal, Chatterjee, Papadopoulos
+  // 2007).
   EXPECT_EQ(sweep.crossings[1].kind, Bifurcation::pitchfork);
   ASSERT_TRUE(sweep.crossings[1].other);
   EXPECT_LT(sweep.crossings[1].other->value, sweep.crossings[1].value);
@@ -140,7 +142,8 @@ TEST(Steady, SegwayFallsAtItsRate) {
   }
 }
 
-// With the mass centre ahead of the blade straight motion decays at m a u / (I + m a^2), behind it it grows.
+// With the mass centre ahead of the blade straight motion decays at m a u / (I + m a^2), behind it
+// it grows.
 TEST(Steady, SleighTurnsRoundOrNot) {
   for (const double offset : {0.2, -0.2}) {
     ChaplyginSleigh sleigh;
@@ -154,8 +157,8 @@ TEST(Steady, SleighTurnsRoundOrNot) {
   }
 }
 
-// What no symmetry carries along: rest, at the rates of M q'' + K q = 0. Every coordinate of a commutative factor goes with
-// a pair (zeta, -zeta) that moves nothing.
+// What no symmetry carries along: rest, at the rates of M q'' + K q = 0. Every coordinate of a
+// commutative factor goes with a pair (zeta, -zeta) that moves nothing.
 TEST(Steady, RestOnCommutativeGroups) {
   const SystemModel particle = data_system(registry(), R"(
 group = "r2"
@@ -175,7 +178,8 @@ potential = "0.5*x1^2 + 3*x2^2 + 0.1*x1*x2 + 0.01*x1^4"
   for (const double x : rest.element) EXPECT_NEAR(x, 0, 1e-12);
 }
 
-// A rod on its end, with a spring at its pivot: it stands from k = m g l on, and falls at sqrt((m g l - k) / J) before.
+// A rod on its end, with a spring at its pivot: it stands from k = m g l on, and falls at sqrt((m g
+// l - k) / J) before.
 TEST(Steady, InvertedPendulum) {
   const auto rod = [](double stiffness) {
     Mechanism m("rod");
@@ -206,8 +210,8 @@ TEST(Steady, ASpinThatDecaysIsNamed) {
   EXPECT_EQ(motion.modes[0][0].name, "spin.rate");
 }
 
-// Backwards the trailers jackknife, each at a rate in proportion to the speed: stability changes at rest, on the grid or
-// off it.
+// Backwards the trailers jackknife, each at a rate in proportion to the speed: stability changes at
+// rest, on the grid or off it.
 TEST(Steady, TrailersFoldBackwards) {
   for (const std::vector<double>& speeds :
        {std::vector<double>{-6, -3, 0, 3, 6}, std::vector<double>{-6, -7.0 / 3, 4.0 / 3, 5}}) {
@@ -225,7 +229,8 @@ TEST(Steady, FindsTheCircleOfALeaningDisk) {
   const SteadyMotion motion = steady_motion(registry(), model("falling_disk"), guess);
   ASSERT_TRUE(motion.found);
   const auto& e = motion.element;
-  // gamma = R^T e_z, the precession alpha about the vertical: omega = alpha gamma + (w3 - alpha gamma_3) e3.
+  // gamma = R^T e_z, the precession alpha about the vertical: omega = alpha gamma + (w3 - alpha
+  // gamma_3) e3.
   const Vec<3> gamma(e[6], e[7], e[8]),
       omega(motion.velocity[0], motion.velocity[1], motion.velocity[2]);
   const double cosine = gamma[2], sine = std::hypot(gamma[0], gamma[1]);
@@ -235,8 +240,8 @@ TEST(Steady, FindsTheCircleOfALeaningDisk) {
               a * alpha * alpha * sine * cosine - m * disk.gravity * r * cosine, 1e-9);
 }
 
-// Rates of the modes in signals at equal distances d (Prony): every signal satisfies one recursion of `order`, whose roots
-// are exp(l d).
+// Rates of the modes in signals at equal distances d (Prony): every signal satisfies one recursion
+// of `order`, whose roots are exp(l d).
 std::vector<std::complex<double>> rates_in(const std::vector<std::vector<double>>& signals,
                                            int order, double d) {
   Eigen::MatrixXd past(0, order);

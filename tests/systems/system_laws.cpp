@@ -1,5 +1,5 @@
-// Every registered system obeys the laws of framework/check/system_laws.hpp by name; that the laws see mistakes.
-// By type: systems/typed_laws.cpp.
+// Every registered system obeys the laws of framework/check/system_laws.hpp by name; that the laws
+// see mistakes. By type: systems/typed_laws.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -76,7 +76,8 @@ TEST(SystemLaws, SeePlantedMistakes) {
   EXPECT_GE(failures(check_system<Asymmetric, Exp<SO3>>(full<Asymmetric>())), 1);
 }
 
-/// A parameter of default 0 that never reaches the struct; and one that cannot be anything but whole.
+/// A parameter of default 0 that never reaches the struct; and one that cannot be anything but
+/// whole.
 struct LostParameter : ChaplyginSleigh {
   static std::string name() { return "lost_parameter"; }
   void fields(auto& f) {

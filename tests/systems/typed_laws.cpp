@@ -1,5 +1,6 @@
-// Every system of the library obeys the laws by type too (framework/check/system_laws.hpp): the equations of motion
-// along the exact motion of those that are left-invariant, the differentials of the others.
+// Every system of the library obeys the laws by type too (framework/check/system_laws.hpp): the
+// equations of motion along the exact motion of those that are left-invariant, the differentials of
+// the others.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -21,7 +21,8 @@ Result run(Simulation simulation, double h, double until) {
   return result;
 }
 
-// u = S cos(phi), l theta' = S sin(phi), m S' = -(J_0/l) psi'' sin(phi) for J + J_0 + 2 J_1 = m l^2.
+// u = S cos(phi), l theta' = S sin(phi), m S' = -(J_0/l) psi'' sin(phi) for J + J_0 + 2 J_1 = m
+// l^2.
 TEST(Snakeboard, FollowsTheEquationsOfOstrowski) {
   Snakeboard board;
   board.board_inertia = board.mass * board.half_length * board.half_length - board.rotor_inertia -
@@ -127,8 +128,8 @@ TEST(NTrailer, KeepsItsEnergyWithAnyNumber) {
   }
 }
 
-// The gradient by hand against differences of the metric; the rows against the motion of the axles; the
-// energy, which is summed over the bodies, against the metric.
+// The gradient by hand against differences of the metric; the rows against the motion of the axles;
+// the energy, which is summed over the bodies, against the metric.
 TEST(NTrailer, StatesOneAndTheSameTrain) {
   NTrailer train;
   train.trailers = 5;
@@ -204,7 +205,8 @@ TEST(Segway, FallsAtTheKnownRate) {
               0, 1e-9);
 }
 
-// Without moments and wheels the metric is that of a point: m/2 |d/dt (x, y, z)|^2 of the mass centre.
+// Without moments and wheels the metric is that of a point: m/2 |d/dt (x, y, z)|^2 of the mass
+// centre.
 TEST(Segway, MovesItsMassCentre) {
   Segway segway;
   segway.moments.setZero();

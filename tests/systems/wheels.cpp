@@ -1,5 +1,5 @@
-// Wheels turn by addition: straight ahead their angles are v t / r by every scheme, whatever the step. And the starts at a
-// speed: the root turns only where the rows leave nothing else.
+// Wheels turn by addition: straight ahead their angles are v t / r by every scheme, whatever the
+// step. And the starts at a speed: the root turns only where the rows leave nothing else.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,7 +66,8 @@ TEST(Wheels, LeaveChosenStepsAsLongAsTheMotionAllows) {
   }
 }
 
-// A frame whose lone root joint is on the ground, below the wheel's axle: least energy alone would pitch it.
+// A frame whose lone root joint is on the ground, below the wheel's axle: least energy alone would
+// pitch it.
 Mechanism unicycle() {
   Mechanism m("unicycle");
   m.body("frame", {.mass = 10, .at = {0, 0, 0.9}, .inertia = {0.5, 0.5, 0.1}});

@@ -1,6 +1,7 @@
-// The properties of the baselines (framework/README.md; (M25) to (M29)), each claim bounded from both
-// sides: a baseline that behaves better than documented fails here as one that behaves worse. Errors are those of
-// the motion, against the exact one or a converged reference; energy and rows are bounded beside them.
+// The properties of the baselines (framework/README.md; (M25) to (M29)), each claim bounded from
+// both sides: a baseline that behaves better than documented fails here as one that behaves worse.
+// Errors are those of the motion, against the exact one or a converged reference; energy and rows
+// are bounded beside them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +24,8 @@ void expect_within(double value, double low, double high, const std::string& wha
 /// The order that errors with steps h and h/2 show.
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
-/// Suslov's body with full inertia: its exact motion contracts onto a steady rotation like e^{-A t},
-/// A^2 = q^2 + p^2 / det J (systems/suslov.hpp).
+/// Suslov's body with full inertia: its exact motion contracts onto a steady rotation like e^{-A
+/// t}, A^2 = q^2 + p^2 / det J (systems/suslov.hpp).
 constexpr double kRate = 0.28802;
 Simulation suslov(const std::string& scheme, double h, double until,
                   const Registry& among = registry()) {
@@ -41,8 +42,8 @@ TEST(Suslov, ContractsAtTheRateUsedHere) {
   EXPECT_NEAR(std::sqrt(q * q + p * p / j.determinant()), kRate, 1e-5);
 }
 
-/// gni: the momentum across the constraint, of size O(h), is multiplied by -e^{A h} in a step; the velocity at the
-/// nodes has its square. The error of lift with the same step does not grow.
+/// gni: the momentum across the constraint, of size O(h), is multiplied by -e^{A h} in a step; the
+/// velocity at the nodes has its square. The error of lift with the same step does not grow.
 TEST(Gni, IsEndedByAModeThatAlternatesAndGrows) {
   const double h = 0.0125;
   hamel::Run run = suslov("gni", h, 20).build();
@@ -83,8 +84,8 @@ TEST(Gni, HasOrderTwoUntilThen) {
   expect_within(kept.energy_error_max, 4e-5, 2e-4, "lift's energy");
 }
 
-/// The mode starts with h, its square with h^2: half the step puts the end off by log(2)/A, 2.4 s, whatever
-/// the step.
+/// The mode starts with h, its square with h^2: half the step puts the end off by log(2)/A, 2.4 s,
+/// whatever the step.
 TEST(Gni, IsNotSavedBySmallerSteps) {
   const auto end = [](double h) {
     hamel::Run run = suslov("gni", h, 40).build();
@@ -114,8 +115,8 @@ TEST(EnergyPreserving, KeepsTheEnergyAndNothingElse) {
   expect_within(coarse.exact_error_max / lift.exact_error_max, 0.8, 1.25, "against lift's motion");
 }
 
-/// On a motion that settles in a steady rotation the explicit schemes have their full order, by the correction with
-/// dL tau^-1.
+/// On a motion that settles in a steady rotation the explicit schemes have their full order, by the
+/// correction with dL tau^-1.
 TEST(RungeKutta, HasOrderFourAndTwoWithoutTheCorrection) {
   Registry mine = registry();
   add_scheme<verification::WithoutDtau<Rkmk4>>(mine);
@@ -134,9 +135,10 @@ Simulation disk(const std::string& scheme, double h, double until) {
   return simulate("falling_disk").scheme(scheme).step(h).until(until).every(5);
 }
 
-/// A disk that rolls and wobbles for ever, with constant energy and height of the contact: the errors of lift and
-/// reversible are bounded by O(h^2), those of the explicit schemes drift. Their error of order 4 averages out over such
-/// a reversible motion; the term that adds up is h^5 t (framework/schemes/README.md, section 4).
+/// A disk that rolls and wobbles for ever, with constant energy and height of the contact: the
+/// errors of lift and reversible are bounded by O(h^2), those of the explicit schemes drift. Their
+/// error of order 4 averages out over such a reversible motion; the term that adds up is h^5 t
+/// (framework/schemes/README.md, section 4).
 TEST(FallingDisk, ExplicitSchemesDrift) {
   for (const std::string scheme : {"rkmk4", "rk4_projected"}) {
     const Result half = disk(scheme, 0.02, 80).run(), whole = disk(scheme, 0.02, 160).run(),

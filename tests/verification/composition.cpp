@@ -1,5 +1,5 @@
-// Every composition table reaches its order on Suslov with full inertia, with lift and with balance at
-// s = 1/2, exp and cayley; its coefficients are symmetric and sum to one.
+// Every composition table reaches its order on Suslov with full inertia, with lift and with balance
+// at s = 1/2, exp and cayley; its coefficients are symmetric and sum to one.
 #include <gtest/gtest.h>
 
 #include <hamel/framework/schemes/composition.hpp>
@@ -19,7 +19,8 @@ TEST(Composition, CoefficientsAreSymmetricAndSumToOne) {
       EXPECT_EQ(c.coefficients[i], c.coefficients[c.coefficients.size() - 1 - i]) << c.name;
     }
     EXPECT_NEAR(sum, 1, 2e-15) << c.name;
-    // The next moments vanish: sum c^3 = 0 from order 4 on, sum c^5 = 0 from order 6, sum c^7 from 8.
+    // The next moments vanish: sum c^3 = 0 from order 4 on, sum c^5 = 0 from order 6, sum c^7
+    // from 8.
     for (int power = 3; power < c.order; power += 2) {
       double moment = 0, size = 0;
       for (const double x : c.coefficients) {

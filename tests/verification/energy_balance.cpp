@@ -1,5 +1,6 @@
-// The energy balance (M47) (M48) (M49): where forces or moving constraints do work, its defect goes to zero with the
-// order of the scheme, at every recorded state and with any --every, and without work it is not there.
+// The energy balance (M47) (M48) (M49): where forces or moving constraints do work, its defect goes
+// to zero with the order of the scheme, at every recorded state and with any --every, and without
+// work it is not there.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -141,8 +142,8 @@ TEST(NodalQuadrature, IsExactToDegreeSevenOnAnySteps) {
   }
 }
 
-// Behind far smaller steps: the errors of the values, here 1e-9 up and down, stay what they are. The polynomial through
-// eight such nodes has made 1e5 of them.
+// Behind far smaller steps: the errors of the values, here 1e-9 up and down, stay what they are.
+// The polynomial through eight such nodes has made 1e5 of them.
 TEST(NodalQuadrature, DoesNotMagnifyErrorsWhereStepsGrow) {
   for (const double growth : {1.5, 3.0, 10.0}) {
     NodalQuadrature sum;

@@ -1,5 +1,5 @@
-// The explicit pairs: order of every tableau on motions with fields that are not constant, error against tolerance, dense output
-// and what is kept.
+// The explicit pairs: order of every tableau on motions with fields that are not constant, error
+// against tolerance, dense output and what is kept.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -41,7 +41,8 @@ const Registry& systems() {
   return all;
 }
 
-// One for each group: so3, se2, se3 with a holonomic row, heisenberg, and one with a moving constraint.
+// One for each group: so3, se2, se3 with a holonomic row, heisenberg, and one with a moving
+// constraint.
 std::vector<Case> cases() {
   return {{"suslov", {{"inertia", {2, 0.3, 0.5, 3, 0.4, 4}}}, {.velocity = {1, 0.5, 0}}, 0.4, 8},
           {"chaplygin_sleigh", {}, {.velocity = {0.9, -1, 0}}, 0.4, 8},
@@ -117,8 +118,8 @@ TEST(ExplicitPairs, LoseItWithoutTheDerivativeOfTheRetraction) {
   }
 }
 
-// What the start of a run, a tenth of it and its end say of c_i = sum_j a_ij, sum_i b_i = 1, sum_i b_i c_i = 1/2, the weights of the
-// estimate and of the dense output at its ends.
+// What the start of a run, a tenth of it and its end say of c_i = sum_j a_ij, sum_i b_i = 1, sum_i
+// b_i c_i = 1/2, the weights of the estimate and of the dense output at its ends.
 TEST(ExplicitPairs, HaveConsistentTableaus) {
   for (const Tableau* table : {&Dopri5::tableau(), &Tsit5::tableau(), &Dop853::tableau()}) {
     const int all = table->all_stages();

@@ -28,8 +28,9 @@ double distance(const Result& a, const Result& b) {
          euclidean_distance(a.last.velocity, b.last.velocity);
 }
 
-/// A blade that slides straight down the slope: at the base point the force across it leaves a moment of O(h^2) in
-/// every step, and it turns. The stored angles are those of the program before the nodes.
+/// A blade that slides straight down the slope: at the base point the force across it leaves a
+/// moment of O(h^2) in every step, and it turns. The stored angles are those of the program before
+/// the nodes.
 TEST(Forces, ABladeSlidesStraightWithForcesAtTheNodes) {
   const Start down = {.configuration = {0.3, 0, 0}, .velocity = {0, 1, 0}};
   const double turned[] = {-0.049, -0.0148, -0.0039};

@@ -1,5 +1,5 @@
-// Without constraints every scheme is an integrator of the free body, unadapted too: a symmetric top
-// against its closed form,
+// Without constraints every scheme is an integrator of the free body, unadapted too: a symmetric
+// top against its closed form,
 //   R(t) = R0 exp(t L^/I1) exp(t (1 - I3/I1) w3 e3^),  L = I Omega0.
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-// Every registered system that is not left-invariant (and a few that are), with every scheme that is
-// defined for it: the measured order is the claimed one, against the exact motion or, where there is
-// none, against lift of order 6 with a step ten times smaller; holonomic rows stay at round-off; the
-// constraint residual stays at its floor.
+// Every registered system that is not left-invariant (and a few that are), with every scheme that
+// is defined for it: the measured order is the claimed one, against the exact motion or, where
+// there is none, against lift of order 6 with a step ten times smaller; holonomic rows stay at
+// round-off; the constraint residual stays at its floor.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Every registered system against the equations of motion (M4), Lagrange-d'Alembert with multipliers, in the
-// coordinates of the trajectory file, integrated by Boost.odeint at 1e-13.
+// Every registered system against the equations of motion (M4), Lagrange-d'Alembert with
+// multipliers, in the coordinates of the trajectory file, integrated by Boost.odeint at 1e-13.
 //
 // Shared with the library: the system's own statements (I, A, b, force). Not shared: the group, the
 // retraction, the schemes, the projections, the elimination of the multipliers.

@@ -1,6 +1,6 @@
-// Every system's exact() against an integration of Newton's equations with multipliers, written here
-// from the physics and in other coordinates: rotation matrix and Cartesian positions, no group, no
-// frame, no reduction. Gragg's extrapolated midpoint rule of order 16 is the integrator.
+// Every system's exact() against an integration of Newton's equations with multipliers, written
+// here from the physics and in other coordinates: rotation matrix and Cartesian positions, no
+// group, no frame, no reduction. Gragg's extrapolated midpoint rule of order 16 is the integrator.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -15,8 +15,8 @@ using namespace hamel;
 using Vector = Eigen::VectorXd;
 using Motion = std::function<Vector(const Vector&)>;
 
-/// One step of length h: modified midpoint with 2, 4, ..., 16 substeps, extrapolated (Hairer, Norsett,
-/// Wanner, Solving Ordinary Differential Equations I, section II.9).
+/// One step of length h: modified midpoint with 2, 4, ..., 16 substeps, extrapolated (Hairer,
+/// Norsett, Wanner, Solving Ordinary Differential Equations I, section II.9).
 Vector extrapolated_step(const Motion& f, const Vector& y, double h) {
   std::vector<Vector> above, row;
   for (int j = 1; j <= 8; ++j) {
@@ -49,8 +49,8 @@ TEST(Reference, IntegratorIsAccurate) {
   EXPECT_NEAR(y[1], -std::sin(5.0), 1e-12);  // round-off of the extrapolation: 2e-15 a step
 }
 
-/// Steps of 0.05 with rates up to 3: local error (0.15/16)^16, so round-off, 1e-15 a step, grown by the
-/// motion. exact() promises 1e-9; 1e-12 is measured.
+/// Steps of 0.05 with rates up to 3: local error (0.15/16)^16, so round-off, 1e-15 a step, grown by
+/// the motion. exact() promises 1e-9; 1e-12 is measured.
 constexpr double bound = 1e-9;
 constexpr int steps = 100;
 constexpr double h = 0.05;
@@ -116,7 +116,8 @@ TEST(Reference, SuslovTiltedAxis) {
 }
 TEST(Reference, SuslovDiagonal) { suslov({1, 10, 100}, {0, 0, 1}, {1, 0.1, 0}); }
 TEST(Reference, SuslovDiagonalTilted) { suslov({1, 2, 3}, {1, 1, 1}, {1, -0.3, 0}); }
-/// On the line p = k.Omega = 0, k = (0.5, 0.4), Omega is constant: an equilibrium of either stability.
+/// On the line p = k.Omega = 0, k = (0.5, 0.4), Omega is constant: an equilibrium of either
+/// stability.
 TEST(Reference, SuslovOnTheLine) { suslov({2, .3, .5, 3, .4, 4}, {0, 0, 1}, {0.8, -1, 0}); }
 TEST(Reference, SuslovNearTheLine) {
   suslov({2, .3, .5, 3, .4, 4}, {0, 0, 1}, {0.8, -1 + 1e-7, 0});

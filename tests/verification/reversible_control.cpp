@@ -1,4 +1,5 @@
-// Steps of lift and balance chosen by the reversible control: they come back, and their error follows the tolerance.
+// Steps of lift and balance chosen by the reversible control: they come back, and their error
+// follows the tolerance.
 #include <cmath>
 #include <cstdio>
 
@@ -10,7 +11,8 @@ namespace {
 
 Simulation suslov() { return simulate("suslov_in_potential"); }
 
-// Forwards, and back by the same steps: to the start, but for round-off, which a motion that is not chaotic leaves small.
+// Forwards, and back by the same steps: to the start, but for round-off, which a motion that is not
+// chaotic leaves small.
 TEST(ReversibleControl, ReturnsToItsStart) {
   for (const std::string system : {"falling_disk", "contact_oscillator"}) {
     for (const std::string scheme : {"lift", "balance"}) {
@@ -50,8 +52,9 @@ TEST(ReversibleControl, FollowsTheTolerance) {
   }
 }
 
-// The energy over 10^5 steps: of one size, by the reversible control, and by the usual one, h = eps / r at the node where a step
-// begins, which is not symmetric. Prints the least-squares slopes of the energy error with their own errors.
+// The energy over 10^5 steps: of one size, by the reversible control, and by the usual one, h = eps
+// / r at the node where a step begins, which is not symmetric. Prints the least-squares slopes of
+// the energy error with their own errors.
 struct Drift {
   double largest = 0, slope = 0, slope_error = 0;
 };

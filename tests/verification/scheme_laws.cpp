@@ -1,7 +1,7 @@
 // Every registered system x scheme x retraction x s obeys what its scheme claims
-// (framework/check/scheme_laws.hpp, where the bounds are): order against the exact motion, reversal,
-// constraint, group. Claims are read from the registry, so that a new scheme or retraction is measured without
-// a line here.
+// (framework/check/scheme_laws.hpp, where the bounds are): order against the exact motion,
+// reversal, constraint, group. Claims are read from the registry, so that a new scheme or
+// retraction is measured without a line here.
 #include <gtest/gtest.h>
 
 #include <set>

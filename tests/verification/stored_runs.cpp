@@ -1,8 +1,10 @@
-// Named runs give what they gave before the schemes and the loop became one (tests/verification/stored_runs.json,
-// as printed by `hamel run … --json`).
+// Named runs give what they gave before the schemes and the loop became one
+// (tests/verification/stored_runs.json, as printed by `hamel run … --json`).
 //
-// Bound: 1e-13, relative to the largest entry of the element, of the velocity and of the energy where that exceeds
-// 1. Two ways to evaluate one step differ by some units of round-off, 2e-16 each, and 500 steps add up to less.
+// Bound: 1e-13, relative to the largest entry of the element, of the velocity and of the energy
+// where that exceeds
+// 1. Two ways to evaluate one step differ by some units of round-off, 2e-16 each, and 500 steps add
+// up to less.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -62,7 +64,8 @@ TEST_F(StoredRuns, AreRepeated) {
   }
 }
 
-/// The comparison must be able to fail: a difference of 2e-13 in one entry, a missing entry, no number.
+/// The comparison must be able to fail: a difference of 2e-13 in one entry, a missing entry, no
+/// number.
 TEST(StoredRunsDifference, IsSeen) {
   const Json stored = {{0.5, 2.0}, {0.0, -4.0}};
   EXPECT_EQ(difference(stored, stored), 0);

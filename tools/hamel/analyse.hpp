@@ -7,7 +7,8 @@
 
 namespace hamel::tools {
 
-/// Is it nonholonomic? In a sentence. undecided: its end, where the analysis could have looked deeper.
+/// Is it nonholonomic? In a sentence. undecided: its end, where the analysis could have looked
+/// deeper.
 std::string verdict(const Analysis& a, const char* undecided = "stopped there");
 
 }  // namespace hamel::tools

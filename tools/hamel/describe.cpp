@@ -180,7 +180,8 @@ Json describe_retraction(const std::string& name) {
   return {{"kind", "retraction"}, {"name", name}, {"groups", where}};
 }
 
-// What a scheme claims for each kind of run that it tells apart; one that makes no use of s has no s in it.
+// What a scheme claims for each kind of run that it tells apart; one that makes no use of s has no
+// s in it.
 Json claims(const SchemeInfo& info, bool left_invariant) {
   Json out = Json::object();
   for (const double s : info.uses_s ? std::vector<double>{0.5, 0} : std::vector<double>{0}) {

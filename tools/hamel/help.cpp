@@ -34,7 +34,8 @@ class Help final : public CLI::Formatter {
 
 }  // namespace
 
-// The lines of a text, broken behind spaces and commas where it is longer; a longer word stays whole.
+// The lines of a text, broken behind spaces and commas where it is longer; a longer word stays
+// whole.
 std::vector<std::string> wrapped(const std::string& text, size_t width) {
   std::vector<std::string> out;
   std::string line, word;

@@ -1,5 +1,5 @@
-// hamel list: tables of what exists by name, as text, JSON or Markdown. The tables of the README are the last
-// (tools/docs/tables).
+// hamel list: tables of what exists by name, as text, JSON or Markdown. The tables of the README
+// are the last (tools/docs/tables).
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -139,7 +139,8 @@ std::vector<Table> tables() {
   return {groups, retractions, schemes, solvers, systems};
 }
 
-// ---- Markdown: short tables, names of one kind in one row ------------------------------------------
+// ---- Markdown: short tables, names of one kind in one row
+// ------------------------------------------
 
 std::string code(const std::vector<std::string>& names) {
   std::string out;

@@ -33,7 +33,8 @@ Json numbers(std::span<const double> values, int digits = kDigits) {
   return out;
 }
 
-// As many digits of their range: a run from t = 10000 on has times of its own. Less than round-off shows.
+// As many digits of their range: a run from t = 10000 on has times of its own. Less than round-off
+// shows.
 int digits_of(std::span<const double> values) {
   double least = INFINITY, most = -INFINITY;
   for (const double v : values) {

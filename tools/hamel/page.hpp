@@ -44,8 +44,8 @@ struct Band {
   std::string text;
 };
 
-/// A selector over a plot: only series whose tag `name` has the chosen value (the first, at the start)
-/// are shown; a series without that tag always is.
+/// A selector over a plot: only series whose tag `name` has the chosen value (the first, at the
+/// start) are shown; a series without that tag always is.
 struct Filter {
   std::string name;
   std::vector<std::string> values;
@@ -92,8 +92,9 @@ class Page {
   std::unique_ptr<Data> data_;
 };
 
-/// At most about `points` points: of each of equal windows those with the smallest and the largest y, or only
-/// the largest (peaks, for errors on a logarithmic axis), the last window like the others; else with both ends. NaN is never dropped.
+/// At most about `points` points: of each of equal windows those with the smallest and the largest
+/// y, or only the largest (peaks, for errors on a logarithmic axis), the last window like the
+/// others; else with both ends. NaN is never dropped.
 Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
                bool peaks, size_t points = 1200);
 

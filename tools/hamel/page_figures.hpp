@@ -10,7 +10,8 @@
 
 namespace hamel::tools {
 
-/// A cell of a table, or a value on the axis of a heat map: a word, or a number that the page formats.
+/// A cell of a table, or a value on the axis of a heat map: a word, or a number that the page
+/// formats.
 struct Cell {
   Cell(std::string word) : text(std::move(word)) {}
   Cell(const char* word) : text(word) {}

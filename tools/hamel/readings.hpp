@@ -11,8 +11,8 @@
 
 namespace hamel::tools {
 
-/// A study of tools/studies/paper by its stem, as the program carries it; its cells are the readings of the
-/// paper's method.
+/// A study of tools/studies/paper by its stem, as the program carries it; its cells are the
+/// readings of the paper's method.
 StudyConfig paper_study(const std::string& stem);
 
 /// What one run of one reading leaves: its largest errors and its thinned curves.
@@ -43,7 +43,8 @@ std::vector<Outcome> run_all(const StudyConfig& study);
 std::vector<Outcome> with(const std::vector<Outcome>& all, const std::string& axis,
                           const std::string& value);
 
-/// The exact body momentum components over the span of a run, as dashed curves for the momentum figures.
+/// The exact body momentum components over the span of a run, as dashed curves for the momentum
+/// figures.
 std::vector<Series> exact_momentum(const Config& run);
 
 /// The figures of these runs, then their table.

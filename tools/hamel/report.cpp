@@ -55,7 +55,8 @@ std::string called(const std::filesystem::path& file, int folders) {
   return out.string();
 }
 
-// Runs of one file name are called by as many folders as tell them apart; one file given twice is numbered.
+// Runs of one file name are called by as many folders as tell them apart; one file given twice is
+// numbered.
 void name_apart(std::vector<ReadRun>& runs, std::vector<std::filesystem::path> files) {
   constexpr int most = 50;
   for (auto& file : files) file = std::filesystem::weakly_canonical(file);

@@ -1,6 +1,6 @@
-// hamel reproduce: the story told by the studies of tools/studies/paper: the paper's two figures with every
-// reading of its method against the exact motion, then three systems on which the readings separate, and what
-// the paper's boxes needed.
+// hamel reproduce: the story told by the studies of tools/studies/paper: the paper's two figures
+// with every reading of its method against the exact motion, then three systems on which the
+// readings separate, and what the paper's boxes needed.
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -39,8 +39,8 @@ double first_step_angle(const std::string& scheme) {
   return Exp<SO3>::tau_inverse(SO3::from_coordinates(one.state().coordinates)).norm();
 }
 
-// How far one update Pi -> exp(sign h Omega^) Pi moves the spatial momentum R Pi of the free body with
-// full inertia, R -> R exp(h Omega^).
+// How far one update Pi -> exp(sign h Omega^) Pi moves the spatial momentum R Pi of the free body
+// with full inertia, R -> R exp(h Omega^).
 double spatial_momentum_jump(double sign) {
   Suslov body;
   body.moments = {2, 0.3, 0.5, 3, 0.4, 4};

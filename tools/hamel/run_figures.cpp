@@ -17,8 +17,8 @@ namespace {
 constexpr double kRoundOff = 2.2e-16;
 constexpr size_t kWindows = 240;  // maxima of errors: as many as a figure shows apart
 
-// The first column that the group calls name or ends in _name (a factor of a product), whatever the system calls it; -1 when
-// none is.
+// The first column that the group calls name or ends in _name (a factor of a product), whatever the
+// system calls it; -1 when none is.
 int find_column(const Result& result, const std::string& name) {
   const auto group = registry().group_or_product(result.system->group.name);
   const auto& columns = group ? group->columns : result.system->group.columns;
@@ -40,7 +40,8 @@ std::span<const double> element(const Result& result, size_t row) {
   return result.trajectory.row(row).subspan(1, result.system->group.columns.size());
 }
 
-// The points of bodies whose way is drawn, seen from above; else x and y of the group, where it has them.
+// The points of bodies whose way is drawn, seen from above; else x and y of the group, where it has
+// them.
 std::vector<Series> paths(const Result& result) {
   std::vector<Series> out;
   const std::vector<size_t> rows = thin_rows(result, 3000);

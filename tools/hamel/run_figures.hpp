@@ -8,15 +8,15 @@ namespace hamel::tools {
 /// Forces or moving constraints do.
 bool does_work(const Result& result);
 
-/// Bodies that move, the path in the plane (with that of a contact), the body's axes on the sphere; those that
-/// there are.
+/// Bodies that move, the path in the plane (with that of a contact), the body's axes on the sphere;
+/// those that there are.
 void add_motion(Page& page, const Result& result);
 
 /// What drove it, by unit; nothing where all inputs are constant.
 void add_inputs(Page& page, const Result& result, const std::vector<Mark>& marks);
 
-/// Body velocity and shape by unit, reactions with the sign of contacts, the energy balance where work is done, body
-/// momentum. A component has one colour in all of them. `marks` stand in each.
+/// Body velocity and shape by unit, reactions with the sign of contacts, the energy balance where
+/// work is done, body momentum. A component has one colour in all of them. `marks` stand in each.
 void add_physics(Page& page, const Result& result, const std::vector<Mark>& marks);
 
 /// Errors, energy, constraints and group, each with the floor of round-off.

@@ -13,7 +13,8 @@
 
 namespace hamel::tools {
 
-/// name=value[,value...], each as --set has it, into parameters. Throws ConfigError with all that do not fit.
+/// name=value[,value...], each as --set has it, into parameters. Throws ConfigError with all that
+/// do not fit.
 void read_sets(const std::vector<std::string>& sets, Parameters& parameters);
 
 /// The options of `hamel run` as given; the file first, then what the command line says.

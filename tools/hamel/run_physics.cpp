@@ -63,7 +63,8 @@ std::vector<int> rows_by_part(const Result& r) {
   return out;
 }
 
-// Does the k-th contact push? The event says when it ceased to; the rows only what they show. Marks the first that pulls.
+// Does the k-th contact push? The event says when it ceased to; the rows only what they show. Marks
+// the first that pulls.
 std::string contact_note(const Result& r, const std::string& column, size_t k, Axes& axes) {
   const std::string event = events_of(*r.system, nullptr)[r.system->events.size() + k].name;
   const auto met = std::find_if(r.events.begin(), r.events.end(),

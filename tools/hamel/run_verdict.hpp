@@ -17,8 +17,9 @@ struct RunVerdict {
   std::string text;
 };
 
-/// "ok" only where the error is known, against the exact motion or as an estimate, and small, the energy is kept where
-/// nothing does work, and the constraint where the exact motion is not known. "note" where one of these is not so or not known.
+/// "ok" only where the error is known, against the exact motion or as an estimate, and small, the
+/// energy is kept where nothing does work, and the constraint where the exact motion is not known.
+/// "note" where one of these is not so or not known.
 RunVerdict run_verdict(const Result& result);
 
 }  // namespace hamel::tools

@@ -1,4 +1,5 @@
-// hamel steady: a steady motion near a guess, its eigenvalues; along a parameter, with the points where stability changes.
+// hamel steady: a steady motion near a guess, its eigenvalues; along a parameter, with the points
+// where stability changes.
 #include <algorithm>
 #include <charconv>
 #include <cmath>

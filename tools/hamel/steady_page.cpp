@@ -149,8 +149,8 @@ std::string end_text(const std::string& name, const SteadyEnd& end) {
 }
 
 void print_other(const std::string& name, const SteadyPlace& place) {
-  fmt::print("    the other branch, at {} = {:.12g} (--branches follows it):\n", name, place.value);
-  fmt::print("      --configuration {} --velocity {}\n", join(place.element), join(place.velocity));
+  say("    the other branch, at {} = {:.12g} (--branches follows it):\n", name, place.value);
+  say("      --configuration {} --velocity {}\n", join(place.element), join(place.velocity));
 }
 
 Page steady_page(const std::string& name, const SystemModel& system, const SteadySweep& sweep,

@@ -1,4 +1,5 @@
-// Writes the JSON schemas of configurations and of studies: their options are Config::fields, their names the registry's.
+// Writes the JSON schemas of configurations and of studies: their options are Config::fields, their
+// names the registry's.
 //
 //   write_schemas DIR       DIR/run.json, DIR/study.json
 #include <fstream>

@@ -1,4 +1,5 @@
-// The mechanics of a system by data: matrices and vectors whose entries are formulas. Not installed.
+// The mechanics of a system by data: matrices and vectors whose entries are formulas. Not
+// installed.
 #pragma once
 
 #include <memory>

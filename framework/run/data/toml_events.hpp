@@ -2,7 +2,8 @@
 //
 //   [events]
 //   straight = "steer"                                                   zero at the event
-//   tipped = { value = "abs(lean) - 1", meaning = "it lies", direction = 1 }   +1, -1, or 0 for both ways
+//   tipped = { value = "abs(lean) - 1", meaning = "it lies", direction = 1 }   +1, -1, or 0 for
+//   both ways
 #pragma once
 
 #include <cstdlib>

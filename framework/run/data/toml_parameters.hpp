@@ -65,7 +65,8 @@ void each_stated(TomlReader& read, const toml::table& file, const std::string& k
 
 }  // namespace detail
 
-/// The parameters of a file with the values given, which stand in its formulas from now on. Throws ConfigError.
+/// The parameters of a file with the values given, which stand in its formulas from now on. Throws
+/// ConfigError.
 inline std::vector<Field> read_parameters(TomlReader& read, TomlFormulas& formulas,
                                           const toml::table& file, const std::string& system,
                                           const Parameters& given) {

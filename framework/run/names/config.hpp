@@ -1,8 +1,8 @@
 // A run as plain data: what the builder fills, the command line overrides, and a file keeps.
 //
-// Config::fields is the one list of a run's options. Files, the command line and its help, the record, the axes
-// of a study and the table of tools/README.md follow from it: one more option is a member here, a line there,
-// and the place that uses it.
+// Config::fields is the one list of a run's options. Files, the command line and its help, the
+// record, the axes of a study and the table of tools/README.md follow from it: one more option is a
+// member here, a line there, and the place that uses it.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,8 @@
 
 namespace hamel {
 
-/// What is said of one option: a double (or none), long, bool or string, or a list of doubles or strings.
+/// What is said of one option: a double (or none), long, bool or string, or a list of doubles or
+/// strings.
 struct Option {
   const char* name;  // in files and records; on the command line with dashes, --on-failure
   const char* unit;  // "" for words, "1" for plain numbers
@@ -53,7 +54,8 @@ struct Config {
   bool force = false;
   bool no_exact = false;
 
-  /// Calls f(Option, member pointer) for each option; axes in the order in which a study runs through them.
+  /// Calls f(Option, member pointer) for each option; axes in the order in which a study runs
+  /// through them.
   template <class F>
   static void fields(F&& f) {
     f(Option{"scheme", "",
@@ -133,13 +135,14 @@ struct Config {
     f(Option{"momentum", "", "the same as body momentum"}, &Start::momentum);
   }
 
-  /// An option by name, as text; set throws ConfigError for no such option, or text that does not fit.
+  /// An option by name, as text; set throws ConfigError for no such option, or text that does not
+  /// fit.
   std::string text(const std::string& option) const;
   void set(const std::string& option, const std::string& text);
 
-  /// With the scheme and the steps that stand where none are given: neither scheme nor step, dop853 at rtol 1e-8 with
-  /// rows every kUsualStep; a step of one size, or a composition of such, lift; rtol or atol, dop853; a scheme, steps of
-  /// kUsualStep.
+  /// With the scheme and the steps that stand where none are given: neither scheme nor step, dop853
+  /// at rtol 1e-8 with rows every kUsualStep; a step of one size, or a composition of such, lift;
+  /// rtol or atol, dop853; a scheme, steps of kUsualStep.
   Config completed() const;
   static constexpr double kUsualStep = 0.01, kUsualRtol = 1e-8;
   /// Is it all left to completed()?
@@ -159,8 +162,9 @@ struct Config {
   std::string to_toml() const;
   /// Keys as on the command line. Throws ConfigError with line and column, or the nearest key.
   static Config from_toml(const std::string& text, const std::string& origin = "config");
-  /// A run that goes on where that of a record (Result::record, `-o x.json`) ended: its system, parameters and options,
-  /// its last state as the start, its time as `from`, for as long again. ConfigError for what is no record.
+  /// A run that goes on where that of a record (Result::record, `-o x.json`) ended: its system,
+  /// parameters and options, its last state as the start, its time as `from`, for as long again.
+  /// ConfigError for what is no record.
   static Config continued(const std::string& record, const std::string& origin = "record");
   /// Everything wrong with the numbers themselves (names are the registry's business).
   std::vector<std::string> mistakes() const;
@@ -169,8 +173,8 @@ struct Config {
 /// Reads a file with from_toml; ConfigError when it cannot be read.
 Config read_config(const std::string& path);
 
-/// The value of an option as text, lists separated by commas, and back: exact for numbers. ConfigError that
-/// begins with `option` for text that does not fit.
+/// The value of an option as text, lists separated by commas, and back: exact for numbers.
+/// ConfigError that begins with `option` for text that does not fit.
 std::string text_of(double value);
 std::string text_of(std::optional<double> value);  // "" for none
 std::string text_of(long value);

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::string_view kHold = ":hold";
 
-// False where the text, but for blanks about it, is not all of one number; nan and inf are numbers here.
+// False where the text, but for blanks about it, is not all of one number; nan and inf are numbers
+// here.
 bool number(std::string_view text, double& out) {
   const auto first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
   if (first == std::string_view::npos) return false;

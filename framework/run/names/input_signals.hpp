@@ -1,7 +1,9 @@
-// What a user gives for the inputs of a run (mechanics/inputs.hpp), as text and as TOML has it; files read, all checked.
+// What a user gives for the inputs of a run (mechanics/inputs.hpp), as text and as TOML has it;
+// files read, all checked.
 //
 //   2.5                a constant
-//   gait.csv           a table, columns t,value, linear between its rows;  gait.csv:hold  held from row to row
+//   gait.csv           a table, columns t,value, linear between its rows;  gait.csv:hold  held from
+//   row to row
 // Lines of a table that begin with # are left out. Its times increase, and cover the run.
 #pragma once
 
@@ -41,7 +43,8 @@ InputTable read_input_table(const std::string& what, const InputFile& file,
 struct RunSpan {
   double from, until;
 };
-/// The inputs of a run of `system`, those not given 0; what is wrong goes to mistakes, and then null.
+/// The inputs of a run of `system`, those not given 0; what is wrong goes to mistakes, and then
+/// null.
 std::shared_ptr<Inputs> make_inputs(const SystemModel& system, const InputSignals& given,
                                     const RunSpan& span, std::vector<std::string>& mistakes);
 /// The system as these inputs drive it: no longer the one whose motion and invariants are known.

@@ -132,8 +132,8 @@ const KernelFactory* Registry::kernel(const std::string& group, const Mechanics&
 
 namespace {
 
-// "se2*so2^3" -> {"se2", "so2", "so2", "so2"}, no more than kMaxDimension + 1 of them; empty when it cannot be
-// read.
+// "se2*so2^3" -> {"se2", "so2", "so2", "so2"}, no more than kMaxDimension + 1 of them; empty when
+// it cannot be read.
 std::vector<std::string> factors_of(const std::string& name) {
   std::vector<std::string> out;
   if (name.ends_with('*')) return out;

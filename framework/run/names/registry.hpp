@@ -1,7 +1,8 @@
 // The registry: groups, retractions, schemes, solvers, systems by name, and the compiled kernels.
 //
-// A registry is a plain value filled explicitly (systems/systems.cpp fills the library's own); a user's
-// program adds to it with the add_... functions of systems/kernels.hpp, without touching the library.
+// A registry is a plain value filled explicitly (systems/systems.cpp fills the library's own); a
+// user's program adds to it with the add_... functions of systems/kernels.hpp, without touching the
+// library.
 #pragma once
 
 #include <functional>
@@ -24,7 +25,8 @@ struct RetractionInfo {
   bool symmetric = false;
   bool one_parameter = false;
   std::shared_ptr<const Geometry> geometry;  // what erased problems evaluate
-  /// The retraction of those factors of a product that have none of this name; empty: then it has none either.
+  /// The retraction of those factors of a product that have none of this name; empty: then it has
+  /// none either.
   std::string elsewhere = {};
 };
 
@@ -48,8 +50,8 @@ struct SchemeInfo {
   bool defined(bool left_invariant) const { return left_invariant || !left_invariant_only; }
   /// What it claims for a run; order 0 where it is not defined.
   ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) const;
-  /// The same on a system. With forces at the nodes only (lift), constant inertia and rows A xi = 0 do for
-  /// left-invariant: (M43).
+  /// The same on a system. With forces at the nodes only (lift), constant inertia and rows A xi = 0
+  /// do for left-invariant: (M43).
   ClaimedOrder claim(double s, TauTraits tau, const Mechanics& system,
                      const std::string& force_at) const;
 };
@@ -63,8 +65,8 @@ struct SolverInfo {
   std::string package = {};  // the Debian package that brings it, where one is needed
 };
 
-/// A solver as one function: improves x, the guess, until |F(x)| <= tolerance. F is scaled; the solve is judged
-/// by the best residual evaluated, without a report.
+/// A solver as one function: improves x, the guess, until |F(x)| <= tolerance. F is scaled; the
+/// solve is judged by the best residual evaluated, without a report.
 using SolveFunction =
     std::function<void(const Equation& equation, std::span<double> x, double tolerance)>;
 
@@ -77,7 +79,8 @@ struct FileKind {
       read;
 };
 
-/// What kernels are compiled for: the type of a system (typeid of its Mechanics), or, left-invariant, group and m.
+/// What kernels are compiled for: the type of a system (typeid of its Mechanics), or,
+/// left-invariant, group and m.
 std::string problem_key(const std::string& group, int m);
 std::string problem_key(const std::type_info& mechanics);
 
@@ -93,12 +96,15 @@ class Registry {
   void add(SolverInfo info);
   void add(SystemInfo info);
   void add(FileKind kind);
-  /// A system whose description is made when its name is first asked for: of files that go by name, listed apart.
+  /// A system whose description is made when its name is first asked for: of files that go by name,
+  /// listed apart.
   void add_deferred(const std::string& name, std::function<SystemInfo()> make);
   void add_solver(const std::string& name, const std::string& summary, SolveFunction solve);
-  /// Another name of a scheme, accepted wherever a scheme is named; a scheme of that name goes first.
+  /// Another name of a scheme, accepted wherever a scheme is named; a scheme of that name goes
+  /// first.
   void add_scheme_alias(const std::string& alias, const std::string& scheme);
-  /// A solver that this build lacks, for want of info.package: listed and described, but no solver().
+  /// A solver that this build lacks, for want of info.package: listed and described, but no
+  /// solver().
   void add_absent(SolverInfo info);
   /// A kernel compiled for one problem: problem_key() with a retraction and a scheme.
   void add_kernel(const std::string& problem, const std::string& retraction,
@@ -111,7 +117,8 @@ class Registry {
   const SolverInfo* solver(const std::string& name) const;
   const SolverInfo* absent_solver(const std::string& name) const;
   const SystemInfo* system(const std::string& name) const;
-  /// The kernel compiled for this problem if there is one, else null: the scheme's erased one serves.
+  /// The kernel compiled for this problem if there is one, else null: the scheme's erased one
+  /// serves.
   const KernelFactory* kernel(const std::string& group, const Mechanics& mechanics,
                               const std::string& retraction, const std::string& scheme) const;
 

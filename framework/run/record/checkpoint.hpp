@@ -1,4 +1,5 @@
-// The state of a run as bytes, to go on from: every class that has a part of it says so once, for both ways, by
+// The state of a run as bytes, to go on from: every class that has a part of it says so once, for
+// both ways, by
 //   template <class Archive> void carry(Archive& archive) { archive(member, ...); }
 // Read by the build that wrote it (io/version.hpp, build_name). Not installed.
 #pragma once

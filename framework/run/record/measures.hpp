@@ -1,5 +1,6 @@
-// What a run measures: one list of quantities by name, and the largest values over the recorded states. The
-// columns of a run, its record and its report, and the tables of a study take names and meanings from here.
+// What a run measures: one list of quantities by name, and the largest values over the recorded
+// states. The columns of a run, its record and its report, and the tables of a study take names and
+// meanings from here.
 #pragma once
 
 #include <algorithm>
@@ -98,7 +99,8 @@ inline void raise(double& largest, double value) {
                                  : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Over the recorded states of one run, and its last. NaN: there is no such thing, or it was not finite.
+/// Over the recorded states of one run, and its last. NaN: there is no such thing, or it was not
+/// finite.
 struct Measurements {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   double constraint_max = 0;

@@ -71,8 +71,8 @@ static std::string estimated_error_in_words(const Result& result) {
                      result.config.chooses_steps() ? " in the tolerance" : "");
 }
 
-// "omega = 0.25 rad/s, v1 = 1": by names, to six digits but none below round-off of the largest or the error where
-// that is known.
+// "omega = 0.25 rad/s, v1 = 1": by names, to six digits but none below round-off of the largest or
+// the error where that is known.
 static std::string velocity_in_words(const Result& result) {
   const std::vector<double>& xi = result.last.velocity;
   const std::vector<Component> components = components_of(*result.system);

@@ -83,8 +83,8 @@ struct Result : Measurements {
   std::string record(int indent = 2) const;
   /// One screen of text: status, iterations, drifts, error against the exact solution.
   std::string report() const;
-  /// Writes by extension, output_formats(): the rows that are in memory and the record, or (.json) the record. The file
-  /// appears whole or not at all. ConfigError when it cannot be written.
+  /// Writes by extension, output_formats(): the rows that are in memory and the record, or (.json)
+  /// the record. The file appears whole or not at all. ConfigError when it cannot be written.
   void write(const std::string& path) const;
 };
 

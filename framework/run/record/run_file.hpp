@@ -1,4 +1,5 @@
-// A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its page. Not installed.
+// A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its
+// page. Not installed.
 //
 // Data sets: the groups of columns; texts: config (TOML), files (texts_of_files), start (the record
 // before the first step), build, format, and record, the Result's, in the end; resume, checkpoints
@@ -14,7 +15,8 @@
 
 namespace hamel {
 
-/// The texts of the files that a run reads, its system and inputs: {path: text}, JSON; "" where there is none.
+/// The texts of the files that a run reads, its system and inputs: {path: text}, JSON; "" where
+/// there is none.
 std::string texts_of_files(const Config& config);
 
 class RunFileSink final : public Sink {
@@ -25,7 +27,8 @@ class RunFileSink final : public Sink {
   void rows(std::span<const double> values) override { out_->append(values); }
   bool resumable() const override { return true; }
   void checkpoint(const std::string& state, const std::string& news) override;
-  /// The first time its file takes the place of one that was there: a run that goes on has written its rows again by then.
+  /// The first time its file takes the place of one that was there: a run that goes on has written
+  /// its rows again by then.
   void flush() override;
   void finish(const Result& result) override;
 
@@ -51,8 +54,8 @@ class RunFile {
   /// Of texts_of_files, by path. ConfigError where it is not there.
   std::string file(const std::string& path) const;
 
-  /// The last checkpoint that is whole with the rows before it: its state, what came before it piece by piece, and how many
-  /// rows; 0 where there is none. Reads these rows.
+  /// The last checkpoint that is whole with the rows before it: its state, what came before it
+  /// piece by piece, and how many rows; 0 where there is none. Reads these rows.
   struct Kept {
     std::string state;
     std::vector<std::string> news;
@@ -65,7 +68,8 @@ class RunFile {
   RowFileReader rows_;
 };
 
-/// The rows of a finished file, thinned to at most so many. ConfigError where they are not those that were written.
+/// The rows of a finished file, thinned to at most so many. ConfigError where they are not those
+/// that were written.
 Trajectory read_rows(const RunFile& file, std::size_t most);
 
 /// What a record says of a run, into a Result that has its system and config. ConfigError, with the

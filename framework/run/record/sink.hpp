@@ -1,5 +1,5 @@
-// Where the rows of a run go as they come: CSV, compressed or to standard output, HDF5, JSON (the record alone), memory.
-// Not installed: the builder's own (Simulation::record_to).
+// Where the rows of a run go as they come: CSV, compressed or to standard output, HDF5, JSON (the
+// record alone), memory. Not installed: the builder's own (Simulation::record_to).
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,8 @@ class Sink {
   virtual void begin(const RunHead& head) = 0;
   /// Whole rows, one after the other. Unfinished on failure, as in all that follows.
   virtual void rows(std::span<const double> values) = 0;
-  /// Can a run go on from it? Then it is told the state at the rows so far; news: what came since the last one.
+  /// Can a run go on from it? Then it is told the state at the rows so far; news: what came since
+  /// the last one.
   virtual bool resumable() const { return false; }
   virtual void checkpoint(const std::string& /*state*/, const std::string& /*news*/) {}
   /// What it has is to be found in its file, now.
@@ -43,7 +44,8 @@ std::unique_ptr<Sink> make_sink(const std::string& path);
 /// "" where make_sink and its file can be had, else what is in the way.
 std::string record_mistake(const std::string& path);
 
-/// Appends to the trajectory; beyond `most` rows (0: no bound) every second one is dropped, again and again.
+/// Appends to the trajectory; beyond `most` rows (0: no bound) every second one is dropped, again
+/// and again.
 std::unique_ptr<Sink> make_memory_sink(Trajectory& rows, std::size_t most);
 
 }  // namespace hamel

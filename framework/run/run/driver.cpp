@@ -10,7 +10,8 @@
 namespace hamel {
 namespace {
 
-// A run keeps what it has after so many rows or so many steps; not by the clock, so that it is the same each time.
+// A run keeps what it has after so many rows or so many steps; not by the clock, so that it is the
+// same each time.
 constexpr long kRows = 4096, kSteps = 65536;
 // Steps at once where each may be taken in a thousand parts: between them a run may be stopped.
 constexpr long kRescued = 8;
@@ -55,7 +56,8 @@ std::shared_ptr<const Mechanics> Driver::acting() const {
   return plan_.keeps_rows ? mechanics : std::make_shared<UnconstrainedMechanics>(mechanics);
 }
 
-// ---- steps ----------------------------------------------------------------------------------------------------------
+// ---- steps
+// -------------------------------------------------------------------------------------------------
 
 Status Driver::refuse(double t, const std::string& reason) const {
   Snapshot now;
@@ -106,7 +108,8 @@ Status Driver::advance_to(double t) {
   return advance(count);
 }
 
-// So many steps of one size from here the run ends: a jump of an input next to that does not move it.
+// So many steps of one size from here the run ends: a jump of an input next to that does not move
+// it.
 void Driver::limit_grid(long count) {
   kernel_->state(row_);
   kernel_->limit(row_.time + static_cast<double>(count) * kernel_->next_step());

@@ -1,5 +1,6 @@
-// The driver of a run: it takes the steps, and its observers follow them: events with their impacts, rows with their
-// measurements, files and checkpoints. Not installed: what stands behind Run.
+// The driver of a run: it takes the steps, and its observers follow them: events with their
+// impacts, rows with their measurements, files and checkpoints. Not installed: what stands behind
+// Run.
 #pragma once
 
 #include <chrono>
@@ -19,7 +20,8 @@ namespace hamel {
 
 class Driver {
  public:
-  /// What becomes of the rows: of a run by hand they are kept where the request asks for it, of a run to its end always.
+  /// What becomes of the rows: of a run by hand they are kept where the request asks for it, of a
+  /// run to its end always.
   enum class Rows { asked_for, always };
   /// plan: without mistakes.
   Driver(RunPlan plan, RunRequest request, Rows rows);

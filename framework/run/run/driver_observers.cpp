@@ -45,7 +45,8 @@ void Driver::observe_start() {
   }
 }
 
-// True where the state behind the event is not that of the step: go_on tells whether the run ends there.
+// True where the state behind the event is not that of the step: go_on tells whether the run ends
+// there.
 bool Driver::observe_event(const Events::Found& event, bool& go_on) {
   result_.events.push_back(
       {event.name, event.state.time, event.state.coordinates, event.state.velocity});
@@ -66,7 +67,8 @@ bool Driver::observe_event(const Events::Found& event, bool& go_on) {
   return true;
 }
 
-// The explicit pairs take long steps with a dense output: the work is not known from their ends alone.
+// The explicit pairs take long steps with a dense output: the work is not known from their ends
+// alone.
 void Driver::observe_within_step() {
   kernel_->beginning(row_);
   const double begin = row_.time;
@@ -158,7 +160,8 @@ void Driver::restart_behind(const EventState& state, const Events::Found& event)
   plan_.events->resume(node_, event.name);
 }
 
-// ---- files ----------------------------------------------------------------------------------------------------------
+// ---- files
+// -------------------------------------------------------------------------------------------------
 
 void Driver::begin_sinks(const std::vector<ColumnGroup>& columns, const std::string& record) {
   const RunHead head{columns, plan_.outputs.request, plan_.outputs.files, record};
@@ -245,7 +248,8 @@ double Driver::elapsed() const {
   return seconds_ + std::chrono::duration<double>(now - comparing_).count();
 }
 
-// ---- the end --------------------------------------------------------------------------------------------------------
+// ---- the end
+// -------------------------------------------------------------------------------------------------
 
 Result Driver::head() const {
   Result out;

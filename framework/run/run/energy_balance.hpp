@@ -1,5 +1,5 @@
-// The energy balance of a run: the energy less what forces and moving constraints have done, (M47) (M48) (M49).
-// Not installed.
+// The energy balance of a run: the energy less what forces and moving constraints have done, (M47)
+// (M48) (M49). Not installed.
 #pragma once
 
 #include <memory>
@@ -15,8 +15,8 @@ namespace hamel {
 
 class EnergyBalance {
  public:
-  /// geometry: null for a group that is not registered; then, and where the energy is kept, it is not active. inputs:
-  /// those of the run, null without.
+  /// geometry: null for a group that is not registered; then, and where the energy is kept, it is
+  /// not active. inputs: those of the run, null without.
   EnergyBalance(std::shared_ptr<const Geometry> geometry,
                 const std::shared_ptr<const Mechanics>& mechanics,
                 std::shared_ptr<const Inputs> inputs);
@@ -30,8 +30,8 @@ class EnergyBalance {
   /// An event changed the state at the last node: its energy is followed from there on.
   void impact(const Snapshot& before, const Snapshot& after);
 
-  /// Those of the recorded states that are known by now and were not taken before, in their order: one waits for the
-  /// first nodes of the quadrature.
+  /// Those of the recorded states that are known by now and were not taken before, in their order:
+  /// one waits for the first nodes of the quadrature.
   void settled(std::vector<BalancedState>& out);
   /// After the last node: none waits.
   void finish() { settle(); }
@@ -44,7 +44,8 @@ class EnergyBalance {
 
   template <class Archive>
   void carry(Archive& archive) {
-    // The inputs of a run that goes on have changed as often as it was told, and not as often as they were before.
+    // The inputs of a run that goes on have changed as often as it was told, and not as often as
+    // they were before.
     bool changed = inputs_ != nullptr && inputs_->changes() != changes_;
     archive(changed, last_, work_, done_, started_, energy_start_, energy_max_, defect_max_,
             work_done_, waiting_, settled_);
@@ -61,7 +62,8 @@ class EnergyBalance {
   bool active_;
   // The work at the recorded states that wait.
   void settle();
-  // The quadrature begins anew at a node: an input jumps or has a kink there, and so has the power, or the state does.
+  // The quadrature begins anew at a node: an input jumps or has a kink there, and so has the power,
+  // or the state does.
   void break_off(const Snapshot& at);
 
   std::shared_ptr<const Inputs> inputs_;

@@ -23,17 +23,19 @@ Config with_method_of(const Config& resolved, Config asked) {
 
 }  // namespace
 
-// The steps of the first `runs` of this run and the two finer ones, in those of this run; a tenth of the tolerance takes some
-// 10^(1/5) times as many.
+// The steps of the first `runs` of this run and the two finer ones, in those of this run; a tenth
+// of the tolerance takes some 10^(1/5) times as many.
 double check_work(const Config& config, int runs) {
   const double more = config.chooses_steps() ? 1.6 : 2;
   return (std::pow(more, runs) - 1) / (more - 1);
 }
 
-// Richardson: with the ends x(h), x(h/2), x(h/4) the order is p = log2(|x(h) - x(h/2)| / |x(h/2) - x(h/4)|), the error of
-// x(h) is |x(h) - x(h/2)| 2^p / (2^p - 1). Nothing is known where p is no order (below 0.5), unless the ends agree to
-// round-off: then the error is below that, if no run stepped over something. Where steps are chosen, the same with a tenth and a hundredth of the tolerance in place of h/2, h/4, and p the
-// power of the tolerance. The ends are at one time, the last of this run, which may be that of an event.
+// Richardson: with the ends x(h), x(h/2), x(h/4) the order is p = log2(|x(h) - x(h/2)| / |x(h/2) -
+// x(h/4)|), the error of x(h) is |x(h) - x(h/2)| 2^p / (2^p - 1). Nothing is known where p is no
+// order (below 0.5), unless the ends agree to round-off: then the error is below that, if no run
+// stepped over something. Where steps are chosen, the same with a tenth and a hundredth of the
+// tolerance in place of h/2, h/4, and p the power of the tolerance. The ends are at one time, the
+// last of this run, which may be that of an event.
 void estimate_error(const Registry& registry, const RunRequest& request, const OwnSystem* own,
                     Result& result) {
   const Config given = with_method_of(result.config, request.config);

@@ -70,7 +70,8 @@ struct End {
   double t, value;
 };
 
-// The time behind the crossing of zero between two ends of opposite sign, the later one's side of the bracket.
+// The time behind the crossing of zero between two ends of opposite sign, the later one's side of
+// the bracket.
 template <class Inside>
 double crossing_time(const Inside& inside, End before, End now) {
   const auto value = [&](double t) {

@@ -1,8 +1,10 @@
-// The events of a run: functions of the state that cross zero, found in each step and located on the dense output.
+// The events of a run: functions of the state that cross zero, found in each step and located on
+// the dense output.
 //
-// A bracket [t_k, t_{k+1}] in which an event changes its sign in its direction is narrowed to 1e-12 of the step by the method of
-// Alefeld, Potra and Shi (Boost.Math, toms748). An event that crosses twice within one step is not seen.
-// Source: Alefeld, Potra, Shi, Algorithm 748, ACM Trans. Math. Software 21 (1995).
+// A bracket [t_k, t_{k+1}] in which an event changes its sign in its direction is narrowed to 1e-12
+// of the step by the method of Alefeld, Potra and Shi (Boost.Math, toms748). An event that crosses
+// twice within one step is not seen. Source: Alefeld, Potra, Shi, Algorithm 748, ACM Trans. Math.
+// Software 21 (1995).
 #pragma once
 
 #include <functional>
@@ -19,8 +21,8 @@ namespace hamel {
 
 class Events {
  public:
-  /// Those of the system by name, and "column=value", where a column of the element or of the velocity crosses a value.
-  /// Adds to mistakes what is no event.
+  /// Those of the system by name, and "column=value", where a column of the element or of the
+  /// velocity crosses a value. Adds to mistakes what is no event.
   Events(const SystemModel& system, std::shared_ptr<const Geometry> geometry,
          const std::vector<std::string>& names, const std::vector<std::string>& stops,
          std::vector<std::string>& mistakes);
@@ -57,7 +59,8 @@ class Events {
   double time_ = 0;
 };
 
-/// The events of a system, its own and those of its contacts: "contact_lost", where a normal reaction ceases to push.
+/// The events of a system, its own and those of its contacts: "contact_lost", where a normal
+/// reaction ceases to push.
 std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Geometry> geometry);
 
 }  // namespace hamel

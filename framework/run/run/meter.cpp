@@ -12,7 +12,8 @@
 namespace hamel {
 namespace {
 
-// The rows of one part together, those of the part that is named first at first: rear.reaction1 is one of rear.
+// The rows of one part together, those of the part that is named first at first: rear.reaction1 is
+// one of rear.
 std::vector<size_t> by_parts(const std::vector<std::string>& reactions) {
   const auto part = [&](size_t row) { return reactions[row].substr(0, reactions[row].rfind('.')); };
   std::vector<size_t> out;
@@ -270,8 +271,8 @@ void Meter::add_second(double power, double at) {
   second_time_ = at;
 }
 
-// What moving constraints feed in, by the trapezoids over all states and over every second one: a third of the difference is
-// the error of the first.
+// What moving constraints feed in, by the trapezoids over all states and over every second one: a
+// third of the difference is the error of the first.
 void Meter::look_at_reaction_work() {
   if (!drifts_) return;
   if (odd_) add_second(power_, power_time_);

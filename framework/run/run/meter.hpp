@@ -1,5 +1,5 @@
-// Measures a run as it goes: the row of each recorded state, by column name, and the Measurements over all.
-// Not installed: the builder's own.
+// Measures a run as it goes: the row of each recorded state, by column name, and the Measurements
+// over all. Not installed: the builder's own.
 #pragma once
 
 #include <memory>
@@ -37,13 +37,15 @@ class Meter {
   void begin(const Snapshot& start);
   /// An event changed the state: what that did to the energy and the invariants is no error.
   void impact(const Snapshot& before, const Snapshot& after);
-  /// Begins the row of a state with what the kernel measured of it (the columns of tools/README.md).
+  /// Begins the row of a state with what the kernel measured of it (the columns of
+  /// tools/README.md).
   void take(const Snapshot& state);
   /// Ends it with what the equations of motion, the invariants and the exact motion say.
   void compare(const Snapshot& state);
   /// The columns of a row, after the first.
   const std::vector<ColumnGroup>& columns() const { return columns_; }
-  /// The rows that are complete and were not dropped, one after the other. Where work is done the first few wait.
+  /// The rows that are complete and were not dropped, one after the other. Where work is done the
+  /// first few wait.
   std::span<const double> rows() const { return std::span(rows_).first(complete_ * width_); }
   void drop_rows();
   /// After the last state, a row or not: no row waits.
@@ -92,10 +94,10 @@ class Meter {
   std::vector<std::string> notes_;
   std::vector<char> pulls_;        // of the contacts, said already
   std::vector<size_t> reactions_;  // rows, in the order of their columns
-  // The multipliers lambda of A xi = b, from the continuous equations at each state, and their power
-  // lambda . A v in the last step before it, A v recovered from the configurations (Snapshot::row_rates) and
-  // lambda interpolated to the same time, Snapshot::lag before the state: round-off where b = 0, the power that a
-  // moving constraint feeds in where it is not.
+  // The multipliers lambda of A xi = b, from the continuous equations at each state, and their
+  // power lambda . A v in the last step before it, A v recovered from the configurations
+  // (Snapshot::row_rates) and lambda interpolated to the same time, Snapshot::lag before the state:
+  // round-off where b = 0, the power that a moving constraint feeds in where it is not.
   std::shared_ptr<const Geometry> geometry_;
   std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without rows
   double time_ = 0, power_ = 0, power_time_ = 0;

@@ -1,6 +1,7 @@
-// The integral of a function that is known at the nodes of a run, of order 8: over each interval that of the
-// polynomial through the last eight nodes, by divided differences, (M49). Steps may be of any sizes: behind steps far
-// smaller than the last, fewer nodes are taken, so that errors of the values are not magnified. Not installed.
+// The integral of a function that is known at the nodes of a run, of order 8: over each interval
+// that of the polynomial through the last eight nodes, by divided differences, (M49). Steps may be
+// of any sizes: behind steps far smaller than the last, fewer nodes are taken, so that errors of
+// the values are not magnified. Not installed.
 #pragma once
 
 #include <algorithm>
@@ -35,8 +36,8 @@ class NodalQuadrature {
     }
     settled_ = settled_ || count_ == kNodes;
   }
-  /// Will t be one more of the first nodes, which share one polynomial? If not, value(t) is to be asked for before t is
-  /// added where it is still wanted.
+  /// Will t be one more of the first nodes, which share one polynomial? If not, value(t) is to be
+  /// asked for before t is added where it is still wanted.
   bool joins(double t) const {
     if (settled_) return false;
     std::array<double, kNodes> times{t};
@@ -45,7 +46,8 @@ class NodalQuadrature {
   }
   /// Further nodes do not change the integral up to the last one.
   bool settled() const { return settled_; }
-  /// From the first node to t, between the last two nodes; before it is settled, to any t between the first and the last.
+  /// From the first node to t, between the last two nodes; before it is settled, to any t between
+  /// the first and the last.
   double value(double t) const { return integral_ - over(t, times_[0]); }
 
   template <class Archive>
@@ -59,8 +61,8 @@ class NodalQuadrature {
   static constexpr std::array<double, 4> kWeights = {0.3478548451374538, 0.6521451548625461,
                                                      0.6521451548625461, 0.3478548451374538};
 
-  // Is the sum of the magnitudes of the weights that the values at the nodes have in the integral from `from` to times[0]
-  // more than 20 times its length? Equal steps: 4.67 times.
+  // Is the sum of the magnitudes of the weights that the values at the nodes have in the integral
+  // from `from` to times[0] more than 20 times its length? Equal steps: 4.67 times.
   static bool magnifies(const std::array<double, kNodes>& times, std::size_t nodes, double from) {
     const double half = 0.5 * (times[0] - from), middle = times[0] - half;
     double sum = 0;

@@ -34,7 +34,8 @@ std::string difference(const std::string& there, const std::string& here) {
 
 constexpr double kMaxNumbers = 5e8;  // 4 GB of doubles
 
-// What the disks of these files have room for; infinite for a pipe, and for files that are compressed or hold no rows.
+// What the disks of these files have room for; infinite for a pipe, and for files that are
+// compressed or hold no rows.
 double numbers_that_fit(const std::vector<std::string>& files) {
   double out = std::numeric_limits<double>::infinity();
   for (const std::string& file : files) {

@@ -34,8 +34,9 @@ class Mistakes {
   std::vector<std::string> all_;
 };
 
-/// The options of a run that a scheme makes no use of: s; solver, tolerance and, but for "halve", on_failure of explicit
-/// ones, which solve no equation. Half an explicit step may succeed where the whole left the domain of tau.
+/// The options of a run that a scheme makes no use of: s; solver, tolerance and, but for "halve",
+/// on_failure of explicit ones, which solve no equation. Half an explicit step may succeed where
+/// the whole left the domain of tau.
 std::vector<std::string> unused_options(const SchemeInfo& scheme, const Config& config);
 
 /// The scheme, and what of a kernel's setup follows from names and numbers alone.
@@ -68,18 +69,20 @@ struct PlannedStart {
   std::vector<std::string> notes;
 };
 PlannedStart plan_start(const SystemModel& system, const Config& config, Mistakes& mistakes);
-/// I, A, b at the start, checked, and the start moved onto the holonomic rows. geometry: null for a group that is not
-/// registered.
+/// I, A, b at the start, checked, and the start moved onto the holonomic rows. geometry: null for a
+/// group that is not registered.
 void evaluate_start(const SystemModel& system, const std::shared_ptr<const Inputs>& inputs,
                     const Geometry* geometry, double t, PlannedStart& planned, Mistakes& mistakes);
-/// A held table of an input that is a rate of the rows A xi = b, where it jumps within the run: that would be an impulse.
+/// A held table of an input that is a rate of the rows A xi = b, where it jumps within the run:
+/// that would be an impulse.
 void check_jumps_of_rates(const SystemModel& system, const Inputs& inputs, const Geometry& geometry,
                           const Config& config, const PlannedStart& planned, Mistakes& mistakes);
 /// The admissible velocity of a start without mistakes; notes what the projection dropped.
 void project_start(PlannedStart& planned);
 /// Of an admissible start.
 Snapshot state_of(const Start& start, double t);
-/// The velocity of a state after an impact, onto the constraints there in the metric I. ConfigError that names the event.
+/// The velocity of a state after an impact, onto the constraints there in the metric I. ConfigError
+/// that names the event.
 std::vector<double> admissible(const SystemModel& system,
                                const std::shared_ptr<const Geometry>& geometry,
                                const EventState& state, const std::string& event);

@@ -1,6 +1,7 @@
-// A kernel that begins anew at its own node when it is told, and counts on: what a run does from there follows from the
-// node alone, and not from what is remembered of the steps before (extrapolation, Jacobians, the error's history, products).
-// A run that goes on from a file is then the undisturbed one, bit for bit. Not installed.
+// A kernel that begins anew at its own node when it is told, and counts on: what a run does from
+// there follows from the node alone, and not from what is remembered of the steps before
+// (extrapolation, Jacobians, the error's history, products). A run that goes on from a file is then
+// the undisturbed one, bit for bit. Not installed.
 #pragma once
 
 #include <memory>
@@ -47,7 +48,8 @@ class RestartedKernel final : public Kernel {
   KernelSetup setup_;
   std::unique_ptr<Kernel> kernel_;
   double limit_;
-  // Steps of one size are counted from here, so that a new beginning adds no round-off to the times.
+  // Steps of one size are counted from here, so that a new beginning adds no round-off to the
+  // times.
   double origin_;
   long origin_steps_ = 0;
   long steps_ = 0, whole_ = 0;  // before this kernel was made

@@ -7,9 +7,9 @@
 //   }
 //   hamel::Result result = run.finish();
 //
-// Events, impacts, rows, files and measurements follow the steps, whoever takes them. A run by hand keeps rows where the
-// builder asks for them: record_to(), keep_rows(), observe() or output(); without any, and without events, a step costs
-// the step alone.
+// Events, impacts, rows, files and measurements follow the steps, whoever takes them. A run by hand
+// keeps rows where the builder asks for them: record_to(), keep_rows(), observe() or output();
+// without any, and without events, a step costs the step alone.
 #pragma once
 
 #include <memory>
@@ -30,8 +30,8 @@ class Run {
   Run& operator=(Run&&) noexcept;
   ~Run();
 
-  /// One step (or count of them); the status of the first that failed. Behind an event that ends the run, or an observer
-  /// that returned false, it does nothing: ok, with the reason.
+  /// One step (or count of them); the status of the first that failed. Behind an event that ends
+  /// the run, or an observer that returned false, it does nothing: ok, with the reason.
   Status step(long count = 1);
   /// One step; a chosen one ends at t at the latest.
   Status step_towards(double t);
@@ -39,15 +39,19 @@ class Run {
   Status advance_to(double t);
   /// Steps to the end time, or to what ends the run before.
   Status complete();
-  /// Time runs the other way from here; steps chosen by the reversible control are taken back as they came.
+  /// Time runs the other way from here; steps chosen by the reversible control are taken back as
+  /// they came.
   void turn_back();
-  /// An input from now on, in the unit that the system states; the builder must have given the run a first value of some
-  /// input. ConfigError where there is no such input, or the value is out of its range.
+  /// An input from now on, in the unit that the system states; the builder must have given the run
+  /// a first value of some input. ConfigError where there is no such input, or the value is out of
+  /// its range.
   void input(const std::string& name, double value);
-  /// Again from another start (projected as by the builder), at the start time: what a new build() gives, in less time.
-  /// Inputs keep their values; rows and measurements begin anew. ConfigError as from build(), and where rows are in files.
+  /// Again from another start (projected as by the builder), at the start time: what a new build()
+  /// gives, in less time. Inputs keep their values; rows and measurements begin anew. ConfigError
+  /// as from build(), and where rows are in files.
   void restart(const Start& start);
-  /// The state at a time within the last step, by dense output. Throws std::runtime_error where there is none.
+  /// The state at a time within the last step, by dense output. Throws std::runtime_error where
+  /// there is none.
   const Snapshot& at(double t);
   /// The current state with its measurements; at an event that ended the run, the state there.
   const Snapshot& state();
@@ -58,8 +62,9 @@ class Run {
   /// Null for a run without inputs.
   const std::shared_ptr<Inputs>& inputs() const;
 
-  /// Ends the run: the last row, the files, the measurements over the rows (without rows those of start and end). After
-  /// it the run takes no more steps. Throws Unfinished where a file cannot be completed.
+  /// Ends the run: the last row, the files, the measurements over the rows (without rows those of
+  /// start and end). After it the run takes no more steps. Throws Unfinished where a file cannot be
+  /// completed.
   Result finish();
 
  private:

@@ -1,11 +1,13 @@
 // The builder: from a system and a few names to a run.
 //
-//   auto result = hamel::simulate("suslov").set("inertia", {1, 10, 100}).start({.momentum = {1, 1, 0}})
+//   auto result = hamel::simulate("suslov").set("inertia", {1, 10, 100}).start({.momentum = {1, 1,
+//   0}})
 //                     .scheme("lift").s(0.5).retraction("cayley").step(0.01).until(1800).run();
 //
-// run() and build() check everything first and throw one ConfigError with all mistakes; after that a numerical failure
-// is result.status, and the good steps are kept. A full disk throws Unfinished; the rows written so far stay in the file.
-// Standard-library types only: a program that includes this cannot disagree with the library about its flags.
+// run() and build() check everything first and throw one ConfigError with all mistakes; after that
+// a numerical failure is result.status, and the good steps are kept. A full disk throws Unfinished;
+// the rows written so far stay in the file. Standard-library types only: a program that includes
+// this cannot disagree with the library about its flags.
 #pragma once
 
 #include <functional>
@@ -31,12 +33,14 @@ struct SolverOptions {
   double tolerance = Config().tolerance;  // on |F| / scale
 };
 
-/// Of the error of a step (framework/schemes/munthe_kaas.hpp), each in (0, 1). Without an absolute one both are the same.
+/// Of the error of a step (framework/schemes/munthe_kaas.hpp), each in (0, 1). Without an absolute
+/// one both are the same.
 struct StepTolerance {
   std::optional<double> relative = {}, absolute = {};
 };
 
-/// The state at an event, for an impact to change; the velocity is then projected onto the constraints.
+/// The state at an event, for an impact to change; the velocity is then projected onto the
+/// constraints.
 struct EventState {
   double time;
   std::vector<double> coordinates, velocity;
@@ -70,8 +74,8 @@ class Simulation {
     return set(name, std::vector<double>(value));
   }
   Simulation& set(const std::string& name, double value) { return set(name, {value}); }
-  /// An input of the system: a constant, or InputTable{times, values, hold}, or InputFile{"table.csv"}. A run that is
-  /// driven by Run::input needs a first value of some input.
+  /// An input of the system: a constant, or InputTable{times, values, hold}, or
+  /// InputFile{"table.csv"}. A run that is driven by Run::input needs a first value of some input.
   Simulation& input(const std::string& name, double value) {
     return input(name, InputSignal(value));
   }
@@ -79,7 +83,8 @@ class Simulation {
     request_.config.inputs[name] = std::move(signal);
     return *this;
   }
-  /// Where to start. Velocity and momentum are projected onto d and d*, and a note says what was lost.
+  /// Where to start. Velocity and momentum are projected onto d and d*, and a note says what was
+  /// lost.
   Simulation& start(Start start) { return with(&Config::start, std::move(start)); }
   /// The start in its place: straight ahead at v m/s, upright, of systems that know such a motion.
   Simulation& speed(double v) { return with(&Config::speed, v); }
@@ -96,8 +101,8 @@ class Simulation {
   Simulation& solver(std::string name, SolverOptions options = {}) {
     return with(&Config::solver, std::move(name)).with(&Config::tolerance, options.tolerance);
   }
-  /// What becomes of a step that fails: "stop" (default), "retry:<solver>" (solved again by another),
-  /// "halve" (taken as two halves, each of which may be halved again).
+  /// What becomes of a step that fails: "stop" (default), "retry:<solver>" (solved again by
+  /// another), "halve" (taken as two halves, each of which may be halved again).
   Simulation& on_failure(std::string policy) {
     return with(&Config::on_failure, std::move(policy));
   }
@@ -105,8 +110,8 @@ class Simulation {
   Simulation& compose(std::string name) { return with(&Config::compose, std::move(name)); }
   /// The step h in seconds, of either sign.
   Simulation& step(double h) { return with(&Config::step, h); }
-  /// Steps chosen by the error; h is then the first one. Explicit pairs (dopri5, tsit5, dop853), and lift and balance at
-  /// s = 1/2 by a reversible control.
+  /// Steps chosen by the error; h is then the first one. Explicit pairs (dopri5, tsit5, dop853),
+  /// and lift and balance at s = 1/2 by a reversible control.
   Simulation& tolerance(StepTolerance tolerance) {
     return with(&Config::rtol, tolerance.relative).with(&Config::atol, tolerance.absolute);
   }
@@ -129,7 +134,8 @@ class Simulation {
   Simulation& stop_at(std::vector<std::string> names) {
     return with(&Config::stop_at, std::move(names));
   }
-  /// Locates an event, and lets the caller change the state there; also in the two finer runs of a check.
+  /// Locates an event, and lets the caller change the state there; also in the two finer runs of a
+  /// check.
   Simulation& on_event(const std::string& name, Impact impact) {
     request_.config.events.push_back(name);
     request_.impacts[name] = std::move(impact);
@@ -145,18 +151,21 @@ class Simulation {
     request_.observer = std::move(observer);
     return *this;
   }
-  /// Rows are written as they come, to a file by its extension, output_formats(), or "-" (CSV to standard output); repeatable.
-  /// The file is `path`.part until the run is done, whatever ends it. Then the Result has no trajectory.
+  /// Rows are written as they come, to a file by its extension, output_formats(), or "-" (CSV to
+  /// standard output); repeatable. The file is `path`.part until the run is done, whatever ends it.
+  /// Then the Result has no trajectory.
   Simulation& record_to(std::string path) {
     request_.records.push_back(std::move(path));
     return *this;
   }
-  /// A trajectory of about so many rows beside the files: every second row is dropped, again and again.
+  /// A trajectory of about so many rows beside the files: every second row is dropped, again and
+  /// again.
   Simulation& keep_rows(size_t most) {
     request_.rows_kept = most;
     return *this;
   }
-  /// Goes on with the unfinished run in a file, .h5, that this run was recorded to; the result is that of the undisturbed run.
+  /// Goes on with the unfinished run in a file, .h5, that this run was recorded to; the result is
+  /// that of the undisturbed run.
   Simulation& resume(std::string path) {
     request_.resumed = std::move(path);
     return *this;
@@ -172,7 +181,8 @@ class Simulation {
   std::vector<std::string> mistakes() const;
   /// A run to be stepped by hand. Throws ConfigError with all mistakes.
   Run build() const;
-  /// Steps to the end: a loop over Run. Throws ConfigError with all mistakes, before the first step.
+  /// Steps to the end: a loop over Run. Throws ConfigError with all mistakes, before the first
+  /// step.
   Result run() const;
 
  private:

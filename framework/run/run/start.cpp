@@ -1,4 +1,5 @@
-// Where a run starts: the user's state or the system's own, onto the constraints, and the events there.
+// Where a run starts: the user's state or the system's own, onto the constraints, and the events
+// there.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -196,8 +197,8 @@ void check_symmetry_beside(const Mechanics& mechanics, const Geometry& geometry,
   }
 }
 
-// Onto phi(g) = 0 by Newton's method, g <- g tau(-I^-1 A^T (A I^-1 A^T)^-1 phi), A the rows of phi: the start may be the
-// last state of a run whose scheme keeps phi only to its order.
+// Onto phi(g) = 0 by Newton's method, g <- g tau(-I^-1 A^T (A I^-1 A^T)^-1 phi), A the rows of phi:
+// the start may be the last state of a run whose scheme keeps phi only to its order.
 void satisfy(const Mechanics& mechanics, const Geometry& geometry, double t, Eigen::VectorXd phi,
              Eigen::VectorXd& g, PlannedStart& planned, Mistakes& mistakes) {
   constexpr double most = 0.01;

@@ -1,5 +1,5 @@
-// A user's program by name, with every verb of <hamel/simulate.hpp>, and another unit of it that uses Eigen on its own
-// account. Prints numbers that must not depend on the flags of this program.
+// A user's program by name, with every verb of <hamel/simulate.hpp>, and another unit of it that
+// uses Eigen on its own account. Prints numbers that must not depend on the flags of this program.
 #include <cmath>
 #include <cstdio>
 #include <utility>

@@ -1,5 +1,6 @@
-// A user's own system through the typed door, compiled with the schemes for its types and by the library's schemes: every
-// verb that carries objects between the program's templates and the library.
+// A user's own system through the typed door, compiled with the schemes for its types and by the
+// library's schemes: every verb that carries objects between the program's templates and the
+// library.
 #include <cstdio>
 #include <vector>
 
@@ -27,7 +28,8 @@ void expect(bool condition, const char* what) {
   good = good && condition;
 }
 
-// Runs by hand are built, moved and let go; a part of them is freed here that the library allocated, or the other way.
+// Runs by hand are built, moved and let go; a part of them is freed here that the library
+// allocated, or the other way.
 template <class Simulation>
 void by_hand(const Simulation& simulation, const char* what) {
   std::vector<hamel::Run> runs;

@@ -1,5 +1,5 @@
-// Which method of a study is better: the least time at equal error, orders against claims, and which value
-// of an axis is worse and by how much.
+// Which method of a study is better: the least time at equal error, orders against claims, and
+// which value of an axis is worse and by how much.
 #include <algorithm>
 #include <cmath>
 
@@ -39,8 +39,8 @@ class Comparison {
  private:
   void say(const std::string& status, const std::string& text) { out_.push_back({status, text}); }
 
-  // The time at which a method reaches an error, by straight lines between its cells in the diagram; the
-  // time of the fastest cell that is good enough when no line crosses. NaN: never.
+  // The time at which a method reaches an error, by straight lines between its cells in the
+  // diagram; the time of the fastest cell that is good enough when no line crosses. NaN: never.
   double time_at(std::vector<size_t> cells, double error) const {
     std::erase_if(cells, [&](size_t i) {
       return !view_.metrics(i).ok || !(view_.metrics(i).error >= 0) || !(view_.seconds(i) > 0);
@@ -191,7 +191,8 @@ class Comparison {
                       first_few(unknown, 6)));
   }
 
-  // Which value of an axis is worse at otherwise equal cells: geometric means of the factor over the best.
+  // Which value of an axis is worse at otherwise equal cells: geometric means of the factor over
+  // the best.
   void worse(const std::string& axis) {
     struct Tally {
       double error = 0, time = 0;

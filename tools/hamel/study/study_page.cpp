@@ -43,7 +43,8 @@ class StudyPage {
   }
 
  private:
-  // Axes go into the names of the curves while these stay few; the others become filters over the figures.
+  // Axes go into the names of the curves while these stay few; the others become filters over the
+  // figures.
   void divide_axes() {
     filters_ =
         view_.varies("system") ? std::vector<std::string>{"system"} : std::vector<std::string>{};

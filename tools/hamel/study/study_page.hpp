@@ -15,8 +15,8 @@ struct Verdict {
   std::string text;
 };
 
-/// Failures and where they lie, the best at equal error, orders against claims, which value of an axis is
-/// worse and by how much: sentences computed from the cells.
+/// Failures and where they lie, the best at equal error, orders against claims, which value of an
+/// axis is worse and by how much: sentences computed from the cells.
 std::vector<Verdict> study_verdicts(const StudyResult& result);
 
 /// Verdicts, work-precision diagrams, order plots, heat maps over s and h, the table of all cells.

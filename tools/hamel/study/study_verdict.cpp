@@ -1,5 +1,5 @@
-// A study's verdicts: each sentence is computed from the cells, and says how many of them it rests on. Here
-// whether the runs can be relied on; methods against each other in study_comparison.cpp.
+// A study's verdicts: each sentence is computed from the cells, and says how many of them it rests
+// on. Here whether the runs can be relied on; methods against each other in study_comparison.cpp.
 #include "study_verdict.hpp"
 
 #include <algorithm>

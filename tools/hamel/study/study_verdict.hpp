@@ -9,8 +9,8 @@
 
 namespace hamel::tools {
 
-/// Adds what can be said about methods against each other: the best at equal error, orders against claims,
-/// which value of an axis is worse.
+/// Adds what can be said about methods against each other: the best at equal error, orders against
+/// claims, which value of an axis is worse.
 void compare_methods(const StudyView& view, std::vector<Verdict>& out);
 
 /// "1 cell", "3 cells".
