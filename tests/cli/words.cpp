@@ -20,8 +20,7 @@ class Words : public CommandLine {
       "configuration = [0.3, 1, 2]\nvelocity = [1, 0.5, 0]\nforce = [\"-0.1*omega\", 0, 0]\n";
 };
 
-// ---- describe
-// --------------------------------------------------------------------------------------
+// ---- describe -----------------------------------------------------------------------------------
 
 TEST_F(Words, DescribeHasTheStartWithItsConfiguration) {
   const Json disk = answer({"describe", "falling_disk"})["start"];
@@ -98,8 +97,7 @@ TEST_F(Words, DescribeClaimsWhatIsMeasured) {
   EXPECT_NEAR(order("energy_preserving", "second_kind", "0.5", "exact_velocity_error_max"), 2, 0.1);
 }
 
-// ---- describe --analyse
-// ------------------------------------------------------------------------------
+// ---- describe --analyse -------------------------------------------------------------------------
 
 class Analysis : public Words {
  protected:
@@ -151,8 +149,7 @@ TEST_F(Analysis, TakesParameters) {
   EXPECT_EQ(run({"describe", "cayley", "--set", "a=0"}).status, 2);
 }
 
-// ---- options that are not used
-// --------------------------------------------------------------------------
+// ---- options that are not used ------------------------------------------------------------------
 
 TEST_F(Words, OptionsThatASchemeDoesNotUseAreNotEchoed) {
   Json r = record({"chaplygin_sleigh", "--scheme", "rkmk4", "--until", "1"});
@@ -186,8 +183,7 @@ TEST_F(Words, NumbersThatAreNoneAreNotPrinted) {
   }
 }
 
-// ---- runs that go on
-// ---------------------------------------------------------------------------------
+// ---- runs that go on ----------------------------------------------------------------------------
 
 /// The torque of the roller racer knows the time: a run in two parts is the whole, with the time of
 /// the second.
@@ -219,8 +215,7 @@ TEST_F(Words, ARunGoesOnWhereARecordEnds) {
               HasSubstr("until: got 0.5, expected a time beyond from, 1"));
 }
 
-// ---- the exact motion
-// ----------------------------------------------------------------------------------
+// ---- the exact motion ---------------------------------------------------------------------------
 
 TEST_F(Words, TheExactMotionCanBeLeftOut) {
   const Json with = record({"chaplygin_sleigh", "--until", "1"}),
@@ -250,8 +245,7 @@ TEST_F(Words, AnExactMotionThatCannotBeFollowedIsSaidToBeLeftOut) {
             1e-3);
 }
 
-// ---- the terminal
-// ----------------------------------------------------------------------------------------
+// ---- the terminal -------------------------------------------------------------------------------
 
 TEST_F(Words, ListsFitEightyColumns) {
   for (const std::string& line : lines(run({"list"}).out)) EXPECT_LE(line.size(), 80u) << line;

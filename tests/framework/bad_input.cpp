@@ -138,8 +138,7 @@ TEST(BadInput, AnInadmissibleStartIsProjectedWithANote) {
   EXPECT_NEAR(r.config.start.velocity[2], 0, 1e-16);
 }
 
-// ---- systems of a user
-// --------------------------------------------------------------------------------
+// ---- systems of a user --------------------------------------------------------------------------
 
 template <int K>
 struct Loose {
@@ -217,8 +216,7 @@ TEST(BadInput, AllAtOnce) {
   }
 }
 
-// ---- files
-// ---------------------------------------------------------------------------------------------
+// ---- files --------------------------------------------------------------------------------------
 
 TEST(BadInput, RowsThatAreNotInMemory) {
   namespace fs = std::filesystem;

@@ -160,8 +160,7 @@ TEST(Newton, LargerThanFour) {
   EXPECT_LE((a * x - Vec<6>::Ones()).norm(), 1e-14);
 }
 
-// ---- in a run
-// ----------------------------------------------------------------------------------------
+// ---- in a run -----------------------------------------------------------------------------------
 
 Simulation full_suslov() {
   return simulate("suslov").set("inertia", {2, .3, .5, 3, .4, 4}).start({.velocity = {1, 0.5, 0}});

@@ -81,8 +81,7 @@ void same(Simulation hers, Simulation ours, const Options& o) {
   EXPECT_EQ(a.system->mechanics->constant_inertia(), b.system->mechanics->constant_inertia());
 }
 
-// ---- the examples
-// ----------------------------------------------------------------------------------
+// ---- the examples -------------------------------------------------------------------------------
 
 TEST(DataSystems, ContactOscillator) {
   for (const char* scheme : {"lift", "balance", "rkmk4"}) {
@@ -197,8 +196,7 @@ back_rate = {}
        {.inputs = {{"rotor_rate", 0.2}, {"front_rate", 0.02}, {"back_rate", -0.03}}});
 }
 
-// ---- laws
-// -------------------------------------------------------------------------------------------
+// ---- laws ---------------------------------------------------------------------------------------
 
 TEST(DataSystems, KeepTheLawsOfASystem) {
   for (const char* name : {"contact_oscillator.toml", "particle_in_potential.toml",

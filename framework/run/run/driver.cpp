@@ -56,8 +56,7 @@ std::shared_ptr<const Mechanics> Driver::acting() const {
   return plan_.keeps_rows ? mechanics : std::make_shared<UnconstrainedMechanics>(mechanics);
 }
 
-// ---- steps
-// -------------------------------------------------------------------------------------------------
+// ---- steps --------------------------------------------------------------------------------------
 
 Status Driver::refuse(double t, const std::string& reason) const {
   Snapshot now;

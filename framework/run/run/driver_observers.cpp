@@ -160,8 +160,7 @@ void Driver::restart_behind(const EventState& state, const Events::Found& event)
   plan_.events->resume(node_, event.name);
 }
 
-// ---- files
-// -------------------------------------------------------------------------------------------------
+// ---- files --------------------------------------------------------------------------------------
 
 void Driver::begin_sinks(const std::vector<ColumnGroup>& columns, const std::string& record) {
   const RunHead head{columns, plan_.outputs.request, plan_.outputs.files, record};
@@ -248,8 +247,7 @@ double Driver::elapsed() const {
   return seconds_ + std::chrono::duration<double>(now - comparing_).count();
 }
 
-// ---- the end
-// -------------------------------------------------------------------------------------------------
+// ---- the end ------------------------------------------------------------------------------------
 
 Result Driver::head() const {
   Result out;
