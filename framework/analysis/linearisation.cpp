@@ -127,7 +127,7 @@ Matrix input_slopes(const SteadyEquations& equations,
 Linearisation linearisation(const Registry& registry, const Simulation& run) {
   const Run built = run.build();
   const SystemModel& model = built.system();
-  const SteadyEquations equations(registry, model, built.config().start);
+  const SteadyEquations equations(registry, model, guess_of(run, built));
   bool held = true;
   const SteadyPoint at = equations.find_near_guess(held);
   Linearisation out;

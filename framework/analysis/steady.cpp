@@ -137,11 +137,7 @@ SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, c
 
 SteadyMotion steady_motion(const Registry& registry, const Simulation& run) {
   const Run built = run.build();
-  const SystemModel& model = built.system();
-  const std::optional<double>& speed = run.config().speed;  // without the push of a file
-  return steady_motion(
-      registry, model,
-      speed ? model.start_at_speed(*speed, built.config().from) : built.config().start);
+  return steady_motion(registry, built.system(), reduced::guess_of(run, built));
 }
 
 int SteadyMotion::growing() const {

@@ -27,8 +27,9 @@ std::shared_ptr<const SteadyEquations> Branch::equations(double value) {
   auto found = known_.find(value);
   if (found == known_.end()) {
     if (known_.size() >= most) known_.clear();
-    const Run built = at_(value).build();
-    auto made = std::make_shared<SteadyEquations>(registry_, built.system(), built.config().start);
+    const Simulation run = at_(value);
+    const Run built = run.build();
+    auto made = std::make_shared<SteadyEquations>(registry_, built.system(), guess_of(run, built));
     if (along_.size() > 0) made->hold_along(along_);
     found = known_.emplace(value, std::move(made)).first;
   }

@@ -33,6 +33,15 @@ Vector least_norm(const Matrix& a, const Vector& b, double least) {
   return dense::least_norm(a, b, most < 1 ? std::min(0.5, least / std::max(1e-300, most)) : least);
 }
 
+Start guess_of(const Simulation& run, const Run& built) {
+  const std::optional<double>& speed = run.config().speed;
+  if (!speed) return built.config().start;
+  Simulation unpushed = run;
+  unpushed.with(&Config::speed, std::optional<double>{})
+      .start(built.system().start_at_speed(*speed, built.config().from));
+  return unpushed.build().config().start;
+}
+
 SteadyEquations::SteadyEquations(const Registry& registry, const SystemModel& model,
                                  const Start& guess)
     : geometry_(geometry_of(registry, model)),

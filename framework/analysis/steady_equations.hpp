@@ -35,6 +35,9 @@ struct ReducedLinearisation {
 /// Least-norm solution of a x = b: what is `least` of the largest column, or of 1, is zero.
 Vector least_norm(const Matrix& a, const Vector& b, double least = 1e-10);
 
+/// The start of a run as a guess: at a speed without the push that a system's file has.
+Start guess_of(const Simulation& run, const Run& built);
+
 class SteadyEquations {
  public:
   /// Throws ConfigError when the system depends on time.

@@ -73,7 +73,7 @@ inline double reversal_error(Simulation simulation, long steps) {
   if (!forward.step(steps).ok) return std::numeric_limits<double>::quiet_NaN();
   const Snapshot& end = forward.state();
   simulation.start({.configuration = end.coordinates, .velocity = end.velocity, .momentum = {}});
-  simulation.step(-simulation.config().step).until(-simulation.config().until);
+  simulation.step(-simulation.config().step_or_usual()).until(-simulation.config().until);
   hamel::Run backward = simulation.build();
   if (!backward.step(steps).ok) return std::numeric_limits<double>::quiet_NaN();
   const Snapshot& back = backward.state();

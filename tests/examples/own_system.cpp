@@ -26,8 +26,9 @@ struct Arrow {  // a body in space, free to turn, that flies along its own axis 
 int main() {
   const hamel::Start start = {.velocity = {1, 0.2, -0.4, 0.5, 0, 0}};
   hamel::add_system<Arrow>(hamel::registry());  // for the run by name
-  const auto by_object = hamel::simulate(Arrow{.mass = 3}).start(start).until(10).run();
-  const auto by_name = hamel::simulate("arrow").set("mass", 3).start(start).until(10).run();
+  const auto by_object = hamel::simulate(Arrow{.mass = 3}).start(start).step(0.01).until(10).run();
+  const auto by_name =
+      hamel::simulate("arrow").set("mass", 3).start(start).step(0.01).until(10).run();
   const auto compiled =
       hamel::simulate<hamel::Lift, hamel::Cayley>(Arrow{.mass = 3}).start(start).until(10).run();
   std::cout << compiled.report();

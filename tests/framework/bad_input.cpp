@@ -48,7 +48,7 @@ TEST(BadInput, Numbers) {
   EXPECT_THAT(with([](auto& x) { x.step(0); }), HasSubstr("step: got 0"));
   EXPECT_THAT(with([](auto& x) { x.step(nan_); }), HasSubstr("step: got nan"));
   EXPECT_THAT(with([](auto& x) { x.step(inf); }), HasSubstr("step: got inf"));
-  EXPECT_THAT(with([](auto& x) { x.until(-3); }), HasSubstr("until: got -3"));
+  EXPECT_THAT(with([](auto& x) { x.step(0.01).until(-3); }), HasSubstr("until: got -3"));
   EXPECT_THAT(with([](auto& x) { x.step(-0.01); }), HasSubstr("until: got 20"));
   EXPECT_THAT(with([](auto& x) { x.until(nan_); }), HasSubstr("until: got nan"));
   EXPECT_THAT(with([](auto& x) { x.until(inf); }), HasSubstr("until: got inf"));
@@ -61,7 +61,8 @@ TEST(BadInput, Numbers) {
 }
 
 TEST(BadInput, AMemoryBombIsRefused) {
-  EXPECT_THAT(refused(simulate("suslov").until(1e12)), HasSubstr("every"));
+  EXPECT_THAT(refused(simulate("suslov").until(1e12)), HasSubstr("rows would be recorded"));
+  EXPECT_THAT(refused(simulate("suslov").step(0.01).until(1e12)), HasSubstr("every"));
   EXPECT_THAT(refused(simulate("suslov").step(1e-300).until(1)), HasSubstr("until"));
   EXPECT_THAT(refused(simulate("suslov").step(1e-12).until(20)), HasSubstr("every"));
   // Recording rarely is fine.

@@ -8,6 +8,7 @@ string(REPLACE "[" "<" help "${help}")
 string(REPLACE "]" ">" help "${help}")
 string(REPLACE "[" "<" readme "${readme}")
 string(REPLACE "]" ">" readme "${readme}")
+string(REGEX REPLACE "\n                              " " " help "${help}")  # wrapped lines
 string(REGEX MATCHALL "\n  --[^\n]*" lines "${help}")
 set(rows 0)
 foreach(line IN LISTS lines)

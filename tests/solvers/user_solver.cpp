@@ -95,7 +95,7 @@ TEST(UserSolver, GivesTheSameTrajectory) {
 
 TEST(UserSolver, ItsFailureIsTheRunsStatus) {
   const Registry mine = with_user_solvers();
-  const Result r = Simulation(mine, "suslov").solver("hopeless").run();
+  const Result r = Simulation(mine, "suslov").solver("hopeless").step(0.01).run();
   EXPECT_FALSE(r.status.ok);
   EXPECT_EQ(r.steps, 0);
   EXPECT_EQ(r.status.step, 1);

@@ -49,11 +49,13 @@ TEST(Linearisation, SampledPairIsTheMotion) {
     ASSERT_NE(at, linear.inputs.end()) << system;
     const auto column = static_cast<int>(at - linear.inputs.begin());
     const DiscretePair pair = linear.sampled(h);
+    const Start start = {.configuration = linear.motion.element,
+                         .velocity = linear.motion.velocity};  // without the push of the file
     double error[2];
     for (int k = 0; k < 2; ++k) {
       const double torque = 1e-2 / (1 + k);
       const Result run = simulate(system)
-                             .speed(speed)
+                             .start(start)
                              .input(input, torque)
                              .scheme("dop853")
                              .tolerance({.relative = 1e-12})

@@ -106,7 +106,8 @@ TEST(Forces, AnOptionOfLiftOnly) {
       simulate("falling_disk").scheme("balance").with(&Config::force_at, base).until(0.1).run();
   EXPECT_THAT(balance.notes, testing::Contains("force_at is not used by balance"));
   EXPECT_NE(balance.record().find("\"force_at\": null"), std::string::npos);
-  const Result lift = simulate("falling_disk").with(&Config::force_at, base).until(0.1).run();
+  const Result lift =
+      simulate("falling_disk").with(&Config::force_at, base).step(0.01).until(0.1).run();
   EXPECT_NE(lift.record().find("\"force_at\": \"base\""), std::string::npos);
   EXPECT_EQ(
       simulate("falling_disk").with(&Config::force_at, std::string("noods")).mistakes().size(), 1u);
