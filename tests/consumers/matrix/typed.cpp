@@ -58,6 +58,7 @@ void own_solver() {
                                });
   expect(hamel::simulate(Sleigh{})
              .solver("picard")
+             .step(0.01)
              .on_failure("retry:newton")
              .until(0.1)
              .build()
@@ -72,7 +73,7 @@ int main() {
   using hamel::Cayley, hamel::Lift, hamel::Rkmk4;
   const auto typed = hamel::simulate<Lift, Cayley>(Sleigh{}).until(2);
   const auto pair = hamel::simulate<hamel::Dopri5, Cayley>(Sleigh{}).until(2);
-  const auto named = hamel::simulate(Sleigh{}).until(2);
+  const auto named = hamel::simulate(Sleigh{}).step(0.01).until(2);
   const auto one = typed.run(), other = named.run();
   by_hand(hamel::simulate<Lift, Cayley>(Sleigh{}).step(0.01), "typed by hand");
   by_hand(hamel::simulate<Rkmk4, hamel::Exp>(Sleigh{}).step(0.01), "typed rkmk4 by hand");
