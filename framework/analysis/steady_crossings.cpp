@@ -110,15 +110,19 @@ double Crossings::error_at(const SteadyMotion& motion) const {
   return known;
 }
 
+// Where the line through both is zero; in the middle where that is not between them.
+static double secant(double x0, double f0, double x1, double f1) {
+  const double x = (f1 * x0 - f0 * x1) / (f1 - f0);
+  return x > std::min(x0, x1) && x < std::max(x0, x1) ? x : 0.5 * (x0 + x1);
+}
+
 void Crossings::locate(const BranchMotion& a, const BranchMotion& b) {
   BranchMotion low = a, high = b;
   double x0 = a.node.value, x1 = b.node.value, f0 = measure(a.motion), f1 = measure(b.motion);
   const double scale = branch_.scale() + std::abs(x0) + std::abs(x1);
   double slope = (f1 - f0) / (x1 - x0);
   for (int k = 0, side = 0; k < 80 && std::abs(x1 - x0) > 1e-13 * scale; ++k) {
-    double x = (f1 * x0 - f0 * x1) / (f1 - f0);
-    const double least = std::min(x0, x1), most = std::max(x0, x1);
-    if (k % 6 == 5 || !std::isfinite(x) || !(x > least && x < most)) x = 0.5 * (x0 + x1);
+    const double x = k % 6 == 5 ? 0.5 * (x0 + x1) : secant(x0, f0, x1, f1);
     if (x == x0 || x == x1) break;
     const auto there = on_branch(x);
     if (!there) break;
