@@ -94,8 +94,8 @@ RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& g
     const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "H5Pcreate");
     check(H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED),
           "H5Pset_link_creation_order");
-    // Names in the group's own header, which has a checksum: from a damaged heap of them the library
-    // frees memory that it has not filled (H5G__dense_iterate of 1.10).
+    // Names in the group's own header, which has a checksum: from a damaged heap of them the
+    // library frees memory that it has not filled (H5G__dense_iterate of 1.10).
     check(H5Pset_link_phase_change(properties, 4096, 0), "H5Pset_link_phase_change");
     d.file = std::make_unique<Handle>(
         H5Fcreate(d.path.c_str(), H5F_ACC_TRUNC, properties, latest_format()), H5Fclose,
