@@ -2,15 +2,15 @@
 // SO(2) as cayley_literal; addition on the commutative groups SO(2) and R^n. (M33) of
 // framework/schemes/README.md.
 //
-// The map is rational. (dR^-1 eta)^ = (I - xi^/2) eta^ (I + xi^/2) is a polynomial, W = omega^, V =
-// v^:
+// The map is rational. (dR^-1 eta)^ = (I - xi^/2) eta^ (I + xi^/2) is a polynomial; with W = omega^
+// and V = v^:
 //   SO(2)    dR^-1 = 1 + omega^2/4
-//   SO(3)    dR^-1 = I - W/2 + omega omega^T/4                          dR = (I + W/2)/(1 +
-//   |omega|^2/4) SE(2)    dR^-1 = I - ad/2 + omega xi e_omega^T/4                    dR = (I +
-//   ad/2)/(1 + omega^2/4) SE(3)    dR^-1 = I - ad/2 + [[omega omega^T, 0], [W V, 0]]/4        dR =
-//   [[P, 0], [V P/2, Q]],
-//                                                                       P = dR of SO(3), Q = (I -
-//                                                                       W/2)^-1
+//   SO(3)    dR^-1 = I - W/2 + omega omega^T/4
+//            dR    = (I + W/2)/(1 + |omega|^2/4)
+//   SE(2)    dR^-1 = I - ad/2 + omega xi e_omega^T/4
+//            dR    = (I + ad/2)/(1 + omega^2/4)
+//   SE(3)    dR^-1 = I - ad/2 + [[omega omega^T, 0], [W V, 0]]/4
+//            dR    = [[P, 0], [V P/2, Q]],   P = dR of SO(3), Q = (I - W/2)^-1
 // The rotation angle is 2 atan(|omega|/2), less than pi; the inverse is singular at pi.
 // Source: Kobilarov, Marsden, Discrete geometric optimal control on Lie groups (2011);
 // Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.8.3.
@@ -31,6 +31,10 @@ struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {
   static constexpr bool commuting = true;  // rational functions of one matrix
   static std::string name() { return "cayley"; }
   static std::string formula() { return "tau(xi) = (I - xi^/2)^-1 (I + xi^/2)"; }
+  static std::string source() {
+    return "Kobilarov, Marsden 2011; Hairer, Lubich, Wanner, Geometric Numerical Integration, "
+           "IV.8.3";
+  }
 };
 
 template <int N>
@@ -50,7 +54,8 @@ struct CayleyLiteral<SO2> : RetractionDefaults<CayleyLiteral<SO2>, SO2> {
   static constexpr bool commuting = true;
   static std::string name() { return "cayley_literal"; }
   static std::string formula() { return CayleyDefaults<SO2>::formula(); }
-  /// What the other factors of a product take.
+  static std::string source() { return CayleyDefaults<SO2>::source(); }
+  /// The retraction of the other factors of a product.
   static std::string elsewhere() { return "cayley"; }
   /// ((1 - a^2) + 2 a i)/(1 + a^2), a = omega/2.
   template <class T>
@@ -84,13 +89,20 @@ template <>
 struct Cayley<SO3> : CayleyDefaults<SO3> {
   /// dR^-1 is quadratic in xi, so the weight of its even part is one
   /// (framework/schemes/hamel_form.hpp).
-  static double quadratic_weight(double /*x*/) { return 1.0; }
+  static double quadratic_weight(const auto& /*x*/) { return 1.0; }
   static double angle_squared(const Vec<3>& xi) { return xi.dot(xi); }
   /// I + (omega^ + omega^2/2)/(1 + |omega|^2/4).
   template <class T>
   static MatT<T, 3, 3> tau(const VecT<T, 3>& xi) {
-    const T a = 1.0 / (1.0 + 0.25 * xi.dot(xi));
+    const T square = xi[0] * xi[0] + xi[1] * xi[1] + xi[2] * xi[2];  // one order for every T
+    const T a = 1.0 / (1.0 + 0.25 * square);
     return rotation_polynomial(xi, a, T(0.5 * a));
+  }
+  /// tau(xi/2)^2 = I + ((1 - x) omega^ + omega^^2/2)/(1 + x)^2, x = |omega|^2/16.
+  template <class T>
+  static MatT<T, 3, 3> tau_of_halves(const VecT<T, 3>& xi) {
+    const T x = 0.0625 * xi.dot(xi), a = 1.0 / (1.0 + x), b = a * a;
+    return rotation_polynomial(xi, T((1.0 - x) * b), T(0.5 * b));
   }
   template <class T>
   static VecT<T, 3> tau_inverse(const MatT<T, 3, 3>& g) {
@@ -130,7 +142,8 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
             p[1] + h[2] * p[0] - h[0] * p[2] + d * h[1],
             p[2] + h[0] * p[1] - h[1] * p[0] + d * h[2]};
   }
-  static Vec<3> solve_even_transposed(const Vec<3>& xi, double c, const Vec<3>& m) {
+  template <class T>
+  static VecT<T, 3> solve_even_transposed(const VecT<T, 3>& xi, double c, const VecT<T, 3>& m) {
     const double k = 0.25 * c;
     return m - (k * xi.dot(m) / (1 + k * xi.dot(xi))) * xi;
   }
@@ -152,7 +165,7 @@ template <>
 struct Cayley<SE2> : CayleyDefaults<SE2> {
   /// dR^-1 is quadratic in xi, so the weight of its even part is one
   /// (framework/schemes/hamel_form.hpp).
-  static double quadratic_weight(double /*x*/) { return 1.0; }
+  static double quadratic_weight(const auto& /*x*/) { return 1.0; }
   static double angle_squared(const Vec<3>& xi) { return xi[0] * xi[0]; }
   /// (cay omega, (I - omega J/2)^-1 v).
   template <class T>
@@ -184,14 +197,23 @@ struct Cayley<SE2> : CayleyDefaults<SE2> {
     m << 1.0 + w * w, zero, zero, w * v1 - v2, T(1.0), w, v1 + w * v2, -w, T(1.0);
     return m;
   }
+  /// [[1 + w^2, 0], [w v - J v, I + w J]] eta; w and v are halves of omega and v.
+  template <class T>
+  static VecT<T, 3> dtau_left_inverse(const VecT<T, 3>& xi, const VecT<T, 3>& eta) {
+    const T w = 0.5 * xi[0], v1 = 0.5 * xi[1], v2 = 0.5 * xi[2];
+    return {eta[0] + w * w * eta[0], (w * v1 + v2) * eta[0] + eta[1] - w * eta[2],
+            (w * v2 - v1) * eta[0] + w * eta[1] + eta[2]};
+  }
+  using CayleyDefaults<SE2>::dtau_left_inverse;
   template <class T>
   static VecT<T, 3> dtau_right_inverse_transpose(const VecT<T, 3>& xi, const VecT<T, 3>& p) {
     const T w = 0.5 * xi[0], v1 = 0.5 * xi[1], v2 = 0.5 * xi[2];
     const T q1 = p[1] - w * p[2], q2 = p[2] + w * p[1];
     return {p[0] + w * w * p[0] + v1 * q2 - v2 * q1, q1, q2};
   }
-  static Vec<3> solve_even_transposed(const Vec<3>& xi, double c, const Vec<3>& m) {
-    const double k = 0.25 * c * xi[0];
+  template <class T>
+  static VecT<T, 3> solve_even_transposed(const VecT<T, 3>& xi, double c, const VecT<T, 3>& m) {
+    const T k = 0.25 * c * xi[0];
     return {m[0] - k * xi.dot(m) / (1 + k * xi[0]), m[1], m[2]};
   }
   template <class T>

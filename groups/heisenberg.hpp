@@ -23,6 +23,9 @@ struct Heisenberg : GroupDefaults<Heisenberg, 3> {
   using Retractions = TypeList<Exp<Heisenberg>, Cayley<Heisenberg>>;
 
   static std::string name() { return "heisenberg"; }
+  static std::string source() {
+    return "Bloch, Nonholonomic Mechanics and Control (2003), section 1.8";
+  }
   static std::string summary() { return "R3 with a bracket [e1, e2] = e3"; }
   template <class T = double>
   static Element<T> identity() {

@@ -50,7 +50,7 @@ struct Product {
   using Element = ProductElement<T, Gs...>;
   template <std::size_t I>
   using Factor = std::tuple_element_t<I, std::tuple<Gs...>>;
-  /// Those that every factor has, and cayley_literal.
+  /// The retractions that every factor has, and cayley_literal.
   using Retractions = typename Concatenate<
       std::conditional_t<(has_retraction<Gs, Exp<Gs>> && ...), TypeList<Exp<Product>>, TypeList<>>,
       std::conditional_t<(has_retraction<Gs, Cayley<Gs>> && ...), TypeList<Cayley<Product>>,
@@ -65,7 +65,7 @@ struct Product {
                              (has_retraction<Gs, CayleyLiteral<Gs>> || ...),
                          TypeList<CayleyLiteral<Product>>, TypeList<>>>::type;
 
-  /// Where factor I's coordinates start in the algebra.
+  /// Offsets of the factors' coordinates in the algebra.
   static constexpr std::array<int, sizeof...(Gs)> offsets = [] {
     std::array<int, sizeof...(Gs)> result{};
     const int dims[] = {Gs::dim...};
@@ -122,13 +122,7 @@ struct Product {
   /// g over another scalar, its derivatives zero.
   template <class T>
   static Element<T> constant(const ProductElement<double, Gs...>& g) {
-    return each<T>([&](auto i) {
-      if constexpr (requires { g.template part<i>().template cast<T>(); }) {
-        return typename Factor<i>::template Element<T>(g.template part<i>().template cast<T>());
-      } else {
-        return Factor<i>::template constant<T>(g.template part<i>());
-      }
-    });
+    return each<T>([&](auto i) { return constant_part<T, Factor<i>>(g.template part<i>()); });
   }
   /// g with its derivative along xi, as dual numbers, where the factors have it.
   template <class Dual>
@@ -178,9 +172,7 @@ struct Product {
   static double rotation_angle(const ProductElement<double, Gs...>& g) {
     double largest = std::numeric_limits<double>::quiet_NaN();
     for_each_factor([&](auto i) {
-      if constexpr (requires { Factor<i>::rotation_angle(g.template part<i>()); }) {
-        largest = std::fmax(largest, Factor<i>::rotation_angle(g.template part<i>()));
-      }
+      largest = std::fmax(largest, part_rotation<Factor<i>>(g.template part<i>()));
     });
     return largest;
   }
@@ -250,6 +242,17 @@ struct Product {
     const auto own = values.first(count);
     values = values.subspan(count);
     return own;
+  }
+  // Functions, since clang 14 takes a requires-expression in a generic lambda for false.
+  template <class Group, class Part>
+  static double part_rotation([[maybe_unused]] const Part& g) {
+    if constexpr (requires { Group::rotation_angle(g); }) return Group::rotation_angle(g);
+    else return std::numeric_limits<double>::quiet_NaN();
+  }
+  template <class T, class Group, class Part>
+  static typename Group::template Element<T> constant_part(const Part& g) {
+    if constexpr (requires { g.template cast<T>(); }) return g.template cast<T>();
+    else return Group::template constant<T>(g);
   }
   template <class T>
   static auto assemble(const std::vector<MatT<T, Eigen::Dynamic, Eigen::Dynamic>>& blocks) {

@@ -77,6 +77,28 @@ struct ProductRetraction {
         [&](auto i) { return Part<i>::dtau_left_inverse(Group::template segment<i>(xi)); });
   }
   template <class T>
+  static VecT<T, dim> dtau_left_inverse(const VecT<T, dim>& xi, const VecT<T, dim>& eta) {
+    VecT<T, dim> out;
+    Group::for_each_factor([&](auto i) {
+      const auto part = Group::template segment<i>(xi), own = Group::template segment<i>(eta);
+      out.template segment<Part<i>::Group::dim>(Group::offsets[i]) =
+          apply_dtau_left_inverse<Part<i>>(part, own);
+    });
+    return out;
+  }
+  /// tau(xi), and dL_xi^-1 eta in `rate`.
+  template <class T>
+  static ProductElement<T, typename Rs::Group...> tau_with_rate(const VecT<T, dim>& xi,
+                                                                const VecT<T, dim>& eta,
+                                                                VecT<T, dim>& rate) {
+    return Group::template each<T>([&](auto i) {
+      VecT<T, Part<i>::Group::dim> own = Group::template segment<i>(eta);
+      auto g = hamel::tau_with_rate<Part<i>>(Group::template segment<i>(xi), own, own);
+      rate.template segment<Part<i>::Group::dim>(Group::offsets[i]) = own;
+      return g;
+    });
+  }
+  template <class T>
   static VecT<T, dim> dtau_right_inverse_transpose(const VecT<T, dim>& xi, const VecT<T, dim>& p) {
     VecT<T, dim> q;
     Group::for_each_factor([&](auto i) {

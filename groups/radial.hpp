@@ -58,6 +58,9 @@ struct RadialSO3 : RetractionDefaults<Derived, SO3> {
   static constexpr bool commuting = true;  // rotations about one axis
 
   static std::string formula() { return "tau(omega) = exp(f(|omega|) omega/|omega|)"; }
+  static std::string source() {
+    return "Tsiotras, Junkins, Schaub, Higher-order Cayley transforms (1997)";
+  }
 
   template <class T>
   static RadialRotation<T> rotation_coefficients(const T& x) {

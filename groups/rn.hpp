@@ -21,6 +21,7 @@ struct Rn : GroupDefaults<Rn<N>, N> {
   using Retractions = TypeList<Exp<Rn>, Cayley<Rn>, SecondKind<Rn>, SecondKindSymmetric<Rn>>;
 
   static std::string name() { return "r" + std::to_string(N); }
+  static std::string formula() { return "x in R^n, composed by addition"; }
 
   template <class T = double>
   static Element<T> identity() {

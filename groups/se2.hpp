@@ -40,6 +40,12 @@ struct SE2 {
   using Retractions = TypeList<Exp<SE2>, Cayley<SE2>, SecondKind<SE2>, SecondKindSymmetric<SE2>>;
 
   static std::string name() { return "se2"; }
+  static std::string formula() {
+    return "(theta, x, y): a point p of the plane goes to R(theta) p + (x, y)";
+  }
+  static std::string source() {
+    return "Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation (1994), ch. 2";
+  }
 
   template <class T = double>
   static Element<T> identity() {

@@ -40,6 +40,10 @@ struct SE3 {
   using Retractions = TypeList<Exp<SE3>, Cayley<SE3>, SecondKind<SE3>, SecondKindSymmetric<SE3>>;
 
   static std::string name() { return "se3"; }
+  static std::string formula() { return "(R, x): a point p goes to R p + x"; }
+  static std::string source() {
+    return "Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation (1994), ch. 2";
+  }
 
   template <class T = double>
   static Element<T> identity() {

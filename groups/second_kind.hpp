@@ -47,6 +47,10 @@ struct StagedRetraction : RetractionDefaults<Derived, G> {
     return Symmetric ? "tau(xi) = exp(xi_1 e_1/2) ... exp(xi_n e_n) ... exp(xi_1 e_1/2)"
                      : "tau(xi) = exp(xi_1 e_1) ... exp(xi_n e_n)";
   }
+  static std::string source() {
+    return "Owren, Marthinsen, Integration methods based on canonical coordinates of the second "
+           "kind (2001)";
+  }
 
   template <class T>
   static typename G::template Element<T> tau(const VecT<T, N>& xi) {

@@ -17,6 +17,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace hamel {
@@ -24,8 +25,10 @@ namespace hamel {
 /// exp(i theta) = c + i s and the full turns already made.
 template <class T>
 struct SO2Element {
+  static constexpr bool in_lanes = requires { T::width; };  // a body in each (lanes/lane.hpp)
   T c{1.0}, s{0.0};
-  std::int64_t turns = 0;  // as wide as a number, so that no byte of an element is unused
+  // As wide as a number, so that no byte of an element is unused.
+  std::conditional_t<in_lanes, T, std::int64_t> turns = 0;
 
   bool operator==(const SO2Element&) const = default;
 
@@ -58,6 +61,12 @@ struct SO2 {
                                CayleyLiteral<SO2>>;
 
   static std::string name() { return "so2"; }
+  static std::string formula() {
+    return "R(theta) in R^(2x2), R^T R = I, det R = 1; theta counts turns";
+  }
+  static std::string source() {
+    return "Sola, Deray, Atchuthan, A micro Lie theory (arXiv:1812.01537), appendix A";
+  }
 
   template <class T = double>
   static Element<T> identity() {
@@ -75,6 +84,21 @@ struct SO2 {
   template <class T>
   static Element<T> compose(const SO2Element<T>& g, const SO2Element<T>& h) {
     Element<T> r{g.c * h.c - g.s * h.s, g.s * h.c + g.c * h.s, g.turns + h.turns};
+    if constexpr (SO2Element<T>::in_lanes) {
+      const T zero(0.0), negative = less(g.s, zero), other = negative - less(h.s, zero);
+      const T none = equal(r.s, zero), one_way = 1.0 - other * other;
+      const T below = less(zero, r.s) + none * less(r.c, zero);
+      const T above = less(r.s, zero) + none * (less(g.c, zero) * less(h.c, zero));
+      r.turns += one_way * ((1.0 - negative) * above - negative * below);
+      return r;
+    } else {
+      count_turns(g, h, r);
+      return r;
+    }
+  }
+  /// The turns of r = g h.
+  template <class T>
+  static void count_turns(const SO2Element<T>& g, const SO2Element<T>& h, SO2Element<T>& r) {
     const bool negative = g.s < 0.0;
     if (negative == (h.s < 0.0)) {  // both angles point one way: their sum may leave (-pi, pi]
       if (negative) {
@@ -83,12 +107,16 @@ struct SO2 {
         if (r.s < 0.0 || (r.s == 0.0 && g.c < 0.0 && h.c < 0.0)) ++r.turns;
       }
     }
-    return r;
   }
   template <class T>
   static Element<T> inverse(const SO2Element<T>& g) {
-    const bool half_turn = g.s == 0.0 && g.c < 0.0;  // -pi = pi - one turn
-    return {g.c, -g.s, -g.turns - (half_turn ? 1 : 0)};
+    // -pi = pi - one turn.
+    if constexpr (SO2Element<T>::in_lanes) {
+      return {g.c, -g.s, -g.turns - equal(g.s, T(0.0)) * less(g.c, T(0.0))};
+    } else {
+      const bool half_turn = g.s == 0.0 && g.c < 0.0;
+      return {g.c, -g.s, -g.turns - (half_turn ? 1 : 0)};
+    }
   }
 
   /// g over another scalar, its derivatives zero.

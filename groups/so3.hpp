@@ -34,6 +34,10 @@ struct SO3 {
       TypeList<Exp<SO3>, Cayley<SO3>, Polar<SO3>, SecondKind<SO3>, SecondKindSymmetric<SO3>>;
 
   static std::string name() { return "so3"; }
+  static std::string formula() { return "R in R^(3x3), R^T R = I, det R = 1"; }
+  static std::string source() {
+    return "Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation (1994), ch. 2";
+  }
 
   template <class T = double>
   static Element<T> identity() {
@@ -41,7 +45,21 @@ struct SO3 {
   }
   template <class T>
   static MatT<T, 3, 3> compose(const MatT<T, 3, 3>& g, const MatT<T, 3, 3>& h) {
-    return g.lazyProduct(h);
+    if constexpr (requires { T::width; }) {  // lanes: the order in which Eigen adds those of double
+      const auto upper = [&](int i, int j) -> T {
+        return g(i, 0) * h(0, j) + g(i, 1) * h(1, j) + g(i, 2) * h(2, j);
+      };
+      const auto last = [&](int j) -> T {
+        return g(2, 0) * h(0, j) + (g(2, 1) * h(1, j) + g(2, 2) * h(2, j));
+      };
+      MatT<T, 3, 3> out;
+      out << upper(0, 0), upper(0, 1), upper(0, 2),  //
+          upper(1, 0), upper(1, 1), upper(1, 2),     //
+          last(0), last(1), last(2);
+      return out;
+    } else {
+      return g.lazyProduct(h);
+    }
   }
   /// R with its derivative along xi, R hat(xi), as dual numbers.
   template <class Dual>

@@ -58,7 +58,7 @@ class Tiny {
     tiny_.options.cost_threshold = 0.5 * target * target;
     tiny_.options.max_num_iterations = 50;
     tiny_.Solve(function, &x_);
-    // TinySolver tests its cost threshold at the guess already; a guess that meets it is corrected
+    // TinySolver tests its cost threshold at the guess already; a guess within it is corrected
     // once.
     const bool met = tiny_.summary.iterations == 0 && equation.residual() > 0;
     if (met) {

@@ -5,11 +5,16 @@
 // correction with the last J usually suffices. J is evaluated anew when a correction does not cut
 // |F| by ten, and for the next step when more than one correction was needed (by two, more than 2 +
 // 2 n/5, where J is made of differences). A fresh correction that does not reduce |F| is halved, up
-// to ten times. At least one correction is made: a guess that already meets the tolerance would
+// to ten times. At least one correction is made: a guess already within the tolerance would
 // leave its extrapolation error, always of one sign, in every step. A residual that stops falling
 // is accepted at the round-off floor (64 eps), else the solve has stagnated. The iteration aims two
 // digits below the tolerance, so that the error left by a kept Jacobian does not add up over the
-// steps. Compiled into the kernels: fixed sizes, no heap, no virtual call. Source: Kelley, Solving
+// steps. Where a fresh J no longer halves a residual within the tolerance, that is its floor: no J
+// is made to go below it.
+// Many unknowns whose J is made of differences begin with J = 1, what the frame of a step makes of
+// it for h -> 0 (M39): it costs nothing, and it is given up where it does not halve |F|, or once
+// its corrections have cost as much as a J would have.
+// Compiled into the kernels: fixed sizes, no heap, no virtual call. Source: Kelley, Solving
 // Nonlinear Equations with Newton's Method, SIAM 2003, ch. 1-2.
 #pragma once
 
@@ -25,7 +30,7 @@
 namespace hamel {
 
 /// J^-1: in closed form up to 4 x 4, as a matrix up to 16 x 16 (it only steers, and is used many
-/// times), by LU beyond.
+/// times), by LU beyond; there it is 1 until it is computed.
 template <class Jacobian>
 class Inverse {
   static constexpr int size = Jacobian::RowsAtCompileTime;
@@ -33,7 +38,13 @@ class Inverse {
   static constexpr bool may_be_large = size == Eigen::Dynamic || size > 16;
 
  public:
+  static constexpr bool is_large(Eigen::Index n) { return may_be_large && n > 16; }
+  bool is_one() const { return one_; }
+  /// J^-1, in closed form or as a matrix.
+  const Jacobian& matrix() const { return inverse_; }
+  void set_one() { one_ = true; }
   void compute(const Jacobian& jacobian) {
+    one_ = false;
     if constexpr (size == 0) {
       return;
     } else if constexpr (closed_form) {
@@ -49,8 +60,9 @@ class Inverse {
   template <class Vector>
   void solve(const Vector& f, Vector& out) const {
     if constexpr (may_be_large) {
-      if (f.size() > 16) {
-        out = lu_.solve(f);
+      if (is_large(f.size())) {
+        if (one_) out = f;
+        else out = lu_.solve(f);
         return;
       }
     }
@@ -63,6 +75,7 @@ class Inverse {
   [[no_unique_address]] std::conditional_t<closed_form, Nothing, Jacobian> work_;
   [[no_unique_address]] std::conditional_t<may_be_large, Eigen::PartialPivLU<Jacobian>, Nothing>
       lu_;
+  bool one_ = true;
 };
 
 struct Newton {
@@ -90,16 +103,31 @@ struct Newton {
     Unknown f, correction, trial, trial_f;
     Differences<Unknown> differences;
     bool valid = false;
+    double floor = kRoundOff;  // of |F|^2, relative: below it no J is made
+    int spent = 0;             // corrections by J = 1
 
     Memory() requires(Unknown::RowsAtCompileTime >= 0) : Memory(Unknown(Unknown::Zero())) {}
     /// sample: an x. After this no solve takes memory.
     explicit Memory(const Unknown& sample)
         : f(sample), correction(sample), trial(sample), trial_f(sample) {
       jacobian.setIdentity(sample.size(), sample.size());
-      if (sample.size() > 0) factors.compute(jacobian);
+      if (sample.size() > 0 && !factors.is_large(sample.size())) factors.compute(jacobian);
       differences = {sample, sample, sample};
     }
+    /// As if there had been no solve.
+    void clear_history() {
+      valid = false;
+      factors.set_one();
+      floor = kRoundOff;
+      spent = 0;
+    }
   };
+
+  /// The target: two digits below the tolerance, at most to the round-off of a residual. A
+  /// kept Jacobian leaves an error of one sign, which must not add up over the steps.
+  static constexpr double aim(double tolerance) {
+    return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
+  }
 
   /// step: schemes/scheme.hpp. x: guess in, best point out.
   template <class Step>
@@ -113,7 +141,7 @@ struct Newton {
       step.residual(x, memory.f);
       [[maybe_unused]] const double before = HasJacobian<Step> ? 0 : memory.f.squaredNorm();
       memory.factors.solve(memory.f, memory.correction);
-      if constexpr (HasFrame<Step>) step.from_frame(memory.correction);
+      if constexpr (HasFrame<Step>) step.expand(memory.correction);
       memory.trial = x - memory.correction;
       step.residual(memory.trial, memory.f);
       const double size = memory.f.squaredNorm(), target = aim(tolerance);
@@ -122,7 +150,7 @@ struct Newton {
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
       }
       tried.evaluations = 2;
-      memory.valid = !HasJacobian<Step> && worth_keeping(false, before, size, scale);
+      memory.valid = !HasJacobian<Step> && worth_keeping(false, before, size, memory.floor * scale);
       if (memory.valid) {
         x = memory.trial;
         tried.iterations = 1;
@@ -140,21 +168,20 @@ struct Newton {
   }
 
  private:
-  // What is aimed at: two digits below the tolerance, at most to the round-off of a residual. A
-  // kept Jacobian leaves an error of one sign, which must not add up over the steps.
-  static constexpr double aim(double tolerance) {
-    return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
-  }
-
   static constexpr double kRoundOff =  // of |F|^2, relative
       64 * 64 * std::numeric_limits<double>::epsilon() * std::numeric_limits<double>::epsilon();
 
   // Is a J that has taken |F|^2 from before to after good enough for the next correction? It should
   // cut |F| by ten; where it is made of differences and costs 2 n + 1 residuals by two, or reach
-  // the round-off.
-  static bool worth_keeping(bool exact, double before, double after, double scale) {
+  // the floor.
+  static bool worth_keeping(bool exact, double before, double after, double floor) {
     if (exact) return after <= 0.01 * before;
-    return after <= 0.25 * before || after <= kRoundOff * scale;
+    return after <= 0.25 * before || after <= floor;
+  }
+  // Does a solve without a J begin with 1? Until that has cost as much as a J of differences.
+  template <class Unknown>
+  static bool begins_with_one(const Memory<Unknown>& memory, Eigen::Index n) {
+    return memory.factors.is_large(n) && memory.factors.is_one() && memory.spent <= 2 * n + 1;
   }
 
   // memory.valid: memory.f is F(x), to be corrected with the Jacobian kept.
@@ -168,12 +195,21 @@ struct Newton {
     const double accepted = tolerance * tolerance * scale, round_off = kRoundOff * scale;
     const double target = std::min(aim(tolerance), tolerance), aimed = target * target * scale;
 
-    auto& [jacobian, factors, f, correction, trial, trial_f, differences, valid] = memory;
+    auto& [jacobian, factors, f, correction, trial, trial_f, differences, valid, floor, spent] =
+        memory;
+    if (!valid && !exact && begins_with_one(memory, x.size())) {
+      step.residual(x, f);
+      ++report.evaluations;
+      valid = true;
+    }
     double size = valid ? f.squaredNorm() : 0;  // |F|^2; with a Jacobian that is kept, f is F(x)
     bool fresh = false;
     const auto finish = [&](Reason reason) {
       const auto most = exact ? 1 : 2 + static_cast<int>(2 * x.size()) / 5;
       memory.valid = memory.valid && report.iterations <= most;
+      if (memory.factors.is_one()) {
+        memory.valid = memory.valid && begins_with_one(memory, x.size());
+      }
       report.reason = reason;
       report.residual = std::sqrt(size / scale);
       return report;
@@ -188,8 +224,9 @@ struct Newton {
       }
       if (!std::isfinite(size)) return finish(Reason::not_finite);
       ++report.iterations;
+      if (factors.is_one()) ++spent;
       factors.solve(f, correction);
-      step.from_frame(correction);
+      step.expand(correction);
       double length = 1, trial_size = 0;
       do {
         trial = x - length * correction;
@@ -197,7 +234,11 @@ struct Newton {
         ++report.evaluations;
         trial_size = trial_f.squaredNorm();
         length /= 2;
-      } while (fresh && !(trial_size < size) && size > round_off && length > 1e-3);
+      } while (fresh && !(trial_size < size) && size > std::max(round_off, accepted) &&
+               length > 1e-3);
+      if (fresh && !exact && size <= accepted && !(trial_size <= 0.25 * size)) {
+        floor = 4 * size / scale;
+      }
       if (!(trial_size < size)) {
         if (size <= accepted) return finish(Reason::converged);
         if (size <= round_off) return finish(Reason::round_off);
@@ -205,7 +246,8 @@ struct Newton {
         memory.valid = false;
         continue;
       }
-      memory.valid = worth_keeping(exact, size, trial_size, scale);
+      memory.valid = worth_keeping(exact, size, trial_size, floor * scale) &&
+                     !(factors.is_one() && report.iterations >= max_iterations / 2);
       fresh = false;
       x = trial;
       f = trial_f;

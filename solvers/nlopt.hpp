@@ -2,7 +2,7 @@
 //
 // LD_SLSQP (the name "nlopt") minimises nothing subject to F(x) = 0: a Newton iteration with a line
 // search. All others minimise 1/2|F|^2, and those with gradients (J'F) stall at the square root of
-// eps. A solve is therefore a few legs. With r = |F|/scale at the best point x_b, a leg works on
+// eps. A solve is therefore several legs. With r = |F|/scale at the best point x_b, a leg works on
 //   z -> F(x_b + sigma z)/(r scale),   sigma = |F(x_b)|/slope,   slope = |dF|/|dx| at the guess,
 // where the objective starts at 1/2 again. Two legs reach the floor; legs end when one does not
 // halve r. A callback stops NLopt at the target (nlopt_force_stop). NLopt's return value, above all

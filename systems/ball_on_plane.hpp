@@ -1,10 +1,12 @@
 // Shared by the balls that roll on the plane z = 0 without slipping.
 //
-//   SO(3) x R^2: the rotation R and the position (x, y) of the centre, which stays at the height
-//   rho; xi = (omega in the body, x', y'). With w = R omega the contact moves at (x' - rho w_y, y'
-//   + rho w_x): 0 on a plane at rest, the plane's own velocity on one that moves.
+//   SO(3) x R^2, xi = (omega in the body, x', y'): the rotation R and the position (x, y) of the
+//   centre, which stays at the height rho.
+// With w = R omega the contact moves at (x' - rho w_y, y' + rho w_x): 0 on a plane at rest, the
+// plane's own velocity on one that moves.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -26,10 +28,16 @@ inline Mat<5, 5> inertia(const Vec<3>& moments, double mass) {
 }
 
 /// Rows of the velocity of the contact, (x' - rho w_y, y' + rho w_x).
-inline Mat<2, 5> contact_velocity(const Element& g, double radius) {
-  const auto& r = g.part<0>();
-  Mat<2, 5> a;
-  a << -radius * r.row(1), 1, 0, radius * r.row(0), 0, 1;
+auto contact_velocity(const auto& g, double radius) {
+  const auto& r = g.template part<0>();
+  using T = std::decay_t<decltype(r(0, 0))>;
+  MatT<T, 2, 5> a;
+  for (int i = 0; i < 3; ++i) {
+    a(0, i) = -radius * r(1, i);
+    a(1, i) = radius * r(0, i);
+  }
+  a(0, 3) = a(1, 4) = T(1.0);
+  a(0, 4) = a(1, 3) = T(0.0);
   return a;
 }
 

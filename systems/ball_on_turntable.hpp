@@ -46,12 +46,11 @@ struct BallOnTurntable {
     f("table_rate", table_rate, "rad/s", "angular velocity of the table");
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(Vec<3>::Constant(moment), mass); }
-  Mat<2, 5> constraints(const Element& g) const {
-    return ball_on_plane::contact_velocity(g, radius);
-  }
-  Vec<2> drift(const Element& g) const {
-    const auto& x = g.part<1>();
-    return {-table_rate * x[1], table_rate * x[0]};
+  auto constraints(const auto& g) const { return ball_on_plane::contact_velocity(g, radius); }
+  auto drift(const auto& g) const {
+    const auto& x = g.template part<1>();
+    using T = std::decay_t<decltype(x[0])>;
+    return VecT<T, 2>(-table_rate * x[1], table_rate * x[0]);
   }
   Start start() const {
     return {.configuration = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0.8, 0},

@@ -1,8 +1,10 @@
 // Shared by the heavy bodies that roll on the plane z = 0 without slipping.
 //
-//   SE(3), body frame at the mass centre, z up; xi = (omega, v), l = 1/2 omega^T I omega + 1/2 m
-//   |v|^2 - m g z. The contact at r from the mass centre rests, v + omega x r = 0; along a
-//   direction u, all in body axes: u . (v + omega x r) = u . v + (r x u) . omega.
+//   SE(3), body frame at the mass centre, z up; xi = (omega, v),
+//   l = 1/2 omega^T I omega + 1/2 m |v|^2 - m g z.
+// The contact at r from the mass centre rests, v + omega x r = 0; along a direction u, all in body
+// axes:
+//   u . (v + omega x r) = u . v + (r x u) . omega.
 // Along gamma = R^T e_z this is the differential of the contact's height: r may move in the body,
 // but only in the tangent plane.
 #pragma once

@@ -1,8 +1,10 @@
 #include <hamel/systems/by_name.hpp>
 
 #include <hamel/framework/mechanics/system_model.hpp>
+#include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/run/run/own_system.hpp>
+#include <hamel/systems/by_text.hpp>
 
 namespace hamel {
 
@@ -33,11 +35,35 @@ SystemDescription describe_system(const std::string& name) {
                         .coordinates = {},
                         .velocities = {},
                         .events = {}};
-  SystemModel model = info->make({});
-  if (model.group.dim == 0) model.group = *registry().group_or_product(model.group.name);
-  out.coordinates = model.group.columns;
-  for (const Component& c : components_of(model)) out.velocities.push_back(c.name);
-  for (const Event& event : events_of(model, nullptr)) out.events.push_back(event.name);
+  const ModelDescription model = describe_model(info->make({}));
+  out.coordinates = model.coordinates;
+  out.velocities = model.velocities;
+  out.events = model.events;
+  return out;
+}
+
+Simulation simulate_text(const std::string& text, const std::string& origin) {
+  return {registry(), origin, OwnSystem{data_system_maker(registry(), origin, text)}};
+}
+
+ModelDescription describe_model(const SystemModel& model) {
+  const GroupInfo group =
+      model.group.dim == 0 ? *registry().group_or_product(model.group.name) : model.group;
+  ModelDescription out;
+  out.name = model.name;
+  out.group = group.name;
+  out.parameters = model.fields;
+  out.inputs = model.inputs;
+  out.parts = model.parts;
+  out.coordinates = group.columns;
+  out.coordinate_units = units_of_element(group);
+  SystemModel complete = model;
+  complete.group = group;
+  for (const Component& c : components_of(complete)) {
+    out.velocities.push_back(c.name);
+    out.velocity_units.push_back(c.unit);
+  }
+  for (const Event& event : events_of(complete, nullptr)) out.events.push_back(event.name);
   return out;
 }
 

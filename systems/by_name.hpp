@@ -22,16 +22,16 @@ inline Simulation simulate(std::string system) { return {registry(), std::move(s
 /// A mechanism by parts.
 Simulation simulate(const Mechanism& mechanism);
 
-// What there is by name, sorted. `hamel list` prints the same.
+// Names of what is registered, sorted. `hamel list` prints the same.
 std::vector<std::string> groups();
-/// Of a group, also of a product "se2*so2^3"; without one all.
+/// Retractions of a group, also of a product "se2*so2^3"; without one all.
 std::vector<std::string> retractions(const std::string& group = "");
 std::vector<std::string> schemes();
 std::vector<std::string> solvers();
-/// Those of files too.
+/// Registered systems, those of files too.
 std::vector<std::string> systems();
 
-/// What is stated about a system.
+/// Description of a system.
 struct SystemDescription {
   std::string name, group;
   std::string summary, formula, known, source;

@@ -39,9 +39,7 @@ struct ChaplyginBall {
     f("inertia", moments, "kg m^2", "principal moments about the centre", moments_of_inertia);
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(moments, mass); }
-  Mat<2, 5> constraints(const Element& g) const {
-    return ball_on_plane::contact_velocity(g, radius);
-  }
+  auto constraints(const auto& g) const { return ball_on_plane::contact_velocity(g, radius); }
   Start start() const {
     return {.configuration = {}, .velocity = {1.2, 2.0, 0.7, 1.0, -0.6}, .momentum = {}};
   }

@@ -1,8 +1,9 @@
 // differential_drive: a cart on two driven wheels, the motors off where no input drives them.
 //
 //   SE(2) x T^2, xi = (omega, v1, v2, right', left'), axle centre as origin, mass centre a ahead of
-//   it: l = 1/2 J w^2 + 1/2 m (v1^2 + (v2 + a w)^2) + 1/2 J_w (right'^2 + left'^2), v2 = 0,  v1 + c
-//   w = R right',  v1 - c w = R left'.
+//   it, w = omega:
+//   l = 1/2 J w^2 + 1/2 m (v1^2 + (v2 + a w)^2) + 1/2 J_w (right'^2 + left'^2),
+//   v2 = 0,  v1 + c w = R right',  v1 - c w = R left'.
 // A motor turns its wheel: inputs u = (right, left), force (0, 0, 0, u1, u2). Without them, on d it
 // is the Chaplygin sleigh with m and J + m a^2 replaced by M = m + 2 J_w/R^2 and K = J + m a^2 + 2
 // J_w c^2/R^2:  M v1' = m a w^2,  K w' = -m a v1 w. Source: Campion, Bastin, d'Andrea-Novel 1996;

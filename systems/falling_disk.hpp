@@ -59,26 +59,33 @@ struct FallingDisk {
     return d.asDiagonal();
   }
 
-  // The vertical and the contact, seen from the body.
+  // The vertical, seen from the body, gamma = (h c, h s, gamma_3): the contact is at -rho (c, s, 0)
+  // from the centre.
   template <class T>
   struct Contact {
-    VecT<T, 3> gamma, along, across, r;
-    Contact(const SE3::Element<T>& g, double radius) {
+    VecT<T, 3> gamma;
+    T h, c, s;
+    explicit Contact(const SE3::Element<T>& g) : gamma(g.rotation.row(2).transpose()) {
       using std::sqrt;
-      const T zero(0.0);
-      gamma = g.rotation.row(2).transpose();
-      const T lean = 1.0 / sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]);
-      along = lean * VecT<T, 3>(-gamma[1], gamma[0], zero);  // e3 x gamma: where it rolls
-      across = gamma.cross(along);
-      r = T(-radius * lean) * VecT<T, 3>(gamma[0], gamma[1], zero);
+      h = sqrt(gamma[0] * gamma[0] + gamma[1] * gamma[1]);
+      const T inverse = 1.0 / h;
+      c = gamma[0] * inverse;
+      s = gamma[1] * inverse;
     }
   };
+  Vec<3> contact(const Element& g) const {
+    const Contact<double> at(g);
+    return {-radius * at.c, -radius * at.s, 0};
+  }
+  /// Rows (r x u, u) of body_on_plane.hpp, multiplied out: u = (-s, c, 0), where it rolls, and
+  /// u = gamma x (-s, c, 0) = (-gamma_3 c, -gamma_3 s, h).
   auto constraints(const auto& g) const {
     using T = body_on_plane::ScalarOf<decltype(g)>;
-    const Contact<T> c(g, radius);
+    const Contact<T> at(g);
+    const T zero(0.0), lever = radius * at.h, &tilt = at.gamma[2];
     MatT<T, 2, 6> a;
-    a.row(0) = body_on_plane::contact_velocity(c.r, c.along);
-    a.row(1) = body_on_plane::contact_velocity(c.r, c.across);
+    a << zero, zero, T(-radius), -at.s, at.c, zero,  //
+        -lever * at.s, lever * at.c, zero, -tilt * at.c, -tilt * at.s, at.h;
     return a;
   }
   auto holonomic(const auto& g) const {
@@ -88,8 +95,12 @@ struct FallingDisk {
     return VecT<T, 1>(g.translation[2] - radius * sqrt(r31 * r31 + r32 * r32));
   }
   auto holonomic_differential(const auto& g) const {
-    const Contact<body_on_plane::ScalarOf<decltype(g)>> c(g, radius);
-    return body_on_plane::contact_velocity(c.r, c.gamma);
+    using T = body_on_plane::ScalarOf<decltype(g)>;
+    const Contact<T> at(g);
+    const T zero(0.0), lever = radius * at.gamma[2];
+    MatT<T, 1, 6> d;
+    d << -lever * at.s, lever * at.c, zero, at.gamma[0], at.gamma[1], at.gamma[2];
+    return d;
   }
   auto potential(const auto& g) const { return mass * gravity * g.translation[2]; }
   Vec<6> potential_differential(const Element& g) const {
@@ -102,7 +113,7 @@ struct FallingDisk {
   /// omega.
   Start rolling(double theta, const Vec<3>& omega) const {
     const Element g = body_on_plane::leaning(theta, radius * std::sin(theta));
-    return body_on_plane::rolling(g, omega, Contact<double>(g, radius).r);
+    return body_on_plane::rolling(g, omega, contact(g));
   }
   Start start() const { return rolling(1.3, {0.1, 0.4, 5}); }
   /// Upright.
@@ -124,10 +135,10 @@ struct FallingDisk {
               },
               {shapes::cylinder(radius, 0.04 * radius)})
         .trail();
-    const auto contact = [r = radius](const auto& g) {
-      return Placement{g.translation + g.rotation * Contact<double>(g, r).r, Mat<3, 3>::Identity()};
+    const auto touches = [disk = *this](const auto& g) {
+      return Placement{g.translation + g.rotation * disk.contact(g), Mat<3, 3>::Identity()};
     };
-    scene.body("contact", contact, {shapes::sphere(0.05 * radius, {.color = "dark"})}).trail();
+    scene.body("contact", touches, {shapes::sphere(0.05 * radius, {.color = "dark"})}).trail();
   }
 };
 

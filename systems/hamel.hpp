@@ -1,7 +1,7 @@
 // hamel: geometric integrators for nonholonomic systems on Lie groups. The one header a user needs.
 //
 // Every registered system runs by name. As C++ types it brings Suslov, ChaplyginSleigh and
-// RollingDisk; each of the others has a header of its own in hamel/systems, named as in `hamel list
+// RollingDisk; each of the others has a separate header in hamel/systems, named as in `hamel list
 // systems`.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Compiling kernels, and adding to a registry: the one place where groups, retractions, schemes and
-// Newton meet. A user's program adds its own with the add_... functions; the library's own are
+// Newton are combined. A user's program adds its own with the add_... functions; the library's are
 // added in systems.cpp, their kernels compiled in the units of systems/kernels/.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 #include <hamel/framework/loop/loop.hpp>
 #include <hamel/framework/run/names/registry.hpp>
-#include <hamel/framework/schemes/erased.hpp>
+#include <hamel/framework/schemes/dynamic_problem.hpp>
 #include <hamel/framework/schemes/left_invariant.hpp>
-#include <hamel/framework/schemes/typed.hpp>
+#include <hamel/framework/schemes/static_problem.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/solvers/newton.hpp>
 
@@ -20,14 +20,10 @@ namespace hamel {
 template <class Tau>
 RetractionInfo retraction_info() {
   static_assert(Retraction<Tau>, "this type does not satisfy hamel::Retraction");
-  RetractionInfo info{Tau::name(),
-                      Tau::Group::name(),
-                      Tau::formula(),
-                      Tau::domain(),
-                      Tau::symmetric,
-                      Tau::one_parameter,
-                      std::make_shared<TypedGeometry<Tau>>()};
+  RetractionInfo info{Tau::name(),    Tau::Group::name(), Tau::formula(),        Tau::domain(),
+                      Tau::symmetric, Tau::one_parameter, erased_geometry<Tau>()};
   if constexpr (requires { Tau::elsewhere(); }) info.elsewhere = Tau::elsewhere();
+  if constexpr (requires { Tau::source(); }) info.source = Tau::source();
   return info;
 }
 
@@ -62,18 +58,19 @@ KernelFactory compile() {
 
 template <class Scheme>
 SchemeInfo scheme_info() {
+  using Step = typename Scheme::template Step<DynamicProblem>;
   return {.name = Scheme::name(),
           .formula = Scheme::formula(),
           .source = Scheme::source(),
-          .adapted = Scheme::adapted,
-          .uses_s = Scheme::uses_s,
-          .fixed_s = Scheme::fixed_s,
-          .steps_admissible = Scheme::steps_admissible,
+          .adapted = Scheme::constraint_kept != ConstraintKept::nowhere,
+          .uses_s = !Scheme::fixed_s.has_value(),
+          .fixed_s = Scheme::fixed_s.value_or(0),
+          .steps_admissible = Scheme::constraint_kept != ConstraintKept::nodes,
           .left_invariant_only = Scheme::left_invariant_only,
-          .explicit_step = Scheme::explicit_step,
-          .estimates_error = Scheme::estimates_error,
-          .varies_steps = Scheme::varies_steps,
-          .places_forces = Scheme::places_forces,
+          .explicit_step = ExplicitStep<Step>,
+          .estimates_error = Scheme::step_choice == StepChoice::by_estimate,
+          .varies_steps = Scheme::step_choice == StepChoice::symmetric,
+          .places_forces = std::is_constructible_v<Step, const DynamicProblem&, double, ForceAt>,
           .claims = &Scheme::claim};
 }
 
@@ -81,7 +78,7 @@ SchemeInfo scheme_info() {
 template <class Scheme>
 void add_scheme(Registry& registry) {
   SchemeInfo info = scheme_info<Scheme>();
-  info.erased = compile<Scheme, Erased>();
+  info.erased = compile<Scheme, DynamicProblem>();
   registry.add(std::move(info));
 }
 
@@ -125,7 +122,7 @@ void add_left_invariant_kernels(Registry& registry) {
 template <class S, class Tau, class... Schemes>
 void add_typed_kernels(Registry& registry) {
   static_assert(!is_left_invariant<S>(), "take add_left_invariant_kernels");
-  using P = Typed<S, Tau>;
+  using P = StaticProblem<S, Tau>;
   (registry.add_kernel(problem_key(typeid(TypedMechanics<S>)), Tau::name(), Schemes::name(),
                        compile<Schemes, P>()),
    ...);

@@ -1,7 +1,8 @@
 // knife_edge_on_incline: a blade that slides down an inclined plane without slipping sideways.
 //
-//   SE(2), x down the slope, xi = (omega, v1, v2) at the blade, l = 1/2 J w^2 + 1/2 m |v|^2 + m g
-//   sin(alpha) x, v2 = 0.   omega is constant, v1' = g sin(alpha) cos(theta).
+//   SE(2), x down the slope, xi = (omega, v1, v2) at the blade,
+//   l = 1/2 J omega^2 + 1/2 m |v|^2 + m g sin(alpha) x,   v2 = 0.
+// omega is constant, v1' = g sin(alpha) cos(theta).
 // With a = g sin(alpha), d = omega t, theta = theta_0 + d and
 //   P + iQ = int_0^t exp(i theta) = t (sin(d/2)/(d/2)) exp(i (theta_0 + d/2)):
 //   v1 = v1(0) + a P,   x = x0 + v1(0) P + a P^2/2,   y = y0 + v1(0) Q + a int_0^t P Q',

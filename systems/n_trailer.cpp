@@ -46,7 +46,7 @@ class Train final : public Mechanics {
     for (int i = n_; i > 0; --i) at(behind_, i - 1) += at(behind_, i);
   }
   int dim() const override { return n_ + 3; }
-  int rows() const override { return n_ + 1; }
+  int constraint_count() const override { return n_ + 1; }
   bool constant_inertia() const override { return false; }
 
   void inertia(const double* g, Matrix out) const override {

@@ -1,16 +1,16 @@
 // n_trailer: a car pulling n trailers, each hitched to the axle before it; n is a parameter.
 //
 //   SE(2) x T^n, xi = (omega, v1, v2, alpha_1', ..., alpha_n'), origin at the axle of the car,
-//   alpha_i the heading of trailer i against the car's. With alpha_0 = 0, n_i = (cos alpha_i, sin
-//   alpha_i), e_i = J n_i, w_i = omega + alpha_i', the velocities of the axles in the frame of the
-//   car are u_i = u_{i-1} - L_i w_i e_i,   u_0 = (v1, v2);     no slip: e_i . u_i = 0, i = 0..n. l
-//   = 1/2 sum_i (m_i |u_i|^2 + J_i w_i^2): the masses are at the axles, and the metric depends on
-//   alpha.
+//   alpha_i the heading of trailer i against the car's.
+// With alpha_0 = 0, n_i = (cos alpha_i, sin alpha_i), e_i = J n_i, w_i = omega + alpha_i', the
+// velocities of the axles in the frame of the car are
+//   u_i = u_{i-1} - L_i w_i e_i,   u_0 = (v1, v2);     no slip: e_i . u_i = 0, i = 0..n.
+//   l = 1/2 sum_i (m_i |u_i|^2 + J_i w_i^2):
+// the masses are at the axles, and the metric depends on alpha.
 // With M_j = sum_{i >= j} m_i, P_j = sum_{i >= j} m_i u_i:
 //   rows:      row i has e_i on (v1, v2) and -L_j cos(alpha_i - alpha_j) on w_j, 1 <= j <= i,
-//   metric:    M_0 on v; -L_j M_j e_j between v and w_j; L_j L_k M_max(j,k) cos(alpha_j - alpha_k)
-//   + J_j
-//              delta_jk between w_j and w_k,
+//   metric:    M_0 on v; -L_j M_j e_j between v and w_j;
+//              L_j L_k M_max(j,k) cos(alpha_j - alpha_k) + J_j delta_jk between w_j and w_k,
 //   gradient:  dl/dalpha_j = L_j w_j n_j . P_j,
 // and w_j = omega + alpha_j' adds the columns of the w_j to that of omega. O(n^2), or O(n) for the
 // gradient. Steady motions: the circles R_i^2 = R_{i-1}^2 - L_i^2 about one centre at constant

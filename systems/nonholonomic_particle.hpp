@@ -36,7 +36,10 @@ struct NonholonomicParticle {
     f("spring", spring, "N/m", "stiffness of a spring along y", non_negative);
   }
   Mat<3, 3> inertia() const { return Vec<3>::Constant(mass).asDiagonal(); }
-  Mat<1, 3> constraints(const Element& g) const { return Mat<1, 3>{-g[1], 0, 1}; }
+  auto constraints(const auto& g) const {
+    using T = std::decay_t<decltype(g[1])>;
+    return MatT<T, 1, 3>(-g[1], T(0.0), T(1.0));
+  }
   auto potential(const auto& g) const { return (0.5 * spring) * (g[1] * g[1]); }
   Start start() const {
     return {.configuration = {0, 0.5, 0}, .velocity = {1, 0.7, 0.5}, .momentum = {}};

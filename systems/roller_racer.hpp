@@ -3,8 +3,9 @@
 //
 //   SE(2) x S^1, xi = (omega, v1, v2, phi'), origin at the rear axle, the hinge at a e1, phi the
 //   angle of the front body, whose axle trails the hinge by b; its mass is left out, its moment is
-//   I_f: l = 1/2 m (v1^2 + v2^2) + 1/2 I omega^2 + 1/2 I_f (omega + phi')^2 - 1/2 k phi^2, v2 = 0,
-//   -sin phi v1 + cos phi (v2 + a omega) - b (omega + phi') = 0,
+//   I_f:
+//   l = 1/2 m (v1^2 + v2^2) + 1/2 I omega^2 + 1/2 I_f (omega + phi')^2 - 1/2 k phi^2,
+//   v2 = 0,   -sin phi v1 + cos phi (v2 + a omega) - b (omega + phi') = 0,
 // with the torque T cos(Omega t) on phi, and that of the input. Neither wheel is driven, and no
 // symmetry points forwards: the momentum is not conserved, and swinging the handlebar propels the
 // racer. Without torque the energy is conserved. Source: Krishnaprasad and Tsakiris, Oscillations,
@@ -69,10 +70,13 @@ struct RollerRacer {
     i(0, 3) = i(3, 0) = front_moment;
     return i;
   }
-  Mat<2, 4> constraints(const Element& g) const {
-    const auto& phi = g.part<1>();
-    return Mat<2, 4>{{0, 0, 1, 0},
-                     {rear_length * phi.c - front_length, -phi.s, phi.c, -front_length}};
+  auto constraints(const auto& g) const {
+    const auto& phi = g.template part<1>();
+    using T = std::decay_t<decltype(phi.c)>;
+    MatT<T, 2, 4> a;
+    a << T(0.0), T(0.0), T(1.0), T(0.0),  //
+        rear_length * phi.c - front_length, -phi.s, phi.c, T(-front_length);
+    return a;
   }
   auto potential(const auto& g) const {
     const auto phi = g.template part<1>().angle();

@@ -36,9 +36,7 @@ struct RollingBall {
     f("inertia", moment, "kg m^2", "moment about the centre", positive);
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(Vec<3>::Constant(moment), mass); }
-  Mat<2, 5> constraints(const Element& g) const {
-    return ball_on_plane::contact_velocity(g, radius);
-  }
+  auto constraints(const auto& g) const { return ball_on_plane::contact_velocity(g, radius); }
   Start start() const {
     return {.configuration = {}, .velocity = {0.4, 1.5, 0.8, 0.75, -0.2}, .momentum = {}};
   }

@@ -72,9 +72,7 @@ struct RouthSphere {
     }
     return i;
   }
-  Mat<2, 5> constraints(const Element& g) const {
-    return ball_on_plane::contact_velocity(g, radius);
-  }
+  auto constraints(const auto& g) const { return ball_on_plane::contact_velocity(g, radius); }
   auto potential(const auto& g) const {
     return (mass * gravity * offset) * g.template part<0>()(2, 2);
   }

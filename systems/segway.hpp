@@ -1,14 +1,13 @@
-// segway: a body that stands on two wheels with a common axle, the motors off where no input drives
+// segway: a body on two wheels with a common axle, upright, the motors off where no input drives
 // them.
 //
 //   SE(2) x T^3, xi = (omega, v1, v2, right', left', pitch'), axle centre as origin, mass centre of
-//   the body b above it, b (sin pitch, 0, cos pitch). With M_0 = m + 2 m_w, principal moments I1,
-//   I2, I3 of the body, moments J_w, J_d of a wheel about the axle and about a diameter, c half the
-//   track: l = 1/2 M_0 (v1^2 + v2^2) + m b (cos pitch v1 pitch' + sin pitch v2 omega) + 1/2 (I2 + m
-//   b^2) pitch'^2
-//     + 1/2 ((I1 + m b^2) sin^2 + I3 cos^2 + 2 m_w c^2 + 2 J_d) omega^2 + 1/2 J_w (right'^2 +
-//     left'^2)
-//     - m g b cos pitch,
+//   the body b above it, b (sin pitch, 0, cos pitch).
+// With M_0 = m + 2 m_w, principal moments I1, I2, I3 of the body, moments J_w, J_d of a wheel about
+// the axle and about a diameter, c half the track:
+//   l = 1/2 M_0 (v1^2 + v2^2) + m b (cos pitch v1 pitch' + sin pitch v2 omega)
+//     + 1/2 ((I1 + m b^2) sin^2 + I3 cos^2 + 2 m_w c^2 + 2 J_d) omega^2
+//     + 1/2 (I2 + m b^2) pitch'^2 + 1/2 J_w (right'^2 + left'^2) - m g b cos pitch,
 //   v2 = 0,  v1 + c omega = R right',  v1 - c omega = R left'  (wheel angles against the vertical).
 // A motor turns a wheel by its torque and the body back: inputs u = (right, left), force (0, 0, 0,
 // u1, u2, -u1 - u2). The metric depends on the pitch. Upright rolling straight on, at any speed, is

@@ -35,10 +35,10 @@ namespace detail {
 template <class Scheme, class S, class Tau>
 constexpr auto problem_of() {
   constexpr int m = S::Group::dim - constraint_count<S>();
-  if constexpr (!is_left_invariant<S>()) return std::type_identity<Typed<S, Tau>>{};
+  if constexpr (!is_left_invariant<S>()) return std::type_identity<StaticProblem<S, Tau>>{};
   else if constexpr (Scheme::reduced)
     return std::type_identity<LeftInvariant<typename S::Group, m, Tau>>{};
-  else return std::type_identity<Erased>{};
+  else return std::type_identity<DynamicProblem>{};
 }
 }  // namespace detail
 
@@ -55,7 +55,7 @@ Simulation simulate(const S& system) {
                 .kernel = compile<Scheme, P>(),
                 .scheme = scheme_info<Scheme>(),
                 .retraction = retraction_info<R>()};
-  if constexpr (has_inputs<S>()) own.driven = compile<Scheme, Typed<Driven<S>, R>>();
+  if constexpr (has_inputs<S>()) own.driven = compile<Scheme, StaticProblem<WithInputs<S>, R>>();
   return {registry(), erase_words(system).name, std::move(own)};
 }
 

@@ -5,8 +5,8 @@
 //     + 1/2 J_1 ((omega + front')^2 + (omega + back')^2),
 //   -sin(front) v1 + cos(front) (v2 + l omega) = 0,   -sin(back) v1 + cos(back) (v2 - l omega) = 0,
 // and the rider's motion prescribes the rotor and the axles (affine rows):
-//   psi = psi_a sin(Omega t),   front = front_0 + phi_a sin(Omega t),   back = back_0 - phi_a
-//   sin(Omega t).
+//   psi = psi_a sin(Omega t),   front = front_0 + phi_a sin(Omega t),
+//   back = back_0 - phi_a sin(Omega t),
 // and whatever rates the inputs add to these three. Without them:
 // the rows of the axles leave one direction X(front, back) in se(2). With N = diag(J + J_0 + 2 J_1,
 // m, m) and X^T N X = 1 the motion is (omega, v) = sigma X and, as [X, X] = 0, a quadrature:
@@ -121,7 +121,7 @@ struct Snakeboard {
                    half_length * std::sin(front + back));
     return x / std::sqrt(x.dot(Vec<3>(whole(), mass, mass).cwiseProduct(x)));
   }
-  /// sigma by Gauss-Legendre of order 6, kept where it was asked for last.
+  /// sigma by Gauss-Legendre of order 6, kept where it was evaluated last.
   auto exact(const Element& g0, const Vec<6>& xi0) const {
     const auto x = [board = *this, front = g0.part<2>().angle(),
                     back = g0.part<3>().angle()](double t) {

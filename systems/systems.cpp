@@ -1,11 +1,13 @@
 // The composition root: the one file that links everything by name.
-#include <hamel/groups/heisenberg.hpp>
 #include <hamel/solvers/ceres.hpp>
 #include <hamel/solvers/ceres_tiny.hpp>
 #include <hamel/solvers/hybrid.hpp>
 #include <hamel/solvers/nlopt.hpp>
 #include <hamel/systems/by_name.hpp>
 #include <hamel/systems/kernels/units.hpp>
+#ifdef HAMEL_HAS_XSIMD
+#include <hamel/systems/lanes/lane_tables.hpp>
+#endif
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/n_trailer.hpp>
@@ -57,12 +59,7 @@ void add_mechanisms(Registry& registry) {
 
 Registry make_registry() {
   Registry registry;
-  add_rotations(registry);
-  add_motions_of_the_plane(registry);
-  add_motions_of_space(registry);
-  add_vector_groups(registry);
-  add_group<Heisenberg>(registry);
-
+  add_groups(registry);
   add_erased_schemes(registry);
   registry.add_scheme_alias("dla", Lift::name());  // discrete Lagrange-d'Alembert
   add_solvers(registry);
@@ -72,9 +69,11 @@ Registry make_registry() {
   add_balls(registry);
   add_disk_and_rattleback(registry);
   add_vehicles(registry);
-  add_driven_vehicles(registry);
   add_system<NTrailer>(registry);
   add_mechanisms(registry);
+#ifdef HAMEL_HAS_XSIMD
+  add_library_lanes(registry);
+#endif
   return registry;
 }
 

@@ -1,7 +1,7 @@
 // unicycle_3d: a body in space that turns freely and moves only along its own first axis.
 //
-//   SE(3), xi = (omega, v), mass centre at the origin: l = 1/2 omega^T I omega + 1/2 m |v|^2, v2 =
-//   v3 = 0.
+//   SE(3), xi = (omega, v), mass centre at the origin: l = 1/2 omega^T I omega + 1/2 m |v|^2,
+//   v2 = v3 = 0.
 // v1 is constant and omega moves as a free top: omega' = I^-1 (I omega x omega).
 // Source: Bloch, Nonholonomic Mechanics and Control (2003), chapter 5 (left-invariant systems).
 #pragma once

@@ -25,7 +25,7 @@ struct Veselova {
 
   void fields(auto& f) { f("inertia", moments, "kg m^2", "principal moments", moments_of_inertia); }
   Mat<3, 3> inertia() const { return moments.asDiagonal(); }
-  Mat<1, 3> constraints(const Element& r) const { return r.row(2); }
+  auto constraints(const auto& r) const { return r.row(2).eval(); }
   Start start() const { return {.configuration = {}, .velocity = {1, 0.6, 0}, .momentum = {}}; }
   void invariants(auto& add) const {
     add("energy", [d = moments](const auto& /*r*/, const Vec<3>& w) {

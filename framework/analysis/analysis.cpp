@@ -8,8 +8,8 @@
 #include <hamel/framework/analysis/conserved.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
-#include <hamel/framework/mechanics/place.hpp>
 
 namespace hamel {
 namespace {
@@ -68,7 +68,7 @@ class Frame {
 
   const Geometry& geometry_;
   const Mechanics& mechanics_;
-  Place<> place_;
+  AdmissibleFrame<> place_;
   Vector g_;
   Matrix frame_;
 };
@@ -107,7 +107,7 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
   const auto geometry = registry.geometry(run.system->group.name, "exp");
   std::shared_ptr<const Mechanics> mechanics = run.system->mechanics;
   out.left_invariant = mechanics->left_invariant();
-  const Eigen::Index n = mechanics->dim(), k = mechanics->rows();
+  const Eigen::Index n = mechanics->dim(), k = mechanics->constraint_count();
   Vector g(geometry->size()), b(k);
   geometry->from_coordinates(run.config.start.configuration, g.data());
   Matrix inertia(n, n), a(k, n);

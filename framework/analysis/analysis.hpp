@@ -44,7 +44,7 @@ struct Analysis {
   std::vector<std::string> notes;  // how the start was projected
 };
 
-/// verdict: by brackets of few fields, and without what is conserved: ten times faster, and not
+/// verdict: by brackets of up to 3 fields, and without what is conserved: ten times faster, and not
 /// always decided.
 enum class AnalysisOf { all, verdict };
 

@@ -7,8 +7,6 @@
 #include <numbers>
 #include <random>
 
-#include <Eigen/Cholesky>
-
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 
@@ -23,8 +21,8 @@ Fields::Fields(const Geometry& geometry, const Mechanics& mechanics, const Vecto
       units_(units),
       n_(mechanics.dim()),
       drift_(with_drift ? 1 : 0),
-      a_(mechanics.rows(), n_),
-      b_(mechanics.rows()) {
+      a_(mechanics.constraint_count(), n_),
+      b_(mechanics.constraint_count()) {
   Matrix inertia(n_, n_);
   mechanics.inertia(g.data(), inertia);
   inertia = (units_.asDiagonal() * inertia * units_.asDiagonal()).eval();
@@ -33,7 +31,7 @@ Fields::Fields(const Geometry& geometry, const Mechanics& mechanics, const Vecto
   const Matrix rows = a_.transpose() * a_;
   if (a_.rows() > 0)
     inertia += inertia.trace() / rows.trace() * rows;  // definite with massless links, too
-  metric_.compute(inertia);
+  metric_ = dense::inverse(inertia);
 }
 
 void Fields::set_rows(double t) {
@@ -53,11 +51,11 @@ Matrix Fields::operator()(const Vector& x) {
   geometry_.tau(step.data(), at_.data());
   geometry_.compose(g_.data(), at_.data(), at_.data());
   set_rows(t);
-  raised_ = metric_.solve(a_.transpose());
+  raised_.noalias() = metric_ * a_.transpose();
   lambda_.resize(a_.rows(), count());
   lambda_.rightCols(frame_.cols()).noalias() = -a_ * frame_;
   if (drift_ == 1) lambda_.col(0) = b_;
-  if (a_.rows() > 0) (a_ * raised_).llt().solveInPlace(lambda_);
+  if (a_.rows() > 0) lambda_ = dense::solve_symmetric(a_ * raised_, lambda_);
   Matrix out = Matrix::Zero(coordinates(), count());
   out.topRows(n_).noalias() = raised_ * lambda_;
   out.topRows(n_).rightCols(frame_.cols()) += frame_;

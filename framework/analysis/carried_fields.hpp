@@ -13,7 +13,7 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
@@ -23,12 +23,12 @@ namespace hamel::carried {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// Of the size of the fields: generations smaller than that are taken for zero.
+/// Relative to the size of the fields: smaller generations are taken for zero.
 constexpr double kNothing = 1e-6;
 
 /// The fields X_0 (where there is one) and X_a at x, t, as columns; the coordinates are x or (x,
 /// t), in units of `units`. X_a is a vector of the frame at g, constant in the body, less what the
-/// rows forbid of it; X_0 is the least velocity that they ask for, both in the metric of the
+/// rows forbid of it; X_0 is the least velocity that they require, both in the metric of the
 /// inertia at g.
 class Fields {
  public:
@@ -50,7 +50,7 @@ class Fields {
   Eigen::Index n_, drift_;
   Matrix a_, frame_;
   Vector b_;
-  Eigen::LLT<Matrix> metric_;
+  Matrix metric_;  // the inverse inertia
   Matrix raised_, lambda_;
 };
 

@@ -1,7 +1,7 @@
 // Columns of different units are compared as numbers without one: each is divided by its largest
 // value over all motions. A combination is kept when it changes by 1e-9 at most along every motion,
-// with each motion's largest value of its terms for unit. Those that are zero on every motion (the
-// rows, and what follows from them) are no more than identities, and combinations that differ by
+// with each motion's largest value of its terms for unit. Combinations zero on every motion
+// (the rows, and what follows from them) are no more than identities; combinations that differ by
 // one count once, in the form with the fewest terms.
 #include <hamel/framework/analysis/conserved.hpp>
 
@@ -32,9 +32,9 @@ class Search {
          const Geometry& geometry)
       : registry_(registry), first_(first), frame_(frame), geometry_(geometry), n_(frame.rows()) {
     names_ = {"E"};
-    for (const char* kind : {"xi", "J"}) {
-      for (Eigen::Index i = 1; i <= n_; ++i) names_.push_back(fmt::format("{}{}", kind, i));
-    }
+    for (const Component& component : components_of(*first_.system))
+      names_.push_back(component.name);
+    for (Eigen::Index i = 1; i <= n_; ++i) names_.push_back(fmt::format("J{}", i));
     values_.resize(0, width());
     changes_ = values_;
   }
@@ -144,12 +144,12 @@ class Search {
     basis.conservativeResize(v.size(), basis.cols() + 1);
     basis.rightCols<1>() = v;
   }
-  // Of a combination, in units of the largest sum of its terms.
+  // The change of a combination, in units of the largest sum of its terms.
   double change(const Vector& v) const {
     const double unit = (values_ * v.asDiagonal()).cwiseAbs().rowwise().sum().maxCoeff();
     return (changes_ * v).cwiseAbs().maxCoeff() / std::max(unit, 1e-300);
   }
-  // What is left of it beside what is known.
+  // The part of v orthogonal to the combinations already known.
   Vector fresh(const Vector& v) const { return v - known_ * (known_.transpose() * v); }
 
   void take(const Vector& v) {
@@ -158,7 +158,7 @@ class Search {
     --left_;
   }
 
-  // Those with so many terms, the first names first.
+  // Takes the combinations of so many terms, the first names first.
   void combinations_of(int terms) {
     constexpr double most = 4000;
     double all = 1;
@@ -186,7 +186,7 @@ class Search {
     if (weights.cwiseAbs().minCoeff() > 1e-6 && fresh(v).norm() > 1e-6 && change(v) <= kKept)
       take(v);
   }
-  // What takes more terms, in echelon form.
+  // Takes the combinations that need more terms, in echelon form.
   void rest() {
     Matrix rows(0, width());
     for (Eigen::Index i = 0; i < kept_.cols() && rows.rows() < left_; ++i) {

@@ -9,8 +9,8 @@
 // combinations of all brackets of 1, 2, ... fields, at g and at a configuration nearby
 // (carried_fields.hpp). Ranks nearby are generic: d stays closed from the first generation on that
 // adds nothing there, and no configuration has more directions than that. At g itself brackets may
-// pause and go on (z' = y^2 x' at y = 0: 2, 2, 3). Tolerances: a direction is new when it is above
-// 1e-6 of its generation and ten times above the generation's error, measured by computing it
+// pause and grow again (z' = y^2 x' at y = 0: 2, 2, 3). Tolerances: a direction is new when it is
+// above 1e-6 of its generation and ten times above the generation's error, measured by computing it
 // twice. A generation whose error exceeds 1e-4 of it (from six or seven fields on) is not decided,
 // nor is any beyond it. Generations below 1e-6 of the fields are taken for zero. Where such a small
 // bracket is ten times above the errors of its own coordinates, nothing is decided: z' = 1e-12 y x'
@@ -31,14 +31,14 @@ struct Growth {
   int nearby = -1;          // what brackets span at configurations nearby; -1: not decided
   bool with_drift = false;  // X_0 is among the fields
   int looked_at = 0;        // brackets of at most this many fields were looked at
-  bool round_off = false;   // deeper ones could not be told from round-off
+  bool round_off = false;   // deeper ones could not be distinguished from round-off
   bool near_zero = false;   // some that are left out are small, but not zero
   /// The span of all brackets is known and reached.
   bool decided() const { return dimensions.back() == nearby; }
 };
 
-/// So many fields in a bracket: more drown in round-off; a few take a tenth of a second where these
-/// take ten.
+/// So many fields in a bracket: more drown in round-off; kFewFields take a tenth of a second where
+/// kMostFields take ten.
 constexpr int kMostFields = 8, kFewFields = 3;
 
 /// geometry: of a retraction with tau(x) for |x| < 3. Brackets of up to n fields are looked at,

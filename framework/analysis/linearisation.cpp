@@ -104,7 +104,7 @@ Matrix input_slopes(const SteadyEquations& equations,
   const auto inputs = std::make_shared<Inputs>(model.inputs, zeros);
   const Flow driven(geometry, model.drive(inputs));
   for (size_t i = 0; i < model.inputs.size(); ++i) {
-    Vector force = Vector::Zero(2 * n), slip = Vector::Zero(driven.rows());
+    Vector force = Vector::Zero(2 * n), slip = Vector::Zero(driven.constraint_count());
     differentiate(kStep, [&](double u, double weight) {
       inputs->set(i, u);
       force.tail(n) += weight * driven.acceleration(at.g, at.xi);
@@ -138,7 +138,7 @@ Linearisation linearisation(const Registry& registry, const Simulation& run) {
                      model.name, out.motion.residual)});
   }
   const ReducedLinearisation linear = equations.linearise(at);
-  // Of the 2n numbers those that tell the states apart best.
+  // The 2n numbers that distinguish the states best.
   const Names names = names_of(model);
   const Matrix preferred = linear.basis.transpose() * names.preference.asDiagonal();
   std::vector<int> chosen = dense::pivots(preferred);

@@ -38,7 +38,7 @@ Matrix Flow::Ad_inverse(const Vector& g) const {
 }
 
 Vector Flow::acceleration(const Vector& g, const Vector& xi) const {
-  const int n = dim(), k = rows();
+  const int n = dim(), k = constraint_count();
   Matrix inertia(n, n), a(k, n), inertia_rate = Matrix::Zero(n, n), a_rate = Matrix::Zero(k, n);
   Vector b(k), b_rate = Vector::Zero(k), force(n), turned(n);
   differentiate(kStep / std::max(1.0, xi.norm()), [&](double shift, double weight) {
@@ -71,22 +71,22 @@ Vector Flow::momentum(const Vector& g, const Vector& xi) const {
 }
 
 Vector Flow::holonomic(const Vector& g) const {
-  Vector phi(held());
+  Vector phi(holonomic_rows());
   mechanics_->holonomic(g.data(), phi);
   return phi;
 }
 
 Vector Flow::slip(const Vector& g, const Vector& xi) const {
-  Matrix a(rows(), dim());
-  Vector b(rows());
+  Matrix a(constraint_count(), dim());
+  Vector b(constraint_count());
   mechanics_->constraints(0, g.data(), a, b);
   return a * xi - b;
 }
 
 Vector Flow::kept(const Vector& g, const Vector& xi, const Vector& eta, double e) const {
-  const int n = dim(), k = rows();
+  const int n = dim(), k = constraint_count();
   const Vector back = -e * eta;
-  Vector turn(g.size()), xi_there(n), force(n), phi(held());
+  Vector turn(g.size()), xi_there(n), force(n), phi(holonomic_rows());
   geometry_->tau(back.data(), turn.data());
   geometry_->Ad(turn.data(), xi.data(), xi_there.data());
   Matrix carry(n, n);  // Ad_exp(-e eta)
@@ -110,7 +110,7 @@ Vector Flow::kept(const Vector& g, const Vector& xi, const Vector& eta, double e
   }
   const Matrix inertia_back = carry.transpose() * inertia * carry;
   const Vector force_back = carry.transpose() * force;
-  Vector out(2 * n * n + 2 * n + held());
+  Vector out(2 * n * n + 2 * n + holonomic_rows());
   out << inertia_back.reshaped(), onto.reshaped(), force_back, drift, phi;
   return out;
 }

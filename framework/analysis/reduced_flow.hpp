@@ -1,8 +1,8 @@
 // The flow of a system and its symmetries, pointwise and by values only. For steady.cpp, not
 // installed.
 //
-//   Z(g, xi) = (xi, a(g, xi)):  I a = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,  A a = db/dt -
-//   (dA/dt) xi.
+//   Z(g, xi) = (xi, a(g, xi)):  I a = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,
+//                               A a = db/dt - (dA/dt) xi.
 // A pair (zeta, eta) of the algebra moves g to exp(e zeta) g exp(e eta), so that xi becomes
 // Ad_exp(-e eta) xi:
 //   X_(zeta, eta)(g, xi) = (Ad_g^-1 zeta + eta, -ad_eta xi),
@@ -42,8 +42,8 @@ class Flow {
       : geometry_(std::move(geometry)), mechanics_(std::move(mechanics)) {}
 
   int dim() const { return mechanics_->dim(); }
-  int rows() const { return mechanics_->rows(); }
-  int held() const { return mechanics_->holonomic_rows(); }
+  int constraint_count() const { return mechanics_->constraint_count(); }
+  int holonomic_rows() const { return mechanics_->holonomic_rows(); }
   /// g tau(eta).
   Vector moved(const Vector& g, const Vector& eta) const;
   /// a(g, xi).
@@ -57,14 +57,14 @@ class Flow {
   Matrix ad(const Vector& xi) const;
   Matrix Ad_inverse(const Vector& g) const;
 
-  /// A basis of the symmetries that move something, columns (zeta, eta), found at a few places near
-  /// g. What moves nothing anywhere, as (zeta, -zeta) of a commutative factor, is left out.
+  /// A basis of the symmetries that move something, columns (zeta, eta), found at some places near
+  /// g. Symmetries that move nothing, as (zeta, -zeta) of a commutative factor, are left out.
   Matrix symmetries(const Vector& g) const;
   /// The columns X_s(g, xi) of these symmetries.
   Matrix orbit(const Matrix& symmetries, const Vector& g, const Vector& xi) const;
 
  private:
-  // What a symmetry keeps, as numbers, at (g exp(e eta), Ad xi), seen from before the move.
+  // The quantities a symmetry keeps, at (g exp(e eta), Ad xi), seen from before the move.
   Vector kept(const Vector& g, const Vector& xi, const Vector& eta, double e) const;
 
   std::shared_ptr<const Geometry> geometry_;

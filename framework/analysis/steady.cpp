@@ -41,7 +41,7 @@ std::vector<Complex> eigenvalues_of(const Matrix& m) {
 }
 
 // How far each eigenvalue moves when the linearisation changes by its own errors: three times the
-// most. Those of a Jordan block move like a root of them, whatever their condition number. noise:
+// most. Eigenvalues of a Jordan block move like a root of them, whatever their condition. noise:
 // of the entries, at least round-off.
 std::vector<double> measured_round_off(const ReducedLinearisation& linear, double noise,
                                        const std::vector<Complex>& values) {
@@ -118,7 +118,7 @@ SteadyMotion SteadyEquations::motion(const SteadyPoint& at, int family) const {
     out.round_off.push_back(round_off[i]);
     const Eigen::VectorXcd both =
         linear.basis.cast<Complex>() * solver.vectors.col(static_cast<Eigen::Index>(i));
-    // Where the mode is along the symmetries, which are divided out, as a spin that decays: its
+    // A mode along the symmetries, which are divided out (a spin that decays), is given by its
     // velocities.
     const bool moves = both.head(n).norm() > 1e-9 * both.norm();
     const Eigen::VectorXcd mode = moves ? both.head(n) : both.tail(n);
@@ -165,7 +165,7 @@ std::vector<std::vector<int>> eigenvalue_curves(const std::vector<SteadyMotion>&
   for (size_t k = 0; k < motions.size(); ++k) {
     const auto& now = motions[k].eigenvalues;
     std::vector<bool> continued(now.size(), false);
-    // Those that were here before go on along the line through their last two values.
+    // Curves present before are extended along the line through their last two values.
     std::vector<size_t> alive;
     std::vector<reduced::Complex> expected;
     for (size_t c = 0; c < out.size() && k > 0; ++c) {

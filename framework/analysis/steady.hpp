@@ -5,7 +5,7 @@
 // guess. Seen from the frame that goes with s the field W = Z - X_s vanishes there, and its
 // linearisation in (delta, nu), g exp(e delta), xi + e nu, is
 //   delta' = nu + ad_delta Ad_g^-1 zeta,   nu' = da(g, xi)(delta, nu) + ad_eta nu,
-// on the perturbations that keep phi = 0 and A xi = b. Those along the symmetries themselves are
+// on the perturbations that keep phi = 0 and A xi = b. Perturbations along the symmetries are
 // divided out: what is left are the eigenvalues. As many of them vanish as the steady motions form
 // a family (of all speeds, of all circles). Along a parameter a branch of steady motions is
 // followed from neighbour to neighbour, by a predictor along its tangent (steady_branch.hpp).
@@ -40,8 +40,8 @@ struct SteadyMotion {
   double residual = 0;                    // of Z = X_s, phi and A xi = b
   std::vector<std::complex<double>>
       eigenvalues;  // 1/s, by real part, largest first; without the neutral ones
-  /// Of each, measured: how far it moves when the linearisation changes by its own error. A pair
-  /// that meets another is known badly.
+  /// Errors, measured: how far each moves when the linearisation changes by its own error. A pair
+  /// that coincides with another is ill-conditioned.
   std::vector<double> round_off;
   std::vector<std::vector<ModePart>> modes;  // what moves in each
   int neutral = 0;                           // directions of symmetry, and zeros of the family
@@ -56,14 +56,14 @@ SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, c
 /// The same near the start of a run: also `speed(5)`, of systems that define such a motion.
 SteadyMotion steady_motion(const Registry& registry, const Simulation& run);
 
-/// What happens to the steady motions where their stability changes, or where a branch ends.
+/// Changes of the steady motions where their stability changes, or where a branch ends.
 enum class Bifurcation {
-  pitchfork,         // another branch meets this one, on one side of the value, as two halves
+  pitchfork,         // another branch crosses this one, on one side of the value, as two halves
   transcritical,     // another branch crosses this one
   fold,              // this branch turns back
   family,            // at this very value steady motions form a family
   hopf,              // a pair of complex eigenvalues crosses the imaginary axis
-  hamiltonian_hopf,  // two pairs on the axis meet and leave it
+  hamiltonian_hopf,  // two pairs on the axis collide and leave it
   none,              // real eigenvalues pass zero, and no other branch was found
   unknown,           // a branch was lost, without a fold
 };
@@ -81,11 +81,11 @@ struct SteadyCrossing {
   double round_off = 0;  // of the value
   bool pair = false;     // of complex eigenvalues; else a real one
   Bifurcation kind = Bifurcation::unknown;
-  std::optional<SteadyPlace> other;  // on the branch that meets this one, beside the crossing
+  std::optional<SteadyPlace> other;  // on the branch that crosses this one, beside the crossing
 };
 
-/// Where a branch ends before the last value: it turns back (fold), meets another one there as one
-/// of its halves (pitchfork), or was lost. other: on what goes on from there.
+/// The end of a branch before the last value: it turns back (fold), joins another one there as one
+/// of its halves (pitchfork), or was lost. other: on the branch that continues.
 struct SteadyEnd {
   double value = 0, round_off = 0;
   Bifurcation kind = Bifurcation::unknown;
@@ -98,17 +98,17 @@ struct SteadySweep {
   std::vector<SteadyMotion> motions;      // found = false where the branch is not
   std::vector<SteadyCrossing> crossings;  // where the number of unstable eigenvalues changes
   std::optional<SteadyEnd> end;
-  std::optional<SteadyPlace> start;   // of a branch that another one meets: where it was entered
+  std::optional<SteadyPlace> start;   // of a branch that crosses another one: where it was entered
   std::vector<SteadySweep> branches;  // the others that were met and followed, none of them twice
 };
 /// The branch through the steady motion near the start of at(values[0]), or of the first value that
 /// has one. Where steady motions form a family, it is that of the momentum along the start of
-/// at(value). others: the branches that meet it are followed too, and those that meet them.
+/// at(value). others: the branches that cross it are followed too, and those that cross them.
 SteadySweep sweep_steady(const Registry& registry, const std::vector<double>& values,
                          const std::function<Simulation(double value)>& at, bool others = false);
 
-/// Which eigenvalue of each motion goes on in which of the next: entry i of a curve is the place of
-/// the eigenvalue in motions[i], or -1 where the curve is not.
+/// Which eigenvalue of each motion continues as which of the next: entry i of a curve is the place
+/// of the eigenvalue in motions[i], or -1 where the curve is not.
 std::vector<std::vector<int>> eigenvalue_curves(const std::vector<SteadyMotion>& motions);
 
 /// A number rounded to the decimals that are known of it.

@@ -8,7 +8,7 @@
 namespace hamel::reduced {
 namespace {
 
-// Of slopes, whose errors are 1e-11: along a family a tangent has no part.
+// Threshold of slopes, whose errors are 1e-11: along a family a tangent has no part.
 constexpr double kTangentRank = 1e-8;
 constexpr double kLeastCosine = 0.8;  // between the tangents at the ends of a step
 constexpr double kLeastStep = 1e-4;   // of the scale: below it a branch is taken to turn
@@ -165,7 +165,7 @@ std::optional<BranchNode> Branch::beside(const BranchNode& from, const Vector& v
   }
 }
 
-// Where q' = 0 between a node and the one `length` further on its tangent, by the Illinois method.
+// The node with q' = 0 between `here` and the one `length` further on its tangent (Illinois rule).
 BranchNode Branch::level(const BranchNode& here, double length, double behind) {
   const Eigen::Index z = here.tangent.size() - 1;
   double a = 0, b = length, fa = here.tangent[z], fb = behind;

@@ -41,8 +41,8 @@ class Branch {
   /// The node at another value, by as many steps as it needs; here: the last node reached.
   std::optional<BranchNode> advance(const BranchNode& from, double value, BranchNode& here);
   std::optional<BranchNode> advance(const BranchNode& from, double value);
-  /// Where the branch turns back between a node that advance() could not leave and a value, and a
-  /// node behind it.
+  /// The point where the branch turns back, between a node that advance() could not leave and a
+  /// value, and a node behind it.
   struct Turn {
     BranchNode at, behind;
     double round_off;

@@ -83,7 +83,7 @@ double Crossings::measure(const SteadyMotion& motion) const {
   const double real = motion.eigenvalues[index_].real();
   if (!mirrored_) return real;
   if (motion.growing() > static_cast<int>(index_)) return real * real;
-  // Of the eigenvalues on the axis the two that are about to meet.
+  // Selects, of the eigenvalues on the axis, the two that are about to collide.
   std::vector<Complex> axis;
   for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
     const Complex x = motion.eigenvalues[i];
@@ -99,7 +99,7 @@ double Crossings::measure(const SteadyMotion& motion) const {
   return axis.size() < 2 ? -std::numeric_limits<double>::infinity() : -(axis[0] * axis[1]).real();
 }
 
-// Of measure(): what is known of the eigenvalues that cross.
+// Error of measure(): that of the eigenvalues that cross.
 double Crossings::error_at(const SteadyMotion& motion) const {
   double known = 1e-15;
   for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
@@ -110,7 +110,7 @@ double Crossings::error_at(const SteadyMotion& motion) const {
   return known;
 }
 
-// Where the line through both is zero; in the middle where that is not between them.
+// The zero of the line through both points; the middle if that zero is not between them.
 static double secant(double x0, double f0, double x1, double f1) {
   const double x = (f1 * x0 - f0 * x1) / (f1 - f0);
   return x > std::min(x0, x1) && x < std::max(x0, x1) ? x : 0.5 * (x0 + x1);

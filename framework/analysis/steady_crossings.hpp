@@ -1,10 +1,10 @@
-// Where the number of unstable eigenvalues changes along a branch, and what meets it there. For
-// steady_sweep.cpp, not installed.
+// Crossings: values where the number of unstable eigenvalues changes along a branch, and the
+// branches that cross it there. For steady_sweep.cpp, not installed.
 //
 // A crossing is the zero of a smooth function of the value: of the real part that changes its sign;
-// where eigenvalues l and -l* of a system without damping meet on the axis, which they reach like a
+// where eigenvalues l and -l* of a system without damping collide on the axis, reached like a
 // root, of (l + l*)^2/4 or l^2, -w^2 on the other side. At a crossing of a real eigenvalue F_z has
-// one kernel vector v more than beside it, or no branch meets it. On another branch, at z + e v +
+// one kernel vector v more than beside it, or no branch crosses it. On another branch, at z + e v +
 // ..., q is q0 + a e + b e^2: transcritical where its sign changes with that of e, else a
 // pitchfork.
 #pragma once
@@ -24,7 +24,7 @@ struct BranchMotion {
 class Crossings {
  public:
   Crossings(Branch& branch, int family) : branch_(branch), family_(family) {}
-  /// Those between two neighbours, in order.
+  /// The crossings between two neighbours, in order.
   std::vector<SteadyCrossing> between(const BranchMotion& left, const BranchMotion& right);
 
  private:
@@ -39,7 +39,7 @@ class Crossings {
   int family_;
   std::vector<BranchMotion> known_;  // between the two, by value
   std::vector<SteadyCrossing> out_;
-  // Of the one being located: the place of the eigenvalue that grows, a pair, mirrored at the axis.
+  // The one being located: the place of the eigenvalue that grows, a pair, mirrored at the axis.
   size_t index_ = 0;
   bool pair_ = false, mirrored_ = false;
 };

@@ -80,7 +80,7 @@ SteadyPoint SteadyEquations::at(Vector g, Vector xi) const {
 
 Vector SteadyEquations::equations(const Vector& generator, const Vector& g,
                                   const Vector& xi) const {
-  Vector out(2 * dim() + flow_.held() + flow_.rows());
+  Vector out(2 * dim() + flow_.holonomic_rows() + flow_.constraint_count());
   out << field(g, xi) - flow_.orbit(generator, g, xi), flow_.holonomic(g), flow_.slip(g, xi);
   return out;
 }
@@ -95,7 +95,7 @@ Vector SteadyEquations::values(const SteadyPoint& at, bool held) const {
 
 Matrix SteadyEquations::derivative(const SteadyPoint& at, double unit) const {
   const int n = dim();
-  Matrix out = Matrix::Zero(2 * n + flow_.held() + flow_.rows(), 2 * n);
+  Matrix out = Matrix::Zero(2 * n + flow_.holonomic_rows() + flow_.constraint_count(), 2 * n);
   for (int j = 0; j < 2 * n; ++j) {
     const Vector along = Vector::Unit(n, j % n);
     const bool velocity = j >= n;
@@ -183,8 +183,9 @@ ReducedLinearisation SteadyEquations::linearise(const SteadyPoint& at) const {
   ReducedLinearisation out;
   out.orbit = orbit(at);
   const Matrix whole = derivative(at, kStep);  // of W, phi, A xi - b
-  Matrix bounds(flow_.held() + flow_.rows() + out.orbit.cols(), 2 * n);
-  bounds << whole.bottomRows(flow_.held() + flow_.rows()), out.orbit.transpose();
+  Matrix bounds(flow_.holonomic_rows() + flow_.constraint_count() + out.orbit.cols(), 2 * n);
+  bounds << whole.bottomRows(flow_.holonomic_rows() + flow_.constraint_count()),
+      out.orbit.transpose();
   out.basis = kernel_of(bounds, 1e-11);
   out.flow = out.basis.transpose() * whole.topRows(2 * n) * out.basis;
   for (const double unit : {0.8 * kStep, 1.25 * kStep})

@@ -14,7 +14,7 @@ namespace hamel::reduced {
 
 /// Residual of a steady motion.
 constexpr double kGood = 1e-9;
-/// Of the largest singular value: those of directions along which steady motions lie.
+/// Relative to the largest singular value: below it are directions along which steady motions lie.
 constexpr double kNull = 1e-11;
 
 /// The point (g, xi), and the generator (zeta, eta) of the symmetry that carries it.
@@ -94,7 +94,7 @@ class SteadyEquations {
   Flow flow_;
   Vector guess_g_, guess_xi_, along_;
   std::vector<std::string> names_;
-  mutable Matrix symmetries_;  // once they are asked for
+  mutable Matrix symmetries_;  // computed on first use
   mutable bool has_symmetries_ = false;
 };
 

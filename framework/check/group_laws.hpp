@@ -1,8 +1,8 @@
 // The group axioms, measured, by name and by type, a user's own groups included.
 //
-//   for (const auto& law : hamel::check_group(hamel::registry(), "se2*so2^3")) std::cout << law <<
-//   "\n"; for (const auto& law : hamel::check_group<MyGroup, MyRetraction>()) std::cout << law <<
-//   "\n";
+//   for (const auto& law : hamel::check_group(hamel::registry(), "se2*so2^3"))
+//     std::cout << law << "\n";
+//   for (const auto& law : hamel::check_group<MyGroup, MyRetraction>()) std::cout << law << "\n";
 // By name: the laws as far as a run sees the group, through Geometry. By type also the functions
 // that Geometry does not pass on. The retraction draws random elements (products of two tau(xi))
 // and curves through e; any will do.

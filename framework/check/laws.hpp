@@ -1,8 +1,8 @@
-// What every suite of laws is made of: a law with its largest violation, and how violations are
-// measured.
+// The parts that every suite of laws is made of: a law with its largest violation, and how
+// violations are measured.
 //
 // Bounds: algebraic laws 1e-12 (elements have entries of order 1 to 10 and a law chains some tens
-// of operations: a few 1e-15 are seen, a wrong sign gives order 1); laws with a derivative 1e-9, by
+// of operations: errors of 1e-15 are seen, a wrong sign gives order 1); with a derivative 1e-9, by
 // central differences of order 6 with step 4e-3 (round-off about 1e-13, truncation below 1e-10).
 #pragma once
 

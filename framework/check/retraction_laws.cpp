@@ -123,7 +123,7 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
        check::flag(geometry.symmetric(), symmetry.value, abelian), algebraic},
       {"flag one_parameter is right: tau(-s xi)^-1 tau((1-s) xi) = tau(xi)",
        check::flag(geometry.one_parameter(), one_parameter.value, abelian), algebraic},
-      {"tau(a xi) tau(b xi) = tau(b xi) tau(a xi) where the flag commuting says so",
+      {"tau(a xi) tau(b xi) = tau(b xi) tau(a xi) where commuting is set",
        geometry.commuting() ? commuting.value : 0, algebraic},
   };
 }

@@ -1,8 +1,8 @@
 // The laws of a retraction map, measured, by name and by type, also of a user's own.
 //
-//   for (const auto& law : hamel::check_retraction(hamel::registry(), "se3", "cayley")) std::cout
-//   << law << "\n"; for (const auto& law : hamel::check_retraction<Cayley<SO3>>()) std::cout << law
-//   << "\n";
+//   for (const auto& law : hamel::check_retraction(hamel::registry(), "se3", "cayley"))
+//     std::cout << law << "\n";
+//   for (const auto& law : hamel::check_retraction<Cayley<SO3>>()) std::cout << law << "\n";
 // By name: the laws as far as a run sees the map, through Geometry. By type also the functions that
 // Geometry does not pass on, Newton's derivative among them.
 //
@@ -56,7 +56,7 @@ LawReport check_retraction(unsigned long long seed = 1) {
   const TypedGeometry<R> geometry;
   LawReport report = check_retraction(group_info<typename R::Group>(), geometry, seed);
   const M one = M::Identity();
-  check::Largest inverses, newton, tangent;
+  check::Largest inverses, stage, halves, newton, tangent;
   for (const check::Point& point : check::points(geometry, seed)) {
     const V xi = Eigen::Map<const V>(point.xi.data()), p = Eigen::Map<const V>(point.p.data());
     const M dR = R::dtau_right(xi), dL = R::dtau_left(xi);
@@ -68,6 +68,21 @@ LawReport check_retraction(unsigned long long seed = 1) {
              (condition * p.norm()));
     inverses((dL_inverse.transpose() * p - R::dtau_left_inverse_transpose(xi, p)).norm() /
              (condition * p.norm()));
+    V rate;
+    const auto together = R::Group::coordinates(tau_with_rate<R>(xi, p, rate));
+    const auto alone = R::Group::coordinates(R::tau(xi));
+    for (size_t i = 0; i < together.size(); ++i) {
+      stage(std::abs(together[i] - alone[i]) / (1 + std::abs(alone[i])));
+    }
+    for (const V& got : {rate, apply_dtau_left_inverse<R>(xi, p)}) {
+      stage((dL_inverse * p - got).norm() / (condition * p.norm()));
+    }
+    if constexpr (requires { R::tau_of_halves(xi); }) {
+      const auto half = R::tau(V(0.5 * xi));
+      const auto twice = R::Group::coordinates(R::Group::compose(half, half));
+      const auto at_once = R::Group::coordinates(R::tau_of_halves(xi));
+      for (size_t i = 0; i < twice.size(); ++i) halves(std::abs(twice[i] - at_once[i]));
+    }
     if (point.length > 0.7 * point.edge) continue;
     const M slope = R::dtau_right_inverse_transpose_derivative(xi, p);
     M differences;
@@ -88,6 +103,9 @@ LawReport check_retraction(unsigned long long seed = 1) {
     }
   }
   report.push_back({"dR dR^-1 = id = dL dL^-1", inverses.value, check::algebraic});
+  report.push_back({"tau and dL^-1 eta of a stage are those alone", stage.value, check::algebraic});
+  if constexpr (requires(const V& xi) { R::tau_of_halves(xi); })
+    report.push_back({"tau(xi/2)^2 at once", halves.value, check::algebraic});
   report.push_back(
       {"Newton derivative d[dR^-T p] against differences", newton.value, check::differentiated});
   return report;

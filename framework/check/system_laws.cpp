@@ -21,7 +21,7 @@ void inputs_of_zero(const SystemModel& model, const Geometry& geometry, const St
       start.velocity.data(), static_cast<Eigen::Index>(start.velocity.size()));
   // F and b, one below the other.
   const auto acting = [&](const Mechanics& mechanics) {
-    const Eigen::Index n = mechanics.dim(), k = mechanics.rows();
+    const Eigen::Index n = mechanics.dim(), k = mechanics.constraint_count();
     Eigen::VectorXd force(n), b(k), out(n + k);
     Eigen::MatrixXd a(k, n);
     mechanics.force(0.3, g.data(), xi, force);

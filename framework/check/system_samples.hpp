@@ -1,5 +1,5 @@
-// What the laws of a system look at: its matrices at a configuration, an admissible start, other
-// values of its parameters.
+// Samples that the laws of a system use: its matrices at a configuration, an admissible start,
+// other values of its parameters.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ struct Matrices {
 inline Matrices matrices_at(const SystemModel& model, const Geometry* geometry,
                             const std::vector<double>& configuration, double t = 0) {
   const Mechanics& mechanics = *model.mechanics;
-  const Eigen::Index n = mechanics.dim(), k = mechanics.rows();
+  const Eigen::Index n = mechanics.dim(), k = mechanics.constraint_count();
   Matrices out{Eigen::MatrixXd(n, n), Eigen::MatrixXd(k, n), Eigen::VectorXd(k)};
   Eigen::VectorXd g;
   if (geometry != nullptr) {  // else the system is left-invariant

@@ -1,5 +1,5 @@
 // The containers that the library was compiled with: a program with others does not link, and the
-// symbol says why.
+// symbol names the reason.
 #pragma once
 
 #ifdef _GLIBCXX_DEBUG

@@ -1,7 +1,7 @@
 // Mistakes of a configuration. Failures of a step are values instead (framework/loop/status.hpp).
 //
-//   ConfigError   the run asked for is impossible: thrown before anything runs, all mistakes at
-//   once. Status        a numerical failure of a step: a value, never an exception.
+//   ConfigError  the requested run is impossible: thrown before anything runs, all mistakes at once
+//   Status       a numerical failure of a step: a value, never an exception
 #pragma once
 
 #include <span>

@@ -19,7 +19,7 @@ namespace {
 
 using namespace rules;
 
-// What muParser knows of these; the instructions call the rules themselves.
+// The names that muParser accepts; the instructions call the rules themselves.
 double call_one(void* rule, double x) { return static_cast<const Rule*>(rule)->value(x, 0); }
 double call_two(void* rule, double x, double y) {
   return static_cast<const Rule*>(rule)->value(x, y);
@@ -117,7 +117,7 @@ class Expression::Reader {
   }
   static std::string cannot_stand(const std::string& name) {
     return fmt::format(
-        "'{}' cannot stand in a formula: expected a letter, then letters, digits, _ . '", name);
+        "'{}' is not allowed in a formula: expected a letter, then letters, digits, _ . '", name);
   }
 
   void leave_out_unused() {
@@ -216,7 +216,7 @@ class Expression::Reader {
   mu::Parser parser_;
   std::vector<double> values_;
   std::vector<std::optional<size_t>> variable_slot_;
-  std::vector<std::string> names_, unusable_;  // unusable: those with a blank, say
+  std::vector<std::string> names_, unusable_;  // unusable_: those with a blank, for example
   std::vector<size_t> stack_;
   std::vector<std::pair<size_t, size_t>> conditions_;
 };
@@ -282,7 +282,7 @@ double Expression::rate_of(const Instruction& i) const {
     case Op::choose: return x != 0 ? of_y : slopes_[i.c];
     case Op::rule: break;
   }
-  // No slope of what stands still, which may be infinite there.
+  // No slope of a constant argument, which may be infinite there.
   const double by_first = of_x == 0 ? 0 : of_x * i.rule->by_first(x, y);
   return i.rule->arguments == 1 || of_y == 0 ? by_first : by_first + of_y * i.rule->by_second(x, y);
 }

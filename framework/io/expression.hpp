@@ -1,4 +1,4 @@
-// Numbers that stand as a formula in a file: "m*g*sin(slope)", over named variables and constants.
+// Numbers given as a formula in a file: "m*g*sin(slope)", over named variables and constants.
 //
 // The language is muParser's: + - * / ^, comparisons, && ||, a ? b : c, the functions of
 // expression.cpp, and pi. Names may have dots (steer.angle) and end in ' (theta'). muParser reads
@@ -17,7 +17,7 @@ namespace hamel {
 
 constexpr size_t kMostCharacters = 2000;  // of a formula
 
-/// What is wrong with a formula, and behind how many of its characters.
+/// Error of a formula: its message, and behind how many of its characters.
 class ExpressionError : public std::invalid_argument {
  public:
   ExpressionError(const std::string& what, size_t position)
@@ -31,7 +31,7 @@ class ExpressionError : public std::invalid_argument {
 /// One object serves one thread at a time. Evaluation takes no memory.
 class Expression {
  public:
-  /// A formula over these variables; those with a name that is not allowed cannot stand in it.
+  /// A formula over these variables; those with a name that is not allowed are left out.
   /// Throws ExpressionError, with the nearest name for one that is unknown.
   Expression(const std::string& text, const std::vector<std::string>& variables,
              const std::map<std::string, double>& constants = {});
@@ -41,12 +41,12 @@ class Expression {
   double differentiate(std::span<const double> values, double factor, std::span<double> out) const;
   /// Its rate of change where the variables change at these rates.
   double rate(std::span<const double> values, std::span<const double> rates) const;
-  /// The variables that stand in it, by their places.
+  /// The variables that occur in it, by index.
   std::vector<size_t> used() const;
   bool constant() const { return inputs_.empty(); }
   /// Are its derivatives constant, as its form shows?
   bool linear() const;
-  /// Does a comparison, a ? b : c, sign or rint of variables stand in it?
+  /// Does a comparison, a ? b : c, sign or rint of variables occur in it?
   bool may_jump() const;
 
   /// May a variable or constant have this name?
@@ -73,7 +73,7 @@ class Expression {
   std::vector<std::pair<size_t, size_t>> inputs_;  // slot, variable
   std::vector<Instruction> instructions_;
   size_t result_ = 0;
-  mutable std::vector<double> slots_, slopes_;  // slopes_: rates where those are asked for
+  mutable std::vector<double> slots_, slopes_;  // slopes_: rates, on request
   std::vector<bool> fixed_;                     // slots that hold a constant
 };
 

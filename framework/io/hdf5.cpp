@@ -20,13 +20,33 @@ using namespace hdf5;
 
 namespace {
 
+// HDF5 takes a / for a group: a data set of such a name has the sign of a division instead, and its
+// own name as an attribute.
+constexpr char kDivision[] = "\u2215";
+
+// Texts up to this many bytes are stored one after the other: HDF5 takes 90 bytes of memory and 30
+// of the file for each one of a length of its own.
+constexpr size_t kFixed = 64;
+
+std::string link_of(const std::string& name) {
+  std::string out;
+  for (const char letter : name) letter == '/' ? out += kDivision : out += letter;
+  return out;
+}
+
 void write_column(hid_t file, const TableColumn& column) {
   const hsize_t size = column.size();
   const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, "H5Screate_simple");
+  // Without the time of writing: a table has the same bytes whenever it is written.
+  const Handle timeless(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "H5Pcreate");
+  check(H5Pset_obj_track_times(timeless, false), "H5Pset_obj_track_times");
+  const Handle utf8(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "H5Pcreate");
+  check(H5Pset_char_encoding(utf8, H5T_CSET_UTF8), "H5Pset_char_encoding");
+  const std::string link = link_of(column.name);
   const auto write = [&](hid_t stored, hid_t memory, const void* data) {
-    const Handle set(
-        H5Dcreate2(file, column.name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-        H5Dclose, "H5Dcreate2");
+    const Handle set(H5Dcreate2(file, link.c_str(), stored, space, utf8, timeless, H5P_DEFAULT),
+                     H5Dclose, "H5Dcreate2");
+    if (link != column.name) write_text(set, "name", column.name);
     if (size > 0) check(H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "H5Dwrite");
     write_text(set, "unit", column.unit);
     write_text(set, "meaning", column.meaning);
@@ -36,12 +56,40 @@ void write_column(hid_t file, const TableColumn& column) {
   } else if (const auto* whole = std::get_if<std::vector<long long>>(&column.values)) {
     write(H5T_STD_I64LE, H5T_NATIVE_LLONG, whole->data());
   } else {
+    const auto& texts = std::get<std::vector<std::string>>(column.values);
+    size_t longest = 1;
+    for (const std::string& text : texts) longest = std::max(longest, text.size());
+    if (longest <= kFixed) {
+      std::string all;
+      for (const std::string& text : texts) (all += text).append(longest - text.size(), '\0');
+      const Handle type = text_type(longest);
+      return write(type, type, all.data());
+    }
     std::vector<const char*> words;
-    for (const auto& word : std::get<std::vector<std::string>>(column.values))
-      words.push_back(word.c_str());
+    for (const std::string& text : texts) words.push_back(text.c_str());
     const Handle type = text_type(H5T_VARIABLE);
     write(type, type, words.data());
   }
+}
+
+std::vector<std::string> read_texts(hid_t set, hid_t stored, size_t size) {
+  std::vector<std::string> out;
+  const bool variable = H5Tis_variable_str(stored) > 0;
+  const size_t length = variable ? 0 : H5Tget_size(stored);
+  const Handle type = text_type(variable ? H5T_VARIABLE : length);
+  std::vector<char*> words(variable ? size : 0, nullptr);
+  std::string all(size * length, '\0');
+  void* to = variable ? static_cast<void*>(words.data()) : all.data();
+  if (size > 0) check(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to), "H5Dread");
+  for (char* word : words) {
+    out.emplace_back(word == nullptr ? "" : word);
+    H5free_memory(word);
+  }
+  for (size_t at = 0; at < all.size(); at += length) {
+    out.push_back(all.substr(at, length));
+    out.back().erase(out.back().find_last_not_of('\0') + 1);
+  }
+  return out;
 }
 
 TableColumn read_column(hid_t file, const std::string& name) {
@@ -49,7 +97,11 @@ TableColumn read_column(hid_t file, const std::string& name) {
       space(H5Dget_space(set), H5Sclose, "H5Dget_space"),
       type(H5Dget_type(set), H5Tclose, "H5Dget_type");
   const size_t size = static_cast<size_t>(H5Sget_simple_extent_npoints(space));
-  TableColumn out{name, read_text(set, "unit"), read_text(set, "meaning"), {}};
+  const bool renamed = H5Aexists(set, "name") > 0;
+  TableColumn out{renamed ? read_text(set, "name") : name,
+                  read_text(set, "unit"),
+                  read_text(set, "meaning"),
+                  {}};
   const auto read = [&](hid_t memory, void* data) {
     if (size > 0) check(H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "H5Dread");
   };
@@ -62,16 +114,7 @@ TableColumn read_column(hid_t file, const std::string& name) {
       read(H5T_NATIVE_LLONG,
            (out.values = std::vector<long long>(size), std::get<1>(out.values).data()));
       break;
-    default: {
-      std::vector<char*> words(size, nullptr);
-      read(text_type(H5T_VARIABLE), words.data());
-      std::vector<std::string> texts;
-      for (char* word : words) {
-        texts.emplace_back(word == nullptr ? "" : word);
-        H5free_memory(word);
-      }
-      out.values = std::move(texts);
-    }
+    default: out.values = read_texts(set, type, size);
   }
   return out;
 }
@@ -99,7 +142,7 @@ void Table::write_hdf5(const std::string& path,
                       "H5Fcreate");
     for (const auto& [name, value] : texts) write_text(file, name, value);
     for (const TableColumn& column : columns) write_column(file, column);
-    check(H5Fflush(file, H5F_SCOPE_LOCAL), "H5Fflush");  // closing it would not tell
+    check(H5Fflush(file, H5F_SCOPE_LOCAL), "H5Fflush");  // closing it would not report
   } catch (const ConfigError& error) {
     const std::string reason = errno != 0 ? std::strerror(errno) : error.what();
     std::remove(part.c_str());

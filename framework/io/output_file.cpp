@@ -53,7 +53,7 @@ FileLock::FileLock(const std::string& path) {
   for (;;) {
     file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     struct flock all = whole_file();
-    if (file_ < 0) return;  // unwritable: said by who writes
+    if (file_ < 0) return;  // unwritable: reported by the writer
     const bool got = fcntl(file_, F_OFD_SETLK, &all) == 0;
     const bool held = !got && (errno == EAGAIN || errno == EACCES);
     if (!held && (!got || same_file(file_, path))) return;  // (or a file system without locks)
@@ -87,7 +87,7 @@ void write_file(const std::string& path, const std::string& text) {
   }
 }
 
-// Asked, not tried: a file that is made for a moment stays there when the program is killed at that
+// Queries, does not try: a file made for a moment stays there when the program is killed at that
 // moment.
 std::string unwritable(const std::string& path) {
   namespace fs = std::filesystem;

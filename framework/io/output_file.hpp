@@ -7,13 +7,13 @@
 
 namespace hamel {
 
-/// What was written is kept beside the file, as name.part, and is no whole: a full disk, a pipe
-/// that was closed.
+/// Thrown where a file could not be completed (a full disk, a closed pipe): the part written stays
+/// beside it, as name.part.
 struct Unfinished : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Where `path` is written until it is done.
+/// The path under which `path` is written until it is complete.
 inline std::string part_of(const std::string& path) { return path + ".part"; }
 
 /// The same for all spellings of a path ("a.h5", "./a.h5", through a link to its folder).
@@ -22,7 +22,7 @@ std::string place_of(const std::string& path);
 /// Brings `part` to the disk and gives it its name; Unfinished on failure.
 void finish_file(const std::string& part, const std::string& path);
 
-/// This process writes the file: others that ask are told, until this object or the process ends.
+/// This process writes the file: other processes are refused until this object or the process ends.
 class FileLock {
  public:
   /// Creates the file where there is none. ConfigError where another has it.

@@ -28,6 +28,20 @@ struct ColumnGroup {
   std::vector<std::string> columns;
 };
 
+/// A small number of rows with names: written whole with the end of a file, as one data set of a
+/// compound type, the name and these columns.
+struct NamedRows {
+  std::string set;  // "" for none
+  std::string name;
+  std::size_t longest = 0;  // bytes of a name
+  std::vector<std::string> columns;
+  struct Row {
+    std::string name;
+    std::vector<double> values;
+  };
+  std::vector<Row> rows = {};
+};
+
 /// The checksum of rows that come after others with the checksum `before`; of none it is kNoRows.
 constexpr std::uint64_t kNoRows = 14695981039346656037u;
 std::uint64_t checksum_of_rows(std::uint64_t before, std::span<const double> rows);
@@ -36,15 +50,15 @@ class RowFileWriter {
  public:
   /// Unfinished where the file cannot be created, ConfigError without HDF5 in the build.
   RowFileWriter(std::string path, const std::vector<ColumnGroup>& groups,
-                const std::map<std::string, std::string>& texts);
+                const std::map<std::string, std::string>& texts, const NamedRows& named = {});
   /// Leaves the file as it is, unfinished.
   ~RowFileWriter();
   /// Whole rows, one after the other. Unfinished on failure, here and below.
   void append(std::span<const double> rows);
-  /// What belongs to the rows so far: readers see it when they see these.
+  /// Adds bytes that belong to the rows so far: readers see them when they see these rows.
   void mark(std::string_view bytes);
-  /// Closes the file, with the text of its record.
-  void finish(const std::string& record);
+  /// Closes the file, with the text of its record and the named rows.
+  void finish(const std::string& record, const NamedRows& named = {});
 
  private:
   struct Data;
@@ -64,7 +78,7 @@ class RowFileReader {
   bool finished() const;
   std::string record() const;
   std::size_t rows() const;
-  /// Of all rows of a finished file; none in files of before there was one.
+  /// The checksum of all rows of a finished file; none in files older than checksums.
   std::optional<std::uint64_t> checksum() const;
   /// Whole rows, one after the other.
   void read(std::size_t first, std::size_t count, std::vector<double>& out) const;
@@ -72,7 +86,7 @@ class RowFileReader {
     std::size_t rows;
     std::string bytes;
   };
-  /// Those that are whole with all rows before them, in their order. Reads these rows.
+  /// The marks that are whole with all rows before them, in their order. Reads these rows.
   std::vector<Mark> marks() const;
 
  private:

@@ -1,4 +1,4 @@
-// Where the build has no HDF5.
+// Row files in a build without HDF5.
 #include <cstdlib>
 
 #include <fmt/format.h>
@@ -19,13 +19,13 @@ namespace {
 
 std::uint64_t checksum_of_rows(std::uint64_t before, std::span<const double>) { return before; }
 RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>&,
-                             const std::map<std::string, std::string>&) {
+                             const std::map<std::string, std::string>&, const NamedRows&) {
   no_hdf5(path);
 }
 RowFileWriter::~RowFileWriter() = default;
 void RowFileWriter::append(std::span<const double>) {}
 void RowFileWriter::mark(std::string_view) {}
-void RowFileWriter::finish(const std::string&) {}
+void RowFileWriter::finish(const std::string&, const NamedRows&) {}
 RowFileReader::RowFileReader(const std::string& path) { no_hdf5(path); }
 RowFileReader::~RowFileReader() = default;
 RowFileReader::RowFileReader(RowFileReader&&) noexcept = default;

@@ -1,4 +1,4 @@
-// What the writer and the reader of row files (row_file.hpp) share. Not installed.
+// Definitions that the writer and the reader of row files (row_file.hpp) share. Not installed.
 #pragma once
 
 #include <array>

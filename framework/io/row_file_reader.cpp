@@ -21,6 +21,12 @@ bool is_bytes(hid_t set) {
   return H5Tget_class(type) == H5T_INTEGER;
 }
 
+// Named rows, for other readers.
+bool is_named(hid_t set) {
+  const Handle type(H5Dget_type(set), H5Tclose, "H5Dget_type");
+  return H5Tget_class(type) == H5T_COMPOUND;
+}
+
 void read_column(hid_t set, hsize_t first, hsize_t count, hsize_t width, double* out) {
   const int rank = width > 1 ? 2 : 1;
   const hsize_t start[] = {first, 0}, block[] = {count, width};
@@ -78,7 +84,7 @@ RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<D
   if (H5Fis_hdf5(path.c_str()) <= 0) refuse("it is no HDF5 file");
   data_->attempt([&] {
     const Handle access = latest_format();
-    // What another writes may be read again until it is whole; what is damaged stays so, at every
+    // Metadata that another process writes may be reread until it is whole; damage stays, at every
     // level of the file.
     if (!locked(path)) check(H5Pset_metadata_read_attempts(access, 1), "H5Pset_metadata");
     hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
@@ -98,6 +104,7 @@ RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<D
         if (name != kMarks && name != kRecord) data_->texts.push_back(name);
         continue;
       }
+      if (is_named(*set)) continue;
       ColumnGroup group{
           name, read_text(*set, "unit"), read_text(*set, "meaning"), read_text(*set, "frame"), {}};
       const std::string columns = read_text(*set, "columns");

@@ -40,6 +40,34 @@ void append_to(hid_t set, hid_t type, hsize_t at, hsize_t count, hsize_t width, 
   check(H5Dwrite(set, type, here, there, H5P_DEFAULT, data), "H5Dwrite");
 }
 
+// One row of a set of named rows: its name, then the numbers.
+Handle type_of_named(const NamedRows& named) {
+  const std::size_t size = std::max<std::size_t>(named.longest, 1);
+  Handle type(H5Tcreate(H5T_COMPOUND, size + named.columns.size() * sizeof(double)), H5Tclose,
+              "H5Tcreate");
+  check(H5Tinsert(type, named.name.c_str(), 0, text_type(size)), "H5Tinsert");
+  for (std::size_t i = 0; i < named.columns.size(); ++i)
+    check(H5Tinsert(type, named.columns[i].c_str(), size + i * sizeof(double), H5T_IEEE_F64LE),
+          "H5Tinsert");
+  return type;
+}
+
+void write_named(hid_t set, const NamedRows& named) {
+  const std::size_t size = std::max<std::size_t>(named.longest, 1);
+  std::string bytes;
+  for (const NamedRows::Row& row : named.rows) {
+    std::string name = row.name;
+    name.resize(size, '\0');
+    bytes += name;
+    for (double value : row.values) {  // little endian, as in the file
+      auto bits = std::bit_cast<std::uint64_t>(value);
+      for (std::size_t i = 0; i < sizeof bits; ++i, bits >>= 8) bytes += static_cast<char>(bits);
+    }
+  }
+  if (!named.rows.empty())
+    append_to(set, type_of_named(named), 0, named.rows.size(), 1, bytes.data());
+}
+
 }  // namespace
 
 // As FNV-1a, by numbers instead of bytes; turned, so that a sign counts as much as what is behind
@@ -56,7 +84,7 @@ struct RowFileWriter::Data {
   std::vector<hsize_t> widths;
   std::unique_ptr<Handle> file;
   std::vector<std::unique_ptr<Handle>> sets;
-  std::unique_ptr<Handle> marks, record;
+  std::unique_ptr<Handle> marks, record, named;
   hsize_t width = 0, rows = 0, marked = 0;
   std::vector<double> column;
   bool given_up = false;
@@ -68,6 +96,7 @@ struct RowFileWriter::Data {
     for (auto& set : sets) static_cast<void>(set.release());
     static_cast<void>(marks.release());
     static_cast<void>(record.release());
+    static_cast<void>(named.release());
     static_cast<void>(file.release());
   }
   template <class F>
@@ -85,7 +114,8 @@ struct RowFileWriter::Data {
 };
 
 RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& groups,
-                             const std::map<std::string, std::string>& texts)
+                             const std::map<std::string, std::string>& texts,
+                             const NamedRows& named)
     : data_(std::make_unique<Data>()) {
   begin();
   Data& d = *data_;
@@ -123,6 +153,8 @@ RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& g
     write_number(file, kTexts, H5T_STD_U64LE, d.texts);
     d.marks = std::make_unique<Handle>(create(file, kMarks, H5T_STD_U8LE, kChunkBytes, 1));
     d.record = std::make_unique<Handle>(create(file, kRecord, H5T_STD_U8LE, kChunkBytes, 1));
+    if (!named.set.empty())
+      d.named = std::make_unique<Handle>(create(file, named.set, type_of_named(named), 256, 1));
     check(H5Fstart_swmr_write(file), "H5Fstart_swmr_write");
   });
 }
@@ -165,10 +197,11 @@ void RowFileWriter::mark(std::string_view bytes) {
   d.marked += text.size();
 }
 
-void RowFileWriter::finish(const std::string& record) {
+void RowFileWriter::finish(const std::string& record, const NamedRows& named) {
   Data& d = *data_;
   d.attempt([&] {
     append_to(*d.record, H5T_NATIVE_UINT8, 0, record.size(), 1, record.data());
+    if (d.named != nullptr) write_named(*d.named, named);
     check(H5Fflush(*d.file, H5F_SCOPE_LOCAL), "H5Fflush");
     write_number(*d.file, kChecksum, H5T_STD_U64LE, d.sum);
     write_number(*d.file, kTexts, H5T_STD_U64LE, checksum_of_text(kRecord, record, d.texts));
@@ -177,6 +210,7 @@ void RowFileWriter::finish(const std::string& record) {
     d.sets.clear();
     d.marks.reset();
     d.record.reset();
+    d.named.reset();
     d.file.reset();
   });
 }

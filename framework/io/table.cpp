@@ -1,16 +1,19 @@
 #include <hamel/framework/io/table.hpp>
 
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 
 #include <fmt/format.h>
 
+#include <hamel/framework/io/csv_file.hpp>
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/output_file.hpp>
 
 namespace hamel {
-namespace {
 
-// RFC 4180: quoted where it must be.
-std::string field(const std::string& text) {
+std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string out = "\"";
   for (const char c : text) {
@@ -19,9 +22,6 @@ std::string field(const std::string& text) {
   }
   return out + "\"";
 }
-
-}  // namespace
-
 size_t TableColumn::size() const {
   return std::visit([](const auto& v) { return v.size(); }, values);
 }
@@ -43,18 +43,47 @@ const TableColumn& Table::column(const std::string& name) const {
   throw ConfigError({unknown_name("column", name, known)});
 }
 
+namespace {
+
+// The title and the rows, line by line; each line has its end.
+template <class Put>
+void lines_of(const Table& table, const std::string& numbered, Put&& put) {
+  const auto line = [&](const std::string& first, auto field) {
+    std::string out = first;
+    for (size_t j = 0; j < table.columns.size(); ++j) {
+      if (j > 0 || !numbered.empty()) out += ',';
+      out += csv_field(field(table.columns[j]));
+    }
+    put(out += '\n');
+  };
+  line(csv_field(numbered), [](const TableColumn& column) { return column.name; });
+  for (size_t i = 0; i < table.rows(); ++i)
+    line(numbered.empty() ? "" : std::to_string(i),
+         [i](const TableColumn& column) { return column.text(i); });
+}
+
+}  // namespace
+
 std::string Table::csv() const {
   std::string out;
-  for (size_t j = 0; j < columns.size(); ++j) out += (j > 0 ? "," : "") + field(columns[j].name);
-  out += '\n';
-  for (size_t i = 0; i < rows(); ++i) {
-    for (size_t j = 0; j < columns.size(); ++j) {
-      if (j > 0) out += ',';
-      out += field(columns[j].text(i));
-    }
-    out += '\n';
-  }
+  lines_of(*this, "", [&](const std::string& line) { out += line; });
   return out;
+}
+
+void write_csv(const Table& table, const std::string& path, const std::string& numbered) {
+  const std::string part = part_of(path);
+  std::FILE* file = std::fopen(part.c_str(), "w");
+  bool good = file != nullptr;
+  lines_of(table, numbered, [&](const std::string& line) {
+    good = good && std::fwrite(line.data(), 1, line.size(), file) == line.size();
+  });
+  if (file != nullptr) good = std::fclose(file) == 0 && good;
+  if (!good) {
+    const int reason = errno;
+    std::remove(part.c_str());
+    throw Unfinished(fmt::format("output: cannot write '{}': {}", path, std::strerror(reason)));
+  }
+  finish_file(part, path);
 }
 
 }  // namespace hamel

@@ -1,7 +1,7 @@
 // A table with named columns, each with its unit and meaning: written as CSV and as HDF5.
 //
 // In the CSV a number that is not finite is an empty field. In the HDF5 file each column is a data
-// set of its own name, numbers as 64-bit floats (NaN where there is none) or integers, texts as
+// set with its name, numbers as 64-bit floats (NaN where there is none) or integers, texts as
 // UTF-8 strings; `unit` and `meaning` are its attributes, further texts attributes of the file.
 #pragma once
 
@@ -34,6 +34,9 @@ struct Table {
   /// in the build.
   void write_hdf5(const std::string& path, const std::map<std::string, std::string>& texts) const;
 };
+
+/// A text as a field of a CSV, quoted where it must be (RFC 4180).
+std::string csv_field(const std::string& text);
 
 /// Whether this build can write HDF5, and the version it uses ("" without).
 std::string hdf5_version();

@@ -5,7 +5,7 @@
 
 namespace hamel {
 
-/// What a file of a user, or a text in its place, holds at most.
+/// The most that a file of a user, or a text in its place, may hold.
 constexpr size_t kMaxText = 4'000'000;  // characters
 
 /// The text of a file. ConfigError "what: cannot read 'path': ..." when it is not there, larger

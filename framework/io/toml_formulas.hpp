@@ -24,7 +24,7 @@ class TomlFormulas {
 
   explicit TomlFormulas(TomlReader& toml) : toml_(toml) {}
 
-  /// What may stand in every formula from now on.
+  /// Names allowed in every formula from now on.
   void set(const std::string& name, double value) { constants_[name] = value; }
   const Constants& constants() const { return constants_; }
 

@@ -16,7 +16,7 @@
 
 namespace hamel {
 
-/// Raised by an inverse retraction outside its range (a logarithm at a rotation by pi, say).
+/// Raised by an inverse retraction outside its range (e.g. a logarithm at a rotation by pi).
 struct DomainError : std::domain_error {
   using std::domain_error::domain_error;
 };
@@ -61,7 +61,7 @@ concept Group = requires(const typename G::template Element<double>& g, const Ve
   { G::from_coordinates(values) } -> std::convertible_to<typename G::template Element<double>>;
 };
 
-/// What a scheme's claims depend on.
+/// Properties of tau on which a scheme's claims depend.
 struct TauTraits {
   bool symmetric;  // tau(-xi) = tau(xi)^-1
   bool commuting;  // tau(a xi) tau(b xi) = tau(b xi) tau(a xi)

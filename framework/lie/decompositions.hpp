@@ -12,7 +12,7 @@ namespace hamel::dense {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// m = u diag(values) v^T, the largest value first; u, v empty where the options do not ask for
+/// m = u diag(values) v^T, the largest value first; u, v empty where the options do not request
 /// them.
 struct Svd {
   Vector values;
@@ -36,7 +36,7 @@ std::vector<int> pivots(const Matrix& m);
 Matrix pivoted_q(const Matrix& m);
 /// x with a x = b, or of least residual, by QR with pivoted columns.
 Matrix solve_pivoted(const Matrix& a, const Matrix& b);
-/// Of all x of least residual that of least norm; threshold: of the rank of a, relative.
+/// The x of least norm among those of least residual; threshold: of the rank of a, relative.
 Vector least_norm(const Matrix& a, const Vector& b, double threshold);
 
 /// Columns that span {x : m x = 0}, by LU with full pivoting; one column of zeros where that is 0.
@@ -47,7 +47,7 @@ Matrix solve_symmetric(const Matrix& a, const Matrix& b);
 /// L^-1 b for a = L L^T symmetric and positive definite.
 Matrix solve_lower(const Matrix& a, const Matrix& b);
 
-/// Of a symmetric matrix, in ascending order.
+/// Eigenvalues and eigenvectors of a symmetric matrix, in ascending order.
 struct SymmetricEigen {
   Vector values;
   Matrix vectors;

@@ -34,7 +34,7 @@ void differentiate_along(const Operations& operations, const From& g, const Vect
   }
 }
 
-/// out = df/dt of a function of time whose scale nobody knows: of units 14 ms, 4 ms, ... 1 ns the
+/// out = df/dt of a function of time of unknown scale: of units 14 ms, 4 ms, ... 1 ns the
 /// one at which the derivative changes least, or no more than by round-off. f(t) returns a vector
 /// that holds until the next call; work has two of its size.
 template <class Function, class Vector>

@@ -2,7 +2,7 @@
 //
 // An element is a block of numbers as its group lays it out (Packing), vectors are n numbers,
 // matrices n x n column-major. Products are put together from their factors at run time
-// (ProductGeometry), so that "se2*so2^30" needs no kernel of its own. A virtual call costs about 2
+// (ProductGeometry), so that "se2*so2^30" needs no separate kernel. A virtual call costs about 2
 // ns.
 #pragma once
 
@@ -211,5 +211,12 @@ class ProductGeometry final : public Geometry {
 /// xi with tau_s(xi) = delta (recover_step.hpp, for an erased group); false where there is none.
 bool recover_step(const Geometry& geometry, const double* delta, double s,
                   Eigen::Ref<Eigen::VectorXd> xi);
+
+/// A retraction with its group, the types erased. Specialised where a library has it compiled: made
+/// by type it costs up to 4 s of compilation.
+template <class Tau>
+std::shared_ptr<const Geometry> erased_geometry() {
+  return std::make_shared<TypedGeometry<Tau>>();
+}
 
 }  // namespace hamel

@@ -1,19 +1,21 @@
 // Defaults of a group, from its identity, compose, inverse, Ad and ad.
 //
-// A group of a user's own derives from GroupDefaults<YourGroup, n> and defines name, Element,
+// A user's group derives from GroupDefaults<YourGroup, n> and defines name, Element,
 // identity, compose, inverse, Ad, ad. It inherits, where it does not define them itself:
 //   Ad_transpose(g, mu) = Ad(g)^T mu,  coad(mu) = [(ad_{e_1})^T mu, ..., (ad_{e_n})^T mu],
 //   normalise(g) = g and defect = 0 (no redundant numbers in the element),
 //   matrix(g) = Ad(g) (the adjoint representation, trivial on the centre),
 //   columns x1 ... xN, coordinates and from_coordinates when Element is a column vector.
-// What any group may state of its velocities and coordinates, and no default replaces (GroupFactor,
-// group_info.hpp):
-//   components()   names and units of xi, std::vector<Component>: {{"omega", "rad/s"}, ...}; else
-//   xi1 ... xin; units()        of the columns: {"rad", "m", "m"}; is_shape       static constexpr
-//   bool: the coordinates are the integrals of the components; coordinate_rates(x, xi, out),
-//   add_pulled_back(x, slope, out): out = C(g) xi, the rates of the coordinates x of g
-//                  along g' = g xi, and out += C(g)^T slope, on std::span<const double>,
-//                  std::span<double>; else differences of order 6.
+// Members that any group may define for its velocities and coordinates, without a default
+// (GroupFactor, group_info.hpp):
+//   components()         names and units of xi, std::vector<Component>: {{"omega", "rad/s"}, ...};
+//                        else xi1 ... xin
+//   units()              of the columns: {"rad", "m", "m"}
+//   is_shape             static constexpr bool: the coordinates are the integrals of the components
+//   coordinate_rates(x, xi, out), add_pulled_back(x, slope, out)
+//                        out = C(g) xi, the rates of the coordinates x of g along g' = g xi, and
+//                        out += C(g)^T slope, on std::span<const double>, std::span<double>; else
+//                        differences of order 6
 // The Heisenberg group in full, with a retraction by automatic differentiation: groups/README.md.
 #pragma once
 

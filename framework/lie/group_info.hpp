@@ -44,6 +44,7 @@ struct GroupFactor {
 struct GroupInfo {
   std::string name;                  // "se2*so2"
   std::string summary;               // one line
+  std::string formula, source;       // what an element is, and who writes so
   int dim = 0;                       // n
   std::vector<std::string> columns;  // of an element, as in the CSV
   std::vector<double> identity;      // the identity in those columns
@@ -60,7 +61,7 @@ GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors);
 
 namespace detail {
 
-// Throws std::invalid_argument where components or units are too many or too few.
+// Throws std::invalid_argument where the number of components or units is wrong.
 void check_factor(const GroupFactor& factor);
 
 // The maps of a group whose coordinates are the integrals of its components.
@@ -131,6 +132,8 @@ GroupInfo group_info() {
   GroupInfo info;
   info.name = G::name();
   if constexpr (requires { G::summary(); }) info.summary = G::summary();
+  if constexpr (requires { G::formula(); }) info.formula = G::formula();
+  if constexpr (requires { G::source(); }) info.source = G::source();
   info.dim = G::dim;
   info.columns = G::columns();
   info.identity = G::coordinates(G::template identity<double>());

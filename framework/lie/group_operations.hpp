@@ -1,5 +1,5 @@
-// The operations of a group with a retraction on elements of its own type, with out-parameters:
-// what the steps of schemes call where the types are known. geometry.hpp has the same operations
+// The operations of a group with a retraction on elements of its type, with out-parameters:
+// called by the steps of schemes where the types are known. geometry.hpp has the same operations
 // with the type erased.
 #pragma once
 
@@ -13,15 +13,16 @@
 
 namespace hamel {
 
-/// Out-parameters may be the in-parameters.
-template <class Tau_>
+/// Out-parameters may be the in-parameters. T: a number, or one in each lane (lanes/lane.hpp).
+template <class Tau_, class T = double>
 struct GroupOperations {
   using Tau = Tau_;
+  using Scalar = T;
   using G = typename Tau::Group;
   static constexpr int n = G::dim;
-  using Element = typename G::template Element<double>;
-  using Vector = Vec<n>;
-  using Matrix = Mat<n, n>;
+  using Element = typename G::template Element<T>;
+  using Vector = VecT<T, n>;
+  using Matrix = MatT<T, n, n>;
 
   static constexpr int dim() { return n; }
   static constexpr bool symmetric() { return Tau::symmetric; }
@@ -32,7 +33,7 @@ struct GroupOperations {
   }
 
   /// An element to write into.
-  static Element element() { return G::template identity<double>(); }
+  static Element element() { return G::template identity<T>(); }
   static void compose(const Element& g, const Element& h, Element& out) { out = G::compose(g, h); }
   static void inverse(const Element& g, Element& out) { out = G::inverse(g); }
   static void normalise(Element& g) { g = G::normalise(g); }
@@ -66,16 +67,16 @@ struct GroupOperations {
   }
   /// (dL tau_xi)^-1 eta.
   static void dtau_left_inverse(const Vector& xi, const Vector& eta, Vector& out) {
-    if constexpr (requires { Tau::dtau_left_inverse(xi, eta); }) {
-      out = Tau::dtau_left_inverse(xi, eta);
-    } else {
-      out = (Tau::dtau_left_inverse(xi) * eta).eval();
-    }
+    out = apply_dtau_left_inverse<Tau>(xi, eta);
+  }
+  /// tau(xi) and (dL tau_xi)^-1 eta.
+  static void tau_with_rate(const Vector& xi, const Vector& eta, Element& g, Vector& rate) {
+    g = hamel::tau_with_rate<Tau>(xi, eta, rate);
   }
   /// base_momentum of trivialised.hpp.
   static void base_momentum(double s, const Vector& xi, const Vector& p, const Vector& nu,
                             Vector& m0) {
-    m0 = hamel::base_momentum<Tau>(s, xi, p, nu);
+    m0 = hamel::base_momentum<Tau, T>(s, xi, p, nu);
   }
   static bool in_domain(const Vector& xi) { return Tau::in_domain(xi); }
   /// xi with tau_s(xi) = delta; false where there is none.

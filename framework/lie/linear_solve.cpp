@@ -15,8 +15,8 @@ int pivot_of(const double* a, int n, int k) {
   return pivot;
 }
 
-// Of each column of m from the first: subtracts from the rows below k the factors of L, in column k
-// of a, times row k.
+// Subtracts, in each column of m from the first, from the rows below k the factors of L (column k
+// of a) times row k.
 void eliminate(const double* a, double* m, int n, int k, int first, int columns) {
   for (int j = first; j < columns; ++j) {
     for (int i = k + 1; i < n; ++i) m[j * n + i] -= a[k * n + i] * m[j * n + k];

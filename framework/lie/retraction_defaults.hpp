@@ -115,6 +115,7 @@ struct RetractionDefaults {
   }
   static std::string domain() { return "all finite xi"; }
   static std::string formula() { return "tau(xi) = " + std::string(Derived::name()) + "(xi)"; }
+  static std::string source() { return ""; }
 };
 
 }  // namespace hamel

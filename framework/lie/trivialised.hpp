@@ -2,10 +2,10 @@
 //
 // R = dR tau_z (n x n), D(z, p) = d/dz [ R^-T p ] with p fixed, K(mu) eta = (ad_eta)^T mu, f =
 // tau(z). With every covector on the right held fixed:
-//   (a)  d/dz [ R^T m ]            = -R^T D(z, R^T m)                  (differentiate R^-T (R^T m)
-//   = m) (b)  d/dz [ Ad_f^T m ]         =  K(Ad_f^T m) dL tau_z             (f varies as f dL dz)
-//   (c)  d/dz [ Ad_{f^-1}^T mu ]   = -K(Ad_{f^-1}^T mu) R              (f varies as (R dz) f)
-//   (d)  d/dz [ dL^T mu ]          = -R^T ( D(z, R^T m) + K(m) R ),  m = Ad_{f^-1}^T mu
+//   (a)  d/dz [ R^T m ]           = -R^T D(z, R^T m)       (differentiate R^-T (R^T m) = m)
+//   (b)  d/dz [ Ad_f^T m ]        =  K(Ad_f^T m) dL tau_z  (f varies as f dL dz)
+//   (c)  d/dz [ Ad_{f^-1}^T mu ]  = -K(Ad_{f^-1}^T mu) R   (f varies as (R dz) f)
+//   (d)  d/dz [ dL^T mu ]         = -R^T ( D(z, R^T m) + K(m) R ),  m = Ad_{f^-1}^T mu
 // where (d) is (a) and (c) applied to dL^T mu = R^T Ad_{f^-1}^T mu.
 #pragma once
 
@@ -17,23 +17,24 @@ namespace hamel {
 /// m0 of the cotangent lift at the base point, m1 = m0 + nu, by (M13) of
 /// framework/schemes/README.md:
 ///   s dR_{z0}^T m0 + (1-s) dR_{z1}^T (m0 + nu) = p,            z0 = -s xi, z1 = (1-s) xi
-///   m0 = A_0^T M^-T (A_1^T p - (1-s) nu),                      A_i = dR_{z_i}^-1, M = s A_1 +
-///   (1-s) A_0
+///   m0 = A_0^T M^-T (A_1^T p - (1-s) nu),  A_i = dR_{z_i}^-1,  M = s A_1 + (1-s) A_0
 /// No dR is formed. Where A is quadratic, A(xi) = 1 + odd + even (Cayley), the odd parts cancel:
 ///   M = 1 + s (1-s) even(xi),
 /// which the retraction solves in closed form.
-template <class Tau>
-Vec<Tau::Group::dim> base_momentum(double s, const Vec<Tau::Group::dim>& xi,
-                                   const Vec<Tau::Group::dim>& p, const Vec<Tau::Group::dim>& nu) {
+template <class Tau, class T = double>
+VecT<T, Tau::Group::dim> base_momentum(double s,
+                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& xi,
+                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& p,
+                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& nu) {
   using G = typename Tau::Group;
   constexpr int n = G::dim;
   if (s == 0) return Tau::dtau_right_inverse_transpose(xi, p) - nu;
-  const Vec<n> z0 = -s * xi, z1 = (1 - s) * xi;
-  Vec<n> m = Tau::dtau_right_inverse_transpose(z1, p) - (1 - s) * nu;
+  const VecT<T, n> z0 = -s * xi, z1 = (1 - s) * xi;
+  VecT<T, n> m = Tau::dtau_right_inverse_transpose(z1, p) - (1 - s) * nu;
   if constexpr (requires { Tau::solve_even_transposed(xi, s, m); }) {
     m = Tau::solve_even_transposed(xi, s * (1 - s), m);
   } else {
-    Mat<n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
+    MatT<T, n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
     if constexpr (requires { G::solve_transposed(mix, m); }) m = G::solve_transposed(mix, m);
     else if constexpr (n <= 4) m = (mix.transpose().inverse() * m).eval();
     else {
@@ -77,5 +78,29 @@ struct At {
     return -right.transpose() * inner;
   }
 };
+
+/// (dL_xi)^-1 eta, without the matrix where Tau has it so.
+template <class Tau, class T, int N>
+Eigen::Matrix<T, N, 1> apply_dtau_left_inverse(const Eigen::Matrix<T, N, 1>& xi,
+                                               const Eigen::Matrix<T, N, 1>& eta) {
+  if constexpr (requires { Tau::dtau_left_inverse(xi, eta); }) {
+    return Tau::dtau_left_inverse(xi, eta);
+  } else {
+    return Tau::dtau_left_inverse(xi).lazyProduct(eta);
+  }
+}
+
+/// tau(xi), and (dL_xi)^-1 eta in `rate` (which may be eta): what a stage of an explicit scheme
+/// needs, evaluated together where Tau has it so.
+template <class Tau, class T, int N>
+auto tau_with_rate(const Eigen::Matrix<T, N, 1>& xi, const Eigen::Matrix<T, N, 1>& eta,
+                   Eigen::Matrix<T, N, 1>& rate) {
+  if constexpr (requires { Tau::tau_with_rate(xi, eta, rate); }) {
+    return Tau::tau_with_rate(xi, eta, rate);
+  } else {
+    rate = apply_dtau_left_inverse<Tau>(xi, eta);
+    return Tau::tau(xi);
+  }
+}
 
 }  // namespace hamel

@@ -12,8 +12,8 @@
 // A program may be compiled with other flags than the library (-march=native, -fsanitize=address,
 // ...), which change how Eigen aligns and takes memory. So the library keeps its own copies of
 // Eigen's functions (tools/cmake/localise), and no memory that Eigen took on one side is given back
-// on the other. What must be the same on both sides is in the name of a symbol: else the program
-// does not link, and the name says why.
+// on the other. All that must be equal on both sides is in the name of a symbol: else the program
+// does not link, and the name gives the reason.
 static_assert(std::is_same_v<Eigen::Index, std::ptrdiff_t> && !Eigen::MatrixXd::IsRowMajor,
               "hamel needs Eigen as it is: without EIGEN_DEFAULT_TO_ROW_MAJOR and "
               "EIGEN_DEFAULT_DENSE_INDEX_TYPE");

@@ -24,7 +24,7 @@ class ErrorControl {
     bool whole;     // it ends at the limit
   };
   /// A step of size h, and of the time left at most: taken again, smaller, until its error is good.
-  /// h is then the size of the next. take_step() says the error of a step of size h; one above 1
+  /// h is then the size of the next. take_step() returns the error of a step of size h; one above 1
   /// leaves the state alone.
   template <class TakeStep>
   Taken take(double& h, double left, double smallest, TakeStep&& take_step) {

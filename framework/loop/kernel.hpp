@@ -1,4 +1,4 @@
-// What the run-time layer holds of a compiled time loop: one virtual call per run or per recorded
+// Interface of the run-time layer to a compiled time loop: one virtual call per run or per recorded
 // row, none inside a step. The loop itself is loop.hpp.
 #pragma once
 
@@ -15,17 +15,18 @@
 #include <hamel/framework/loop/solver.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
 #include <hamel/framework/schemes/tableau.hpp>
 
 namespace hamel {
 
-/// What becomes of a step that fails: the run stops there; another solver tries; it is taken as two
+/// Policy for a step that fails: the run stops there; another solver tries; it is taken as two
 /// halves, each of which may be halved again, up to ten times.
 enum class OnFailure { stop, retry, halve };
 
-/// Everything a kernel needs to know of a run; types are erased here and fixed in the kernel.
+/// Everything that a kernel needs of a run; types are erased here and fixed in the kernel.
 struct KernelSetup {
-  std::shared_ptr<const Geometry> geometry;    // null: not registered, and the kernel knows its own
+  std::shared_ptr<const Geometry> geometry;    // null: not registered, and the kernel has its own
   std::shared_ptr<const Mechanics> mechanics;  // with its parameters
   std::shared_ptr<Inputs> inputs;              // that drive it; null where there are none
   double s = 0.5;
@@ -36,15 +37,15 @@ struct KernelSetup {
   OnFailure on_failure = OnFailure::stop;
   std::shared_ptr<Solver> fallback;  // for retry; null as above
   std::string fallback_name;
-  const Tableau* tableau = nullptr;   // of explicit schemes that are given by one
-  double relative = 0, absolute = 0;  // tolerances that choose the steps; 0: all of size step
-  bool first_chosen = false;          // the first too
+  const Tableau* tableau = nullptr;  // of explicit schemes that are given by one
+  double rtol = 0, atol = 0;         // tolerances that choose the steps; 0: all of size step
+  bool first_chosen = false;         // the first too
   double largest = std::numeric_limits<double>::infinity();  // of chosen steps
   int order = 0;                                             // the scheme's, with its composition
-  bool forces_at_base = false;        // lift: f - dV at the base point instead of the nodes
-  double from = 0;                    // the time of the start
-  std::vector<double> configuration;  // the element's coordinates there
-  std::vector<double> velocity;       // xi there, n entries, admissible
+  ForceAt force_at = ForceAt::nodes;                         // lift
+  double from = 0;                                           // the time of the start
+  std::vector<double> configuration;                         // the element's coordinates there
+  std::vector<double> velocity;                              // xi there, n entries, admissible
 };
 
 class Kernel {
@@ -57,7 +58,7 @@ class Kernel {
   /// one size within which an input jumps or bends ends there, and the next one where it would have
   /// ended.
   virtual Status advance(long count) = 0;
-  /// Those taken, the parts of one counted as one; is the node such a jump or kink?
+  /// Steps taken, the parts of one counted as one; is the node such a jump or kink?
   virtual long whole_steps() const = 0;
   virtual bool off_grid() const = 0;
   /// Measures the current state into out (its vectors are reused).
@@ -72,18 +73,18 @@ class Kernel {
   virtual void beginning(Snapshot& out) const = 0;
   /// Steps that are chosen end at t at the latest, and advance() does nothing there. One of steps
   /// of one size that ends at t is not moved to a jump of an input next to it.
-  virtual void limit(double t) = 0;
+  virtual void set_end_time(double t) = 0;
   /// The size of the step that comes next (chosen ones before they are cut at the limit).
   virtual double next_step() const = 0;
   /// Time runs the other way: h changes its sign, and steps that are chosen are taken back as they
   /// came.
   virtual void turn_back() = 0;
-  /// Goes on from another state; step: the size of the next. Throws std::invalid_argument when the
+  /// Continues at another state; step: size of the next. Throws std::invalid_argument when the
   /// values are no element.
   virtual void restart(double t, std::span<const double> coordinates,
                        std::span<const double> velocity, double step) = 0;
   /// Drops what is remembered of forces: after a change of something that they depend on.
-  virtual void forget() = 0;
+  virtual void clear_history() = 0;
   /// The state at a time within the last step, by the scheme's own dense output; false where it has
   /// none.
   virtual bool interpolate(double t, Snapshot& out) = 0;

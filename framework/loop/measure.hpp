@@ -30,10 +30,10 @@ template <class P>
                                    double s, const typename P::Vector& xi,
                                    std::vector<double>& rates) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const int k = problem.rows(), held = problem.held();
+  const int k = problem.constraint_count(), held = problem.holonomic_rows();
   rates.assign(static_cast<size_t>(k), unknown);
   double squared = 0;
-  if constexpr (P::Few::RowsAtCompileTime != 0) {
+  if constexpr (P::Multipliers::RowsAtCompileTime != 0) {
     if (k == 0) return 0;
     typename P::Vector v = xi;
     typename P::Element base = last.after;
@@ -51,13 +51,13 @@ template <class P>
       t = last.time_before + s * last.h;
       v /= last.h;
     }
-    typename P::Rows a(k, problem.dim());
-    typename P::Few b(k);
+    typename P::ConstraintMatrix a(k, problem.dim());
+    typename P::Multipliers b(k);
     problem.constraints(t, base, a, b);
     Eigen::Map<Eigen::VectorXd> found(rates.data(), k);
     for (int i = 0; i < k; ++i) found[i] = a.row(i).dot(v);
     if (moved && held > 0) {
-      typename P::Held before(held), after(held);
+      typename P::HolonomicValues before(held), after(held);
       problem.holonomic(last.before, before);
       problem.holonomic(last.after, after);
       for (int i = 0; i < held; ++i) found[k - held + i] = (after[i] - before[i]) / last.h;
@@ -81,13 +81,13 @@ template <class P>
   out.energy = 0.5 * mu.dot(xi) + problem.potential(g);
 }
 
-/// What is measured of the state and of the step that led to it.
+/// Measures the state and the step that led to it.
 template <class P>
 [[gnu::cold]] void measure(const P& problem, const LastStep<typename P::Element>& last, double s,
                            const typename P::Vector& xi, Snapshot& out) {
   const typename P::Element& g = last.after;
-  out.constraint = recover_rates(problem, last, s, xi, out.row_rates);
-  typename P::Held phi(problem.held());
+  out.constraint = recover_rates(problem, last, s, xi, out.constraint_rates);
+  typename P::HolonomicValues phi(problem.holonomic_rows());
   problem.holonomic(g, phi);
   out.holonomic = 0;
   for (int i = 0; i < phi.size(); ++i) out.holonomic = std::max(out.holonomic, std::abs(phi[i]));

@@ -29,13 +29,13 @@ class PrincipalRoot {
 
   /// Is x, a solution for h, where the path from lambda = 0 arrives? Leaves the step begun with h.
   [[gnu::noinline, gnu::cold]] bool leads_to(const Unknown& x, const StepOnPath<Unknown>& step,
-                                             double h, double tolerance) {
+                                             double h) {
     const double size = x.squaredNorm(), small = 1e-20 * step.equation.scale_squared();
-    follow(step, h, size + small, std::min(1e-9, tolerance));
+    follow(step, h, size + small);
     step.begin(h);
     if ((x - end_).squaredNorm() <= 1e-10 * size + small) return true;
-    // Where the equation is ill-conditioned (masses of 1 and 1e6, the row of a height at h = 1e-6)
-    // one root has many solutions to within round-off: between two of them F stays small, between
+    // An ill-conditioned equation (masses of 1 and 1e6, the row of a height at h = 1e-6) has at
+    // one root many solutions to within round-off: between two of them F stays small, between
     // two roots it does not.
     trial_ = 0.5 * (x + end_);
     step.equation.residual(trial_, memory_.f);
@@ -44,21 +44,23 @@ class PrincipalRoot {
 
  private:
   // A step from rest is so small on the path that the round-off of its rows (of lengths) is above
-  // the tolerance, which is relative to its size: the path needs no more than to be told from
-  // others.
+  // the tolerance, which is relative to its size: the path needs no more than to be distinguished
+  // from others.
   static bool near(const SolveReport& report) {
     return report.ok() || (report.reason == Reason::stagnated && report.residual <= 1e-5);
   }
   // To end_: the solution for lambda h at lambda = 1, by steps that move it by 3 percent at most;
   // NaN where the path ends before. It starts where there is one root, which is not always next to
   // the scheme's guess.
-  void follow(const StepOnPath<Unknown>& step, double h, double size, double tolerance) {
+  void follow(const StepOnPath<Unknown>& step, double h, double size) {
+    // A tenth of what two solutions of one root may differ by.
+    constexpr double tolerance = 1e-9;
     constexpr double lost = std::numeric_limits<double>::quiet_NaN();
     double at = 1e-3;
     for (;; at *= 10) {
       step.begin(at * h);
       step.guess(end_);
-      memory_.valid = false;
+      memory_.clear_history();
       const SolveReport report = Newton::solve(step.equation, end_, tolerance, memory_);
       if (near(report)) break;
       if (report.reason != Reason::stagnated || at > 0.05) end_.setConstant(lost);

@@ -42,7 +42,7 @@ void ScaledEquation::evaluate(std::span<const double> x, std::span<double> f,
   if (!finite_) return;
   const bool guess = !moved_ && std::equal(x.begin(), x.end(), guess_.begin());
   moved_ = !guess;
-  // A point that meets the target takes the place of a guess that was as good.
+  // A point within the target replaces a guess that was as good.
   if (square < best_ || (!guess && square <= target_square_)) {
     best_ = square;
     std::copy(x.begin(), x.end(), best_x_.begin());

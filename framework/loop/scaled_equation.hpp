@@ -1,7 +1,7 @@
 // F/scale as solvers see it: every evaluation counted, the best point kept, and the certificate
 // made once.
 //
-// What a library reports ("converged", "round-off limited") does not count. A solve is judged by
+// The report of a library ("converged", "round-off limited") is ignored. A solve is judged by
 // the residual |F(x)|/scale that was evaluated at the x it leaves. Its target is that of Newton
 // (solvers/newton.hpp): two digits below the tolerance, and at least one point other than the
 // guess, whose extrapolation error, always of one sign, would else stay in every step.
@@ -53,7 +53,7 @@ class ScaledEquation final : public Equation {
   int size_ = 0, patience_ = 0;
   double inverse_scale_ = 1, tolerance_ = 0, target_ = 0, target_square_ = 0;
   std::vector<double> guess_;
-  // What evaluating teaches; residuals as squares.
+  // Results of the evaluations; residuals as squares.
   mutable std::vector<double> best_x_;
   mutable double best_ = 0, halved_ = 0;
   mutable int evaluations_ = 0, calls_ = 0, halved_at_ = 0;

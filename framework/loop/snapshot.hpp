@@ -1,4 +1,4 @@
-// What a run shows of itself: states with their measurements, and counts of its solves.
+// Observable data of a run: states with their measurements, and counts of its solves.
 // Standard-library types only.
 #pragma once
 
@@ -35,14 +35,15 @@ struct Snapshot {
   std::vector<double> velocity;     // nodal body velocity, n
   std::vector<double> momentum;     // nodal body momentum, n
   double energy = 0;
-  std::vector<double> row_rates;  // A v of the last step, v recovered from the configurations; k
-  double constraint = 0;          // |A v - b|, holonomic rows left out
-  double holonomic = 0;           // max |phi(g)|
-  double group_defect = 0;        // how far g is from the group
-  double rotation = 0;            // of the last substep, radians; NaN: the group has none
-  double lag = 0;                 // from the velocity of row_rates to the state, s
-  int iterations = 0;             // of the last step, all substeps
-  double residual = 0;            // relative, the largest of the last step's substeps
+  std::vector<double>
+      constraint_rates;     // A v of the last step, v recovered from the configurations; k
+  double constraint = 0;    // |A v - b|, holonomic rows left out
+  double holonomic = 0;     // max |phi(g)|
+  double group_defect = 0;  // how far g is from the group
+  double rotation = 0;      // of the last substep, radians; NaN: the group has none
+  double time_offset = 0;   // from the velocity of constraint_rates to the state, s
+  int iterations = 0;       // of the last step, all substeps
+  double residual = 0;      // relative, the largest of the last step's substeps
 };
 
 }  // namespace hamel

@@ -1,4 +1,4 @@
-// What became of a solve, and of a run.
+// Outcome of a solve, and of a run.
 #pragma once
 
 #include <string>
@@ -17,12 +17,12 @@ enum class Reason {
   not_principal,     // the solution is a root that the path from h = 0 does not lead to
   lost_constraints,  // an explicit step ends off the constraints
   rejected,          // the estimated error is above the tolerance
-  too_small,         // no step above 1e-14 of the interval meets the tolerance
+  too_small,         // no step above 1e-14 of the interval is within the tolerance
   too_many,          // nor one of so many tries
-  stopped,           // the user's observer asked to stop
+  stopped,           // the user's observer requested a stop
 };
 
-/// The reason in words.
+/// The reason as text.
 constexpr const char* to_string(Reason reason) {
   switch (reason) {
     case Reason::converged: return "converged";
@@ -40,7 +40,8 @@ constexpr const char* to_string(Reason reason) {
              "singular there, or the step is too long";
     case Reason::rejected: return "the error of the step is above the tolerance";
     case Reason::too_small:
-      return "no step above 1e-14 of the time passed meets the tolerance: the motion is singular "
+      return "no step above 1e-14 of the time passed is within the tolerance: the motion is "
+             "singular "
              "there, or the tolerance "
              "below round-off";
     case Reason::too_many: return "a step was rejected 100 times in a row";

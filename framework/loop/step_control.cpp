@@ -18,9 +18,12 @@ double ReversibleControl::next(MotionRate& motion, double epsilon, double direct
   if (!started_) {
     density_ = motion.here() + epsilon / 2 * growth(motion);
     started_ = true;
-  } else if (direction * direction_ > 0) {
+  } else if (direction * direction_ < 0) {
+    direction_ = direction;
+    return direction;  // the last step, cut or not
+  } else {
     density_ += epsilon * growth(motion);
-  }  // else the last step is taken back
+  }
   direction_ = direction;
   if (!(density_ > 0)) density_ = motion.here();  // (a rate that falls faster than the steps see)
   return density_ > 0 ? epsilon / density_ : direction;  // at rest: of the last size

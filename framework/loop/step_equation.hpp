@@ -1,4 +1,4 @@
-// The equation of a step behind virtual functions. What is seldom done with it (a second
+// The equation of a step behind virtual functions. Its rare uses (a second
 // correction, a Jacobian, the search for the principal root, a solver from outside) is compiled
 // once for its unknowns, not once for each step.
 #pragma once
@@ -33,7 +33,7 @@ class StepEquation {
   /// Does the step state its Jacobian?
   virtual bool exact() const = 0;
 
-  /// F and dF/dx, or dF/dz with x + from_frame(z) (in_frame). The step's own Jacobian, else central
+  /// F and dF/dx, or dF/dz with x + expand(z) (in_frame). The step's own Jacobian, else central
   /// differences, error about 1e-10: a Jacobian only steers the solver. Returns how often F was
   /// evaluated.
   int linearise(const Unknown& x, Unknown& f, Jacobian& j, Differences<Unknown>& work,
@@ -55,7 +55,7 @@ class StepEquation {
     for (Eigen::Index i = 0; i < count; ++i) {
       work.direction.setZero();
       work.direction[i] = 1;
-      if (in_frame) from_frame(work.direction);
+      if (in_frame) expand(work.direction);
       const double length = shift / work.direction.template lpNorm<Eigen::Infinity>();
       work.shifted = x + length * work.direction;
       residual(work.shifted, work.shifted_f);
@@ -67,7 +67,7 @@ class StepEquation {
     return 2 * static_cast<int>(count) + 1;
   }
   /// z -> dx, in place.
-  virtual void from_frame(Unknown& z) const = 0;
+  virtual void expand(Unknown& z) const = 0;
 
  protected:
   ~StepEquation() = default;
@@ -84,8 +84,8 @@ class ErasedStep final : public StepEquation<typename Step::Unknown> {
   double scale_squared() const override { return step_.scale_squared(); }
   void residual(const Unknown& x, Unknown& f) const override { step_.residual(x, f); }
   bool exact() const override { return HasJacobian<Step>; }
-  void from_frame([[maybe_unused]] Unknown& z) const override {
-    if constexpr (HasFrame<Step>) step_.from_frame(z);
+  void expand([[maybe_unused]] Unknown& z) const override {
+    if constexpr (HasFrame<Step>) step_.expand(z);
   }
 
  private:
@@ -99,10 +99,10 @@ class ErasedStep final : public StepEquation<typename Step::Unknown> {
 
 /// As a solver from outside sees it.
 template <class Unknown>
-class OutsideEquation final : public Equation {
+class SolverEquation final : public Equation {
  public:
   /// x: of its size.
-  OutsideEquation(const StepEquation<Unknown>& equation, const Unknown& x)
+  SolverEquation(const StepEquation<Unknown>& equation, const Unknown& x)
       : equation_(equation), x_(x), f_(x), work_{x, x, x} {
     jacobian_.resize(x.size(), x.size());
   }

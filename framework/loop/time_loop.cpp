@@ -10,6 +10,9 @@ namespace hamel {
 namespace {
 // A jump of an input is next to a node, in steps.
 constexpr double kNext = 1e-3;
+// Fraction left before its limit that a chosen step takes too: round-off of the times, where the
+// steps of a motion are taken back.
+constexpr double kSliver = 1e-6;
 }  // namespace
 
 TimeLoop::TimeLoop(const KernelSetup& setup)
@@ -45,14 +48,14 @@ void TimeLoop::reverse() {
   count_from(t_);
   h_ = -h_;
   limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
-  forget();
+  clear_history();
 }
 
 void TimeLoop::begin_anew(double t, double step) {
   h_ = step;
   limit_ = std::copysign(std::numeric_limits<double>::infinity(), h_);
   count_from(t);
-  forget();
+  clear_history();
 }
 
 // Steps count from here.
@@ -72,7 +75,7 @@ inline SolveReport TimeLoop::one_step() {
   return report;
 }
 
-// Of one size, unless an input jumps or bends within it.
+// Takes a step of fixed size, unless an input jumps or bends within it.
 inline SolveReport TimeLoop::fixed_step() {
   if (setup_.inputs != nullptr && (off_grid_ || setup_.inputs->breaks())) [[unlikely]] {
     const double end = from_ + static_cast<double>(whole_ - first_ + 1) * h_;
@@ -85,9 +88,9 @@ inline SolveReport TimeLoop::fixed_step() {
   return rescued(report);
 }
 
-// Where the step to `end` is to end: there, or where an input jumps or bends before. A jump next to
-// the end stands for it, since what is known of a step far smaller than the others is mostly
-// round-off.
+// End of the next part of the step to `end`: there, or where an input jumps or bends before. A
+// jump next to the end replaces it, since the result of a step far smaller than the others is
+// mostly round-off.
 double TimeLoop::end_of_part(double end) const {
   const double size = std::abs(h_), jump = setup_.inputs->next_break(t_, h_);
   const double before = std::copysign(1.0, h_) * (end - jump);
@@ -101,12 +104,12 @@ SolveReport TimeLoop::part_of_step(double end, bool whole) {
   const double step_end = from_ + static_cast<double>(whole_ - first_ + 1) * h;
   time_ = time();
   off_grid_ = true;
-  forget();  // of steps of another size
+  clear_history();  // of steps of another size
   h_ = end - t_;
   SolveReport report = one_step();
   if (!report.ok()) report = rescued(report);
   h_ = h;
-  forget();
+  clear_history();
   if (!report.ok()) return report;
   end_at(t_ = end);
   off_grid_ = !whole;
@@ -147,12 +150,12 @@ SolveReport TimeLoop::composed_step() {
 SolveReport TimeLoop::chosen_step() {
   if (errors_) return error_controlled_step();
   const double end = end_of_step(t_), left = end - t_;
-  h_ = controlled_size(std::pow(setup_.relative + setup_.absolute, 1.0 / setup_.order));
+  h_ = controlled_size(std::pow(setup_.rtol + setup_.atol, 1.0 / setup_.order));
   h_ = std::copysign(std::min(std::abs(h_), setup_.largest), h_);
-  const bool cut = std::abs(h_) >= std::abs(left);
+  const bool cut = std::abs(h_) >= (1 - kSliver) * std::abs(left);
   if (cut) {
     h_ = left;
-    forget();
+    clear_history();
   }
   const SolveReport report = one_step();
   if (cut && report.ok()) end_at(t_ = end);
@@ -174,7 +177,7 @@ SolveReport TimeLoop::error_controlled_step() {
   return total;
 }
 
-// Where the next step ends at the latest: at the limit, or where an input jumps or bends.
+// Latest end of the next step: the limit, or the time at which an input jumps or bends.
 double TimeLoop::end_of_step(double t) const {
   if (setup_.inputs == nullptr) return limit_;
   const double next = setup_.inputs->next_break(t, h_);
@@ -193,12 +196,13 @@ SolveReport TimeLoop::rescued(const SolveReport& failed) {
   return report;
 }
 
-// A step has failed, and the state is still that of the last good one: what on_failure asks for.
+// A step has failed, and the state is still that of the last good one: what on_failure specifies.
 SolveReport TimeLoop::recover(SolveReport failed) {
   if (setup_.on_failure == OnFailure::stop) return failed;
   put_away(Kept::rescue);
   const double h = h_;
-  if (setup_.composition.size() > 1) forget();  // its first substeps are solved a second time
+  if (setup_.composition.size() > 1)
+    clear_history();  // its first substeps are solved a second time
   SolveReport rescued;
   std::string action;
   if (setup_.on_failure == OnFailure::retry) {
@@ -210,7 +214,7 @@ SolveReport TimeLoop::recover(SolveReport failed) {
     int parts = 0;
     rescued = halve(1, parts);
     h_ = h;
-    forget();
+    clear_history();
     action = "taken in " + std::to_string(parts) + " parts";
   }
   if (!rescued.ok()) fetch(Kept::rescue);
@@ -229,7 +233,7 @@ SolveReport TimeLoop::halve(int level, int& parts) {
   SolveReport total;
   const double half = h_ / 2;
   for (int i = 0; i < 2 && total.ok(); ++i) {
-    forget();  // of steps of another size
+    clear_history();  // of steps of another size
     h_ = half;
     SolveReport part = one_step();
     if (part.ok()) ++parts;

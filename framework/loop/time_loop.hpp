@@ -1,6 +1,6 @@
-// What every time loop does, whatever it is compiled for: it counts, chooses steps, composes them
-// of substeps, and decides what becomes of one that fails. What depends on the types, a substep
-// first of all, is behind virtual functions that loop.hpp compiles: one call a substep, none
+// Common part of all time loops: it counts, chooses steps, composes them of substeps, and handles
+// one that fails. All that depends on the types, a substep first of all, is behind virtual
+// functions that loop.hpp compiles: one call a substep, none
 // inside.
 #pragma once
 
@@ -22,7 +22,7 @@ class TimeLoop : public Kernel {
   const SolverStats& stats() const final { return stats_; }
   long whole_steps() const final { return whole_; }
   bool off_grid() const final { return off_grid_; }
-  void limit(double t) final { limit_ = t; }
+  void set_end_time(double t) final { limit_ = t; }
   double next_step() const final { return h_; }
   void turn_back() final { reverse(); }
   void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
@@ -36,7 +36,7 @@ class TimeLoop : public Kernel {
 
   /// A state between steps is put away where a composed or rescued step goes back to when it fails.
   enum class Kept { step, rescue };
-  /// Where the last step began: at the node before, or at one that was put away.
+  /// State at which the last step began: the node before, or one that was put away.
   enum class Beginning { previous, step, rescue };
 
   /// A substep of size h, with what is remembered of the earlier ones of its place in the
@@ -55,7 +55,7 @@ class TimeLoop : public Kernel {
   virtual void put(double t, std::span<const double> coordinates,
                    std::span<const double> velocity) = 0;
 
-  bool chooses_steps() const { return setup_.relative > 0 || setup_.absolute > 0; }
+  bool chooses_steps() const { return setup_.rtol > 0 || setup_.atol > 0; }
   double time() const {
     return chooses_steps() || off_grid_ ? time_ : from_ + static_cast<double>(whole_ - first_) * h_;
   }

@@ -1,44 +1,30 @@
-// Names close to those of a system's members: a letter left out or exchanged with its neighbour,
-// the singular, a longer form. A function of such a name would never be called, and constraint()
-// for constraints() would run an unconstrained body without a word: it is refused at compile time
-// where the member itself is not there. Words of their own (star, stat, fore) are left out.
+// Names close to those of a system's members: the singular or plural, a longer form, a common
+// misspelling. A function of such a name would never be called, and constraint()
+// for constraints() would run an unconstrained body without notice: it is refused at compile time
+// where the member itself is not there.
 #pragma once
 
 #include <hamel/framework/mechanics/system_members.hpp>
 
 // clang-format off
 #define HAMEL_CLOSE_NAMES(X) \
-  X(constraints, cnostraints, cnstraints, consraints, consrtaints, constaints, constarints,       \
-    constrains, constrainst, constraint, constraint_matrix, constraint_rows, constraitns,         \
-    constraits, constranits, constrants, constriants, constrints, contraints, contsraints,        \
-    cosntraints, costraints)                                                                      \
-  X(drift, dift, dirft, drfit, drft, drif, drifts, drit, dritf)                                   \
-  X(holonomic, hlonomic, hloonomic, holnomic, holnoomic, holonmic, holonmoic, holonoic,           \
-    holonoimc, holonomc, holonomci, holonomi, holonomic_constraint, holonomic_constraints,        \
-    holonomic_rows, holonomics, holoomic, holoonmic, hoolnomic, hoonomic)                         \
-  X(potential, poential, poetntial, potencial, potenial, potenital, potentail, potental,          \
-    potential_energy, potentials, potentil, potentila, potetial, potetnial, potnetial, potntial,  \
-    ptential, ptoential)                                                                          \
-  X(force, foce, focre, forc, forces, forec, frce, froce)                                         \
-  X(start, sart, satrt, starts, statr, strt)                                                      \
-  X(at_speed, a_speed, a_tspeed, at_peed, at_pseed, at_sped, at_spede, at_spee, at_speeds, atspeed, \
-    start_at_speed)                                                                               \
-  X(exact, eact, eaxct, exac, exact_motion, exact_solution, exat, exatc, excat, exct)             \
-  X(has_exact, ha_exact, ha_sexact, has_eact, has_eaxct, has_exac, has_exact_motion,              \
-    has_exact_solution, has_exat, has_exatc, has_excat, has_exct, has_xact, has_xeact,            \
-    hase_xact, hasexact, hs_exact, hsa_exact)                                                     \
-  X(invariants, inariants, inavriants, invaiants, invairants, invaraints, invarants, invarians,   \
-    invarianst, invariant, invariatns, invariats, invarients, invarinats, invarints, invraiants,  \
-    invriants, ivariants, ivnariants)                                                             \
-  X(contacts, contact, contacs, contatcs, cotnacts, normal_reactions)                             \
-  X(events, eents, eevnts, evens, evenst, event, evetns, evets, evnets, evnts, vents)             \
-  X(inputs, input, inpts, inptus, inpus, inpust, intputs, iputs)                                  \
-  X(fields, feilds, felds, fiedls, fieds, fiels, fielsd, filds, fileds)                           \
-  X(potential_differential, potential_diferential, potential_differental,                         \
-    potential_differentials)                                                                      \
-  X(holonomic_differential, holonomic_diferential, holonomic_differental,                         \
-    holonomic_differentials)                                                                      \
-  X(inertia_differential, inertia_diferential, inertia_differental, inertia_differentials)
+  X(constraints, constrains, constraint, constraint_matrix, constraint_rows, contraints)           \
+  X(drift, drifts)                                                                                \
+  X(holonomic, holonomic_constraint, holonomic_constraints, holonomic_rows, holonomics)            \
+  X(potential, potencial, potential_energy, potentials)                                           \
+  X(force, forces)                                                                                \
+  X(start, starts)                                                                                \
+  X(at_speed, at_speeds, start_at_speed)                                                          \
+  X(exact, exact_motion, exact_solution)                                                          \
+  X(has_exact, has_exact_motion, has_exact_solution)                                              \
+  X(invariants, invariant, invarients)                                                            \
+  X(contacts, contact, normal_reactions)                                                          \
+  X(events, event)                                                                                \
+  X(inputs, input)                                                                                \
+  X(fields, feilds, field)                                                                        \
+  X(potential_differential, potential_differentials)                                              \
+  X(holonomic_differential, holonomic_differentials)                                              \
+  X(inertia_differential, inertia_differentials)
 // clang-format on
 
 // HAMEL_EACH(f, member, a, b, ...): f(member, a) f(member, b) ..., for up to 64 names.

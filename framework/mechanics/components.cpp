@@ -25,6 +25,10 @@ std::vector<Component> components_of(const GroupInfo& group) {
   return out;
 }
 
+std::string unit_of_momentum(const Component& component) {
+  return component.unit == "rad/s" ? "N m s" : component.unit == "m/s" ? "N s" : "";
+}
+
 std::vector<std::string> units_of_element(const GroupInfo& group) {
   std::vector<std::string> out;
   for (const GroupFactor& factor : group.factors) {

@@ -17,6 +17,9 @@ namespace hamel {
 /// none.
 std::vector<Component> components_of(const GroupInfo& group);
 
+/// Of the momentum dual to it: a moment of momentum or a momentum; "" where it has no unit.
+std::string unit_of_momentum(const Component& component);
+
 /// Units of the element's columns; "" for the entries of a rotation matrix and where a factor
 /// states none.
 std::vector<std::string> units_of_element(const GroupInfo& group);

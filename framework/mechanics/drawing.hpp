@@ -1,4 +1,4 @@
-// Drawing of a system: bodies made of a few shapes, and the place of each as a function of the
+// Drawing of a system: bodies made of simple shapes, and the place of each as a function of the
 // configuration.
 //
 //   void draw(auto& scene) const {
@@ -22,7 +22,7 @@
 
 namespace hamel {
 
-/// Origin of a shape in the body's frame, direction of its own z axis, and colour: "body",
+/// Origin of a shape in the body's frame, direction of the shape's z axis, and colour: "body",
 /// "accent", "dark", "light" or "#rrggbb".
 struct Look {
   Point at = {0, 0, 0};

@@ -9,13 +9,30 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Core>
 
 #include <hamel/framework/lie/differences.hpp>
+#include <hamel/framework/lie/types.hpp>
 
 namespace hamel {
+
+namespace detail {
+template <class P>
+struct OfMotion {
+  using type = P;
+};
+template <class P>
+requires requires { typename P::OfMotion; }
+struct OfMotion<P> {
+  using type = typename P::OfMotion;
+};
+}  // namespace detail
+/// The problem whose equations of motion are compiled for P: P, or one that several share.
+template <class P>
+using OfMotion = typename detail::OfMotion<P>::type;
 
 template <class Problem>
 class EquationsOfMotion {
@@ -23,7 +40,7 @@ class EquationsOfMotion {
   using Element = typename Problem::Element;
   using Vector = typename Problem::Vector;
   using State = typename Problem::State;
-  using Few = typename Problem::Few;
+  using Multipliers = typename Problem::Multipliers;
 
   explicit EquationsOfMotion(const Problem& problem)
       : problem_(problem),
@@ -31,26 +48,29 @@ class EquationsOfMotion {
         momentum_(problem.dim()),
         change_(problem.dim()),
         work_(problem.dim()),
-        reaction_(problem.rows()),
-        b_(problem.rows()),
-        row_rate_(problem.rows()),
-        time_rate_(b_),
-        time_work_{b_, b_},
+        reaction_(problem.constraint_count()),
+        b_(problem.constraint_count()),
+        row_rate_(Problem::Multipliers::Zero(problem.constraint_count())),
+        time_rate_(row_rate_),
+        time_work_{row_rate_, row_rate_},
         momentum_rate_(problem.dim()),
-        a_(problem.rows(), problem.dim()),
-        a_rate_(Problem::Rows::Zero(problem.rows(), problem.dim())),
-        moved_a_(a_),
-        moved_b_(b_),
+        a_(problem.constraint_count(), problem.dim()),
+        moved_a_(problem.constraint_count(), problem.dim()),
+        moved_b_(problem.constraint_count()),
         inertia_(problem.dim(), problem.dim()),
-        inertia_rate_(inertia_),
-        moved_inertia_(inertia_),
+        moved_inertia_(problem.dim(), problem.dim()),
         root_(problem.dim(), problem.dim()),
-        y_(problem.dim(), problem.rows()),
-        gram_(problem.rows(), problem.rows()),
+        weights_(problem.dim()),
+        rows_(problem.dim(), problem.constraint_count()),
+        y_(problem.dim(), problem.constraint_count()),
+        gram_(problem.constraint_count(), problem.constraint_count()),
         moved_(problem.element()) {}
 
-  /// The rate of the carried velocity at an admissible (t, g, x).
-  void operator()(double t, const Element& g, const State& x, State& rate) {
+  /// The rate of the carried velocity at an admissible (t, g, x): the equations without
+  /// multipliers, of which any explicit scheme is made (tests/examples/own_general_scheme.cpp).
+  /// With all that they call, inlined once: a third fewer instructions than calls.
+  HAMEL_FLATTEN [[gnu::noinline]] void operator()(double t, const Element& g, const State& x,
+                                                  State& rate) {
     if constexpr (Problem::left_invariant) {
       problem_.acceleration(x, rate);
     } else {
@@ -73,25 +93,25 @@ class EquationsOfMotion {
     problem_.ad_transpose(xi, momentum_, work_);
     change_ += work_;
     apply_root(change_, work_);
-    if (problem_.rows() > 0) {
-      reaction_ = row_rate_ - y_.transpose().lazyProduct(work_);
+    if (problem_.constraint_count() > 0) {
+      reaction_.noalias() = row_rate_ - y_.transpose().lazyProduct(work_);
       solve_gram(reaction_);
       work_ += y_.lazyProduct(reaction_);
       if (singular_) reaction_ -= stiffness_ * row_rate_;
     }
     apply_root_transpose(work_, acceleration_);
   }
-  /// What depends on (t, g) alone. With W^T W = I^-1 (W lower triangular), Y = W A^T and c = W
+  /// Sets what depends on (t, g) alone. With W^T W = I^-1 (W lower triangular), Y = W A^T and c = W
   /// change: Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
   void set(double t, const Element& g) {
     if (!known_ || !problem_.constant_inertia()) problem_.inertia(g, inertia_);
-    if (problem_.rows() > 0 && (!known_ || !problem_.constant_constraints()))
-      problem_.constraints(t, g, a_, b_);
+    if (problem_.constraint_count() > 0 && (!known_ || !problem_.constant_constraints()))
+      set_rows(t, g);
     factor(t, g);
   }
   /// The smallest v in the metric I with A v = c, A and I those of the last set(); returns its
   /// size, v . I v.
-  double smallest(const Few& c, Vector& v) {
+  double smallest(const Multipliers& c, Vector& v) {
     reaction_ = c;
     solve_gram(reaction_);
     work_ = y_.lazyProduct(reaction_);
@@ -103,40 +123,49 @@ class EquationsOfMotion {
   std::pair<double, double> project(Vector& xi) {
     apply_inertia(xi, momentum_);
     const double size = momentum_.dot(xi);
-    if (problem_.rows() == 0) return {0, size};
+    if (problem_.constraint_count() == 0) return {0, size};
     row_rate_ = b_ - a_.lazyProduct(xi);
     const double added = smallest(row_rate_, acceleration_);
     xi += acceleration_;
     return {added, size};
   }
+  /// |v| in the metric I at the last place.
+  double size(const State& v) {
+    if constexpr (Problem::left_invariant) {
+      return v.norm();
+    } else {
+      apply_inertia(v, momentum_);
+      return std::sqrt(std::fmax(0, momentum_.dot(v)));
+    }
+  }
   const Vector& acceleration() const { return acceleration_; }
-  const Few& reaction() const { return reaction_; }
+  const Multipliers& reaction() const { return reaction_; }
 
  private:
   static constexpr bool has_dual_rates() {
     if constexpr (requires { Problem::has_dual_rates(); }) return Problem::has_dual_rates();
     else return false;
   }
-  // By one dual number; b is constant.
+  // By one dual number; nothing in b is a function of time.
   void evaluate_with_rates(const Element& g, const Vector& xi) {
     if constexpr (has_dual_rates())
-      problem_.dual_rates(g, xi, a_, a_rate_, inertia_, inertia_rate_);
-    row_rate_ = -a_rate_.lazyProduct(xi);
-    if (!problem_.constant_inertia()) momentum_rate_ = inertia_rate_.lazyProduct(xi);
+      problem_.dual_rates(g, xi, rows_, row_rate_, inertia_, momentum_rate_);
   }
-  // What follows from inertia_ and a_.
+  void set_rows(double t, const Element& g) {
+    problem_.constraints(t, g, a_, b_);
+    rows_ = a_.transpose();
+  }
+  // Recomputes what depends on inertia_ and a_.
   void factor(double t, const Element& g) {
     const bool inertia_changes = !known_ || !problem_.constant_inertia();
-    const bool rows_change = problem_.rows() > 0 && (!known_ || !problem_.constant_constraints());
+    const bool rows_change =
+        problem_.constraint_count() > 0 && (!known_ || !problem_.constant_constraints());
     if (inertia_changes) find_root(inertia_);
     if (singular_) [[unlikely]]
       find_stiff_root(t, g);
-    if (problem_.rows() == 0 || !(inertia_changes || rows_change)) return;
-    for (int j = 0; j < problem_.rows(); ++j) {
-      momentum_ = a_.row(j).transpose();
-      apply_root(momentum_, work_);
-      y_.col(j) = work_;
-    }
+    if (problem_.constraint_count() == 0 || !(inertia_changes || rows_change)) return;
+    if (diagonal_) y_ = weights_.asDiagonal() * rows_;
+    else y_ = root_.lazyProduct(rows_);
     factor_gram();
   }
   void apply_inertia(const Vector& xi, Vector& mu) const {
@@ -146,7 +175,7 @@ class EquationsOfMotion {
 
   void find_rates(double t, const Element& g, const Vector& xi) {
     row_rate_.setZero();
-    if (problem_.rows() == 0 && problem_.constant_inertia()) return;
+    if (problem_.constraint_count() == 0 && problem_.constant_inertia()) return;
     const bool moves = !problem_.constant_constraints(), varies = !problem_.constant_inertia();
     if (!moves && !varies) return;
     if constexpr (has_dual_rates()) return evaluate_with_rates(g, xi);
@@ -155,7 +184,7 @@ class EquationsOfMotion {
     }
     row_rate_.setZero();
     momentum_rate_.setZero();
-    // What A xi lacks of b.
+    // b - A xi.
     const auto lack = [&](double at, const Element& where) {
       problem_.constraints(at, where, moved_a_, moved_b_);
       moved_b_ -= moved_a_.lazyProduct(xi);
@@ -173,7 +202,7 @@ class EquationsOfMotion {
     if (!moves || autonomous()) return;
     differentiate_in_time(
         t,
-        [&](double at) -> const Few& {
+        [&](double at) -> const Multipliers& {
           lack(at, g);
           return moved_b_;
         },
@@ -198,7 +227,7 @@ class EquationsOfMotion {
     if (diagonal_) {
       for (int i = 0; i < n; ++i) {
         singular_ = singular_ || !(inertia(i, i) > 0);
-        root_(i, i) = 1 / std::sqrt(inertia(i, i));
+        root_(i, i) = weights_[i] = 1 / std::sqrt(inertia(i, i));
       }
       return;
     }
@@ -222,41 +251,51 @@ class EquationsOfMotion {
   // term it adds to the momentum is a reaction: (I + kappa A^T A) xi' = change + A^T (lambda +
   // kappa A xi').
   [[gnu::noinline, gnu::cold]] void find_stiff_root(double t, const Element& g) {
-    problem_.constraints(t, g, a_, b_);
+    set_rows(t, g);
     stiffness_ = inertia_.trace() / a_.squaredNorm();
     const typename Problem::Matrix stiff = inertia_ + stiffness_ * a_.transpose().lazyProduct(a_);
     find_root(stiff);
     singular_ = true;
   }
   void apply_root(const Vector& mu, Vector& out) const {
-    if (diagonal_) out = root_.diagonal().cwiseProduct(mu);
+    if (diagonal_) out = weights_.cwiseProduct(mu);
     else out = root_.lazyProduct(mu);
   }
   void apply_root_transpose(const Vector& v, Vector& out) const {
-    if (diagonal_) out = root_.diagonal().cwiseProduct(v);
+    if (diagonal_) out = weights_.cwiseProduct(v);
     else out = root_.transpose().lazyProduct(v);
   }
-  // gram_: the Cholesky factor of Y^T Y.
+  // Y^T Y = L D L^T, L with a unit diagonal: below the diagonal of gram_ L D, on it D^-1, so that a
+  // solve does not divide; not a number where a row depends on those before.
   void factor_gram() {
-    const int k = problem_.rows();
+    const int k = problem_.constraint_count();
+#pragma GCC unroll 4
     for (int j = 0; j < k; ++j) {
+#pragma GCC unroll 4
       for (int i = j; i < k; ++i) {
         double sum = y_.col(i).dot(y_.col(j));
-        for (int l = 0; l < j; ++l) sum -= gram_(i, l) * gram_(j, l);
-        gram_(i, j) = i == j ? std::sqrt(sum) : sum / gram_(j, j);
+#pragma GCC unroll 4
+        for (int l = 0; l < j; ++l) sum -= gram_(i, l) * gram_(j, l) * gram_(l, l);
+        gram_(i, j) = sum;
       }
+      gram_(j, j) = gram_(j, j) > 0 ? 1 / gram_(j, j) : std::numeric_limits<double>::quiet_NaN();
     }
   }
   // c <- (Y^T Y)^-1 c.
-  void solve_gram(Few& c) const {
-    const int k = problem_.rows();
+  void solve_gram(Multipliers& c) const {
+    const int k = problem_.constraint_count();
+#pragma GCC unroll 4
     for (int i = 0; i < k; ++i) {
+#pragma GCC unroll 4
       for (int l = 0; l < i; ++l) c[i] -= gram_(i, l) * c[l];
-      c[i] /= gram_(i, i);
+      c[i] *= gram_(i, i);
     }
+#pragma GCC unroll 4
     for (int i = k - 1; i >= 0; --i) {
-      for (int l = i + 1; l < k; ++l) c[i] -= gram_(l, i) * c[l];
-      c[i] /= gram_(i, i);
+      double sum = 0;
+#pragma GCC unroll 4
+      for (int l = i + 1; l < k; ++l) sum += gram_(l, i) * c[l];
+      c[i] -= gram_(i, i) * sum;
     }
   }
 
@@ -264,14 +303,16 @@ class EquationsOfMotion {
   bool known_ = false, diagonal_ = false, singular_ = false;
   double stiffness_ = 0;
   Vector acceleration_, momentum_, change_, work_;
-  Few reaction_, b_, row_rate_, time_rate_;  // row_rate_: of b - A xi at constant xi
-  std::array<Few, 2> time_work_;
+  Multipliers reaction_, b_, row_rate_, time_rate_;  // row_rate_: of b - A xi at constant xi
+  std::array<Multipliers, 2> time_work_;
   Vector momentum_rate_;  // of I xi at constant xi
-  typename Problem::Rows a_, a_rate_, moved_a_;
-  Few moved_b_;
-  typename Problem::Matrix inertia_, inertia_rate_, moved_inertia_, root_;
-  Eigen::Matrix<double, Vector::RowsAtCompileTime, Few::RowsAtCompileTime> y_;
-  Eigen::Matrix<double, Few::RowsAtCompileTime, Few::RowsAtCompileTime> gram_;
+  typename Problem::ConstraintMatrix a_, moved_a_;
+  Multipliers moved_b_;
+  typename Problem::Matrix inertia_, moved_inertia_, root_;
+  Vector weights_;  // the diagonal of W, where there is no more
+  Eigen::Matrix<double, Vector::RowsAtCompileTime, Multipliers::RowsAtCompileTime> rows_,
+      y_;  // A^T, W A^T
+  Eigen::Matrix<double, Multipliers::RowsAtCompileTime, Multipliers::RowsAtCompileTime> gram_;
   Element moved_;
 };
 

@@ -15,7 +15,7 @@ namespace hamel {
 
 namespace detail {
 
-// The visitors that a system's fields() meets.
+// The visitors passed to a system's fields().
 struct FieldReader {
   std::vector<Field> fields;
   void operator()(const char* name, double& value, const char* unit, const char* meaning = "",

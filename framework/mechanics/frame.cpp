@@ -8,7 +8,7 @@
 namespace hamel {
 namespace {
 
-// Of ker A, orthonormal columns; the rows of A are independent.
+// Basis of ker A, orthonormal columns; the rows of A are independent.
 Eigen::MatrixXd basis_of_kernel(const Eigen::MatrixXd& constraints) {
   const auto n = constraints.cols();
   if (constraints.rows() == 0) return Eigen::MatrixXd::Identity(n, n);

@@ -30,9 +30,9 @@
 
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/lie/retraction_defaults.hpp>
-#include <hamel/framework/mechanics/driven.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/mechanics/with_inputs.hpp>
 
 namespace hamel {
 
@@ -65,7 +65,7 @@ auto left_differential(const Function& f, const typename G::template Element<dou
 }
 #endif
 
-/// The formulas of a system's struct on elements of its own type, with out-parameters.
+/// The formulas of a system's struct on elements of its type, with out-parameters.
 template <class S>
 class Formulas {
  public:
@@ -166,34 +166,46 @@ class Formulas {
 #if HAMEL_HAS_JET
   using Dual = ceres::Jet<double, 1>;
   using DualElement = typename G::template Element<Dual>;
-  /// Are A and I formulas over any scalar (templates on the element), and b constant? Then one dual
+  /// Are A, b and I formulas over any scalar (templates on the element) or constant? Then one dual
   /// number carries their rates.
   static constexpr bool has_dual_rates() {
     constexpr bool rows = own == 0 || requires(const S& s) { s.constraints(); }
     || dual_constraints();
     return rows && (r == 0 || dual_differential()) && (constant_inertia() || dual_inertia()) &&
-           (!has_drift<S>() || has_constant_drift<S>());
+           (!has_drift<S>() || has_constant_drift<S>() || dual_drift());
   }
-  /// A and I with dA/dt and dI/dt along the curve g tau(e xi), of which `moving` is the first-order
-  /// jet; what is constant is left as it is.
-  void dual_rates(const DualElement& moving, Mat<k, n>& a, Mat<k, n>& a_rate, Mat<n, n>& inertia,
-                  Mat<n, n>& inertia_rate) const {
-    const auto split = [](const auto& from, auto&& to, auto&& rate) {
-      for (int j = 0; j < n; ++j) {
-        for (int i = 0; i < from.rows(); ++i) {
-          to(i, j) = from(i, j).a;
-          rate(i, j) = from(i, j).v[0];
+  /// A^T and I, and the rates of b - A xi and I xi at constant xi along the curve g tau(e xi), of
+  /// which `moving` is the first-order jet; rows and I that are constant are left as they are.
+  void dual_rates(const DualElement& moving, const Vec<n>& xi, Mat<n, k>& rows, Vec<k>& row_rate,
+                  Mat<n, n>& inertia, Vec<n>& momentum_rate) const {
+    const auto split = [&](const auto& from, int at) {
+      for (int i = 0; i < from.rows(); ++i) {
+        double rate = 0;
+        for (int j = 0; j < n; ++j) {
+          rows(j, at + i) = from(i, j).a;
+          rate -= from(i, j).v[0] * xi[j];
         }
+        row_rate[at + i] = rate;
       }
     };
-    if constexpr (own > 0 && !requires(const S& s) { s.constraints(); }) {
-      split(system_.constraints(moving), a.template topRows<own>(), a_rate.template topRows<own>());
+    if constexpr (own > 0 && !requires(const S& s) { s.constraints(); })
+      split(system_.constraints(moving), 0);
+    else row_rate.template head<own>().setZero();
+    if constexpr (has_drift<S>() && !has_constant_drift<S>()) {
+      const VecT<Dual, own> drift = system_.drift(moving);
+      for (int i = 0; i < own; ++i) row_rate[i] += drift[i].v[0];
     }
-    if constexpr (r > 0) {
-      split(system_.holonomic_differential(moving), a.template bottomRows<r>(),
-            a_rate.template bottomRows<r>());
+    if constexpr (r > 0) split(system_.holonomic_differential(moving), own);
+    if constexpr (!constant_inertia()) {
+      const MatT<Dual, n, n> moved = system_.inertia(moving);
+      momentum_rate.setZero();
+      for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i) {
+          inertia(i, j) = moved(i, j).a;
+          momentum_rate[i] += moved(i, j).v[0] * xi[j];
+        }
+      }
     }
-    if constexpr (!constant_inertia()) split(system_.inertia(moving), inertia, inertia_rate);
   }
 #else
   static constexpr bool has_dual_rates() { return false; }
@@ -212,6 +224,12 @@ class Formulas {
     if constexpr (requires { &S::constraints; }) return false;
     else if constexpr (requires(const S& s, const DualElement& g) { s.constraints(g); })
       return is_dual<decltype(std::declval<const S&>().constraints(std::declval<DualElement>()))>;
+    else return false;
+  }
+  static constexpr bool dual_drift() {
+    if constexpr (requires { &S::drift; }) return false;
+    else if constexpr (requires(const S& s, const DualElement& g) { s.drift(g); })
+      return is_dual<decltype(std::declval<const S&>().drift(std::declval<DualElement>()))>;
     else return false;
   }
   static constexpr bool dual_differential() {
@@ -252,7 +270,7 @@ class TypedMechanics final : public Mechanics {
   explicit TypedMechanics(const S& system) : formulas_(system) {}
   const F& formulas() const { return formulas_; }
   int dim() const override { return n; }
-  int rows() const override { return k; }
+  int constraint_count() const override { return k; }
   int holonomic_rows() const override { return r; }
   bool constant_inertia() const override { return F::constant_inertia(); }
   bool constant_constraints() const override { return F::constant_constraints(); }
@@ -318,7 +336,7 @@ std::shared_ptr<const Mechanics> MechanicsOf<S>::make(const S& system) {
 template <class S>
 std::shared_ptr<const Mechanics> MechanicsOf<S>::drive(const S& system,
                                                        std::shared_ptr<const Inputs> inputs) {
-  return std::make_shared<TypedMechanics<Driven<S>>>(Driven<S>(system, std::move(inputs)));
+  return std::make_shared<TypedMechanics<WithInputs<S>>>(WithInputs<S>(system, std::move(inputs)));
 }
 
 }  // namespace hamel

@@ -3,11 +3,12 @@
 //
 // A system states its inputs like its parameters, and what they add to its forces and drifts; where
 // all are zero, nothing:
-//   void inputs(auto& u) const;        u("torque", "N m", "on the handlebar", between(-5, 5));
-//   name, unit, meaning, range force(t, g, xi, u)                 n entries in the dual, added to
-//   force(t, g, xi) drift(t, g, u)                     k entries, added to b of A xi = b
+//   void inputs(auto& u) const;   u("torque", "N m", "on the handlebar", between(-5, 5)):
+//                                 name, unit, meaning, range
+//   force(t, g, xi, u)            n entries in the dual, added to force(t, g, xi)
+//   drift(t, g, u)                k entries, added to b of A xi = b
 // u[i] is the value of the i-th. A run without inputs is that of the system without them
-// (driven.hpp).
+// (with_inputs.hpp).
 #pragma once
 
 #include <cmath>
@@ -74,7 +75,7 @@ class Inputs {
 
 namespace detail {
 
-// The visitor that a system's inputs() meets.
+// The visitor passed to a system's inputs().
 struct InputReader {
   std::vector<InputField> inputs;
   void operator()(const char* name, const char* unit, const char* meaning = "",

@@ -1,9 +1,8 @@
 // A nonholonomic system, its type erased; everything may depend on the configuration.
 //
-//   L(g, xi) = 1/2 xi^T I(g) xi - V(g),   force f(t, g, xi) in the dual of the algebra
-//   A(t, g) xi = b(t, g)                  k rows; the last of them are the differentials of the
-//   holonomic rows phi(g) = 0                            holonomic rows, imposed at the ends of
-//   each step, (M19)
+//   L(g, xi) = 1/2 xi^T I(g) xi - V(g), force f(t, g, xi) in the dual of the algebra
+//   A(t, g) xi = b(t, g)    k rows; the last of them are the differentials of the holonomic rows
+//   phi(g) = 0              holonomic rows, imposed at the ends of each step, (M19)
 // general_system.hpp derives a Mechanics from a system's struct. A system whose dimension is a
 // parameter derives from Mechanics itself (systems/n_trailer.hpp).
 #pragma once
@@ -23,8 +22,8 @@ class Mechanics {
   using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
   virtual ~Mechanics() = default;
-  virtual int dim() const = 0;   // n
-  virtual int rows() const = 0;  // k
+  virtual int dim() const = 0;               // n
+  virtual int constraint_count() const = 0;  // k
   virtual int holonomic_rows() const { return 0; }
   virtual bool constant_inertia() const { return true; }
   virtual bool constant_constraints() const { return false; }
@@ -38,10 +37,14 @@ class Mechanics {
 
   /// I(g), n x n.
   virtual void inertia(const double* g, Matrix out) const = 0;
+  /// I(g) xi, n entries, where a system has it without I(g); false: it has not.
+  virtual bool momentum(const double* /*g*/, ConstVector /*xi*/, Vector /*out*/) const {
+    return false;
+  }
   /// A(t, g), k x n, and b(t, g).
   virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
   /// db/dt - (dA/dt) xi, k entries, and (dI/dt) xi, n entries, along (t, g) at g' = g xi, where a
-  /// system knows them; false: it does not.
+  /// system computes them; false: it does not.
   virtual bool rates(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector /*rows*/,
                      Vector /*momentum*/) const {
     return false;
@@ -70,7 +73,7 @@ class LeftInvariantMechanics : public Mechanics {
   LeftInvariantMechanics(Eigen::MatrixXd inertia, Eigen::MatrixXd constraints)
       : inertia_(std::move(inertia)), constraints_(std::move(constraints)) {}
   int dim() const override { return static_cast<int>(inertia_.rows()); }
-  int rows() const override { return static_cast<int>(constraints_.rows()); }
+  int constraint_count() const override { return static_cast<int>(constraints_.rows()); }
   bool constant_constraints() const override { return true; }
   bool left_invariant() const override { return true; }
   void inertia(const double* /*g*/, Matrix out) const override { out = inertia_; }
@@ -87,13 +90,16 @@ class LeftInvariantMechanics : public Mechanics {
 class UnconstrainedMechanics final : public Mechanics {
  public:
   explicit UnconstrainedMechanics(std::shared_ptr<const Mechanics> system)
-      : system_(std::move(system)), rows_(system_->rows()) {}
+      : system_(std::move(system)), rows_(system_->constraint_count()) {}
   int dim() const override { return system_->dim(); }
-  int rows() const override { return 0; }
+  int constraint_count() const override { return 0; }
   bool constant_inertia() const override { return system_->constant_inertia(); }
   bool constant_constraints() const override { return true; }
   bool left_invariant() const override { return system_->left_invariant(); }
   void inertia(const double* g, Matrix out) const override { system_->inertia(g, out); }
+  bool momentum(const double* g, ConstVector xi, Vector out) const override {
+    return system_->momentum(g, xi, out);
+  }
   void constraints(double, const double*, Matrix, Vector) const override {}
   bool rates(double t, const double* g, ConstVector xi, Vector, Vector momentum) const override {
     return system_->rates(t, g, xi, rows_, momentum);

@@ -46,7 +46,7 @@ struct Field {
 
 /// The values out of their range, one mistake each.
 std::vector<std::string> out_of_range(const std::string& system, const std::vector<Field>& fields);
-/// What no rigid body can have among them: moments of inertia against the triangle inequality.
+/// Values that no rigid body can have: moments of inertia against the triangle inequality.
 std::vector<std::string> no_rigid_body(const std::string& system, const std::vector<Field>& fields);
 
 }  // namespace hamel

@@ -1,4 +1,4 @@
-// A system: what physics says, and its erasure to the data that a run needs.
+// A system: its physics, and its erasure to the data that a run needs.
 //
 // A system is any struct with
 //   using Group = ...;                 the configuration group, of dimension n
@@ -6,25 +6,26 @@
 //   auto constraints() const;          k x n rows A of full rank, A xi = 0 (k = 0: leave it out)
 // (inertia(g), constraints(g), holonomic(g), potential(g), ... for those that are not
 // left-invariant: general_system.hpp) and, where it has them,
-//   void fields(auto& f);              f("mass", mass, "kg", "what it is", positive): parameters
-//   (fields.hpp) void inputs(auto& u) const;        u("torque", "N m", "what it is", range): what a
-//   run may be driven by (inputs.hpp) Start start() const;               the default start Start
-//   at_speed(double v) const;    straight ahead at v m/s, what a run with `speed` starts from auto
-//   exact(g0, xi0) const;         a callable t -> std::pair{g, xi}, called with |t| increasing bool
-//   has_exact() const;            where the exact motion depends on the parameters void
-//   invariants(auto& add) const;  add("name", [](const auto& g, const auto& xi) { return ...; })
-//   std::vector<int> contacts() const; the rows of A whose multiplier is a contact's normal
-//   reaction, which
-//                                      pushes where it is positive (differentials of a height,
-//                                      counted from 0)
-//   void events(auto& add) const;      add("name", "what it is", direction, [](double t, const
-//   auto& g, const auto& xi) {
-//                                      return ...; }): zero at the event; direction +1, -1, or 0
-//                                      for both ways
-//   static shape()                     names of the coordinates of the group's factors so2 and rn,
-//   in order: {"right", "left"} void draw(auto& scene) const;      how the report page shows it
-//   (drawing.hpp) static name(), summary(), formula(), known(), source()   words for `hamel
-//   describe`
+//   void fields(auto& f);               parameters (fields.hpp):
+//                                       f("mass", mass, "kg", "what it is", positive)
+//   void inputs(auto& u) const;         what a run may be driven by (inputs.hpp):
+//                                       u("torque", "N m", "what it is", range)
+//   Start start() const;                the default start
+//   Start at_speed(double v) const;     straight ahead at v m/s, the start of a run with `speed`
+//   auto exact(g0, xi0) const;          a callable t -> std::pair{g, xi}; |t| increases
+//   bool has_exact() const;             where the exact motion depends on the parameters
+//   void invariants(auto& add) const;   add("name", [](const auto& g, const auto& xi) { ... })
+//   std::vector<int> contacts() const;  the rows of A whose multiplier is a contact's normal
+//                                       reaction, which pushes where it is positive (differentials
+//                                       of a height, counted from 0)
+//   void events(auto& add) const;       add("name", "what it is", direction,
+//                                           [](double t, const auto& g, const auto& xi) { ... }):
+//                                       zero at the event; direction +1, -1, or 0 for both ways
+//   static shape()                      names of the coordinates of the group's factors so2 and rn,
+//                                       in order: {"right", "left"}
+//   void draw(auto& scene) const;       how the report page shows it (drawing.hpp)
+//   static name(), summary(), formula(), known(), source()
+//                                       texts for `hamel describe`
 #pragma once
 
 #include <concepts>
@@ -50,7 +51,7 @@ namespace hamel {
 
 namespace detail {
 
-// The members that tell a visitor, where a system has them.
+// Passes the members that a system has to a visitor.
 template <class S, class Visitor>
 void tell_fields(S& system, Visitor& visitor) {
   if constexpr (requires { system.fields(visitor); }) system.fields(visitor);
@@ -277,7 +278,7 @@ std::function<SystemModel(const Parameters&)> maker(const S& system) {
   };
 }
 
-/// What the registry keeps of the system type S; S{} holds the defaults.
+/// The registry entry of the system type S; S{} holds the defaults.
 template <class S>
 SystemInfo system_info() {
   SystemInfo info;

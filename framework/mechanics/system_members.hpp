@@ -1,9 +1,9 @@
-// What a system's struct states, read off its members; and that none of them is overlooked.
+// Members that a system's struct defines; none of them is overlooked.
 //
-// A member counts when it can be called as its form says. One of that name that cannot (drift(t)
-// alone, a force that is not const) would be left out without a word, so it is refused at compile
-// time: named::x<S> asks whether S has a function x of any signature. Deriving from S and from a
-// struct with an x of its own makes the name x ambiguous exactly then.
+// A member counts when it can be called in its stated form. One of that name that cannot (drift(t)
+// alone, a force that is not const) would be ignored without notice, so it is refused at compile
+// time: named::x<S> tests whether S has a function x of any signature. Deriving from S and from a
+// struct that has an x makes the name x ambiguous exactly then.
 #pragma once
 
 #include <type_traits>
@@ -113,7 +113,7 @@ constexpr bool has_potential() {
   return has;
 }
 
-/// What inputs add to the force and to b.
+/// Contributions of inputs, to the force and to b.
 template <class S>
 constexpr bool has_input_force() {
   return requires(const S& s, const ElementOf<S>& g, const Vec<S::Group::dim>& xi, InputValues u) {
@@ -175,7 +175,7 @@ auto force_of(const S& system, [[maybe_unused]] double t, const ElementOf<S>& g,
   else return system.force(g, xi);
 }
 
-/// No member asks for the time.
+/// No member depends on the time.
 template <class S>
 constexpr bool is_autonomous() {
   using Element = const ElementOf<S>&;

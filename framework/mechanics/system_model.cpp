@@ -9,7 +9,8 @@
 namespace hamel {
 
 std::string constraints_in_words(const SystemModel& model) {
-  const int rows = model.mechanics->rows(), holonomic = model.mechanics->holonomic_rows();
+  const int rows = model.mechanics->constraint_count(),
+            holonomic = model.mechanics->holonomic_rows();
   if (rows == 0) return "no constraint";
   return fmt::format("{} constraint row{}{}", rows, rows == 1 ? "" : "s",
                      holonomic > 0 ? fmt::format(", {} holonomic", holonomic) : "");

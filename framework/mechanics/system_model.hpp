@@ -74,13 +74,13 @@ struct SystemModel {
   std::vector<std::string> start_parameters;  // "speed", in m/s
   /// Straight ahead at a speed [m/s]; empty where no straight motion is defined.
   std::function<Start(double speed, double t)> start_at_speed;
-  /// The same with the push of the file, with which a run starts, and in words: "w1 = 0.1"; empty
+  /// The same with the push of the file, with which a run starts, and as text: "w1 = 0.1"; empty
   /// where there is none.
   std::function<Start(double speed, double t)> start_pushed;
   std::string push;
   /// The velocities with which the root turns, by their places; empty where there is no root.
   std::vector<int> turning;
-  /// What is wrong with a state as the start of a run. inputs: null where none drive the run.
+  /// Mistakes of a state as the start of a run. inputs: null where none drive the run.
   std::function<std::vector<std::string>(double t, const double* g, std::span<const double> xi,
                                          const std::shared_ptr<const Inputs>& inputs)>
       start_mistakes;

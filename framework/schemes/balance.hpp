@@ -6,9 +6,9 @@
 // nu = h force(t + s h, g, v), both equations of the cotangent lift are balanced on d at g:
 //   E(g)^T ( s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 - I(g) v ) = 0,   A(g) v = b(t + s h, g),
 //   E(g)^T ( m1 - m0 - nu ) = 0,                                   A(g1) w = b(t + h, g1),
-// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one (*) of mechanics/place.hpp,
-// in the frame at g. On a left-invariant problem v = E y and w = E y1: 2 m unknowns, no rows.
-// Derivatives: (c) and (d) of lie/trivialised.hpp.
+// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one (*) of
+// mechanics/admissible_frame.hpp, in the frame at g. On a left-invariant problem v = E y and w = E
+// y1: 2 m unknowns, no rows. Derivatives: (c) and (d) of lie/trivialised.hpp.
 #pragma once
 
 #include <hamel/framework/lie/trivialised.hpp>
@@ -30,32 +30,7 @@ class BalanceStep {
   using Jacobian = typename P::TwoStatesMatrix;
   using Node = hamel::Node<P>;
 
-  BalanceStep(const P& problem, double s)
-      : problem_(problem),
-        s_(s),
-        mu0_(P::Vector::Zero(problem.dim())),
-        place_(problem),
-        f0_(problem.element()),
-        f1_(f0_),
-        base_(f0_),
-        g1_(f0_),
-        v_(P::Vector::Zero(problem.dim())),
-        z0_(v_),
-        z1_(v_),
-        nu_(v_),
-        m0_(v_),
-        m1_(v_),
-        mu_(v_),
-        r_(v_),
-        x_(P::State::Zero(problem.state_size())),
-        w_(x_),
-        f_(x_),
-        inertia_(problem.dim(), problem.dim()),
-        a_(problem.rows(), problem.dim()),
-        b_(problem.rows()),
-        rows_(problem.rows()),
-        end_rows_(problem.rows()),
-        phi_(problem.held()) {}
+  BalanceStep(const P& problem, double s) : problem_(problem), s_(s) {}
 
   int size() const { return 2 * problem_.state_size(); }
   void begin(const Node& node, double h) {
@@ -80,9 +55,9 @@ class BalanceStep {
     x.tail(half()) = from_->x;
   }
   double scale_squared() const { return scale_squared_; }
-  void from_frame(Unknown& z) const requires(!P::left_invariant) {
-    place_.from_frame(z.data());
-    place_.from_frame(z.data() + problem_.dim());
+  void expand(Unknown& z) const requires(!P::left_invariant) {
+    place_.expand(z.data());
+    place_.expand(z.data() + problem_.dim());
   }
 
   void residual(const Unknown& x, Unknown& f) const {
@@ -98,13 +73,13 @@ class BalanceStep {
       place_.weigh(r_);
       f.head(half()) = r_;
     } else {
-      place_.join(r_, rows_, f_);
+      place_.assemble(r_, rows_, f_);
       f.head(half()) = f_;
     }
     // (2).
     r_ = m1_ - m0_;
     if constexpr (!P::left_invariant) r_ -= h_ * nu_;
-    place_.join(r_, end_rows_, f_);
+    place_.assemble(r_, end_rows_, f_);
     f.tail(half()) = f_;
   }
 
@@ -195,16 +170,16 @@ class BalanceStep {
   P problem_;
   double s_, h_ = 0, scale_squared_ = 0;
   const Node* from_ = nullptr;
-  Vector mu0_;
+  Vector mu0_ = P::Vector::Zero(problem_.dim());
   // Work: the place at the base point, and what the last x determined. Allocated once.
-  mutable typename P::Place place_;
-  mutable Element f0_, f1_, base_, g1_;
-  mutable Vector v_, z0_, z1_, nu_, m0_, m1_, mu_, r_;
-  mutable typename P::State x_, w_, f_;
-  mutable typename P::Matrix inertia_;
-  mutable typename P::Rows a_;
-  mutable typename P::Few b_, rows_, end_rows_;
-  mutable typename P::Held phi_;
+  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable Element f0_ = problem_.element(), f1_ = f0_, base_ = f0_, g1_ = f0_;
+  mutable Vector v_ = mu0_, z0_ = v_, z1_ = v_, nu_ = v_, m0_ = v_, m1_ = v_, mu_ = v_, r_ = v_;
+  mutable typename P::State x_ = P::State::Zero(problem_.state_size()), w_ = x_, f_ = x_;
+  mutable typename P::Matrix inertia_{problem_.dim(), problem_.dim()};
+  mutable typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};
+  mutable typename P::Multipliers b_{problem_.constraint_count()}, rows_ = b_, end_rows_ = b_;
+  mutable typename P::HolonomicValues phi_{problem_.holonomic_rows()};
 };
 
 struct Balance : SchemeDefaults {
@@ -216,8 +191,8 @@ struct Balance : SchemeDefaults {
   static std::string source() {
     return "Vivek, Martin de Diego, Banavar: the printed inverse map, both equations on d";
   }
-  static constexpr bool uses_s = true;
-  static constexpr bool varies_steps = true;
+  static constexpr std::optional<double> fixed_s = std::nullopt;
+  static constexpr StepChoice step_choice = StepChoice::symmetric;
   static constexpr bool reduced = true;
   static ClaimedOrder claim(double s, TauTraits /*tau*/, bool /*left_invariant*/) {
     return {s == 0.5 ? 2 : 1, s == 0.5};

@@ -4,7 +4,7 @@
 // v = xi/h:
 //   E^T ( (dR_{hv})^T mu_k - I v ) = 0,   A v = 0,
 //   xi_{k+1} the admissible velocity of Ad_{tau(hv)}^T mu_k,   g_{k+1} = g_k tau(hv).
-// What Ad^T carries out of d* is dropped, and with it the second order: the scheme has order 1.
+// The part that Ad^T carries out of d* is dropped, and with it order 2: the scheme has order 1.
 #pragma once
 
 #include <hamel/framework/lie/trivialised.hpp>
@@ -23,19 +23,7 @@ class BoxedStep {
   using Jacobian = typename P::StateMatrix;
   using Node = hamel::Node<P>;
 
-  BoxedStep(const P& problem, double /*s*/)
-      : problem_(problem),
-        full_mu_(P::Vector::Zero(problem.dim())),
-        embedding_(problem.dim(), problem.dim()),
-        place_(problem),
-        v_(P::Vector::Zero(problem.dim())),
-        z_(v_),
-        r_(v_),
-        mu_(v_),
-        a_(problem.rows(), problem.dim()),
-        b_(problem.rows()),
-        rows_(problem.rows()),
-        f_(problem.element()) {
+  BoxedStep(const P& problem, double /*s*/) : problem_(problem) {
     if constexpr (literal) embed();
   }
 
@@ -53,7 +41,7 @@ class BoxedStep {
   }
   void guess(Unknown& x) const { x = from_->x; }
   double scale_squared() const { return scale_squared_; }
-  void from_frame(Unknown& z) const requires(!P::left_invariant) { place_.from_frame(z.data()); }
+  void expand(Unknown& z) const requires(!P::left_invariant) { place_.expand(z.data()); }
 
   void residual(const Unknown& x, Unknown& f) const {
     set_step(x);
@@ -61,7 +49,7 @@ class BoxedStep {
     problem_.momentum(place_.inertia, x, mu_);
     r_ -= mu_;
     if constexpr (!P::left_invariant) rows_ = a_.lazyProduct(v_);
-    place_.join(r_, rows_, f);
+    place_.assemble(r_, rows_, f);
   }
 
   /// F and dF/dy.
@@ -104,14 +92,14 @@ class BoxedStep {
   P problem_;
   double h_ = 0, scale_squared_ = 0;
   const Node* from_ = nullptr;
-  Vector full_mu_;
-  typename P::Matrix embedding_;
-  mutable typename P::Place place_;
-  mutable Vector v_, z_, r_, mu_;
-  typename P::Rows a_;
-  typename P::Few b_;
-  mutable typename P::Few rows_;
-  mutable typename P::Element f_;
+  Vector full_mu_ = P::Vector::Zero(problem_.dim());
+  typename P::Matrix embedding_{problem_.dim(), problem_.dim()};
+  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable Vector v_ = full_mu_, z_ = v_, r_ = v_, mu_ = v_;
+  typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};
+  typename P::Multipliers b_{problem_.constraint_count()};
+  mutable typename P::Multipliers rows_ = b_;
+  mutable typename P::Element f_ = problem_.element();
 };
 
 struct Boxed : SchemeDefaults {

@@ -1,7 +1,7 @@
 // energy_preserving: a discrete-gradient step for left-invariant systems.
 //
-//   I (xi_1 - xi_0) = h ad*_W I W + A^T lambda,   W = (xi_0 + xi_1)/2,   A xi_1 = 0,   g_1 = g_0
-//   tau(h W).
+//   I (xi_1 - xi_0) = h ad*_W I W + A^T lambda,   W = (xi_0 + xi_1)/2,
+//   A xi_1 = 0,   g_1 = g_0 tau(h W).
 // Paired with W: <ad*_W I W, W> = 0 and A W = 0, so that 1/2 xi^T I xi is kept to round-off.
 // Order 2. Weakness: the energy is all that is kept; the trajectory has the error of any method of
 // order 2. Source: Celledoni, Farre Puiggali, Hoiseth, Martin de Diego, Energy-preserving
@@ -38,17 +38,7 @@ class EnergyPreserving::Step {
   using Jacobian = typename P::StateMatrix;
   using Node = hamel::Node<P>;
 
-  Step(const P& problem, double /*s*/)
-      : problem_(problem),
-        place_(problem),
-        mean_(P::State::Zero(problem.state_size())),
-        w_(P::Vector::Zero(problem.dim())),
-        mu_(w_),
-        r_(w_),
-        a_(problem.rows(), problem.dim()),
-        b_(problem.rows()),
-        rows_(problem.rows()),
-        f_(problem.element()) {}
+  Step(const P& problem, double /*s*/) : problem_(problem) {}
 
   int size() const { return problem_.state_size(); }
   void begin(const Node& node, double h) {
@@ -62,7 +52,7 @@ class EnergyPreserving::Step {
   }
   void guess(Unknown& x) const { x = from_->x; }
   double scale_squared() const { return scale_squared_; }
-  void from_frame(Unknown& z) const requires(!P::left_invariant) { place_.from_frame(z.data()); }
+  void expand(Unknown& z) const requires(!P::left_invariant) { place_.expand(z.data()); }
 
   void residual(const Unknown& x, Unknown& f) const {
     mean_ = 0.5 * (from_->x + x);
@@ -74,7 +64,7 @@ class EnergyPreserving::Step {
     problem_.momentum(place_.inertia, mean_, mu_);
     r_ += mu_;
     if constexpr (!P::left_invariant) rows_ = a_.lazyProduct(x);
-    place_.join(r_, rows_, f);
+    place_.assemble(r_, rows_, f);
   }
   bool finish(const Unknown& x, Node& next) const {
     mean_ = (0.5 * h_) * (from_->x + x);
@@ -91,13 +81,13 @@ class EnergyPreserving::Step {
   P problem_;
   double h_ = 0, scale_squared_ = 0;
   const Node* from_ = nullptr;
-  mutable typename P::Place place_;
-  mutable Unknown mean_;
-  mutable Vector w_, mu_, r_;
-  typename P::Rows a_;
-  typename P::Few b_;
-  mutable typename P::Few rows_;
-  mutable typename P::Element f_;
+  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable Unknown mean_ = P::State::Zero(problem_.state_size());
+  mutable Vector w_ = P::Vector::Zero(problem_.dim()), mu_ = w_, r_ = w_;
+  typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};
+  typename P::Multipliers b_{problem_.constraint_count()};
+  mutable typename P::Multipliers rows_ = b_;
+  mutable typename P::Element f_ = problem_.element();
 };
 
 }  // namespace hamel

@@ -4,15 +4,15 @@
 // |omega|^2, as for exp and Cayley on SO(3) and SE(2), tau symmetric. The end momenta of lift are
 // mu0(xi) and mu1 = mu0(-xi), with
 //   s = 0, 1, or exp:     mu0 = A(xi)^T p
-//   s = 1/2, Cayley:      mu0 = (1 + 2 O + Q + O (1 + Q)^-1 O)^T p at xi/2, where O (1 + Q)^-1 O =
-//   O^2
+//   s = 1/2, Cayley:      mu0 = (1 + 2 O + Q + O (1 + Q)^-1 O)^T p at xi/2,
+//                         where O (1 + Q)^-1 O = O^2
 // (the odd parts of C = (dR_{xi/2} + dR_{-xi/2})^T/2 cancel, and Q is z times a row, O z = -ad_z
 // z/2 = 0). Both are p plus a part linear in xi plus a weight times a quadratic one. With xi = h E
 // y, p = I E y, y = (u, v) in R^2, E^T I E = Id:
 //   E^T mu0 = y + h b(y, y) + h^2 w(h^2 g(y, y)) t(y, y, y),   E^T mu1 = the same with -h,
 // where b (2 x 3, on u^2, uv, v^2), t (2 x 4, on u^3, u^2 v, u v^2, v^3) and g (3) are constants of
 // the body: b holds the structure constants of the frame. They are found from mu0 itself by
-// polarisation at |xi| about 1, with an error of a few eps.
+// polarisation at |xi| about 1, with an error of several eps.
 #pragma once
 
 #include <utility>
@@ -24,10 +24,11 @@ namespace hamel {
 template <class Problem>
 class HamelForm {
   using Tau = typename Problem::Tau;
+  using T = typename Problem::Scalar;
 
  public:
   static constexpr int n = Problem::n;
-  using Reduced = Vec<2>;
+  using Reduced = VecT<T, 2>;
 
   /// Does Tau give its weight w(x) and its x = angle_squared(xi), and is m = 2?
   static constexpr bool exists() {
@@ -36,10 +37,11 @@ class HamelForm {
       Tau::angle_squared(xi);
     };
   }
-  /// Is there one for this s? One half wants w = 1.
+  /// Is there one for this s? One half requires w = 1.
   static bool exists(double s) {
-    return exists() && (s == 0 || s == 1 || Tau::one_parameter ||
-                        (s == 0.5 && requires { &Tau::solve_even_transposed; }));
+    return exists() &&
+           (s == 0 || s == 1 || Tau::one_parameter ||
+            (s == 0.5 && requires(const Vec<n>& xi) { Tau::solve_even_transposed(xi, s, xi); }));
   }
 
   /// end_momentum(xi, p): mu0.
@@ -79,21 +81,35 @@ class HamelForm {
     g_ = Vec<3>(angle(1, 0), (angle(1, 1) - angle(1, -1)) / 2, angle(0, 1));
   }
 
+  /// That of bodies in lanes, each with its own.
+  template <class One, class Each>
+  static HamelForm joined(const Each& each) {
+    HamelForm out;
+    each(&One::b_, out.b_);
+    each(&One::t_, out.t_);
+    each(&One::g_, out.g_);
+    return out;
+  }
+
   /// E^T mu0 for h, E^T mu1 for -h.
   Reduced operator()(const Reduced& y, double h) const {
-    const double u = y[0], v = y[1], uu = u * u, uv = u * v, vv = v * v, hh = h * h;
-    const double w = hh * Tau::quadratic_weight(hh * (g_[0] * uu + g_[1] * uv + g_[2] * vv));
-    const double p0 = b_(0, 0) * uu + b_(0, 1) * uv + b_(0, 2) * vv;
-    const double p1 = b_(1, 0) * uu + b_(1, 1) * uv + b_(1, 2) * vv;
-    const double q0 = u * (t_(0, 0) * uu + t_(0, 1) * uv + t_(0, 2) * vv) + t_(0, 3) * v * vv;
-    const double q1 = u * (t_(1, 0) * uu + t_(1, 1) * uv + t_(1, 2) * vv) + t_(1, 3) * v * vv;
+    const T u = y[0], v = y[1], uu = u * u, uv = u * v, vv = v * v;
+    const double hh = h * h;
+    const auto w = hh * Tau::quadratic_weight(hh * (g_[0] * uu + g_[1] * uv + g_[2] * vv));
+    const T p0 = b_(0, 0) * uu + b_(0, 1) * uv + b_(0, 2) * vv;
+    const T p1 = b_(1, 0) * uu + b_(1, 1) * uv + b_(1, 2) * vv;
+    const T q0 = u * (t_(0, 0) * uu + t_(0, 1) * uv + t_(0, 2) * vv) + t_(0, 3) * v * vv;
+    const T q1 = u * (t_(1, 0) * uu + t_(1, 1) * uv + t_(1, 2) * vv) + t_(1, 3) * v * vv;
     return {u + h * p0 + w * q0, v + h * p1 + w * q1};
   }
 
  private:
-  Mat<2, 3> b_;
-  Mat<2, 4> t_;
-  Vec<3> g_;
+  HamelForm() = default;
+  template <class>
+  friend class HamelForm;
+  MatT<T, 2, 3> b_;
+  MatT<T, 2, 4> t_;
+  VecT<T, 3> g_;
 };
 
 }  // namespace hamel

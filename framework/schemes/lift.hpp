@@ -8,13 +8,13 @@
 //   (1)  s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 = p,     (2)  m1 - m0 = nu,
 // hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu), m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i. The step solves
 //   E(g0)^T (mu0 - I(g0) xi_0) = 0,    A(g) v = b(t + s h, g),   phi(g1) = 0 in place of its rows,
-// in the frame at g0 ((*) of mechanics/place.hpp), and xi_1 is the admissible velocity of mu1 at
-// g1.
+// in the frame at g0 ((*) of mechanics/admissible_frame.hpp), and xi_1 is the admissible velocity
+// of mu1 at g1.
 //
 // Forces at the nodes, (M43): nu = h d(v^T I(g) v)/2 only, and f - dV is taken at both ends with
 // half of h,
-//   E(g0)^T (mu0 - I(g0) xi_0 - h/2 F0) = 0,   mu1 + h/2 F1 in place of mu1,   F_i = (f - dV)(t_i,
-//   g_i, v).
+//   E(g0)^T (mu0 - I(g0) xi_0 - h/2 F0) = 0,   mu1 + h/2 F1 in place of mu1,
+//   F_i = (f - dV)(t_i, g_i, v).
 //
 // On a left-invariant problem v = E y, nu = 0 and m unknowns remain: E^T mu0 = mu_bar_k,
 // mu_bar_{k+1} = E^T mu1. At s = 0, at s = 1 for a symmetric tau, and at every s for a
@@ -33,9 +33,8 @@ struct Lift : SchemeDefaults {
     return "E'(dR_xi)^-T I xi/h = mu_k,  mu_{k+1} = E'(dL_xi)^-T I xi/h  (s = 0)";
   }
   static std::string source() { return "Vivek, Martin de Diego, Banavar: D^{D*}, read literally"; }
-  static constexpr bool uses_s = true;
-  static constexpr bool varies_steps = true;
-  static constexpr bool places_forces = true;
+  static constexpr std::optional<double> fixed_s = std::nullopt;
+  static constexpr StepChoice step_choice = StepChoice::symmetric;
   static constexpr bool reduced = true;
   /// Left-invariant: a symmetric tau gives order 2 for every s. The step is reversible at s = 1/2,
   /// and at s = 0 and 1 when tau is symmetric; between them only when tau(a xi) and tau(b xi)
@@ -66,36 +65,15 @@ class Lift::General {
   using Node = hamel::Node<P>;
   using Vector = typename P::Vector;
 
-  General(const P& problem, double s)
+  General(const P& problem, double s, ForceAt force_at = ForceAt::nodes)
       : problem_(problem),
         s_(s),
-        mirrored_(s == 0.5 && problem.symmetric()),
-        target_(P::Vector::Zero(problem.dim())),
-        place_(problem),
-        place_g_(problem.element()),
-        f0_(problem.element()),
-        f1_(f0_),
-        base_(f0_),
-        g1_(f0_),
-        v_(P::Vector::Zero(problem.dim())),
-        z_(v_),
-        step_(v_),
-        p_(v_),
-        nu_(v_),
-        m_(v_),
-        mu_(v_),
-        force_(v_),
-        inertia_(problem.dim(), problem.dim()),
-        a_(problem.rows(), problem.dim()),
-        b_(problem.rows()),
-        rows_(problem.rows()),
-        phi_(problem.held()) {}
+        nodal_(force_at == ForceAt::nodes),
+        mirrored_(s == 0.5 && problem.symmetric()) {}
 
   int size() const { return problem_.dim(); }
-  /// f - dV at the base point instead of the nodes.
-  void take_forces_at_base() { nodal_ = false; }
   /// The forces may have changed.
-  void forget() { place_time_ = kNothing; }
+  void clear_history() { place_time_ = kNothing; }
   void begin(const Node& node, double h) {
     from_ = &node;
     h_ = h;
@@ -120,11 +98,17 @@ class Lift::General {
   }
   void guess(Unknown& x) const { x = from_->x; }
   double scale_squared() const { return scale_squared_; }
-  void from_frame(Unknown& z) const { place_.from_frame(z.data()); }
+  /// A row phi(g1) moves by h times a velocity.
+  void expand(Unknown& z) const {
+    for (int i = problem_.constraint_count() - problem_.holonomic_rows();
+         i < problem_.constraint_count(); ++i)
+      z[i] /= h_;
+    place_.expand(z.data());
+  }
 
   HAMEL_FLATTEN void residual(const Unknown& x, Unknown& f) const {
     evaluate(x);
-    place_.join(mu_, rows_, f);
+    place_.assemble(mu_, rows_, f);
   }
 
   bool finish(const Unknown& x, Node& next) const {
@@ -168,8 +152,7 @@ class Lift::General {
     problem_.compose(base_, f1_, g1_);
 
     const double t = from_->t + s_ * h_;
-    if (!problem_.constant_inertia()) problem_.inertia(base_, inertia_);
-    p_ = inertia_.lazyProduct(v_);
+    find_momentum();
     if (!nodal_) {
       problem_.force(t, base_, v_, nu_);
       nu_ *= h_;
@@ -196,6 +179,17 @@ class Lift::General {
     }
   }
 
+  // p_ = I(g) v.
+  void find_momentum() const {
+    if (!problem_.constant_inertia()) {
+      if constexpr (requires { problem_.momentum_at(base_, v_, p_); }) {
+        if (problem_.momentum_at(base_, v_, p_)) return;
+      }
+      problem_.inertia(base_, inertia_);
+    }
+    p_ = inertia_.lazyProduct(v_);
+  }
+
   // force_: f - dV with the velocity v; at the base point the whole F serves as its size.
   void apply(double t, const typename P::Element& g, const Vector& v) const {
     problem_.force(t, g, v, force_);
@@ -207,21 +201,22 @@ class Lift::General {
 
   P problem_;
   double s_;
-  bool mirrored_, nodal_ = true;
+  bool nodal_, mirrored_;
   const Node* from_ = nullptr;
   double h_ = 0, scale_squared_ = 0;
-  Vector target_;
+  Vector target_ = P::Vector::Zero(problem_.dim());
   // Work: the place at place_g_ (g0, and g1 once finished), and what the last x determined.
   // Allocated once.
-  mutable typename P::Place place_;
-  mutable typename P::Element place_g_;
+  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable typename P::Element place_g_ = problem_.element();
   mutable double place_time_ = kNothing;
-  mutable typename P::Element f0_, f1_, base_, g1_;
-  mutable Vector v_, z_, step_, p_, nu_, m_, mu_, force_;
-  mutable typename P::Matrix inertia_;
-  mutable typename P::Rows a_;
-  mutable typename P::Few b_, rows_;
-  mutable typename P::Held phi_;
+  mutable typename P::Element f0_ = place_g_, f1_ = f0_, base_ = f0_, g1_ = f0_;
+  mutable Vector v_ = target_, z_ = v_, step_ = v_, p_ = v_, nu_ = v_, m_ = v_, mu_ = v_,
+                 force_ = v_;
+  mutable typename P::Matrix inertia_{problem_.dim(), problem_.dim()};
+  mutable typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};
+  mutable typename P::Multipliers b_{problem_.constraint_count()}, rows_ = b_;
+  mutable typename P::HolonomicValues phi_{problem_.holonomic_rows()};
 };
 
 }  // namespace hamel

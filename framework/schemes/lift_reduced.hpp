@@ -14,6 +14,8 @@ class Lift::Reduced {
   using Tau = typename P::Tau;
   using G = typename P::Group;
   using Element = typename P::Element;
+  using T = typename P::Scalar;
+  using Vector = typename P::Vector;
   static constexpr int n = P::n;
 
  public:
@@ -27,9 +29,22 @@ class Lift::Reduced {
         s_(s),
         one_sided_(s == 0 || Tau::one_parameter || (s == 1 && Tau::symmetric)),
         mirrored_(s == 0.5 && Tau::symmetric),
-        form_(problem, [this](const Vec<n>& xi, const Vec<n>& p) { return end_momentum(xi, p); }) {
+        form_(problem, [this](const Vector& xi, const Vector& p) { return end_momentum(xi, p); }) {
     if constexpr (Form::exists()) contracted_ = Form::exists(s);
   }
+
+  /// That of bodies in lanes: each(member, out) joins a member of One, the step of one body.
+  template <class One, class Each>
+  Reduced(std::type_identity<One>, const Each& each)
+      : problem_(each.of(&One::problem_)),
+        s_(each.first().s_),
+        one_sided_(each.first().one_sided_),
+        mirrored_(each.first().mirrored_),
+        contracted_(each.first().contracted_),
+        form_(UsedForm::template joined<typename One::UsedForm>(each.of(&One::form_))) {}
+
+  /// Is the step of this s offered to bodies in lanes? In the Hamel form where there is one.
+  static bool in_lanes(double s) { return !Form::exists() || Form::exists(s); }
 
   /// Small enough to be inlined whole?
   static constexpr bool inlined = Form::exists();
@@ -40,12 +55,12 @@ class Lift::Reduced {
   }
   void guess(Unknown& y) const { y = from_->x; }
   /// (|mu_bar| + |I xi/h|)^2, both of one length in the Hamel frame.
-  double scale_squared() const { return 4 * from_->x.squaredNorm(); }
+  T scale_squared() const { return 4 * from_->x.squaredNorm(); }
 
   /// F(y) = E^T mu0 - mu_bar.
   [[gnu::always_inline]] void residual(const Unknown& y, Unknown& f) const {
     if constexpr (Form::exists()) {
-      if (contracted_) [[likely]] {
+      if (contracted()) [[likely]] {
         f = form_(y, h_) - from_->x;
         return;
       }
@@ -76,20 +91,21 @@ class Lift::Reduced {
   }
 
   [[gnu::always_inline]] bool finish(const Unknown& y, Node& next) const {
-    const Vec<n> step = xi(y);
+    const Vector step = xi(y);
     if (!Tau::in_domain(step)) return false;
     Element increment;
     if (one_sided_) {
       increment = Tau::tau(step);
+    } else if (mirrored_) {
+      increment = of_halves(step);
     } else {
-      const Element f1 = Tau::tau(Vec<n>((1 - s_) * step));
       increment =
-          mirrored_ ? G::compose(f1, f1) : G::compose(G::inverse(Tau::tau(Vec<n>(-s_ * step))), f1);
+          G::compose(G::inverse(Tau::tau(Vector(-s_ * step))), Tau::tau(Vector((1 - s_) * step)));
     }
     next.t = from_->t + h_;
     next.g = G::compose(from_->g, increment);
     if constexpr (Form::exists()) {
-      if (contracted_) [[likely]] {
+      if (contracted()) [[likely]] {
         next.x = form_(y, -h_);
         return true;
       }
@@ -99,46 +115,67 @@ class Lift::Reduced {
   }
 
  private:
-  Vec<n> xi(const Unknown& y) const {
-    Vec<n> v;
+  bool contracted() const {
+    if constexpr (requires { T::width; }) return true;  // in_lanes
+    else return contracted_;
+  }
+  // tau(xi/2)^2.
+  static Element of_halves(const Vector& step) {
+    if constexpr (requires { Tau::tau_of_halves(step); }) {
+      return Tau::tau_of_halves(step);
+    } else {
+      const Element half = Tau::tau(Vector(0.5 * step));
+      return G::compose(half, half);
+    }
+  }
+  Vector xi(const Unknown& y) const {
+    Vector v;
     problem_.velocity(y, v);
     return h_ * v;
   }
-  Vec<n> momentum(const Unknown& y) const {
-    Vec<n> p;
+  Vector momentum(const Unknown& y) const {
+    Vector p;
     problem_.momentum({}, y, p);
     return p;
   }
   // mu0 = Ad_{f0}^T m, m = C^-1 p.
-  Vec<n> end_momentum(const Vec<n>& step, const Vec<n>& p) const {
+  Vector end_momentum(const Vector& step, const Vector& p) const {
     if (one_sided_) return Tau::dtau_right_inverse_transpose(step, p);
-    return G::Ad_transpose(Tau::tau(Vec<n>(-s_ * step)),
-                           base_momentum<Tau>(s_, step, p, Vec<n>::Zero()));
+    return G::Ad_transpose(Tau::tau(Vector(-s_ * step)),
+                           base_momentum<Tau, T>(s_, step, p, Vector::Zero()));
   }
   // Out of line, so that the contracted loop stays small.
   [[gnu::noinline]] void full_residual(const Unknown& y, Unknown& f) const {
     f = problem_.reduce(end_momentum(xi(y), momentum(y))) - from_->x;
   }
-  [[gnu::noinline]] void full_finish(const Unknown& y, const Vec<n>& step, Unknown& next) const {
-    const Vec<n> p = momentum(y);
+  [[gnu::noinline]] void full_finish(const Unknown& y, const Vector& step, Unknown& next) const {
+    const Vector p = momentum(y);
     if (one_sided_) {
       next = problem_.reduce(Tau::dtau_left_inverse_transpose(step, p));
     } else {
-      next = problem_.reduce(G::Ad_transpose(Tau::tau(Vec<n>((1 - s_) * step)),
-                                             base_momentum<Tau>(s_, step, p, Vec<n>::Zero())));
+      next = problem_.reduce(G::Ad_transpose(Tau::tau(Vector((1 - s_) * step)),
+                                             base_momentum<Tau, T>(s_, step, p, Vector::Zero())));
     }
   }
 
   struct NoForm {
+    NoForm() = default;
     template <class EndMomentum>
     NoForm(const P& /*problem*/, const EndMomentum& /*mu0*/) {}
+    template <class One, class Each>
+    static NoForm joined(const Each& /*each*/) {
+      return {};
+    }
   };
+  using UsedForm = std::conditional_t<Form::exists(), Form, NoForm>;
+  template <class>
+  friend class Reduced;
 
   P problem_;
   double s_, h_ = 0;
   bool one_sided_, mirrored_, contracted_ = false;
   const Node* from_ = nullptr;
-  [[no_unique_address]] std::conditional_t<Form::exists(), Form, NoForm> form_;
+  [[no_unique_address]] UsedForm form_;
 };
 
 }  // namespace hamel

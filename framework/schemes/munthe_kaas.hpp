@@ -24,7 +24,7 @@ struct MuntheKaas : ExplicitDefaults {
 
 /// A pair with an estimate of its error, whose steps keep the holonomic rows.
 struct ExplicitPair : MuntheKaas {
-  static constexpr bool estimates_error = true;
+  static constexpr StepChoice step_choice = StepChoice::by_estimate;
 };
 
 template <class P>
@@ -38,12 +38,7 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
   /// Pairs keep the holonomic rows.
   bool keeps_rows() const { return this->table_.estimates(); }
 
-  Step(const P& problem, const Tableau& table)
-      : Base(problem, table, problem.dim()),
-        g0_(problem.element()),
-        error_(P::Vector::Zero(problem.dim())),
-        after_(error_),
-        x_error_(P::State::Zero(problem.state_size())) {}
+  Step(const P& problem, const Tableau& table) : Base(problem, table, problem.dim()) {}
 
   void start(const Element& g, Vector& eta) {
     g0_ = g;
@@ -58,12 +53,18 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
   void rate(const Vector& eta, const Element& /*g*/, const Vector& xi, Vector& out) const {
     this->problem_.dtau_left_inverse(eta, xi, out);
   }
+  bool element_with_rate(const Vector& eta, const Vector& xi, Element& g, Vector& out) const {
+    if (!this->problem_.in_domain(eta)) return false;
+    this->problem_.tau_with_rate(eta, xi, g, out);
+    this->problem_.compose(g0_, g, g);
+    return true;
+  }
 
   /// Does the tableau estimate the error, O(h^k)?
   int estimated_order() const {
     return this->table_.estimates() ? this->table_.estimated_order : 0;
   }
-  /// Of the step that was just finished; it is good up to 1.
+  /// The error of the step that was just finished; it is good up to 1.
   double error(const Node& next, double rtol, double atol) const {
     const double e = estimate(this->table_.e, next, rtol, atol);
     if (this->table_.e3.empty() || e == 0) return e;
@@ -148,9 +149,9 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     return most;
   }
 
-  Element g0_;
-  mutable Vector error_, after_;
-  mutable State x_error_;
+  Element g0_ = this->problem_.element();
+  mutable Vector error_ = Vector::Zero(this->problem_.dim()), after_ = error_;
+  mutable State x_error_ = State::Zero(this->problem_.state_size());
 };
 
 }  // namespace hamel

@@ -1,12 +1,11 @@
 // The problem of a step: a nonholonomic system on a group with a retraction, as the schemes see it.
 //
 // Three models of one concept:
-//   LeftInvariant<G, M, Tau>   constant inertia and rows, m fixed: the velocity is carried as y, xi
-//   = E y Typed<System, Tau>         whatever C++ type describes the system: fixed sizes, nothing
-//   virtual Erased                     run-time sizes: systems by data, products put together by
-//   name
-// A step is a template over the problem; nothing in it knows which of the three it has, but for
-// `if constexpr (Problem::left_invariant)`, where constants have been contracted.
+//   LeftInvariant<G, M, Tau>    constant inertia and rows, m fixed: the state is y, xi = E y
+//   StaticProblem<System, Tau>  whatever C++ type describes the system: fixed sizes, no virtuals
+//   DynamicProblem              run-time sizes: systems by data, products put together by name
+// A step is a template over the problem; nothing in it depends on which of the three it has, but
+// for `if constexpr (Problem::left_invariant)`, where constants have been contracted.
 #pragma once
 
 #include <concepts>
@@ -26,17 +25,19 @@ struct Node {
       : g(problem.element()), x(Problem::State::Zero(problem.state_size())) {}
 };
 
-/// What a step may ask. Sizes: n = dim(), k = rows(), the last held() of them differentials of
-/// holonomic rows. Out-parameters have their size before a call. Elements: Problem::Element.
+/// Operations available to a step. Sizes: n = dim(), k = constraint_count(), the last
+/// holonomic_rows() of them differentials of holonomic rows. Out-parameters have their size before
+/// a call. Elements: Problem::Element.
 template <class P>
 concept Problem = requires(const P& problem, typename P::Element& g, typename P::Vector& v,
-                           typename P::State& x, typename P::Matrix& inertia, typename P::Rows& a,
-                           typename P::Few& b, typename P::Held& phi, typename P::Place& place,
+                           typename P::State& x, typename P::Matrix& inertia,
+                           typename P::ConstraintMatrix& a, typename P::Multipliers& b,
+                           typename P::HolonomicValues& phi, typename P::AdmissibleFrame& place,
                            double t) {
   { P::left_invariant } -> std::convertible_to<bool>;
   { problem.dim() } -> std::convertible_to<int>;
-  { problem.rows() } -> std::convertible_to<int>;
-  { problem.held() } -> std::convertible_to<int>;
+  { problem.constraint_count() } -> std::convertible_to<int>;
+  { problem.holonomic_rows() } -> std::convertible_to<int>;
   { problem.state_size() } -> std::convertible_to<int>;
   { problem.symmetric() } -> std::convertible_to<bool>;
   { problem.one_parameter() } -> std::convertible_to<bool>;
@@ -54,7 +55,7 @@ concept Problem = requires(const P& problem, typename P::Element& g, typename P:
   { problem.in_domain(v) } -> std::convertible_to<bool>;
   // xi of a carried velocity, and back; its momentum I xi, given I(g).
   problem.velocity(x, v);
-  problem.carry(v, x);
+  problem.to_state(v, x);
   problem.momentum(inertia, x, v);
   // The system (mechanics/mechanics.hpp): I(g), A(t, g) and b(t, g), phi(g), the force.
   { problem.constant_inertia() } -> std::convertible_to<bool>;
@@ -65,9 +66,9 @@ concept Problem = requires(const P& problem, typename P::Element& g, typename P:
   problem.force(t, g, v, v);
   problem.inertial_force(g, v, v);
   { problem.force_depends_on_velocity() } -> std::convertible_to<bool>;
-  // The frame of the admissible velocities at a configuration (mechanics/place.hpp).
+  // The frame of the admissible velocities at a configuration (mechanics/admissible_frame.hpp).
   place.set(problem, t, g);
-  place.join(v, b, x);
+  place.assemble(v, b, x);
   place.admissible(v, x);
 };
 

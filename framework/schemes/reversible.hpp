@@ -25,8 +25,8 @@ struct Reversible : SchemeDefaults {
     return "after McLachlan and Perlmutter 2006, (4.18), with the forces at the step's own "
            "midpoint";
   }
-  static constexpr double fixed_s = 0.5;
-  static constexpr bool steps_admissible = false;
+  static constexpr std::optional<double> fixed_s = 0.5;
+  static constexpr ConstraintKept constraint_kept = ConstraintKept::nodes;
   static ClaimedOrder claim(double /*s*/, TauTraits /*tau*/, bool /*left_invariant*/) {
     return {2, true};
   }

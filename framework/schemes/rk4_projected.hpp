@@ -1,5 +1,5 @@
 // rk4_projected: classical RK4 in the coordinates of the trajectory file, projected
-// (runge_kutta.hpp). What a user writes by hand.
+// (runge_kutta.hpp): the method that a user would write by hand.
 //
 // The coordinates are the columns q(g) of the element (nine for a rotation), in which
 //   q' = d/de q(g tau(e xi)) at e = 0.
@@ -36,11 +36,7 @@ struct Rk4Projected : ExplicitDefaults {
    public:
     static constexpr bool rate_in_algebra = false;
     static constexpr bool keeps_rows() { return false; }
-    Step(const P& problem, const Tableau& table)
-        : Base(problem, table, problem.columns()),
-          shift_(P::Vector::Zero(problem.dim())),
-          moved_(problem.element()),
-          q_(problem.columns()) {}
+    Step(const P& problem, const Tableau& table) : Base(problem, table, problem.columns()) {}
     void start(const Element& g, Coordinates& q) { this->problem_.coordinates(g, q.data()); }
     bool element(const Coordinates& q, Element& g) const {
       if (!q.allFinite()) return false;
@@ -57,9 +53,9 @@ struct Rk4Projected : ExplicitDefaults {
     }
 
    private:
-    mutable Vector shift_;
-    mutable Element moved_;
-    mutable Coordinates q_;
+    mutable Vector shift_ = Vector::Zero(this->problem_.dim());
+    mutable Element moved_ = this->problem_.element();
+    mutable Coordinates q_ = Coordinates(this->problem_.columns());
   };
 };
 

@@ -1,7 +1,7 @@
 // rkmk4: the Munthe-Kaas method of the classical tableau of order 4 (munthe_kaas.hpp).
 //
-// Weakness: nothing is kept but the group: energy and holonomic rows drift, on a motion that goes
-// on for ever like h^5 t (its error of order 4 averages out where the motion is reversible).
+// Weakness: nothing is kept but the group: energy and holonomic rows drift, on a motion without
+// end like h^5 t (its error of order 4 averages out where the motion is reversible).
 // Measured: tests/verification/baselines.cpp. Source: Munthe-Kaas, High order Runge-Kutta methods
 // on manifolds (1999).
 #pragma once

@@ -1,7 +1,7 @@
-// What explicit schemes on the equations of motion share: a Runge-Kutta method given by its
+// Common part of explicit schemes on the equations of motion: a Runge-Kutta method given by its
 // tableau.
 //
-// In coordinates q of the element of its own choice, a scheme integrates
+// In coordinates q of the element that it chooses, a scheme integrates
 //   q' = rate(q, xi),   x' = a(t, g, x)   (mechanics/equations_of_motion.hpp),   g = element(q).
 // At the end of a step g goes to the group and xi onto A xi = b, orthogonally in the metric I. A
 // scheme that keeps the holonomic rows (Derived::keeps_rows) moves g onto phi = 0 before, g <- g
@@ -23,23 +23,17 @@
 namespace hamel {
 
 /// Derived gives start(g, q), element(q, g) -> bool (false outside the domain of the coordinates),
-/// rate(q, g, xi, out), keeps_rows(), and rate_in_algebra: rate does not look at g. Q: the type of
-/// the coordinates.
+/// rate(q, g, xi, out), keeps_rows(), and rate_in_algebra: rate does not look at g; where both are
+/// cheaper at once, element_with_rate(q, xi, g, out) -> bool too. Q: the type of the coordinates.
 template <class Derived, class P, class Q>
 class RungeKutta {
  public:
   using Problem = P;
-  using Unknown = Eigen::Matrix<double, 0, 1>;  // no equation
-  using Jacobian = Eigen::Matrix<double, 0, 0>;
   using Node = hamel::Node<P>;
   using Element = typename P::Element;
   using Vector = typename P::Vector;
   using State = typename P::State;
 
-  static constexpr int size() { return 0; }
-  void guess(Unknown& /*x*/) const {}
-  static double scale_squared() { return 1; }
-  void residual(const Unknown& /*x*/, Unknown& /*f*/) const {}
   /// Evaluations of the equations of motion in the last step.
   int evaluations() const { return evaluations_; }
 
@@ -53,7 +47,7 @@ class RungeKutta {
     if (is(end_, node)) {
       x_rates_[0] = x_rates_[at(last())];
     } else if (!is(begin_, node)) {  // else the step is taken again with another size
-      accelerate(node.t, node.g, node.x, x_rates_[0]);
+      motion_(node.t, node.g, node.x, x_rates_[0]);
       ++evaluations_;
     }
     begin_ = node;
@@ -61,7 +55,7 @@ class RungeKutta {
     extended_ = false;
   }
 
-  HAMEL_FLATTEN bool finish(const Unknown& /*x*/, Node& next) const {
+  HAMEL_FLATTEN bool finish(Node& next) const {
     for (int i = 1; i < last(); ++i) {
       if (!stage(i)) return false;
     }
@@ -76,12 +70,12 @@ class RungeKutta {
       problem_.velocity(next.x, xi_);
       self().rate(q_, next.g, xi_, q_rates_[at(last())]);
     }
-    accelerate(next.t, next.g, next.x, x_rates_[at(last())]);
+    motion_(next.t, next.g, next.x, x_rates_[at(last())]);
     end_ = next;
     return next.x.allFinite();
   }
   /// Forgets the rates at the last nodes.
-  void forget() { begin_.t = end_.t = kNever; }
+  void clear_history() { begin_.t = end_.t = kNever; }
   /// Was the last step refused because the equations of motion gave a value that is not finite?
   bool not_finite() const { return !(x_.allFinite() && q_.allFinite()); }
   /// Was the last step refused because the constraints do not hold at its end?
@@ -90,22 +84,8 @@ class RungeKutta {
  protected:
   /// coordinates: how many numbers q has.
   RungeKutta(const P& problem, const Tableau& table, int coordinates)
-      : problem_(problem),
-        table_(table),
-        motion_(problem),
-        begin_(problem),
-        end_(problem),
-        q0_(coordinates),
-        g_(problem.element()),
-        q_(q0_),
-        x_(State::Zero(problem.state_size())),
-        q_rates_(static_cast<size_t>(table.all_stages()), q0_),
-        x_rates_(static_cast<size_t>(table.all_stages()), x_),
-        xi_(Vector::Zero(problem.dim())),
-        move_(xi_),
-        phi_(problem.held()),
-        gaps_(problem.rows()) {
-    forget();
+      : problem_(problem), table_(table), q0_(coordinates) {
+    clear_history();
   }
 
   static size_t at(int i) { return static_cast<size_t>(i); }
@@ -113,33 +93,37 @@ class RungeKutta {
   bool is(const Node& one, const Node& other) const {
     return one.t == other.t && one.x == other.x && problem_.same(one.g, other.g);
   }
-  // The equations of motion with all that they call, inlined once: a third fewer instructions than
-  // calls.
-  HAMEL_FLATTEN [[gnu::noinline]] void accelerate(double t, const Element& g, const State& x,
-                                                  State& rate) const {
-    motion_(t, g, x, rate);
-  }
   // q_ and x_ at stage i.
   void sum(int i) const {
-    q_ = q0_;
-    x_ = from_->x;
+    Local<Q> q = q_;
+    Local<State> x = x_;
+    q = q0_;
+    x = from_->x;
     for (int j = 0; j < i; ++j) {
       const double weight = h_ * table_.at(i, j);
       if (weight == 0) continue;
-      q_ += weight * q_rates_[at(j)];
-      x_ += weight * x_rates_[at(j)];
+      q += weight * q_rates_[at(j)];
+      x += weight * x_rates_[at(j)];
     }
+    q_ = q;
+    x_ = x;
   }
+  // In registers where the size is known, else in place.
+  template <class V>
+  using Local = std::conditional_t<V::SizeAtCompileTime == Eigen::Dynamic, V&, V>;
   HAMEL_FLATTEN [[gnu::noinline]] bool stage(int i) const {
     sum(i);
+    problem_.velocity(x_, xi_);
     if constexpr (P::left_invariant && Derived::rate_in_algebra) {
       if (!problem_.in_domain(q_)) return false;
-    } else if (!self().element(q_, g_)) {
-      return false;
+      self().rate(q_, g_, xi_, q_rates_[at(i)]);
+    } else if constexpr (requires { self().element_with_rate(q_, xi_, g_, q_); }) {
+      if (!self().element_with_rate(q_, xi_, g_, q_rates_[at(i)])) return false;
+    } else {
+      if (!self().element(q_, g_)) return false;
+      self().rate(q_, g_, xi_, q_rates_[at(i)]);
     }
-    problem_.velocity(x_, xi_);
-    self().rate(q_, g_, xi_, q_rates_[at(i)]);
-    accelerate(from_->t + table_.c[at(i)] * h_, g_, x_, x_rates_[at(i)]);
+    motion_(from_->t + table_.c[at(i)] * h_, g_, x_, x_rates_[at(i)]);
     return true;
   }
   // Onto the constraints. They must hold to a percent of the velocity before they are imposed: the
@@ -148,7 +132,7 @@ class RungeKutta {
   bool settle(Node& node) const {
     constexpr double most = 0.01;
     double off = 0;  // squared, of the rows of phi, in the metric
-    if (const int held = problem_.held(); held > 0) {
+    if (const int held = problem_.holonomic_rows(); held > 0) {
       gaps_.setZero();
       problem_.holonomic(from_->g, phi_);
       gaps_.tail(held) = phi_;
@@ -164,7 +148,7 @@ class RungeKutta {
   }
   // By Newton's method with the rows of the last stage.
   bool onto_rows(Element& g) const {
-    const int held = problem_.held();
+    const int held = problem_.holonomic_rows();
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 20; ++k) {
       problem_.holonomic(g, phi_);
@@ -186,33 +170,26 @@ class RungeKutta {
   static constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
   P problem_;
   Tableau table_;
-  mutable EquationsOfMotion<P> motion_;
+  mutable EquationsOfMotion<OfMotion<P>> motion_{OfMotion<P>(problem_)};
   const Node* from_ = nullptr;
-  mutable Node begin_, end_;  // whose rates are those of the first and the last stage
+  // Whose rates are those of the first and the last stage.
+  mutable Node begin_{problem_}, end_{problem_};
   double h_ = 0;
   int evaluations_ = 0;
   Q q0_;
-  mutable Element g_;
-  mutable Q q_;
-  mutable State x_;
-  mutable std::vector<Q> q_rates_;
-  mutable std::vector<State> x_rates_;
-  mutable Vector xi_, move_;
-  mutable typename P::Held phi_;
-  mutable typename P::Few gaps_;
+  mutable Element g_ = problem_.element();
+  mutable Q q_ = q0_;
+  mutable State x_ = State::Zero(problem_.state_size());
+  mutable std::vector<Q> q_rates_ = std::vector<Q>(at(table_.all_stages()), q0_);
+  mutable std::vector<State> x_rates_ = std::vector<State>(q_rates_.size(), x_);
+  mutable Vector xi_ = Vector::Zero(problem_.dim()), move_ = xi_;
+  mutable typename P::HolonomicValues phi_{problem_.holonomic_rows()};
+  mutable typename P::Multipliers gaps_{problem_.constraint_count()};
   mutable bool lost_ = false, extended_ = false;  // by the stages of the dense output
 
  private:
   Derived& self() { return static_cast<Derived&>(*this); }
   const Derived& self() const { return static_cast<const Derived&>(*this); }
-};
-
-/// What they say of themselves.
-struct ExplicitDefaults : SchemeDefaults {
-  static constexpr double fixed_s = 0.5;
-  static constexpr bool steps_admissible = false;
-  static constexpr bool explicit_step = true;
-  static constexpr bool reduced = true;
 };
 
 /// The classical method of order 4.

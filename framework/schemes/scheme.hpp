@@ -1,19 +1,20 @@
-// What a scheme is: a descriptor (name, formula, source, claims, as data that tests measure) and a
+// Schemes: a descriptor (name, formula, source, claims, as data that tests measure) and a
 // template Step over the problem.
 //
 //   struct MyScheme : hamel::SchemeDefaults {
 //     static std::string name(), formula(), source();
 //     static hamel::ClaimedOrder claim(double s, hamel::TauTraits tau, bool left_invariant);
-//     template <class Problem> class Step;      // problem.hpp says what a step may ask
+//     template <class Problem> class Step;      // problem.hpp lists what a step may use
 //   };
-// A Step takes the node it starts from to the next one. In between it is an equation F(x) = 0:
-//   Step(problem, s), size(), begin(node, h), guess(x), scale_squared(), residual(x, f), finish(x,
-//   next).
-// An explicit step has size() = 0, no residual, and evaluations(): of the equations of motion in
-// the last step. One that is given by a Tableau is made as Step(problem, tableau).
+// A Step takes the node it starts from to the next one. An implicit one is an equation F(x) = 0 in
+// between (ImplicitStep), an explicit one is not (ExplicitStep). It is made as Step(problem, s), as
+// Step(problem, s, force_at) where it has that choice, or from a Tableau as Step(problem, tableau).
+// An explicit scheme derives from ExplicitDefaults; EquationsOfMotion
+// (mechanics/equations_of_motion.hpp) has the rate of xi, without multipliers.
 #pragma once
 
 #include <concepts>
+#include <optional>
 #include <string>
 
 #include <hamel/framework/lie/concepts.hpp>
@@ -27,26 +28,34 @@ struct ClaimedOrder {
   bool reversible;  // a step with h, then one with -h, returns to the start
 };
 
-/// What a scheme is unless it says otherwise.
+/// Range on which A xi = b holds: the whole step, its ends only, or nowhere.
+enum class ConstraintKept { steps, nodes, nowhere };
+/// How steps may be chosen by the error: by an estimate of it (loop/error_control.hpp), or, of
+/// symmetric steps, by a reversible control (loop/step_control.hpp).
+enum class StepChoice { none, by_estimate, symmetric };
+/// Points at which lift takes f - dV: half at each node, or all at the base point.
+enum class ForceAt { nodes, base };
+
+/// The properties of a scheme that states none.
 struct SchemeDefaults {
-  static constexpr bool adapted = true;  // keeps the constraint
-  static constexpr bool uses_s = false;
-  static constexpr double fixed_s =
-      0;  // where it does not: the s of its steps, and of their measurement
+  static constexpr ConstraintKept constraint_kept = ConstraintKept::steps;
+  /// The s of its steps, and of their measurement; std::nullopt where s is chosen by the user.
+  static constexpr std::optional<double> fixed_s = 0.0;
+  static constexpr StepChoice step_choice = StepChoice::none;
   static constexpr bool left_invariant_only = false;
-  static constexpr bool places_forces = false;  // at the nodes or at the base point
-  static constexpr bool reduced = false;        // has a step for LeftInvariant problems
-  /// The velocity of a step, not of its ends only, satisfies A xi = b.
-  static constexpr bool steps_admissible = true;
-  static constexpr bool explicit_step = false;
-  // Steps chosen by the error: explicit ones estimate it, symmetric ones follow a reversible
-  // control (loop/error_control.hpp, loop/step_control.hpp).
-  static constexpr bool estimates_error = false, varies_steps = false;
+  static constexpr bool reduced = false;  // has a step for LeftInvariant problems
 };
 
-/// The step of a scheme for one problem.
+/// The properties of an explicit scheme that states none: nodes keep A xi = b, steps do not.
+struct ExplicitDefaults : SchemeDefaults {
+  static constexpr std::optional<double> fixed_s = 0.5;
+  static constexpr ConstraintKept constraint_kept = ConstraintKept::nodes;
+  static constexpr bool reduced = true;
+};
+
+/// A step with an equation F(x) = 0.
 template <class Step>
-concept SchemeStep = Problem<typename Step::Problem> &&
+concept ImplicitStep = Problem<typename Step::Problem> &&
     requires(Step& step, const Step& done, const Node<typename Step::Problem>& node,
              Node<typename Step::Problem>& next, double h, typename Step::Unknown& x,
              typename Step::Unknown& f) {
@@ -62,12 +71,24 @@ concept SchemeStep = Problem<typename Step::Problem> &&
   { done.scale_squared() } -> std::convertible_to<double>;
   done.residual(x, f);
 };
+/// A step without an equation. evaluations(): of the equations of motion in the last step.
+template <class Step>
+concept ExplicitStep = Problem<typename Step::Problem> &&
+    requires(Step& step, const Step& done, const Node<typename Step::Problem>& node,
+             Node<typename Step::Problem>& next, double h) {
+  step.begin(node, h);
+  { done.finish(next) } -> std::convertible_to<bool>;
+  { done.evaluations() } -> std::convertible_to<int>;
+};
+/// The step of a scheme for one problem.
+template <class Step>
+concept SchemeStep = ImplicitStep<Step> || ExplicitStep<Step>;
 
 /// Corrections in coordinates of the step's own choice, in which its Jacobian changes little along
-/// a motion: from_frame(z), z -> dx in place?
+/// a motion: expand(z), z -> dx in place?
 template <class Step>
 concept HasFrame = requires(const Step& step, typename Step::Unknown& z) {
-  step.from_frame(z);
+  step.expand(z);
 };
 /// F and dF/dx in closed form, linearise(x, f, j)?
 template <class Step>

@@ -15,7 +15,7 @@ struct Unadapted : Lift {
     return "lift with d = the whole algebra; the constraint is ignored";
   }
   static std::string source() { return "Vivek, Martin de Diego, Banavar: the T*G integrator"; }
-  static constexpr bool adapted = false;
+  static constexpr ConstraintKept constraint_kept = ConstraintKept::nowhere;
 
   template <class P>
   class Step : public Lift::Step<typename P::Unconstrained> {

@@ -34,13 +34,27 @@ int claim(const Registry& registry, const StudyCell& cell, const SystemModel& sy
   return plain.order;
 }
 
-// What a scheme makes no use of is empty in `axes` and the default in `run`, so that one cell
-// stands for all values.
-void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, std::string>& axes,
-                  Config& run) {
-  const auto leave = [&](const char* axis) {
-    axes[axis] = "";
-    run.set(axis, text_without(axis));
+// The index of an axis in study_axes(), or their number.
+size_t axis_index(const std::string& axis) {
+  const std::vector<std::string>& all = study_axes();
+  return static_cast<size_t>(std::find(all.begin(), all.end(), axis) - all.begin());
+}
+
+// Axes that a scheme makes no use of are empty in `axes` and the default in `run`, so that one cell
+// represents all values.
+void leave_unused(const SchemeInfo& scheme, bool halving, StudyAxes& axes, Config& run) {
+  static const auto unused = std::make_shared<const std::string>();
+  static const Config usual = [] {
+    Config out;
+    for (const std::string& axis : study_axes())
+      if (axis != "system") out.set(axis, text_without(axis));
+    return out;
+  }();
+  const auto leave = [&](const std::string& axis) {
+    axes.set(axis, unused);
+    Config::fields([&](const Option& option, auto member) {
+      if (option.name == axis) run.*member = usual.*member;
+    });
   };
   const bool chooses = scheme.estimates_error || (scheme.varies_steps && run.s == 0.5);
   if (!chooses) {
@@ -50,26 +64,28 @@ void leave_unused(const SchemeInfo& scheme, bool halving, std::map<std::string, 
     leave("step");
   }
   for (const std::string& option : unused_options(scheme, run)) {
-    leave(option.c_str());
-    if (option == "on_failure" && halving) axes[option] = run.on_failure;
+    if (!axes.contains(option)) continue;
+    leave(option);
+    if (option == "on_failure" && halving)
+      axes.set(option, std::make_shared<const std::string>(run.on_failure));
   }
 }
 
-// Why a cell is another one's duplicate: "boxed does not use s: one cell stands for all".
+// Why a cell is another one's duplicate: "boxed does not use s: one cell represents all".
 std::string same_as_above(const std::vector<StudyValues>& values, const StudyCell& cell,
-                          const std::map<std::string, std::string>& same) {
+                          const StudyAxes& same) {
   std::string unused;
   for (size_t k = 0; k < values.size(); ++k) {
     const std::string& axis = study_axes()[k];
     if (same.at(axis) == cell.axes.at(axis) || values[k].size() < 2) continue;
     unused += (unused.empty() ? "" : ", ") + (same.at(axis).empty() ? axis : cell.axes.at(axis));
   }
-  return unused.empty() ? "the same combination stands above"
-                        : fmt::format("{} does not use {}: one cell stands for all",
+  return unused.empty() ? "the same combination is listed above"
+                        : fmt::format("{} does not use {}: one cell represents all",
                                       cell.config.scheme, unused);
 }
 
-// What is excluded, to be looked up.
+// The exclusions, for look-up.
 class Exclusions {
  public:
   explicit Exclusions(const StudyConfig& config) {
@@ -130,12 +146,42 @@ StudyValues StudyConfig::values(const std::string& axis) const {
   return out;
 }
 
-std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& registry) {
+const std::string& StudyAxes::at(const std::string& axis) const {
+  return *values_.at(axis_index(axis));
+}
+bool StudyAxes::contains(const std::string& axis) const {
+  return axis_index(axis) < values_.size();
+}
+void StudyAxes::set(const std::string& axis, std::shared_ptr<const std::string> value) {
+  values_.resize(study_axes().size());
+  values_.at(axis_index(axis)) = std::move(value);
+}
+StudyAxes StudyAxes::without(const std::string& axis) const {
+  static const auto none = std::make_shared<const std::string>();
+  StudyAxes out = *this;
+  out.values_.at(axis_index(axis)) = none;
+  return out;
+}
+bool StudyAxes::operator<(const StudyAxes& other) const {
+  return std::lexicographical_compare(
+      values_.begin(), values_.end(), other.values_.begin(), other.values_.end(),
+      [](const auto& a, const auto& b) { return a != b && *a < *b; });
+}
+
+StudyCells study_cells(const StudyConfig& config, const Registry& registry) {
   std::vector<StudyValues> values;
+  std::vector<std::vector<std::shared_ptr<const std::string>>> shared;
+  std::vector<std::vector<Config>> parsed;  // with that value of that axis
   std::vector<size_t> sizes;
   size_t count = 1;
   for (const std::string& axis : study_axes()) {
     values.push_back(config.values(axis));
+    auto& texts = shared.emplace_back();
+    auto& configs = parsed.emplace_back(values.back().size());
+    for (size_t j = 0; j < values.back().size(); ++j) {
+      texts.push_back(std::make_shared<const std::string>(values.back()[j]));
+      if (axis != "system") configs[j].set(axis, values.back()[j]);
+    }
     sizes.push_back(values.back().size());
     count = config.zipped ? std::max(count, sizes.back()) : count * sizes.back();
   }
@@ -145,7 +191,9 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
   const bool halving = std::find(policies.begin(), policies.end(), "halve") != policies.end();
   const Exclusions exclusions(config);
   std::vector<StudyCell> cells;
-  std::set<std::map<std::string, std::string>> seen;
+  cells.reserve(count);
+  const auto before = [](const StudyAxes* a, const StudyAxes* b) { return *a < *b; };
+  std::set<const StudyAxes*, decltype(before)> seen;  // of the cells that are run
   for (size_t i = 0; i < count; ++i) {
     const std::vector<size_t> at = indices(config, sizes, i);
     StudyCell cell;
@@ -156,14 +204,16 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     cell.config.start = system.start;
     cell.config.inputs = system.inputs;
     cell.config.until = config.until;
-    for (size_t k = 0; k < at.size(); ++k) {
-      const std::string& axis = study_axes()[k];
-      cell.axes[axis] = values[k][at[k]];
-      if (axis != "system") cell.config.set(axis, cell.axes[axis]);
-    }
+    for (size_t k = 0; k < at.size(); ++k) cell.axes.set(study_axes()[k], shared[k][at[k]]);
+    size_t k = 0;
+    Config::fields([&](const Option& option, auto member) {
+      if (!option.axis) return;
+      ++k;
+      cell.config.*member = parsed[k][at[k]].*member;
+    });
 
     const std::string& group = models[at[0]].group.name;
-    std::map<std::string, std::string> same = cell.axes;
+    StudyAxes same = cell.axes;
     leave_unused(*registry.scheme(cell.config.scheme), halving, same, cell.config);
     if (cell.why = exclusions.of(cell); !cell.why.empty()) {
       cell.skipped = "excluded";
@@ -173,7 +223,7 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
     } else if (cell.config.on_failure == "retry:" + cell.config.solver) {
       cell.skipped = "impossible";
       cell.why = fmt::format("{} is the solver that failed", cell.config.solver);
-    } else if (!seen.insert(same).second) {
+    } else if (seen.contains(&same)) {
       cell.skipped = "duplicate";
       cell.why = same_as_above(values, cell, same);
     } else {
@@ -181,8 +231,9 @@ std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& re
       cell.axes = std::move(same);
     }
     cells.push_back(std::move(cell));
+    if (cells.back().runs()) seen.insert(&cells.back().axes);
   }
-  return cells;
+  return StudyCells(std::move(cells));
 }
 
 }  // namespace hamel

@@ -66,7 +66,7 @@ class Checks {
         add(fmt::format("system[{}].name", i),
             fmt::format("label: two systems are called '{}'; give each its label", values[i]));
       } else {
-        add(fmt::format("{}[{}]", axis, i), fmt::format("{}: {} stands twice", axis, values[i]));
+        add(fmt::format("{}[{}]", axis, i), fmt::format("{}: {} is listed twice", axis, values[i]));
       }
     }
   }
@@ -87,7 +87,7 @@ class Checks {
     }
     return config;
   }
-  // "" for a system that cannot be made; the run says why.
+  // "" for a system that cannot be made; the run reports why.
   std::string group_of(const StudySystem& system) const {
     if (!system.name.ends_with(".toml") && registry_.system(system.name) == nullptr) return "";
     try {
@@ -122,7 +122,7 @@ class Checks {
     return study_.systems.empty() ? StudySystem{} : study_.systems.front();
   }
 
-  // The run with this value on this axis; false, and said, for text that is none.
+  // The run with this value on this axis; false, and reported, for text that is none.
   bool take(Config& config, const std::string& axis, size_t i) {
     try {
       config.set(axis, lists_.at(axis)[i]);
@@ -134,8 +134,8 @@ class Checks {
     }
   }
 
-  // Of a long list of numbers runs look at the first ones, and of the others whether they are in
-  // their range; where there are too many combinations, of all.
+  // Checks each value by a run; only for its range if it is not among the first of a long list of
+  // numbers, or if there are too many combinations.
   void values() {
     constexpr size_t kFirst = 100;
     const StudySystem system = some_system();
@@ -148,6 +148,8 @@ class Checks {
         Config config = base;
         if (!take(config, axis, i)) continue;
         if (axis == "retraction") retraction(i, config.retraction);
+        else if (axis == "scheme" && config.scheme.empty())  // which a run takes for none given
+          add(fmt::format("scheme[{}]", i), unknown_name("scheme", "", registry_.schemes()));
         else if (axis == "step") step(i, config.step_or_usual());
         else if (too_many_ || (i >= kFirst && std::is_arithmetic_v<Value>))
           new_mistakes(axis, i, config.mistakes(), known);
@@ -156,8 +158,8 @@ class Checks {
     });
   }
 
-  // What a run with this value has to say that one without it has not. What is to be done on
-  // failure beside a solver that is not the one to retry with: the two meet in the cells.
+  // Mistakes of a run with this value that one without it does not have. on_failure is checked
+  // beside a solver that is not the one to retry with: the two are combined in the cells.
   void value(const std::string& axis, size_t i, const StudySystem& system, Config base,
              Config config) {
     if (axis == "on_failure") {
@@ -201,7 +203,7 @@ class Checks {
     for (const std::string& axis : study_axes()) {
       const size_t size = lists_.at(axis).size();
       if (size == 0 && axis != "system" &&
-          !study_.where.contains(axis))  // else the file's reader said it
+          !study_.where.contains(axis))  // else the file's reader reported it
         add(axis, fmt::format("{}: give at least one value", axis));
       product = std::min(product * std::max<size_t>(size, 1), 1000 * kMaxCells);
       if (size > longest) longest_axis = axis;
@@ -243,7 +245,7 @@ class Checks {
     }
   }
 
-  // What only shows when the axes meet.
+  // Mistakes that only show when the axes are combined.
   void combinations() {
     for (const auto& [axis, list] : lists_)
       if (list.empty()) return;

@@ -1,4 +1,4 @@
-// What only several cells together show: the order over the steps, and whether the solvers agree.
+// Comparisons that need several cells: the order over the steps, and whether the solvers agree.
 #include <algorithm>
 #include <cmath>
 
@@ -8,14 +8,12 @@ namespace hamel::study {
 namespace {
 
 // The cells that were run and differ in one axis only, in the order of the cells.
-std::vector<std::vector<size_t>> groups(const std::vector<StudyCell>& cells, const char* axis) {
-  std::map<std::map<std::string, std::string>, size_t> index;
+std::vector<std::vector<size_t>> groups(const StudyCells& cells, const char* axis) {
+  std::map<StudyAxes, size_t> index;
   std::vector<std::vector<size_t>> out;
   for (size_t i = 0; i < cells.size(); ++i) {
     if (!cells[i].runs()) continue;
-    auto rest = cells[i].axes;
-    rest.erase(axis);
-    const auto [at, added] = index.try_emplace(rest, out.size());
+    const auto [at, added] = index.try_emplace(cells[i].axes.without(axis), out.size());
     if (added) out.emplace_back();
     out[at->second].push_back(i);
   }
@@ -24,7 +22,7 @@ std::vector<std::vector<size_t>> groups(const std::vector<StudyCell>& cells, con
 
 }  // namespace
 
-void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
+void compare(const StudyConfig& config, const StudyCells& cells,
              const std::vector<std::vector<bool>>& angles,
              const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics) {
   // Over the step; where steps are chosen over the tolerance.

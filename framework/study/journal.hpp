@@ -1,15 +1,10 @@
-// The journal of a study: one line of JSON for each finished piece of work, appended and flushed,
-// so that a killed study goes on where it stopped. Its first line says which study and which
-// program it belongs to. Each further line ends with a checksum: a damaged one is left out, and its
-// piece of work is done again.
+// The journal of a study (run/record/journal_file.hpp): a line for each reference, cell and timing.
 #pragma once
 
-#include <cstdio>
-#include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/run/record/journal_file.hpp>
 #include <hamel/framework/study/study.hpp>
 
 namespace hamel::study {
@@ -20,34 +15,34 @@ struct Shape {
 };
 std::vector<Shape> shapes(const Registry& registry, const StudyConfig& config);
 
-/// A JSON object with the checksum of its text as the last member, "sum".
-std::string sealed(const std::string& object);
+using hamel::sealed;
 
 /// Fills in what the lines hold, and returns a note for each that does not: no JSON object, a wrong
 /// checksum, an index or a length that does not fit (shapes: one for each system).
 std::vector<std::string> read_lines(const std::string& lines, const std::vector<Shape>& shapes,
                                     StudyResult& result);
 
+/// Is all of this cell there: its reference, its metrics and its times?
+bool finished_cell(const StudyResult& result, size_t cell);
+/// Fills in what the parts in a folder hold, and returns notes as read_lines; ConfigError where
+/// some are missing or incomplete.
+std::vector<std::string> join(const std::string& folder, long count,
+                              const std::vector<Shape>& shapes, StudyResult& result);
+
 class Journal {
  public:
-  /// Opens or begins folder/journal.jsonl and locks it. ConfigError when it belongs to another
-  /// study or program, when its first line is damaged, when it is in use, or cannot be written.
-  Journal(const std::string& folder, const StudyConfig& config, bool fresh);
-  /// The lines that were there, after the first.
-  const std::string& lines() const { return old_; }
+  /// Opens or begins the journal of a part in a folder and locks it. ConfigError when it belongs to
+  /// another study or program, when its first line is damaged, when it is in use, or cannot be
+  /// written.
+  Journal(const std::string& folder, const StudyConfig& config, const Shard& part, bool fresh);
+  /// The lines that were there, as read_lines takes them.
+  std::vector<std::string> read(const std::vector<Shape>& shapes, StudyResult& result) const;
   void referred(size_t system, const StudyReference& reference);
   void measured(size_t cell, const StudyMetrics& metrics);
   void timed(size_t cell, size_t round, double nanoseconds);
 
  private:
-  void append(const std::string& line);
-
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::string path_, old_;
-  std::unique_ptr<std::FILE, Close> file_;
-  std::mutex mutex_;
+  JournalFile file_;
 };
 
 }  // namespace hamel::study

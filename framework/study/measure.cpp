@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <hamel/framework/run/run/meter.hpp>
+#include <hamel/framework/run/run/run_recorder.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
@@ -32,10 +32,10 @@ double processor_time() {
 }
 
 // Follows a run along the reference.
-class Meter {
+class RunRecorder {
  public:
-  Meter(const GroupInfo& group, const StudyReference& reference, EnergyBalance balance,
-        StudyMetrics& out)
+  RunRecorder(const GroupInfo& group, const StudyReference& reference, EnergyBalance balance,
+              StudyMetrics& out)
       : angles_(angle_columns(group)),
         reference_(reference),
         balance_(std::move(balance)),
@@ -44,23 +44,9 @@ class Meter {
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
   }
 
-  // That many steps, every node of them where the balance wants it.
-  Status advance(Run& run, long steps, const std::atomic<bool>* stop) {
-    if (!balance_.active()) return study::advance(run, steps, stop);
-    Status status;
-    for (long i = 0; i < steps && !stopped(stop) && (status = run.step()).ok; ++i)
-      balance_.node(run.state());
-    return status;
-  }
-  // A step that ends at t at the latest.
-  Status step_towards(Run& run, double t) {
-    const Status status = run.step_towards(t);
-    if (status.ok && balance_.active()) balance_.node(run.state());
-    return status;
-  }
-  void start(const Snapshot& state) {
+  // A node of the run, from the start on.
+  void node(const Snapshot& state) {
     if (balance_.active()) balance_.node(state);
-    static_cast<void>(row(state));
   }
   // Not ok where the state is no good one.
   Status row(const Snapshot& state) {
@@ -70,7 +56,7 @@ class Meter {
     if (times_.empty()) energy_start_ = state.energy;
     times_.push_back(state.time);
     energy_.push_back(all_.take(state, energy_start_));
-    raise(size_, norm(state.coordinates));
+    update_max_abs(size_, norm(state.coordinates));
     return {};
   }
   void compare(const Snapshot& state, size_t k) {
@@ -156,13 +142,13 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
   return xx > 0 && std::isfinite(xy) ? xy / xx : kNotMeasured;
 }
 
-static Status follow(Run& run, Meter& meter, const StudyReference& reference,
+static Status follow(Run& run, RunRecorder& meter, const StudyReference& reference,
                      const std::atomic<bool>* stop) {
   const long steps = run.config().steps();
   const long intervals = static_cast<long>(reference.times.size()) - 1;
   const long rows = rows_each(steps / intervals, intervals), every = steps / (intervals * rows);
   for (long row = 1; row <= intervals * rows && !stopped(stop); ++row) {
-    const Status status = meter.advance(run, every, stop);
+    const Status status = advance(run, every, stop);
     const Snapshot& state = run.state();
     const Status measured = meter.row(state);
     if (!status.ok) return status;
@@ -172,11 +158,11 @@ static Status follow(Run& run, Meter& meter, const StudyReference& reference,
   return {};
 }
 // Steps that are chosen are not cut at the common times: there the dense output is compared.
-static Status follow_chosen(Run& run, Meter& meter, const StudyReference& reference,
+static Status follow_chosen(Run& run, RunRecorder& meter, const StudyReference& reference,
                             const std::atomic<bool>* stop) {
   const double until = run.config().until;
   for (size_t next = 1; next < reference.times.size() && !stopped(stop);) {
-    const Status status = meter.step_towards(run, until);
+    const Status status = run.step_towards(until);
     const Snapshot& state = run.state();
     const double reached = state.time;
     const Status measured = meter.row(state);
@@ -191,15 +177,28 @@ static Status follow_chosen(Run& run, Meter& meter, const StudyReference& refere
 StudyMetrics measure(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const StudyReference& reference, const std::atomic<bool>* stop) {
   StudyMetrics out;
-  Run run = simulation(registry, system, cell.config).build();
-  const SystemModel& model = run.system();
-  const auto geometry = registry.geometry(model.group.name, cell.config.retraction);
-  const bool adapted = registry.scheme(cell.config.scheme)->adapted;
-  const std::shared_ptr<const Mechanics> acting =
-      adapted ? model.mechanics : std::make_shared<UnconstrainedMechanics>(model.mechanics);
-  Meter meter(model.group, reference, EnergyBalance(geometry, acting, run.inputs()), out);
+  Simulation made = simulation(registry, system, cell.config);
+  Run run = made.build();
+  const auto balance = [&] {
+    const std::shared_ptr<const Mechanics>& mechanics = run.system().mechanics;
+    const bool adapted = registry.scheme(cell.config.scheme)->adapted;
+    return EnergyBalance(registry.geometry(run.system().group.name, cell.config.retraction),
+                         adapted ? mechanics : std::make_shared<UnconstrainedMechanics>(mechanics),
+                         run.inputs());
+  };
+  RunRecorder* recorder = nullptr;
+  if (balance().active()) {  // every node is seen: also those where an input jumps within a step
+    made.every(1).keep_rows(2).observe([&recorder](const Snapshot& state) {
+      if (state.step > 0) recorder->node(state);
+      return true;
+    });
+    run = made.build();
+  }
+  RunRecorder meter(run.system().group, reference, balance(), out);
+  recorder = &meter;
   out.ok = true;
-  meter.start(run.state());
+  meter.node(run.state());
+  static_cast<void>(meter.row(run.state()));
   meter.compare(run.state(), 0);
   const Status status = cell.config.chooses_steps() ? follow_chosen(run, meter, reference, stop)
                                                     : follow(run, meter, reference, stop);
@@ -216,11 +215,12 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
 double time_per_step(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const std::atomic<bool>* stop) {
   constexpr double kShortest = 2e5;  // ns: a shorter run is repeated until this is reached
-  const Simulation simulation = study::simulation(registry, system, cell.config);
+  Run run = simulation(registry, system, cell.config).build();
+  const Start start = run.config().start;
   double nanoseconds = 0;
   long steps = 0;
   for (int i = 0; i < 100 && nanoseconds < kShortest; ++i) {
-    Run run = simulation.build();
+    if (i > 0) run.restart(start);
     const double begin = processor_time();
     if (cell.config.chooses_steps()) run.advance_to(cell.config.until);
     else advance(run, cell.config.steps(), stop);

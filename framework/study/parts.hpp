@@ -1,4 +1,4 @@
-// What the sources of a study share; not installed.
+// Definitions that the sources of a study share; not installed.
 #pragma once
 
 #include <atomic>
@@ -37,7 +37,8 @@ std::vector<double> step_sizes(const StudyConfig& config);
 long common_intervals(const StudyConfig& config);
 
 /// The exact motion of a system at the ends of those intervals, else a converged one. `run` is any
-/// of its cells, `stepped` is told the steps taken. Without times when stop became true on the way.
+/// of its cells, `stepped` receives the steps taken. Without times when stop became true on the
+/// way.
 StudyReference reference(const Registry& registry, const StudyConfig& config,
                          const StudySystem& system, const Config& run,
                          const std::function<void(long)>& stepped, const std::atomic<bool>* stop);
@@ -56,7 +57,7 @@ double time_per_step(const Registry& registry, const StudySystem& system, const 
 
 /// Measured orders and the distances between solvers, from all cells together; angles of each
 /// system.
-void compare(const StudyConfig& config, const std::vector<StudyCell>& cells,
+void compare(const StudyConfig& config, const StudyCells& cells,
              const std::vector<std::vector<bool>>& angles,
              const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics);
 

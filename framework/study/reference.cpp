@@ -1,4 +1,4 @@
-// What cells are compared with: the exact motion where the system has one, else lift at s = 1/2
+// References for the cells: the exact motion where the system has one, else lift at s = 1/2
 // composed to order 6 (Kahan and Li), with steps halved until two of them agree. Their difference
 // is the bound. As the order is 6, the first step need not be finer than those of the cells, and
 // may be coarser.
@@ -29,8 +29,8 @@ struct Motion {
 double apart(const std::vector<bool>& angles, const Motion& a, const Motion& b) {
   double out = 0;
   for (size_t k = 0; k < a.coordinates.size(); ++k) {
-    raise(out, distance(angles, a.coordinates[k], b.coordinates[k]));
-    raise(out, euclidean_distance(a.velocities[k], b.velocities[k]));
+    update_max_abs(out, distance(angles, a.coordinates[k], b.coordinates[k]));
+    update_max_abs(out, euclidean_distance(a.velocities[k], b.velocities[k]));
   }
   return out;
 }
@@ -188,7 +188,7 @@ StudyReference reference(const Registry& registry, const StudyConfig& config,
   out.times = std::move(times);
   const std::vector<bool> angles = angle_columns(start.system().group);
   for (const auto& there : out.coordinates)
-    raise(out.extent, distance(angles, there, out.coordinates.front()));
+    update_max_abs(out.extent, distance(angles, there, out.coordinates.front()));
   // A pair of runs that differ by more than that does not converge, and nothing is derived from it.
   if (out.bound > kConverged * out.extent) {
     out.kind =

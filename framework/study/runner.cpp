@@ -1,7 +1,6 @@
 #include <hamel/framework/study/runner.hpp>
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 #include <hamel/framework/study/parts.hpp>
@@ -28,7 +27,7 @@ void Runner::list() {
   all_ = 0;
   for (size_t i = 0; i < result_.cells.size(); ++i) {
     const StudyCell& cell = result_.cells[i];
-    if (!cell.runs()) continue;
+    if (!result_.runs(i)) continue;
     all_ += static_cast<long>(rounds + 1) * expected_steps(cell.config);
     const bool there = !result_.references[cell.system].times.empty();
     if (!used[cell.system]) {
@@ -46,7 +45,7 @@ void Runner::list() {
   }
   for (size_t round = 0; round < rounds; ++round) {
     for (size_t i = 0; i < result_.cells.size(); ++i) {
-      if (!result_.cells[i].runs() || result_.metrics[i].nanoseconds[round] != kPending) continue;
+      if (!result_.runs(i) || result_.metrics[i].nanoseconds[round] != kPending) continue;
       timings_.push_back({Kind::time, i, round});
       left += expected_steps(result_.cells[i].config);
     }
@@ -55,31 +54,22 @@ void Runner::list() {
 }
 
 bool Runner::complete() const {
-  for (size_t i = 0; i < result_.cells.size(); ++i) {
-    const StudyMetrics& m = result_.metrics[i];
-    if (result_.cells[i].runs() &&
-        (!m.done || result_.references[result_.cells[i].system].times.empty() ||
-         std::count(m.nanoseconds.begin(), m.nanoseconds.end(), kPending) > 0))
-      return false;
-  }
+  for (size_t i = 0; i < result_.cells.size(); ++i)
+    if (result_.runs(i) && !finished_cell(result_, i)) return false;
   return true;
 }
 
 void Runner::run() {
   list();
   finished(0);
-  {
-    std::vector<std::jthread> workers;
-    for (int i = 0; i < result_.threads; ++i) workers.emplace_back([this] { work(); });
-  }  // joins
-  if (failure_) std::rethrow_exception(failure_);
+  workers_.run(result_.threads, [this](int) { work(); });
 }
 
 // References first, then cells whose reference is there, then timings. Nothing: no more, or
 // stopped.
 std::optional<Runner::Piece> Runner::next() {
   std::unique_lock lock(mutex_);
-  while (!stopped(stop_) && !failure_) {
+  while (!stopped(stop_) && !workers_.failed()) {
     for (auto* queue : {&references_, &ready_, &timings_}) {
       if (queue->empty()) continue;
       const Piece piece = queue->front();
@@ -99,8 +89,7 @@ void Runner::work() {
     try {
       good = done(*piece);
     } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!failure_) failure_ = std::current_exception();
+      workers_.fail(std::current_exception());
     }
     if (piece->kind == Kind::reference) {
       const std::lock_guard lock(mutex_);
@@ -140,7 +129,7 @@ bool Runner::make_reference(size_t system) {
   if (made.times.empty()) return false;
   if (journal_ != nullptr) journal_->referred(system, made);
   finished(left);
-  result_.references[system] = std::move(made);  // nobody reads it before work() says so
+  result_.references[system] = std::move(made);  // not read before work() publishes it
   return true;
 }
 

@@ -1,17 +1,17 @@
 // The threads of a study: references, cells and rounds of timings, each piece of work taken by the
-// next thread that is free. What a piece yields depends on its system or cell alone, so the number
+// next thread that is free. The yield of a piece depends on its system or cell alone, so the number
 // of threads changes nothing but the times.
 #pragma once
 
 #include <atomic>
 #include <condition_variable>
 #include <deque>
-#include <exception>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <vector>
 
+#include <hamel/framework/run/run/workers.hpp>
 #include <hamel/framework/study/journal.hpp>
 
 namespace hamel::study {
@@ -56,7 +56,7 @@ class Runner {
   std::deque<Piece> references_, ready_, timings_;
   std::vector<std::deque<Piece>> waiting_;  // cells of each system whose reference is not there
   size_t in_flight_ = 0;                    // references
-  std::exception_ptr failure_;
+  Workers workers_;
 
   std::mutex reporting_;
   long all_ = 0;

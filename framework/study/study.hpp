@@ -6,8 +6,8 @@
 //   result.write("out");   // cells.csv, cells.h5, record.json
 //
 // Each cell is run once with recording (its errors, counts and drifts: the same whatever the number
-// of threads), then timed in rounds over all cells, so that a slow moment of the machine meets all
-// alike. What is measured and from what: framework/study/README.md.
+// of threads), then timed in rounds over all cells, so that a slow moment of the machine slows all
+// alike. The measured quantities and their sources: framework/study/README.md.
 #pragma once
 
 #include <atomic>
@@ -15,11 +15,13 @@
 #include <initializer_list>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/names/config.hpp>
+#include <hamel/framework/run/record/shard.hpp>
 
 namespace hamel {
 
@@ -75,7 +77,7 @@ struct StudyConfig {
   StudyValues values(const std::string& axis) const;
   /// Everything that is wrong, each mistake with its place.
   std::vector<std::string> mistakes(const Registry& registry) const;
-  /// What fixes the results, one line per item: a journal belongs to these lines.
+  /// Settings that fix the results, one line per item: a journal belongs to these lines.
   std::string fingerprint() const;
 };
 
@@ -87,13 +89,28 @@ StudyConfig parse_study(const std::string& text, const std::string& origin,
                         const Registry& registry);
 StudyConfig read_study(const std::string& path, const Registry& registry);
 
+/// The values of a cell on the axes, as texts. Cells of one study share them: a cell has addresses.
+class StudyAxes {
+ public:
+  /// Throws std::out_of_range on a name that is not in study_axes().
+  const std::string& at(const std::string& axis) const;
+  bool contains(const std::string& axis) const;
+  void set(const std::string& axis, std::shared_ptr<const std::string> value);
+  /// The same without the value on an axis.
+  StudyAxes without(const std::string& axis) const;
+  bool operator<(const StudyAxes& other) const;
+
+ private:
+  std::vector<std::shared_ptr<const std::string>> values_;  // in the order of study_axes()
+};
+
 /// One combination: run, or skipped and why.
 struct StudyCell {
   size_t system = 0;   // index into the systems
   Config config = {};  // ready to run
-  /// The value on each axis as a word; of a cell that is run, empty where its scheme makes no use
+  /// The value on each axis as text; of a cell that is run, empty where its scheme makes no use
   /// of it.
-  std::map<std::string, std::string> axes;
+  StudyAxes axes;
   std::string skipped;  // "" (it is run), "excluded", "impossible" or "duplicate"
   std::string why;
   int claimed_order = 0;  // with this s, retraction and composition; 0: it claims none
@@ -101,12 +118,29 @@ struct StudyCell {
   bool runs() const { return skipped.empty(); }
 };
 
+/// The cells of a study, which its results share.
+class StudyCells {
+ public:
+  StudyCells() : StudyCells(std::vector<StudyCell>()) {}
+  explicit StudyCells(std::vector<StudyCell> cells)
+      : cells_(std::make_shared<const std::vector<StudyCell>>(std::move(cells))) {}
+  size_t size() const { return cells_->size(); }
+  bool empty() const { return cells_->empty(); }
+  const StudyCell& operator[](size_t i) const { return (*cells_)[i]; }
+  const StudyCell& front() const { return cells_->front(); }
+  auto begin() const { return cells_->begin(); }
+  auto end() const { return cells_->end(); }
+
+ private:
+  std::shared_ptr<const std::vector<StudyCell>> cells_;
+};
+
 /// All combinations in order, those that are not run too.
-std::vector<StudyCell> study_cells(const StudyConfig& config, const Registry& registry);
+StudyCells study_cells(const StudyConfig& config, const Registry& registry);
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// An error above this part of the motion's extent tells nothing of the order.
+/// An error above this part of the motion's extent does not measure the order.
 constexpr double kAsymptotic = 0.1;
 
 /// For the progress of a study; of steps that are chosen the number is not known before.
@@ -114,7 +148,7 @@ inline long expected_steps(const Config& config) {
   return config.chooses_steps() ? 1000 : config.steps();
 }
 
-/// What one cell left. NaN: not measured, or nothing finite.
+/// Results of one cell. NaN: not measured, or nothing finite.
 struct StudyMetrics {
   bool done = false;  // false: the study was stopped before
   bool ok = false;
@@ -141,7 +175,7 @@ struct StudyMetrics {
   double nanoseconds_median() const;
 };
 
-/// What the cells of one system are compared with.
+/// The reference for the cells of one system.
 struct StudyReference {
   std::string
       kind;  // "exact", "converged: ..." by what, "not converged: ...", or "none: ..." and why
@@ -153,15 +187,19 @@ struct StudyReference {
 
 struct StudyResult {
   StudyConfig config;
-  std::vector<StudyCell> cells;
+  StudyCells cells;
   std::vector<StudyMetrics> metrics;       // one for each cell; not done where the cell is skipped
   std::vector<StudyReference> references;  // one for each system
   std::vector<std::string> notes;          // lines of the journal that were damaged
   bool complete = false;
   size_t resumed = 0;  // cells taken over from the journal, references not counted
+  Shard shard;         // the cells of this part alone
+  long shards = 1;     // that were merged
   int threads = 1;
   double seconds = 0;  // of this session
 
+  /// Is this cell run, and one of the part?
+  bool runs(size_t cell) const;
   /// One row per cell, axes and metrics as columns.
   Table table() const;
   /// Versions, compiler, flags, host, git, counts and the study file, as JSON.
@@ -176,28 +214,38 @@ class Study {
   Study(const Registry& registry, StudyConfig config);
 
   const StudyConfig& config() const { return config_; }
-  const std::vector<StudyCell>& cells() const { return cells_; }
+  const StudyCells& cells() const { return cells_; }
   /// How many run at the same time; 0: as many as there are cores.
   Study& threads(int count);
-  /// Keeps a journal there and goes on from the one that is there.
+  /// Keeps a journal there and resumes from an existing one.
   Study& folder(std::string path);
+  /// Runs a part alone, whose journal merge() reads; its references too.
+  Study& shard(Shard part);
   /// Forgets the journal that is there.
   Study& fresh(bool forget = true);
   /// Called now and then, from one thread at a time, with the fraction of the work done, references
   /// too.
   Study& progress(std::function<void(double)> report);
-  /// Polled every few hundred steps: true abandons what is in flight and returns.
+  /// Polled every several hundred steps: true abandons what is in flight and returns.
   Study& stop(const std::atomic<bool>* flag);
   /// Throws ConfigError before anything runs: a folder that cannot be written, another study's
   /// journal.
   StudyResult run() const;
+  /// Joins the shards whose journals are in the folder. ConfigError where some are missing or
+  /// incomplete, or are of another study or program.
+  StudyResult merge() const;
 
  private:
+  StudyResult begun(Shard part) const;
+  void begin_metrics(StudyResult& result) const;
+  void compare(StudyResult& result) const;
+
   const Registry* registry_;
   StudyConfig config_;
-  std::vector<StudyCell> cells_;
+  StudyCells cells_;
   int threads_ = 0;
   std::string folder_;
+  Shard shard_;
   bool fresh_ = false;
   std::function<void(double)> progress_;
   const std::atomic<bool>* stop_ = nullptr;

@@ -163,7 +163,7 @@ class StudyReader {
     }
   }
 
-  // One value or a list, as the words that the axis has for them.
+  // One value or a list, as the names that the axis has for them.
   void matched(const toml::node& node, const std::string& key, StudyExclusion& out) {
     std::vector<std::string> known = study_axes();
     if (std::find(known.begin(), known.end(), key) == known.end()) {

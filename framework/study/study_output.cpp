@@ -1,4 +1,4 @@
-// What a study leaves: the table of its cells and the record.
+// Output of a study: the table of its cells and the record.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -8,6 +8,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include <hamel/framework/io/csv_file.hpp>
+#include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/study/parts.hpp>
@@ -23,7 +25,7 @@ std::string status_of(const StudyCell& cell, const StudyMetrics& m) {
   return m.ok ? "ok" : "failed";
 }
 
-// One column of words or of numbers, from each cell with its metrics.
+// One column of texts or of numbers, from each cell with its metrics.
 class Columns {
  public:
   explicit Columns(const StudyResult& result) : result_(result) {}
@@ -31,6 +33,7 @@ class Columns {
   using Word = std::function<std::string(const StudyCell&, const StudyMetrics&)>;
   void words(const std::string& name, const std::string& meaning, const Word& word) {
     std::vector<std::string> out;
+    out.reserve(result_.cells.size());
     for (size_t i = 0; i < result_.cells.size(); ++i)
       out.push_back(word(result_.cells[i], result_.metrics[i]));
     table.columns.push_back({name, "", meaning, std::move(out)});
@@ -40,6 +43,7 @@ class Columns {
   void numbers(const std::string& name, const std::string& unit, const std::string& meaning,
                const Number& number) {
     std::vector<double> out;
+    out.reserve(result_.cells.size());
     for (size_t i = 0; i < result_.cells.size(); ++i) out.push_back(number(i));
     table.columns.push_back({name, unit, meaning, std::move(out)});
   }
@@ -94,7 +98,7 @@ Table StudyResult::table() const {
       else return static_cast<double>(of(cells[i], m, references[cells[i].system]));
     });
   });
-  return c.table;
+  return std::move(c.table);
 }
 
 std::string StudyResult::record() const {
@@ -144,7 +148,7 @@ void StudyResult::write(const std::string& folder) const {
   fs::create_directories(folder, error);
   const auto path = [&](const char* name) { return (fs::path(folder) / name).string(); };
   const Table cells_table = table();
-  write_file(path("cells.csv"), cells_table.csv());
+  write_csv(cells_table, path("cells.csv"));
   if (!hdf5_version().empty())
     cells_table.write_hdf5(path("cells.h5"), {{"title", config.title}, {"record", record()}});
   write_file(path("record.json"), record() + "\n");

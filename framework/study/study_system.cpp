@@ -24,13 +24,13 @@ void read_data(StudyConfig& config) {
       try {
         if (const InputFile* file = std::get_if<InputFile>(&signal))
           signal = read_input_table("input", *file);
-      } catch (const ConfigError&) {  // the checks say so
+      } catch (const ConfigError&) {  // the checks report it
       }
     }
     if (!system.name.ends_with(".toml") || !system.data.empty()) continue;
     try {
       system.data = read_text_file("system", system.name);
-    } catch (const ConfigError&) {  // the checks say so
+    } catch (const ConfigError&) {  // the checks report it
     }
   }
 }

@@ -1,11 +1,14 @@
 // Every scheme for problems whose types are known at run time only. One more scheme: its #include
 // and its line.
+#include <hamel/framework/schemes/boxed.hpp>
+#include <hamel/framework/schemes/boxed_literal.hpp>
 #include <hamel/framework/schemes/dop853.hpp>
 #include <hamel/framework/schemes/dopri5.hpp>
 #include <hamel/framework/schemes/energy_preserving.hpp>
 #include <hamel/framework/schemes/gni.hpp>
 #include <hamel/framework/schemes/reversible.hpp>
 #include <hamel/framework/schemes/tsit5.hpp>
+#include <hamel/framework/schemes/unadapted.hpp>
 #include <hamel/systems/kernels/units.hpp>
 
 namespace hamel {

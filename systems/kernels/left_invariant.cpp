@@ -1,4 +1,7 @@
 // The groups and numbers of admissible directions of the registered left-invariant systems.
+#include <hamel/framework/schemes/boxed.hpp>
+#include <hamel/framework/schemes/boxed_literal.hpp>
+#include <hamel/framework/schemes/unadapted.hpp>
 #include <hamel/groups/product_retraction.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
 #include <hamel/systems/differential_drive.hpp>
@@ -12,8 +15,7 @@ namespace hamel {
 
 void add_left_invariant(Registry& registry) {
   add_left_invariant_on<SO3, 2>(registry);
-  // The paper's experiment: 180,000 steps of every reading.
-  add_left_invariant_kernels<SO3, 2, Exp<SO3>, Boxed, BoxedLiteral, Unadapted>(registry);
+  // The paper's experiment: 180,000 steps of every variant.
   add_left_invariant_kernels<SO3, 2, Cayley<SO3>, Boxed, BoxedLiteral, Unadapted>(registry);
   add_left_invariant_on<SE2, 2>(registry);
   add_left_invariant_on<RollingDisk::Group, 2>(registry);

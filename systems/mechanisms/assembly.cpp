@@ -31,8 +31,8 @@ std::shared_ptr<const Mechanics> invariant(const Multibody& system) {
   if (!system.constant_inertia() || !system.constant_constraints() ||
       !system.constant_potential() || system.has_force() || system.has_drift())
     return nullptr;
-  Eigen::MatrixXd inertia(system.dim(), system.dim()), a(system.rows(), system.dim());
-  Eigen::VectorXd b(system.rows());
+  Eigen::MatrixXd inertia(system.dim(), system.dim()), a(system.constraint_count(), system.dim());
+  Eigen::VectorXd b(system.constraint_count());
   system.inertia(system.drawn().data(), inertia);
   system.constraints(0, system.drawn().data(), a, b);
   return std::make_shared<LeftInvariantMechanics>(inertia, a);
@@ -76,11 +76,11 @@ void Assembly::check_moves(const Part& part, const std::string& kind, const std:
 int Assembly::joint_of(const Part& part, const std::string& kind) {
   std::vector<std::string> known;
   for (size_t j = 0; j < links_.size(); ++j) {
-    if (links_[j].kind != JointKind::hinge && links_[j].kind != JointKind::slider) continue;
+    if (links_[j].joint->dim() != 1) continue;
     if (link_names_[j] == part.name) return static_cast<int>(j);
     known.push_back(link_names_[j]);
   }
-  unknown(part, kind, "hinge or slider", part.name, known);
+  unknown(part, kind, kinds_with_coordinate(), part.name, known);
   return -1;
 }
 
@@ -93,27 +93,17 @@ Vec3 Assembly::direction(const Part& part, const std::string& kind, const std::s
   return Vec3::UnitX();  // of a part that is refused
 }
 
-Rows Assembly::rows() {
-  Rows out;
+ConstraintRows Assembly::rows() {
+  ConstraintRows out;
   out.ground = {parts_.ground_rate_, vec(parts_.ground_velocity_)};
   for (const auto& part : parts_.contacts_) {
-    Contact contact{part.name, ContactKind::wheel, link_of(part, part.kind, part.body),
-                    vec(part.at)};
-    contact.radius = part.radius;
-    contact.angle = part.angle;
-    if (part.kind == "roller") contact.kind = ContactKind::roller;
-    if (part.kind == "blade") contact.kind = ContactKind::blade;
-    if (part.kind == "ball") contact.kind = ContactKind::ball;
-    const bool edge = contact.kind == ContactKind::blade;
-    contact.axis = direction(part, part.kind, edge ? "along" : "axle", part.axle);
-    if (contact.kind != ContactKind::ball && contact.axis.cross(Vec3::UnitZ()).norm() < 1e-6)
-      wrong(part, part.kind,
-            fmt::format("{}: is vertical, expected a direction across z", edge ? "along" : "axle"));
-    if (!edge && !(part.radius > 0 && std::isfinite(part.radius)))
-      wrong(part, part.kind,
-            fmt::format("radius: got {}, expected a positive number", part.radius));
+    const int link = link_of(part, part.kind, part.body);
     check_moves(part, part.kind, part.body);
-    out.contacts.push_back(std::move(contact));
+    const ContactKind* kind = find_contact_kind(part.kind);
+    if (kind == nullptr) unknown(part, "contact", "kind", part.kind, names_of(contact_kinds()));
+    else if (check_values(part, part.kind, kind->fields, part.values) &&
+             check_level(part, kind->fields))
+      out.contacts.push_back({part.name, kind->make(part.values), link, vec(part.at)});
   }
   for (const auto& part : parts_.loops_) {
     const Vec3 axis = vec(part.axis);
@@ -128,7 +118,7 @@ Rows Assembly::rows() {
     for (const Prescribed& other : out.prescribed)
       if (other.name == part.name) wrong(part, "prescribed", "this joint is prescribed already");
     if (const int link = joint_of(part, "prescribed"); link >= 0)
-      out.prescribed.push_back({part.name, link, rate, part.angle, part.of_time,
+      out.prescribed.push_back({part.name, link, rate, part.angle, part.time_dependent,
                                 part.slope});  // the number of the velocity follows
   }
   return out;
@@ -138,7 +128,7 @@ Forces Assembly::forces() {
   Forces out;
   out.gravity = vec(parts_.gravity_);
   for (const auto& joint : parts_.joints_) {
-    if (!has_spring(joint) || (joint.kind != "hinge" && joint.kind != "slider")) continue;
+    if (!has_spring(joint) || !find_joint_kind(joint.kind)->has_coordinate) continue;
     Spring spring;
     spring.name = joint.name;
     spring.joint = joint_of(joint, "joint");
@@ -169,11 +159,12 @@ Forces Assembly::forces() {
   }
   for (const auto& part : parts_.motors_) {
     if (const int link = joint_of(part, "motor"); link >= 0 && part.effort)
-      out.motors.push_back({part.name, link, part.effort, part.of_time});
+      out.motors.push_back({part.name, link, part.effort, part.time_dependent});
   }
   for (const auto& part : parts_.forces_) {
-    Force force{
-        part.name, link_of(part, "force", part.body), vec(part.at), part.of_body, part.of_time, {}};
+    Force force{part.name,           link_of(part, "force", part.body),
+                vec(part.at),        part.of_body,
+                part.time_dependent, {}};
     for (int i = 0; i < 3; ++i) force.along[i] = part.along[i];
     check_moves(part, "force", part.body);
     out.forces.push_back(std::move(force));
@@ -210,35 +201,35 @@ SystemModel Assembly::outline() {
 
 SystemModel Assembly::model() {
   make_tree();
-  Rows rows = this->rows();
+  ConstraintRows rows = this->rows();
   Forces forces = this->forces();
   stop_at_mistakes();
 
   const Tree tree(links_);
   check_masses(tree);
   for (Prescribed& p : rows.prescribed) {
-    if (p.angle && !p.of_time && p.rate(0) == 0) p.held = p.dof;
+    if (p.angle && !p.time_dependent && p.rate(0) == 0) p.held = p.dof;
     p.dof = tree.first(p.dof);
   }
   for (Motor& m : forces.motors) m.dof = tree.first(m.dof);
   std::vector<std::shared_ptr<const Geometry>> factors;
-  for (const Link& link : links_) factors.push_back(type_of(link.kind).geometry);
+  for (const Link& link : links_) factors.push_back(link.joint->geometry());
   const auto system = std::make_shared<Multibody>(tree, std::move(rows), std::move(forces),
                                                   std::make_shared<ProductGeometry>(factors));
   check_contacts(*system);
   stop_at_mistakes();
 
-  const std::vector<RowWords> words = system->all_rows().words();
-  const std::vector<Said> said = rows_in_words(words);
+  const std::vector<RowInfo> words = system->all_rows().info();
+  const std::vector<RowLabel> said = rows_in_words(words);
   const auto starts =
       std::make_shared<Starts>(system, parts_.name_, model_.group.columns, model_.rates, said);
   const Redundancy redundancy =
-      look_for_redundancy(*system, {system->drawn(), start_configuration(*system, *starts)});
+      find_redundancy(*system, {system->drawn(), start_configuration(*system, *starts)});
   look_at_redundant(redundancy, said, words);
   system->keep(redundancy.rows);
-  system->look_for_constants(poses_around(*system, system->drawn()));
+  system->find_constants(poses_around(*system, system->drawn()));
   for (const int row : system->kept()) {
-    const RowWords& word = words[static_cast<size_t>(row)];
+    const RowInfo& word = words[static_cast<size_t>(row)];
     if (word.height) model_.contacts.push_back(static_cast<int>(model_.reactions.size()));
     model_.reactions.push_back(word.name);
   }
@@ -262,10 +253,10 @@ SystemModel Assembly::model() {
     if (!part.angle) continue;
     const int link = joint_of(part, "prescribed");
     size_t column = 0;
-    for (int j = 0; j < link; ++j) column += type_of(tree.kind(j)).columns.size();
+    for (int j = 0; j < link; ++j) column += tree.joint(j).columns().size();
     checks.held.push_back(
         {fmt::format("{}prescribed '{}': {}", part.where, part.name, model_.group.columns[column]),
-         column, tree.kind(link) == JointKind::hinge, part.angle});
+         column, tree.joint(link).only_turns(), part.angle});
   }
   const auto driven = [system,
                        drivers = drivers(tree)](const std::shared_ptr<const Inputs>& inputs) {

@@ -40,35 +40,41 @@ class Assembly {
   void check_body(const Mechanism::BodyPart& body);
   mechanisms::Inertia inertia_of(const Mechanism::BodyPart& body);
   void link_bodies();
-  void link(const Mechanism::JointPart& joint);
-  void add_link(int parent, mechanisms::JointKind kind, const Mechanism::JointPart& joint,
-                const Point& axis, const std::string& suffix);
+  void link(const Mechanism::JointPart& part);
+  void add_link(int parent, const std::shared_ptr<const mechanisms::Joint>& joint,
+                const Mechanism::JointPart& part, const Point& axis, const std::string& suffix);
+  /// Are these values of the fields of a kind of part? Else with mistakes.
+  bool check_values(const Part& part, const std::string& kind, const std::vector<Field>& fields,
+                    const Parameters& values);
+  /// No direction of a contact is vertical.
+  bool check_level(const Mechanism::ContactPart& part, const std::vector<Field>& fields);
   void name_columns();
   void state_inputs();
   void check_masses(const mechanisms::Tree& tree);
 
-  // What acts on it.
+  // Contacts, loops, forces and the start.
   /// The link of a body; kGround, with a mistake, where there is none of this name.
   int link_of(const Part& part, const std::string& kind, const std::string& body);
   /// That a body moves; one that is unknown is a mistake of link_of.
   void check_moves(const Part& part, const std::string& kind, const std::string& body);
-  /// The link of a hinge or slider; -1, with a mistake, where there is none of this name.
+  /// The link of a joint with one velocity; -1, with a mistake, where there is none of this name.
   int joint_of(const Part& part, const std::string& kind);
   mechanisms::Vec3 direction(const Part& part, const std::string& kind, const std::string& what,
                              const Point& given);
-  mechanisms::Rows rows();
+  mechanisms::ConstraintRows rows();
   mechanisms::Forces forces();
   void check_contacts(const mechanisms::Multibody& system);
-  std::vector<mechanisms::Said> rows_in_words(const std::vector<mechanisms::RowWords>& rows) const;
+  std::vector<mechanisms::RowLabel> rows_in_words(
+      const std::vector<mechanisms::RowInfo>& rows) const;
   void look_at_redundant(const mechanisms::Redundancy& redundancy,
-                         const std::vector<mechanisms::Said>& rows,
-                         const std::vector<mechanisms::RowWords>& words);
+                         const std::vector<mechanisms::RowLabel>& rows,
+                         const std::vector<mechanisms::RowInfo>& words);
   std::vector<double> start_configuration(const mechanisms::Multibody& system,
                                           const mechanisms::Starts& starts) const;
   void check_prescribed(const mechanisms::Starts& starts);
   void start(const std::shared_ptr<const mechanisms::Starts>& starts);
   void check_motions(const mechanisms::Multibody& system,
-                     const std::vector<mechanisms::Said>& rows);
+                     const std::vector<mechanisms::RowLabel>& rows);
   std::vector<std::string> body_names() const;
   std::vector<mechanisms::Multibody::Driver> drivers(const mechanisms::Tree& tree);
 

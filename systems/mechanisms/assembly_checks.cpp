@@ -69,7 +69,7 @@ void Assembly::check_masses(const Tree& tree) {
   tree.inertia(inertia);
   for (const auto& joint : parts_.joints_) {
     const int link = body_links_.at(joint.child);
-    if (joint.kind == "weld" || link == kGround) continue;
+    if (find_joint_kind(joint.kind)->joints == 0 || link == kGround) continue;
     for (int i = 0; i < tree.count(link); ++i) {
       if (inertia(tree.first(link) + i, tree.first(link) + i) > 0) continue;
       wrong(joint, "joint",
@@ -83,11 +83,11 @@ void Assembly::check_masses(const Tree& tree) {
 
 // Contacts touch the ground as drawn, loops are closed.
 void Assembly::check_contacts(const Multibody& system) {
-  const Rows& rows = system.all_rows();
+  const ConstraintRows& rows = system.all_rows();
   const Tree& tree = system.tree(system.drawn().data());
   for (size_t i = 0; i < rows.contacts.size(); ++i) {
     const auto& part = parts_.contacts_[i];
-    const double height = rows.height(rows.contacts[i], tree);
+    const double height = ConstraintRows::touch(rows.contacts[i], tree)[2];
     if (!(std::abs(height) < kTouching)) {
       wrong(part, part.kind,
             fmt::format("does not touch the ground z = 0 as drawn: its lowest point is at {:.6g} m",
@@ -103,11 +103,11 @@ void Assembly::check_contacts(const Multibody& system) {
   }
 }
 
-// Of all rows: contacts, loops, and one for each prescribed joint.
-std::vector<Said> Assembly::rows_in_words(const std::vector<RowWords>& rows) const {
-  std::vector<Said> out;
+// Labels of all rows: contacts, loops, and one for each prescribed joint.
+std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) const {
+  std::vector<RowLabel> out;
   const size_t others = rows.size() - parts_.rates_.size();
-  for (const RowWords& row : rows) {
+  for (const RowInfo& row : rows) {
     const auto say = [&](const Part& part, const std::string& kind) {
       out.push_back({part.where, fmt::format("{} '{}' ({})", kind, part.name, row.meaning)});
     };
@@ -123,9 +123,9 @@ std::vector<Said> Assembly::rows_in_words(const std::vector<RowWords>& rows) con
   return out;
 }
 
-// Refuses rows that contradict others; rows that say nothing new too, or drops them with a note.
-void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<Said>& rows,
-                                 const std::vector<RowWords>& words) {
+// Refuses rows that contradict others; redundant rows too, or drops them with a note.
+void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<RowLabel>& rows,
+                                 const std::vector<RowInfo>& words) {
   const Part& policy = parts_.redundant_;
   const bool drop = policy.name == "drop";
   if (!drop && policy.name != "refuse")
@@ -136,7 +136,7 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
   };
   for (const auto& [row, repeat] : redundancy.repeats) {
     const std::string list = in_words(repeat.others, rows);
-    const Said& said = rows[static_cast<size_t>(row)];
+    const RowLabel& said = rows[static_cast<size_t>(row)];
     const bool inputs = driven(row) || std::ranges::any_of(repeat.others, driven);
     if (repeat.contradicts || inputs) {
       mistakes_.push_back(said.where + contradiction(said, list) +
@@ -145,20 +145,19 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
       continue;
     }
     const std::string text =
-        list.empty() ? fmt::format("{} says nothing: no joint moves its body that way", said.what)
-                     : fmt::format("{} says nothing beyond {}", said.what, list);
+        list.empty()
+            ? fmt::format("{} constrains nothing: no joint moves its body that way", said.what)
+            : fmt::format("{} is implied by {}", said.what, list);
     if (drop)
       model_.notes.push_back(
           "row dropped: " + text +
-          (list.empty()
-               ? ""
-               : fmt::format("; the reactions there stand for that of {} too", said.what)));
+          (list.empty() ? "" : fmt::format("; the reactions there include that of {}", said.what)));
     else
       mistakes_.push_back(fmt::format(
           "{}redundant row: {}; {}, or redundant = \"drop\"", said.where, text,
           list.empty() ? "leave it out" : "take a part with fewer rows (a roller for a wheel)"));
   }
-  // Rows of phi that are zero at all places are left out without a word, but not all of a loop.
+  // Rows of phi that are zero at all places are left out without notice, but not all of a loop.
   for (const auto& loop : parts_.loops_) {
     const auto speaks = [&](size_t i) {
       const int row = static_cast<int>(i);
@@ -168,7 +167,7 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
     bool some = false;
     for (size_t i = 0; i < words.size(); ++i) some = some || speaks(i);
     if (some) continue;
-    const std::string text = "says nothing: the joints between its bodies hold it already";
+    const std::string text = "constrains nothing: the joints between its bodies hold it already";
     if (drop) model_.notes.push_back(fmt::format("loop '{}' dropped: {}", loop.name, text));
     else wrong(loop, "loop", text + "; leave it out");
   }
@@ -189,7 +188,7 @@ std::vector<double> Assembly::start_configuration(const Multibody& system,
   return g;
 }
 
-// What is prescribed is not stated otherwise.
+// Refuses start values that contradict prescribed joints, and start_arguments that name one.
 void Assembly::check_prescribed(const Starts& starts) {
   for (const auto& [name, angle] : starts.prescribed(0)) {
     for (const auto& part : parts_.start_) {
@@ -198,13 +197,14 @@ void Assembly::check_prescribed(const Starts& starts) {
             fmt::format("{}start: {} = {}, but it is prescribed as {} at t = 0; leave it out",
                         part.where, name, part.value, angle));
     }
-    const auto& asks = parts_.asks_.names;
-    if (std::find(asks.begin(), asks.end(), name) != asks.end())
-      mistakes_.push_back(fmt::format("{}asks: {} is prescribed", parts_.asks_.where, name));
+    const auto& start_arguments = parts_.start_arguments_.names;
+    if (std::find(start_arguments.begin(), start_arguments.end(), name) != start_arguments.end())
+      mistakes_.push_back(
+          fmt::format("{}start_arguments: {} is prescribed", parts_.start_arguments_.where, name));
   }
 }
 
-// The start as stated, and those that few numbers stand for.
+// The start as stated, and the starts given by numbers (start_arguments).
 void Assembly::start(const std::shared_ptr<const Starts>& starts) {
   const auto& columns = model_.group.columns;
   std::map<std::string, double> stated, usual;
@@ -217,14 +217,14 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
       usual[part.name] = part.value;
   }
   check_prescribed(*starts);
-  std::vector<std::string> asks = parts_.asks_.names;
+  std::vector<std::string> start_arguments = parts_.start_arguments_.names;
   const bool runs = starts->mistakes({"speed"}).empty();
-  if (asks.empty() && runs) asks = {"speed"};
-  for (const std::string& wrong : starts->mistakes(asks))
-    mistakes_.push_back(parts_.asks_.where + "asks: " + wrong);
+  if (start_arguments.empty() && runs) start_arguments = {"speed"};
+  for (const std::string& wrong : starts->mistakes(start_arguments))
+    mistakes_.push_back(parts_.start_arguments_.where + "start_arguments: " + wrong);
   stop_at_mistakes();
   model_.start = starts->solve(stated, 0, places);
-  model_.start_parameters = asks;
+  model_.start_parameters = start_arguments;
   std::map<std::string, double> pushed = usual;
   for (const auto& part : parts_.push_) {
     pushed[part.name] = part.value;
@@ -245,24 +245,25 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
     if (!parts_.push_.empty()) model_.start_pushed = at_speed(pushed);
     model_.turning = starts->turning();
   }
-  model_.start_from = [starts, asks, stated, pushed](std::span<const double> given, double t) {
+  model_.start_from = [starts, start_arguments, stated, pushed](std::span<const double> given,
+                                                                double t) {
     std::map<std::string, double> values = given.empty() ? stated : pushed;
-    for (size_t i = 0; i < given.size(); ++i) values[asks[i]] = given[i];
+    for (size_t i = 0; i < given.size(); ++i) values[start_arguments[i]] = given[i];
     return starts->solve(values, t);
   };
 }
 
 // Massless bodies in the middle of a chain, axes that coincide: a motion that the rows admit and no
 // inertia resists.
-void Assembly::check_motions(const Multibody& system, const std::vector<Said>& rows) {
+void Assembly::check_motions(const Multibody& system, const std::vector<RowLabel>& rows) {
   std::vector<double> g(system.drawn().size());
   system.geometry().from_coordinates(model_.start.configuration, g.data());
-  const int n = system.dim(), k = system.rows();
+  const int n = system.dim(), k = system.constraint_count();
   Eigen::MatrixXd inertia(n, n), a(k, n), free = Eigen::MatrixXd::Identity(n, n);
   Eigen::VectorXd b(k);
   system.inertia(g.data(), inertia);
   system.constraints(0, g.data(), a, b);
-  // Each velocity in units of its own inertia: that of a needle on a ship is not none.
+  // Each velocity in units of its inertia: that of a needle on a ship is not none.
   const Eigen::VectorXd inertias = inertia.diagonal();
   const double none = 1e-14 * inertias.maxCoeff();
   const Eigen::VectorXd unit =
@@ -274,7 +275,7 @@ void Assembly::check_motions(const Multibody& system, const std::vector<Said>& r
   }
   if (free.isZero(0)) {  // a motion that what is prescribed decides alone
     if (system.has_drift()) return;
-    const Said& last = rows[static_cast<size_t>(system.kept().back())];
+    const RowLabel& last = rows[static_cast<size_t>(system.kept().back())];
     mistakes_.push_back(
         fmt::format("{}{}: the parts leave no motion, {} independent rows in dimension {}",
                     last.where, last.what, k, n));

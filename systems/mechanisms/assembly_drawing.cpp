@@ -1,5 +1,6 @@
 // Assembly: every part has a shape from its data.
 #include <algorithm>
+#include <iterator>
 
 #include <hamel/systems/mechanisms/assembly.hpp>
 
@@ -15,6 +16,7 @@ Point point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 void Assembly::draw(const std::shared_ptr<Multibody>& system) {
   Drawing& drawing = model_.drawing;
   drawing.has_floor = true;
+  const std::vector<Contact>& all = system->all_rows().contacts;
   for (const auto& body : parts_.bodies_) {
     const int link = body_links_.at(body.name);
     std::vector<BodyShape> shapes;
@@ -25,31 +27,26 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
     }
     if (!vec(body.box).isZero(0)) shapes.push_back(shapes::box(body.box));
     double size = 0.1;
-    for (const auto& contact : parts_.contacts_) {
+    for (size_t i = 0; i < parts_.contacts_.size(); ++i) {
+      const auto& contact = parts_.contacts_[i];
       if (contact.body != body.name) continue;
       const Point at = from_centre(contact.at);
       const double drawn = body.cylinder.empty() ? body.sphere : body.cylinder[0];
-      size = std::max(size, contact.radius);
-      if (contact.radius > 0 && drawn == contact.radius) {
+      const ContactModel& model = *all[i].model;
+      const double radius = model.radius();
+      size = std::max(size, radius);
+      if (radius > 0 && drawn == radius) {
         shapes.front().look.color = "dark";
         continue;
       }
-      if (contact.kind == "ball") {
-        shapes.push_back(shapes::sphere(contact.radius, {.at = at}));
-      } else if (contact.kind == "blade") {
-        const Vec3 half = 0.1 * vec(contact.axle).normalized();
-        shapes.push_back(
-            shapes::line({point(vec(at) - half), point(vec(at) + half)}, {.color = "accent"}));
-      } else {
-        shapes.push_back(shapes::cylinder(contact.radius, 0.1 * contact.radius,
-                                          {.at = at, .axis = contact.axle, .color = "dark"}));
-      }
+      std::ranges::move(model.shapes(at), std::back_inserter(shapes));
     }
     // Rods from the mass centre to its joints.
     for (const auto& joint : parts_.joints_) {
       if ((joint.child != body.name && joint.parent != body.name) || joint.parent == kWorld)
         continue;
-      if (joint.kind == "weld" || (vec(joint.at) - vec(body.at)).isZero(1e-12)) continue;
+      if (find_joint_kind(joint.kind)->joints == 0 || (vec(joint.at) - vec(body.at)).isZero(1e-12))
+        continue;
       shapes.push_back(shapes::line({{0, 0, 0}, from_centre(joint.at)}));
     }
     if (shapes.empty()) shapes.push_back(shapes::sphere(0.3 * size));
@@ -70,8 +67,8 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
          [system, i](std::span<const double> coordinates, std::span<const double> reactions) {
            std::vector<double> g(system->drawn().size());
            system->geometry().from_coordinates(coordinates, g.data());
-           const Rows& rows = system->all_rows();
-           const Vec3 at = rows.touches(rows.contacts[i], system->tree(g.data()));
+           const Contact& contact = system->all_rows().contacts[i];
+           const Vec3 at = ConstraintRows::touch(contact, system->tree(g.data()));
            return std::pair{at, system->reaction(i, g.data(), reactions)};
          }});
   }

@@ -1,4 +1,4 @@
-// Assembly: numbers that no part can have. Those of a file are finite; a user's program may state
+// Assembly: numbers that no part can have. Numbers of a file are finite; a user's program may state
 // any.
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,30 @@
 #include <hamel/systems/mechanisms/assembly.hpp>
 
 namespace hamel {
+
+using namespace mechanisms;
+
 namespace {
 
 bool finite(std::span<const double> values) {
   return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
+}
+
+// "" where this may be the value of a field.
+std::string mistake(const Field& field, const std::vector<double>& value) {
+  if (value.size() != field.value.size())
+    return fmt::format("got {} numbers, expected {}", value.size(), field.value.size());
+  if (is_direction(field)) {
+    const double length = Vec3(value.data()).norm();
+    if (length > 0 && std::isfinite(length)) return "";
+    return fmt::format("got ({}), expected a direction", join(value));
+  }
+  if (finite(value) && field.range.allows(value[0])) return "";
+  const std::string range = field.range.words();
+  return fmt::format("got {}, expected a {}", value[0],
+                     range.empty()         ? "finite number"
+                     : range == "positive" ? "positive number"
+                                           : "number " + range);
 }
 
 }  // namespace
@@ -48,7 +68,6 @@ void Assembly::check_numbers() {
   }
   for (const auto& part : parts_.contacts_) {
     numbers(part, part.kind, "at", part.at);
-    number(part, part.kind, "angle", part.angle);
   }
   for (const auto& part : parts_.loops_) {
     numbers(part, "loop", "at", part.at);
@@ -73,9 +92,38 @@ void Assembly::check_numbers() {
   for (const auto& part : parts_.inputs_) range(part, "input", part.field.range);
 }
 
+bool Assembly::check_values(const Part& part, const std::string& kind,
+                            const std::vector<Field>& fields, const Parameters& values) {
+  const size_t before = mistakes_.size();
+  for (const auto& [name, value] : values) {
+    const std::vector<std::string> known = names_of(fields);
+    if (std::ranges::count(known, name) == 0) unknown(part, kind, "value", name, known);
+  }
+  for (const Field& field : fields) {
+    const auto given = values.find(field.name);
+    const std::vector<double>& value = given == values.end() ? field.value : given->second;
+    if (const std::string text = mistake(field, value); !text.empty())
+      wrong(part, kind, fmt::format("{}: {}", field.name, text));
+  }
+  return mistakes_.size() == before;
+}
+
+bool Assembly::check_level(const Mechanism::ContactPart& part, const std::vector<Field>& fields) {
+  const size_t before = mistakes_.size();
+  for (const Field& field : fields) {
+    const auto given = part.values.find(field.name);
+    if (!is_direction(field) || given == part.values.end()) continue;
+    const Vec3 direction = Vec3(given->second.data()).normalized();
+    if (direction.head<2>().norm() < 1e-6)
+      wrong(part, part.kind,
+            fmt::format("{}: is vertical, expected a direction across z", field.name));
+  }
+  return mistakes_.size() == before;
+}
+
 void Assembly::check_dimension() {
   int n = 0;
-  for (const mechanisms::Link& link : links_) n += mechanisms::type_of(link.kind).group.dim;
+  for (const mechanisms::Link& link : links_) n += link.joint->dim();
   if (n > kMaxDimension)
     mistakes_.push_back(
         fmt::format("{}: dimension {}, expected at most {}", parts_.name_, n, kMaxDimension));

@@ -10,17 +10,8 @@
 #include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
-namespace {
 
 using namespace mechanisms;
-
-const std::vector<std::string>& joint_kinds() {
-  static const std::vector<std::string> all = {"ball",   "free",      "hinge", "planar",
-                                               "slider", "universal", "weld"};
-  return all;
-}
-
-}  // namespace
 
 Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
   const std::vector<double>& given = body.inertia;
@@ -77,8 +68,8 @@ void Assembly::link_bodies() {
     };
     check("parent", joint.parent);
     check("child", joint.child);
-    if (std::find(joint_kinds().begin(), joint_kinds().end(), joint.kind) == joint_kinds().end()) {
-      unknown(joint, "joint", "kind", joint.kind, joint_kinds());
+    if (find_joint_kind(joint.kind) == nullptr) {
+      unknown(joint, "joint", "kind", joint.kind, names_of(joint_kinds()));
       known = false;
     }
     if (!known) continue;
@@ -131,51 +122,37 @@ void Assembly::link_bodies() {
   stop_at_mistakes();
 }
 
-void Assembly::link(const Mechanism::JointPart& joint) {
-  const int parent = body_links_.at(joint.parent);
-  if (has_spring(joint) && joint.kind != "hinge" && joint.kind != "slider")
-    wrong(joint, "joint",
-          fmt::format("stiffness and damping: expected a hinge or slider, got {}", joint.kind));
-  if (joint.kind == "weld") {
-    body_links_[joint.child] = parent;
-  } else {
-    using enum JointKind;
-    if (joint.kind == "universal") {
-      add_link(parent, hinge, joint, joint.axis, "1");
-      add_link(static_cast<int>(links_.size()) - 1, hinge, joint, joint.axis2, "2");
-    } else {
-      const JointKind kind = joint.kind == "free"     ? free
-                             : joint.kind == "planar" ? planar
-                             : joint.kind == "hinge"  ? hinge
-                             : joint.kind == "slider" ? slider
-                                                      : ball;
-      add_link(parent, kind, joint, joint.axis, "");
-    }
-    body_links_[joint.child] = static_cast<int>(links_.size()) - 1;
+void Assembly::link(const Mechanism::JointPart& part) {
+  const int parent = body_links_.at(part.parent);
+  const JointKind& kind = *find_joint_kind(part.kind);
+  if (has_spring(part) && !kind.has_coordinate)
+    wrong(part, "joint",
+          fmt::format("stiffness and damping: expected a {}, got {}", kinds_with_coordinate(),
+                      part.kind));
+  const bool fits = check_values(part, "joint", kind.fields, part.values);
+  int here = parent;
+  for (const auto& joint : kind.make(fits ? part.values : Parameters())) {
+    const bool first = here == parent;
+    add_link(here, joint, part, first ? part.axis : part.axis2,
+             kind.joints == 1 ? "" : (first ? "1" : "2"));
+    here = static_cast<int>(links_.size()) - 1;
   }
-  const int here = body_links_.at(joint.child);
+  body_links_[part.child] = here;
   for (const auto& body : parts_.bodies_) {
-    if (body.name == joint.child && here != mechanisms::kGround)
+    if (body.name == part.child && here != mechanisms::kGround)
       links_[static_cast<size_t>(here)].inertia += inertia_of(body);
   }
 }
 
-// The frame of a joint has its third axis along `axis`; that of a free or planar one on the parent
-// is the parent's own, at the height of the joint for a planar one.
-void Assembly::add_link(int parent, JointKind kind, const Mechanism::JointPart& joint,
-                        const Point& axis, const std::string& suffix) {
-  const bool turned = kind != JointKind::free && kind != JointKind::ball;
-  const Vec3 e = turned ? direction(joint, "joint", "axis", axis) : Vec3(Vec3::UnitZ());
-  Link link;
-  link.parent = parent;
-  link.kind = kind;
-  link.on_child = {frame_along(e), vec(joint.at)};
-  link.on_parent = link.on_child;
-  if (kind == JointKind::free) link.on_parent = {};
-  if (kind == JointKind::planar) link.on_parent.position = e.dot(link.on_child.position) * e;
-  links_.push_back(link);
-  link_names_.push_back(joint.name + suffix);
-  link_joints_.push_back(&joint);
+// The frame of a joint has its third axis along `axis`.
+void Assembly::add_link(int parent, const std::shared_ptr<const Joint>& joint,
+                        const Mechanism::JointPart& part, const Point& axis,
+                        const std::string& suffix) {
+  const Vec3 e = joint->has_axis() ? direction(part, "joint", "axis", axis) : Vec3(Vec3::UnitZ());
+  const Rigid on_child{frame_along(e), vec(part.at)};
+  links_.push_back({parent, joint, joint->on_parent(on_child), on_child});
+  link_names_.push_back(part.name + suffix);
+  link_joints_.push_back(&part);
 }
 
 // A lone root joint's numbers go by their own names: x, theta, v1.
@@ -190,19 +167,19 @@ void Assembly::name_columns() {
       group += (group.empty() ? "" : "*") + last + (power > 1 ? fmt::format("^{}", power) : "");
   };
   for (size_t j = 0; j < links_.size(); ++j) {
-    const JointType& type = type_of(links_[j].kind);
-    factors.push_back(type.group);
-    if (type.group.name != last) {
+    const Joint& joint = *links_[j].joint;
+    factors.push_back(joint.group());
+    if (joint.group().name != last) {
       write();
       power = 0;
-      last = type.group.name;
+      last = joint.group().name;
     }
     ++power;
-    const bool wide = links_[j].kind == JointKind::free || links_[j].kind == JointKind::planar;
-    const bool alone = wide && roots == 1 && links_[j].parent == mechanisms::kGround;
+    const bool alone =
+        joint.turns_and_slides() && roots == 1 && links_[j].parent == mechanisms::kGround;
     const std::string front = alone ? "" : link_names_[j] + ".";
-    for (const std::string& name : type.columns) model_.group.columns.push_back(front + name);
-    for (const std::string& name : type.rates) model_.rates.push_back(front + name);
+    for (const std::string& name : joint.columns()) model_.group.columns.push_back(front + name);
+    for (const std::string& name : joint.rates()) model_.rates.push_back(front + name);
   }
   write();
   GroupInfo info = product_info(group, factors);
@@ -224,9 +201,8 @@ void Assembly::state_inputs() {
   };
   const auto of_joint = [&](const auto& part, const std::string& kind, bool rate) {
     const auto at = std::find(link_names_.begin(), link_names_.end(), part.name);
-    if (at == link_names_.end()) return;  // said with the others
-    const bool slider =
-        links_[static_cast<size_t>(at - link_names_.begin())].kind == JointKind::slider;
+    if (at == link_names_.end()) return;  // reported with the others
+    const bool slider = links_[static_cast<size_t>(at - link_names_.begin())].joint->only_slides();
     const std::string of = slider ? "force" : "torque";
     if (rate)
       add(part, kind,

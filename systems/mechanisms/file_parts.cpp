@@ -1,6 +1,7 @@
 #include <hamel/systems/mechanisms/file_parts.hpp>
 
 #include <hamel/framework/run/data/toml_parameters.hpp>
+#include <hamel/systems/mechanisms/contact.hpp>
 
 namespace hamel::mechanisms {
 
@@ -33,51 +34,43 @@ void FileParts::bodies() {
     m_.body(name, o);
   });
 }
+// Values of the fields of a kind, numbers or directions.
+void FileParts::add_fields(const std::vector<Field>& fields, Parameters& to,
+                           FileValues::Keys& keys) {
+  for (const Field& field : fields) {
+    keys.emplace_back(field.name, [&](const Node& node, const std::string& key) {
+      if (is_direction(field)) to[key] = read_.formulas.numbers(node, key, 3);
+      else to[key] = {read_.number(node, key)};
+    });
+  }
+}
 void FileParts::joints() {
   tables("joint", [&](const toml::table& table) {
     std::string name, kind, child, parent = kWorld;
     JointOptions o;
-    read_.entries(table, {{"name", read_.read(name)},
-                          {"kind", read_.read(kind)},
-                          {"parent", read_.read(parent)},
-                          {"child", read_.read(child)},
-                          {"at", read_.read(o.at)},
-                          {"axis", read_.read(o.axis)},
-                          {"axis2", read_.read(o.axis2)},
-                          {"stiffness", read_.read(o.stiffness)},
-                          {"rest", read_.read(o.rest)},
-                          {"damping", read_.read(o.damping)}});
+    FileValues::Keys keys = {{"name", read_.read(name)},     {"kind", read_.read(kind)},
+                             {"parent", read_.read(parent)}, {"child", read_.read(child)},
+                             {"at", read_.read(o.at)},       {"axis", read_.read(o.axis)},
+                             {"axis2", read_.read(o.axis2)}, {"stiffness", read_.read(o.stiffness)},
+                             {"rest", read_.read(o.rest)},   {"damping", read_.read(o.damping)}};
+    for (const JointKind& any : joint_kinds()) add_fields(any.fields, o.values, keys);
+    read_.entries(table, keys);
     m_.joint(kind, name.empty() ? child : name, parent, child, o);
   });
 }
-// A contact is named as its body where it has no name of its own.
+// A contact without a name is named as its body.
 void FileParts::contacts() {
-  const auto round = [&](const std::string& kind, auto add) {
-    tables(kind, [&](const toml::table& table) {
+  for (const ContactKind& kind : contact_kinds()) {
+    tables(kind.name, [&](const toml::table& table) {
       std::string name, body;
-      WheelOptions o;
-      FileValues::Keys keys = {{"name", read_.read(name)},
-                               {"body", read_.read(body)},
-                               {"at", read_.read(o.at)},
-                               {"radius", read_.read(o.radius)}};
-      if (kind != "ball") keys.emplace_back("axle", read_.read(o.axle));
-      if (kind == "roller") keys.emplace_back("angle", read_.read(o.angle));
+      ContactOptions o;
+      FileValues::Keys keys = {
+          {"name", read_.read(name)}, {"body", read_.read(body)}, {"at", read_.read(o.at)}};
+      add_fields(kind.fields, o.values, keys);
       read_.entries(table, keys);
-      (m_.*add)(name.empty() ? body : name, body, o);
+      m_.contact(kind.name, name.empty() ? body : name, body, o);
     });
-  };
-  round("wheel", &Mechanism::wheel);
-  round("roller", &Mechanism::roller);
-  round("ball", &Mechanism::ball);
-  tables("blade", [&](const toml::table& table) {
-    std::string name, body;
-    BladeOptions o;
-    read_.entries(table, {{"name", read_.read(name)},
-                          {"body", read_.read(body)},
-                          {"at", read_.read(o.at)},
-                          {"along", read_.read(o.along)}});
-    m_.blade(name.empty() ? body : name, body, o);
-  });
+  }
 }
 void FileParts::chains() {
   tables("loop", [&](const toml::table& table) {
@@ -98,12 +91,14 @@ void FileParts::prescribed(const toml::table& table) {
   std::string joint;
   FileValues::OfTime rate, angle;
   Range range;
-  const auto of_time = [&](auto& to) {
-    return [this, &to](const Node& node, const std::string& key) { to = read_.of_time(node, key); };
+  const auto time_dependent = [&](auto& to) {
+    return [this, &to](const Node& node, const std::string& key) {
+      to = read_.time_dependent(node, key);
+    };
   };
   read_.entries(table, {{"joint", read_.read(joint)},
-                        {"rate", of_time(rate)},
-                        {"angle", of_time(angle)},
+                        {"rate", time_dependent(rate)},
+                        {"angle", time_dependent(angle)},
                         {"least", read_.read(range.least)},
                         {"most", read_.read(range.most)}});
   if (!is_input(table, {"rate", "angle"})) no_range(table);
@@ -117,17 +112,17 @@ void FileParts::prescribed(const toml::table& table) {
 void FileParts::motor(const toml::table& table) {
   std::string joint;
   Signal effort;
-  bool of_time = false;
+  bool time_dependent = false;
   Range range;
   read_.entries(table, {{"joint", read_.read(joint)},
                         {"effort",
                          [&](const Node& node, const std::string& key) {
-                           effort = read_.signal(node, key, of_time);
+                           effort = read_.signal(node, key, time_dependent);
                          }},
                         {"least", read_.read(range.least)},
                         {"most", read_.read(range.most)}});
   if (!is_input(table, {"effort"})) no_range(table);
-  if (effort) m_.motor(joint, effort, of_time);
+  if (effort) m_.motor(joint, effort, time_dependent);
   else m_.motor(joint, range);
 }
 // A formula is not kept between limits.
@@ -136,12 +131,12 @@ void FileParts::no_range(const toml::table& table) {
     if (const Node* node = table.get(key))
       read_.toml.wrong(*node, key, "none beside a formula, which may say min(max(...)) itself");
 }
-// A motor or a prescribed joint that says none of these is an input.
+// A motor or a prescribed joint with none of these is an input.
 bool FileParts::is_input(const toml::table& table, std::initializer_list<const char*> keys) {
   return std::none_of(keys.begin(), keys.end(),
                       [&](const char* key) { return table.contains(key); });
 }
-// Those of motors, of prescribed joints, and by name: formulas may use them.
+// Inputs of motors, of prescribed joints, and by name: formulas may use them.
 void FileParts::inputs() {
   tables("motor", [&](const toml::table& table) {
     if (is_input(table, {"effort"})) motor(table);
@@ -174,12 +169,12 @@ void FileParts::forces() {
   tables("force", [&](const toml::table& table) {
     std::string name, body;
     ForceOptions o;
-    o.of_time = false;
+    o.time_dependent = false;
     const auto along = [&](const Node& node, const std::string& key) {
       const toml::array* array = node.as_array();
       if (array == nullptr || array->size() != 3)
         return read_.toml.wrong(node, key, "3 numbers or formulas");
-      for (size_t i = 0; i < 3; ++i) o.along[i] = read_.signal((*array)[i], key, o.of_time);
+      for (size_t i = 0; i < 3; ++i) o.along[i] = read_.signal((*array)[i], key, o.time_dependent);
     };
     read_.entries(table, {{"name", read_.read(name)},
                           {"body", read_.read(body)},
@@ -215,11 +210,13 @@ void FileParts::surroundings() {
     read_.toml.value(node, "redundant", policy);
     m_.redundant(policy);
   });
-  stated("asks", [&](const Node& node) {
-    std::vector<std::string> names;
-    read_.toml.value(node, "asks", names);
-    m_.asks(names);
-  });
+  for (const char* key : {"start_arguments", "asks"}) {  // asks: its name before version 0.2
+    stated(key, [&](const Node& node) {
+      std::vector<std::string> names;
+      read_.toml.value(node, key, names);
+      m_.start_arguments(names);
+    });
+  }
   stated("start", [&](const Node& node) {
     const toml::table* table = node.as_table();
     if (table == nullptr) return read_.toml.wrong(node, "start", "a table");

@@ -24,7 +24,7 @@ class FileParts {
  private:
   using Node = toml::node;
 
-  // read(node) of a key, where the file has it; what it says carries its place.
+  // read(node) of a key, where the file has it; its messages carry its place.
   template <class Read>
   void stated(const std::string& key, Read&& read) {
     const Node* node = table_.get(key);
@@ -45,6 +45,7 @@ class FileParts {
       }
     });
   }
+  void add_fields(const std::vector<Field>& fields, Parameters& to, FileValues::Keys& keys);
   void prescribed(const toml::table& table);
   void motor(const toml::table& table);
   void no_range(const toml::table& table);

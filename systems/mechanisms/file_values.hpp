@@ -20,13 +20,13 @@ namespace hamel::mechanisms {
 class FileValues {
  public:
   using Node = toml::node;
-  /// What to do with the value of a key.
+  /// Takes the value of a key.
   using Reader = std::function<void(const Node&, const std::string& key)>;
   using Keys = std::vector<std::pair<std::string, Reader>>;
 
   explicit FileValues(const std::string& origin) : toml(origin) {}
 
-  /// What signals may use beside t and parameters.
+  /// Sets the names that signals may use beside t and parameters.
   void set_names(const std::vector<std::string>& coordinates, const std::vector<std::string>& rates,
                  const std::vector<InputField>& inputs) {
     names_ = {"t"};
@@ -54,14 +54,14 @@ class FileValues {
     const auto values = formulas.numbers(node, key, 3);
     return {values[0], values[1], values[2]};
   }
-  /// A formula of t, coordinates, velocities, inputs and parameters; of_time becomes true where t
-  /// stands in it.
-  Signal signal(const Node& node, const std::string& key, bool& of_time) {
+  /// A formula of t, coordinates, velocities, inputs and parameters; time_dependent becomes true
+  /// where it depends on t.
+  Signal signal(const Node& node, const std::string& key, bool& time_dependent) {
     const auto formula = formulas.expression(node, key, names_);
     if (!formula) return {};
-    for (const size_t i : formula->used()) of_time |= i == 0;
+    for (const size_t i : formula->used()) time_dependent |= i == 0;
     return [formula = *formula, inputs = inputs_,
-            values = std::vector<double>(names_.size())](const Now& now) mutable {
+            values = std::vector<double>(names_.size())](const SignalInput& now) mutable {
       values[0] = now.t;
       auto next = std::copy(now.coordinates.begin(), now.coordinates.end(), values.begin() + 1);
       next = std::copy(now.velocity.begin(), now.velocity.end(), next);
@@ -74,7 +74,7 @@ class FileValues {
     std::function<double(double)> value, slope;
     bool constant = false;  // the rate, which is the slope of an angle
   };
-  OfTime of_time(const Node& node, const std::string& key) {
+  OfTime time_dependent(const Node& node, const std::string& key) {
     const auto any = formulas.expression(node, key, names_);
     if (!any) return {};
     for (const size_t i : any->used()) {
@@ -88,7 +88,7 @@ class FileValues {
     const auto formula = formulas.expression(node, key, {"t"});
     if (key == "angle" && formula->may_jump()) {
       toml.wrong(node, key,
-                 "a formula without comparisons, a ? b : c, sign and rint, since its rate says "
+                 "a formula without comparisons, a ? b : c, sign and rint, since its rate contains "
                  "nothing of a jump; prescribe the rate instead");
       return {};
     }

@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
-#include <hamel/groups/so2.hpp>
-
 namespace hamel::mechanisms {
 namespace {
 
-// The coordinate of a hinge or slider.
 double coordinate(const Tree& tree, int link, const double* g) {
-  const double* element = g + tree.element(link);
-  return tree.kind(link) == JointKind::hinge ? Packing<SO2>::load(element).angle() : element[0];
+  return tree.joint(link).coordinate(g + tree.element(link));
 }
 
 // The line between the ends of a spring, from a to b, in the world.
@@ -33,7 +29,7 @@ void pull(const Tree& tree, int link, const Vec3& x, const Vec3& force, Out& out
   tree.add_wrench(link, force_at(root.inverse().apply(x), root.rotation.transpose() * force), out);
 }
 
-// Of the point of a link that is at x.
+// Velocity of the point of a link that is at x.
 Vec3 velocity(const Tree& tree, int link, const Vec3& x) {
   const Rigid& root = tree.root_in_world(link);
   return root.rotation * velocity_at(tree.twist(link), root.inverse().apply(x));
@@ -45,8 +41,8 @@ bool Forces::damped() const {
   return std::any_of(springs.begin(), springs.end(),
                      [](const Spring& s) { return s.damping != 0; });
 }
-bool Forces::of_time() const {
-  const auto changes = [](const auto& part) { return part.of_time; };
+bool Forces::time_dependent() const {
+  const auto changes = [](const auto& part) { return part.time_dependent; };
   return std::ranges::any_of(motors, changes) || std::ranges::any_of(forces, changes);
 }
 bool Forces::any() const { return has_signals() || damped(); }
@@ -84,7 +80,8 @@ void Forces::add_potential_force(const Tree& tree, const double* g,
   }
 }
 
-void Forces::add_force(const Tree& tree, const Now& now, Eigen::Ref<Eigen::VectorXd> out) const {
+void Forces::add_force(const Tree& tree, const SignalInput& now,
+                       Eigen::Ref<Eigen::VectorXd> out) const {
   for (const Spring& spring : springs) {
     if (spring.damping == 0) continue;
     if (spring.joint >= 0) {

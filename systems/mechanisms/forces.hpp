@@ -1,12 +1,11 @@
 // The forces of a mechanism: gravity, springs, dampers, motors, given forces.
 //
-//   gravity   V = -sum m a . x                        a the acceleration of gravity, of any
-//   direction spring    V = 1/2 k (l - l_0)^2, f = -c l'        l: the distance of two points, or
-//   the coordinate of a hinge
-//             or slider; c its damper
+//   gravity   V = -sum m a . x, a the acceleration of gravity, of any direction
+//   spring    V = 1/2 k (l - l_0)^2, f = -c l', c its damper; l the distance of two points, or the
+//             coordinate of a hinge or slider
 //   motor     f on one velocity of a joint, a signal
 //   force     three signals, at a point of a body, along the axes of the world or of the body as
-//   drawn
+//             drawn
 #pragma once
 
 #include <string>
@@ -27,16 +26,16 @@ struct Spring {
 struct Motor {
   std::string name;
   int dof = 0;
-  Signal effort;         // N m or N
-  bool of_time = false;  // may it use t?
+  Signal effort;                // N m or N
+  bool time_dependent = false;  // may it use t?
 };
 struct Force {
   std::string name;
   int link = 0;
-  Vec3 at = Vec3::Zero();  // as drawn
-  bool of_body = false;    // along the axes of the body
-  bool of_time = false;    // may along use t?
-  Signal along[3];         // N
+  Vec3 at = Vec3::Zero();       // as drawn
+  bool of_body = false;         // along the axes of the body
+  bool time_dependent = false;  // may along use t?
+  Signal along[3];              // N
 };
 
 struct Forces {
@@ -49,14 +48,14 @@ struct Forces {
   bool any() const;
   bool damped() const;
   /// Is one of them of t?
-  bool of_time() const;
+  bool time_dependent() const;
   bool has_signals() const { return !motors.empty() || !forces.empty(); }
   double potential(const Tree& tree, const double* g) const;
   /// out -= dV.
   void add_potential_force(const Tree& tree, const double* g,
                            Eigen::Ref<Eigen::VectorXd> out) const;
   /// out += f; the tree placed and moving.
-  void add_force(const Tree& tree, const Now& now, Eigen::Ref<Eigen::VectorXd> out) const;
+  void add_force(const Tree& tree, const SignalInput& now, Eigen::Ref<Eigen::VectorXd> out) const;
 };
 
 }  // namespace hamel::mechanisms

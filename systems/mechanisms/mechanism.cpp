@@ -7,6 +7,11 @@
 #include <hamel/systems/mechanisms/assembly.hpp>
 
 namespace hamel {
+namespace {
+
+std::vector<double> values_of(const Point& p) { return {p.begin(), p.end()}; }
+
+}  // namespace
 
 std::string Mechanism::body(const std::string& name, const BodyOptions& options) {
   bodies_.push_back({part(name), options});
@@ -19,24 +24,21 @@ void Mechanism::joint(const std::string& kind, const std::string& name, const st
 }
 
 void Mechanism::contact(const std::string& kind, const std::string& name, const std::string& body,
-                        const WheelOptions& options) {
+                        const ContactOptions& options) {
   contacts_.push_back({part(name), options, kind, body});
 }
-void Mechanism::wheel(const std::string& name, const std::string& body,
-                      const WheelOptions& options) {
-  contact("wheel", name, body, options);
+void Mechanism::wheel(const std::string& name, const std::string& body, const WheelOptions& o) {
+  contact("wheel", name, body, {o.at, {{"axle", values_of(o.axle)}, {"radius", {o.radius}}}});
 }
-void Mechanism::roller(const std::string& name, const std::string& body,
-                       const WheelOptions& options) {
-  contact("roller", name, body, options);
+void Mechanism::roller(const std::string& name, const std::string& body, const WheelOptions& o) {
+  contact("roller", name, body,
+          {o.at, {{"axle", values_of(o.axle)}, {"radius", {o.radius}}, {"angle", {o.angle}}}});
 }
-void Mechanism::blade(const std::string& name, const std::string& body,
-                      const BladeOptions& options) {
-  contact("blade", name, body, {.at = options.at, .axle = options.along});
+void Mechanism::blade(const std::string& name, const std::string& body, const BladeOptions& o) {
+  contact("blade", name, body, {o.at, {{"along", values_of(o.along)}}});
 }
-void Mechanism::ball(const std::string& name, const std::string& body,
-                     const WheelOptions& options) {
-  contact("ball", name, body, options);
+void Mechanism::ball(const std::string& name, const std::string& body, const WheelOptions& o) {
+  contact("ball", name, body, {o.at, {{"radius", {o.radius}}}});
 }
 
 void Mechanism::loop(const std::string& name, const std::string& a, const std::string& b,
@@ -64,8 +66,8 @@ void Mechanism::spring(const std::string& name, const std::string& a, const std:
                        const SpringOptions& options) {
   springs_.push_back({part(name), options, a, b});
 }
-void Mechanism::motor(const std::string& joint, Signal effort, bool of_time) {
-  motors_.push_back({part(joint), std::move(effort), of_time});
+void Mechanism::motor(const std::string& joint, Signal effort, bool time_dependent) {
+  motors_.push_back({part(joint), std::move(effort), time_dependent});
 }
 void Mechanism::motor(const std::string& joint, const Range& range) {
   motors_.push_back({part(joint), {}, false, range});

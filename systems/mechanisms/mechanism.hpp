@@ -2,16 +2,19 @@
 //
 //   hamel::Mechanism m("scooter");
 //   const auto deck = m.body("deck", {.mass = 5, .at = {0.3, 0, 0.1}, .box = {0.8, 0.2, 0.05}});
-//   const auto fork = m.body("fork", {.mass = 2, .at = {0.7, 0, 0.4}, .inertia = {0.1, 0.1,
-//   0.01}}); m.planar("road", deck); m.hinge("steer", deck, fork, {.at = {0.7, 0, 0}, .axis = {0,
-//   0, 1}}); m.blade("rear", deck, {.at = {0, 0, 0}}); m.blade("front", fork, {.at = {0.7, 0, 0}});
+//   const auto fork =
+//       m.body("fork", {.mass = 2, .at = {0.7, 0, 0.4}, .inertia = {0.1, 0.1, 0.01}});
+//   m.planar("road", deck);
+//   m.hinge("steer", deck, fork, {.at = {0.7, 0, 0}, .axis = {0, 0, 1}});
+//   m.blade("rear", deck, {.at = {0, 0, 0}});
+//   m.blade("front", fork, {.at = {0.7, 0, 0}});
 //   m.start({{"speed", 2}, {"steer.angle", 0.3}});
 //   hamel::simulate(m).until(10).run();
 //
 // All points and directions are those of one pose of the whole mechanism, as drawn: x ahead, z up,
 // the ground z = 0. That pose is the default start. Moments of inertia are about the mass centre,
 // along the axes of that pose. Parts are named; names are checked when the mechanism is used
-// (model()), all mistakes at once. The same parts in a file: mechanism_file.hpp. What is computed:
+// (model()), all mistakes at once. The same parts in a file: mechanism_file.hpp. The computations:
 // tree.hpp, rows.hpp, forces.hpp.
 #pragma once
 
@@ -25,6 +28,7 @@
 
 #include <hamel/framework/mechanics/event.hpp>
 #include <hamel/framework/mechanics/input_table.hpp>
+#include <hamel/framework/mechanics/parameters.hpp>
 #include <hamel/framework/mechanics/point.hpp>
 #include <hamel/systems/mechanisms/signal.hpp>
 
@@ -33,10 +37,10 @@ namespace hamel {
 struct SystemInfo;
 struct SystemModel;
 
-using mechanisms::Now;     // t, coordinates, velocity, inputs
-using mechanisms::Signal;  // Now -> number
+using mechanisms::Signal;       // SignalInput -> number
+using mechanisms::SignalInput;  // t, coordinates, velocity, inputs
 
-/// What rests in the world: a name where a body's is expected.
+/// The name of the ground where a body's is expected.
 inline const std::string kWorld = "ground";
 
 struct BodyOptions {
@@ -54,7 +58,13 @@ struct JointOptions {
   Point axis = {0, 0, 1};
   Point axis2 = {0, 1, 0};  // of a universal joint, on the child
   double stiffness = 0, rest = 0,
-         damping = 0;  // N m/rad, rad, N m s/rad; of a slider N/m, m, N s/m
+         damping = 0;      // N m/rad, rad, N m s/rad; of a slider N/m, m, N s/m
+  Parameters values = {};  // what this kind of joint has beside them, by name
+};
+/// A contact of any kind (mechanisms/README.md).
+struct ContactOptions {
+  Point at = {0, 0, 0};    // m, its centre or point
+  Parameters values = {};  // of its fields, by name: {{"radius", {0.3}}}
 };
 struct WheelOptions {
   Point at = {0, 0, 0};    // m, its centre
@@ -77,10 +87,10 @@ struct SpringOptions {
   double damping = 0;                      // N s/m
 };
 struct ForceOptions {
-  Point at = {0, 0, 0};  // m
-  Signal along[3] = {};  // N, along x, y, z of the world
-  bool of_body = false;  // along those of the body as drawn
-  bool of_time = true;   // may `along` use t? If not, there are steady motions
+  Point at = {0, 0, 0};        // m
+  Signal along[3] = {};        // N, along x, y, z of the world
+  bool of_body = false;        // along those of the body as drawn
+  bool time_dependent = true;  // may `along` use t? If not, there are steady motions
 };
 
 class Mechanism {
@@ -109,7 +119,7 @@ class Mechanism {
                   const JointOptions& o) {
     joint("ball", name, parent, child, o);
   }
-  /// Two hinges, axis on the parent and axis2 on the child, that meet at a point.
+  /// Two hinges, axis on the parent and axis2 on the child, whose axes intersect.
   void universal(const std::string& name, const std::string& parent, const std::string& child,
                  const JointOptions& o) {
     joint("universal", name, parent, child, o);
@@ -117,7 +127,7 @@ class Mechanism {
   void weld(const std::string& name, const std::string& parent, const std::string& child) {
     joint("weld", name, parent, child, {});
   }
-  /// By the name of its kind, one of those above.
+  /// By the name of its kind, one of those above or another one.
   void joint(const std::string& kind, const std::string& name, const std::string& parent,
              const std::string& child, const JointOptions& options);
 
@@ -126,6 +136,9 @@ class Mechanism {
   void roller(const std::string& name, const std::string& body, const WheelOptions& options);
   void blade(const std::string& name, const std::string& body, const BladeOptions& options);
   void ball(const std::string& name, const std::string& body, const WheelOptions& options);
+  /// By the name of its kind, one of those above or another one.
+  void contact(const std::string& kind, const std::string& name, const std::string& body,
+               const ContactOptions& options);
   /// A joint that closes a chain: its points, and axes, coincide.
   void loop(const std::string& name, const std::string& a, const std::string& b,
             const LoopOptions& options);
@@ -142,7 +155,7 @@ class Mechanism {
   void prescribe(const std::string& joint, const Range& range = {});
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});
-  /// "refuse", or "drop": what becomes of rows that say what others say already.
+  /// "refuse", or "drop": policy for rows that are implied by others.
   void redundant(const std::string& policy) { redundant_ = part(policy); }
 
   // Forces.
@@ -151,12 +164,13 @@ class Mechanism {
   void spring(const std::string& name, const std::string& a, const std::string& b,
               const SpringOptions& options);
   /// A torque [N m] or force [N] in a hinge or slider: a signal, or an input of the run,
-  /// "steer.torque", "lift.force". of_time: may the signal use t? If not, there are steady motions.
-  void motor(const std::string& joint, Signal effort, bool of_time = true);
+  /// "steer.torque", "lift.force". time_dependent: may the signal use t? If not, there are steady
+  /// motions.
+  void motor(const std::string& joint, Signal effort, bool time_dependent = true);
   void motor(const std::string& joint, const Range& range = {});
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
-  /// An input of the run that signals may use: Now::inputs, behind those of motors and prescribed
-  /// joints.
+  /// An input of the run that signals may use: SignalInput::inputs, behind those of motors and
+  /// prescribed joints.
   void input(const InputField& field) { inputs_.push_back({part(field.name), field}); }
 
   /// An event of a run (--events, --stop-at), a function of time, coordinates and velocities.
@@ -173,19 +187,21 @@ class Mechanism {
   /// A velocity by name beside the speed of a run that starts at one (`--speed`): a motion to be
   /// seen where straight ahead there would be none.
   void push(const std::string& name, double value) { push_.push_back({part(name), value}); }
-  /// What a few numbers for a start mean (`--velocity`): names as those of start(). Left out:
+  /// Meaning of the numbers given for a start (`--velocity`): names as those of start(). Left out:
   /// speed.
-  void asks(std::vector<std::string> names) { asks_ = {part("asks"), std::move(names)}; }
+  void start_arguments(std::vector<std::string> names) {
+    start_arguments_ = {part("start_arguments"), std::move(names)};
+  }
 
   const std::string& name() const { return name_; }
   /// The system. Throws ConfigError with all mistakes, each with the name of its part.
   SystemModel model() const;
 
-  /// Of model(): name, group and inputs, and the names of velocities, which bodies and joints alone
-  /// say. Throws ConfigError where they make no tree.
+  /// Part of model(): name, group and inputs, and the names of velocities, which bodies and joints
+  /// alone determine. Throws ConfigError where they make no tree.
   SystemModel outline() const;
 
-  /// Where the next parts, and what else is said next, stand in a file, for messages.
+  /// Location of the next parts and statements in a file, for messages.
   void place(std::string where) { where_ = std::move(where); }
 
  private:
@@ -197,7 +213,7 @@ class Mechanism {
   struct JointPart : Part, JointOptions {
     std::string kind, parent, child;
   };
-  struct ContactPart : Part, WheelOptions {
+  struct ContactPart : Part, ContactOptions {
     std::string kind, body;
   };
   struct LoopPart : Part, LoopOptions {
@@ -213,12 +229,12 @@ class Mechanism {
     std::function<double(double)> rate;   // empty: an input
     std::function<double(double)> angle;  // empty: that of the start
     std::function<double(double)> slope;  // of the rate; empty: by differences
-    bool of_time = false;                 // not constant
+    bool time_dependent = false;          // not constant
     Range range = {};
   };
   struct MotorPart : Part {
     Signal effort;  // empty: an input
-    bool of_time = false;
+    bool time_dependent = false;
     Range range = {};
   };
   struct InputPart : Part {
@@ -227,12 +243,10 @@ class Mechanism {
   struct StartPart : Part {
     double value = 0;
   };
-  struct AsksPart : Part {
+  struct StartArguments : Part {
     std::vector<std::string> names;
   };
   Part part(const std::string& name) const { return {name, where_}; }
-  void contact(const std::string& kind, const std::string& name, const std::string& body,
-               const WheelOptions& options);
 
   std::string name_, where_;
   Part redundant_ = {"refuse", ""};
@@ -249,12 +263,12 @@ class Mechanism {
   Point gravity_ = {0, 0, -9.81}, ground_velocity_ = {0, 0, 0};
   double ground_rate_ = 0;
   std::vector<StartPart> start_, push_;
-  AsksPart asks_;
+  StartArguments start_arguments_;
 };
 
 /// A mechanism has no parameters to set.
 std::function<SystemModel(const Parameters&)> maker(const Mechanism& mechanism);
-/// What a registry keeps of it: registry().add(system_info(mechanism)).
+/// The registry entry of a mechanism: registry().add(system_info(mechanism)).
 SystemInfo system_info(const Mechanism& mechanism);
 
 }  // namespace hamel

@@ -6,6 +6,7 @@
 
 #include <hamel/framework/run/data/toml_events.hpp>
 #include <hamel/framework/run/data/toml_parameters.hpp>
+#include <hamel/systems/mechanisms/contact.hpp>
 #include <hamel/systems/mechanisms/file_parts.hpp>
 
 namespace hamel {
@@ -33,7 +34,7 @@ class File {
     out.fields = fields_;
     return out;
   }
-  /// Of a text in the library.
+  /// A text in the file; "" where there is none.
   std::string word(const std::string& key) const { return table_[key].value_or(std::string()); }
 
  private:
@@ -72,11 +73,21 @@ class File {
   }
 
   void check_keys() {
-    static const std::vector<std::string> known = {
-        "asks",    "ball",       "blade",      "body",    "events",    "force",  "formula",
-        "gravity", "ground",     "inputs",     "joint",   "known",     "loop",   "motor",
-        "name",    "parameters", "prescribed", "push",    "redundant", "roller", "slope",
-        "source",  "spring",     "start",      "summary", "wheel"};
+    std::vector<std::string> known = mechanisms::names_of(mechanisms::contact_kinds());
+    for (const char* key : {"asks",       "body",
+                            "events",     "force",
+                            "formula",    "gravity",
+                            "ground",     "inputs",
+                            "joint",      "known",
+                            "loop",       "motor",
+                            "name",       "parameters",
+                            "prescribed", "push",
+                            "redundant",  "slope",
+                            "source",     "spring",
+                            "start",      "start_arguments",
+                            "summary"})
+      known.emplace_back(key);
+    std::ranges::sort(known);
     for (const auto& [name, node] : table_) {
       const std::string key(name.str());
       if (std::find(known.begin(), known.end(), key) == known.end())
@@ -84,7 +95,7 @@ class File {
     }
   }
 
-  // What formulas call by one name is one thing.
+  // Refuses a name that formulas use for two things.
   void check_formula_names() {
     const auto each = [&](const std::string& kind, auto&& taken) {
       const toml::table* table = table_[kind].as_table();

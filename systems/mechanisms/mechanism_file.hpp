@@ -1,43 +1,43 @@
 // A mechanism in a file: hamel run scooter.toml.
 //
-//   name = "scooter"                          # left out: the file's
-//   gravity = 9.81                            # or three numbers, m/s^2 (left out: 9.81)
-//   slope = 0.1                               # rad: x points downhill (left out: level)
-//   redundant = "drop"                        # rows that say what others say (left out: "refuse")
-//   [parameters]                              # to set, study and sweep; they may stand in every
-//   number wheelbase = 0.8                           # or { value = 0.8, unit = "m", meaning =
-//   "...", least = 0 }
-//   [[body]]                                  # mass [kg]; at: its mass centre [m]
-//   name = "deck"                             # inertia: 3, 6 (upper triangle) or 9 numbers [kg
-//   m^2], or the shape's: mass = 5                                  # box = [x, y, z], cylinder =
-//   [radius, length] with axis, sphere = radius at = ["wheelbase/2", 0, 0.1]
-//   [[joint]]                                 # kind: free planar hinge slider ball universal weld
-//   kind = "planar"                           # parent (left out: the ground), child, at, axis,
-//   axis2, child = "deck"                            # stiffness, rest, damping
-//   [[wheel]] [[roller]] [[blade]] [[ball]]   # name (left out: the body's), body, at; axle,
-//   radius, angle; along
-//   [[loop]]                                  # name, a, b, at, axis
-//   [[prescribed]]                            # joint; rate or angle = "0.3*sin(2*t)", where a run
-//   then starts; left out:
-//                                             # an input, steer.rate
-//   [[spring]]                                # name, a, b, from, to, stiffness, rest, damping
-//   [[motor]]                                 # joint; effort = "-2*steer.angle - 0.1*steer.rate";
-//   left out: an input, joint = "steer"                           # steer.torque, or lift.force of
-//   a slider, between `least` and `most`
-//   [[force]]                                 # name, body, at; along = ["1", 0, 0]; of_body = true
-//   [inputs]                                  # what a run may be driven by; efforts and forces may
-//   use them wind = { unit = "N", meaning = "...", least = -50, most = 50 } [events] # zero at the
-//   event; direction +1, -1, or 0 for both ways straight = { value = "steer.angle", meaning = "the
-//   fork is straight", direction = 0 } [ground]                                  # rate [rad/s],
-//   velocity [m/s]: the ground turns and moves [start]                                   #
-//   coordinates and velocities by name, and speed speed = 2 [push] # velocities beside the speed of
-//   --speed: w1 = 0.1 asks = ["speed"]                          # what the numbers of --velocity
-//   mean, fewer than velocities
+//   name = "scooter"         # left out: the file's
+//   gravity = 9.81           # or three numbers, m/s^2 (left out: 9.81)
+//   slope = 0.1              # rad: x points downhill (left out: level)
+//   redundant = "drop"       # rows implied by others (left out: "refuse")
+//   [parameters]             # to set, study and sweep; allowed in every number
+//   wheelbase = 0.8          # or { value = 0.8, unit = "m", meaning = "...", least = 0 }
+//   [[body]]                 # mass [kg]; at: its mass centre [m]; inertia: 3, 6 (upper triangle)
+//   name = "deck"            # or 9 numbers [kg m^2], or the shape's: box = [x, y, z],
+//   mass = 5                 # cylinder = [radius, length] with axis, sphere = radius
+//   at = ["wheelbase/2", 0, 0.1]
+//   [[joint]]                # kind: free planar hinge slider ball universal weld
+//   kind = "planar"          # parent (left out: the ground), child, at, axis, axis2,
+//   child = "deck"           # stiffness, rest, damping
+//   [[wheel]] [[roller]] [[blade]] [[ball]]
+//                            # name (left out: the body's), body, at; axle, radius, angle; along
+//   [[loop]]                 # name, a, b, at, axis
+//   [[prescribed]]           # joint; rate or angle = "0.3*sin(2*t)", where a run then starts;
+//                            # left out: an input, steer.rate
+//   [[spring]]               # name, a, b, from, to, stiffness, rest, damping
+//   [[motor]]                # joint; effort = "-2*steer.angle - 0.1*steer.rate"; left out: an
+//   joint = "steer"          # input, steer.torque, or lift.force of a slider, between `least`
+//                            # and `most`
+//   [[force]]                # name, body, at; along = ["1", 0, 0]; of_body = true
+//   [inputs]                 # what a run may be driven by; efforts and forces may use them
+//   wind = { unit = "N", meaning = "...", least = -50, most = 50 }
+//   [events]                 # zero at the event; direction +1, -1, or 0 for both ways
+//   straight = { value = "steer.angle", meaning = "the fork is straight", direction = 0 }
+//   [ground]                 # rate [rad/s], velocity [m/s]: the ground turns and moves
+//   [start]                  # coordinates and velocities by name, and speed
+//   speed = 2
+//   [push]                   # velocities beside the speed of --speed: w1 = 0.1
+//   start_arguments = ["speed"]
+//                            # the numbers of --velocity, fewer than velocities
 //
 // Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also
 // of t, those of events, motors and forces of coordinates (steer.angle, x) and velocities
 // (steer.rate, v1), the latter two of inputs (wind, steer.torque). Parts may have any name; one
-// with a blank, say, cannot stand in a formula.
+// with a blank, for example, is not allowed in a formula.
 #pragma once
 
 #include <string>
@@ -51,7 +51,7 @@ namespace hamel {
 SystemModel mechanism_from(const std::string& text, const std::string& origin,
                            const Parameters& given = {});
 
-/// What a registry keeps of such a text: its words, its parameters.
+/// The registry entry of such a text: its texts, its parameters.
 SystemInfo mechanism_info(const std::string& text, const std::string& origin);
 
 }  // namespace hamel

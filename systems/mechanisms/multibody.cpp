@@ -5,7 +5,7 @@
 
 namespace hamel::mechanisms {
 
-Multibody::Multibody(const Tree& tree, Rows rows, Forces forces,
+Multibody::Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
                      std::shared_ptr<const Geometry> geometry)
     : trees_{tree, tree},
       rows_(std::move(rows)),
@@ -13,14 +13,14 @@ Multibody::Multibody(const Tree& tree, Rows rows, Forces forces,
       geometry_(std::move(geometry)),
       coordinates_(static_cast<size_t>(geometry_->columns())),
       work_(tree.dim()) {
-  rows_.look_at(tree);
-  std::vector<int> all(rows_.words().size());
+  rows_.find_fixed(tree);
+  std::vector<int> all(rows_.info().size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   keep(all);
 }
 
 void Multibody::keep(const std::vector<int>& rows) {
-  const std::vector<RowWords> words = rows_.words();
+  const std::vector<RowInfo> words = rows_.info();
   slots_.assign(words.size(), -1);
   kept_.clear();
   holonomic_ = 0;
@@ -34,7 +34,7 @@ void Multibody::keep(const std::vector<int>& rows) {
   }
   varies_.assign(words.size(), 0);
   for (const int row : kept_) varies_[static_cast<size_t>(row)] = 1;
-  fixed_rows_ = Eigen::MatrixXd::Zero(this->rows(), dim());
+  fixed_rows_ = Eigen::MatrixXd::Zero(this->constraint_count(), dim());
 }
 
 void Multibody::drive(const std::vector<Driver>& drivers,
@@ -44,7 +44,7 @@ void Multibody::drive(const std::vector<Driver>& drivers,
     const auto at = [inputs, i](double t) { return inputs->at(t)[static_cast<Eigen::Index>(i)]; };
     if (!drivers[i].rate) {
       forces_.motors.push_back({inputs->fields()[i].name, drivers[i].dof,
-                                [at](const Now& now) { return at(now.t); }, false});
+                                [at](const SignalInput& now) { return at(now.t); }, false});
       continue;
     }
     for (Prescribed& p : rows_.prescribed)
@@ -62,8 +62,9 @@ bool Multibody::autonomous() const {
         return !table.times.empty();
       }))
     return false;
-  return !forces_.of_time() &&
-         std::ranges::none_of(rows_.prescribed, [](const Prescribed& p) { return p.of_time; });
+  return !forces_.time_dependent() &&
+         std::ranges::none_of(rows_.prescribed,
+                              [](const Prescribed& p) { return p.time_dependent; });
 }
 
 Tree& Multibody::placed(const double* g) const {
@@ -75,13 +76,20 @@ Tree& Multibody::placed(const double* g) const {
 
 Tree& Multibody::carrying(const double* g) const {
   Tree& tree = placed(g);
-  tree.carry();
+  tree.accumulate_inertia();
   return tree;
 }
 
 void Multibody::inertia(const double* g, Matrix out) const {
   if (constant_inertia_) out = inertia_;
   else carrying(g).inertia(out);
+}
+
+bool Multibody::momentum(const double* g, ConstVector xi, Vector out) const {
+  Tree& at = carrying(g);
+  at.move(xi);
+  at.momentum(out);
+  return true;
 }
 
 namespace {
@@ -138,7 +146,7 @@ void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) 
 Vec3 Multibody::reaction(size_t contact, const double* g,
                          std::span<const double> multipliers) const {
   const std::string& part = rows_.contacts[contact].name;
-  const std::vector<RowWords> words = rows_.words();
+  const std::vector<RowInfo> words = rows_.info();
   const Tree& at = placed(g);
   Vec3 force = Vec3::Zero();
   rows_.each(at, 0, [&](size_t i, const Row& row) {
@@ -152,7 +160,7 @@ Vec3 Multibody::reaction(size_t contact, const double* g,
 
 void Multibody::holonomic(const double* g, Vector out) const {
   if (holonomic_ == 0) return;
-  const int before = rows() - holonomic_;
+  const int before = constraint_count() - holonomic_;
   rows_.each(
       placed(g), 0, [&](size_t i) { return slots_[i] >= before; },
       [&](size_t i, const Row& row) { out[slots_[i] - before] = row.phi; });
@@ -160,7 +168,7 @@ void Multibody::holonomic(const double* g, Vector out) const {
 
 void Multibody::add_force(const Tree& tree, double t, const double* g, ConstVector xi,
                           Vector out) const {
-  Now now{t, {}, {xi.data(), static_cast<size_t>(xi.size())}, {}};
+  SignalInput now{t, {}, {xi.data(), static_cast<size_t>(xi.size())}, {}};
   InputValues u;
   if (forces_.has_signals()) {
     geometry_->coordinates(g, coordinates_.data());
@@ -200,8 +208,8 @@ double Multibody::power(double t, const double* g, ConstVector xi) const {
 
 double Multibody::potential(const double* g) const { return forces_.potential(carrying(g), g); }
 
-void Multibody::look_for_constants(const std::vector<std::vector<double>>& poses) {
-  const int n = dim(), k = rows();
+void Multibody::find_constants(const std::vector<std::vector<double>>& poses) {
+  const int n = dim(), k = constraint_count();
   Eigen::MatrixXd inertia(n, n), a(k, n), first_a(k, n);
   Eigen::VectorXd b(k), slope(n);
   // (A stiffness is there to act: only weight is looked at.)

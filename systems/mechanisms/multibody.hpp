@@ -1,7 +1,7 @@
 // A tree of bodies with its rows and forces as Mechanics: what the schemes step.
 //
 // Nothing here takes memory once it is built. Work space and the last two placements are kept (a
-// step asks for its base point and its end in turns), so that an object serves one run at a time.
+// step evaluates its base point and its end in turns), so that an object serves one run at a time.
 #pragma once
 
 #include <array>
@@ -20,7 +20,8 @@ namespace hamel::mechanisms {
 class Multibody final : public Mechanics {
  public:
   /// All rows of `rows`; keep() drops some.
-  Multibody(const Tree& tree, Rows rows, Forces forces, std::shared_ptr<const Geometry> geometry);
+  Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
+            std::shared_ptr<const Geometry> geometry);
   /// Only these rows of each(), of which the holonomic ones go last.
   void keep(const std::vector<int>& rows);
   /// An input as the effort on a velocity of a joint, or as the rate prescribed there.
@@ -30,11 +31,11 @@ class Multibody final : public Mechanics {
   };
   /// With the inputs of a run, the first of them those of the drivers; without, they are zero.
   void drive(const std::vector<Driver>& drivers, const std::shared_ptr<const Inputs>& inputs);
-  /// Is I(g) the same for all g, are A and V? Read off a few poses that share nothing.
-  void look_for_constants(const std::vector<std::vector<double>>& poses);
+  /// Is I(g) the same for all g, are A and V? Read off several poses that share nothing.
+  void find_constants(const std::vector<std::vector<double>>& poses);
 
   int dim() const override { return trees_[0].dim(); }
-  int rows() const override { return static_cast<int>(kept_.size()); }
+  int constraint_count() const override { return static_cast<int>(kept_.size()); }
   int holonomic_rows() const override { return holonomic_; }
   bool constant_inertia() const override { return constant_inertia_; }
   bool constant_constraints() const override { return constant_rows_; }
@@ -44,6 +45,7 @@ class Multibody final : public Mechanics {
   bool constant_potential() const { return constant_potential_; }
 
   void inertia(const double* g, Matrix out) const override;
+  bool momentum(const double* g, ConstVector xi, Vector out) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
   bool rates(double t, const double* g, ConstVector xi, Vector rows,
              Vector momentum) const override;
@@ -54,7 +56,7 @@ class Multibody final : public Mechanics {
   double power(double t, const double* g, ConstVector xi) const override;
   double potential(const double* g) const override;
 
-  const Rows& all_rows() const { return rows_; }
+  const ConstraintRows& all_rows() const { return rows_; }
   const std::vector<int>& kept() const { return kept_; }
   const Geometry& geometry() const { return *geometry_; }
   /// The element of the drawn pose.
@@ -75,7 +77,7 @@ class Multibody final : public Mechanics {
 
   mutable std::array<Tree, 2> trees_;
   mutable size_t last_ = 0;  // of trees_
-  Rows rows_;
+  ConstraintRows rows_;
   Forces forces_;
   std::shared_ptr<const Geometry> geometry_;
   std::vector<int> slots_;    // of each(): the row of A, or -1

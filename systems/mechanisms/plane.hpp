@@ -1,4 +1,4 @@
-// What is left of the algebra of screw.hpp where all turns about the third axis and moves across
+// The algebra of screw.hpp restricted to turns about the third axis and moves across
 // it.
 //
 //   twist (w, v1, v2), wrench (m3, f1, f2): the entries 3 to 5 of those in space
@@ -22,16 +22,16 @@ struct PlaneMotion {
 
   Rigid in_space() const { return {Mat<3, 3>{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}, Vec3(x, y, 0)}; }
   Vec3 turn(const Vec3& v) const { return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]}; }
-  /// Of a twist in the plane.
+  /// Moves a twist in the plane, Ad.
   Vec3 move_in_plane(const Vec3& v) const {
     return {v[0], c * v[1] - s * v[2] + y * v[0], s * v[1] + c * v[2] - x * v[0]};
   }
-  /// Of a twist in space, Ad.
+  /// Moves a twist in space, Ad.
   Twist move(const Twist& v) const {
     const Vec3 omega = turn(upper(v));
     return stack(omega, turn(lower(v)) + arm(omega));
   }
-  /// Of a wrench in space, the inverse of Ad^T.
+  /// Moves a wrench in space by the inverse of Ad^T.
   Wrench move_wrench(const Wrench& f) const {
     const Vec3 force = turn(lower(f));
     return stack(turn(upper(f)) + arm(force), force);
@@ -45,7 +45,7 @@ inline PlaneMotion operator*(const PlaneMotion& a, const PlaneMotion& b) {
           a.y + a.s * b.x + a.c * b.y};
 }
 
-/// Of an inertia only the mass, the first moment and the moment about the third axis take part.
+/// Moves an inertia in the plane: its mass, first moment and moment about the third axis alone.
 inline void move_in_plane(const PlaneMotion& x, const Inertia& from, Inertia& to) {
   const Vec3 first = x.turn(from.first);
   to.mass = from.mass;

@@ -29,8 +29,8 @@ std::vector<double> move(const Multibody& system, const std::vector<double>& g,
 
 }  // namespace
 
-Looked::Looked(const Multibody& system, const std::vector<double>& g, double t) {
-  const auto rows = static_cast<Eigen::Index>(system.all_rows().words().size());
+RowValues::RowValues(const Multibody& system, const std::vector<double>& g, double t) {
+  const auto rows = static_cast<Eigen::Index>(system.all_rows().info().size());
   a.resize(rows, system.dim());
   b.resize(rows);
   phi = VectorXd::Zero(rows);
@@ -51,9 +51,9 @@ std::vector<std::vector<double>> poses_around(const Multibody& system,
 }
 
 double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g) {
-  const std::vector<RowWords> words = system.all_rows().words();
+  const std::vector<RowInfo> words = system.all_rows().info();
   for (int k = 0;; ++k) {
-    Looked looked(system, g);
+    RowValues looked(system, g);
     for (Eigen::Index i = 0; i < looked.a.rows(); ++i) {
       if (!words[static_cast<size_t>(i)].holonomic) looked.a.row(i).setZero();
     }
@@ -74,7 +74,7 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
   const std::vector<bool> fixed(static_cast<size_t>(system.dim()), false);
   for (int seed = 1; seed <= 3; ++seed) {
     const VectorXd any = 0.2 * scattered(system.dim(), seed);
-    MatrixXd a = Looked(system, g).a;
+    MatrixXd a = RowValues(system, g).a;
     a.bottomRows(static_cast<Eigen::Index>(system.all_rows().prescribed.size())).setZero();
     std::vector<double> pose = move(system, g, any - least(a, VectorXd(a * any)));
     if (satisfy(system, fixed, pose) < 1e-12) out.push_back(std::move(pose));
@@ -86,12 +86,12 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
 // none.
 std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<double>& g,
                                     std::vector<int> rows, const std::vector<double>& times) {
-  const std::vector<RowWords> words = system.all_rows().words();
+  const std::vector<RowInfo> words = system.all_rows().info();
   std::stable_partition(rows.begin(), rows.end(),
                         [&](int i) { return words[static_cast<size_t>(i)].holonomic; });
-  const MatrixXd a = Looked(system, g).a;
+  const MatrixXd a = RowValues(system, g).a;
   std::vector<VectorXd> drifts;
-  for (const double t : times) drifts.push_back(Looked(system, g, t).b);
+  for (const double t : times) drifts.push_back(RowValues(system, g, t).b);
   const Ground& ground = system.all_rows().ground;
   const double moves = ground.velocity.norm() + std::abs(ground.rate);
   MatrixXd basis(0, system.dim());
@@ -128,18 +128,18 @@ std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<d
   return out;
 }
 
-Redundancy look_for_redundancy(const Multibody& system,
-                               const std::vector<std::vector<double>>& places) {
+Redundancy find_redundancy(const Multibody& system,
+                           const std::vector<std::vector<double>>& places) {
   const std::vector<double> times = {0, -1.3, 0.7, 1.9, 5.3, 14.1, 37.7, 101.3};  // s, of no period
-  const std::vector<RowWords> words = system.all_rows().words();
-  // A row of phi that is zero in all poses says nothing: in the plane no contact changes its
+  const std::vector<RowInfo> words = system.all_rows().info();
+  // A row of phi that is zero in all poses constrains nothing: in the plane no contact changes its
   // height.
   std::vector<int> speaking;
   const auto around = poses_around(system, places.front());
   for (size_t i = 0; i < words.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     if (!words[i].holonomic || std::ranges::any_of(around, [&](const auto& pose) {
-          return Looked(system, pose).a.row(row).norm() > 1e-11;
+          return RowValues(system, pose).a.row(row).norm() > 1e-11;
         }))
       speaking.push_back(static_cast<int>(i));
   }

@@ -12,10 +12,10 @@
 namespace hamel::mechanisms {
 
 /// All rows of each() at a pose and a time: A, b, phi.
-struct Looked {
+struct RowValues {
   Eigen::MatrixXd a;
   Eigen::VectorXd b, phi;
-  Looked(const Multibody& system, const std::vector<double>& g, double t = 0);
+  RowValues(const Multibody& system, const std::vector<double>& g, double t = 0);
 };
 
 /// The least x of those with the least |a x - b|.
@@ -33,23 +33,22 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
 /// change; returns the largest |phi| left.
 double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g);
 
-/// What a row that is a combination of others says.
+/// The rows of which a row is a combination.
 struct Repeat {
   std::vector<int> others;
   bool contradicts = false;  // its b is not the same combination of theirs
 };
-/// Those of these rows that are combinations of others at g, and whether they agree with them at
+/// The given rows that are combinations of others at g, and whether they agree with them at
 /// these times.
 std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<double>& g,
                                     std::vector<int> rows, const std::vector<double>& times);
 
-/// Which of the rows of each() say something at all, and what those that say nothing new repeat.
+/// The rows of each() that are independent, and for each of the others those it repeats.
 struct Redundancy {
   std::vector<int> rows;          // independent at one of the poses at least
   std::map<int, Repeat> repeats;  // those that are not
 };
-/// Looked for near these places, on phi = 0; the first is the drawn pose.
-Redundancy look_for_redundancy(const Multibody& system,
-                               const std::vector<std::vector<double>>& places);
+/// RowValues for near these places, on phi = 0; the first is the drawn pose.
+Redundancy find_redundancy(const Multibody& system, const std::vector<std::vector<double>>& places);
 
 }  // namespace hamel::mechanisms

@@ -1,114 +1,56 @@
-// The constraint rows of a mechanism: contacts with the ground, closed chains, prescribed rates.
+// The constraint rows of a mechanism: contacts with the ground (contact.hpp), closed chains
+// (closed_loop.hpp), prescribed rates.
 //
-// With q the point of contact, gamma the vertical, seen from the root, and u a horizontal
-// direction:
-//   u . (v + omega x q) = u . v_ground(q),    and where the height z(q) may change, z(q) = 0, whose
-//   differential is gamma . (v + omega x q): q may move in the body, but only along the ground.
-//   wheel   q = c - r (gamma - (gamma.n) n)/|...|: below the centre c, in the plane across the axle
-//   n;
-//           u along n x gamma (rolling), then gamma x (n x gamma) (sideways)
-//   roller  the same q; u = cos(a) rolling + sin(a) sideways, a the angle of its rollers (0:
-//   omniwheel, 45 deg:
-//           mecanum wheel)
-//   blade   q a point of the body; u = gamma x d, d the direction of the blade
-//   ball    q = c - r gamma; u along the world's x and y
-//   loop    a hinge or ball joint between links a, b: e_i . (x_b - x_a) = 0, for a hinge with axis
-//   n also
-//           e_1 . n_b = e_2 . n_b = 0; e_i and n fixed in a
 //   prescribed  one velocity of a joint, xi_i = rate(t); of one that is held at an angle also that,
-//   coordinate = angle
+//               coordinate = angle
 // Source: Neimark and Fufaev, Dynamics of Nonholonomic Systems (1972); Campion, Bastin,
 // d'Andrea-Novel, IEEE Trans. Robotics and Automation 12 (1996).
 #pragma once
 
-#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include <hamel/systems/mechanisms/tree.hpp>
+#include <hamel/systems/mechanisms/closed_loop.hpp>
+#include <hamel/systems/mechanisms/contact.hpp>
 
 namespace hamel::mechanisms {
-
-enum class ContactKind { wheel, roller, blade, ball };
-
-struct Contact {
-  std::string name;
-  ContactKind kind = ContactKind::wheel;
-  int link = 0;
-  Vec3 at = Vec3::Zero();        // centre, or point of the blade, as drawn
-  Vec3 axis = Vec3::UnitY();     // axle, or direction of the blade, of length 1
-  double radius = 0, angle = 0;  // m, rad
-  // Found by Rows::look_at:
-  int carrier =
-      0;  // the link, or its parent where the link's own turning changes nothing (a wheel's)
-  bool fixed = false;  // its rows are the same wrenches in the carrier at all times
-  std::array<Wrench, 3> wrenches = {};
-  double height = 0;
-
-  /// How many rows, the last of them its height.
-  size_t rows() const { return kind == ContactKind::wheel || kind == ContactKind::ball ? 3 : 2; }
-};
-
-struct Loop {
-  std::string name;
-  int a = kGround, b = kGround;
-  Vec3 at = Vec3::Zero(), axis = Vec3::Zero();  // axis 0: a ball joint
-
-  size_t rows() const { return axis.isZero(0) ? 3 : 5; }
-};
 
 struct Prescribed {
   std::string name;
   int dof = 0;
   std::function<double(double t)> rate;
   std::function<double(double t)> angle;  // where a run starts; empty: anywhere
-  bool of_time = false;                   // does the rate change?
+  bool time_dependent = false;            // does the rate change?
   std::function<double(double t)> slope;  // of the rate; empty: by differences
   int held = -1;                          // the link that stays at this angle; else -1
 };
 
-/// The ground moves with this velocity, and turns about the world's origin.
-struct Ground {
-  double rate = 0;               // rad/s
-  Vec3 velocity = Vec3::Zero();  // m/s
-  bool moves() const { return rate != 0 || !velocity.isZero(0); }
-};
-
-/// One row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and
-/// phi.
-struct Row {
-  int link = kGround, other = kGround;
-  Wrench wrench = Wrench::Zero(), other_wrench = Wrench::Zero();
-  int dof = -1;
-  double drift = 0, phi = 0;
-};
-
-struct RowWords {
+struct RowInfo {
   std::string part, name;  // "rear", "rear.reaction1"
   std::string meaning;     // "rolls without slipping"
   bool holonomic = false;
   bool height = false;  // its multiplier is a normal reaction
 };
 
-struct Rows {
+struct ConstraintRows {
   std::vector<Contact> contacts;
   std::vector<Loop> loops;
   std::vector<Prescribed> prescribed;
   Ground ground;
 
-  /// What there is, in the order of each().
-  std::vector<RowWords> words() const;
-  /// Finds out what does not change; before the rest.
-  void look_at(const Tree& tree);
-  /// f(i, row) for the rows i that `wants` at a tree that was placed.
+  /// Names and meanings, in the order of each().
+  std::vector<RowInfo> info() const;
+  /// Finds the contacts whose rows do not change; before the rest.
+  void find_fixed(const Tree& tree);
+  /// f(i, row) for the rows i selected by a predicate at a tree that was placed.
   template <class Wants, class F>
   void each(const Tree& tree, double t, Wants&& wants, F&& f) const {
     size_t i = 0;
-    const auto look_all = [&](const auto& part) {
+    const auto evaluate_all = [&](const auto& part) {
       Row rows[5];
-      look(part, tree, rows);
-      for (size_t k = 0; k < part.rows(); ++k)
+      evaluate(part, tree, rows);
+      for (size_t k = 0; k < part.row_count(); ++k)
         if (wants(i + k)) f(i + k, rows[k]);
     };
     const auto any = [&](size_t count) {
@@ -118,7 +60,7 @@ struct Rows {
     };
     Row row;
     for (const Contact& contact : contacts) {
-      const size_t count = contact.rows();
+      const size_t count = contact.row_count();
       if (contact.fixed) {
         for (size_t k = 0; k < count; ++k) {
           if (!wants(i + k)) continue;
@@ -126,13 +68,13 @@ struct Rows {
           f(i + k, row);
         }
       } else if (any(count)) {
-        look_all(contact);
+        evaluate_all(contact);
       }
       i += count;
     }
     for (const Loop& loop : loops) {
-      if (any(loop.rows())) look_all(loop);
-      i += loop.rows();
+      if (any(loop.row_count())) evaluate_all(loop);
+      i += loop.row_count();
     }
     for (const Prescribed& p : prescribed) {
       if (wants(i)) {
@@ -155,10 +97,9 @@ struct Rows {
   /// tree that moved and accelerated.
   void rates(const Tree& tree, double t, const std::vector<char>& varies,
              const std::vector<int>& slots, Eigen::Ref<Eigen::VectorXd> out) const;
-  /// Where a contact touches the ground, in the world; its height above it.
-  Vec3 touches(const Contact& contact, const Tree& tree) const;
-  double height(const Contact& contact, const Tree& tree) const {
-    return touches(contact, tree)[2];
+  /// The point of contact with the ground, in the world.
+  static Vec3 touch(const Contact& contact, const Tree& tree) {
+    return contact.model->touch(contact, tree);
   }
 
  private:
@@ -166,16 +107,18 @@ struct Rows {
   static void take(const Contact& contact, size_t k, const Tree& tree, Row& row) {
     const Wrench& wrench = contact.wrenches[k];
     row.link = contact.link;
-    row.phi = k + 1 == contact.rows() ? contact.height : 0;
+    row.phi = k + 1 == contact.row_count() ? contact.height : 0;
     if (tree.parent(contact.carrier) == kGround) row.wrench = wrench;
     else row.wrench = tree.in_plane_of_root(contact.carrier).move_wrench(wrench);
   }
-  void look(const Contact& contact, const Tree& tree, Row* rows) const;
-  static void look(const Loop& loop, const Tree& tree, Row* rows);
+  void evaluate(const Contact& contact, const Tree& tree, Row* rows) const {
+    contact.model->rows(contact, tree, ground, rows);
+  }
+  static void evaluate(const Loop& loop, const Tree& tree, Row* rows) { loop.rows(tree, rows); }
   // The coordinate of a joint that is held, from where it is held.
   static double beyond(const Prescribed& p, const Tree& tree);
   void rates(const Contact& contact, const Tree& tree, double* out) const;
-  static void rates(const Loop& loop, const Tree& tree, double* out);
+  static void rates(const Loop& loop, const Tree& tree, double* out) { loop.rates(tree, out); }
 };
 
 }  // namespace hamel::mechanisms

@@ -1,9 +1,11 @@
 // Rigid motions, twists, wrenches and inertias of bodies: the algebra of the recursions over a tree
 // of bodies.
 //
-//   twist  V = (omega, v), 6 numbers, v the velocity of the point of the body that is at the
-//   frame's origin wrench F = (moment about the origin, force); power F . V Ad_X (omega, v) = (R
-//   omega, R v + p x R omega),   X = (R, p) ad_V (a, b) = (omega x a, v x a + omega x b)
+//   twist  V = (omega, v), 6 numbers, v the velocity of the point of the body that is at the origin
+//          of the frame
+//   wrench F = (moment about the origin, force); power F . V
+//   Ad_X (omega, v) = (R omega, R v + p x R omega),   X = (R, p)
+//   ad_V (a, b) = (omega x a, v x a + omega x b)
 // Source: Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation (1994), ch. 2.
 #pragma once
 
@@ -43,7 +45,7 @@ struct Rigid {
     const Vec3 omega = rotation.lazyProduct(upper(v));
     return stack(omega, Vec3(rotation.lazyProduct(lower(v))) + position.cross(omega));
   }
-  /// Of a wrench, the inverse of Ad_X^T.
+  /// Moves a wrench by the inverse of Ad_X^T.
   Wrench move_wrench(const Wrench& f) const {
     const Vec3 force = rotation.lazyProduct(lower(f));
     return stack(Vec3(rotation.lazyProduct(upper(f))) + position.cross(force), force);

@@ -6,13 +6,13 @@
 
 namespace hamel::mechanisms {
 
-/// What a signal may depend on.
-struct Now {
+/// The variables that a signal may depend on.
+struct SignalInput {
   double t = 0;
   std::span<const double> coordinates;  // of the element, as in the CSV
   std::span<const double> velocity;     // xi
   std::span<const double> inputs;       // of the run, in the order of the system; none: all zero
 };
-using Signal = std::function<double(const Now&)>;
+using Signal = std::function<double(const SignalInput&)>;
 
 }  // namespace hamel::mechanisms

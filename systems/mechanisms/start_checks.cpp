@@ -12,7 +12,7 @@
 namespace hamel::mechanisms {
 namespace {
 
-// Of rows that were dropped, at this place and time.
+// Contradictions of rows that were dropped, at this place and time.
 void add_contradictions(const Multibody& system, const StartChecks& checks, double t,
                         const std::vector<double>& place, std::vector<std::string>& out) {
   if (checks.dropped.empty()) return;
@@ -20,7 +20,7 @@ void add_contradictions(const Multibody& system, const StartChecks& checks, doub
   all.insert(all.end(), checks.dropped.begin(), checks.dropped.end());
   std::sort(all.begin(), all.end());
   for (const auto& [row, repeat] : repeated_rows(system, place, all, {t})) {
-    const Said& said = checks.rows[static_cast<size_t>(row)];
+    const RowLabel& said = checks.rows[static_cast<size_t>(row)];
     if (repeat.contradicts && std::ranges::count(checks.dropped, row) > 0)
       out.push_back(fmt::format("{}{} at t = {}; leave one of them out", said.where,
                                 contradiction(said, in_words(repeat.others, checks.rows)), t));
@@ -35,7 +35,7 @@ std::vector<std::string> mistakes_at_start(const Multibody& system, const StartC
   std::vector<double> x(static_cast<size_t>(system.geometry().columns()));
   system.geometry().coordinates(g, x.data());
   const InputValues u = inputs == nullptr ? InputValues() : inputs->at(t);
-  const Now now{t, x, xi, {u.data(), static_cast<size_t>(u.size())}};
+  const SignalInput now{t, x, xi, {u.data(), static_cast<size_t>(u.size())}};
   std::vector<std::string> out;
   for (const Watched& signal : checks.signals) {
     if (const double value = signal.value(now); !std::isfinite(value))
@@ -51,16 +51,17 @@ std::vector<std::string> mistakes_at_start(const Multibody& system, const StartC
   const std::vector<double> place(g, g + system.drawn().size());
   for (const auto& [row, repeat] : repeated_rows(system, place, system.kept(), {t})) {
     const std::string beyond = in_words(repeat.others, checks.rows);
-    const Said& said = checks.rows[static_cast<size_t>(row)];
+    const RowLabel& said = checks.rows[static_cast<size_t>(row)];
     if (repeat.contradicts)
       out.push_back(fmt::format("{}{} at the start; start elsewhere, or leave one of them out",
                                 said.where, contradiction(said, beyond)));
     else if (beyond.empty())
-      out.push_back(fmt::format("{}{} says nothing at the start; start elsewhere, or leave it out",
-                                said.where, said.what));
+      out.push_back(
+          fmt::format("{}{} constrains nothing at the start; start elsewhere, or leave it out",
+                      said.where, said.what));
     else
       out.push_back(
-          fmt::format("{}{} says nothing beyond {} at the start; start elsewhere, or take a part "
+          fmt::format("{}{} is implied by {} at the start; start elsewhere, or take a part "
                       "with fewer rows (a roller for a wheel)",
                       said.where, said.what, beyond));
   }

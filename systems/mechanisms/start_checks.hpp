@@ -1,4 +1,4 @@
-// What a mechanism requires of the state that a run starts from. Not installed.
+// Requirements of a mechanism on the state that a run starts from. Not installed.
 #pragma once
 
 #include <functional>
@@ -26,8 +26,8 @@ struct Held {
 };
 
 struct StartChecks {
-  std::vector<Said> rows;    // of all_rows(): those that are kept independent
-  std::vector<int> dropped;  // of these: agree with those that are kept
+  std::vector<RowLabel> rows;  // of all_rows(): those that are kept independent
+  std::vector<int> dropped;    // of these: agree with those that are kept
   std::vector<Watched> signals;
   std::vector<Held> held;
 };

@@ -13,12 +13,12 @@ namespace hamel::mechanisms {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::string in_words(const std::vector<int>& some, const std::vector<Said>& rows) {
+std::string in_words(const std::vector<int>& some, const std::vector<RowLabel>& rows) {
   std::vector<std::string> out;
   for (const int i : some) out.push_back(rows[static_cast<size_t>(i)].what);
   return join(out);
 }
-std::string contradiction(const Said& row, const std::string& list) {
+std::string contradiction(const RowLabel& row, const std::string& list) {
   return list.empty() ? fmt::format(
                             "{} contradicts the joints: its body cannot move with the "
                             "ground",
@@ -28,7 +28,7 @@ std::string contradiction(const Said& row, const std::string& list) {
 
 Starts::Starts(std::shared_ptr<const Multibody> system, std::string name,
                std::vector<std::string> columns, std::vector<std::string> rates,
-               std::vector<Said> rows)
+               std::vector<RowLabel> rows)
     : system_(std::move(system)),
       name_(std::move(name)),
       columns_(std::move(columns)),
@@ -37,11 +37,8 @@ Starts::Starts(std::shared_ptr<const Multibody> system, std::string name,
 
 int Starts::root() const {
   const Tree& tree = system_->tree(system_->drawn().data());
-  for (int link = 0; link < tree.links(); ++link) {
-    const JointKind kind = tree.kind(link);
-    if (tree.parent(link) == kGround && (kind == JointKind::free || kind == JointKind::planar))
-      return link;
-  }
+  for (int link = 0; link < tree.links(); ++link)
+    if (tree.parent(link) == kGround && tree.joint(link).turns_and_slides()) return link;
   return -1;
 }
 
@@ -49,9 +46,9 @@ std::vector<int> Starts::turning() const {
   const int link = root();
   if (link < 0) return {};
   const Tree& tree = system_->tree(system_->drawn().data());
-  const int first = tree.first(link);
-  if (tree.kind(link) == JointKind::planar) return {first};
-  return {first, first + 1, first + 2};
+  std::vector<int> out = tree.joint(link).turning();
+  for (int& velocity : out) velocity += tree.first(link);
+  return out;
 }
 
 int Starts::ahead() const {
@@ -83,7 +80,7 @@ void Starts::refuse(const std::vector<int>& rows, const Values& values, const Pl
   std::vector<std::string> parts, numbers;
   std::string where = name_ + ": ";
   for (const int i : rows) {
-    const Said& row = rows_[static_cast<size_t>(i)];
+    const RowLabel& row = rows_[static_cast<size_t>(i)];
     if (std::find(parts.begin(), parts.end(), row.what) == parts.end()) parts.push_back(row.what);
     where = row.where.empty() ? where : row.where;
   }
@@ -104,7 +101,7 @@ Starts::Values Starts::prescribed(double t) const {
   for (int link = 0; link < tree.links(); ++link) {
     for (const Prescribed& p : system_->all_rows().prescribed)
       if (p.dof == tree.first(link) && p.angle) out[columns_[column]] = p.angle(t);
-    column += type_of(tree.kind(link)).columns.size();
+    column += tree.joint(link).columns().size();
   }
   return out;
 }
@@ -121,7 +118,7 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
   Values stated;
   size_t column = 0;
   for (int link = 0; link < tree.links(); ++link) {
-    for (const std::string& name : type_of(tree.kind(link)).columns) {
+    for (const std::string& name : tree.joint(link).columns()) {
       (void)name;
       const auto given = values.find(columns_[column]);
       if (given != values.end()) {
@@ -139,7 +136,7 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
     refuse({}, stated, places, fmt::format(": {}", error.what()));
   }
   if (const double off = satisfy(*system_, fixed, g); !(off < 1e-12)) {
-    const VectorXd phi = Looked(*system_, g).phi;
+    const VectorXd phi = RowValues(*system_, g).phi;
     std::vector<int> open;
     for (int i = 0; i < phi.size(); ++i)
       if (!(std::abs(phi[i]) < 1e-9)) open.push_back(i);
@@ -186,7 +183,7 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
   start.configuration = configuration(values, t, places);
   std::vector<double> g(system_->drawn().size());
   system_->geometry().from_coordinates(start.configuration, g.data());
-  const int n = system_->dim(), k = system_->rows();
+  const int n = system_->dim(), k = system_->constraint_count();
   std::vector<std::pair<int, Values::value_type>> stated;
   for (const auto& entry : values) {
     if (const int i = rate(entry.first); i >= 0) stated.emplace_back(i, entry);
@@ -204,7 +201,7 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
     b[row] = stated[i].second.second;
   }
   VectorXd some = least(a, b);
-  const VectorXd left = a * some - b;  // where rows say what others deny
+  const VectorXd left = a * some - b;  // where rows contradict others
   if (const double size = 1e-9 * (1 + b.norm()); !(left.norm() <= size)) {
     std::vector<int> rows;
     Values against;
@@ -214,7 +211,7 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
       else against.insert(stated[static_cast<size_t>(i - k)].second);
     }
     refuse(rows, against, places,
-           " do not go together; leave out a velocity: those that are not given follow");
+           " are inconsistent; leave out a velocity: those that are not given follow");
   }
   // some + N z, N a basis of what is free: least energy where N^T I (some + N z) = 0.
   MatrixXd free = dense::kernel(a);

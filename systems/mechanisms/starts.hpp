@@ -1,4 +1,4 @@
-// Where a mechanism starts: coordinates and velocities that satisfy its rows, from those that are
+// Start of a mechanism: coordinates and velocities that satisfy its rows, from those that are
 // stated.
 #pragma once
 
@@ -12,15 +12,15 @@
 
 namespace hamel::mechanisms {
 
-/// A row in words, for messages.
-struct Said {
+/// The text of a row, for messages.
+struct RowLabel {
   std::string where,
       what;  // of its part, "system.toml:3:1: "; "wheel 'rear' (rolls without slipping)"
 };
 /// Some of these rows, one behind the other.
-std::string in_words(const std::vector<int>& some, const std::vector<Said>& rows);
+std::string in_words(const std::vector<int>& some, const std::vector<RowLabel>& rows);
 /// That a row contradicts those of a list.
-std::string contradiction(const Said& row, const std::string& list);
+std::string contradiction(const RowLabel& row, const std::string& list);
 
 /// Starts of a mechanism, by the names of coordinates and velocities.
 class Starts {
@@ -29,11 +29,12 @@ class Starts {
   using Places = std::map<std::string, std::string>;
 
   Starts(std::shared_ptr<const Multibody> system, std::string name,
-         std::vector<std::string> columns, std::vector<std::string> rates, std::vector<Said> rows);
+         std::vector<std::string> columns, std::vector<std::string> rates,
+         std::vector<RowLabel> rows);
   /// Mistakes in these names; "speed" is that of the first planar or free root joint ahead.
   std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
   /// At a time, where prescribed angles hold. Throws ConfigError where the rows forbid these
-  /// values; places: where these stand in a file.
+  /// values; places: where these are in a file.
   Start solve(const Values& values, double t, const Places& places = {}) const;
   /// The places of the root's angular velocities, in whose direction ahead is; empty where there is
   /// no root.
@@ -49,14 +50,14 @@ class Starts {
   int root() const;                         // the first planar or free joint; -1: there is none
   int ahead() const;                        // the velocity that "speed" is; -1: there is none
   int rate(const std::string& name) const;  // -1: no velocity
-  /// Throws that these rows and values do not go together, and the text behind them.
+  /// Throws that these rows and values are inconsistent, and the text after them.
   [[noreturn]] void refuse(const std::vector<int>& rows, const Values& values, const Places& places,
                            const std::string& text) const;
 
   std::shared_ptr<const Multibody> system_;
   std::string name_;
   std::vector<std::string> columns_, rates_;
-  std::vector<Said> rows_;
+  std::vector<RowLabel> rows_;
 };
 
 }  // namespace hamel::mechanisms

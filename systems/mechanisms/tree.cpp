@@ -4,49 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <hamel/groups/se2.hpp>
-#include <hamel/groups/so2.hpp>
-
 namespace hamel::mechanisms {
 namespace {
-
-// The element with this motion in the joint's frame: of a joint that is drawn at rest the identity,
-// of one against the ground's own frame the place of the body.
-std::vector<double> element_of(JointKind kind, const Rigid& x) {
-  const JointType& type = type_of(kind);
-  std::vector<double> values = type.group.identity;
-  if (kind == JointKind::free) {
-    for (int i = 0; i < 9; ++i) values[static_cast<size_t>(i)] = x.rotation(i / 3, i % 3);
-    for (int i = 0; i < 3; ++i) values[static_cast<size_t>(9 + i)] = x.position[i];
-  } else if (kind == JointKind::planar) {
-    values = {0, x.position[0], x.position[1]};
-  }
-  std::vector<double> element(static_cast<size_t>(type.geometry->size()));
-  type.geometry->from_coordinates(values, element.data());
-  return element;
-}
-
-// P iota C^-1 as a constant and what two numbers of the element are to be multiplied with: cos and
-// sin of the angle, or the way along the axis and nothing.
-std::array<Rigid, 3> terms_of(const Link& link) {
-  const Rigid& p = link.on_parent;
-  const Rigid after = link.on_child.inverse();
-  const auto term = [&](const Mat<3, 3>& part) {
-    return Rigid{part * after.rotation, part * after.position};
-  };
-  const Vec3 axis = p.rotation.col(2);
-  std::array<Rigid, 3> out;
-  if (link.kind == JointKind::slider) {
-    out = {p * after, {Mat<3, 3>::Zero(), axis}, {Mat<3, 3>::Zero(), Vec3::Zero()}};
-    return out;
-  }
-  const Mat<3, 3> along = axis * Vec3::UnitZ().transpose(),
-                  odd = p.rotation.col(1) * Vec3::UnitX().transpose() -
-                        p.rotation.col(0) * Vec3::UnitY().transpose();
-  out = {term(along), term(p.rotation - along), term(odd)};
-  out[0].position += p.position;
-  return out;
-}
 
 bool same(const Inertia& a, const Inertia& b) {
   const double near = 1e-14 * a.second.lpNorm<Eigen::Infinity>();
@@ -54,7 +13,80 @@ bool same(const Inertia& a, const Inertia& b) {
          (a.first - b.first).squaredNorm() <= near * 1e-14 * a.mass;
 }
 
+bool is_zero(const Rigid& x) { return x.rotation.isZero(0) && x.position.isZero(0); }
+
+// Affine in the numbers of an element, as its group lays it out: a sum at numbers that are no
+// element shows it.
+bool is_affine(const Link& link, const Rigid& constant, const std::vector<Rigid>& terms) {
+  std::vector<double> any(terms.size());
+  Rigid sum = constant;
+  for (size_t i = 0; i < any.size(); ++i) {
+    any[i] = std::sin(2.0 * static_cast<double>(i) + 1);
+    sum.rotation += any[i] * terms[i].rotation;
+    sum.position += any[i] * terms[i].position;
+  }
+  const Rigid motion = link.joint->motion(any.data());
+  return motion.rotation.isApprox(sum.rotation, 1e-14) &&
+         (motion.position - sum.position).norm() <= 1e-14 * (1 + sum.position.norm());
+}
+
 }  // namespace
+
+MotionTerms::MotionTerms(const Link& link) {
+  std::vector<double> element(static_cast<size_t>(link.joint->geometry()->size()), 0.0);
+  const Rigid zero = link.joint->motion(element.data());
+  std::vector<Rigid> all;
+  for (double& number : element) {
+    number = 1;
+    const Rigid one = link.joint->motion(element.data());
+    number = 0;
+    all.push_back({one.rotation - zero.rotation, one.position - zero.position});
+  }
+  const auto used =
+      static_cast<size_t>(std::ranges::count_if(all, [](const Rigid& x) { return !is_zero(x); }));
+  if (used > terms.size() || !is_affine(link, zero, all)) return;
+  const Rigid& before = link.on_parent;
+  const Rigid after = link.on_child.inverse();
+  const auto between = [&](const Rigid& x) {  // but for the position of P
+    const Mat<3, 3> rotation = before.rotation * x.rotation;
+    return Rigid{rotation * after.rotation,
+                 rotation * after.position + before.rotation * x.position};
+  };
+  constant = between(zero);
+  constant.position += before.position;
+  for (const bool turns : {true, false}) {
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (is_zero(all[i]) || all[i].rotation.isZero(0) == turns) continue;
+      numbers[static_cast<size_t>(count)] = static_cast<int>(i);
+      terms[static_cast<size_t>(count++)] = between(all[i]);
+    }
+    if (turns) turning = count;
+  }
+}
+
+Rigid MotionTerms::sum(const double* g) const {
+  Rigid out = constant;
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    if (i < turning) out.rotation += g[numbers[k]] * terms[k].rotation;
+    out.position += g[numbers[k]] * terms[k].position;
+  }
+  return out;
+}
+
+PlaneMotion MotionTerms::sum_in_plane(const double* g) const {
+  PlaneMotion out{constant.rotation(0, 0), constant.rotation(1, 0), constant.position[0],
+                  constant.position[1]};
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<size_t>(i);
+    const double x = g[numbers[k]];
+    out.c += x * terms[k].rotation(0, 0);
+    out.s += x * terms[k].rotation(1, 0);
+    out.x += x * terms[k].position[0];
+    out.y += x * terms[k].position[1];
+  }
+  return out;
+}
 
 Tree::Tree(const std::vector<Link>& links) {
   nodes_.reserve(links.size());
@@ -68,55 +100,54 @@ Tree::Tree(const std::vector<Link>& links) {
     node.on_root = !is_root && at(link.parent).link.parent == kGround;
     node.dof = dim_;
     node.element = size_;
-    const auto s = hamel::mechanisms::directions(link.kind);
-    node.count = static_cast<int>(s.cols());
+    const Joint::Directions& s = link.joint->directions();
+    node.count = link.joint->dim();
     const Rigid& frame = node.count == 1 && !is_root ? link.on_parent : link.on_child;
     for (int i = 0; i < node.count; ++i) node.directions.col(i) = frame.move(s.col(i));
     node.columns = node.directions;
     node.after = link.on_child.inverse();
-    if (link.kind != JointKind::free && link.kind != JointKind::ball) {
-      node.terms = terms_of(link);
-      look_for_planar(node);
-    }
+    node.terms = MotionTerms(link);
     node.inertia = link.inertia;
     dim_ += node.count;
-    size_ += type_of(link.kind).geometry->size();
-    const auto drawn = element_of(link.kind, link.on_parent.inverse() * link.on_child);
+    const std::vector<double> drawn =
+        link.joint->element_of(link.on_parent.inverse() * link.on_child);
+    size_ += static_cast<int>(drawn.size());
     drawn_.insert(drawn_.end(), drawn.begin(), drawn.end());
+    find_planar(node, drawn.data());
     nodes_.push_back(std::move(node));
   }
-  look_for_rotors();
+  find_rotors();
   for (Node& node : nodes_) node.own = node.inertia;
   placed_.assign(drawn_.size(), std::numeric_limits<double>::quiet_NaN());
   place(drawn_.data());
-  carry();
+  accumulate_inertia();
 }
 
-// Its parent planar, its axis vertical, or across that for a slider; no part of its motion leaves
-// the plane.
-void Tree::look_for_planar(Node& node) const {
+// Its parent planar, its motion in the plane; of a link that is no root one number.
+void Tree::find_planar(Node& node, const double* drawn) const {
   const bool is_root = node.link.parent == kGround;
-  if (!is_root && (!at(node.link.parent).planar || node.link.kind == JointKind::planar)) return;
+  if (node.terms.count == 0) return;
+  if (!is_root && (!at(node.link.parent).planar || node.count > 1)) return;
   double off = 0;
   for (int i = 0; i < node.count; ++i) {
     off = std::max({off, node.directions.col(i).head<2>().lpNorm<Eigen::Infinity>(),
                     std::abs(node.directions(5, i))});
   }
-  if (!is_root)
-    off = std::max(off, std::abs(node.terms[0].position[2] + node.terms[1].position[2]));
+  if (!is_root) off = std::max(off, std::abs(node.terms.sum(drawn).position[2]));
   node.planar = off <= 1e-14 * (1 + node.link.on_parent.position.norm());
 }
 
-void Tree::look_for_rotors() {
+void Tree::find_rotors() {
   for (Node& node : nodes_)
-    node.rotor = node.link.kind == JointKind::hinge && node.link.parent != kGround;
+    node.rotor = node.link.joint->only_turns() && node.link.parent != kGround;
   for (const Node& node : nodes_)
     if (node.link.parent != kGround) at(node.link.parent).rotor = false;
   for (Node& node : nodes_) {
     if (!node.rotor) continue;
     const auto turned = [&](double angle) {
-      std::array<double, Packing<SO2>::size> element;
-      Packing<SO2>::store({std::cos(angle), std::sin(angle)}, element.data());
+      const Geometry& geometry = *node.link.joint->geometry();
+      std::vector<double> element(static_cast<size_t>(geometry.size()));
+      geometry.tau(&angle, element.data());
       return moved(node.across(element.data()), node.link.inertia);
     };
     const Inertia seen = turned(0);
@@ -128,36 +159,8 @@ void Tree::look_for_rotors() {
   }
 }
 
-std::array<double, 2> Tree::Node::numbers(const double* g) const {
-  if (link.kind == JointKind::slider) return {g[0], 0};
-  const auto turn =
-      link.kind == JointKind::hinge ? Packing<SO2>::load(g) : Packing<SE2>::load(g).rotation;
-  return {turn.c, turn.s};
-}
-
 Rigid Tree::Node::across(const double* g) const {
-  if (link.kind == JointKind::free || link.kind == JointKind::ball)
-    return link.on_parent * motion(link.kind, g) * after;
-  const double a = numbers(g)[0], b = numbers(g)[1];
-  Rigid out{terms[0].rotation + a * terms[1].rotation + b * terms[2].rotation,
-            terms[0].position + a * terms[1].position + b * terms[2].position};
-  if (link.kind == JointKind::planar) {
-    const Vec<2> shift = Packing<SE2>::load(g).translation;
-    out.position +=
-        shift[0] * link.on_parent.rotation.col(0) + shift[1] * link.on_parent.rotation.col(1);
-  }
-  return out;
-}
-
-PlaneMotion Tree::Node::across_in_plane(const double* g) const {
-  const double a = numbers(g)[0], b = numbers(g)[1];
-  const auto sum = [&](auto entry) {
-    return entry(terms[0]) + a * entry(terms[1]) + b * entry(terms[2]);
-  };
-  return {sum([](const Rigid& x) { return x.rotation(0, 0); }),
-          sum([](const Rigid& x) { return x.rotation(1, 0); }),
-          sum([](const Rigid& x) { return x.position[0]; }),
-          sum([](const Rigid& x) { return x.position[1]; })};
+  return terms.count > 0 ? terms.sum(g) : link.on_parent * link.joint->motion(g) * after;
 }
 
 Rigid Tree::from_root(int link) const {
@@ -180,7 +183,7 @@ HAMEL_FLATTEN void Tree::place(const double* g) {
     }
     const Node& parent = at(node.link.parent);
     if (node.planar) {
-      node.flat = node.across_in_plane(element);
+      node.flat = node.terms.sum_in_plane(element);
       if (!node.on_root) node.flat = parent.flat * node.flat;
     } else if (!node.rotor) {
       node.place = node.across(element);

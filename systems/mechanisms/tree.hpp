@@ -10,19 +10,18 @@
 // S, twists and wrenches add, and with I_j the inertia and P_j the momentum of link j with all that
 // it carries:
 //   I(g)_ab = s_a^T I_b s_b for a on the way from the root to b,     (composite bodies)
-//   1/2 d(xi^T I xi)_a = s_a^T ad_{V_parent}^T P_a.                 (from d V_j = -ad_{s_a} Ad^-1
-//   V_parent)
+//   (I(g) xi)_a = s_a^T P_a,
+//   1/2 d(xi^T I xi)_a = s_a^T ad_{V_parent}^T P_a.        (from d V_j = -ad_{s_a} Ad^-1 V_parent)
 // Along the motion, xi held, with U_j = V_j - V_root the twist of link j against its root and D_j =
 // dV_j/dt:
-//   D_j = D_parent + ad_{U_parent} (V_j - V_parent),   D_root = 0          (ds_a/dt = ad_{U_parent}
-//   s_a) (dI/dt xi)_a = s_a^T (ad_{U_parent}^T P_a + dP_a/dt),   d(I_j V_j)/dt = I_j (D_j -
-//   ad_{U_j} V_j) - ad_{U_j}^T I_j V_j.
-// The axis of a hinge or slider is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant on a
-// root. Less is left to do for
+//   D_j = D_parent + ad_{U_parent} (V_j - V_parent),   D_root = 0,   (ds_a/dt = ad_{U_parent} s_a)
+//   (dI/dt xi)_a = s_a^T (ad_{U_parent}^T P_a + dP_a/dt),
+//   d(I_j V_j)/dt = I_j (D_j - ad_{U_j} V_j) - ad_{U_j}^T I_j V_j.
+// The axis of a joint with one velocity is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant
+// on a root. Less is left to do for
 //   planar links  that turn about the vertical of a root which does no more: plane.hpp;
 //   rotors        that carry nothing and whose inertia their own turning does not change (wheels):
-//   it is their
-//                 parent's, but for the momentum of their spin, and they need no place.
+//                 it is their parent's, but for the momentum of their spin, and they need no place.
 // Cost: O(links * depth) for I(g), O(links) for all else.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 6; Park, Bobrow, Ploen, A Lie
 // group formulation of robot dynamics, Int. J. Robotics Research 14 (1995).
@@ -30,6 +29,7 @@
 
 #include <array>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include <hamel/systems/mechanisms/joint.hpp>
@@ -42,9 +42,25 @@ inline constexpr int kGround = -1;
 
 struct Link {
   int parent = kGround;  // an earlier link
-  JointKind kind = JointKind::hinge;
-  Rigid on_parent, on_child;  // P and C
-  Inertia inertia;            // of the body, in the drawn pose's axes about its origin
+  std::shared_ptr<const Joint> joint = {};
+  Rigid on_parent = {}, on_child = {};  // P and C
+  Inertia inertia = {};                 // of the body, in the drawn pose's axes about its origin
+};
+
+/// P iota C^-1 where it is affine in up to 4 numbers of the element (cos and sin of an angle, a
+/// position): constant + sum of numbers times terms, of which those that only shift are the last.
+struct MotionTerms {
+  static constexpr int most = 4;  // with more the product of three motions costs less
+
+  Rigid constant;
+  std::array<Rigid, most> terms;
+  std::array<int, most> numbers = {};  // of the element
+  int turning = 0, count = 0;          // terms that turn; all; 0: not affine
+
+  MotionTerms() = default;
+  explicit MotionTerms(const Link& link);
+  Rigid sum(const double* g) const;
+  PlaneMotion sum_in_plane(const double* g) const;
 };
 
 class Tree {
@@ -54,15 +70,15 @@ class Tree {
   int dim() const { return dim_; }    // n
   int size() const { return size_; }  // doubles in an element
   int links() const { return static_cast<int>(nodes_.size()); }
-  /// Where the velocities of a link's joint start, and how many they are.
+  /// Index of the first velocity of a link's joint, and how many there are.
   int first(int link) const { return at(link).dof; }
   int count(int link) const { return at(link).count; }
   int element(int link) const { return at(link).element; }
-  JointKind kind(int link) const { return at(link).link.kind; }
+  const Joint& joint(int link) const { return *at(link).link.joint; }
   int parent(int link) const { return at(link).link.parent; }
   bool planar(int link) const { return at(link).planar; }
   bool rotor(int link) const { return at(link).rotor; }
-  /// The axis of a hinge or slider, as drawn: a unit twist.
+  /// The twist of a joint with one velocity at unit rate, as drawn.
   Twist axis(int link) const { return at(link).directions.col(0); }
   /// The element of the drawn pose.
   const std::vector<double>& drawn() const { return drawn_; }
@@ -75,14 +91,14 @@ class Tree {
   /// The element of a joint where it was placed.
   const double* placed(int link) const { return placed_.data() + element(link); }
   /// Inertias, for inertia(), composite() and add_inertial_force(); place() first.
-  void carry();
+  void accumulate_inertia();
   /// Link seen from its root (the ground: from the world), and its root in the world.
   Rigid from_root(int link) const;
   const Rigid& root_in_world(int link) const {
     return link == kGround ? rest_ : at(at(link).root).world;
   }
   Rigid in_world(int link) const { return root_in_world(link) * from_root(link); }
-  /// Of a planar link, seen from its root.
+  /// Pose of a planar link, seen from its root.
   const PlaneMotion& in_plane_of_root(int link) const { return at(link).flat; }
 
   /// Twists of all links, seen from their roots; place() first.
@@ -100,11 +116,13 @@ class Tree {
   Twist against_root(int link) const { return link == kGround ? Twist::Zero() : at(link).against; }
 
   void inertia(Eigen::Ref<Eigen::MatrixXd> out) const;
-  /// out += 1/2 d(xi^T I xi); carry() and move() first.
+  /// out = I xi; accumulate_inertia() and move() first.
+  void momentum(Eigen::Ref<Eigen::VectorXd> out);
+  /// out += 1/2 d(xi^T I xi); accumulate_inertia() and move() first.
   void add_inertial_force(Eigen::Ref<Eigen::VectorXd> out);
-  /// out += (dI/dt) xi along the motion; carry() and accelerate() first.
+  /// out += (dI/dt) xi along the motion; accumulate_inertia() and accelerate() first.
   void add_inertia_rate(Eigen::Ref<Eigen::VectorXd> out);
-  /// out += what the weights do on xi; carry() first.
+  /// out += what the weights do on xi; accumulate_inertia() first.
   void add_weight(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) const;
   /// out += sign * what a wrench on a link does on xi; seen from its root. On the ground nothing.
   template <class Out>
@@ -122,11 +140,9 @@ class Tree {
     Link link;
     int root = 0, dof = 0, element = 0, count = 0;
     bool planar = false, rotor = false, on_root = false;
-    Mat<6, 6> directions = Mat<6, 6>::Zero();  // Ad_C S; of a hinge or slider Ad_P S
+    Mat<6, 6> directions = Mat<6, 6>::Zero();  // Ad_C S; of one velocity Ad_P S
     Rigid after;                               // C^-1
-    // P iota C^-1 = the first + two numbers of the element times the others, and for a planar joint
-    // its shift.
-    std::array<Rigid, 3> terms;
+    MotionTerms terms;
     Inertia inertia;               // with that of the rotors
     Wrench spin = Wrench::Zero();  // momentum of a rotor at unit rate, seen from its parent
     double moment = 0, rate = 0;   // of a rotor
@@ -138,10 +154,8 @@ class Tree {
     Wrench spin_here = Wrench::Zero(), momentum = Wrench::Zero(), momentum_rate = Wrench::Zero();
     Inertia own, carried;  // with all that the link carries
 
-    std::array<double, 2> numbers(const double* g) const;
     Rigid across(const double* g) const;  // from the parent
-    PlaneMotion across_in_plane(const double* g) const;
-    /// What a wrench does on velocity i; of one on a planar link only its entries in the plane
+    /// Effect of a wrench on velocity i; of one on a planar link only its entries in the plane
     /// count.
     double along(int i, const Wrench& wrench) const {
       return planar ? in_plane(columns.col(i)).dot(in_plane(wrench)) : columns.col(i).dot(wrench);
@@ -149,8 +163,8 @@ class Tree {
   };
   const Node& at(int link) const { return nodes_[static_cast<size_t>(link)]; }
   Node& at(int link) { return nodes_[static_cast<size_t>(link)]; }
-  void look_for_planar(Node& node) const;
-  void look_for_rotors();
+  void find_planar(Node& node, const double* drawn) const;
+  void find_rotors();
   void write(const Node* from, int count, int column, const Wrench& momentum, double* out,
              Eigen::Index stride) const;
 

@@ -5,7 +5,7 @@
 
 namespace hamel::mechanisms {
 
-HAMEL_FLATTEN void Tree::carry() {
+HAMEL_FLATTEN void Tree::accumulate_inertia() {
   if (carries_) return;
   carries_ = true;
   for (Node& node : nodes_) {
@@ -79,6 +79,30 @@ HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> to) const {
       else momentum = node.carried * node.columns.col(b);
       write(&node, b + 1, node.dof + b, momentum, out, stride);
     }
+  }
+}
+
+HAMEL_FLATTEN void Tree::momentum(Eigen::Ref<Eigen::VectorXd> out) {
+  for (Node& node : nodes_) {
+    if (node.rotor) node.momentum = node.rate * node.spin_here;
+    else if (node.planar)
+      in_plane(node.momentum) = momentum_in_plane(node.own, in_plane(node.twist));
+    else node.momentum = node.own * node.twist;
+  }
+  for (size_t j = nodes_.size(); j-- > 0;) {
+    const Node& node = nodes_[j];
+    if (node.rotor) {  // turned by its parent, too
+      const Node& parent = at(node.link.parent);
+      const double turned = parent.planar ? in_plane(node.spin_here).dot(in_plane(parent.twist))
+                                          : node.spin_here.dot(parent.twist);
+      out[node.dof] = turned + node.moment * node.rate;
+    } else {
+      for (int i = 0; i < node.count; ++i) out[node.dof + i] = node.along(i, node.momentum);
+    }
+    if (node.link.parent == kGround) continue;
+    Node& parent = at(node.link.parent);
+    if (parent.planar) in_plane(parent.momentum) += in_plane(node.momentum);
+    else parent.momentum += node.momentum;
   }
 }
 

@@ -1,4 +1,4 @@
-// What changes along the motion while xi does not: twists, and the momentum I(g) xi.
+// Rates along the motion with xi held: twists, and the momentum I(g) xi.
 #include <hamel/systems/mechanisms/tree.hpp>
 
 namespace hamel::mechanisms {

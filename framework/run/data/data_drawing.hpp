@@ -2,9 +2,9 @@
 //
 //   [[draw]]
 //   name = "skate"
-//   at = ["x", "y", 0.05]               # formulas of the coordinates, m
-//   heading = "theta"                   # about the vertical; or rotation = [nine formulas, row
-//   after row] trail = [0, 0, 0]                   # the point whose path is drawn; left out: none
+//   at = ["x", "y", 0.05]     # formulas of the coordinates, m
+//   heading = "theta"         # about the vertical; or rotation = [nine formulas, row after row]
+//   trail = [0, 0, 0]         # the point whose path is drawn; left out: none
 //   shapes = [{ box = [0.3, 0.1, 0.1], at = [0, 0, 0], axis = [0, 0, 1], color = "accent" }]
 // Shapes: box = [edges], ellipsoid = [radii], cylinder = [radius, length], sphere = radius, arrow =
 // [tip], line = [[point], ...].

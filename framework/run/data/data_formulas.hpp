@@ -10,7 +10,7 @@
 
 namespace hamel {
 
-/// What may stand in the formulas of a system, beside t and its parameters.
+/// Names allowed in the formulas of a system, beside t and its parameters.
 struct DataNames {
   std::vector<std::string> coordinates, rates, inputs;
 };
@@ -28,7 +28,7 @@ class DataFormulasReader {
       : read_(read), formulas_(formulas), table_(table), names_(names) {}
   /// inputs: those that are variables; others are constants of `formulas`.
   DataFormulas read(const std::vector<std::string>& inputs);
-  /// Of the formulas read last: "constraints[2, 1]" and its text.
+  /// Names and texts of the formulas read last: "constraints[2, 1]" and its text.
   const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
 
  private:

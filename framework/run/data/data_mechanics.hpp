@@ -20,7 +20,7 @@ struct FormulaMatrix {
     Expression value;
     std::string text, where;  // "system.toml:4:9: potential"
   };
-  Eigen::MatrixXd constant;  // 0 where a formula stands
+  Eigen::MatrixXd constant;  // 0 where there is a formula
   std::vector<Entry> entries;
 
   bool is_constant() const { return entries.empty(); }
@@ -40,7 +40,7 @@ struct FormulaMatrix {
   }
 };
 
-/// The formulas of a system. Their variables stand in this order: coordinates, t, inputs, rates.
+/// The formulas of a system. Their variables, in this order: coordinates, t, inputs, rates.
 struct DataFormulas {
   FormulaMatrix inertia, rows, drift, holonomic, potential, force;
   size_t inputs = 0;
@@ -54,7 +54,7 @@ class DataMechanics final : public Mechanics {
   DataMechanics(DataFormulas formulas, const GroupInfo& group,
                 std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Inputs> given);
   int dim() const override { return n_; }
-  int rows() const override { return own_ + held_; }
+  int constraint_count() const override { return own_ + held_; }
   int holonomic_rows() const override { return held_; }
   bool constant_inertia() const override { return f_.inertia.is_constant(); }
   bool constant_constraints() const override;

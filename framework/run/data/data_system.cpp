@@ -145,7 +145,7 @@ class File {
     }
     for (const std::string& name : given) {
       if (!Expression::allows(name))
-        read_.wrong(*node, key, fmt::format("names that may stand in a formula, got '{}'", name));
+        read_.wrong(*node, key, fmt::format("names allowed in a formula, got '{}'", name));
     }
     out = given;
     return true;

@@ -1,27 +1,33 @@
 // Systems by data alone: a TOML file, no compiler.
 //
-//   name = "kick scooter"                   # left out: the file's
-//   group = "se2*so2"                       # any product of registered groups
-//   coordinates = ["theta", "x", "y", "steer"]   # left out: the group's columns, 2_theta of a
-//   product as theta_2 rates = ["omega", "v1", "v2", "steer'"] # left out: these, which follow from
-//   group and coordinates inertia = ["I", "m", "m", 0.02]         # n principal entries, or n rows
-//   of n: I(g) constraints = [[0, 0, 1, 0], ["-l*cos(steer)", "sin(steer)", "-cos(steer)", 0]]   #
-//   rows A(t, g) drift = [0, "0.1*sin(t)"]               # b(t, g) of A xi = b (left out: zeros)
-//   holonomic = ["z - r"]                   # phi(g) = 0; their differentials join A
-//   potential = "m*g*sin(slope)*x"          # V(g)
-//   force = ["-c*omega", 0, 0, "torque"]    # f(t, g, xi) in the dual, n entries
-//   configuration = [0, 0, 0, "alpha"]      # the start: also velocity, momentum
-//   contacts = [1]                          # the rows, from 1, whose multiplier is a normal
-//   reaction from_above = true                       # how it is drawn: also floor; bodies:
-//   data_drawing.hpp [parameters]                            # numbers to set, study and sweep
-//   (toml_parameters.hpp) m = { value = 2, unit = "kg", meaning = "mass", least = 0 } [inputs] #
-//   what a run may be driven by; they may stand in force and drift torque = { unit = "N m", meaning
-//   = "on the handlebar" } [events]                                # zero at the event; direction
-//   +1, -1, or 0 for both ways straight = { value = "steer", meaning = "the handlebar is straight",
-//   direction = 0 } [invariants]                            # first integrals energy = "0.5*m*(v1^2
-//   + v2^2)"
+//   name = "kick scooter"              # left out: the file's
+//   group = "se2*so2"                  # any product of registered groups
+//   coordinates = ["theta", "x", "y", "steer"]
+//                                      # left out: the group's columns, 2_theta of a product as
+//                                      # theta_2
+//   rates = ["omega", "v1", "v2", "steer'"]
+//                                      # left out: these, which follow from group and coordinates
+//   inertia = ["I", "m", "m", 0.02]    # n principal entries, or n rows of n: I(g)
+//   constraints = [[0, 0, 1, 0], ["-l*cos(steer)", "sin(steer)", "-cos(steer)", 0]]
+//                                      # rows A(t, g)
+//   drift = [0, "0.1*sin(t)"]          # b(t, g) of A xi = b (left out: zeros)
+//   holonomic = ["z - r"]              # phi(g) = 0; their differentials join A
+//   potential = "m*g*sin(slope)*x"     # V(g)
+//   force = ["-c*omega", 0, 0, "torque"]
+//                                      # f(t, g, xi) in the dual, n entries
+//   configuration = [0, 0, 0, "alpha"] # the start: also velocity, momentum
+//   contacts = [1]                     # the rows, from 1, whose multiplier is a normal reaction
+//   from_above = true                  # how it is drawn: also floor; bodies: data_drawing.hpp
+//   [parameters]                       # numbers to set, study and sweep (toml_parameters.hpp)
+//   m = { value = 2, unit = "kg", meaning = "mass", least = 0 }
+//   [inputs]                           # what a run may be driven by; allowed in force and drift
+//   torque = { unit = "N m", meaning = "on the handlebar" }
+//   [events]                           # zero at the event; direction +1, -1, or 0 for both ways
+//   straight = { value = "steer", meaning = "the handlebar is straight", direction = 0 }
+//   [invariants]                       # first integrals
+//   energy = "0.5*m*(v1^2 + v2^2)"
 // Every number may be a formula (io/expression.hpp) of the parameters; the entries of matrices and
-// vectors also of the coordinates, of t where it stands above, of the inputs, those of force,
+// vectors also of the coordinates, of t where it is listed above, of the inputs, those of force,
 // events and invariants of the rates. Differentials are exact. The options of the run (scheme,
 // step, ...) belong to the command line or --config.
 #pragma once

@@ -1,19 +1,19 @@
 // [events] of a file that describes a system. Not installed.
 //
 //   [events]
-//   straight = "steer"                                                   zero at the event
-//   tipped = { value = "abs(lean) - 1", meaning = "it lies", direction = 1 }   +1, -1, or 0 for
-//   both ways
+//   straight = "steer"        # zero at the event
+//   tipped = { value = "abs(lean) - 1", meaning = "it lies", direction = 1 }
+//                             # +1, -1, or 0 for both ways
 #pragma once
 
 #include <cstdlib>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <hamel/framework/io/toml_formulas.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/data/event_formula.hpp>
 
 namespace hamel {
 
@@ -49,13 +49,7 @@ inline std::vector<Event> read_events(TomlReader& read, TomlFormulas& formulas,
     if (std::abs(event.direction) > 1) read.wrong(node, key + ".direction", "-1, 0 or 1");
     auto formula = formulas.expression(*value, key, names);
     if (!formula) continue;
-    event.value = [formula = std::move(*formula), values = std::vector<double>()](
-                      double t, std::span<const double> g, std::span<const double> xi) mutable {
-      values.assign(1, t);
-      values.insert(values.end(), g.begin(), g.end());
-      values.insert(values.end(), xi.begin(), xi.end());
-      return formula(values);
-    };
+    event.value = value_of_state(std::move(*formula));
     out.push_back(std::move(event));
   }
   return out;

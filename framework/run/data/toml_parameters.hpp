@@ -58,14 +58,14 @@ void each_stated(TomlReader& read, const toml::table& file, const std::string& k
   for (const auto& [name, entry] : *table) {
     const std::string word(name.str());
     if (!Expression::allows(word))
-      read.wrong(entry, key, fmt::format("a name that may stand in a formula, got '{}'", word));
+      read.wrong(entry, key, fmt::format("a name allowed in a formula, got '{}'", word));
     else visit(word, entry, key + "." + word);
   }
 }
 
 }  // namespace detail
 
-/// The parameters of a file with the values given, which stand in its formulas from now on. Throws
+/// The parameters of a file with the values given, which its formulas may use from now on. Throws
 /// ConfigError.
 inline std::vector<Field> read_parameters(TomlReader& read, TomlFormulas& formulas,
                                           const toml::table& file, const std::string& system,

@@ -9,6 +9,7 @@
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
 #include <hamel/framework/io/visible.hpp>
+#include <hamel/framework/run/names/toml_config.hpp>
 #include <hamel/framework/run/names/toml_inputs.hpp>
 
 namespace hamel {
@@ -136,8 +137,16 @@ void read_text(const std::string& option, const std::string& text, bool& out) {
   out = text == "true";
 }
 void read_text(const std::string&, const std::string& text, std::string& out) { out = text; }
+// Names and formulas: a comma within brackets separates arguments.
 void read_text(const std::string&, const std::string& text, std::vector<std::string>& out) {
-  out = split(text);
+  out.clear();
+  int open = 0;
+  for (const std::string& word : split(text)) {
+    if (open > 0) out.back() += "," + word;
+    else out.push_back(word);
+    open += static_cast<int>(std::count(word.begin(), word.end(), '(') -
+                             std::count(word.begin(), word.end(), ')'));
+  }
 }
 void read_text(const std::string& option, const std::string& text, std::vector<double>& out) {
   if (text.empty() || text.back() == ',') {
@@ -161,6 +170,31 @@ void Config::set(const std::string& option, const std::string& text) {
   with_option(option, [&](auto member) { read_text(option, text, this->*member); });
 }
 
+std::vector<std::string> config_keys() {
+  std::vector<std::string> out = {"system", "set", "inputs"};
+  const auto add = [&](const Option& option, auto) { out.emplace_back(option.name); };
+  Config::start_fields(add);
+  Config::fields(add);
+  return out;
+}
+
+bool read_config_key(TomlReader& read, const std::string& key, const toml::node& node,
+                     Config& config) {
+  bool found = key == "system" || key == "set" || key == "inputs";
+  if (key == "system") read.value(node, key, config.system);
+  if (key == "set") read.lists(node, key, config.parameters);
+  if (key == "inputs") read_inputs(read, node, config.inputs);
+  const auto take = [&](const Option& option, auto& value) {
+    if (option.name != key) return;
+    found = true;
+    read.value(node, key, value);
+  };
+  Config::start_fields(
+      [&](const Option& option, auto member) { take(option, config.start.*member); });
+  Config::fields([&](const Option& option, auto member) { take(option, config.*member); });
+  return found;
+}
+
 Config Config::from_toml(const std::string& text, const std::string& origin) {
   TomlReader read(origin);
   const toml::table table = read.parse(text);
@@ -171,20 +205,7 @@ Config Config::from_toml(const std::string& text, const std::string& origin) {
   Config config;
   for (const auto& [name, node] : table) {
     const std::string key(name.str());
-    std::vector<std::string> known = {"system", "set", "inputs"};
-    bool found = std::find(known.begin(), known.end(), key) != known.end();
-    if (key == "system") read.value(node, key, config.system);
-    if (key == "set") read.lists(node, key, config.parameters);
-    if (key == "inputs") read_inputs(read, node, config.inputs);
-    const auto take = [&, &entry = node](const Option& option, auto& value) {
-      known.emplace_back(option.name);
-      if (option.name != key) return;
-      found = true;
-      read.value(entry, key, value);
-    };
-    start_fields([&](const Option& option, auto member) { take(option, config.start.*member); });
-    fields([&](const Option& option, auto member) { take(option, config.*member); });
-    if (!found) read.unknown_key(node, key, known);
+    if (!read_config_key(read, key, node, config)) read.unknown_key(node, key, config_keys());
   }
   if (!read.mistakes.empty()) throw ConfigError(read.mistakes);
   return config;
@@ -229,7 +250,7 @@ Config Config::completed() const {
   return out;
 }
 
-std::vector<double> Config::rows() const {
+std::vector<double> Config::recorded_times() const {
   if (!output_times.empty() || !output_step) return output_times;
   const double count = std::floor(std::abs(until - from) / *output_step * (1 + 1e-12) + 1e-9);
   std::vector<double> out;

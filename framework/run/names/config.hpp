@@ -16,15 +16,15 @@
 
 namespace hamel {
 
-/// What is said of one option: a double (or none), long, bool or string, or a list of doubles or
+/// One option: a double (or none), long, bool or string, or a list of doubles or
 /// strings.
 struct Option {
   const char* name;  // in files and records; on the command line with dashes, --on-failure
-  const char* unit;  // "" for words, "1" for plain numbers
+  const char* unit;  // "" for names, "1" for plain numbers
   const char* meaning;
   bool axis = false;                 // whether a study may vary it
   bool (*allows)(double) = nullptr;  // for numbers, each entry of a list
-  const char* expected = "";         // in words
+  const char* expected = "";         // the allowed values, as text
 };
 
 struct Config {
@@ -59,7 +59,7 @@ struct Config {
   template <class F>
   static void fields(F&& f) {
     f(Option{"scheme", "",
-             "reading of the method; without one dop853, with a step of one size lift", true},
+             "scheme of integration; without one dop853, with a step of one size lift", true},
       &Config::scheme);
     f(Option{"retraction", "", "retraction map", true}, &Config::retraction);
     f(Option{"s", "1", "discretisation parameter, in [0, 1]", true,
@@ -80,8 +80,8 @@ struct Config {
              [](double x) { return x > 0 && x < 1; }, "a number in (0, 1)"},
       &Config::tolerance);
     f(Option{"step", "s",
-             "step, of either sign; where steps are chosen the first one; without one 0.01, or "
-             "chosen at rtol 1e-8 where no scheme is named either",
+             "step, of either sign; where the error chooses them the first one; without one 0.01, "
+             "or chosen at rtol 1e-8 where no scheme is named either",
              true, [](double x) { return std::isfinite(x) && x != 0; },
              "a finite number other than 0"},
       &Config::step);
@@ -99,11 +99,11 @@ struct Config {
              false, [](double x) { return x > 0 && std::isfinite(x); }, "a number above 0"},
       &Config::step_max);
     f(Option{"speed", "m/s",
-             "start, straight ahead at this speed, for systems that know such a motion", false,
-             [](double v) { return std::isfinite(v); }, "a finite number"},
+             "start, straight ahead at this speed, for systems that define a straight motion",
+             false, [](double v) { return std::isfinite(v); }, "a finite number"},
       &Config::speed);
-    f(Option{"from", "s", "start time: that of a forced run which goes on", false,
-             [](double x) { return std::isfinite(x); }, "a finite number"},
+    f(Option{"from", "s", "start time", false, [](double x) { return std::isfinite(x); },
+             "a finite number"},
       &Config::from);
     f(Option{"until", "s",
              "end time, beyond the start in the direction of the step; whole steps only", false,
@@ -140,7 +140,7 @@ struct Config {
   std::string text(const std::string& option) const;
   void set(const std::string& option, const std::string& text);
 
-  /// With the scheme and the steps that stand where none are given: neither scheme nor step, dop853
+  /// With the scheme and the steps used where none are given: neither scheme nor step, dop853
   /// at rtol 1e-8 with rows every kUsualStep; a step of one size, or a composition of such, lift;
   /// rtol or atol, dop853; a scheme, steps of kUsualStep.
   Config completed() const;
@@ -155,14 +155,14 @@ struct Config {
   double absolute() const { return atol.value_or(relative()); }
 
   /// The times of the rows where they are given by output_step or output_times, else none.
-  std::vector<double> rows() const;
+  std::vector<double> recorded_times() const;
   /// The number of whole steps: (until - from) / step rounded down, up to round-off.
   long steps() const;
   /// As TOML; reads back to an equal Config.
   std::string to_toml() const;
   /// Keys as on the command line. Throws ConfigError with line and column, or the nearest key.
   static Config from_toml(const std::string& text, const std::string& origin = "config");
-  /// A run that goes on where that of a record (Result::record, `-o x.json`) ended: its system,
+  /// A run that resumes where that of a record (Result::record, `-o x.json`) ended: its system,
   /// parameters and options, its last state as the start, its time as `from`, for as long again.
   /// ConfigError for what is no record.
   static Config continued(const std::string& record, const std::string& origin = "record");

@@ -1,9 +1,9 @@
-// What a user gives for the inputs of a run (mechanics/inputs.hpp), as text and as TOML has it;
+// Values that a user gives for the inputs of a run (mechanics/inputs.hpp), as text and as TOML;
 // files read, all checked.
 //
 //   2.5                a constant
-//   gait.csv           a table, columns t,value, linear between its rows;  gait.csv:hold  held from
-//   row to row
+//   gait.csv           a table, columns t,value, linear between its rows
+//   gait.csv:hold      held from row to row
 // Lines of a table that begin with # are left out. Its times increase, and cover the run.
 #pragma once
 

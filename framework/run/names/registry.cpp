@@ -99,6 +99,11 @@ void Registry::add_kernel(const std::string& problem, const std::string& retract
   kernels_[kernel_key(problem, retraction, scheme)] = std::move(factory);
 }
 
+void Registry::add_lanes(const std::string& problem, const std::string& retraction,
+                         const std::string& scheme, LaneInfo info) {
+  lanes_[kernel_key(problem, retraction, scheme)] = std::move(info);
+}
+
 const GroupInfo* Registry::group(const std::string& name) const { return find(groups_, name); }
 const RetractionInfo* Registry::retraction(const std::string& group,
                                            const std::string& name) const {
@@ -121,13 +126,22 @@ const SystemInfo* Registry::system(const std::string& name) const {
   std::call_once(entry.made, [&] { entry.info = entry.make(); });
   return &entry.info;
 }
+namespace {
+std::string problem_of(const std::string& group, const Mechanics& mechanics) {
+  return mechanics.left_invariant()
+             ? problem_key(group, mechanics.dim() - mechanics.constraint_count())
+             : problem_key(typeid(mechanics));
+}
+}  // namespace
+
 const KernelFactory* Registry::kernel(const std::string& group, const Mechanics& mechanics,
                                       const std::string& retraction,
                                       const std::string& scheme) const {
-  const std::string problem = mechanics.left_invariant()
-                                  ? problem_key(group, mechanics.dim() - mechanics.rows())
-                                  : problem_key(typeid(mechanics));
-  return find(kernels_, kernel_key(problem, retraction, scheme));
+  return find(kernels_, kernel_key(problem_of(group, mechanics), retraction, scheme));
+}
+const LaneInfo* Registry::lanes(const std::string& group, const Mechanics& mechanics,
+                                const std::string& retraction, const std::string& scheme) const {
+  return find(lanes_, kernel_key(problem_of(group, mechanics), retraction, scheme));
 }
 
 namespace {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <hamel/framework/loop/kernel.hpp>
+#include <hamel/framework/loop/lane_kernel.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
@@ -28,6 +29,7 @@ struct RetractionInfo {
   /// The retraction of those factors of a product that have none of this name; empty: then it has
   /// none either.
   std::string elsewhere = {};
+  std::string source = {};
 };
 
 using KernelFactory = std::function<std::unique_ptr<Kernel>(const KernelSetup&)>;
@@ -48,10 +50,10 @@ struct SchemeInfo {
   KernelFactory erased = {};
 
   bool defined(bool left_invariant) const { return left_invariant || !left_invariant_only; }
-  /// What it claims for a run; order 0 where it is not defined.
+  /// The order claimed for a run; 0 where the scheme is not defined.
   ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) const;
   /// The same on a system. With forces at the nodes only (lift), constant inertia and rows A xi = 0
-  /// do for left-invariant: (M43).
+  /// count as left-invariant: (M43).
   ClaimedOrder claim(double s, TauTraits tau, const Mechanics& system,
                      const std::string& force_at) const;
 };
@@ -79,12 +81,12 @@ struct FileKind {
       read;
 };
 
-/// What kernels are compiled for: the type of a system (typeid of its Mechanics), or,
+/// The key for which kernels are compiled: the type of a system (typeid of its Mechanics), or,
 /// left-invariant, group and m.
 std::string problem_key(const std::string& group, int m);
 std::string problem_key(const std::type_info& mechanics);
 
-/// Of products put together by name: a step takes n^3 operations and n^2 numbers.
+/// Limit of products put together by name: a step takes n^3 operations and n^2 numbers.
 constexpr int kMaxDimension = 1000;
 
 class Registry {
@@ -96,19 +98,23 @@ class Registry {
   void add(SolverInfo info);
   void add(SystemInfo info);
   void add(FileKind kind);
-  /// A system whose description is made when its name is first asked for: of files that go by name,
+  /// A system whose description is made when its name is first looked up: of files that go by name,
   /// listed apart.
   void add_deferred(const std::string& name, std::function<SystemInfo()> make);
   void add_solver(const std::string& name, const std::string& summary, SolveFunction solve);
   /// Another name of a scheme, accepted wherever a scheme is named; a scheme of that name goes
   /// first.
   void add_scheme_alias(const std::string& alias, const std::string& scheme);
-  /// A solver that this build lacks, for want of info.package: listed and described, but no
+  /// A solver that this build lacks because info.package is missing: listed and described, but no
   /// solver().
   void add_absent(SolverInfo info);
   /// A kernel compiled for one problem: problem_key() with a retraction and a scheme.
   void add_kernel(const std::string& problem, const std::string& retraction,
                   const std::string& scheme, KernelFactory factory);
+
+  /// The same for bodies in lanes.
+  void add_lanes(const std::string& problem, const std::string& retraction,
+                 const std::string& scheme, LaneInfo info);
 
   // Null when there is no such name.
   const GroupInfo* group(const std::string& name) const;
@@ -121,6 +127,9 @@ class Registry {
   /// serves.
   const KernelFactory* kernel(const std::string& group, const Mechanics& mechanics,
                               const std::string& retraction, const std::string& scheme) const;
+  /// The lanes compiled for this problem, else null.
+  const LaneInfo* lanes(const std::string& group, const Mechanics& mechanics,
+                        const std::string& retraction, const std::string& scheme) const;
 
   // Products written "se2*so2^3" that nobody registered are put together from their factors.
   /// Nothing when a factor is unknown, or the dimension above kMaxDimension.
@@ -163,6 +172,7 @@ class Registry {
   std::map<std::string, std::shared_ptr<Deferred>> deferred_;
   std::vector<FileKind> file_kinds_;
   std::map<std::string, KernelFactory> kernels_;
+  std::map<std::string, LaneInfo> lanes_;
 };
 
 }  // namespace hamel

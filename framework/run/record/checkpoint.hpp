@@ -1,6 +1,6 @@
-// The state of a run as bytes, to go on from: every class that has a part of it says so once, for
+// The state of a run as bytes, to resume from: every class that has a part of it lists it once, for
 // both ways, by
-//   template <class Archive> void carry(Archive& archive) { archive(member, ...); }
+//   template <class Archive> void serialize(Archive& archive) { archive(member, ...); }
 // Read by the build that wrote it (io/version.hpp, build_name). Not installed.
 #pragma once
 
@@ -25,21 +25,22 @@ concept PlainNumber = std::is_arithmetic_v<T>;
 
 /// Members that are no numbers, for either archive.
 template <class Archive>
-void carry(Archive& archive, Snapshot& s) {
-  archive(s.step, s.time, s.coordinates, s.velocity, s.momentum, s.energy, s.row_rates,
-          s.constraint, s.holonomic, s.group_defect, s.rotation, s.lag, s.iterations, s.residual);
+void serialize(Archive& archive, Snapshot& s) {
+  archive(s.step, s.time, s.coordinates, s.velocity, s.momentum, s.energy, s.constraint_rates,
+          s.constraint, s.holonomic, s.group_defect, s.rotation, s.time_offset, s.iterations,
+          s.residual);
 }
 template <class Archive>
-void carry(Archive& archive, Fallback& f) {
+void serialize(Archive& archive, Fallback& f) {
   archive(f.step, f.time, f.action);
 }
 template <class Archive>
-void carry(Archive& archive, SolverStats& s) {
+void serialize(Archive& archive, SolverStats& s) {
   archive(s.iterations, s.evaluations, s.iterations_max, s.residual_max, s.rejected, s.fallbacks,
           s.first_fallbacks);
 }
 template <class Archive>
-void carry(Archive& archive, EventMet& e) {
+void serialize(Archive& archive, EventMet& e) {
   archive(e.name, e.time, e.coordinates, e.velocity);
 }
 
@@ -58,8 +59,8 @@ class CheckpointWriter {
   template <class Value>
   void put(Value& value) {
     if constexpr (PlainNumber<Value>) raw(&value, sizeof value);
-    else if constexpr (requires { value.carry(*this); }) value.carry(*this);
-    else if constexpr (requires { carry(*this, value); }) carry(*this, value);
+    else if constexpr (requires { value.serialize(*this); }) value.serialize(*this);
+    else if constexpr (requires { serialize(*this, value); }) serialize(*this, value);
     else {
       std::size_t size = static_cast<std::size_t>(value.size());
       put(size);
@@ -87,8 +88,8 @@ class CheckpointReader {
   template <class Value>
   void get(Value& value) {
     if constexpr (PlainNumber<Value>) raw(&value, sizeof value);
-    else if constexpr (requires { value.carry(*this); }) value.carry(*this);
-    else if constexpr (requires { carry(*this, value); }) carry(*this, value);
+    else if constexpr (requires { value.serialize(*this); }) value.serialize(*this);
+    else if constexpr (requires { serialize(*this, value); }) serialize(*this, value);
     else {
       std::size_t size = 0;
       get(size);

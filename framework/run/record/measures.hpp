@@ -1,4 +1,4 @@
-// What a run measures: one list of quantities by name, and the largest values over the recorded
+// Measurements of a run: one list of quantities by name, and the largest values over the recorded
 // states. The columns of a run, its record and its report, and the tables of a study take names and
 // meanings from here.
 #pragma once
@@ -63,7 +63,7 @@ struct InvariantDrift {
   double start = 0;
   double drift_max = 0;  // max |value - start|
   template <class Archive>
-  void carry(Archive& archive) {
+  void serialize(Archive& archive) {
     archive(name, start, drift_max);
   }
 };
@@ -74,7 +74,7 @@ struct BalancedState {
   double defect = 0;  // J, E - E0 - work
   double scale = 1;   // J, the largest |E| so far
   template <class Archive>
-  void carry(Archive& archive) {
+  void serialize(Archive& archive) {
     archive(work, defect, scale);
   }
 };
@@ -93,7 +93,7 @@ inline double euclidean_distance(std::span<const double> a, std::span<const doub
 }
 
 /// The largest |value| so far; NaN for good once a value was not finite.
-inline void raise(double& largest, double value) {
+inline void update_max_abs(double& largest, double value) {
   if (std::isnan(largest)) return;
   largest = std::isfinite(value) ? std::max(largest, std::abs(value))
                                  : std::numeric_limits<double>::quiet_NaN();
@@ -136,10 +136,10 @@ struct Measurements {
   /// Takes in a state; returns its energy error.
   double take(const Snapshot& state, double energy_start) {
     const double error = energy_error(state.energy, energy_start);
-    raise(energy_error_max, error);
-    raise(constraint_max, state.constraint);
-    raise(holonomic_max, state.holonomic);
-    raise(group_defect_max, state.group_defect);
+    update_max_abs(energy_error_max, error);
+    update_max_abs(constraint_max, state.constraint);
+    update_max_abs(holonomic_max, state.holonomic);
+    update_max_abs(group_defect_max, state.group_defect);
     if (std::isfinite(state.rotation)) {
       rotation_per_step_max = std::fmax(rotation_per_step_max, state.rotation);
     }
@@ -151,7 +151,7 @@ struct Measurements {
     work = work_done;
   }
   template <class Archive>
-  void carry(Archive& archive) {
+  void serialize(Archive& archive) {
     fields([&](const Quantity&, const char*, auto member) { archive(this->*member); });
     archive(invariants);
   }
@@ -160,8 +160,8 @@ struct Measurements {
                                     std::span<const double> velocity) {
     exact_error_final = euclidean_distance(state.coordinates, element);
     const double velocity_error = euclidean_distance(state.velocity, velocity);
-    raise(exact_error_max, exact_error_final);
-    raise(exact_velocity_error_max, velocity_error);
+    update_max_abs(exact_error_max, exact_error_final);
+    update_max_abs(exact_velocity_error_max, velocity_error);
     return {exact_error_final, velocity_error};
   }
 };

@@ -1,4 +1,4 @@
-// From the record of a run (record.cpp) back: the run that goes on where it ended, and what was
+// From the record of a run (record.cpp) back: the run that resumes where it ended, and what was
 // measured.
 #include <algorithm>
 #include <cmath>
@@ -78,10 +78,10 @@ class Entry {
     get(out);
     return out;
   }
-  // Of what was not measured, or was not finite, kNone.
+  // A measured number; kNone where nothing was measured or the value was not finite.
   double measured() const { return null() ? Measurements::kNone : as<double>(); }
 
-  // Of an option, as a command line has it.
+  // The text of an option, as on a command line.
   std::string text() const {
     if (!json_->is_array()) return json_->is_string() ? as<std::string>() : shown();
     std::vector<std::string> texts;

@@ -165,7 +165,9 @@ void Result::write(const std::string& path) const {
         path)});
   }
   const std::unique_ptr<Sink> sink = make_sink(path);
-  sink->begin({trajectory.groups(), config.to_toml(), "", record()});
+  std::vector<std::string> watched = config.events;
+  watched.insert(watched.end(), config.stop_at.begin(), config.stop_at.end());
+  sink->begin({trajectory.groups(), config.to_toml(), "", record(), watched});
   sink->rows(trajectory.values());
   sink->finish(*this);
 }

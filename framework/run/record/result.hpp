@@ -1,4 +1,4 @@
-// What a run leaves behind: status, trajectory, record, and the ways to read or write them.
+// Result of a run: status, trajectory, record, and the ways to read or write them.
 #pragma once
 
 #include <memory>
@@ -64,7 +64,7 @@ struct Result : Measurements {
   std::shared_ptr<const SystemModel> system;  // <hamel/hamel.hpp> has its members
   std::shared_ptr<const Inputs> inputs;       // null without
   std::vector<std::string> unused;            // options that the scheme makes no use of
-  std::vector<std::string> notes;  // what the user should know (a start that was projected, ...)
+  std::vector<std::string> notes;  // notes for the user (a start that was projected, ...)
   Status status;
   Snapshot last;  // the last good state
   long steps = 0;
@@ -88,10 +88,10 @@ struct Result : Measurements {
   void write(const std::string& path) const;
 };
 
-/// The two runs by which an error is estimated (check), in words.
+/// The two runs by which an error is estimated (check), described.
 const char* finer_runs(const Config& config);
 
-/// A run in a file, .h5: how to go on with it. ConfigError where the file holds none.
+/// A run in a file, .h5: how to resume it. ConfigError where the file holds none.
 struct Recorded {
   std::string path;  // without .part
   bool finished;
@@ -102,7 +102,7 @@ Recorded read_recorded(const std::string& path);
 /// The machine this runs on: node name, system, architecture.
 std::string host_name();
 
-/// The extensions that Result::write and Simulation::record_to know.
+/// The extensions that Result::write and Simulation::record_to accept.
 const std::vector<std::string>& output_formats();
 
 }  // namespace hamel

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 // The one before had texts of variable length, without a checksum.
 constexpr const char *kFormat = "hamel run 2", *kFormatBefore = "hamel run 1";
 
-// Where there is an unfinished run of this file, that one.
+// The unfinished run of this file where there is one, else the file.
 std::string existing(const std::string& path) {
   std::error_code error;
   const std::string part = part_of(path);
@@ -45,6 +45,7 @@ void RunFileSink::begin(const RunHead& head) {
   lock_ = std::make_unique<FileLock>(fresh);  // it stays with the file when that becomes x.part
   if (locked(part))
     throw ConfigError({fmt::format("output: another process is writing '{}'", part)});
+  events_ = event_rows(head);
   out_ = std::make_unique<RowFileWriter>(fresh, head.columns,
                                          std::map<std::string, std::string>{
                                              {"format", kFormat},
@@ -52,7 +53,8 @@ void RunFileSink::begin(const RunHead& head) {
                                              {"config", head.config},
                                              {"files", head.files},
                                              {"start", head.record},
-                                         });
+                                         },
+                                         events_);
 }
 
 void RunFileSink::checkpoint(const std::string& state, const std::string& news) {
@@ -72,7 +74,7 @@ void RunFileSink::flush() {
 
 void RunFileSink::finish(const Result& result) {
   flush();
-  out_->finish(result.record());
+  out_->finish(result.record(), event_rows(std::move(events_), result.events));
   finish_file(part_of(path_), path_);
 }
 

@@ -1,9 +1,10 @@
-// A run in an HDF5 file (io/row_file.hpp): written as it goes, read when it goes on, or for its
-// page. Not installed.
+// A run in an HDF5 file (io/row_file.hpp): written during the run, read when it is resumed, or for
+// its page. Not installed.
 //
 // Data sets: the groups of columns; texts: config (TOML), files (texts_of_files), start (the record
 // before the first step), build, format, and record, the Result's, in the end; resume, checkpoints
-// (run/record/checkpoint.hpp) until then.
+// (run/record/checkpoint.hpp) until then. The set events, where some are watched, is for readers;
+// hamel itself reads them in the record.
 #pragma once
 
 #include <memory>
@@ -27,7 +28,7 @@ class RunFileSink final : public Sink {
   void rows(std::span<const double> values) override { out_->append(values); }
   bool resumable() const override { return true; }
   void checkpoint(const std::string& state, const std::string& news) override;
-  /// The first time its file takes the place of one that was there: a run that goes on has written
+  /// The first time its file takes the place of one that was there: a resumed run has written
   /// its rows again by then.
   void flush() override;
   void finish(const Result& result) override;
@@ -37,21 +38,22 @@ class RunFileSink final : public Sink {
   bool in_place_ = false;
   std::unique_ptr<FileLock> lock_;
   std::unique_ptr<RowFileWriter> out_;
+  NamedRows events_;
 };
 
-/// What an unfinished run left.
+/// An unfinished or finished run, as its file has it.
 class RunFile {
  public:
   /// path: with or without .part. ConfigError where there is no run.
   explicit RunFile(const std::string& path);
-  /// Of the whole file, without .part.
+  /// The path of the whole file, without .part.
   const std::string& path() const { return path_; }
   bool finished() const { return rows_.finished(); }
   std::string record() const { return rows_.record(); }
   Config config() const;
   std::string text(const std::string& name) const { return rows_.text(name); }
   const RowFileReader& table() const { return rows_; }
-  /// Of texts_of_files, by path. ConfigError where it is not there.
+  /// A text of texts_of_files, by path. ConfigError where it is not there.
   std::string file(const std::string& path) const;
 
   /// The last checkpoint that is whole with the rows before it: its state, what came before it
@@ -72,11 +74,11 @@ class RunFile {
 /// that were written.
 Trajectory read_rows(const RunFile& file, std::size_t most);
 
-/// What a record says of a run, into a Result that has its system and config. ConfigError, with the
+/// The contents of a record, into a Result that has its system and config. ConfigError, with the
 /// place, where it is none.
 void read_record(const std::string& record, const std::string& origin, Result& out);
 
-/// What a record calls an option: its "events" are those that were met.
+/// The key of an option in a record: its "events" are those that occurred.
 inline std::string key_in_record(const Option& option) {
   return std::string(option.name) == "events" ? "watched" : option.name;
 }

@@ -88,17 +88,30 @@ class CompressedBytes {
   gzFile file_;
 };
 
-// Names, rows, then the record in lines that begin with #.
+std::string csv_of(const NamedRows& named) {
+  std::string out = csv_field(named.name);
+  for (const std::string& column : named.columns) out += "," + csv_field(column);
+  out += '\n';
+  for (const NamedRows::Row& row : named.rows) {
+    out += csv_field(row.name);
+    for (const double value : row.values) out += fmt::format(",{:.17g}", value);
+    out += '\n';
+  }
+  return out;
+}
+
+// Names, rows, then the record in lines that begin with #. Events are a table in a file beside it.
 template <class Bytes>
 class CsvSink final : public Sink {
  public:
   explicit CsvSink(std::string path) : path_(std::move(path)) {}
   ~CsvSink() override {
-    // What holds no row is no beginning of a file.
+    // An unfinished file without rows is removed.
     if (out_ && !rows_ && path_ != "-") std::remove(part_of(path_).c_str());
   }
   void begin(const RunHead& head) override {
     out_.emplace(path_);
+    events_ = event_rows(head);
     for (const ColumnGroup& group : head.columns) {
       for (const std::string& name : group.columns) {
         text_.append(std::string_view(width_++ > 0 ? "," : ""));
@@ -129,6 +142,11 @@ class CsvSink final : public Sink {
     for (std::string line; std::getline(lines, line);)
       fmt::format_to(std::back_inserter(text_), "# {}\n", line);
     put();
+    if (const std::string path = path_of_events(path_); !events_.set.empty() && !path.empty()) {
+      Bytes events(path);
+      events.write(csv_of(event_rows(std::move(events_), result.events)));
+      events.finish();
+    }
     out_->finish();
   }
 
@@ -141,6 +159,7 @@ class CsvSink final : public Sink {
   static constexpr std::size_t kNumber = 32;  // bytes of a number at most: -1.7976931348623157e+308
   std::string path_;
   std::optional<Bytes> out_;  // from its beginning on: of a run that is refused nothing is left
+  NamedRows events_;
   bool rows_ = false;
   std::size_t width_ = 0;
   fmt::memory_buffer text_;
@@ -182,6 +201,36 @@ const Format* format_of(const std::string& path) {
 }
 
 }  // namespace
+
+std::string path_of_events(const std::string& path) {
+  const std::filesystem::path file(path);
+  const std::string name = file.filename();
+  const size_t dot = std::min(name.rfind(".csv"), name.rfind(".csv.gz"));
+  const bool csv = path != "-" && (name.ends_with(".csv") || name.ends_with(".csv.gz"));
+  return csv ? file.parent_path() / (name.substr(0, dot) + ".events" + name.substr(dot)) : "";
+}
+
+NamedRows event_rows(const RunHead& head) {
+  if (head.events.empty()) return {};
+  NamedRows out{"events", "name", 0, {}};
+  for (const std::string& event : head.events) out.longest = std::max(out.longest, event.size());
+  for (const char* name : {"t", "configuration", "xi"})
+    for (const ColumnGroup& group : head.columns)
+      if (group.name == name)
+        out.columns.insert(out.columns.end(), group.columns.begin(), group.columns.end());
+  while (std::find(out.columns.begin(), out.columns.end(), out.name) != out.columns.end())
+    out.name += '_';  // a system has a coordinate called so
+  return out;
+}
+
+NamedRows event_rows(NamedRows head, const std::vector<EventMet>& met) {
+  for (const EventMet& event : met) {
+    NamedRows::Row& row = head.rows.emplace_back(NamedRows::Row{event.name, {event.time}});
+    row.values.insert(row.values.end(), event.coordinates.begin(), event.coordinates.end());
+    row.values.insert(row.values.end(), event.velocity.begin(), event.velocity.end());
+  }
+  return head;
+}
 
 const std::vector<std::string>& output_formats() {
   static const std::vector<std::string> all = [] {

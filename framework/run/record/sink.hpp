@@ -1,4 +1,4 @@
-// Where the rows of a run go as they come: CSV, compressed or to standard output, HDF5, JSON (the
+// Destinations of a run's rows as they come: CSV, compressed or to standard output, HDF5, JSON (the
 // record alone), memory. Not installed: the builder's own (Simulation::record_to).
 #pragma once
 
@@ -14,13 +14,23 @@
 
 namespace hamel {
 
-/// What is known before the first row.
+/// Data known before the first row.
 struct RunHead {
   std::vector<ColumnGroup> columns;
   std::string config;  // as given, TOML: reads back to the same run
   std::string files;   // texts_of_files (run_file.hpp)
   std::string record;  // as it is at the start: everything resolved, nothing computed
+  std::vector<std::string> events = {};  // those that are watched
 };
+
+/// The file of the events beside a CSV, "x.events.csv" of "x.csv"; "" for other formats.
+std::string path_of_events(const std::string& path);
+
+/// The events of a run, in sets and files called `events`: name, t, the columns of the
+/// element and of xi. No set where none are watched.
+NamedRows event_rows(const RunHead& head);
+/// The same with the events that occurred.
+NamedRows event_rows(NamedRows head, const std::vector<EventMet>& met);
 
 class Sink {
  public:
@@ -28,11 +38,11 @@ class Sink {
   virtual void begin(const RunHead& head) = 0;
   /// Whole rows, one after the other. Unfinished on failure, as in all that follows.
   virtual void rows(std::span<const double> values) = 0;
-  /// Can a run go on from it? Then it is told the state at the rows so far; news: what came since
+  /// Can a run resume from it? Then it receives the state at the rows so far; news: what came since
   /// the last one.
   virtual bool resumable() const { return false; }
   virtual void checkpoint(const std::string& /*state*/, const std::string& /*news*/) {}
-  /// What it has is to be found in its file, now.
+  /// Writes all pending rows to the file now.
   virtual void flush() {}
   /// After the last row.
   virtual void finish(const Result& result) = 0;

@@ -7,7 +7,7 @@ namespace hamel {
 
 DenseOutput::DenseOutput(Kernel& kernel, KernelFactory factory, KernelSetup setup)
     : kernel_(kernel), factory_(std::move(factory)), setup_(std::move(setup)) {
-  setup_.relative = setup_.absolute = 0;
+  setup_.rtol = setup_.atol = 0;
   setup_.first_chosen = false;
 }
 
@@ -25,7 +25,7 @@ Status DenseOutput::at(double t, Snapshot& out) {
   if (ahead) kernel_.node(begin_);
   if (other_ == nullptr) other_ = factory_(setup_);
   other_->restart(begin_.time, begin_.coordinates, begin_.velocity, t - begin_.time);
-  other_->limit(t);
+  other_->set_end_time(t);
   const Status status = other_->advance(1);
   other_->measure(out);
   out.time = t;

@@ -1,6 +1,6 @@
 // The state of a run at any time within its last step, and shortly after it.
 //
-// The explicit pairs have a dense output of their own. Of any other scheme the state at t is where
+// The explicit pairs have their own dense output. Of any other scheme the state at t is where
 // a step of the same scheme, of size t - t_k, leads from the node t_k before: it has the order of
 // the scheme, lies on the group and in the constraints, and runs into the next node.
 #pragma once

@@ -37,13 +37,13 @@ void Driver::make_observers() {
   watching_ = recording_ || plan_.events->any();
   steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
   if (!watching_) return;
-  times_ = recording_ ? config.rows() : std::vector<double>();
+  times_ = recording_ ? config.recorded_times() : std::vector<double>();
   every_node_ = !times_.empty() || plan_.events->any();
   if (!recording_) return;
   const auto& mechanics = plan_.setup.mechanics;
-  meter_ = std::make_unique<Meter>(*plan_.system, plan_.config.start, plan_.geometry, mechanics,
-                                   acting(), plan_.setup.inputs);
-  every_node_ = every_node_ || meter_->wants_nodes();
+  recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, plan_.geometry,
+                                            mechanics, acting(), plan_.setup.inputs);
+  every_node_ = every_node_ || recorder_->wants_nodes();
   for (const std::string& path : request_.records) sinks_.push_back(make_sink(path));
   if (request_.records.empty() || request_.rows_kept)
     sinks_.push_back(make_memory_sink(result_.trajectory, request_.rows_kept.value_or(0)));
@@ -78,7 +78,7 @@ Status Driver::step(long count) {
     const double end = row_.time + static_cast<double>(count) * h;
     if (const Status status = covered(end); !status.ok) return status;
   }
-  if (chosen) kernel_->limit(std::copysign(kInfinite, h));
+  if (chosen) kernel_->set_end_time(std::copysign(kInfinite, h));
   return advance(count);
 }
 
@@ -86,7 +86,7 @@ Status Driver::step_towards(double t) {
   if (plan_.config.chooses_steps()) {
     kernel_->state(row_);
     if (!((t - row_.time) * kernel_->next_step() > 0)) return refuse(t, "t = {} lies behind");
-    kernel_->limit(t);
+    kernel_->set_end_time(t);
   }
   return advance(1);
 }
@@ -98,7 +98,7 @@ Status Driver::advance_to(double t) {
   if (plan_.config.chooses_steps()) {
     if (!(steps >= -1e-9)) return refuse(t, "t = {} lies behind");
     if (steps <= 0) return {};
-    kernel_->limit(t);
+    kernel_->set_end_time(t);
     return advance(std::numeric_limits<long>::max());
   }
   if (!(steps >= -0.5)) return refuse(t, "t = {} lies behind");
@@ -111,11 +111,11 @@ Status Driver::advance_to(double t) {
 // it.
 void Driver::limit_grid(long count) {
   kernel_->state(row_);
-  kernel_->limit(row_.time + static_cast<double>(count) * kernel_->next_step());
+  kernel_->set_end_time(row_.time + static_cast<double>(count) * kernel_->next_step());
 }
 
 Status Driver::complete() {
-  if (plan_.config.chooses_steps()) kernel_->limit(plan_.config.until);
+  if (plan_.config.chooses_steps()) kernel_->set_end_time(plan_.config.until);
   else limit_grid(steps_left_);
   advance(0, true);
   if (request_.progress && result_.status.ok) request_.progress(1);
@@ -197,8 +197,8 @@ void Driver::begin() {
   if (node_.step > 0) return;
   if (recording_) {
     kernel_->measure(result_.last);
-    meter_->begin(result_.last);
-    if (meter_->wants_nodes()) meter_->node(node_);
+    recorder_->begin(result_.last);
+    if (recorder_->wants_nodes()) recorder_->node(node_);
     over_ = !(times_.empty() ? record(node_) : output(plan_.config.from));
   }
   if (!over_ && plan_.events->any()) observe_start();
@@ -226,13 +226,19 @@ void Driver::restart(const Start& start) {
   Config& config = plan_.config;
   const Start before = std::exchange(config.start, start);
   PlannedStart planned = plan_start(*plan_.system, config, mistakes);
-  evaluate_start(*plan_.system, plan_.setup.inputs, plan_.geometry.get(), config.from, planned,
-                 mistakes);
+  if (matrices_ && mistakes.none()) {
+    static_cast<StartMatrices&>(planned) = *std::exchange(matrices_, std::nullopt);
+  } else {
+    evaluate_start(*plan_.system, plan_.setup.inputs, plan_.geometry.get(), config.from, planned,
+                   mistakes);
+  }
   if (!mistakes.none()) {
     config.start = before;
     mistakes.refuse();
   }
-  project_start(planned);
+  project_start(*plan_.system, planned);
+  if (plan_.system->mechanics->left_invariant() && !plan_.system->start_mistakes)
+    matrices_ = std::move(static_cast<StartMatrices&>(planned));
   config.start = planned.start;
   plan_.setup.configuration = planned.start.configuration;
   plan_.setup.velocity = planned.start.velocity;
@@ -243,7 +249,7 @@ void Driver::restart(const Start& start) {
   if (!watching_) return;
   plan_.events->begin(state_of(config.start, config.from), mistakes.all());
   mistakes.refuse();
-  meter_.reset();
+  recorder_.reset();
   sinks_.clear();
   result_ = Result();
   next_ = 0;
@@ -271,6 +277,12 @@ const Snapshot& Driver::at(double t) {
   const Status status = dense().at(t, row_);
   if (!status.ok) throw std::runtime_error(fmt::format("no state at t = {}: {}", t, status.reason));
   return row_;
+}
+
+double Driver::time() {
+  if (result_.stopped_by_event) return result_.last.time;
+  kernel_->state(row_);
+  return row_.time;
 }
 
 const Snapshot& Driver::state() {

@@ -1,5 +1,5 @@
 // The driver of a run: it takes the steps, and its observers follow them: events with their
-// impacts, rows with their measurements, files and checkpoints. Not installed: what stands behind
+// impacts, rows with their measurements, files and checkpoints. Not installed: the insides of
 // Run.
 #pragma once
 
@@ -12,15 +12,15 @@
 #include <hamel/framework/run/record/sink.hpp>
 #include <hamel/framework/run/run/dense_output.hpp>
 #include <hamel/framework/run/run/events.hpp>
-#include <hamel/framework/run/run/meter.hpp>
 #include <hamel/framework/run/run/plan.hpp>
 #include <hamel/framework/run/run/restarted_kernel.hpp>
+#include <hamel/framework/run/run/run_recorder.hpp>
 
 namespace hamel {
 
 class Driver {
  public:
-  /// What becomes of the rows: of a run by hand they are kept where the request asks for it, of a
+  /// Policy for the rows: of a run by hand they are kept on request, of a
   /// run to its end always.
   enum class Rows { asked_for, always };
   /// plan: without mistakes.
@@ -35,6 +35,9 @@ class Driver {
   void restart(const Start& start);
   const Snapshot& at(double t);
   const Snapshot& state();
+  double time();
+  const std::vector<EventMet>& events() const { return result_.events; }
+  bool over() const { return over_; }
   /// The run in a file is resumed.
   void resume(const RunFile& file);
   /// The last row and the measurements; the run is over. Files are unfinished until close().
@@ -62,7 +65,7 @@ class Driver {
   Status refuse(double t, const std::string& reason) const;
   DenseOutput& dense();
 
-  // What the last step brought; false: the run ends here.
+  // Observes the last step; false: the run ends here.
   bool observe_step();
   bool observe_event(const Events::Found& event, bool& go_on);
   void observe_within_step();
@@ -86,16 +89,17 @@ class Driver {
   void measure_ends_only();
   // All that a resumed run needs but the events that were met.
   template <class Archive>
-  void carry(Archive& archive) {
-    archive(*kernel_, steps_left_, next_, recorded_, result_.seconds, *plan_.events, *meter_);
+  void serialize(Archive& archive) {
+    archive(*kernel_, steps_left_, next_, recorded_, result_.seconds, *plan_.events, *recorder_);
   }
 
   RunPlan plan_;
   RunRequest request_;
   bool recording_, watching_ = false, every_node_ = false;
   std::unique_ptr<RestartedKernel> kernel_;
-  std::unique_ptr<DenseOutput> dense_;  // made when it is first needed
-  std::unique_ptr<Meter> meter_;        // null where nothing is recorded
+  std::optional<StartMatrices> matrices_;  // of a restart, where they are the same everywhere
+  std::unique_ptr<DenseOutput> dense_;     // made when it is first needed
+  std::unique_ptr<RunRecorder> recorder_;  // null where nothing is recorded
   std::vector<std::unique_ptr<Sink>> sinks_;
   Result result_;
   Snapshot node_, row_;

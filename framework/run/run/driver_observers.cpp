@@ -1,4 +1,4 @@
-// What follows the steps of a run: events, impacts, rows, files, checkpoints, and its end.
+// Observers of the steps of a run: events, impacts, rows, files, checkpoints, and its end.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,9 +23,9 @@ bool Driver::observe_step() {
     if (observe_event(event, go_on)) return go_on;
   }
   if (!recording_) return true;
-  if (meter_->wants_nodes()) {
+  if (recorder_->wants_nodes()) {
     observe_within_step();
-    meter_->node(node_);
+    recorder_->node(node_);
   }
   if (!times_.empty()) return output(node_.time);
   return node_.step % plan_.config.every == 0 ? record(node_) : true;
@@ -45,14 +45,14 @@ void Driver::observe_start() {
   }
 }
 
-// True where the state behind the event is not that of the step: go_on tells whether the run ends
+// True where the state behind the event is not that of the step: go_on is false where the run ends
 // there.
 bool Driver::observe_event(const Events::Found& event, bool& go_on) {
   result_.events.push_back(
       {event.name, event.state.time, event.state.coordinates, event.state.velocity});
   const std::optional<EventState> after = event.stops ? std::nullopt : impact(event);
   if (!event.stops && !after) return false;
-  if (meter_ != nullptr && meter_->wants_nodes()) meter_->node(event.state);
+  if (recorder_ != nullptr && recorder_->wants_nodes()) recorder_->node(event.state);
   go_on = output(event.state.time);  // by the steps before the impact
   if (!go_on) return true;
   if (after) {
@@ -74,7 +74,7 @@ void Driver::observe_within_step() {
   const double begin = row_.time;
   for (const double part : {0.25, 0.5, 0.75}) {
     if (!kernel_->interpolate(begin + part * (node_.time - begin), row_)) return;
-    meter_->node(row_);
+    recorder_->node(row_);
   }
 }
 
@@ -104,16 +104,16 @@ bool Driver::record(const Snapshot& state) {
   if (own) std::swap(result_.last, row_);
   else result_.last = state;
   const Snapshot& row = result_.last;
-  meter_->take(row);
+  recorder_->take(row);
   const auto begin = Clock::now();
-  meter_->compare(row);
+  recorder_->compare(row);
   comparing_ += Clock::now() - begin;
   ++rows_;
   if (!sinks_begun_) {
     Result at_start = head();
     at_start.status = {false, 0, row.time, 0, "unfinished"};
     at_start.last = row;
-    begin_sinks(meter_->columns(), at_start.record());
+    begin_sinks(recorder_->columns(), at_start.record());
     for (const auto& sink : sinks_) sink->flush();
   }
   if (!good_row) return false;
@@ -147,30 +147,32 @@ void Driver::restart_behind(const EventState& state, const Events::Found& event)
   const Config& config = plan_.config;
   const std::vector<double> velocity = admissible(*plan_.system, plan_.geometry, state, event.name);
   const double h = kernel_->next_step();
-  const double limit = kernel_->limit();
+  const double limit = kernel_->end_time();
   kernel_->restart(state.time, state.coordinates, velocity, h);
-  if (config.chooses_steps()) kernel_->limit(limit);
+  if (config.chooses_steps()) kernel_->set_end_time(limit);
   else {
     steps_left_ =
         static_cast<long>(std::floor((config.until - state.time) / h * (1 + 1e-12) + 1e-9));
     limit_grid(steps_left_);
   }
   kernel_->state(node_);
-  if (meter_ != nullptr) meter_->impact(event.state, node_);
+  if (recorder_ != nullptr) recorder_->impact(event.state, node_);
   plan_.events->resume(node_, event.name);
 }
 
 // ---- files --------------------------------------------------------------------------------------
 
 void Driver::begin_sinks(const std::vector<ColumnGroup>& columns, const std::string& record) {
-  const RunHead head{columns, plan_.outputs.request, plan_.outputs.files, record};
+  const Config& config = plan_.config;
+  RunHead head{columns, plan_.outputs.request, plan_.outputs.files, record, config.events};
+  head.events.insert(head.events.end(), config.stop_at.begin(), config.stop_at.end());
   for (const auto& sink : sinks_) sink->begin(head);
   sinks_begun_ = true;
 }
 
 void Driver::deliver() {
-  for (const auto& sink : sinks_) sink->rows(meter_->rows());
-  meter_->drop_rows();
+  for (const auto& sink : sinks_) sink->rows(recorder_->rows());
+  recorder_->drop_rows();
 }
 
 void Driver::keep() {
@@ -184,7 +186,7 @@ void Driver::keep() {
     kernel_->state(node_);
     result_.seconds = elapsed();
     CheckpointWriter state, news;
-    carry(state);
+    serialize(state);
     std::vector<EventMet> met(result_.events.begin() + kept_events_, result_.events.end());
     kept_events_ = static_cast<long>(result_.events.size());
     news(met);
@@ -197,7 +199,7 @@ void Driver::resume(const RunFile& file) {
   const RunFile::Kept kept = file.kept();
   if (kept.state.empty()) return;  // from its start
   CheckpointReader state(kept.state);
-  carry(state);
+  serialize(state);
   dense_.reset();
   kernel_->state(node_);
   begun_ = true;
@@ -218,7 +220,8 @@ void Driver::resume(const RunFile& file) {
     const std::size_t count = std::min(piece, kept.rows - at);
     file.table().read(at, count, rows);
     for (const auto& sink : sinks_) sink->rows(rows);
-    for (std::size_t i = 0; i < count; ++i) meter_->follow_exact(rows[i * (rows.size() / count)]);
+    for (std::size_t i = 0; i < count; ++i)
+      recorder_->follow_exact(rows[i * (rows.size() / count)]);
   }
   CheckpointWriter news;
   news(result_.events);
@@ -234,7 +237,7 @@ void Driver::rows_to_files_after_failure() {
   if (!sinks_begun_) return;
   for (const auto& sink : sinks_) {
     try {
-      if (!meter_->rows().empty()) sink->rows(meter_->rows());
+      if (!recorder_->rows().empty()) sink->rows(recorder_->rows());
       sink->flush();
     } catch (const std::exception&) {
     }
@@ -266,8 +269,8 @@ void Driver::measure_ends_only() {
         Measurements::kNone;
     return;
   }
-  Meter meter(*plan_.system, plan_.config.start, plan_.geometry, plan_.setup.mechanics, acting(),
-              plan_.setup.inputs);
+  RunRecorder meter(*plan_.system, plan_.config.start, plan_.geometry, plan_.setup.mechanics,
+                    acting(), plan_.setup.inputs);
   if (meter.wants_nodes()) {
     result_.energy_error_max = Measurements::kNone;
     result_.notes.emplace_back(
@@ -304,10 +307,10 @@ Result& Driver::end() {
       measure_ends_only();
       return result_;
     }
-    meter_->finish(result_.last);
+    recorder_->finish(result_.last);
     deliver();
-    static_cast<Measurements&>(result_) = meter_->all();
-    result_.notes.insert(result_.notes.end(), meter_->notes().begin(), meter_->notes().end());
+    static_cast<Measurements&>(result_) = recorder_->all();
+    result_.notes.insert(result_.notes.end(), recorder_->notes().begin(), recorder_->notes().end());
   } catch (...) {
     rows_to_files_after_failure();
     throw;

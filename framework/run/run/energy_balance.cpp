@@ -16,9 +16,10 @@ EnergyBalance::EnergyBalance(std::shared_ptr<const Geometry> geometry,
   if (inputs_ != nullptr) changes_ = inputs_->changes();
   g_.resize(geometry_->size());
   if (!mechanics->has_drift()) return;
-  motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, mechanics));
-  b_.resize(mechanics->rows());
-  a_.resize(mechanics->rows(), mechanics->dim());
+  motion_ =
+      std::make_unique<EquationsOfMotion<DynamicProblem>>(DynamicProblem(geometry_, mechanics));
+  b_.resize(mechanics->constraint_count());
+  a_.resize(mechanics->constraint_count(), mechanics->dim());
 }
 
 double EnergyBalance::power(const Snapshot& state) {
@@ -45,7 +46,7 @@ void EnergyBalance::node(const Snapshot& state) {
   work_.add(state.time, now);
   if (!started_) energy_start_ = state.energy;
   started_ = true;
-  raise(energy_max_, state.energy);
+  update_max_abs(energy_max_, state.energy);
   if (work_.settled()) settle();
 }
 
@@ -58,7 +59,7 @@ void EnergyBalance::settle() {
   for (const Recorded& r : waiting_) {
     work_done_ = done_ + work_.value(r.time);
     const double defect = r.energy - energy_start_ - work_done_;
-    raise(defect_max_, defect);
+    update_max_abs(defect_max_, defect);
     settled_.push_back({work_done_, defect, scale()});
   }
   waiting_.clear();
@@ -75,7 +76,7 @@ void EnergyBalance::impact(const Snapshot& before, const Snapshot& after) {
   break_off(after);
   last_ = after;
   energy_start_ += after.energy - before.energy;
-  raise(energy_max_, after.energy);
+  update_max_abs(energy_max_, after.energy);
 }
 
 void EnergyBalance::settled(std::vector<BalancedState>& out) {

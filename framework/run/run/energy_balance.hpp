@@ -9,7 +9,7 @@
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/run/run/nodal_quadrature.hpp>
-#include <hamel/framework/schemes/erased.hpp>
+#include <hamel/framework/schemes/dynamic_problem.hpp>
 
 namespace hamel {
 
@@ -22,7 +22,7 @@ class EnergyBalance {
                 std::shared_ptr<const Inputs> inputs);
   bool active() const { return active_; }
 
-  /// Of each node, from the start on: its step, time, coordinates, velocity and energy.
+  /// Takes each node, from the start on: its step, time, coordinates, velocity and energy.
   void node(const Snapshot& state);
   /// A recorded state, between the last two nodes or one of them.
   void row(const Snapshot& state);
@@ -30,22 +30,22 @@ class EnergyBalance {
   /// An event changed the state at the last node: its energy is followed from there on.
   void impact(const Snapshot& before, const Snapshot& after);
 
-  /// Those of the recorded states that are known by now and were not taken before, in their order:
+  /// The recorded states that are complete by now and were not taken before, in their order:
   /// one waits for the first nodes of the quadrature.
   void settled(std::vector<BalancedState>& out);
   /// After the last node: none waits.
   void finish() { settle(); }
   /// Over the recorded states that are settled, relative to the largest energy.
   double error_max() const { return defect_max_ / scale(); }
-  /// Of the energies at the nodes so far.
+  /// The largest energy at the nodes so far.
   double scale() const { return energy_max_ == 0 ? 1 : energy_max_; }
   /// At the last recorded state.
   double work() const { return work_done_; }
 
   template <class Archive>
-  void carry(Archive& archive) {
-    // The inputs of a run that goes on have changed as often as it was told, and not as often as
-    // they were before.
+  void serialize(Archive& archive) {
+    // After a resume Inputs::changes() restarts from zero; only whether a change is pending is
+    // saved.
     bool changed = inputs_ != nullptr && inputs_->changes() != changes_;
     archive(changed, last_, work_, done_, started_, energy_start_, energy_max_, defect_max_,
             work_done_, waiting_, settled_);
@@ -58,7 +58,7 @@ class EnergyBalance {
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
-  std::unique_ptr<EquationsOfMotion<Erased>> motion_;  // null without a drift
+  std::unique_ptr<EquationsOfMotion<DynamicProblem>> motion_;  // null without a drift
   bool active_;
   // The work at the recorded states that wait.
   void settle();
@@ -77,7 +77,7 @@ class EnergyBalance {
   struct Recorded {
     double time = 0, energy = 0;
     template <class Archive>
-    void carry(Archive& archive) {
+    void serialize(Archive& archive) {
       archive(time, energy);
     }
   };

@@ -9,10 +9,10 @@
 namespace hamel {
 namespace {
 
-// What step or tolerance is divided by in a finer run.
+// Divisor of step or tolerance in a finer run.
 double finer_by(const Config& config) { return config.chooses_steps() ? 10 : 2; }
 
-// The run as it was asked for, with the scheme and the steps that it had.
+// The run as requested, with the scheme and the steps that it had.
 Config with_method_of(const Config& resolved, Config asked) {
   asked.scheme = resolved.scheme;
   asked.step = resolved.step;

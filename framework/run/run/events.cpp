@@ -1,13 +1,16 @@
 #include <hamel/framework/run/run/events.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include <hamel/framework/mechanics/system_model.hpp>
+#include <hamel/framework/run/data/event_formula.hpp>
 
 namespace hamel {
 namespace {
@@ -17,7 +20,8 @@ class NormalReaction {
  public:
   NormalReaction(const std::shared_ptr<const Geometry>& geometry,
                  const std::shared_ptr<const Mechanics>& mechanics, int row)
-      : motion_(std::make_shared<EquationsOfMotion<Erased>>(Erased(geometry, mechanics))),
+      : motion_(std::make_shared<EquationsOfMotion<DynamicProblem>>(
+            DynamicProblem(geometry, mechanics))),
         geometry_(geometry),
         g_(geometry->size()),
         row_(row) {}
@@ -31,39 +35,27 @@ class NormalReaction {
   }
 
  private:
-  std::shared_ptr<EquationsOfMotion<Erased>> motion_;
+  std::shared_ptr<EquationsOfMotion<DynamicProblem>> motion_;
   std::shared_ptr<const Geometry> geometry_;
   Eigen::VectorXd g_;
   int row_;
 };
 
-// "x=1.5" or "xi2=0".
-bool plane(const SystemModel& system, const std::string& text, Event& out,
-           std::vector<std::string>& mistakes) {
+// "2_x1=1.5": columns whose names no formula may have, too.
+std::optional<Event> plane(const SystemModel& system, const std::string& text) {
   const size_t equal = text.find('=');
-  if (equal == std::string::npos) return false;
-  const std::string column = text.substr(0, equal);
+  if (equal == std::string::npos) return {};
+  const std::vector<std::string>& columns = system.group.columns;
+  const auto it = std::find(columns.begin(), columns.end(), text.substr(0, equal));
+  const char* const last = text.data() + text.size();
   double value = 0;
-  try {
-    read_text("events", text.substr(equal + 1), value);
-  } catch (const ConfigError& error) {
-    mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
-    return true;
-  }
-  std::vector<std::string> columns = system.group.columns;
-  const size_t coordinates = columns.size();
-  for (int i = 1; i <= system.group.dim; ++i) columns.push_back(fmt::format("xi{}", i));
-  const auto it = std::find(columns.begin(), columns.end(), column);
-  if (it == columns.end()) {
-    mistakes.push_back("events: " + unknown_name("column", column, columns));
-    return true;
-  }
+  const auto [end, error] = std::from_chars(text.data() + equal + 1, last, value);
+  if (it == columns.end() || error != std::errc() || end != last) return {};
   const auto i = static_cast<size_t>(it - columns.begin());
-  out = {text, "this column crosses this value", 0,
-         [i, coordinates, value](double, std::span<const double> g, std::span<const double> xi) {
-           return (i < coordinates ? g[i] : xi[i - coordinates]) - value;
-         }};
-  return true;
+  return Event{text, "this column crosses this value", 0,
+               [i, value](double, std::span<const double> g, std::span<const double>) {
+                 return g[i] - value;
+               }};
 }
 
 struct End {
@@ -129,11 +121,6 @@ Events::Events(const SystemModel& system, std::shared_ptr<const Geometry> geomet
         return;
       }
     }
-    Event event;
-    if (plane(system, name, event, mistakes)) {
-      if (event.value) watched_.push_back({std::move(event), stop, false});
-      return;
-    }
     std::vector<std::string> offered;
     for (size_t i = 0; i < known.size(); ++i) {
       offered.push_back(known[i].name);
@@ -142,7 +129,12 @@ Events::Events(const SystemModel& system, std::shared_ptr<const Geometry> geomet
         return;
       }
     }
-    offered.emplace_back("COLUMN=VALUE");
+    const size_t before = mistakes.size();
+    std::optional<Event> event = plane(system, name);
+    if (!event) event = event_of_formula(system, name, mistakes);
+    if (event) watched_.push_back({std::move(*event), stop, false});
+    if (event || mistakes.size() > before) return;
+    offered.emplace_back("FORMULA=FORMULA (or <, >)");
     mistakes.push_back(unknown_name("event of " + system.name, name, offered));
   };
   for (const std::string& name : names) watch(name, false);
@@ -184,11 +176,14 @@ Status Events::look(const Snapshot& state, DenseOutput& dense, std::vector<Found
   found.clear();
   Status status;
   Snapshot at;
+  const double forward = state.time >= time_ ? 1 : -1;
   for (Watched& w : watched_) {
+    // Direction of the change in time, also in a run back; a contact that pulls ends either run.
+    const double direction = w.contact ? w.event.direction : forward * w.event.direction;
     const double before = w.before,
                  now = w.event.value(state.time, state.coordinates, state.velocity);
     w.before = now != 0 ? now : -before;
-    if (before == 0 || !(before * now < 0 || now == 0) || before * w.event.direction > 0) continue;
+    if (before == 0 || !(before * now < 0 || now == 0) || before * direction > 0) continue;
     double crossing = state.time;
     if (now != 0) {
       const auto inside = [&](double t) {
@@ -201,7 +196,7 @@ Status Events::look(const Snapshot& state, DenseOutput& dense, std::vector<Found
     if (const Status there = dense.at(crossing, at); !there.ok) return there;
     found.push_back({at, w.event.name, w.stops});
   }
-  sort_and_cut(found, state.time >= time_ ? 1 : -1);
+  sort_and_cut(found, forward);
   time_ = state.time;
   return status;
 }

@@ -15,14 +15,14 @@
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/run/run/dense_output.hpp>
-#include <hamel/framework/schemes/erased.hpp>
+#include <hamel/framework/schemes/dynamic_problem.hpp>
 
 namespace hamel {
 
 class Events {
  public:
-  /// Those of the system by name, and "column=value", where a column of the element or of the
-  /// velocity crosses a value. Adds to mistakes what is no event.
+  /// Events of the system by name, and formulas of the state (event_formula.hpp): "x=1.5",
+  /// "x^2+y^2=radius^2", "theta>1". Adds to mistakes what is no event.
   Events(const SystemModel& system, std::shared_ptr<const Geometry> geometry,
          const std::vector<std::string>& names, const std::vector<std::string>& stops,
          std::vector<std::string>& mistakes);
@@ -32,7 +32,7 @@ class Events {
   void begin(const Snapshot& state, std::vector<std::string>& mistakes);
   /// After an event that changed the state: it is not met again at once.
   void resume(const Snapshot& state, const std::string& met);
-  /// Those of the step that leads to `state`, in order of time, up to the first that stops the run.
+  /// Events of the step that leads to `state`, by time, up to the first that stops the run.
   struct Found {
     Snapshot state;
     std::string name;
@@ -43,7 +43,7 @@ class Events {
   std::vector<Found> lost_at_start(const Snapshot& state) const;
 
   template <class Archive>
-  void carry(Archive& archive) {
+  void serialize(Archive& archive) {
     for (Watched& w : watched_) archive(w.before);
     archive(time_);
   }

@@ -37,7 +37,7 @@ class NodalQuadrature {
     settled_ = settled_ || count_ == kNodes;
   }
   /// Will t be one more of the first nodes, which share one polynomial? If not, value(t) is to be
-  /// asked for before t is added where it is still wanted.
+  /// requested before t is added where it is still needed.
   bool joins(double t) const {
     if (settled_) return false;
     std::array<double, kNodes> times{t};
@@ -51,7 +51,7 @@ class NodalQuadrature {
   double value(double t) const { return integral_ - over(t, times_[0]); }
 
   template <class Archive>
-  void carry(Archive& archive) {
+  void serialize(Archive& archive) {
     archive(times_, differences_, count_, used_, first_, integral_, settled_);
   }
 

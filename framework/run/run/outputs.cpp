@@ -34,7 +34,7 @@ std::string difference(const std::string& there, const std::string& here) {
 
 constexpr double kMaxNumbers = 5e8;  // 4 GB of doubles
 
-// What the disks of these files have room for; infinite for a pipe, and for files that are
+// Free space on the disks of these files, in numbers; infinite for a pipe, and for files that are
 // compressed or hold no rows.
 double numbers_that_fit(const std::vector<std::string>& files) {
   double out = std::numeric_limits<double>::infinity();
@@ -57,8 +57,16 @@ double numbers_that_fit(const std::vector<std::string>& files) {
 // Two files of one place, files of another process, an unfinished run that would be lost.
 void check_files(const RunRequest& request, Mistakes& mistakes) {
   std::set<std::string> places;
+  const bool events = !request.config.events.empty() || !request.config.stop_at.empty();
   for (const std::string& path : request.records) {
     std::error_code error;
+    if (const std::string beside = path_of_events(path); events && !beside.empty()) {
+      if (const std::string mistake = record_mistake(beside); !mistake.empty())
+        mistakes.add(mistake);
+      else if (!places.insert(place_of(beside)).second)
+        mistakes.add(
+            fmt::format("output: '{}' is given, and the events of '{}' go there", beside, path));
+    }
     if (const std::string mistake = record_mistake(path); !mistake.empty()) mistakes.add(mistake);
     else if (!places.insert(place_of(path)).second)
       mistakes.add(fmt::format("output: '{}' is given twice", path));
@@ -67,7 +75,7 @@ void check_files(const RunRequest& request, Mistakes& mistakes) {
     else if (path.ends_with(".h5") && place_of(path) != place_of(request.resumed) &&
              std::filesystem::exists(part_of(path), error))
       mistakes.add(
-          fmt::format("output: '{0}.part' is an unfinished run; go on with it (hamel run "
+          fmt::format("output: '{0}.part' is an unfinished run; resume it (hamel run "
                       "--continue {0}), or remove it",
                       path));
   }
@@ -91,7 +99,7 @@ void check_resumed(const RunRequest& request, const Outputs& out, Mistakes& mist
 
 }  // namespace
 
-// What is recorded, and what an earlier part of the run has recorded.
+// Plans what is recorded, beside what an earlier part of the run has recorded.
 Outputs plan_outputs(const RunRequest& request, Mistakes& mistakes) {
   Outputs out;
   try {

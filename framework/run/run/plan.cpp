@@ -75,8 +75,8 @@ void check_composition(const Config& config, const SchemeInfo& scheme, const Cla
 // The tolerances, where the scheme can choose its steps by them.
 void choose_steps(const Config& config, const SchemeInfo& scheme, const ClaimedOrder& claim,
                   Method& method, Mistakes& mistakes) {
-  method.setup.relative = config.relative();
-  method.setup.absolute = config.absolute();
+  method.setup.rtol = config.relative();
+  method.setup.atol = config.absolute();
   if (config.step_max) method.setup.largest = *config.step_max;
   method.setup.first_chosen = scheme.estimates_error && !config.step;
   if (scheme.estimates_error) return;
@@ -121,7 +121,7 @@ Method plan_method(const Registry& registry, const Config& config, const OwnSyst
   plan_composition(config, out, mistakes);
   if (config.force_at != "nodes" && config.force_at != "base")
     mistakes.add(unknown_name("force_at", config.force_at, {"nodes", "base"}));
-  out.setup.forces_at_base = config.force_at == "base";
+  if (config.force_at == "base") out.setup.force_at = ForceAt::base;
   out.setup.from = config.from;
   out.setup.step = config.step_or_usual();
   out.setup.tolerance = config.tolerance;
@@ -237,6 +237,8 @@ void note_end_and_unused(const Config& config, const Method& method,
     notes.push_back(fmt::format("the run ends at t = {:.10g}: whole steps of {} do not reach {}",
                                 end, step, config.until));
   }
+  if (config.step && config.chooses_steps() && !method.scheme->estimates_error)
+    notes.emplace_back("step is not the first one: the reversible control begins with its own");
   if (config.step_max && !config.chooses_steps())
     notes.emplace_back("step_max is not used by steps of one size");
   for (const std::string& option : method.unused) {
@@ -256,7 +258,7 @@ Config resolved(Config config, const Method& method, const SystemModel& system,
   return config;
 }
 
-// Of a system with massless links, whose scheme and step were left open.
+// Plans a system with massless links, whose scheme and step were left open.
 RunPlan plan_by_lift(const Registry& registry, RunRequest request, const OwnSystem* own,
                      Mistakes& mistakes) {
   request.config.scheme = "lift";
@@ -297,7 +299,7 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   }
   if (!mistakes.none()) return plan;
 
-  project_start(start);
+  project_start(system, start);
   plan.config = resolved(config, method, system, start.start);
   plan.keeps_rows = method.scheme->adapted;
   plan.unused = method.unused;

@@ -60,12 +60,17 @@ struct PlannedSystem {
 std::optional<PlannedSystem> plan_system(const Registry& registry, const Config& config,
                                          const OwnSystem* own, Mistakes& mistakes);
 
-/// The start as it was asked for or is the system's own, and I, A, b there.
-struct PlannedStart {
-  Start start;
+/// I, A, b where a run starts, and the Hamel frame of them, once a start was projected.
+struct StartMatrices {
   Eigen::MatrixXd inertia, constraints;
   Eigen::VectorXd drift;
-  bool refused = false;  // its configuration: nothing is said of what holds there
+  Eigen::MatrixXd frame = {};
+};
+
+/// The start as requested, or the system's own, and the matrices there.
+struct PlannedStart : StartMatrices {
+  Start start;
+  bool refused = false;  // its configuration: no further checks there
   std::vector<std::string> notes;
 };
 PlannedStart plan_start(const SystemModel& system, const Config& config, Mistakes& mistakes);
@@ -78,8 +83,8 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
 void check_jumps_of_rates(const SystemModel& system, const Inputs& inputs, const Geometry& geometry,
                           const Config& config, const PlannedStart& planned, Mistakes& mistakes);
 /// The admissible velocity of a start without mistakes; notes what the projection dropped.
-void project_start(PlannedStart& planned);
-/// Of an admissible start.
+void project_start(const SystemModel& system, PlannedStart& planned);
+/// The state of an admissible start.
 Snapshot state_of(const Start& start, double t);
 /// The velocity of a state after an impact, onto the constraints there in the metric I. ConfigError
 /// that names the event.
@@ -87,7 +92,7 @@ std::vector<double> admissible(const SystemModel& system,
                                const std::shared_ptr<const Geometry>& geometry,
                                const EventState& state, const std::string& event);
 
-/// What a file keeps, so that the same run can be resumed.
+/// Data that a file keeps, so that the same run can be resumed.
 struct Outputs {
   std::string request, files;
 };

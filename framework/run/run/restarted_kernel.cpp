@@ -22,7 +22,7 @@ void RestartedKernel::begin_anew() {
   whole_ += kernel_->whole_steps();
   setup_.from = node.time;
   setup_.step = kernel_->next_step();
-  if (setup_.relative == 0 && setup_.absolute == 0)
+  if (setup_.rtol == 0 && setup_.atol == 0)
     setup_.from = origin_ + static_cast<double>(whole_ - origin_steps_) * setup_.step;
   kernel_->node(node);
   setup_.configuration = node.coordinates;
@@ -34,7 +34,7 @@ void RestartedKernel::make() {
   setup_.first_chosen = false;
   if (setup_.inputs != nullptr) setup_.inputs->enter(setup_.from, setup_.step);
   kernel_ = factory_(setup_);
-  kernel_->limit(limit_);
+  kernel_->set_end_time(limit_);
 }
 
 Status RestartedKernel::advance(long count) {
@@ -75,9 +75,9 @@ const SolverStats& RestartedKernel::stats() const {
   return all_;
 }
 
-void RestartedKernel::limit(double t) {
+void RestartedKernel::set_end_time(double t) {
   limit_ = t;
-  kernel_->limit(t);
+  kernel_->set_end_time(t);
 }
 
 void RestartedKernel::restart(double t, std::span<const double> coordinates,

@@ -1,7 +1,6 @@
-// A kernel that begins anew at its own node when it is told, and counts on: what a run does from
-// there follows from the node alone, and not from what is remembered of the steps before
-// (extrapolation, Jacobians, the error's history, products). A run that goes on from a file is then
-// the undisturbed one, bit for bit. Not installed.
+// Rebuilds its kernel from the current node at each checkpoint, so that a resumed run repeats the
+// uninterrupted one bit for bit: what follows depends on the node alone, and not on the steps
+// before (extrapolation, Jacobians, the error's history, products). Not installed.
 #pragma once
 
 #include <memory>
@@ -18,7 +17,7 @@ class RestartedKernel final : public Kernel {
   void begin_anew();
   /// Right after begin_anew(), or in its place.
   template <class Archive>
-  void carry(Archive& archive) {
+  void serialize(Archive& archive) {
     archive(setup_.from, setup_.configuration, setup_.velocity, setup_.step, limit_, origin_,
             origin_steps_, steps_, whole_, past_);
     if constexpr (std::is_same_v<Archive, CheckpointReader>) make();
@@ -32,13 +31,13 @@ class RestartedKernel final : public Kernel {
   const SolverStats& stats() const override;
   void node(Snapshot& out) const override { kernel_->node(out); }
   void beginning(Snapshot& out) const override { kernel_->beginning(out); }
-  void limit(double t) override;
-  double limit() const { return limit_; }
+  void set_end_time(double t) override;
+  double end_time() const { return limit_; }
   double next_step() const override { return kernel_->next_step(); }
   void turn_back() override { kernel_->turn_back(); }
   void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
                double step) override;
-  void forget() override { kernel_->forget(); }
+  void clear_history() override { kernel_->clear_history(); }
   bool interpolate(double t, Snapshot& out) override;
 
  private:

@@ -20,6 +20,9 @@ void Run::input(const std::string& name, double value) { driver_->input(name, va
 void Run::restart(const Start& start) { driver_->restart(start); }
 const Snapshot& Run::at(double t) { return driver_->at(t); }
 const Snapshot& Run::state() { return driver_->state(); }
+double Run::time() { return driver_->time(); }
+const std::vector<EventMet>& Run::events() const { return driver_->events(); }
+bool Run::over() const { return driver_->over(); }
 const SolverStats& Run::stats() const { return driver_->stats(); }
 const Config& Run::config() const { return driver_->plan().config; }
 const SystemModel& Run::system() const { return *driver_->plan().system; }

@@ -8,7 +8,7 @@
 //   hamel::Result result = run.finish();
 //
 // Events, impacts, rows, files and measurements follow the steps, whoever takes them. A run by hand
-// keeps rows where the builder asks for them: record_to(), keep_rows(), observe() or output();
+// keeps rows on request of the builder: record_to(), keep_rows(), observe() or output();
 // without any, and without events, a step costs the step alone.
 #pragma once
 
@@ -55,6 +55,12 @@ class Run {
   const Snapshot& at(double t);
   /// The current state with its measurements; at an event that ended the run, the state there.
   const Snapshot& state();
+  /// Its time, without the measurements.
+  double time();
+  /// The events met so far.
+  const std::vector<EventMet>& events() const;
+  /// Has an event, an observer, or finish() ended it?
+  bool over() const;
   const SolverStats& stats() const;
   const Config& config() const;
   const SystemModel& system() const;
@@ -66,6 +72,9 @@ class Run {
   /// start and end). After it the run takes no more steps. Throws Unfinished where a file cannot be
   /// completed.
   Result finish();
+
+  /// The insides, for the library's own rooms (driver.hpp is not installed).
+  const Driver& driver() const { return *driver_; }
 
  private:
   std::unique_ptr<Driver> driver_;

@@ -33,11 +33,11 @@ void add_notes(Result& result, long impacts) {
   }
 }
 
-// Of a run that leaves out constraints the limit is another motion.
+// The limit of a run that leaves out constraints is another motion.
 void check_error(const Registry& registry, const RunRequest& request, const OwnSystem* own,
                  const RunPlan& plan, Result& result) {
   if (!request.config.check || !result.status.ok) return;
-  if (plan.keeps_rows || plan.setup.mechanics->rows() == 0)
+  if (plan.keeps_rows || plan.setup.mechanics->constraint_count() == 0)
     return estimate_error(registry, request, own, result);
   result.notes.push_back(
       fmt::format("check: {} leaves out constraints: its limit is another motion, and nothing is "

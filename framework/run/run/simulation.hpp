@@ -1,7 +1,7 @@
-// The builder: from a system and a few names to a run.
+// The builder: from a system and names to a run.
 //
-//   auto result = hamel::simulate("suslov").set("inertia", {1, 10, 100}).start({.momentum = {1, 1,
-//   0}})
+//   auto result = hamel::simulate("suslov")
+//                     .set("inertia", {1, 10, 100}).start({.momentum = {1, 1, 0}})
 //                     .scheme("lift").s(0.5).retraction("cayley").step(0.01).until(1800).run();
 //
 // run() and build() check everything first and throw one ConfigError with all mistakes; after that
@@ -33,8 +33,8 @@ struct SolverOptions {
   double tolerance = Config().tolerance;  // on |F| / scale
 };
 
-/// Of the error of a step (framework/schemes/munthe_kaas.hpp), each in (0, 1). Without an absolute
-/// one both are the same.
+/// Tolerances of a step's error (framework/schemes/munthe_kaas.hpp), each in (0, 1). Without an
+/// absolute one both are the same.
 struct StepTolerance {
   std::optional<double> relative = {}, absolute = {};
 };
@@ -47,7 +47,7 @@ struct EventState {
 };
 using Impact = std::function<void(EventState&)>;
 
-/// What a builder was asked for.
+/// The request of a builder.
 struct RunRequest {
   Config config;
   std::map<std::string, Impact> impacts;
@@ -83,12 +83,13 @@ class Simulation {
     request_.config.inputs[name] = std::move(signal);
     return *this;
   }
-  /// Where to start. Velocity and momentum are projected onto d and d*, and a note says what was
+  /// The start. Velocity and momentum are projected onto d and d*, and a note states what was
   /// lost.
   Simulation& start(Start start) { return with(&Config::start, std::move(start)); }
-  /// The start in its place: straight ahead at v m/s, upright, of systems that know such a motion.
+  /// The start in its place: straight ahead at v m/s, upright, of systems that define a straight
+  /// motion.
   Simulation& speed(double v) { return with(&Config::speed, v); }
-  /// Any option (Config::fields); below those that have a name of their own.
+  /// Any option (Config::fields); below those that have a separate member.
   template <class Value>
   Simulation& with(Value Config::*option, std::type_identity_t<Value> value) {
     request_.config.*option = std::move(value);
@@ -101,7 +102,7 @@ class Simulation {
   Simulation& solver(std::string name, SolverOptions options = {}) {
     return with(&Config::solver, std::move(name)).with(&Config::tolerance, options.tolerance);
   }
-  /// What becomes of a step that fails: "stop" (default), "retry:<solver>" (solved again by
+  /// Policy for a step that fails: "stop" (default), "retry:<solver>" (solved again by
   /// another), "halve" (taken as two halves, each of which may be halved again).
   Simulation& on_failure(std::string policy) {
     return with(&Config::on_failure, std::move(policy));
@@ -164,7 +165,7 @@ class Simulation {
     request_.rows_kept = most;
     return *this;
   }
-  /// Goes on with the unfinished run in a file, .h5, that this run was recorded to; the result is
+  /// Resumes the unfinished run in a file, .h5, that this run was recorded to; the result is
   /// that of the undisturbed run.
   Simulation& resume(std::string path) {
     request_.resumed = std::move(path);

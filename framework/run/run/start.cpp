@@ -1,4 +1,4 @@
-// Where a run starts: the user's state or the system's own, onto the constraints, and the events
+// Start of a run: the user's state or the system's default, onto the constraints, and the events
 // there.
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/run/run/plan.hpp>
-#include <hamel/framework/schemes/erased.hpp>
+#include <hamel/framework/schemes/dynamic_problem.hpp>
 
 namespace hamel {
 namespace {
@@ -104,8 +104,8 @@ std::vector<double> admissible(const SystemModel& system,
   }
   Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(), n);
   const auto& mechanics = system.mechanics;
-  if (geometry == nullptr || mechanics->rows() == 0) return to_vector(xi);
-  EquationsOfMotion<Erased> motion(Erased(geometry, mechanics));
+  if (geometry == nullptr || mechanics->constraint_count() == 0) return to_vector(xi);
+  EquationsOfMotion<DynamicProblem> motion(DynamicProblem(geometry, mechanics));
   Eigen::VectorXd g(geometry->size());
   geometry->from_coordinates(state.coordinates, g.data());
   Eigen::VectorXd phi(mechanics->holonomic_rows());
@@ -120,7 +120,21 @@ std::vector<double> admissible(const SystemModel& system,
 
 namespace {
 
-// What is wrong with the numbers of a velocity or momentum.
+constexpr size_t kMostNames = 24;  // in a message
+
+// "omega1 = 0.5, omega3 = -2": what is above the round-off of the largest.
+std::string by_names(const SystemModel& system, const Eigen::VectorXd& values) {
+  const std::vector<Component> components = components_of(system);
+  const double unknown = 1e-13 * values.lpNorm<Eigen::Infinity>();
+  std::string out;
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    if (std::abs(values[i]) > unknown)
+      out += fmt::format("{}{} = {:.6g}", out.empty() ? "" : ", ",
+                         components[static_cast<size_t>(i)].name, values[i]);
+  return out;
+}
+
+// Checks the numbers of a velocity or momentum.
 void check_datum(const SystemModel& system, const char* name, const std::vector<double>& values,
                  bool few, Mistakes& mistakes) {
   const auto n = static_cast<size_t>(system.group.dim);
@@ -131,8 +145,11 @@ void check_datum(const SystemModel& system, const char* name, const std::vector<
         parameters.empty() || !few
             ? ""
             : fmt::format(", or {} without a configuration", join(parameters));
-    mistakes.add(fmt::format("{}: got {} values, expected {} for {}{}", name, values.size(), n,
-                             system.group.name, shorter));
+    std::vector<std::string> names;
+    for (const Component& component : components_of(system)) names.push_back(component.name);
+    const std::string named = n <= kMostNames ? fmt::format(" ({})", join(names)) : "";
+    mistakes.add(fmt::format("{}: got {} values, expected {}{} for {}{}", name, values.size(), n,
+                             named, system.group.name, shorter));
   } else if (!finite(values)) {
     mistakes.add(fmt::format("{}: {} is not finite", name, join(values)));
   }
@@ -253,9 +270,9 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
     said = !wrong.empty();
     mistakes.add(wrong);
   }
-  planned.constraints.resize(mechanics.rows(), mechanics.dim());
+  planned.constraints.resize(mechanics.constraint_count(), mechanics.dim());
   planned.inertia.resize(mechanics.dim(), mechanics.dim());
-  planned.drift.resize(mechanics.rows());
+  planned.drift.resize(mechanics.constraint_count());
   mechanics.inertia(g.data(), planned.inertia);
   mechanics.constraints(t, g.data(), planned.constraints, planned.drift);
   Eigen::VectorXd phi(mechanics.holonomic_rows());
@@ -272,12 +289,13 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
 }
 
 // The admissible start, E^T I xi = E^T mu, and what the projection dropped.
-void project_start(PlannedStart& planned) {
+void project_start(const SystemModel& system, PlannedStart& planned) {
   Start& start = planned.start;
   const auto& [inertia, constraints, drift] =
       std::tie(planned.inertia, planned.constraints, planned.drift);
   const Eigen::Index n = inertia.rows();
-  const Eigen::MatrixXd frame = hamel_frame(inertia, constraints);
+  if (planned.frame.size() == 0) planned.frame = hamel_frame(inertia, constraints);
+  const Eigen::MatrixXd& frame = planned.frame;
   const bool by_velocity = !start.velocity.empty();
   const auto& given = by_velocity ? start.velocity : start.momentum;
   const Eigen::VectorXd datum = Eigen::Map<const Eigen::VectorXd>(given.data(), n);
@@ -293,9 +311,9 @@ void project_start(PlannedStart& planned) {
   const Eigen::VectorXd dropped =
       datum - (by_velocity ? velocity : Eigen::VectorXd(inertia * velocity));
   if (dropped.norm() > 1e-12 * datum.norm()) {
-    planned.notes.push_back(fmt::format("the start's {} was projected onto {}: dropped ({})",
+    planned.notes.push_back(fmt::format("the start's {} was projected onto {}: dropped {}",
                                         by_velocity ? "velocity" : "momentum",
-                                        by_velocity ? "d" : "d*", join(to_vector(dropped))));
+                                        by_velocity ? "d" : "d*", by_names(system, dropped)));
   }
   start.velocity = to_vector(velocity);
   start.momentum.clear();

@@ -1,0 +1,218 @@
+// Many runs of one system: its parameters, starts and inputs varied by lists, ranges, grids and
+// random draws; of each member what is asked for is kept, and nothing else.
+//
+//   auto config = hamel::read_ensemble("reversals.toml", hamel::registry());
+//   auto result = hamel::Ensemble(hamel::registry(), config).threads(2).folder("out").run();
+//   result.write("out");   // ensemble.h5, ensemble.csv, ensemble.json
+//
+// A member is its index: what it is varied by, and what is kept of it, depends on the file, the
+// seed and that index alone, and neither on threads nor on shards. The file, the names, the
+// statistics: framework/ensemble/README.md.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hamel/framework/io/table.hpp>
+#include <hamel/framework/run/names/config.hpp>
+#include <hamel/framework/run/record/shard.hpp>
+
+namespace hamel {
+
+class Registry;
+
+/// What one name takes over the members: a parameter ("skew", "inertia3"), an input, "speed",
+/// "start.omega" (a velocity or a coordinate), "start.configuration", "start.velocity".
+struct Variation {
+  enum class Law {
+    values,       // a list
+    uniform,      // least, most
+    normal,       // mean, deviation
+    log_uniform,  // least, most, both above 0
+    haar,         // start.configuration: its rotation uniform on SO(3)
+    tau_normal,   // start.configuration: g tau(xi), xi normal, one deviation or n of them
+    energy        // start.velocity: uniform on the surface of that energy, in the metric of inertia
+  };
+  std::string name;
+  Law law = Law::values;
+  std::vector<double> numbers = {};
+};
+
+/// What is kept of each member: a formula of end.X, start.X, max.X, min.X, at(T).X,
+/// event.NAME.count, event.NAME.time, the parameters and what is varied. Without a name the formula
+/// is its name.
+struct Kept {
+  std::string name, formula;
+};
+
+/// Members by a formula whose value is the index of a name.
+struct Classes {
+  std::string formula;
+  std::vector<std::string> names;
+};
+
+/// The counts of a kept quantity in equal bins of [from, until]; both 0: from its least to its
+/// most.
+struct HistogramRequest {
+  int bins = 0;
+  double from = 0, until = 0;
+};
+
+/// Inputs by formulas of the state (X), held from one multiple of the period to the next.
+struct Feedback {
+  double period = 0;                               // s
+  std::map<std::string, std::string> inputs = {};  // name -> formula
+};
+
+/// An ensemble as plain data.
+struct EnsembleConfig {
+  Config run;        // what all members have in common
+  long members = 0;  // 0: as many as the lists have values
+  uint64_t seed = 0;
+  bool grid = false;  // all combinations of the lists, the last one fastest
+  std::vector<Variation> vary;
+  std::map<std::string, std::string> events = {};  // by name, "x > 1"
+  Feedback feedback = {};
+  std::vector<Kept> keep;
+  Classes classes = {};
+  std::vector<double> statistics_at = {};       // times
+  std::vector<std::string> statistics_of = {};  // quantities X; empty: coordinates and velocities
+  std::map<std::string, HistogramRequest> histograms = {};
+  std::vector<double> quantiles = {};
+  bool covariance = false;
+  std::string data = {};               // the text of the system's file, read once
+  std::string origin = {}, text = {};  // the ensemble's file, for the record
+
+  /// "file:line:column" by key, "vary.skew"; empty for an ensemble made in a program.
+  std::map<std::string, std::string> where = {};
+
+  /// Everything that is wrong, each mistake with its place.
+  std::vector<std::string> mistakes(const Registry& registry) const;
+  /// What fixes the results, one line per item: a journal belongs to these lines.
+  std::vector<std::string> fingerprint() const;
+};
+
+/// Throws ConfigError with all mistakes of the file, each with line and column.
+EnsembleConfig parse_ensemble(const std::string& text, const std::string& origin,
+                              const Registry& registry);
+EnsembleConfig read_ensemble(const std::string& path, const Registry& registry);
+
+/// A member that has no kept values, and why.
+struct MemberFailure {
+  long member = 0;
+  double time = 0;  // reached
+  std::string reason;
+};
+
+/// Of the members where it has a value; the deviation is that of a sample, n - 1.
+struct Moments {
+  long count = 0;
+  double mean = 0, squares = 0;  // sum of (x - mean)^2
+  double least = 0, most = 0;
+
+  double deviation() const;
+  /// Of the two together (Chan, Golub, LeVeque).
+  static Moments of_both(const Moments& a, const Moments& b);
+};
+
+struct Histogram {
+  double from = 0, until = 0;
+  std::vector<long> counts = {};
+  long below = 0, above = 0;
+};
+
+/// Over the members at a time.
+struct StatisticsAt {
+  double time = 0;
+  std::vector<std::pair<std::string, Moments>> quantities;
+};
+
+struct EnsembleResult {
+  EnsembleConfig config;
+  Shard shard;
+  long first = 0, members = 0;  // those of the shard
+  /// A row for each member: what is varied, what is kept (NaN: failed, or no such event), the
+  /// class, and `failure`, 0 or the number of its reason.
+  Table table;
+  std::vector<MemberFailure> failures;  // by member
+  std::vector<std::string> kept;        // the columns that are kept
+  std::map<std::string, Moments> moments;
+  std::map<std::string, std::vector<double>> quantiles;
+  std::map<std::string, Histogram> histograms;
+  std::vector<long> class_counts;
+  std::vector<std::vector<double>> covariance;  // of the kept columns, where all have values
+  std::vector<StatisticsAt> statistics;
+  std::vector<std::string> notes;  // lines of the journal that were damaged
+  bool complete = false;
+  long resumed = 0, done = 0;  // members taken over from the journal; finished in all
+  int threads = 1;
+  long shards = 1;     // that were merged
+  double seconds = 0;  // of this session
+
+  /// The record as JSON: the same text for any number of threads and shards but for the last three
+  /// members.
+  std::string record() const;
+  /// ensemble.h5 (where the build has HDF5), ensemble.csv and ensemble.json.
+  void write(const std::string& folder) const;
+};
+
+/// One member alone.
+struct Member {
+  long index = 0;
+  Config config;  // of the same run, but for feedback
+  std::vector<std::pair<std::string, double>> varied, kept;
+  bool failed = false;
+  MemberFailure failure;
+};
+
+class Ensemble {
+ public:
+  /// Throws ConfigError with everything that is wrong.
+  Ensemble(const Registry& registry, EnsembleConfig config);
+
+  const EnsembleConfig& config() const { return config_; }
+  /// The number of members.
+  long members() const { return config_.members; }
+  /// How many run at the same time; 0: as many as there are cores.
+  Ensemble& threads(int count);
+  /// Several members at once where lanes are compiled for the system (systems/lanes.hpp): the same
+  /// bytes in less time, and the default.
+  Ensemble& lanes(bool use);
+  /// Keeps a journal there and resumes from an existing one.
+  Ensemble& folder(std::string path);
+  /// Runs a part alone, whose journal merge() reads.
+  Ensemble& shard(Shard part);
+  /// Forgets the journal that is there.
+  Ensemble& fresh(bool forget = true);
+  /// Called now and then, from one thread at a time, with the fraction of the members done.
+  Ensemble& progress(std::function<void(double)> report);
+  /// Polled in each member: true abandons what is in flight and returns.
+  Ensemble& stop(const std::atomic<bool>* flag);
+  /// Throws ConfigError before anything runs: a folder that cannot be written, another ensemble's
+  /// journal.
+  EnsembleResult run() const;
+  /// Joins the shards whose journals are in the folder. ConfigError where some are missing or
+  /// incomplete, or are of another ensemble or program.
+  EnsembleResult merge() const;
+  /// One member: the same values as in the whole.
+  Member member(long index) const;
+
+ private:
+  EnsembleResult begun(Shard part) const;
+
+  const Registry* registry_;
+  EnsembleConfig config_;
+  int threads_ = 0;
+  std::string folder_;
+  Shard shard_;
+  bool fresh_ = false, lanes_ = true;
+  std::function<void(double)> progress_;
+  const std::atomic<bool>* stop_ = nullptr;
+};
+
+}  // namespace hamel

@@ -1,0 +1,276 @@
+#include <hamel/framework/ensemble/kept.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/ensemble/kept_parser.hpp>
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/components.hpp>
+
+namespace hamel::ensemble {
+namespace {
+
+// What of a snapshot is measured, by the names of a run's columns.
+template <class F>
+void measured(F&& f) {
+  f(kConstraint, [](const Snapshot& s) { return s.constraint; });
+  f(kHolonomic, [](const Snapshot& s) { return s.holonomic; });
+  f(kGroupDefect, [](const Snapshot& s) { return s.group_defect; });
+  f(kIterations, [](const Snapshot& s) { return static_cast<double>(s.iterations); });
+  f(kResidual, [](const Snapshot& s) { return s.residual; });
+}
+
+}  // namespace
+
+StateNames::StateNames(const SystemModel& system) {
+  const std::vector<std::string> variables = state_variables(system);
+  const std::vector<Component> components = components_of(system);
+  std::vector<std::string> units = units_of_element(system.group);
+  units.resize(system.group.columns.size());
+  units.insert(units.begin(), "s");
+  for (int twice = 0; twice < 2; ++twice)
+    for (const Component& c : components) units.push_back(c.unit);
+  for (size_t i = 0; i < variables.size(); ++i) add(variables[i], units[i]);
+  for (const NamedColumn& shape : named_columns(system)) {
+    if (std::ranges::find(names_, shape.name) != names_.end()) continue;
+    add(shape.name, shape.unit);
+    shapes_.push_back(shape);
+  }
+  for (size_t i = 0; i < components.size(); ++i)
+    add(fmt::format("mu{}", i + 1), unit_of_momentum(components[i]));
+  add(kEnergy.name, kEnergy.unit);
+  add(kEnergyError.name, kEnergyError.unit);
+  measured([&](const Quantity& quantity, auto) { add(quantity.name, quantity.unit); });
+}
+
+void StateNames::add(const std::string& name, const std::string& unit) {
+  names_.push_back(std::ranges::find(names_, name) == names_.end() ? name : "");
+  units_.push_back(unit);
+}
+
+void StateNames::values(const Snapshot& state, double energy_start,
+                        std::vector<double>& out) const {
+  out.assign(1, state.time);
+  out.insert(out.end(), state.coordinates.begin(), state.coordinates.end());
+  for (int twice = 0; twice < 2; ++twice)
+    out.insert(out.end(), state.velocity.begin(), state.velocity.end());
+  for (const NamedColumn& shape : shapes_) out.push_back(state.coordinates[shape.column]);
+  out.insert(out.end(), state.momentum.begin(), state.momentum.end());
+  out.push_back(state.energy);
+  out.push_back(energy_error(state.energy, energy_start));
+  measured([&](const Quantity&, auto of) { out.push_back(of(state)); });
+}
+
+MemberConstants::MemberConstants(const EnsembleConfig& config, const SystemModel& system,
+                                 const Variations& variations)
+    : variations_(&variations) {
+  add("member", 0);
+  for (const Field& field : system.fields)
+    for (size_t i = 0; i < field.value.size(); ++i)
+      add(field.value.size() == 1 ? field.name : fmt::format("{}{}", field.name, i + 1),
+          field.value[i]);
+  for (const auto& [name, signal] : config.run.inputs)
+    if (const double* value = std::get_if<double>(&signal)) add(name, *value);
+  for (const size_t v : variations.numbered()) {
+    const std::string& name = variations.all()[v].name;
+    if (name.starts_with("start.")) continue;
+    const auto it = std::ranges::find(names_, name);
+    const auto place = static_cast<size_t>(it - names_.begin());
+    if (it == names_.end()) add(name, 0);
+    varied_.emplace_back(place, v);
+  }
+}
+
+void MemberConstants::add(const std::string& name, double value) {
+  names_.push_back(name);
+  values_.push_back(value);
+}
+
+void MemberConstants::begin(long member) {
+  values_[0] = static_cast<double>(member);
+  for (const auto& [place, variation] : varied_)
+    values_[place] = variations_->number(variation, member);
+}
+
+std::vector<std::string> MemberConstants::behind(std::vector<std::string> others) const {
+  const size_t count = others.size();
+  for (const std::string& name : names_) {
+    const auto end = others.begin() + static_cast<std::ptrdiff_t>(count);
+    others.push_back(std::find(others.begin(), end, name) == end ? name : "");
+  }
+  return others;
+}
+
+KeptFormulas::KeptFormulas(const EnsembleConfig& config, const SystemModel& system,
+                           const Variations& variations, std::vector<std::string>& mistakes)
+    : states_(system), constants_(config, system, variations) {
+  Parser parser(*this, config, system);
+  const auto add = [&](const std::string& key, const std::string& name, const std::string& text) {
+    try {
+      parser.column(name, text);
+    } catch (const std::invalid_argument& error) {
+      mistakes.push_back(placed(config, key, fmt::format("{}: '{}': {}", key, text, error.what())));
+    }
+  };
+  for (size_t i = 0; i < config.keep.size(); ++i) {
+    const Kept& kept = config.keep[i];
+    const std::string key = fmt::format("keep[{}]", i),
+                      name = kept.name.empty() ? kept.formula : kept.name;
+    const std::string flaw = flaw_of_name(name, variations);
+    if (flaw.empty()) add(key, name, kept.formula);
+    else
+      mistakes.push_back(placed(
+          config, key,
+          fmt::format("{}: {}: {{ name = \"...\", formula = \"...\" }} gives another", key, flaw)));
+  }
+  kept_ = columns_.size();
+  check_histograms(config, mistakes);
+  if (!config.classes.names.empty()) {
+    add("class", "class", config.classes.formula);
+    classes_ = config.classes.names.size();
+  }
+  quantities_ = config.statistics_of;
+  const size_t all = system.group.columns.size() + static_cast<size_t>(system.group.dim);
+  if (!config.statistics_at.empty() && quantities_.empty())
+    std::copy_if(states_.names().begin() + 1,
+                 states_.names().begin() + 1 + static_cast<std::ptrdiff_t>(all),
+                 std::back_inserter(quantities_), [](const auto& name) { return !name.empty(); });
+  for (const double t : config.statistics_at) {
+    for (const std::string& quantity : quantities_) {
+      const std::string text = fmt::format("at({}).{}", t, quantity);
+      add("statistics_at", text, text);
+    }
+  }
+  settle(config.run.until >= config.run.from ? 1 : -1);
+}
+
+// What is wrong with the name of a column; "" for nothing.
+std::string KeptFormulas::flaw_of_name(const std::string& name,
+                                       const Variations& variations) const {
+  const auto has_name = [&](const auto& other) { return other.name == name; };
+  if (std::ranges::any_of(columns_, has_name) || std::ranges::any_of(variations.all(), has_name) ||
+      name == "class" || name == "failure" || name == "member")
+    return fmt::format("there is another column '{}'", name);
+  return "";
+}
+
+void KeptFormulas::check_histograms(const EnsembleConfig& config,
+                                    std::vector<std::string>& mistakes) const {
+  std::vector<std::string> names;
+  for (const KeptColumn& column : columns_) names.push_back(column.name);
+  for (const auto& [name, request] : config.histograms)
+    if (std::ranges::find(names, name) == names.end())
+      mistakes.push_back(placed(config, "histograms." + name,
+                                "histograms: " + unknown_name("kept quantity", name, names)));
+}
+
+// After all formulas: times in the order of the run, and the constants behind all atoms, of which a
+// formula has seen those before it.
+void KeptFormulas::settle(double sign) {
+  const std::vector<double> found = times_;
+  std::ranges::sort(times_, [sign](double a, double b) { return sign * a < sign * b; });
+  for (Atom& atom : atoms_)
+    if (atom.from == From::at)
+      atom.place =
+          static_cast<size_t>(std::ranges::find(times_, found[atom.place]) - times_.begin());
+  std::vector<std::string> variables;
+  for (size_t i = 0; i < atoms_.size(); ++i) variables.push_back(Parser::variable(i));
+  for (Formula& formula : formulas_)
+    formula.expression = Expression(formula.rewritten, constants_.behind(variables));
+}
+
+void KeptFormulas::begin(long member) {
+  constants_.begin(member);
+  for (Atom& atom : atoms_) {
+    const bool needs = atom.from == From::at || atom.from == From::time;
+    atom.missing = needs;
+    atom.value = needs                      ? kMissing
+                 : atom.from == From::most  ? -std::numeric_limits<double>::infinity()
+                 : atom.from == From::least ? std::numeric_limits<double>::infinity()
+                                            : 0;
+  }
+}
+
+double KeptFormulas::value_of(const Atom& atom) const {
+  return atom.formula ? (*atom.formula)(values_) : values_[atom.quantity];
+}
+
+void KeptFormulas::look_at(const Snapshot& state) {
+  states_.values(state, energy_start_, values_);
+  values_.insert(values_.end(), constants_.values().begin(), constants_.values().end());
+}
+
+// The atoms that a state gives, all of one place.
+void KeptFormulas::take(From from, size_t place) {
+  for (Atom& atom : atoms_) {
+    if (atom.from != from || atom.place != place) continue;
+    atom.value = value_of(atom);
+    atom.missing = false;
+  }
+}
+
+void KeptFormulas::start(const Snapshot& state) {
+  energy_start_ = state.energy;
+  look_at(state);
+  take(From::start, 0);
+}
+
+void KeptFormulas::peak(const Snapshot& state) {
+  look_at(state);
+  for (Atom& atom : atoms_) {
+    if (atom.from != From::most && atom.from != From::least) continue;
+    const double value = value_of(atom);
+    const bool better = atom.from == From::most ? value > atom.value : value < atom.value;
+    if (better || !std::isfinite(value)) atom.value = value;
+  }
+}
+
+void KeptFormulas::at(size_t time, const Snapshot& state) {
+  look_at(state);
+  take(From::at, time);
+}
+
+void KeptFormulas::end(const Snapshot& state, const std::vector<EventMet>& met) {
+  look_at(state);
+  take(From::end, 0);
+  for (const EventMet& event : met) {
+    for (Atom& atom : atoms_) {
+      if (atom.from != From::count && atom.from != From::time) continue;
+      if (events_[atom.place] != event.name) continue;
+      if (atom.from == From::count) ++atom.value;
+      else if (atom.missing) {
+        atom.value = event.time;
+        atom.missing = false;
+      }
+    }
+  }
+}
+
+std::string KeptFormulas::finish(std::span<double> out) {
+  arguments_.clear();
+  for (const Atom& atom : atoms_) arguments_.push_back(atom.value);
+  arguments_.insert(arguments_.end(), constants_.values().begin(), constants_.values().end());
+  for (size_t i = 0; i < formulas_.size(); ++i) {
+    const Formula& formula = formulas_[i];
+    out[i] = formula.expression(arguments_);
+    if (std::isfinite(out[i])) {
+      const bool whole =
+          out[i] == std::floor(out[i]) && out[i] >= 0 && out[i] < static_cast<double>(classes_);
+      if (i != kept_ || classes_ == 0 || whole) continue;
+      return fmt::format("class is {}, expected 0 to {}", out[i], classes_ - 1);
+    }
+    const bool missing =
+        std::ranges::any_of(formula.atoms, [&](size_t a) { return atoms_[a].missing; });
+    if (!missing)
+      return fmt::format("'{}' is {}", formula.name,
+                         std::isnan(out[i]) ? "not a number" : "infinite");
+    out[i] = kMissing;
+  }
+  return "";
+}
+
+}  // namespace hamel::ensemble

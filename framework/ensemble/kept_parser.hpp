@@ -1,0 +1,191 @@
+// Reads the formulas of what is kept: end.X, start.X, max.X, min.X, at(T).X, event.NAME.count and
+// event.NAME.time become variables. Part of kept.cpp, not installed.
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/ensemble/kept.hpp>
+#include <hamel/framework/run/data/event_formula.hpp>
+#include <hamel/framework/run/record/measures.hpp>
+#include <hamel/framework/run/run/events.hpp>
+
+namespace hamel::ensemble {
+
+class KeptFormulas::Parser {
+ public:
+  Parser(KeptFormulas& out, const EnsembleConfig& config, const SystemModel& system)
+      : out_(out), config_(config), system_(system) {
+    for (const Event& event : events_of(system, nullptr)) known_events_.push_back(event.name);
+    for (const auto& [name, text] : config.events) known_events_.push_back(name);
+  }
+
+  /// Adds a column. Throws std::invalid_argument that names what is wrong.
+  void column(const std::string& name, const std::string& formula) {
+    const std::string rewritten = rewrite(formula);
+    std::vector<std::string> variables;
+    for (size_t i = 0; i < out_.atoms_.size(); ++i) variables.push_back(variable(i));
+    const size_t count = variables.size();
+    Formula made{name, rewritten, Expression(rewritten, out_.constants_.behind(variables)), {}};
+    for (const size_t i : made.expression.used())
+      if (i < count) made.atoms.push_back(i);
+    const bool alone = made.atoms.size() == 1 && rewritten == variable(made.atoms[0]);
+    out_.columns_.push_back({name, alone ? out_.atoms_[made.atoms[0]].unit : "",
+                             name == formula ? "of each member" : formula});
+    out_.formulas_.push_back(std::move(made));
+  }
+  /// A time of at(T); std::invalid_argument where it is not one of the run.
+  size_t time(double t) {
+    const double from = config_.run.from, until = config_.run.until;
+    if (!(std::min(from, until) <= t && t <= std::max(from, until)))
+      throw std::invalid_argument(
+          fmt::format("t = {}: expected a time of the run, {} to {}", t, from, until));
+    const auto it = std::ranges::find(out_.times_, t);
+    if (it == out_.times_.end()) out_.times_.push_back(t);
+    return static_cast<size_t>(std::ranges::find(out_.times_, t) - out_.times_.begin());
+  }
+  size_t atom(From from, size_t place, const std::string& quantity, const std::string& text) {
+    for (size_t i = 0; i < out_.atoms_.size(); ++i)
+      if (out_.atoms_[i].text == text) return i;
+    Atom made{from, text, "", place, 0, {}};
+    if (from == From::time) made.unit = "s";
+    else if (from == From::count) made.unit = "1";
+    else state(quantity, made);
+    out_.wants_start_ = out_.wants_start_ || from == From::start;
+    out_.wants_peaks_ = out_.wants_peaks_ || from == From::most || from == From::least;
+    out_.atoms_.push_back(std::move(made));
+    return out_.atoms_.size() - 1;
+  }
+  static std::string variable(size_t atom) { return fmt::format("kept_atom_{}", atom); }
+
+ private:
+  static bool of_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '\'';
+  }
+
+  // The text with each of the names above as a variable.
+  std::string rewrite(const std::string& text) {
+    std::string out;
+    for (size_t i = 0; i < text.size();) {
+      if (!of_name(text[i])) {
+        out += text[i++];
+        continue;
+      }
+      size_t end = i;
+      while (end < text.size() && of_name(text[end])) ++end;
+      const std::string word = text.substr(i, end - i);
+      const size_t from = i;
+      i = end;
+      if (word == "at" && i < text.size() && text[i] == '(') {
+        const double t = number_in_brackets(text, i);
+        const size_t place = time(t);
+        if (i >= text.size() || text[i] != '.')
+          throw std::invalid_argument("expected at(T).X, a time and a quantity");
+        ++i;
+        out += quantity(From::at, place, "", text, i, from);
+      } else if (word.starts_with("event.")) {
+        out += event(word);
+      } else if (const auto prefix = prefixes().find(word.substr(0, word.find('.') + 1));
+                 prefix != prefixes().end()) {
+        out += quantity(prefix->second, 0, word.substr(prefix->first.size()), text, i, from);
+      } else {
+        out += word;
+      }
+    }
+    return out;
+  }
+  static const std::map<std::string, From>& prefixes() {
+    static const std::map<std::string, From> all = {
+        {"start.", From::start}, {"end.", From::end}, {"max.", From::most}, {"min.", From::least}};
+    return all;
+  }
+  // "(10)" at i, which goes behind it.
+  static double number_in_brackets(const std::string& text, size_t& i) {
+    const size_t close = text.find(')', i);
+    double out = 0;
+    const std::string inside = text.substr(i + 1, close == std::string::npos ? 0 : close - i - 1);
+    const auto [end, error] = std::from_chars(inside.data(), inside.data() + inside.size(), out);
+    if (error != std::errc() || end != inside.data() + inside.size() || inside.empty())
+      throw std::invalid_argument(fmt::format("at({}): expected a time", inside));
+    i = close + 1;
+    return out;
+  }
+  // A name, or a formula in brackets at i.
+  std::string quantity(From from, size_t place, std::string name, const std::string& text,
+                       size_t& i, size_t begin) {
+    if (name.empty() && i < text.size() && text[i] == '(') {
+      int open = 0;
+      size_t end = i;
+      do {
+        if (text[end] == '(') ++open;
+        if (text[end] == ')') --open;
+        ++end;
+      } while (end < text.size() && open > 0);
+      name = text.substr(i, end - i);
+      i = end;
+    } else if (name.empty()) {
+      while (i < text.size() && of_name(text[i])) name += text[i++];
+    }
+    return variable(atom(from, place, name, text.substr(begin, i - begin)));
+  }
+  std::string event(const std::string& word) {
+    const bool count = word.ends_with(".count"), time = word.ends_with(".time");
+    const size_t last = word.rfind('.');
+    if ((!count && !time) || last <= 6)
+      throw std::invalid_argument(
+          fmt::format("'{}': expected event.NAME.count or event.NAME.time", word));
+    const std::string name = word.substr(6, last - 6);
+    if (std::ranges::find(known_events_, name) == known_events_.end())
+      throw std::invalid_argument(unknown_name("event of " + system_.name, name, known_events_));
+    const auto own = config_.events.find(name);
+    const std::string watched = own == config_.events.end() ? name : own->second;
+    const auto it = std::ranges::find(out_.events_, watched);
+    const auto place = static_cast<size_t>(it - out_.events_.begin());
+    if (it == out_.events_.end()) out_.events_.push_back(watched);
+    return variable(atom(count ? From::count : From::time, place, "", word));
+  }
+  // One number of a state, or a formula of them and the constants.
+  void state(const std::string& quantity, Atom& out) {
+    const std::string text = with_usable_names(quantity, system_.group.columns);
+    const std::vector<std::string>& names = out_.states_.names();
+    const auto speaks_of = [&](const Quantity& q) {
+      return text.find(q.name) != std::string::npos;
+    };
+    out_.wants_start_ = out_.wants_start_ || speaks_of(kEnergyError);  // against that of the start
+    out_.wants_solver_ = out_.wants_solver_ || speaks_of(kIterations) || speaks_of(kResidual);
+    const auto it = std::ranges::find(names, text);
+    const Mechanics& mechanics = *system_.mechanics;
+    if (text.find("energy_error") != std::string::npos &&
+        (mechanics.has_force() || mechanics.has_drift()))
+      throw std::invalid_argument(fmt::format(
+          "energy_error: forces or moving constraints do work on {}, and the balance of a member "
+          "is not followed; keep energy",
+          system_.name));
+    if (it != names.end() && !text.empty()) {
+      out.quantity = static_cast<size_t>(it - names.begin());
+      out.unit = out_.states_.unit(out.quantity);
+      return;
+    }
+    if (text.empty() || text.front() != '(') {
+      std::vector<std::string> known;
+      for (const std::string& name : names)
+        if (!name.empty()) known.push_back(name);
+      throw std::invalid_argument(unknown_name("quantity of " + system_.name, quantity, known));
+    }
+    out.formula.emplace(text, out_.constants_.behind(names));
+  }
+
+  KeptFormulas& out_;
+  const EnsembleConfig& config_;
+  const SystemModel& system_;
+  std::vector<std::string> known_events_;
+};
+
+}  // namespace hamel::ensemble

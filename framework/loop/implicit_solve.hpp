@@ -1,0 +1,118 @@
+// The unknown x of a step: guessed from its last values, solved for, and held to be the principal
+// root.
+//
+// A root is taken for the principal one (principal_root.hpp)
+//   - if a correction or two with the kept Jacobian gave it, or it is within a percent of the
+//   extrapolation, and the
+//     roots before it were principal;
+//   - else if the path from h = 0 leads to it.
+// Otherwise it is refused, as is a root outside the domain (measured by
+// tests/solvers/large_steps.cpp).
+#pragma once
+
+#include <span>
+
+#include <hamel/framework/loop/extrapolation.hpp>
+#include <hamel/framework/loop/kernel.hpp>
+#include <hamel/framework/loop/principal_root.hpp>
+#include <hamel/framework/schemes/scheme.hpp>
+
+namespace hamel {
+
+template <class Scheme, class Step, class Newton>
+class StepUnknown;
+
+/// An explicit step has none.
+template <class Scheme, ExplicitStep Step, class Newton>
+class StepUnknown<Scheme, Step, Newton> {
+ public:
+  using Node = hamel::Node<typename Step::Problem>;
+  struct Memory {
+    void clear_history() {}
+  };
+  StepUnknown(const KernelSetup& /*setup*/, const Step& /*step*/, bool /*ordered*/) {}
+  static Memory memory() { return {}; }
+  [[gnu::always_inline]] SolveReport solve(const Step& step, const Node& /*node*/, double /*h*/,
+                                           Memory& /*memory*/) const {
+    SolveReport report;
+    report.evaluations = step.evaluations();
+    return report;
+  }
+  bool finish(const Step& step, Node& next) const { return step.finish(next); }
+  static void keep(Memory& /*memory*/) {}
+};
+
+template <class Scheme, ImplicitStep Step, class Newton>
+class StepUnknown<Scheme, Step, Newton> {
+ public:
+  using Unknown = typename Step::Unknown;
+  using Node = hamel::Node<typename Step::Problem>;
+
+  /// The last solves of one substep of a composition.
+  struct Memory {
+    Extrapolation<Unknown> extrapolation;
+    typename Newton::template Memory<Unknown> newton;
+    bool trusted = false;  // the last solution was the principal root
+    explicit Memory(const Unknown& sample) : extrapolation(sample), newton(sample) {}
+    void clear_history() {
+      extrapolation.clear_history();
+      trusted = newton.valid = false;
+    }
+  };
+
+  /// ordered: the scheme has an order, hence a limit h -> 0 and a principal root.
+  StepUnknown(const KernelSetup& setup, const Step& step, bool ordered)
+      : x_(Unknown::Zero(step.size())), setup_(setup), ordered_(ordered), guess_(x_), root_(x_) {}
+  Memory memory() const { return Memory(x_); }
+  const Unknown& x() const { return x_; }
+  bool finish(const Step& step, Node& next) const { return step.finish(x_, next); }
+  /// The step was taken.
+  void keep(Memory& memory) const { memory.extrapolation.push(x_); }
+
+  /// x of a step that has begun at a node with h.
+  [[gnu::always_inline]] SolveReport solve(Step& step, const Node& node, double h, Memory& memory) {
+    if (memory.extrapolation.count() == 0) step.guess(x_);
+    else memory.extrapolation(x_);
+    SolveReport report = setup_.solver == nullptr
+                             ? Newton::solve(step, x_, setup_.tolerance, memory.newton)
+                             : solve_outside(step);
+    if (!report.ok()) [[unlikely]]
+      return report;
+    if (!(memory.trusted && setup_.solver == nullptr && report.iterations <= kSure)) [[unlikely]] {
+      if (!is_principal(step, node, h, memory)) report.reason = Reason::not_principal;
+    }
+    return report;
+  }
+
+ private:
+  // So many corrections with a kept Jacobian do not change the root; those by differences are kept
+  // longer.
+  static constexpr int kSure = HasJacobian<Step> ? 1 : 2;
+
+  [[gnu::noinline, gnu::cold]] bool is_principal(Step& step, const Node& node, double h,
+                                                 Memory& memory) {
+    if (!ordered_) return true;
+    if (memory.trusted && memory.extrapolation.count() > 0) {
+      memory.extrapolation(guess_);
+      if ((x_ - guess_).squaredNorm() <= 1e-4 * x_.squaredNorm()) return true;
+    }
+    const ErasedStep<Step> equation(step);
+    const StepOnPath<Unknown> path = {equation, [&](double size) { step.begin(node, size); },
+                                      [&](Unknown& guess) { step.guess(guess); }};
+    memory.trusted = root_.leads_to(x_, path, h);
+    return memory.trusted;
+  }
+  [[gnu::noinline, gnu::cold]] SolveReport solve_outside(Step& step) {
+    const ErasedStep<Step> equation(step);
+    return setup_.solver->solve(SolverEquation<Unknown>(equation, x_),
+                                {x_.data(), static_cast<size_t>(x_.size())}, setup_.tolerance);
+  }
+
+  Unknown x_;
+  const KernelSetup& setup_;
+  bool ordered_;
+  Unknown guess_;
+  PrincipalRoot<Unknown, Newton> root_;
+};
+
+}  // namespace hamel

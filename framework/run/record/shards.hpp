@@ -1,0 +1,31 @@
+// What ensembles and studies in parts share: the journal of each part, and how they are joined. Not
+// installed.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/run/record/journal_file.hpp>
+#include <hamel/framework/run/record/shard.hpp>
+
+namespace hamel {
+
+/// ConfigError where it is no part.
+Shard checked(const Shard& part);
+/// "journal.jsonl" of the whole, "journal-3-of-16.jsonl" of a part.
+std::string journal_name(const Shard& part);
+/// The subject of a part's journal, made from that of the whole.
+JournalSubject subject_of_part(JournalSubject whole, const Shard& part);
+/// Of so many pieces the first one of a part; of the part behind the last one, their number.
+long first_piece(const Shard& part, long pieces);
+
+/// The number of parts in a folder. ConfigError where there are none, or of two kinds.
+long shards_in(const std::string& folder);
+/// Passes the lines of all parts to take, and returns their notes. lacks(part), behind the lines of
+/// a part: "" or what it has not, "3 of 7 members". ConfigError with everything that is missing.
+std::vector<std::string> join_shards(const std::string& folder, long count,
+                                     const JournalSubject& whole, const TakeLine& take,
+                                     const std::function<std::string(const Shard&)>& lacks);
+
+}  // namespace hamel

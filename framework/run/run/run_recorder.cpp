@@ -1,0 +1,325 @@
+#include <hamel/framework/run/run/run_recorder.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
+
+namespace hamel {
+namespace {
+
+// The rows of one part together, those of the part that is named first at first: rear.reaction1 is
+// one of rear.
+std::vector<size_t> by_parts(const std::vector<std::string>& reactions) {
+  const auto part = [&](size_t row) { return reactions[row].substr(0, reactions[row].rfind('.')); };
+  std::vector<size_t> out;
+  for (size_t i = 0; i < reactions.size(); ++i) {
+    size_t at = out.size();
+    while (at > 0 && part(out[at - 1]) != part(i)) --at;
+    out.insert(out.begin() + static_cast<long>(at > 0 ? at : out.size()), i);
+  }
+  return out;
+}
+
+ColumnGroup numbered(const char* name, std::size_t count) {
+  ColumnGroup out{name, "", "", "", {}};
+  for (std::size_t i = 1; i <= count; ++i) out.columns.push_back(name + std::to_string(i));
+  return out;
+}
+
+ColumnGroup element_columns(const GroupInfo& group) {
+  return {"configuration", fmt::format("{}", fmt::join(units_of_element(group), ",")),
+          "the element g of " + group.name, "g takes the body's frame to the frame in space",
+          group.columns};
+}
+
+// Columns of the velocity, or of the momentum dual to it.
+ColumnGroup body_columns(const char* name, const SystemModel& system, bool dual) {
+  ColumnGroup out = numbered(name, static_cast<std::size_t>(system.group.dim));
+  std::string names;
+  for (const Component& c : components_of(system)) {
+    const std::string unit = dual ? unit_of_momentum(c) : c.unit;
+    if (!names.empty()) {
+      out.unit += ",";
+      names += ",";
+    }
+    out.unit += unit;
+    names += c.name;
+  }
+  out.meaning = (dual ? "nodal body momentum, of " : "nodal body velocity: ") + names;
+  out.frame = "the body's: left trivialisation, angular part first";
+  return out;
+}
+
+}  // namespace
+
+Reason flaw_of(const Snapshot& state) {
+  const auto finite = [](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+  };
+  if (!finite(state.coordinates) || !finite(state.velocity) || !std::isfinite(state.energy) ||
+      !std::isfinite(state.holonomic) || !std::isfinite(state.group_defect))
+    return Reason::not_finite;
+  return std::isfinite(state.constraint) ? Reason::converged : Reason::outside_domain;
+}
+
+RunRecorder::RunRecorder(const SystemModel& system, const Start& start,
+                         std::shared_ptr<const Geometry> geometry,
+                         std::shared_ptr<const Mechanics> mechanics,
+                         const std::shared_ptr<const Mechanics>& acting,
+                         std::shared_ptr<const Inputs> inputs)
+    : system_(system),
+      start_(start),
+      balance_(geometry, acting, std::move(inputs)),
+      pulls_(system.contacts.size()),
+      reactions_(by_parts(system.reactions)),
+      geometry_(std::move(geometry)) {
+  if (balance_.active()) {
+    notes_.push_back(
+        "forces or moving constraints do work: the energy error is the defect of the energy "
+        "balance, relative to the largest energy");
+  }
+  holonomic_ = mechanics->holonomic_rows() > 0;
+  drifts_ = mechanics->has_drift();
+  if (holonomic_) all_.holonomic_max = 0;
+  if (geometry_ != nullptr && mechanics->constraint_count() > 0) {
+    motion_ =
+        std::make_unique<EquationsOfMotion<DynamicProblem>>(DynamicProblem(geometry_, mechanics));
+    all_.reaction_work = 0;
+    g_.resize(geometry_->size());
+    lambda_.resize(mechanics->constraint_count());
+    for (size_t i = reactions_.size(); i < static_cast<size_t>(lambda_.size()); ++i)
+      reactions_.push_back(i);
+  }
+  if (system.exact)
+    all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
+}
+
+void RunRecorder::add(const Quantity& quantity, double value) {
+  if (first_)
+    columns_.push_back({quantity.name, quantity.unit, quantity.meaning, "", {quantity.name}});
+  rows_.push_back(value);
+}
+template <class Group>
+void RunRecorder::add(Group&& group, std::span<const double> values) {
+  if (first_) columns_.push_back(group());
+  rows_.insert(rows_.end(), values.begin(), values.end());
+}
+
+void RunRecorder::begin(const Snapshot& start) {
+  energy_start_ = start.energy;
+  time_start_ = start.time;
+  start_configuration_ = start.coordinates;
+  for (const Invariant& invariant : system_.invariants) {
+    all_.invariants.push_back(
+        {invariant.name, invariant.value(start.coordinates, start.velocity), 0});
+  }
+  if (motion_ != nullptr) react(start, true);
+}
+
+void RunRecorder::impact(const Snapshot& before, const Snapshot& after) {
+  energy_start_ += after.energy - before.energy;
+  for (size_t i = 0; i < system_.invariants.size(); ++i) {
+    const auto& value = system_.invariants[i].value;
+    all_.invariants[i].start +=
+        value(after.coordinates, after.velocity) - value(before.coordinates, before.velocity);
+  }
+  if (balance_.active()) balance_.impact(before, after);
+}
+
+void RunRecorder::take(const Snapshot& state) {
+  last_row_ = state.time;
+  const double error = all_.take(state, energy_start_);
+  add(kTime, state.time);
+  add([&] { return element_columns(system_.group); }, state.coordinates);
+  add([&] { return body_columns("xi", system_, false); }, state.velocity);
+  add(kEnergy, state.energy);
+  add(kEnergyError, error);
+  add(kConstraint, state.constraint);
+  add(kGroupDefect, state.group_defect);
+  add(kIterations, static_cast<double>(state.iterations));
+  add(kResidual, state.residual);
+  if (holonomic_) add(kHolonomic, state.holonomic);
+  add([&] { return body_columns("mu", system_, true); }, state.momentum);
+}
+
+void RunRecorder::compare(const Snapshot& state) {
+  if (balance_.active()) {
+    balance_.row(state);
+    add(kWork, 0);  // until it is settled
+  }
+  if (motion_ != nullptr) {
+    react(state);
+    add_reactions();
+  }
+  look_at_invariants(state);
+  if (system_.exact) {
+    const auto [error, velocity_error] = look_at_exact(state);
+    add(kExactError, error);
+    add(kExactVelocityError, velocity_error);
+  }
+  if (first_) {
+    width_ = rows_.size();
+    std::size_t at = 0;
+    for (const ColumnGroup& group : columns_) {
+      if (group.name == kEnergyError.name) energy_error_ = at;
+      if (group.name == kWork.name) work_ = at;
+      at += group.columns.size();
+    }
+  }
+  first_ = false;
+  settle();
+}
+
+void RunRecorder::look_at_invariants(const Snapshot& state) {
+  for (size_t i = 0; i < system_.invariants.size(); ++i) {
+    const double value = system_.invariants[i].value(state.coordinates, state.velocity);
+    update_max_abs(all_.invariants[i].drift_max, value - all_.invariants[i].start);
+  }
+}
+
+std::pair<double, double> RunRecorder::look_at_exact(const Snapshot& state) {
+  if (!exact_) exact_ = exact_from_start();
+  const auto [element, velocity] = exact_(state.time - time_start_);
+  const auto errors = all_.compare(state, element, velocity);
+  if (!exact_lost_ && !std::isfinite(errors.first) && std::isfinite(state.energy)) {
+    exact_lost_ = true;
+    notes_.push_back(fmt::format(
+        "the exact motion was not followed to t = {:.6g}: it turns too fast", state.time));
+  }
+  return errors;
+}
+
+// Completes rows whose work is known; the end of a run may be none.
+void RunRecorder::settle() {
+  if (!balance_.active()) {
+    complete_ = rows_.size() / width_;
+    return;
+  }
+  balance_.settled(settled_);
+  for (const BalancedState& state : settled_) {
+    if (complete_ * width_ == rows_.size()) break;
+    double* row = rows_.data() + width_ * complete_++;
+    row[energy_error_] = state.defect / state.scale;
+    row[work_] = state.work;
+  }
+}
+
+void RunRecorder::drop_rows() {
+  rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(complete_ * width_));
+  complete_ = 0;
+}
+
+void RunRecorder::follow_exact(double time) {
+  if (!system_.exact) return;
+  if (!exact_) exact_ = exact_from_start();
+  exact_(time - time_start_);
+}
+
+ExactFlow RunRecorder::exact_from_start() const {
+  return system_.exact({.configuration = start_configuration_, .velocity = start_.velocity});
+}
+
+// The start is the first state, and may be a row as well.
+void RunRecorder::react(const Snapshot& state, bool start) {
+  if (!start && state.time == time_) return;
+  geometry_->from_coordinates(state.coordinates, g_.data());
+  xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
+                                          static_cast<Eigen::Index>(state.velocity.size()));
+  motion_->solve(state.time, g_, xi_);
+  const Eigen::VectorXd& now = motion_->reaction();
+  const double part = start ? 0 : state.time_offset / (state.time - time_);
+  double power = 0;
+  for (Eigen::Index j = 0; j < now.size(); ++j) {
+    const double there = start ? now[j] : now[j] - part * (now[j] - lambda_[j]);
+    power += there * state.constraint_rates[static_cast<size_t>(j)];
+  }
+  const double at = start ? state.time : state.time - state.time_offset;
+  if (start) {
+    second_power_ = power;
+    second_time_ = at;
+  } else {
+    all_.reaction_work += (power_ + power) / 2 * (at - power_time_);
+    if (odd_) add_second(power, at);
+    odd_ = !odd_;
+  }
+  lambda_ = now;
+  time_ = state.time;
+  power_ = power;
+  power_time_ = at;
+  for (size_t i = 0; i < pulls_.size(); ++i) {
+    const int row = system_.contacts[i];
+    if (pulls_[i] || !(now[row] < -1e-9 * now.lpNorm<Eigen::Infinity>())) continue;
+    pulls_[i] = true;
+    notes_.push_back(
+        fmt::format("the contact pulls from t = {:.6g} on, {} < 0: a body that is not held "
+                    "would lift off",
+                    state.time,
+                    system_.reactions.empty() ? fmt::format("lambda{}", row + 1)
+                                              : system_.reactions[static_cast<size_t>(row)]));
+  }
+}
+
+void RunRecorder::add_second(double power, double at) {
+  second_work_ += (second_power_ + power) / 2 * (at - second_time_);
+  second_power_ = power;
+  second_time_ = at;
+}
+
+// Work of moving constraints, by the trapezoids over all states and over every second one: a
+// third of the difference is the error of the first.
+void RunRecorder::look_at_reaction_work() {
+  if (!drifts_) return;
+  if (odd_) add_second(power_, power_time_);
+  const double error = std::abs(all_.reaction_work - second_work_) / 3;
+  if (!(error > 0.01 * std::abs(all_.reaction_work))) return;
+  notes_.push_back(
+      fmt::format("the work of reactions is summed over the rows, and known to about {:.1g} J: "
+                  "record more rows, or take shorter steps",
+                  error));
+}
+
+void RunRecorder::add_reactions() {
+  std::vector<double> lambda;
+  for (const size_t row : reactions_) lambda.push_back(lambda_[static_cast<Eigen::Index>(row)]);
+  const auto describe = [&] {
+    ColumnGroup out = numbered("lambda", lambda.size());
+    const std::vector<std::string>& names = system_.reactions;
+    for (size_t i = 0; i < names.size(); ++i) out.columns[i] = names[reactions_[i]];
+    bool known = false;
+    std::vector<std::string> units;
+    for (const size_t row : reactions_) {
+      units.push_back(unit_of_reaction(system_, static_cast<int>(row)));
+      known = known || !units.back().empty();
+    }
+    if (known) out.unit = fmt::format("{}", fmt::join(units, ","));
+    out.meaning = "multipliers of the rows A xi = b";
+    return out;
+  };
+  add(describe, lambda);
+  add(kReactionPower, power_);
+}
+
+void RunRecorder::finish(const Snapshot& last) {
+  if (last.time != last_row_) {
+    all_.take(last, energy_start_);
+    if (balance_.active()) balance_.row(last);
+    if (motion_ != nullptr) react(last);
+    look_at_invariants(last);
+    if (system_.exact) look_at_exact(last);
+  }
+  if (motion_ != nullptr) {
+    look_at_reaction_work();
+    all_.reaction_work += power_ * (time_ - power_time_);
+  }
+  if (!balance_.active()) return;
+  balance_.finish();
+  settle();
+  all_.balance(balance_.error_max(), balance_.work());
+}
+
+}  // namespace hamel

@@ -1,0 +1,111 @@
+// Measures a run as it goes: the row of each recorded state, by column name, and the Measurements
+// over all. Not installed: the builder's own.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/io/row_file.hpp>
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/record/measures.hpp>
+#include <hamel/framework/run/record/result.hpp>
+#include <hamel/framework/run/run/energy_balance.hpp>
+#include <hamel/framework/schemes/dynamic_problem.hpp>
+
+namespace hamel {
+
+/// The flaw of a state, or of a row where it is measured: a number that is not
+/// finite, or a step that led to it and cannot be recovered from its two configurations.
+/// Reason::converged where there is none.
+Reason flaw_of(const Snapshot& state);
+
+class RunRecorder {
+ public:
+  /// geometry: null for a group that is not registered. acting: mechanics,
+  /// without its rows where the scheme does not keep them.
+  RunRecorder(const SystemModel& system, const Start& start,
+              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
+              const std::shared_ptr<const Mechanics>& acting, std::shared_ptr<const Inputs> inputs);
+
+  /// Does it need every node, not the recorded states only?
+  bool wants_nodes() const { return balance_.active(); }
+  void node(const Snapshot& state) { balance_.node(state); }
+  /// The start, from which energy, invariants and the exact motion are followed, before any row.
+  void begin(const Snapshot& start);
+  /// An event changed the state: what that did to the energy and the invariants is no error.
+  void impact(const Snapshot& before, const Snapshot& after);
+  /// Begins the row of a state with what the kernel measured of it (the columns of
+  /// tools/README.md).
+  void take(const Snapshot& state);
+  /// Ends it with the equations of motion, the invariants and the exact motion.
+  void compare(const Snapshot& state);
+  /// The columns of a row, after the first.
+  const std::vector<ColumnGroup>& columns() const { return columns_; }
+  /// The rows that are complete and were not dropped, one after the other. Where work is done the
+  /// first rows wait.
+  std::span<const double> rows() const { return std::span(rows_).first(complete_ * width_); }
+  void drop_rows();
+  /// After the last state, a row or not: no row waits.
+  void finish(const Snapshot& last);
+  const Measurements& all() const { return all_; }
+  /// Notes for the user.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(all_, first_, energy_start_, time_start_, last_row_, width_, energy_error_, work_,
+            rows_, exact_lost_, notes_, pulls_, time_, power_, power_time_, second_work_,
+            second_power_, second_time_, odd_, start_configuration_, lambda_, balance_);
+  }
+  /// A resumed run: the exact motion is followed to here through the times of the rows before.
+  void follow_exact(double time);
+
+ private:
+  void add(const Quantity& quantity, double value);
+  // group() describes the values, of the first row.
+  template <class Group>
+  void add(Group&& group, std::span<const double> values);
+  void react(const Snapshot& state, bool start = false);
+  void add_reactions();
+  void add_second(double power, double at);
+  void look_at_reaction_work();
+  void look_at_invariants(const Snapshot& state);
+  std::pair<double, double> look_at_exact(const Snapshot& state);
+  void settle();
+  ExactFlow exact_from_start() const;
+
+  const SystemModel& system_;
+  Start start_;
+  std::vector<ColumnGroup> columns_;
+  std::vector<double> rows_;
+  std::size_t width_ = 0, complete_ = 0;
+  std::size_t energy_error_ = 0, work_ = 0;  // their columns
+  std::vector<BalancedState> settled_;
+  std::vector<double> start_configuration_;
+  Measurements all_;
+  bool first_ = true, holonomic_ = false;
+  double energy_start_ = 0, time_start_ = 0, last_row_ = 0;
+  EnergyBalance balance_;
+  ExactFlow exact_;
+  bool exact_lost_ = false;  // noted already
+  std::vector<std::string> notes_;
+  std::vector<char> pulls_;        // of the contacts, noted already
+  std::vector<size_t> reactions_;  // rows, in the order of their columns
+  // The multipliers lambda of A xi = b, from the continuous equations at each state, and their
+  // power lambda . A v in the last step before it, A v recovered from the configurations
+  // (Snapshot::constraint_rates) and lambda interpolated to the same time, Snapshot::time_offset
+  // before the state: round-off where b = 0, the power that a moving constraint feeds in where it
+  // is not.
+  std::shared_ptr<const Geometry> geometry_;
+  std::unique_ptr<EquationsOfMotion<DynamicProblem>> motion_;  // null without rows
+  double time_ = 0, power_ = 0, power_time_ = 0;
+  // Their work by every second state, up to that one.
+  double second_work_ = 0, second_power_ = 0, second_time_ = 0;
+  bool odd_ = false, drifts_ = false;
+  Eigen::VectorXd g_, xi_, lambda_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,25 @@
+// A hinge or ball joint between the links a and b that closes a chain:
+//   e_i . (x_b - x_a) = 0, for a hinge with axis n also e_1 . n_b = e_2 . n_b = 0,
+// e_i and n fixed in a.
+#pragma once
+
+#include <string>
+
+#include <hamel/systems/mechanisms/contact.hpp>
+
+namespace hamel::mechanisms {
+
+struct Loop {
+  std::string name;
+  int a = kGround, b = kGround;
+  Vec3 at = Vec3::Zero(), axis = Vec3::Zero();  // axis 0: a ball joint
+
+  bool is_hinge() const { return !axis.isZero(0); }
+  size_t row_count() const { return is_hinge() ? 5 : 3; }
+  /// At a tree that was placed.
+  void rows(const Tree& tree, Row* out) const;
+  /// d/dt (-A xi) along the motion, xi held; of a tree that moved and accelerated.
+  void rates(const Tree& tree, double* out) const;
+};
+
+}  // namespace hamel::mechanisms

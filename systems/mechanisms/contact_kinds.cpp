@@ -1,0 +1,116 @@
+// The kinds of contacts by name, and their rows and rates from one formula each.
+//
+// The power of a wrench F on a link changes by F' . V + F . D, D the change of its twist
+// (tree.hpp); seen from the root F = (q x u, u).
+#include <hamel/systems/mechanisms/contacts/ball_contact.hpp>
+#include <hamel/systems/mechanisms/contacts/blade_contact.hpp>
+#include <hamel/systems/mechanisms/contacts/roller_contact.hpp>
+#include <hamel/systems/mechanisms/contacts/wheel_contact.hpp>
+
+namespace hamel::mechanisms {
+namespace {
+
+// u . v_ground(q).
+template <class T>
+T drift(const ContactView<T>& view, const Ground& ground, const VecT<T, 3>& q,
+        const VecT<T, 3>& u) {
+  const VecT<T, 3> x = view.point_in_world(q), along = view.direction_in_world(u);
+  const VecT<T, 3> v = {ground.velocity[0] - ground.rate * x[1],
+                        ground.velocity[1] + ground.rate * x[0], T(ground.velocity[2])};
+  return v.dot(along);
+}
+
+template <class Kind>
+class ContactOf final : public ContactModel {
+  template <class T>
+  using Touch = decltype(Kind().touch(std::declval<ContactView<T>>()));
+  static constexpr size_t n = Touch<double>::count;
+
+ public:
+  explicit ContactOf(const Kind& kind) : ContactModel(n), kind_(kind) {}
+  std::vector<std::string> meanings() const override { return Kind::meanings(); }
+  bool of_world() const override {
+    if constexpr (requires { Kind::of_world; }) return Kind::of_world;
+    else return false;
+  }
+  std::vector<Vec3> axes() const override {
+    std::vector<Vec3> out;
+    for (const Field& field : fields_of<Kind>(kind_))
+      if (is_direction(field)) out.emplace_back(field.value.data());
+    return out;
+  }
+  double radius() const override {
+    if constexpr (requires { kind_.radius; }) return kind_.radius;
+    else return 0;
+  }
+  std::vector<BodyShape> shapes(const Point& at) const override { return kind_.shapes(at); }
+
+  HAMEL_FLATTEN void rows(const Contact& contact, const Tree& tree, const Ground& ground,
+                          Row* out) const override {
+    const ContactView<double> view(contact, tree);
+    const auto touch = kind_.touch(view);
+    for (const Vec3& u : touch.directions) {
+      out->link = contact.link;
+      out->wrench = force_at(touch.point, u);
+      if (ground.moves()) out->drift = drift(view, ground, touch.point, u);
+      ++out;
+    }
+    out->link = contact.link;
+    out->wrench = force_at(touch.point, view.vertical);
+    out->phi = view.point_in_world(touch.point)[2];
+  }
+
+  HAMEL_FLATTEN void rates(const Contact& contact, const Tree& tree, const Ground& ground,
+                           double* out) const override {
+    const ContactView<Dual> view(contact, tree);
+    const auto touch = kind_.touch(view);
+    const Twist twist = tree.twist(contact.link), change = tree.acceleration(contact.link);
+    const auto power = [&](const VecT<Dual, 3>& u) {
+      return power_rate(force_at(touch.point, u), twist, change);
+    };
+    for (const VecT<Dual, 3>& u : touch.directions) {
+      *out = -power(u);
+      if (ground.moves()) *out += drift(view, ground, touch.point, u).rate;
+      ++out;
+    }
+    *out = -power(view.vertical);
+  }
+
+  Vec3 touch(const Contact& contact, const Tree& tree) const override {
+    const ContactView<double> view(contact, tree);
+    return view.point_in_world(kind_.touch(view).point);
+  }
+
+ private:
+  Kind kind_;
+};
+
+template <class Kind>
+ContactKind kind() {
+  const auto make = [](const Parameters& values) -> std::shared_ptr<const ContactModel> {
+    return std::make_shared<ContactOf<Kind>>(with_parameters<Kind>(values));
+  };
+  return {Kind::name(), Kind::summary(), fields_of<Kind>(), make};
+}
+
+}  // namespace
+
+const std::vector<ContactKind>& contact_kinds() {
+  static const std::vector<ContactKind> all = {
+      kind<BallContact>(),
+      kind<BladeContact>(),
+      kind<RollerContact>(),
+      kind<WheelContact>(),
+  };
+  return all;
+}
+
+const ContactKind* find_contact_kind(const std::string& name) {
+  for (const ContactKind& kind : contact_kinds())
+    if (kind.name == name) return &kind;
+  return nullptr;
+}
+
+ContactModel::~ContactModel() = default;
+
+}  // namespace hamel::mechanisms
