@@ -78,8 +78,9 @@ void equations(benchmark::State& state) {
   const Mechanics& mechanics = *model.mechanics;
   const auto geometry = registry().geometry(model.group.name, "exp");
   Eigen::VectorXd g(geometry->size()), turn(geometry->size()), force(mechanics.dim()),
-      b(mechanics.rows()), xi = Eigen::VectorXd::Constant(mechanics.dim(), 0.01);
-  Eigen::MatrixXd inertia(mechanics.dim(), mechanics.dim()), a(mechanics.rows(), mechanics.dim());
+      b(mechanics.constraint_count()), xi = Eigen::VectorXd::Constant(mechanics.dim(), 0.01);
+  Eigen::MatrixXd inertia(mechanics.dim(), mechanics.dim()),
+      a(mechanics.constraint_count(), mechanics.dim());
   geometry->from_coordinates(model.start.configuration, g.data());
   geometry->tau(xi.data(), turn.data());
   for (auto _ : state) {

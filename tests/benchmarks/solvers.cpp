@@ -48,7 +48,7 @@ void by_hand(benchmark::State& state) {
   for (auto _ : state) {
     Step step(problem, 0);
     Node<benchmarks::Problem> node(problem), next(problem);
-    problem.carry(Vec<3>(1, 0.5, 0), node.x);
+    problem.to_state(Vec<3>(1, 0.5, 0), node.x);
     std::array<Unknown, 6> x;
     for (long k = 0; k < kSteps; ++k) {
       step.begin(node, kStep);

@@ -15,8 +15,8 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
-#include <hamel/framework/schemes/erased.hpp>
-#include <hamel/framework/schemes/typed.hpp>
+#include <hamel/framework/schemes/dynamic_problem.hpp>
+#include <hamel/framework/schemes/static_problem.hpp>
 #include <hamel/groups/cayley.hpp>
 
 #include "hand_reduced.hpp"
@@ -179,7 +179,7 @@ class Multipliers {
     const auto g = G::from_coordinates(start.configuration);
     if constexpr (F::constant_constraints()) formulas_.constraints(0, g, a_, b_);
     const auto geometry = std::make_shared<TypedGeometry<Cayley<G>>>();
-    EquationsOfMotion<Erased> motion(Erased(geometry, model.mechanics));
+    EquationsOfMotion<DynamicProblem> motion(DynamicProblem(geometry, model.mechanics));
     Eigen::VectorXd packed(geometry->size()),
         xi = Eigen::Map<const Eigen::VectorXd>(start.velocity.data(), n);
     geometry->from_coordinates(start.configuration, packed.data());
@@ -247,10 +247,12 @@ class Multipliers {
       const auto g = At::element(y);
       own.formulas_.constraints(t, g, own.a_, own.b_);
       own.formulas_.force(t, g, xi, force);
-      Mat<k, n> a_rate = Mat<k, n>::Zero();
-      Mat<n, n> inertia_rate;
-      own.rates_.problem.dual_rates(g, xi, own.a_, a_rate, own.inertia_, inertia_rate);
-      rows = a_rate * xi;
+      Mat<n, k> columns;
+      Vec<k> row_rate;
+      Vec<n> momentum_rate;
+      own.rates_.problem.dual_rates(g, xi, columns, row_rate, own.inertia_, momentum_rate);
+      own.a_ = columns.transpose();
+      rows = -row_rate;
     }
     Eigen::Map<Vec<n>>(f + p) =
         own.inertia_ * xi_rate - G::coad(mu) * xi - force - own.a_.transpose() * lambda;
@@ -260,7 +262,7 @@ class Multipliers {
 
   // dA/dt by one dual number, where A moves.
   struct Rates {
-    Typed<S, Cayley<G>> problem;
+    StaticProblem<S, Cayley<G>> problem;
     explicit Rates(const SystemModel& model)
         : problem(std::shared_ptr<const Geometry>(), model.mechanics) {}
   };

@@ -71,7 +71,7 @@ TEST_F(BadInput, Lists) {
   refused({"suslov", "--velocity", "1,0,0", "--momentum", "1,0,0"}, "not both");
   refused({"suslov", "--configuration", "1,0,0"}, "configuration");
   refused({"suslov", "--configuration", "2,0,0,0,1,0,0,0,1"}, "configuration");
-  // Nothing is said of the identity, which nobody gave.
+  // No message about the identity, which was not given.
   for (const char* system : {"falling_disk", "rattleback"}) {
     EXPECT_EQ(
         lines(run({"run", system, "--configuration", "1,0,0,0,1,0,0,0,1.1,0,0,0.25"}).err).size(),

@@ -113,10 +113,10 @@ TEST_F(DataSystem, MistakesAreNamed) {
   refused(se2 + "constraints = [[0, 'v1', 1]]", ":4:21: constraints: unknown name 'v1'");
   refused(se2 + "drift = [1]", ":4:9: drift: expected 0 numbers or formulas");
   refused(se2 + "coordinates = ['a', 'b']", ":4:15: coordinates: expected 3 names, got 2");
-  refused(se2 + "coordinates = ['a', 'b', '3c']", "names that may stand in a formula, got '3c'");
+  refused(se2 + "coordinates = ['a', 'b', '3c']", "names allowed in a formula, got '3c'");
   refused(se2 + "coordinates = ['a', 'b', 'omega']", "two things are called 'omega'");
   refused(se2 + "[parameters]\nx = 1", "two things are called 'x'");
-  refused(se2 + "[parameters]\n2x = 1", "a name that may stand in a formula, got '2x'");
+  refused(se2 + "[parameters]\n2x = 1", "a name allowed in a formula, got '2x'");
   refused(se2 + "[parameters]\nm = { valu = 1 }", "did you mean 'value'?");
   refused(se2 + "[parameters]\nm = { value = -1, least = 0 }",
           "parameter 'm' of " + file("system.toml") + ": got -1, expected at least 0");
@@ -279,7 +279,32 @@ TEST_F(DataSystem, DescribesNoStartWithoutAValue) {
   EXPECT_THAT(o.err, HasSubstr("system.toml:3:13: potential: 'ln(x1)' is -inf at the start"));
 }
 
-/// The page calls coordinates and rates as the file does, and knows which of them are places all
+/// Inertia that is definite on the admissible velocities alone: left open, the method is lift, and
+/// x = cos t + 0.5 sin t moves both; an explicit scheme is refused.
+TEST_F(DataSystem, MayHaveMasslessLinks) {
+  const std::string system = write(R"(group = "r2"
+inertia = [1, 0]
+constraints = [[1, -1]]
+configuration = [1, 1]
+velocity = [0.5, 0.5]
+potential = "0.5*x1^2"
+)");
+  const json moved = record({system, "--until", "1", "--step", "0.001"});
+  EXPECT_EQ(moved["scheme"], "lift");
+  for (const int i : {0, 1}) {
+    EXPECT_NEAR(moved["final"]["element"][i][2].get<double>(), std::cos(1) + 0.5 * std::sin(1),
+                1e-6);
+  }
+  const json open = record({system, "--until", "1"});
+  EXPECT_EQ(open["scheme"], "lift");
+  EXPECT_THAT(open["notes"].dump(), HasSubstr("neither scheme nor step given, and the system has "
+                                              "massless links: lift, h = 0.01"));
+  const Outcome o = run({"run", system, "--scheme", "rkmk4"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("with massless links lift and balance are offered"));
+}
+
+/// The page calls coordinates and rates as the file does, and finds which of them are places all
 /// the same.
 TEST_F(DataSystem, NamesTheCurvesOfThePage) {
   auto figures = curves({write(R"(
@@ -294,9 +319,10 @@ velocity = [0.5, 1, 0, 1]
   if (figures.empty()) GTEST_SKIP() << "the program has no page";
   using testing::ElementsAre;
   EXPECT_THAT(figures["Path in the plane"], ElementsAre("east, north"));
-  EXPECT_THAT(figures["Angular velocity"], ElementsAre("spin [rad/s]", "roll [rad/s]"));
+  EXPECT_THAT(figures["Angular velocity"], ElementsAre("spin [rad/s]"));
+  EXPECT_THAT(figures["Spin of wheels and rotors"], ElementsAre("roll [rad/s]"));
   EXPECT_THAT(figures["Velocity"], ElementsAre("ahead [m/s]", "aside [m/s]"));
-  EXPECT_THAT(figures["Angles of the shape"], ElementsAre("wheel [rad]"));
+  EXPECT_THAT(figures["Angles of wheels and rotors"], ElementsAre("wheel [rad]"));
   EXPECT_THAT(figures["Momentum in the body"],
               ElementsAre("mu of ahead [N s]", "mu of aside [N s]"));
 }

@@ -1,5 +1,5 @@
-// Inputs from the command line: constants, tables, TOML; the record, and what `hamel describe` says
-// of them.
+// Inputs from the command line: constants, tables, TOML; the record, and what `hamel describe`
+// prints of them.
 #include <cmath>
 
 #include <gmock/gmock.h>

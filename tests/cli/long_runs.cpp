@@ -70,7 +70,7 @@ TEST_F(LongRuns, ReproduceWritesItsFiles) {
   }
   EXPECT_THAT(summary, testing::Not(HasSubstr("[failed]")));
   EXPECT_THAT(o.out, HasSubstr("Figure 1"));
-  // 2 x 7 readings of figure 1, 2 x 2 of figure 2, 3 x 7 of the others, and the header.
+  // 2 x 7 variants of figure 1, 2 x 2 of figure 2, 3 x 7 of the others, and the header.
   EXPECT_EQ(lines(csv).size(), 1u + 14 + 4 + 21);
   for (const std::string& line : lines(csv)) EXPECT_EQ(split(line).size(), 10u) << line;
   if (o.err.find("no report.html") == std::string::npos) {

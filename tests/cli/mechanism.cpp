@@ -192,16 +192,6 @@ wind = { unit = "N", meaning = "along x", least = -5, most = 5 }
   EXPECT_EQ(run({"run", cart, "--input", "wind=6"}).status, 2);
 }
 
-/// The page's figure of reactions: part by part, in the order of the parts.
-TEST_F(MechanismFile, ShowsReactionsByPart) {
-  auto figures = curves({"bicycle", "--speed", "5", "--until", "0.1"});
-  if (figures.empty()) GTEST_SKIP() << "the program has no page";
-  EXPECT_THAT(figures["Reaction forces"],
-              testing::ElementsAre("rear.reaction1 [N]", "rear.reaction2 [N]",
-                                   "rear.reaction3 [N], contact", "front.reaction1 [N]",
-                                   "front.reaction2 [N]", "front.reaction3 [N], contact"));
-}
-
 /// By name, and as a file.
 TEST_F(MechanismFile, OfTheLibraryGoByName) {
   EXPECT_THAT(run({"list", "systems"}).out, HasSubstr("two_trailer_truck"));

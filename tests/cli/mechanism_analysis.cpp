@@ -27,10 +27,10 @@ body = [
 ]
 joint = [
   { name = "road", kind = "planar", child = "deck" },
-  { name = "steer", kind = "hinge", parent = "deck", child = "fork", at = [750, 0, 0], damping = 2e4 },
+  {name="steer", kind="hinge", parent="deck", child="fork", at=[750, 0, 0], damping=2e4},
   { name = "stem", kind = "weld", parent = "fork", child = "handlebar" },
-  { name = "rear", kind = "hinge", parent = "deck", child = "rear wheel", at = [0, 0, 100], axis = [0, 1, 0] },
-  { name = "front", kind = "hinge", parent = "fork", child = "front wheel", at = [720, 0, 100], axis = [0, 1, 0] },
+  {name="rear", kind="hinge", parent="deck", child="rear wheel", at=[0, 0, 100], axis=[0, 1, 0]},
+  {name="front",kind="hinge",parent="fork",child="front wheel",at=[720,0,100],axis=[0,1,0]},
 ]
 wheel = [
   { name = "rear", body = "rear wheel", at = [0, 0, 100], radius = 100 },
@@ -54,7 +54,7 @@ TEST_F(MechanismAnalysis, EnergyAloneIsKept) {
 ]
 joint = [
   { name = "space", kind = "free", child = "wheel", at = [0, 0, 0.3] },
-  { name = "axle", kind = "hinge", parent = "wheel", child = "bob", at = [0, 0, 0.3], axis = [0, 1, 0] },
+  {name="axle", kind="hinge", parent="wheel", child="bob", at=[0, 0, 0.3], axis=[0, 1, 0]},
 ]
 wheel = [{ body = "wheel", at = [0, 0, 0.3], radius = 0.3 }]
 [start]

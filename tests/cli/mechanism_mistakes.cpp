@@ -58,7 +58,7 @@ TEST_F(MechanismMistakes, InContactsAndLoops) {
       {kFlat + "[[blade]]\nbody = \"a\"\nallong = [1, 0, 0]\n", "11:10: unknown key 'allong'"},
       {kFlat + "[[blade]]\nname = \"left\"\nbody = \"a\"\nat = [0, 1, 0]\n" +
            "[[blade]]\nname = \"right\"\nbody = \"a\"\nat = [0, -1, 0]\n",
-       "13:1: redundant row: blade 'right' (does not slip across its edge) says nothing beyond "
+       "13:1: redundant row: blade 'right' (does not slip across its edge) is implied by "
        "blade 'left' (does not slip across its edge); take a part with fewer rows"},
       {kFlat +
            "[[body]]\nname = \"post\"\nmass = 0\n[[joint]]\nkind = \"weld\"\nchild = \"post\"\n" +
@@ -91,18 +91,18 @@ TEST_F(MechanismMistakes, InTheStart) {
       {kFlat + "[start]\nspeeed = 1\n", "10:10: unknown number of the start"},
       {kFlat + "[start]\nv1 = nan\n", "10:6: v1: expected a finite number, got nan"},
       {kFlat + "[[blade]]\nbody = \"a\"\n[start]\nv1 = 1\nv2 = 1\n",
-       "13:6: start: blade 'a' (does not slip across its edge) with v2 = 1 do not go together"},
+       "13:6: start: blade 'a' (does not slip across its edge) with v2 = 1 are inconsistent"},
       {pin + "[start]\nlow.angle = 1.5\nhigh.angle = 0.3\n",
        "29:13: start: loop 'pin' (the points of the joint coincide) with high.angle = 0.3, "
        "low.angle = 1.5 cannot be reached, 1.91 m is left"},
       {kSpace + "[start]\nR11 = 3\n", "11:7: start: R11 = 3: se3: R11..R33 has"},
-      {"asks = [\"sped\"]\n" + kFlat, "1:8: asks: unknown number of the start"},
+      {"asks = [\"sped\"]\n" + kFlat, "1:8: start_arguments: unknown number of the start"},
       {kFlat + kArm + "[[prescribed]]\njoint = \"arm\"\nangle = \"0.5 + t\"\n[start]\n" +
            "arm.angle = 0.25\n",
        "23:13: start: arm.angle = 0.25, but it is prescribed as 0.5 at t = 0; leave it out"},
-      {"asks = [\"arm.angle\"]\n" + kFlat + kArm +
+      {"start_arguments = [\"arm.angle\"]\n" + kFlat + kArm +
            "[[prescribed]]\njoint = \"arm\"\nangle = \"t\"\n",
-       "1:8: asks: arm.angle is prescribed"},
+       "1:19: start_arguments: arm.angle is prescribed"},
   });
 }
 
@@ -126,7 +126,7 @@ TEST_F(MechanismMistakes, InFormulas) {
        "21:9: angle: expected an angle whose rate is finite at t = 0, got inf"},
       {moved + "angle = \"t < 1 ? 4 : 7\"\n",
        "21:9: angle: expected a formula without comparisons, a ? b : c, sign and rint, since its "
-       "rate says nothing of a jump; prescribe the rate instead"},
+       "rate contains nothing of a jump; prescribe the rate instead"},
       {moved + "angle = \"0.3*sign(t - 1)\"\n", "21:9: angle: expected a formula without "},
       {moved + "rate = \"1\"\nangle = \"t\"\n", "19:1: prescribed: expected one of rate and angle"},
       {moved + "rate = \"1\"\n[[prescribed]]\njoint = \"arm\"\nrate = \"2\"\n",
@@ -173,10 +173,11 @@ TEST_F(MechanismMistakes, InNamesAndNumbers) {
        "20:5: inputs.u: expected least below most, got 2 and 1"},
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"crank\"\nat = [0, 0, 1]\n" +
            "axis = [0, 1, 0]\n",
-       "23:1: loop 'pin': says nothing: the joints between its bodies hold it already"},
+       "23:1: loop 'pin': constrains nothing: the joints between its bodies hold it already"},
       {"[[body]]\nname = \"a\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n[[joint]]\n"
        "kind = \"hinge\"\nchild = \"a\"\n[[blade]]\nname = \"keel\"\nbody = \"a\"\n",
-       "9:1: redundant row: blade 'keel' (does not slip across its edge) says nothing: no joint "
+       "9:1: redundant row: blade 'keel' (does not slip across its edge) constrains nothing: no "
+       "joint "
        "moves its body that way; leave it out, or redundant = \"drop\""},
       {kFlat +
            "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n[[joint]]\n" +
@@ -199,8 +200,8 @@ TEST_F(MechanismMistakes, InNamesAndNumbers) {
               HasSubstr("dimension 1001, expected at most 1000"));
 }
 
-/// Parts may have any name; what cannot stand in a formula is left out of them, which a mistake
-/// says.
+/// Parts may have any name; what is not allowed in a formula is left out of them, with a mistake
+/// that names it.
 TEST_F(MechanismMistakes, InFormulasOfJointsWithAnyName) {
   for (const std::string name : {"left arm", "left-arm", "3rd", "дрель", "sin"}) {
     const std::string arm = "[[body]]\nname = \"" + name +
@@ -212,7 +213,7 @@ TEST_F(MechanismMistakes, InFormulasOfJointsWithAnyName) {
     if (name == "sin") continue;
     refuses(
         {{arm + "\"2*" + name + ".angle\"\n",
-          "11:13: effort: '" + name + ".angle' cannot stand in a formula: expected a letter, "}});
+          "11:13: effort: '" + name + ".angle' is not allowed in a formula: expected a letter, "}});
   }
   refuses(
       {{kFlat + "[[body]]\nname = \"b\"\nmass = 1\nat = [1, 0, 0]\ninertia = [1, 1, 1]\n" +

@@ -8,7 +8,7 @@ using testing::HasSubstr;
 
 using MechanismRows = MechanismMistakes;
 
-/// Blades on arms to both sides say the same as drawn, but not elsewhere.
+/// Blades on arms to both sides are equivalent as drawn, but not elsewhere.
 TEST_F(MechanismRows, ThatRepeatOthersAtTheStart) {
   std::string walker = kFlat;
   for (const std::string side : {"1", "-1"})
@@ -17,7 +17,7 @@ TEST_F(MechanismRows, ThatRepeatOthersAtTheStart) {
               "child = \"arm" + side + "\"\n[[blade]]\nbody = \"arm" + side + "\"\nat = [0, " +
               side + ", 0]\n";
   refuses({{walker,
-            "30:1: blade 'arm-1' (does not slip across its edge) says nothing beyond blade 'arm1' "
+            "30:1: blade 'arm-1' (does not slip across its edge) is implied by blade 'arm1' "
             "(does not slip across its edge) at the start; start elsewhere"}});
   EXPECT_EQ(run({"run", write(walker + "[start]\narm1.angle = 0.3\n"), "--until", "0.1"}).status,
             0);
@@ -47,8 +47,8 @@ TEST_F(MechanismRows, ThatContradictOthers) {
   for (const std::string& rate : {two, of_time}) {
     const Outcome o = run({"run", write(prescribed(rate, rate, rate)), "--until", "0.1"});
     EXPECT_EQ(o.status, 0) << o.err;
-    EXPECT_THAT(o.out, HasSubstr("row dropped: prescribed 'w0' (moves as prescribed) says nothing "
-                                 "beyond "));
+    EXPECT_THAT(o.out,
+                HasSubstr("row dropped: prescribed 'w0' (moves as prescribed) is implied by "));
   }
   refuses({
       {prescribed(two, two, "rate = 5"), "73:1: " + wrong},

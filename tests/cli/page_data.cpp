@@ -1,5 +1,6 @@
 // The data of a report page, as tools/report/README.md describes them. The page here is its
 // placeholder alone, so that what is written is the JSON.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -161,6 +162,32 @@ TEST(PageData, Animation) {
   EXPECT_EQ(b["view"], "3d");
   EXPECT_EQ(b["floor"], true);
   EXPECT_EQ(b["times"], Json::parse("[0.0, 0.5]"));
+}
+
+// What oscillates more often than a figure can show is a band from its least to its greatest
+// values; round-off on a curve is no oscillation, and few swings are drawn as they are.
+TEST(PageData, ManyOscillationsAreABand) {
+  std::vector<double> x, fast, slow, noisy;
+  for (int i = 0; i <= 20000; ++i) {
+    const double t = i * 1e-3;
+    x.push_back(t);
+    fast.push_back((1 + 0.1 * t) * std::sin(250 * t));
+    slow.push_back(std::sin(10 * t));
+    noisy.push_back(t + 1e-3 * (i % 2));
+  }
+  const Series band = drawable("fast", x, fast);
+  ASSERT_EQ(band.low.size(), band.y.size());
+  EXPECT_EQ(band.x.front(), 0);
+  EXPECT_EQ(band.x.back(), 20);
+  for (size_t i = 1; i < band.x.size(); ++i) {
+    ASSERT_LT(band.x[i - 1], band.x[i]);
+    EXPECT_NEAR(band.y[i], 1 + 0.1 * band.x[i], 0.02);
+    EXPECT_NEAR(band.low[i], -1 - 0.1 * band.x[i], 0.02);
+  }
+  EXPECT_TRUE(drawable("slow", x, slow).low.empty());
+  EXPECT_TRUE(drawable("noisy", x, noisy).low.empty());
+  const Json b = block([&](Page& page) { page.plot("Band", {.x = "t", .y = "x"}, {band}); });
+  EXPECT_EQ(b["series"][0]["low"].size(), band.y.size());
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
-// What the pages of runs, comparisons, sweeps and studies say, as the program writes them.
+// The texts of the pages of runs, comparisons, sweeps and studies, as the program writes them.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <set>
 
@@ -26,7 +28,7 @@ class Pages : public hamel::test::CommandLine {
   }
 };
 
-// OK means right: what is wrong or not known is a note that says so.
+// OK means right: what is wrong or not known is a note.
 TEST_F(Pages, OkMeansRight) {
   if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
   EXPECT_EQ(verdict({"suslov"}).first, "ok");
@@ -68,7 +70,7 @@ TEST_F(Pages, TimesOfTheirOwn) {
   }
 }
 
-// The estimate is told by what it was made of.
+// The estimate is described by the runs it was made of.
 TEST_F(Pages, HowTheErrorIsKnown) {
   if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
   EXPECT_THAT(verdict({"rattleback", "--step", "0.01", "--until", "2", "--check"}).second,
@@ -83,7 +85,7 @@ TEST_F(Pages, HowTheErrorIsKnown) {
   EXPECT_THAT(stuck, Not(HasSubstr("--check")));
 }
 
-// A contact that ceased to push between two recorded states is not said to push all along.
+// A contact that ceased to push between two recorded states is not reported to push all along.
 TEST_F(Pages, ContactThatIsLost) {
   const json page =
       page_of({"falling_disk", "--scheme", "dop853", "--rtol", "1e-10", "--output-step", "0.05",
@@ -98,7 +100,7 @@ TEST_F(Pages, ContactThatIsLost) {
               HasSubstr("at the recorded states the contact pushes"));
 }
 
-// What the points are the largest of is told as it is.
+// The rows of which the points are the largest are stated.
 TEST_F(Pages, LargestOfSoMany) {
   const json page = page_of({"suslov", "--until", "6"});  // 601 states, 240 points
   if (page.is_null()) GTEST_SKIP() << "built without the page";
@@ -115,12 +117,58 @@ TEST_F(Pages, LargestOfSoMany) {
                 largest + ".");
 }
 
+// Axes that turn too often for a figure are shown for as long as the curve is that of the motion.
+TEST_F(Pages, AxesOnTheSphereAreNotAliased) {
+  const auto widest = [](const json& figure) {
+    double out = 0;
+    for (const json& series : figure["series"]) {
+      const json& points = series["points"];
+      for (size_t i = 1; i < points.size(); ++i) {
+        double square = 0;
+        for (size_t k = 0; k < 3; ++k)
+          square += std::pow(points[i][k].get<double>() - points[i - 1][k].get<double>(), 2);
+        out = std::max(out, std::sqrt(square));
+      }
+    }
+    return out;
+  };
+  const json page = page_of({"rattleback", "--until", "400"});
+  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  const json fast = figure_of(page, "Motion of the body axes"),
+             slow = figure_of(page_of({"suslov"}), "Motion of the body axes");
+  EXPECT_LT(widest(fast), 0.15);
+  EXPECT_THAT(fast["note"].get<std::string>(), HasSubstr("To t = "));
+  EXPECT_LT(widest(slow), 0.15);
+  EXPECT_EQ(slow["note"], "Columns of R; drag to turn.");
+}
+
 // Multipliers of contacts are forces; of others nothing is known.
 TEST_F(Pages, ReactionsOfContactsAreForces) {
   const json page = page_of({"bicycle", "--until", "0.1"});
   if (page.is_null()) GTEST_SKIP() << "built without the page";
-  EXPECT_EQ(figure_of(page, "Reaction forces")["y"], "lambda [N]");
+  EXPECT_EQ(figure_of(page, "Reaction forces: rear")["y"], "lambda [N]");
   EXPECT_EQ(figure_of(page_of({"chaplygin_sleigh"}), "Reaction forces")["y"], "lambda");
+}
+
+// The reactions of each part have a figure; spins of wheels are not among the angles of the shape.
+TEST_F(Pages, PartsAndSpinsHaveFiguresOfTheirOwn) {
+  const auto bicycle = curves({"bicycle", "--speed", "5", "--until", "0.1"});
+  if (bicycle.empty()) GTEST_SKIP() << "built without the page";
+  EXPECT_THAT(bicycle.at("Reaction forces: front"),
+              testing::ElementsAre("front.reaction1 [N]", "front.reaction2 [N]",
+                                   "front.reaction3 [N], contact"));
+  EXPECT_THAT(bicycle.at("Reaction forces: rear"),
+              testing::ElementsAre("rear.reaction1 [N]", "rear.reaction2 [N]",
+                                   "rear.reaction3 [N], contact"));
+  EXPECT_THAT(bicycle.at("Spin of wheels and rotors"),
+              testing::UnorderedElementsAre("front.rate [rad/s]", "rear.rate [rad/s]"));
+  EXPECT_EQ(bicycle.at("Angular velocity").size(), 4u);
+  EXPECT_THAT(bicycle.at("Angles of the shape"), testing::ElementsAre("steer.angle [rad]"));
+  EXPECT_THAT(bicycle.at("Angles of wheels and rotors"),
+              testing::UnorderedElementsAre("front.angle [rad]", "rear.angle [rad]"));
+  const auto rolling = curves({"rolling_disk", "--until", "1"});
+  EXPECT_EQ(rolling.count("Angles of the shape"), 0u);
+  EXPECT_EQ(rolling.at("Angles of wheels and rotors").size(), 1u);
 }
 
 // Eigenvalues along a parameter: curves by the names of what moves, one colour in both figures,
@@ -171,6 +219,11 @@ TEST_F(Pages, NoEmptyFiguresOfAStudy) {
   };
   EXPECT_EQ(titles(look("reference = false\nstep = 0.1\n")),
             "Verdict; verdict; text; All cells; All cells that were run; Record; record; ");
+  // A page of 100 000 cells would take 400 MB: the table has the first ones.
+  std::string list = "0";
+  for (int i = 1; i <= 2000; ++i) list += ", " + std::to_string(i * 4e-4);
+  EXPECT_THAT(titles(look("reference = false\nstep = 0.5\ns = [" + list + "]\n")),
+              HasSubstr("The first 2000 of 4002 cells that were run"));
   const std::string one = titles(look("step = 0.1\n"));
   EXPECT_THAT(one, HasSubstr("What the cells are compared with"));
   EXPECT_THAT(one, Not(HasSubstr("Measured orders")));
@@ -207,11 +260,29 @@ class Comparisons : public Pages {
   hamel::test::Outcome first_;
 };
 
-TEST_F(Comparisons, FilesOfOneNameAreToldApart) {
+// By their files where they do not differ.
+TEST_F(Comparisons, RunsAreCalledByWhatDiffers) {
+  const json alike = compared({"run", "chaplygin_sleigh", "--quiet", "-o", "B/run.h5"});
+  EXPECT_THAT(names(figure_of(alike, "omega")), testing::ElementsAre("A/run", "B/run"));
+  for (const auto& [file, step, offset] :
+       {std::array<std::string, 3>{"1", "0.1", "0.2"}, {"2", "0.05", "0.2"}, {"3", "0.1", "0.3"}}) {
+    ASSERT_EQ(run({"run", "chaplygin_sleigh", "--step", step, "--set", "offset=" + offset,
+                   "--quiet", "-o", file + ".h5"})
+                  .status,
+              0);
+  }
+  const json page = page_by({"report", "1.h5", "2.h5", "3.h5", "1.h5", "-o", "page.html"});
+  EXPECT_THAT(names(figure_of(page, "omega")),
+              testing::ElementsAre("h = 0.1, offset = 0.2 (1)", "h = 0.05, offset = 0.2",
+                                   "h = 0.1, offset = 0.3", "h = 0.1, offset = 0.2 (1 (2))"));
+  EXPECT_EQ(page["sections"][0]["blocks"][4]["rows"][1][1], "2.h5");
+}
+
+TEST_F(Comparisons, MethodsOfOneSystem) {
   const json page =
       compared({"run", "chaplygin_sleigh", "--step", "0.001", "--quiet", "-o", "B/run.h5"});
   const json omega = figure_of(page, "omega"), residual = figure_of(page, "Constraint residual");
-  EXPECT_THAT(names(omega), testing::ElementsAre("A/run", "B/run"));
+  EXPECT_THAT(names(omega), testing::ElementsAre("dop853", "lift"));
   EXPECT_EQ(omega["y"], "omega [rad/s]");
   EXPECT_EQ(figure_of(page, "theta")["y"], "theta [rad]");
   EXPECT_EQ(figure_of(page, "x")["y"], "x [m]");
@@ -221,18 +292,19 @@ TEST_F(Comparisons, FilesOfOneNameAreToldApart) {
   EXPECT_EQ(figure_of(page, "Group defect")["floor"], 2.2e-16);
   EXPECT_EQ(figure_of(page, "Energy error, or defect of the energy balance")["floor"], 2.2e-16);
   // Each curve has its own windows.
-  EXPECT_THAT(residual["note"].get<std::string>(), HasSubstr("`A/run`: Each"));
-  EXPECT_THAT(residual["note"].get<std::string>(), HasSubstr("`B/run`: Each"));
+  EXPECT_THAT(residual["note"].get<std::string>(), HasSubstr("`dop853`: Each"));
+  EXPECT_THAT(residual["note"].get<std::string>(), HasSubstr("`lift`: Each"));
 }
 
 // Curves of different meaning are never in one figure.
 TEST_F(Comparisons, DifferentSystems) {
   const json page = compared({"run", "falling_disk", "--quiet", "-o", "B/run.h5"});
   EXPECT_EQ(page["subtitle"], "of chaplygin_sleigh, falling_disk");
-  EXPECT_THAT(names(figure_of(page, "v1")), testing::ElementsAre("A/run", "B/run"));
+  EXPECT_THAT(names(figure_of(page, "v1")),
+              testing::ElementsAre("chaplygin_sleigh", "falling_disk"));
   EXPECT_EQ(figure_of(page, "v1")["y"], "v1 [m/s]");
-  EXPECT_THAT(names(figure_of(page, "omega")), testing::ElementsAre("A/run"));
-  EXPECT_THAT(names(figure_of(page, "omega2")), testing::ElementsAre("B/run"));
+  EXPECT_THAT(names(figure_of(page, "omega")), testing::ElementsAre("chaplygin_sleigh"));
+  EXPECT_THAT(names(figure_of(page, "omega2")), testing::ElementsAre("falling_disk"));
 }
 
 }  // namespace

@@ -2,11 +2,8 @@
 // status.
 #pragma once
 
-#include <fcntl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -18,6 +15,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+extern template class nlohmann::basic_json<>;
+
 namespace hamel::test {
 
 struct Outcome {
@@ -25,157 +24,56 @@ struct Outcome {
   std::string out, err;
 };
 
-inline std::string contents(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+std::string contents(const std::filesystem::path& path);
 
-inline std::vector<std::string> lines(const std::string& text) {
-  std::vector<std::string> out;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) out.push_back(line);
-  return out;
-}
+std::vector<std::string> lines(const std::string& text);
 
-inline std::vector<std::string> split(const std::string& text, char separator = ',') {
-  std::vector<std::string> out;
-  std::istringstream in(text);
-  for (std::string word; std::getline(in, word, separator);) out.push_back(word);
-  return out;
-}
+std::vector<std::string> split(const std::string& text, char separator = ',');
 
 /// A file of the source tree.
-inline std::string source_file(const std::string& path) {
-  const char* root = std::getenv("HAMEL_SOURCE");
-  EXPECT_NE(root, nullptr) << "set HAMEL_SOURCE to the source tree (ctest does)";
-  return contents(std::filesystem::path(root != nullptr ? root : "") / path);
-}
+std::string source_file(const std::string& path);
 
 /// The data in the text of a page.
-inline nlohmann::json page_data(const std::string& page) {
-  const std::string head = "id=\"hamel-data\">";
-  const size_t from = page.find(head) + head.size();
-  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
-}
+nlohmann::json page_data(const std::string& page);
 
 /// The figure of that title on a page; null where there is none.
-inline nlohmann::json figure_of(const nlohmann::json& page, const std::string& title) {
-  for (const nlohmann::json& section : page["sections"])
-    for (const nlohmann::json& block : section["blocks"])
-      if (block.value("title", "") == title) return block;
-  return {};
-}
+nlohmann::json figure_of(const nlohmann::json& page, const std::string& title);
 
 /// A folder of its own for each test, gone afterwards.
 class CommandLine : public testing::Test {
  protected:
-  void SetUp() override {
-    const char* path = std::getenv("HAMEL_PROGRAM");
-    ASSERT_NE(path, nullptr) << "set HAMEL_PROGRAM to the program (ctest does)";
-    program_ = path;
-    std::string pattern = (std::filesystem::temp_directory_path() / "hamel_cli_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override;
+  void TearDown() override;
 
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::vector<std::string> files() const {
-    std::vector<std::string> out;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_))
-      out.push_back(entry.path().filename());
-    return out;
-  }
+  std::string file(const std::string& name) const;
+  std::vector<std::string> files() const;
 
   /// Runs the program in its folder, where out and err go to files beside it. before: what the
   /// shell does first; behind: what the output goes through.
   Outcome run(const std::vector<std::string>& arguments, const std::string& before = "",
-              const std::string& behind = "") const {
-    const std::string out = folder_.string() + ".out", err = folder_.string() + ".err";
-    std::string command = "cd " + quoted(folder_.string()) + " && " + before + quoted(program_);
-    for (const std::string& argument : arguments) command += " " + quoted(argument);
-    command += " 2>" + quoted(err) + " </dev/null " + behind + " >" + quoted(out);
-    const int status = std::system(command.c_str());
-    Outcome result{WIFEXITED(status) ? WEXITSTATUS(status) : 128, contents(out), contents(err)};
-    std::filesystem::remove(out);
-    std::filesystem::remove(err);
-    return result;
-  }
+              const std::string& behind = "") const;
   /// What these arguments print with --json.
-  nlohmann::json answer(std::vector<std::string> arguments, int status = 0) const {
-    arguments.emplace_back("--json");
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, status) << outcome.err;
-    return nlohmann::json::parse(outcome.out.empty() ? "{}" : outcome.out);
-  }
+  nlohmann::json answer(std::vector<std::string> arguments, int status = 0) const;
   /// The record of `run` with these arguments.
-  nlohmann::json record(std::vector<std::string> arguments, int status = 0) const {
-    arguments.insert(arguments.begin(), "run");
-    return answer(std::move(arguments), status);
-  }
+  nlohmann::json record(std::vector<std::string> arguments, int status = 0) const;
   /// The data of the page that these arguments write to this file; null where the program was built
   /// without the page.
   nlohmann::json page_by(const std::vector<std::string>& arguments,
-                         const std::string& name = "page.html") const {
-    const Outcome outcome = run(arguments);
-    if (outcome.err.find("without the page") != std::string::npos) return {};
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return page_data(contents(file(name)));
-  }
+                         const std::string& name = "page.html") const;
   /// The same of `run` with these arguments.
-  nlohmann::json page_of(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "run");
-    arguments.insert(arguments.end(), {"--quiet", "--report", "page.html"});
-    return page_by(arguments);
-  }
+  nlohmann::json page_of(std::vector<std::string> arguments) const;
   /// The names of the curves in a run's figures, by their titles; none without the page.
-  std::map<std::string, std::vector<std::string>> curves(std::vector<std::string> arguments) const {
-    std::map<std::string, std::vector<std::string>> out;
-    const nlohmann::json page = page_of(std::move(arguments));
-    if (page.is_null()) return out;
-    for (const auto& section : page["sections"]) {
-      for (const auto& block : section["blocks"]) {
-        if (!block.contains("series")) continue;
-        for (const auto& series : block["series"]) out[block["title"]].push_back(series["name"]);
-      }
-    }
-    return out;
-  }
+  std::map<std::string, std::vector<std::string>> curves(std::vector<std::string> arguments) const;
   /// The path of system.toml, or of another file, with this text.
-  std::string write(const std::string& text) const { return write("system.toml", text); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(file(name)) << text;
-    return file(name);
-  }
+  std::string write(const std::string& text) const;
+  std::string write(const std::string& name, const std::string& text) const;
   /// `run` of a file with this text, system.toml, is bad input.
-  void refused(const std::string& text, const std::string& message) const {
-    const Outcome outcome = run({"run", write(text)});
-    EXPECT_EQ(outcome.status, 2) << text;
-    EXPECT_THAT(outcome.err, testing::HasSubstr(message)) << text;
-  }
+  void refused(const std::string& text, const std::string& message) const;
   /// The program at work in its folder, its output nowhere.
-  pid_t started(const std::vector<std::string>& arguments) const {
-    const pid_t child = fork();
-    EXPECT_GE(child, 0);
-    if (child != 0) return child;
-    const int nowhere = open("/dev/null", O_WRONLY);
-    dup2(nowhere, STDERR_FILENO);
-    dup2(nowhere, STDOUT_FILENO);
-    std::vector<char*> words = {const_cast<char*>("hamel")};
-    for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
-    if (chdir(folder_.c_str()) == 0) execv(program_.c_str(), words.data());
-    _exit(127);
-  }
+  pid_t started(const std::vector<std::string>& arguments) const;
 
  private:
-  static std::string quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
-  }
+  static std::string quoted(const std::string& text);
   std::string program_;
   std::filesystem::path folder_;
 };

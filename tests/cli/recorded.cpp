@@ -1,5 +1,5 @@
 // Rows are written as they come: every format, what is left of a run that was ended, and the run
-// that goes on from there.
+// resumed from there.
 #include "recorded.hpp"
 
 #include <chrono>
@@ -19,7 +19,7 @@ TEST_F(Recorded, EveryFormatHasTheSameRows) {
   EXPECT_EQ(o.out, contents(file("a.csv"))) << "-o - is the CSV, and nothing else";
   ASSERT_EQ(std::system(("gzip -dk " + file("a.csv.gz") + " -c > " + file("b.csv")).c_str()), 0);
   EXPECT_EQ(contents(file("b.csv")), contents(file("a.csv")));
-  // A file to go on from is made of pieces that begin anew: the same to round-off, and the same
+  // A file to resume from is made of pieces that begin anew: the same to round-off, and the same
   // each time.
   ASSERT_EQ(run(with(suslov, {"--quiet", "-o", "a.h5", "-o", "c.csv"})).status, 0);
   EXPECT_EQ(rows("c.csv"), rows("a.csv")) << "one piece";
@@ -32,7 +32,7 @@ struct Case {
   Words words;
 };
 
-// Each goes on from the middle of its run after its file became too large, and is then the
+// Each resumes in the middle of its run after its file became too large, and is then the
 // undisturbed run, to the last bit.
 TEST_F(Recorded, GoesOnBitForBit) {
   std::ofstream(file("torque.csv")) << "t,value\n0,0\n40,3\n41,-2\n300,1\n";
@@ -54,7 +54,7 @@ TEST_F(Recorded, GoesOnBitForBit) {
       {"driven",
        {"segway", "--input", "right_torque=torque.csv", "--step", "0.002", "--until", "30"}},
       {"held", {"segway", "--input", "right_torque=torque.csv:hold", "--until", "200"}},
-      {"events", {"chaplygin_sleigh", "--events", "theta=1,cusp", "--until", "200"}},
+      {"events", {"chaplygin_sleigh", "--events", "sin(9*theta)*t=1,cusp", "--until", "200"}},
       {"rows between",
        {"chaplygin_sleigh", "--scheme", "dop853", "--rtol", "1e-9", "--output-step", "0.02",
         "--events", "cusp", "--until", "400"}},
@@ -80,6 +80,7 @@ TEST_F(Recorded, GoesOnBitForBit) {
     EXPECT_TRUE(exists("cut.h5"));
     EXPECT_TRUE(rows("cut.csv") == rows("whole.csv"));
     EXPECT_TRUE(record("cut.json") == record("whole.json"));
+    EXPECT_EQ(contents(file("cut.events.csv")), contents(file("whole.events.csv")));
     for (const char* name : {"cut.h5", "whole.h5"}) std::filesystem::remove(file(name));
   }
 }
@@ -153,7 +154,7 @@ TEST_F(Recorded, CheckedRuns) {
   EXPECT_GT(diagnostics["estimated_error"], 0.0);
   o = run({"run", "--continue", "a.json", "-o", "b.h5", "--quiet"});
   ASSERT_EQ(o.status, 0) << o.err;
-  // One that was ended, and goes on.
+  // One that was ended and resumed.
   const Words longer = {"run", "rolling_disk", "--check", "--until", "500", "--quiet"};
   ASSERT_EQ(run(with(longer, {"-o", "whole.json", "-o", "whole.h5"})).status, 0);
   ASSERT_EQ(run(with(longer, {"-o", "c.h5"}), "ulimit -f 6000 && exec ").status, 1);
@@ -200,7 +201,7 @@ TEST_F(Recorded, BadInput) {
 
 // Rows take no memory: 10^6 of them, of 160 bytes and more, in a program that may have 50 MB.
 TEST_F(Recorded, MemoryDoesNotGrowWithTheRows) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef HAMEL_PROGRAM_IS_SANITIZED
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses for itself";
 #endif
   for (const char* name : {"a.h5", "a.csv", "a.json"}) {

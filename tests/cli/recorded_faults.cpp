@@ -64,7 +64,7 @@ TEST_F(RecordedFaults, DamagedFiles) {
               testing::AnyOf(HasSubstr("'a.h5': it is damaged"), HasSubstr("without the page")));
 }
 
-/// One changed byte of what a run goes on from, or of what its page is made of: refused, and
+/// One changed byte of what a run resumes from, or of what its page is made of: refused, and
 /// nothing is left.
 TEST_F(RecordedFaults, TextsAreThoseWritten) {
   const Words sleigh = {"run", "chaplygin_sleigh", "--until", "150", "--set", "mass=61", "--quiet"};

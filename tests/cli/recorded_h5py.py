@@ -76,6 +76,24 @@ with tempfile.TemporaryDirectory() as folder:
         equal(run["mu"].attrs["unit"], b"N m s,N s,N s,N m s", "units of mu")
         equal(b"left trivialisation" in run["xi"].attrs["frame"], True, "frame of xi")
 
+    # Events are a table of names, times and states.
+    hamel("chaplygin_sleigh", "--until", "6", "--events", "cusp,max(theta,x)=1.5", "-o", "e.h5", "-o", "e.csv", "-o", "e.json")
+    with open("e.events.csv") as rows:
+        table = list(csv.reader(rows))
+    with h5py.File("e.h5") as run:
+        events = run["events"][:]
+        equal(list(events.dtype.names), table[0], "columns of the events")
+        equal([name.decode() for name in events["name"]], [row[0] for row in table[1:]], "names of the events")
+        for j, column in enumerate(table[0][1:], 1):
+            equal(events[column].tolist(), [float(row[j]) for row in table[1:]], f"{column} of the events")
+    with h5py.File("a.h5") as run:
+        equal("events" in run, False, "events of a run that watches none")
+    hamel("--continue", "e.h5", "-o", "f.json")
+    with open("e.json") as first, open("f.json") as second:
+        equal(json.load(second)["from"], json.load(first)["until"], "what follows a file with events")
+    page = subprocess.run([program, "report", "e.h5", "-o", "e.html"], capture_output=True, text=True)
+    equal(page.returncode == 0 or "without the page" in page.stderr, True, "the page of a file with events")
+
     # A file of before has its page, and the next run begins where it ended.
     with h5py.File("a.h5", "r+") as run:
         as_before(run)

@@ -55,6 +55,56 @@ TEST_F(Files, CsvColumnsOfEverySystem) {
   expect_columns(table("rolling_disk"), {"1_theta", "1_x", "1_y", "2_theta"}, 4);
 }
 
+// Events are a table beside the rows: names, times and states as the record has them.
+TEST_F(Files, EventsAreATable) {
+  const auto events = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"run", "chaplygin_sleigh", "--until", "6", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(run(words).status, 0);
+  };
+  events({"-o", "none.csv"});
+  events({"--events", "cusp,max(theta,x)=1.5", "-o", "a.csv", "-o", "a.json", "-o", "b.csv.gz"});
+  events({"--events", "theta=1000", "-o", "c.csv"});
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("none.csv", "a.csv", "a.events.csv", "a.json",
+                                                     "b.csv.gz", "b.events.csv.gz", "c.csv",
+                                                     "c.events.csv"));
+  const auto table = lines(contents(file("a.events.csv")));
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table[0], "name,t,theta,x,y,xi1,xi2,xi3");
+  EXPECT_EQ(contents(file("c.events.csv")), table[0] + "\n");
+  const auto met = nlohmann::json::parse(contents(file("a.json")))["events"];
+  ASSERT_EQ(met.size(), 2u);
+  for (size_t i = 0; i < 2; ++i) {
+    const std::string name = met[i]["name"];
+    const std::string field = name == "cusp" ? name : "\"" + name + "\"";
+    ASSERT_TRUE(table[i + 1].starts_with(field + ",")) << table[i + 1];
+    std::vector<double> expected = {met[i]["time"]};
+    for (const char* part : {"configuration", "velocity"})
+      for (const double value : met[i][part]) expected.push_back(value);
+    const auto words = split(table[i + 1].substr(field.size() + 1));
+    ASSERT_EQ(words.size(), expected.size());
+    for (size_t k = 0; k < words.size(); ++k) EXPECT_EQ(std::stod(words[k]), expected[k]);
+  }
+}
+
+// Their file is looked at before the run, as every output.
+TEST_F(Files, WhatIsInTheWayOfEvents) {
+  const std::vector<std::string> words = {"run", "suslov", "--events", "t=1", "--quiet"};
+  const auto refused = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome o = run(all);
+    EXPECT_EQ(o.status, 2);
+    return o.err;
+  };
+  EXPECT_THAT(refused({"-o", "a.events.csv", "-o", "a.csv"}),
+              HasSubstr("'a.events.csv' is given, and the events of 'a.csv' go there"));
+  EXPECT_THAT(refused({"-o", "a.csv", "-o", "a.events.csv"}), HasSubstr("given twice"));
+  std::filesystem::create_directory(file("b.events.csv"));
+  EXPECT_THAT(refused({"-o", "b.csv"}), HasSubstr("b.events.csv"));
+  EXPECT_THAT(files(), testing::ElementsAre("b.events.csv"));
+}
+
 TEST_F(Files, CsvNumbersReadBackExactly) {
   ASSERT_EQ(run({"run", "suslov", "--until", "1", "-o", "a.csv", "-o", "a.json", "--quiet"}).status,
             0);
@@ -157,7 +207,7 @@ offset = 0.4
   EXPECT_THAT(other.err, HasSubstr("mass"));
 }
 
-/// A system by data goes on by its file, not by the name in it.
+/// A system by data resumes from its file, not by the name in it.
 TEST_F(Files, ASystemByDataGoesOn) {
   std::ofstream(file("scooter.toml")) << source_file("tests/examples/scooter_by_rows.toml");
   for (const std::string name : {"a.json", "a.h5"}) {

@@ -1,4 +1,4 @@
-// The JSON schemas of the four kinds of TOML files: every file of the repository fits its own, and
+// The JSON schemas of the five kinds of TOML files: every file of the repository fits its own, and
 // each schema has the keys that the reader of its files accepts, no more and no fewer.
 #include <filesystem>
 #include <regex>
@@ -15,8 +15,10 @@
 
 #include "program.hpp"
 
+#include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/study/study.hpp>
+#include <hamel/systems/mechanisms/contact.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 
 namespace {
@@ -24,7 +26,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::vector<std::string> kKinds = {"run", "system", "study", "mechanism"};
+const std::vector<std::string> kKinds = {"run", "system", "study", "ensemble", "mechanism"};
 
 std::filesystem::path root() {
   const char* source = std::getenv("HAMEL_SOURCE");
@@ -63,6 +65,7 @@ std::string misfit(const std::string& kind, const json& data) {
 }
 
 std::string kind_of(const json& data) {
+  if (data.contains("keep")) return "ensemble";
   if (data.contains("system")) return data["system"].is_array() ? "study" : "run";
   return data.contains("body") ? "mechanism" : "system";
 }
@@ -101,6 +104,7 @@ auto reader(const std::string& kind, const std::string& text) {
   return [=] {
     using namespace hamel;
     if (kind == "run") Config::from_toml(text);
+    else if (kind == "ensemble") parse_ensemble(text, "ensemble", registry());
     else if (kind == "study") parse_study(text, "study", registry());
     else data_system_maker(registry(), "file.toml", text)({});
   };
@@ -138,7 +142,7 @@ TEST(Schemas, RefuseWhatTheReadersRefuse) {
   }
 }
 
-// The keys that a reader offers in place of one that nobody knows, 'zzz'.
+// The keys that a reader offers in place of an unknown one, 'zzz'.
 template <class Read>
 std::set<std::string> keys_of(const Read& read) {
   std::string message;
@@ -168,13 +172,19 @@ TEST(Schemas, HaveTheKeysOfTheReaders) {
   const std::string system = "group = 'se2'\ninertia = [1, 1, 1]\n";
   const std::string body = "[[body]]\nname = 'a'\nmass = 1\n",
                     joint = "[[joint]]\nkind = 'free'\nchild = 'a'\n";
-  // Kind, text with the unknown key, and where its table stands in the schema.
+  // Kind, text with the unknown key, and the place of its table in the schema.
   std::vector<std::tuple<std::string, std::string, std::string>> cases = {
       {"run", "zzz = 1", ""},
       {"run", "[inputs]\nu = { zzz = 1 }", "/properties/inputs/additionalProperties/anyOf/2"},
       {"study", "zzz = 1", ""},
       {"study", "[[system]]\nzzz = 1", "/properties/system/items"},
       {"study", "[[exclude]]\nzzz = 1", "/properties/exclude/items"},
+      {"ensemble", "zzz = 1\nsystem = 'suslov'\nkeep = ['end.t']", ""},
+      {"ensemble", "system = 'suslov'\nkeep = [{ name = 'a', formula = 'b', zzz = 1 }]",
+       "/properties/keep/items/anyOf/1"},
+      {"ensemble", "system = 'suslov'\nkeep = ['end.t']\nclass = { zzz = 1 }", "/properties/class"},
+      {"ensemble", "system = 'suslov'\nkeep = ['end.t']\nhistograms = { a = { zzz = 1 } }",
+       "/properties/histograms/additionalProperties/anyOf/1"},
       {"system", "zzz = 1\n" + system, ""},
       {"system", system + "[parameters]\nm = { value = 1, zzz = 1 }",
        "/properties/parameters/additionalProperties/anyOf/1"},
@@ -192,8 +202,10 @@ TEST(Schemas, HaveTheKeysOfTheReaders) {
       {"mechanism", body + joint + "[events]\ne = { value = 'x', zzz = 1 }",
        "/properties/events/additionalProperties/anyOf/1"},
       {"mechanism", body + joint + "[ground]\nzzz = 1", "/properties/ground"}};
-  for (const std::string part :
-       {"wheel", "roller", "ball", "blade", "loop", "prescribed", "spring", "motor", "force"})
+  std::vector<std::string> parts = hamel::mechanisms::names_of(hamel::mechanisms::contact_kinds());
+  for (const char* part : {"loop", "prescribed", "spring", "motor", "force"})
+    parts.emplace_back(part);
+  for (const std::string& part : parts)
     cases.emplace_back("mechanism", body + joint + "[[" + part + "]]\nzzz = 1",
                        "/properties/" + part + "/items");
   for (const auto& [kind, text, pointer] : cases) {

@@ -93,7 +93,7 @@ TEST_F(Steady, BobOnATurningShaft) {
   }
 }
 
-/// From the tilted motion, towards slower rates: the branch ends, and says where and on what.
+/// From the tilted motion, towards slower rates: the branch ends, and reports where and on what.
 TEST_F(Steady, ATiltedBranchEndsAtThePitchfork) {
   const std::string file = write("hoop.toml", hoop(1.1));
   const Outcome o = run({"steady", file, "--vary", "rate=5:2:7"});

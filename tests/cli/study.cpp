@@ -55,11 +55,39 @@ TEST_F(StudyCommand, WritesEveryCombination) {
     EXPECT_TRUE(record.contains(key)) << key;
 }
 
+/// As of an ensemble (cli/ensemble): the same but for the times. Ranks as a launcher states them.
+TEST_F(StudyCommand, ShardsAndRanksGiveTheSameCells) {
+  const std::string name = study(kSmall);
+  ASSERT_EQ(run({"study", name, "-o", "whole", "--quiet"}).status, 0);
+  ASSERT_EQ(run({"study", name, "-o", "parts", "--shard", "2/3", "--quiet"}).status, 0);
+  const Outcome missing = run({"study", name, "-o", "parts", "--merge"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.err, AllOf(HasSubstr("merge: shard 1/3 is missing"),
+                                 HasSubstr("merge: shard 3/3 is missing")));
+  EXPECT_FALSE(std::filesystem::exists(file("parts/cells.csv")));
+  for (const char* part : {"1/3", "3/3"})
+    ASSERT_EQ(run({"study", name, "-o", "parts", "--shard", part, "--quiet"}).status, 0);
+  const Outcome merged = run({"study", name, "-o", "parts", "--merge"});
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  EXPECT_THAT(merged.out, HasSubstr("39 cells run: 39 ok, 0 failed"));
+  EXPECT_EQ(cells("parts"), cells("whole"));
+
+  const std::string journal = contents(file("parts/journal-1-of-3.jsonl"));
+  std::ofstream(file("parts/journal-1-of-3.jsonl")) << journal.substr(0, journal.size() / 2);
+  EXPECT_THAT(run({"study", name, "-o", "parts", "--merge"}).err,
+              HasSubstr("merge: shard 1/3 is incomplete: "));
+
+  const std::vector<std::string> line = {"study", name, "-o", "ranks"};
+  EXPECT_EQ(run(line, "OMPI_COMM_WORLD_RANK=1 OMPI_COMM_WORLD_SIZE=2 ").out, "");
+  ASSERT_EQ(run(line, "OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=2 ").status, 0);
+  EXPECT_EQ(cells("ranks"), cells("whole"));
+}
+
 /// Every mistake of the file at once, each with its place, and nothing is written.
 TEST_F(StudyCommand, SaysWhatIsWrongWithTheFile) {
   const std::string name = study(R"(mode = "zippd"
 until = 2
-scheme = ["lift", "blance"]
+scheme = ["lift", "blance", ""]
 retraction = ["cayly"]
 s = [0, 2]
 step = [0.3]
@@ -79,8 +107,8 @@ s = 0.25
   for (const char* piece :
        {"small.toml:1:8: unknown mode 'zippd'", "did you mean 'zipped'",
         "small.toml:3:19: unknown scheme 'blance'", "did you mean 'balance'",
-        "small.toml:4:15: unknown retraction 'cayly'", "small.toml:5:9: s: got 2",
-        "small.toml:6:9: step: 0.3 does not divide until = 2",
+        "small.toml:3:29: unknown scheme ''", "small.toml:4:15: unknown retraction 'cayly'",
+        "small.toml:5:9: s: got 2", "small.toml:6:9: step: 0.3 does not divide until = 2",
         "small.toml:7:14: tolerance: expected a number", "small.toml:8:9: unknown key 'wrong'",
         "small.toml:11:19: unknown parameter of suslov 'inertai'",
         "small.toml:14:8: unknown system 'suslof'", "exclude: say why",

@@ -1,4 +1,4 @@
-// What the program says of a system and of a run, and that it says no more than it knows.
+// The program's texts about a system and a run: no more than was computed.
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -137,14 +137,14 @@ TEST_F(Analysis, KeepsTheEnergyAndNothingElseWhateverTheUnits) {
 }
 
 TEST_F(Analysis, SaysItInTheFewestTerms) {
-  EXPECT_EQ(kept({"n_trailer"}), (std::vector<std::string>{"E", "xi1"}));
+  EXPECT_EQ(kept({"n_trailer"}), (std::vector<std::string>{"E", "omega"}));
   EXPECT_EQ(kept({"rolling_disk"}).front(), "E");
 }
 
 /// With its mass centre above the blade the sleigh keeps omega and v.
 TEST_F(Analysis, TakesParameters) {
   EXPECT_EQ(kept({"chaplygin_sleigh", "--set", "offset=0"}),
-            (std::vector<std::string>{"E", "xi1", "xi2"}));
+            (std::vector<std::string>{"E", "omega", "v1"}));
   EXPECT_EQ(run({"describe", "--analyse", "chaplygin_sleigh", "--set", "ofset=0"}).status, 2);
   EXPECT_EQ(run({"describe", "cayley", "--set", "a=0"}).status, 2);
 }
@@ -185,8 +185,8 @@ TEST_F(Words, NumbersThatAreNoneAreNotPrinted) {
 
 // ---- runs that go on ----------------------------------------------------------------------------
 
-/// The torque of the roller racer knows the time: a run in two parts is the whole, with the time of
-/// the second.
+/// The torque of the roller racer depends on the time: a run in two parts is the whole, with the
+/// time of the second.
 TEST_F(Words, ARunGoesOnWhereARecordEnds) {
   for (const char* system : {"roller_racer", "snakeboard", "falling_disk", "chaplygin_sleigh"}) {
     const Json whole = record({system, "--until", "2", "--step", "0.02"});

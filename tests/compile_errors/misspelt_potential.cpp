@@ -1,4 +1,4 @@
-// expect: static assertion failed: this system has a function 'potental', which is never called,
+// expect: static assertion failed: this system has a function 'potencial', which is never called,
 // and no 'potential'
 #include <hamel/hamel.hpp>
 
@@ -7,7 +7,7 @@ struct Top {
   static std::string name() { return "top"; }
   hamel::Mat<3, 3> inertia() const { return hamel::Mat<3, 3>::Identity(); }
 #ifdef MISTAKE  // it would never be called, and the body would be weightless
-  auto potental(const auto& g) const { return 9.81 * g(2, 2); }
+  auto potencial(const auto& g) const { return 9.81 * g(2, 2); }
 #else
   auto potential(const auto& g) const { return 9.81 * g(2, 2); }
 #endif

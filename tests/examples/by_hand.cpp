@@ -25,9 +25,9 @@ int main() {
   std::cout << "the sleigh turns round at t = " << watched.last.time << ": "
             << watched.status.reason << "\n";
 
-  // A run that cannot go on is not an exception. This step is so long that, once the sleigh turns
-  // fast, one step would turn it by more than pi. The good steps are kept, and written like any
-  // others.
+  // A run that cannot continue is not an exception. This step is so long that, once the sleigh
+  // turns fast, one step would turn it by more than pi. The good steps are kept, and written like
+  // any others.
   const auto failed = hamel::simulate("chaplygin_sleigh")
                           .start({.velocity = {0.05, -1, 0}})
                           .retraction("exp")
@@ -50,6 +50,6 @@ int main() {
                     failed.status.step == failed.steps + 1 &&
                     failed.trajectory.rows() == static_cast<size_t>(failed.steps) + 1 &&
                     mistakes == 4;
-  if (!good) std::cerr << "by_hand: not as the comments say\n";
+  if (!good) std::cerr << "by_hand: not as commented\n";
   return good ? 0 : 1;
 }

@@ -28,15 +28,7 @@ struct ReducedMidpoint : hamel::SchemeDefaults {
     using Jacobian = typename P::StateMatrix;
     using Node = hamel::Node<P>;
 
-    Step(const P& problem, double /*s*/)
-        : problem_(problem),
-          place_(problem),
-          w_(problem.dim()),
-          mu_(w_),
-          r_(w_),
-          mu0_(w_),
-          rows_(problem.rows()),
-          f_(problem.element()) {}
+    Step(const P& problem, double /*s*/) : problem_(problem) {}
     int size() const { return problem_.state_size(); }
     void begin(const Node& node, double h) {
       from_ = &node;
@@ -46,14 +38,14 @@ struct ReducedMidpoint : hamel::SchemeDefaults {
     }
     void guess(Unknown& x) const { x = from_->x; }
     double scale_squared() const { return 4 * std::pow(place_.size(mu0_), 2); }
-    void from_frame(Unknown& z) const { place_.from_frame(z.data()); }
+    void expand(Unknown& z) const { place_.expand(z.data()); }
     void residual(const Unknown& x, Unknown& f) const {
       problem_.velocity(x, w_);
       problem_.momentum(place_.inertia, x, mu_);
       problem_.ad_transpose(w_, mu_, r_);
       r_ = 2 * (mu_ - mu0_) - h_ * r_;
       rows_ = place_.a * w_;
-      place_.join(r_, rows_, f);  // (A w, E^T r)
+      place_.assemble(r_, rows_, f);  // (A w, E^T r)
     }
     bool finish(const Unknown& x, Node& next) const {
       problem_.velocity(x, w_);
@@ -68,13 +60,13 @@ struct ReducedMidpoint : hamel::SchemeDefaults {
 
    private:
     P problem_;
-    mutable typename P::Place place_;
+    mutable typename P::AdmissibleFrame place_{problem_};
     const Node* from_ = nullptr;
     double h_ = 0;
-    mutable typename P::Vector w_, mu_, r_;
-    typename P::Vector mu0_;
-    mutable typename P::Few rows_;
-    mutable typename P::Element f_;
+    mutable typename P::Vector w_{problem_.dim()}, mu_ = w_, r_ = w_;
+    typename P::Vector mu0_ = w_;
+    mutable typename P::Multipliers rows_{problem_.constraint_count()};
+    mutable typename P::Element f_ = problem_.element();
   };
 };
 

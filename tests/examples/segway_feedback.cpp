@@ -23,7 +23,7 @@ Torques feedback(const hamel::Snapshot& now, double speed, double rate) {
 }  // namespace
 
 int main() {
-  // A first value says that this run has inputs; those not named are 0.
+  // A first value declares an input of this run; those not named are 0.
   hamel::Run segway = hamel::simulate("segway").step(0.001).input("right_torque", 0).build();
   constexpr double period = 0.005;
   double largest = 0;
@@ -54,6 +54,6 @@ int main() {
 
   const bool good = largest < 0.3 && std::abs(end.velocity[1] - 0.5) < 0.01 &&
                     std::abs(end.velocity[0] + 0.5) < 0.01 && fallen.last.time < 3;
-  if (!good) std::cerr << "segway_feedback: not as the comments say\n";
+  if (!good) std::cerr << "segway_feedback: not as commented\n";
   return good ? 0 : 1;
 }

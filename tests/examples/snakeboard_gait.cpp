@@ -1,4 +1,4 @@
-// A snakeboard whose rider moves as a table says: the rates of the rotor and of the axles over
+// A snakeboard whose rider follows a table: the rates of the rotor and of the axles over
 // time.
 #include <cmath>
 #include <iostream>
@@ -35,6 +35,6 @@ int main() {
   std::cout << "after 10 s " << way << " m from the start, " << apart
             << " m from where its own swing takes it\n";
   const bool good = driven && way > 0.1 && apart < 1e-3 && driven.energy_balance_error_max < 1e-3;
-  if (!good) std::cerr << "snakeboard_gait: not as the comments say\n";
+  if (!good) std::cerr << "snakeboard_gait: not as commented\n";
   return good ? 0 : 1;
 }

@@ -3,8 +3,8 @@
 #include <iostream>
 
 int main(int argc, char** argv) {
-  auto result = hamel::simulate("suslov")          // a registered name
-                    .set("inertia", {1, 10, 100})  // kg m^2
+  auto result = hamel::simulate("suslov")       // a registered name
+                    .set("inertia", {2, 3, 4})  // kg m^2
                     .start({.momentum = {1, 1, 0}})
                     .scheme("lift")
                     .s(0.5)

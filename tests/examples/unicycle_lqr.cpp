@@ -140,6 +140,6 @@ int main() {
 
   const bool good = linear.motion.growing() > 0 && largest < 0.2 && left < 0.01 &&
                     std::abs(speed - kSpeed) < 0.05 && fallen.last.time < 3;
-  if (!good) std::cerr << "unicycle_lqr: not as the comments say\n";
+  if (!good) std::cerr << "unicycle_lqr: not as commented\n";
   return good ? 0 : 1;
 }

@@ -1,5 +1,5 @@
 // Fuzz target: the lines of a study's journal, and what is made of them. Input that begins with '!'
-// is given the checksums that it lacks, so that what stands behind them is reached.
+// is given the checksums that it lacks, so that what follows them is reached.
 #include <sstream>
 
 #include <hamel/framework/study/journal.hpp>
@@ -25,7 +25,7 @@ StudyConfig two_systems() {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const StudyConfig config = two_systems();
-  static const std::vector<StudyCell> cells = study_cells(config, fuzz::registry());
+  static const StudyCells cells = study_cells(config, fuzz::registry());
   static const std::vector<study::Shape> shapes = study::shapes(fuzz::registry(), config);
   static const std::vector<std::vector<bool>> angles = {std::vector<bool>(9),
                                                         {true, false, false, true}};

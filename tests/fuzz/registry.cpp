@@ -21,6 +21,10 @@ const Registry& registry() {
     add_retraction<Exp<SO3>>(out);
     add_retraction<Cayley<SO3>>(out);
     add_retraction<Exp<SE2>>(out);
+    add_retraction<Exp<SE3>>(out);
+    add_retraction<Exp<Rn<1>>>(out);
+    out.add(group_info<SE3>());
+    out.add(group_info<Rn<1>>());
     out.add(group_info<SO2>());
     out.add(group_info<SO3>());
     out.add(group_info<SE2>());

@@ -95,7 +95,6 @@ TEST(AutoRetraction, EqualsTheClosedForms) {
 /// a value.
 struct Bounded : AutoRetraction<Bounded, SO2> {
   static std::string name() { return "bounded"; }
-  static constexpr bool symmetric = true;
   template <class T>
   static SO2Element<T> tau(const VecT<T, 1>& xi) {
     using std::atan;

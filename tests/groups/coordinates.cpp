@@ -84,7 +84,7 @@ TEST(Coordinates, NearestTakesWhatIsNoElement) {
   EXPECT_EQ(near.part<1>().translation[0], 7);
 }
 
-/// Elements are the same by their numbers, whatever stands between these in memory.
+/// Elements are the same by their numbers, whatever lies between these in memory.
 TEST(Coordinates, SameElements) {
   using G = Product<SE2, SO2>;
   using Operations = GroupOperations<Exp<G>>;

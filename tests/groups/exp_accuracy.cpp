@@ -67,7 +67,7 @@ TYPED_TEST(ExpAccuracy, AgainstEightyDigits) {
   constexpr int n = G::dim, turning = n == 6 ? 3 : (std::is_same_v<G, SE2> ? 1 : 3);
   use_80_digits();
   std::mt19937_64 random(11);
-  double tau = 0, tangent = 0, forward = 0, inverse = 0, newton = 0, log = 0;
+  double tau = 0, tangent = 0, forward = 0, inverse = 0, newton = 0, log = 0, stage = 0;
   for (const double theta :
        {1e-12, 1e-10, 1e-8, 1e-6,   1e-4,   1e-3, 1e-2, 0.1,  0.3,     0.4999,   0.5001,
         1.0,   1.7,   2.5,  2.8283, 2.8286, 3.0,  3.1,  3.14, 3.14159, 3.1415916}) {
@@ -89,6 +89,12 @@ TYPED_TEST(ExpAccuracy, AgainstEightyDigits) {
     const std::vector<mpreal> wide = widen<n>(xi);
     const Big exact_inverse = inverse_at(wide);
     inverse = std::max(inverse, error(R::dtau_right_inverse(xi), exact_inverse));
+    // What a stage of an explicit scheme evaluates: tau, and dL^-1 p, dL_xi = dR_{-xi}.
+    Vec<n> rate;
+    stage = std::max(stage, error(G::matrix(R::tau_with_rate(xi, p, rate)), exact_tau));
+    const Big exact_rate = multiply(inverse_at(widen<n>(Vec<n>(-xi))), big(p));
+    stage = std::max(stage, error(rate, exact_rate));
+    stage = std::max(stage, error(R::dtau_left_inverse(xi, p), exact_rate));
     forward = std::max(forward, error(R::dtau_right(xi), invert(exact_inverse)));
     Big slope(n, n);
     const mpreal h("1e-25");  // central difference: truncation 1e-50, round-off 1e-55
@@ -117,14 +123,16 @@ TYPED_TEST(ExpAccuracy, AgainstEightyDigits) {
   }
   std::printf(
       "%s exp, errors in units of 2^-52: tau %.1f, odd part %.1f, dR %.1f, dR^-1 %.1f, Newton "
-      "%.1f, log %.1f\n",
-      G::name().c_str(), tau / u, tangent / u, forward / u, inverse / u, newton / u, log / u);
+      "%.1f, log %.1f, of a stage %.1f\n",
+      G::name().c_str(), tau / u, tangent / u, forward / u, inverse / u, newton / u, log / u,
+      stage / u);
   EXPECT_LT(tau, 4 * u);
   EXPECT_LT(tangent, 4 * u);
   EXPECT_LT(forward, 4 * u);
   EXPECT_LT(inverse, 4 * u);
   EXPECT_LT(newton, 4 * u);
   EXPECT_LT(log, 4 * u);
+  EXPECT_LT(stage, 4 * u);
 }
 
 /// The coefficient functions alone, over the joints of their pieces.

@@ -1,10 +1,10 @@
 // SL(2), a group that is not compact and none of the library's, with two retractions: correct ones
 // pass every law, and a domain that is not stated is a law that fails, not an exception.
 //
-// Element (a, b, c, d) = [[a, b], [c, d]], ad - bc = 1. Algebra X = [[x, y], [z, -x]], X^2 = q I, q
-// = x^2 + y z:
-//   cay = ((1 + q/4) I + X)/(1 - q/4) for q < 4,   exp = C I + S X with C = cosh sqrt(q), S =
-//   sinh(sqrt(q))/sqrt(q).
+// Element (a, b, c, d) = [[a, b], [c, d]], ad - bc = 1. Algebra X = [[x, y], [z, -x]], X^2 = q I,
+// q = x^2 + y z:
+//   cay = ((1 + q/4) I + X)/(1 - q/4) for q < 4,
+//   exp = C I + S X with C = cosh sqrt(q), S = sinh(sqrt(q))/sqrt(q).
 // X eta X = tr(X eta) X - q eta, so that dR^-1 = I - ad/2 - X . X/4 = (1 + q/4) I - ad/2 - xi
 // b^T/4, b = dq. The diagonal of an element holds x beside 1: near e its round-off is one of 1, not
 // of |xi|.

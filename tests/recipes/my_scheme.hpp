@@ -10,35 +10,22 @@ struct MyScheme : SchemeDefaults {
   static std::string name() { return "my_scheme"; }
   static std::string formula() { return "g_1 = g_0 tau(h xi_0)"; }
   static std::string source() { return "Euler 1768"; }
-  static constexpr bool explicit_step = true;
-  static constexpr bool steps_admissible = false;
+  static constexpr ConstraintKept constraint_kept = ConstraintKept::nodes;
   static ClaimedOrder claim(double, TauTraits, bool) { return {1, false}; }
 
   template <class P>
   class Step {
    public:
     using Problem = P;
-    using Unknown = Eigen::Matrix<double, 0, 1>;
-    using Jacobian = Eigen::Matrix<double, 0, 0>;
     using Node = hamel::Node<P>;
 
-    Step(const P& problem, double /*s*/)
-        : problem_(problem),
-          place_(problem),
-          f_(problem.element()),
-          xi_(problem.dim()),
-          mu_(xi_),
-          change_(xi_) {}
-    static constexpr int size() { return 0; }
-    void guess(Unknown&) const {}
-    static double scale_squared() { return 1; }
-    void residual(const Unknown&, Unknown&) const {}
+    Step(const P& problem, double /*s*/) : problem_(problem) {}
     static int evaluations() { return 1; }
     void begin(const Node& node, double h) {
       from_ = &node;
       h_ = h;
     }
-    bool finish(const Unknown&, Node& next) const {
+    bool finish(Node& next) const {
       place_.set(problem_, from_->t, from_->g);
       problem_.velocity(from_->x, xi_);
       problem_.momentum(place_.inertia, from_->x, mu_);
@@ -58,11 +45,11 @@ struct MyScheme : SchemeDefaults {
 
    private:
     P problem_;
-    mutable typename P::Place place_;
+    mutable typename P::AdmissibleFrame place_{problem_};
     const Node* from_ = nullptr;
     double h_ = 0;
-    mutable typename P::Element f_;
-    mutable typename P::Vector xi_, mu_, change_;
+    mutable typename P::Element f_ = problem_.element();
+    mutable typename P::Vector xi_{problem_.dim()}, mu_ = xi_, change_ = xi_;
   };
 };
 

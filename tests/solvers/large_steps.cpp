@@ -15,7 +15,7 @@
 #include <hamel/framework/schemes/unadapted.hpp>
 #include <hamel/hamel.hpp>
 
-#include "../framework/erased.hpp"
+#include "../framework/schemes/dynamic_problem.hpp"
 #include "made.hpp"
 
 namespace {
@@ -95,7 +95,7 @@ void expect_no_spurious_root(const S& system, double s, std::map<std::string, Co
   const Whole whole(inertia, system.constraints());
   Step step(whole, s);
   const auto problem = [&] {  // the step's own: without rows for unadapted
-    if constexpr (Scheme::adapted) return whole;
+    if constexpr (Scheme::constraint_kept != ConstraintKept::nowhere) return whole;
     else return whole.unconstrained();
   }();
   Registry mine = registry();
@@ -111,7 +111,7 @@ void expect_no_spurious_root(const S& system, double s, std::map<std::string, Co
       Eigen::VectorXd xi = admissible * y;
       xi *= size(random) / xi.norm();
       Node<typename Step::Problem> node(problem);
-      problem.carry(xi, node.x);
+      problem.to_state(xi, node.x);
       const typename Step::Problem::State mu = node.x;
       const std::vector<double> expected = by_continuation(step, node, h);
       const auto solvers = loop == On::compiled

@@ -160,6 +160,68 @@ TEST(Newton, LargerThanFour) {
   EXPECT_LE((a * x - Vec<6>::Ones()).norm(), 1e-14);
 }
 
+/// Many unknowns without a Jacobian: A x - 1, and what its last digits make of it.
+struct Many {
+  using Unknown = Eigen::VectorXd;
+  using Jacobian = Eigen::MatrixXd;
+  Eigen::MatrixXd a;
+  double noise = 0;  // of each entry
+  double scale_squared() const { return 1; }
+  void residual(const Unknown& x, Unknown& f) const {
+    f = a * x - Unknown::Ones(x.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) f[i] += noise * std::sin(1e17 * x[i] + double(i));
+  }
+};
+
+/// The frame of a step makes its Jacobian 1 + O(h): many unknowns begin with 1, and have it
+/// replaced once its corrections have cost as much as a Jacobian of differences.
+TEST(Newton, ManyUnknownsBeginWithOne) {
+  constexpr int n = 40, cost = 2 * n + 1;
+  Many step = {Eigen::MatrixXd::Identity(n, n)};
+  for (int i = 0; i < n; ++i) step.a(i, (i + 1) % n) = 0.02;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  Newton::Memory<Eigen::VectorXd> memory(x);
+  SolveReport report = Newton::solve(step, x, 1e-13, memory);
+  EXPECT_TRUE(report.ok());
+  EXPECT_LT(report.evaluations, cost / 2);
+  int spent = report.evaluations;
+  for (int k = 0; k < 40; ++k) {
+    x.setZero();
+    report = Newton::solve(step, x, 1e-13, memory);
+    EXPECT_TRUE(report.ok());
+    spent += report.evaluations;
+  }
+  EXPECT_LT(spent, 40 * 4 + 2 * cost);
+  EXPECT_LE(report.iterations, 2);
+  // Far from 1 it is given up at once.
+  step.a *= 3;
+  memory.clear_history();
+  x.setZero();
+  report = Newton::solve(step, x, 1e-13, memory);
+  EXPECT_TRUE(report.ok());
+  EXPECT_LE(report.evaluations, cost + 6);
+}
+
+/// Where F is known no better than to some 1e-14, no Jacobian is made to find less of it.
+TEST(Newton, LooksForNothingBelowTheFloor) {
+  constexpr int n = 40, cost = 2 * n + 1;
+  const Many step = {3 * Eigen::MatrixXd::Identity(n, n), 8e-15};
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  Newton::Memory<Eigen::VectorXd> memory(x);
+  SolveReport report = Newton::solve(step, x, 1e-13, memory);
+  EXPECT_TRUE(report.ok());
+  EXPECT_GT(report.residual, 1.5e-14);  // above 64 eps
+  EXPECT_LE(report.evaluations, 3 * cost);
+  int spent = 0;
+  for (const double from : {0.3, 0.32, 0.35, 0.31, 0.36, 0.34, 0.37, 0.33}) {
+    x.setConstant(from);
+    report = Newton::solve(step, x, 1e-13, memory);
+    EXPECT_TRUE(report.ok());
+    spent += report.evaluations;
+  }
+  EXPECT_LT(spent, cost + 8 * cost / 4) << "one Jacobian finds the floor, and is kept";
+}
+
 // ---- in a run -----------------------------------------------------------------------------------
 
 Simulation full_suslov() {

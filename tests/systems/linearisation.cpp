@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include <hamel/framework/analysis/linearisation.hpp>
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/systems/by_name.hpp>
 
 namespace hamel {
@@ -24,7 +25,7 @@ Eigen::MatrixXd matrix_of(const NumberMatrix& m) {
 TEST(Linearisation, HasTheEigenvalues) {
   for (const char* system : {"bicycle", "segway"}) {
     const Linearisation linear = linearisation(registry(), simulate(system).speed(3));
-    const Eigen::VectorXcd values = matrix_of(linear.a).eigenvalues();
+    const Eigen::VectorXcd values = dense::eigenvalues(matrix_of(linear.a));
     ASSERT_EQ(static_cast<size_t>(values.size()),
               linear.motion.eigenvalues.size() + static_cast<size_t>(linear.motion.family));
     for (const auto& expected : linear.motion.eigenvalues) {

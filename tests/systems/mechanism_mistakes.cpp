@@ -1,4 +1,4 @@
-// What a mechanism says of parts that do not go together, before anything runs.
+// Messages about inconsistent parts of a mechanism, before anything runs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -73,12 +73,11 @@ TEST(Mechanisms, SayWhatIsWrongWithTheirParts) {
 
 TEST(Mechanisms, FindRowsThatSayNothingNew) {
   const Mechanism dropping = by_parts::drive({});
-  EXPECT_EQ(dropping.model().mechanics->rows(), 3);
-  EXPECT_THAT(
-      dropping.model().notes,
-      testing::Contains(HasSubstr(
-          "row dropped: wheel 'left' (does not slip sideways) says nothing beyond wheel 'right' "
-          "(does not slip sideways); the reactions there stand for that of wheel 'left'")));
+  EXPECT_EQ(dropping.model().mechanics->constraint_count(), 3);
+  EXPECT_THAT(dropping.model().notes,
+              testing::Contains(HasSubstr(
+                  "row dropped: wheel 'left' (does not slip sideways) is implied by wheel 'right' "
+                  "(does not slip sideways); the reactions there include that of wheel 'left'")));
   Mechanism refusing = dropping;
   refusing.redundant("refuse");
   EXPECT_THAT(refused(refusing), HasSubstr("redundant row: wheel 'left' (does not slip sideways)"));
@@ -135,6 +134,26 @@ TEST(Mechanisms, RefuseNumbersThatAreNone) {
                 m.blade("k", "a", {.at = {0, nan, 0}});
               }),
               HasSubstr("blade 'k': at: got 0,nan,0"));
+  const auto contact = [&](const std::string& kind, const Parameters& values) {
+    return fault([&](Mechanism& m) { m.contact(kind, "c", "b", {.values = values}); });
+  };
+  EXPECT_THAT(contact("weel", {}),
+              HasSubstr("contact 'c': unknown kind 'weel': expected one of ball, blade, roller, "
+                        "wheel; did you mean 'wheel'?"));
+  EXPECT_THAT(contact("wheel", {}),
+              HasSubstr("wheel 'c': radius: got 0, expected a positive number"));
+  EXPECT_THAT(contact("roller", {{"radius", {1}}, {"angle", {nan}}}),
+              HasSubstr("roller 'c': angle: got nan, expected a finite number"));
+  EXPECT_THAT(contact("ball", {{"radius", {1}}, {"axle", {0, 1, 0}}}),
+              HasSubstr("ball 'c': unknown value 'axle': expected one of radius"));
+  EXPECT_THAT(contact("blade", {{"along", {1, 0}}}),
+              HasSubstr("blade 'c': along: got 2 numbers, expected 3"));
+  EXPECT_THAT(contact("blade", {{"along", {0, 0, 0}}}),
+              HasSubstr("blade 'c': along: got (0,0,0), expected a direction"));
+  EXPECT_THAT(with([&](Mechanism& m) {
+                m.joint("hinge", "h", "a", "b", {.values = {{"pitch", {0.1}}}});
+              }),
+              HasSubstr("joint 'h': unknown value 'pitch': there are none"));
 }
 
 }  // namespace

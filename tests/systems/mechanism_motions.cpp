@@ -29,7 +29,7 @@ double between(const Vector2d& from, const Vector2d& to) {
   return std::atan2(to[0] * from[1] - to[1] * from[0], from.dot(to));
 }
 
-// A four-bar: crank, coupler and rocker, of which the angle of the crank says all.
+// A four-bar: crank, coupler and rocker, of which the angle of the crank determines all.
 struct FourBar {
   struct Bar {
     double mass, moment;

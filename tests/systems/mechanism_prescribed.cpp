@@ -163,7 +163,7 @@ TEST(MechanismMotions, RollerWalkerIsSingularOnlyAsDrawn) {
   const double left = 0.3, right = -0.25;
   Mechanism ours = roller_walker(true);
   ours.start({{"left hip.angle", left}, {"right hip.angle", right}, {"v1", 0.3}});
-  EXPECT_EQ(ours.model().mechanics->rows(), 4);
+  EXPECT_EQ(ours.model().mechanics->constraint_count(), 4);
   const Eigen::Vector2d hip(0.1, 0.15);
   // The left leg seen from the trunk turns about the hip; as drawn both are at the origin.
   const auto leg = [&](double theta, double x, double y, double angle) {

@@ -7,6 +7,7 @@
 
 #include <hamel/framework/check/laws.hpp>
 #include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/systems/mechanisms/contact.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/simulate_typed.hpp>
@@ -34,8 +35,9 @@ void check_rates(const SystemModel& model) {
   const Mechanics& mechanics = *model.mechanics;
   if (mechanics.left_invariant()) return;  // nothing changes
   const auto geometry = registry().geometry(model.group.name, "exp");
-  const int n = mechanics.dim(), k = mechanics.rows();
-  VectorXd g(geometry->size()), moved(g.size()), xi(n), shift(n), b(k), rows(k), momentum(n);
+  const int n = mechanics.dim(), k = mechanics.constraint_count();
+  VectorXd g(geometry->size()), moved(g.size()), xi(n), shift(n), b(k), rows(k), momentum(n),
+      carried(n);
   MatrixXd a(k, n), inertia(n, n);
   geometry->from_coordinates(model.start.configuration, g.data());
   for (int pose = 0; pose < 3; ++pose) {
@@ -65,6 +67,8 @@ void check_rates(const SystemModel& model) {
     for (int i = 0; i < k; ++i)
       EXPECT_NEAR(rows[i], rows_change[i], 1e-8 * (1 + std::abs(rows[i]))) << "row " << i;
     at(0);
+    ASSERT_TRUE(mechanics.momentum(g.data(), xi, carried));
+    EXPECT_LE((carried - inertia * xi).norm(), 1e-14 * inertia.norm() * xi.norm());
     for (int i = 0; i < n; ++i) {
       EXPECT_NEAR(momentum[i], momentum_change[i], 1e-8 * (1 + inertia.norm())) << "velocity " << i;
     }
@@ -111,6 +115,84 @@ TEST(MechanismRates, AreThoseOfDifferences) {
     for (const bool loops : {true, false}) check_rates(contacts(space, false, loops).model());
   }
   check_rates(contacts(true, true, false).model());
+}
+
+// Values that each field of a kind may have.
+Parameters some_values(const std::vector<Field>& fields) {
+  Parameters out;
+  for (const Field& field : fields)
+    if (field.range.least == 0) out[field.name] = {0.35};
+  return out;
+}
+
+// Also of kinds that a user adds: each is an entry of these lists.
+TEST(MechanismRates, OfEveryKindOfJointAreThoseOfDifferences) {
+  for (const mechanisms::JointKind& kind : mechanisms::joint_kinds()) {
+    Mechanism m(kind.name);
+    m.body("a", {.mass = 2, .at = {0.1, 0.2, 0.6}, .inertia = {0.3, 0.4, 0.5}});
+    m.body("b", {.mass = 1, .at = {0.5, 0.1, 0.7}, .inertia = {0.1, 0.02, 0, 0.2, 0.01, 0.15}});
+    m.body("c", {.mass = 0.4, .at = {-0.4, 0, 0.5}, .box = {0.1, 0.2, 0.3}});
+    m.free("root", "a", {.at = {0, 0, 0.5}});
+    m.joint(kind.name, "any", "a", "b",
+            {.at = {0.3, 0, 0.5}, .axis = {0.6, 0, 0.8}, .values = some_values(kind.fields)});
+    m.hinge("last", "b", "c", {.at = {0, 0.1, 0.4}, .axis = {1, 1, 0}});
+    m.blade("edge", "c", {.at = {-0.4, 0, 0}});
+    check_rates(m.model());
+  }
+}
+
+TEST(MechanismRates, OfEveryKindOfContactAreThoseOfDifferences) {
+  for (const mechanisms::ContactKind& kind : mechanisms::contact_kinds()) {
+    const Parameters values = some_values(kind.fields);
+    const double height = kind.make(values)->radius();
+    for (const bool ground_moves : {false, true}) {
+      Mechanism m(kind.name + (ground_moves ? ", on a turntable" : ""));
+      m.body("a", {.mass = 2, .at = {0.1, 0.2, 0.6}, .inertia = {0.3, 0.4, 0.5}});
+      m.body("b", {.mass = 1, .at = {0.5, 0.1, 0.7}, .inertia = {0.1, 0.02, 0, 0.2, 0.01, 0.15}});
+      m.free("root", "a", {.at = {0, 0, 0.5}});
+      m.hinge("h", "a", "b", {.at = {0.3, 0, 0.5}, .axis = {0.6, 0, 0.8}});
+      m.contact(kind.name, "c", "b", {.at = {0.4, 0.1, height}, .values = values});
+      if (ground_moves) m.ground(0.7, {0.2, -0.1, 0});
+      check_rates(m.model());
+    }
+  }
+}
+
+// 200 bodies in space, one hinged to the next: a first step of lift, with the path to its root,
+// calls the equations of motion some 500 times, which is what one Jacobian of differences takes
+// (and not 20 000 times); later steps a few times. A motor that does nothing counts the residuals.
+TEST(LongChain, AStepTakesFewResiduals) {
+  constexpr int bodies = 200;
+  Mechanism m("chain");
+  std::string ahead;
+  std::map<std::string, double> start = {{"v1", 0.3}};
+  for (int i = 0; i < bodies; ++i) {
+    const std::string name = "link " + std::to_string(i), hinge = "h" + std::to_string(i);
+    m.body(name, {.mass = 1, .at = {-0.3 * i, 0, 0.1}, .box = {0.3, 0.1, 0.05}});
+    const Vec<3> axis = i % 2 == 0 ? Vec<3>(0, 1, 0) : Vec<3>(0, 0, 1);
+    if (i == 0) m.free("space", name, {.at = {0, 0, 0.1}});
+    else
+      m.hinge(
+          hinge, ahead, name,
+          {.at = {-0.3 * i + 0.15, 0, 0.1}, .axis = {axis[0], axis[1], axis[2]}, .stiffness = 50});
+    if (i > 0) start[hinge + ".rate"] = 0.1 * std::cos(i);
+    ahead = name;
+  }
+  long residuals = 0;
+  m.motor("h1", [&](const mechanisms::SignalInput&) {
+    ++residuals;
+    return 0.0;
+  });
+  m.start(start);
+  for (const double h : {0.001, 0.01}) {
+    hamel::Run run = simulate(m).scheme("lift").step(h).build();
+    residuals = 0;
+    ASSERT_TRUE(run.step());
+    EXPECT_LT(residuals, 1000) << h;
+    residuals = 0;
+    ASSERT_TRUE(run.step(3));
+    EXPECT_LT(residuals, 3 * 1000) << h;
+  }
 }
 
 // A pendulum whose pivot is shaken, 2 mm at 160 Hz: (J + m l^2) angle'' = m (g + a) (x cos + z

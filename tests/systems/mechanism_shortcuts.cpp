@@ -1,6 +1,6 @@
 // What mechanisms save (links in the plane, wheels as parts of what carries them, rows that stay)
-// changes nothing: the same mechanism with a free root, and with wheels a little out of round, says
-// the same.
+// changes nothing: the same mechanism with a free root, and with wheels a little out of round, has
+// the same motion.
 #include <algorithm>
 #include <cmath>
 
@@ -54,14 +54,14 @@ Mechanism cart(bool plain) {
   return m;
 }
 
-struct Said {
+struct Evaluated {
   MatrixXd inertia, a;
   VectorXd force;
   std::vector<std::string> reactions;
 };
 
 // At coordinates (theta, x, y) of the root and of the joints that follow.
-Said look(bool plain, const VectorXd& coordinates, const VectorXd& velocities) {
+Evaluated look(bool plain, const VectorXd& coordinates, const VectorXd& velocities) {
   const SystemModel model = cart(plain).model();
   const Mechanics& mechanics = *model.mechanics;
   const auto geometry = registry().geometry(model.group.name, "exp");
@@ -72,13 +72,13 @@ Said look(bool plain, const VectorXd& coordinates, const VectorXd& velocities) {
     values = {c, -s, 0, s, c, 0, 0, 0, 1, coordinates[1], coordinates[2], 0};
     values.insert(values.end(), coordinates.begin() + 3, coordinates.end());
   }
-  VectorXd g(geometry->size()), xi = VectorXd::Zero(n), b(mechanics.rows());
+  VectorXd g(geometry->size()), xi = VectorXd::Zero(n), b(mechanics.constraint_count());
   geometry->from_coordinates(values, g.data());
   // (w3, v1, v2) and the joints, of a free root (w1, w2, w3, v1, v2, v3).
   std::vector<int> columns = plain ? std::vector<int>{2, 3, 4} : std::vector<int>{0, 1, 2};
   for (int j = 0; j < joints; ++j) columns.push_back(3 + more + j);
   xi(columns) = velocities;
-  Said said{MatrixXd(n, n), MatrixXd(mechanics.rows(), n), VectorXd(n), {}};
+  Evaluated said{MatrixXd(n, n), MatrixXd(mechanics.constraint_count(), n), VectorXd(n), {}};
   // Elsewhere first: what is kept from there must not show.
   const VectorXd here = g, turn = VectorXd::Constant(n, 0.3);
   VectorXd step(g.size()), there(g.size());
@@ -103,8 +103,8 @@ TEST(Mechanisms, TakeShortcutsThatChangeNothing) {
     coordinates[i] = 0.6 * std::sin(3.0 * i + 1);
     velocities[i] = std::cos(2.0 * i);
   }
-  const Said ours = look(false, coordinates, velocities),
-             plain = look(true, coordinates, velocities);
+  const Evaluated ours = look(false, coordinates, velocities),
+                  plain = look(true, coordinates, velocities);
   EXPECT_LT((ours.inertia - plain.inertia).lpNorm<Eigen::Infinity>(), 4 * kUneven);
   EXPECT_LT((ours.force - plain.force).lpNorm<Eigen::Infinity>(), 20 * kUneven);
   size_t compared = 0;

@@ -99,7 +99,8 @@ inline Mechanism racer(const RollerRacer& s) {
   m.hinge("steer", "rear", "front", {.at = {s.rear_length, 0, 0}, .stiffness = s.stiffness});
   m.blade("rear", "rear", {});
   m.blade("front", "front", {.at = {s.rear_length - s.front_length, 0, 0}});
-  m.motor("steer", [s](const Now& now) { return s.torque * std::cos(s.frequency * now.t); });
+  m.motor("steer",
+          [s](const SignalInput& now) { return s.torque * std::cos(s.frequency * now.t); });
   return m;
 }
 

@@ -27,7 +27,7 @@ std::string words(const std::string& system, const Field& field) {
 // A list with three numbers or one is entry by entry; 6 or 9 are a matrix.
 bool matrix(const Field& field) { return field.range.moments && field.value.size() > 3; }
 
-/// Each entry in turn at each edge: refused by name exactly where the range says so.
+/// Each entry in turn at each edge: refused by name exactly where the range excludes it.
 TEST(ParameterRanges, EdgesAreRefusedOrRun) {
   int refused = 0, accepted = 0;
   for (const std::string& system : registry().systems()) {

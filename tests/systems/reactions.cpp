@@ -13,8 +13,8 @@ bool moves(const SystemModel& model, const Result& run) {
   if (model.mechanics->left_invariant()) return false;
   const Mechanics& mechanics = *model.mechanics;
   const auto geometry = registry().geometry(run.system->group.name, "cayley");
-  Eigen::VectorXd g(geometry->size()), b(mechanics.rows());
-  Eigen::MatrixXd a(mechanics.rows(), mechanics.dim());
+  Eigen::VectorXd g(geometry->size()), b(mechanics.constraint_count());
+  Eigen::MatrixXd a(mechanics.constraint_count(), mechanics.dim());
   const auto columns = static_cast<size_t>(geometry->columns());
   for (size_t i = 0; i < run.trajectory.rows(); ++i) {
     geometry->from_coordinates(run.trajectory.row(i).subspan(1, columns), g.data());
@@ -56,8 +56,8 @@ TEST(Reactions, WorkWhereTheStepsLeaveTheConstraint) {
 }
 
 /// A normal reaction can push only: a disk with a slow turn that falls over is pulled from t = 0.56
-/// s on, and that is said with its first time. Rolling as it starts by default it is pushed all the
-/// way.
+/// s on, and that is noted with its first time. Rolling as it starts by default it is pushed all
+/// the way.
 TEST(Reactions, OfAContactThatPullsIsNoted) {
   const auto notes = [](const Result& run) {
     std::string all;

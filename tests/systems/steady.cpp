@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include <hamel/framework/analysis/steady.hpp>
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 
@@ -32,7 +33,7 @@ Eigen::VectorXcd published(double v) {
   flow.topRightCorner<2, 2>() = Pair::Identity();
   flow.bottomLeftCorner<2, 2>() = -m.inverse() * (9.81 * k0 + v * v * k2);
   flow.bottomRightCorner<2, 2>() = -m.inverse() * (v * c1);
-  return flow.eigenvalues();
+  return dense::eigenvalues(flow);
 }
 
 double nearest(const std::vector<std::complex<double>>& all, std::complex<double> value) {
@@ -173,13 +174,13 @@ potential = "0.5*x1^2 + 3*x2^2 + 0.1*x1*x2 + 0.01*x1^4"
   EXPECT_EQ(rest.neutral, 0);
   EXPECT_EQ(rest.growing(), 0);
   const Eigen::Matrix2d k{{1, 0.1}, {0.05, 3}};  // M^-1 K
-  for (const auto& square : Eigen::EigenSolver<Eigen::Matrix2d>(k).eigenvalues())
+  for (const auto& square : dense::eigenvalues(k))
     EXPECT_LT(nearest(rest.eigenvalues, std::sqrt(-square)), 1e-10);
   for (const double x : rest.element) EXPECT_NEAR(x, 0, 1e-12);
 }
 
-// A rod on its end, with a spring at its pivot: it stands from k = m g l on, and falls at sqrt((m g
-// l - k) / J) before.
+// A rod on its end, with a spring at its pivot: it stays upright from k = m g l on, and falls at
+// sqrt((m g l - k) / J) before.
 TEST(Steady, InvertedPendulum) {
   const auto rod = [](double stiffness) {
     Mechanism m("rod");
@@ -256,10 +257,10 @@ std::vector<std::complex<double>> rates_in(const std::vector<std::vector<double>
     }
   }
   Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(order, order);
-  companion.row(0) = past.colPivHouseholderQr().solve(now).transpose();
+  companion.row(0) = dense::solve_pivoted(past, now).transpose();
   companion.bottomLeftCorner(order - 1, order - 1).setIdentity();
   std::vector<std::complex<double>> out;
-  const Eigen::VectorXcd roots = companion.eigenvalues();
+  const Eigen::VectorXcd roots = dense::eigenvalues(companion);
   for (const auto& z : roots) out.push_back(std::log(z) / d);
   return out;
 }

@@ -94,7 +94,7 @@ TEST(StartsAtASpeed, DoNotTurnTheRootWhereTheRowsAllowIt) {
       EXPECT_THAT(note, testing::Not(HasSubstr("root turns"))) << name;
   }
   const hamel::Run turning =
-      simulate("kick_scooter").speed(2).build();  // its steering stands at 0.3 rad
+      simulate("kick_scooter").speed(2).build();  // its steering is at 0.3 rad
   EXPECT_THAT(turning.notes(), testing::Contains(HasSubstr("its root turns: omega = 0.5965")));
 }
 

@@ -52,7 +52,7 @@ TEST(Gni, IsEndedByAModeThatAlternatesAndGrows) {
   while (run.state().time < 16 - h / 2) {
     ASSERT_TRUE(run.step().ok);
     const Snapshot& now = run.state();
-    across.push_back(now.row_rates.at(0));
+    across.push_back(now.constraint_rates.at(0));
     if (now.time < 12 - h / 2) continue;
     const std::vector<double> exact = flow(now.time).second;
     velocity_error.push_back(std::hypot(now.velocity[0] - exact[0], now.velocity[1] - exact[1],

@@ -102,7 +102,7 @@ TEST(EnergyBalance, IsNotTheChangeOfTheEnergy) {
         std::max(change, std::abs(r.trajectory.at(i, energy) / r.trajectory.at(0, energy) - 1));
   EXPECT_GT(change, 0.1);
   EXPECT_LT(r.energy_error_max, 1e-4);
-  EXPECT_NE(r.record().find("energy balance"), std::string::npos) << "a note says so";
+  EXPECT_NE(r.record().find("energy balance"), std::string::npos) << "the notes";
 }
 
 // Nothing does work: no balance, and the energy error is what it was, (E - E0) / |E0|.

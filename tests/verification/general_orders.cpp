@@ -9,7 +9,7 @@
 
 #include <hamel/hamel.hpp>
 
-#include "../framework/erased.hpp"
+#include "../framework/schemes/dynamic_problem.hpp"
 #include "cases.hpp"
 
 namespace hamel {
@@ -105,6 +105,38 @@ TEST_P(GeneralOrders, AreAsClaimed) {
 
 INSTANTIATE_TEST_SUITE_P(Systems, GeneralOrders, testing::ValuesIn(general_systems()),
                          [](const auto& it) { return it.param; });
+
+/// A user's suite (check/scheme_laws.hpp) sees a wrong claim: lift at s = 0 and 1 is of order 1 on
+/// systems that are not left-invariant, not of order 2, and does not return. At s = 1/2 all holds.
+TEST(SchemeSuite, SeesAWrongClaim) {
+  Registry boastful = registry();
+  SchemeInfo info = *boastful.scheme("lift");
+  info.claims = [](double, TauTraits, bool) { return ClaimedOrder{2, true}; };
+  boastful.add(info);
+  int orders = 0, returns = 0, held = 0;
+  for (const LawResult& law : check_scheme(boastful, "lift")) {
+    const bool half = law.law.find("s = 1/2") != std::string::npos;
+    if (half && law.law.find("second_kind") == std::string::npos) {
+      EXPECT_TRUE(law.passed()) << law;
+    }
+    held += law.passed() ? 1 : 0;
+    if (law.passed()) continue;
+    if (law.law.starts_with("order at least 2: ")) ++orders;
+    if (law.law.starts_with("a run with h and one with -h")) ++returns;
+  }
+  EXPECT_GT(orders, 10);
+  EXPECT_GT(returns, 10);
+  EXPECT_GT(held, 200);
+}
+
+TEST(SchemeSuite, HoldsTheLibrarysOwn) {
+  for (const std::string scheme : {"lift", "rkmk4", "unadapted"}) {
+    for (const LawResult& law : check_scheme(registry(), scheme)) {
+      EXPECT_TRUE(law.passed()) << scheme << ": " << law;
+    }
+  }
+  EXPECT_THROW(check_scheme(registry(), "lft"), ConfigError);
+}
 
 /// On a left-invariant system the general schemes are the compiled ones.
 TEST(GeneralSchemes, AreTheCompiledOnesOnLeftInvariantSystems) {

@@ -90,7 +90,7 @@ class Equations {
   // [ A   0   ] [lambda] = [ db/dt - (dA/dt) xi               ]
   void operator()(const State& state, State& out, double t) const {
     const auto n = static_cast<Eigen::Index>(n_);
-    const Eigen::Index k = mechanics_->rows();
+    const Eigen::Index k = mechanics_->constraint_count();
     out.resize(state.size());
     const Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(state.data() + columns_, n);
     rate(state.data(), xi.data(), out.data());

@@ -32,6 +32,80 @@ TEST(ReversibleControl, ReturnsToItsStart) {
   }
 }
 
+// So also when the last step was cut to end at a time, as a run's last one is: that step is taken
+// back first, as long as it was.
+TEST(ReversibleControl, ReturnsFromACutStep) {
+  for (const std::string system : {"falling_disk", "contact_oscillator", "suslov_in_potential"}) {
+    for (const std::string compose : {"none", "suzuki4"}) {
+      SCOPED_TRACE(system + " " + compose);
+      hamel::Run run = simulate(system)
+                           .scheme("lift")
+                           .compose(compose)
+                           .step(0.01)
+                           .tolerance({.relative = 1e-5})
+                           .build();
+      const Snapshot start = run.state();
+      ASSERT_TRUE(run.advance_to(7.3));
+      const Snapshot there = run.state();
+      EXPECT_DOUBLE_EQ(there.time, 7.3);
+      run.turn_back();
+      ASSERT_TRUE(run.advance_to(start.time));
+      const Snapshot back = run.state();
+      EXPECT_EQ(back.step, 2 * there.step);
+      EXPECT_EQ(back.time, start.time);
+      EXPECT_LT(euclidean_distance(start.coordinates, back.coordinates), 1e-10);
+      EXPECT_LT(euclidean_distance(start.velocity, back.velocity), 1e-10);
+    }
+  }
+}
+
+// A particle on the plane in a potential of a given size, k = 1: V = m size^2 U(g/size).
+struct Well {
+  using Group = Rn<2>;
+  double size = 1, mass = 1;
+  static std::string name() { return "well"; }
+  Mat<2, 2> inertia() const { return mass * Mat<2, 2>::Identity(); }
+  auto potential(const auto& g) const {
+    const auto x = g[0] / size, y = g[1] / size;
+    return mass * size * size * (0.5 * x * x + y * y + 0.25 * x * x * y * y);
+  }
+};
+
+// Neither the unit of lengths nor that of masses chooses the steps: of a disk that turns, and of a
+// particle where nothing turns, which moves or rests at first.
+TEST(ReversibleControl, IsFreeOfUnits) {
+  const auto time_of = [](Simulation simulation) {
+    hamel::Run run = simulation.scheme("lift").tolerance({.relative = 1e-5}).build();
+    EXPECT_TRUE(run.step(300));
+    return run.state().time;
+  };
+  const Snapshot metres = simulate("falling_disk").build().state();
+  for (const auto& [length, weight] : {std::pair{1000.0, 1.0}, {0.01, 1.0}, {1.0, 50.0}}) {
+    const double l = length, moment = weight * l * l;
+    Start start = {.configuration = metres.coordinates, .velocity = metres.velocity};
+    for (size_t i = 9; i < 12; ++i) start.configuration[i] *= l;
+    for (size_t i = 3; i < 6; ++i) start.velocity[i] *= l;
+    const double time = time_of(simulate("falling_disk"));
+    const Simulation disk = simulate("falling_disk")
+                                .set("radius", {0.5 * l})
+                                .set("mass", {weight})
+                                .set("axial_inertia", {0.125 * moment})
+                                .set("diametral_inertia", {0.0625 * moment})
+                                .set("gravity", {9.81 * l})
+                                .start(start);
+    EXPECT_NEAR(time_of(disk), time, 1e-8 * time);
+    for (const double speed : {0.0, 0.7}) {
+      const auto start_of = [speed](double size) {
+        return Start{.configuration = {size, 0.3 * size}, .velocity = {0, speed * size}};
+      };
+      const double in_metres = time_of(simulate(Well{}).start(start_of(1)));
+      EXPECT_GT(in_metres, 0.5);
+      EXPECT_NEAR(time_of(simulate(Well{.size = l, .mass = weight}).start(start_of(l))), in_metres,
+                  1e-8 * in_metres);
+    }
+  }
+}
+
 // Its error is proportional to the tolerance: eps^p = tolerance.
 TEST(ReversibleControl, FollowsTheTolerance) {
   const Result exact = suslov().scheme("dop853").tolerance({.relative = 1e-13}).until(10).run();
@@ -94,7 +168,8 @@ Drift drift_of(const std::vector<double>& t, const std::vector<double>& e) {
 
 class UsualControl {
  public:
-  UsualControl(const std::string& name, double tolerance) : epsilon_(std::sqrt(tolerance)) {
+  // The absolute tolerance of a run is its relative one where none is given: eps^2 is their sum.
+  UsualControl(const std::string& name, double rtol) : epsilon_(std::sqrt(2 * rtol)) {
     hamel::Run run = simulate(name).build();
     state_ = run.state();
     KernelSetup setup;
@@ -103,7 +178,13 @@ class UsualControl {
     setup.configuration = state_.coordinates;
     setup.velocity = state_.velocity;
     geometry_ = setup.geometry;
-    motion_ = std::make_unique<EquationsOfMotion<Erased>>(Erased(geometry_, setup.mechanics));
+    motion_ = std::make_unique<EquationsOfMotion<DynamicProblem>>(
+        DynamicProblem(geometry_, setup.mechanics));
+    Eigen::MatrixXd inertia(setup.mechanics->dim(), setup.mechanics->dim());
+    Eigen::VectorXd g(geometry_->size());
+    geometry_->from_coordinates(state_.coordinates, g.data());
+    setup.mechanics->inertia(g.data(), inertia);  // constant; its first three are of rotations
+    length_ = std::sqrt(inertia.diagonal().head<3>().maxCoeff());
     const KernelFactory* own =
         registry().kernel(run.system().group.name, *setup.mechanics, "cayley", "lift");
     kernel_ = own != nullptr ? (*own)(setup) : registry().scheme("lift")->erased(setup);
@@ -114,7 +195,8 @@ class UsualControl {
     const Eigen::VectorXd xi = Eigen::Map<const Eigen::VectorXd>(
         state_.velocity.data(), static_cast<Eigen::Index>(state_.velocity.size()));
     motion_->solve(state_.time, g, xi);
-    const double r = std::sqrt(xi.squaredNorm() + motion_->acceleration().norm());
+    const double v = motion_->size(xi) / length_;
+    const double r = std::sqrt(v * v + motion_->size(motion_->acceleration()) / length_);
     kernel_->restart(state_.time, state_.coordinates, state_.velocity, epsilon_ / r);
     EXPECT_TRUE(kernel_->advance(1));
     kernel_->state(state_);
@@ -122,10 +204,10 @@ class UsualControl {
   }
 
  private:
-  double epsilon_;
+  double epsilon_, length_ = 1;
   Snapshot state_;
   std::shared_ptr<const Geometry> geometry_;
-  std::unique_ptr<EquationsOfMotion<Erased>> motion_;
+  std::unique_ptr<EquationsOfMotion<DynamicProblem>> motion_;
   std::unique_ptr<Kernel> kernel_;
 };
 

@@ -103,7 +103,7 @@ void mechanism() {
   m.hinge("steer", deck, fork, {.at = {0.7, 0, 0}, .axis = {0, 0, 1}});
   m.blade("rear", deck, {.at = {0, 0, 0}});
   m.blade("front", fork, {.at = {0.7, 0, 0}});
-  m.motor("steer", [](const hamel::Now& now) { return 0.25 - 0.5 * now.t; });
+  m.motor("steer", [](const hamel::SignalInput& now) { return 0.25 - 0.5 * now.t; });
   m.start({{"speed", 2}, {"steer.angle", 0.25}});
   const hamel::Mechanism copy = m;
   const auto result = hamel::simulate(copy).scheme("lift").step(0.01).until(1).run();

@@ -1,4 +1,4 @@
-// Eigen at work, memory and large products included, in a unit that knows nothing of hamel.
+// Eigen at work, memory and large products included, in a unit without hamel.
 #include <cmath>
 
 #include <Eigen/Dense>

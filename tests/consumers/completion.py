@@ -1,0 +1,73 @@
+"""completion.py PREFIX: hamel installed in PREFIX is completed in bash, zsh and fish, in a terminal, where they are installed."""
+import os
+import pty
+import re
+import select
+import shutil
+import sys
+import time
+
+prefix = os.path.realpath(sys.argv[1])
+SHELLS = {
+    "bash": (["bash", "--norc", "--noprofile", "-i"],
+             f"source {prefix}/share/bash-completion/completions/hamel; bind 'set show-all-if-ambiguous on'"),
+    "zsh": (["zsh", "-f", "-i"], f"fpath=({prefix}/share/zsh/site-functions $fpath); autoload -U compinit; compinit -u -D; setopt no_list_ambiguous"),
+    "fish": (["fish", "--no-config", "-i"], f"source {prefix}/share/fish/vendor_completions.d/hamel.fish"),
+}
+# What is typed before the TAB, and what the shell shows then.
+CASES = [
+    ("hamel ru", "hamel run"),
+    ("hamel run rattle", "hamel run rattleback"),
+    ("hamel run sus", "suslov_in_potential"),
+    ("hamel run suslov --set in", "--set inertia="),
+    ("hamel run suslov --scheme li", "--scheme lift"),
+    ("hamel run suslov --retr", "--retraction"),
+    ("hamel run rattleback --events rev", "--events reversed"),
+    ("hamel help ens", "hamel help ensemble"),
+    ("hamel list retr", "hamel list retractions"),
+]
+
+
+def read(fd, until, patience):
+    """What appears on the terminal until the text or the patience ends, without its control sequences."""
+    shown, end = b"", time.monotonic() + patience
+    while time.monotonic() < end:
+        if select.select([fd], [], [], 0.1)[0]:
+            try:
+                shown += os.read(fd, 65536)
+            except OSError:
+                break
+        text = re.sub(rb"\x1b\[[0-9;?]*[a-zA-Z]|\x1b[()=>][A-Z0-9]?|\x1b\][^\x07]*\x07|\x07", b"", shown).decode(errors="replace")
+        if until in text:
+            return text, True
+    return text if shown else "", False
+
+
+def try_shell(name, command, setup):
+    child, fd = pty.fork()
+    if child == 0:
+        os.environ.update(PATH=f"{prefix}/bin:{os.environ['PATH']}", TERM="xterm", PS1="> ", HOME="/tmp", COLUMNS="200", LINES="50")
+        os.execvp(command[0], command)
+    failed = 0
+    try:
+        read(fd, "> ", 3)
+        os.write(fd, f"stty columns 200; {setup}; echo set'-'up\r".encode())
+        read(fd, "set-up", 20)
+        for typed, expected in CASES:
+            os.write(fd, b"\x15")  # an empty line
+            read(fd, "never shown", 0.3)
+            os.write(fd, typed.encode() + b"\t")
+            text, found = read(fd, expected, 10)
+            if not found:
+                failed += 1
+                print(f"FAILED: {name}: '{typed}' and a TAB show\n{text[-400:]!r}\nexpected '{expected}'")
+        os.write(fd, b"\x15exit\r")
+    finally:
+        os.close(fd)
+        os.waitpid(child, 0)
+    print(f"{name}: {len(CASES) - failed} of {len(CASES)}")
+    return failed
+
+
+failed = sum(try_shell(name, *how) for name, how in SHELLS.items() if shutil.which(name))
+sys.exit(1 if failed else 0)
