@@ -1,0 +1,140 @@
+// The Python module hamel._hamel: what its sources share. It binds <hamel/simulate.hpp>, and names
+// are those of C++.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/complex.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <hamel/simulate.hpp>
+#include <hamel/systems/by_text.hpp>
+
+namespace hamel::python {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+using Array = nb::ndarray<nb::numpy, double>;
+using ReadOnly = nb::ndarray<nb::numpy, const double>;
+
+/// Numbers of a sequence, an array or one number; ConfigError that names them where it is none.
+std::vector<double> numbers(const std::string& name, nb::handle value);
+double number(const std::string& name, nb::handle value);
+std::string text(const std::string& name, nb::handle value);
+nb::dict dict(const std::string& name, nb::handle value);
+std::vector<std::string> texts(const std::string& name, nb::handle value);  // one text too
+
+/// An array of its own memory.
+nb::object array(std::vector<double> values);
+nb::object matrix(std::vector<double> values, size_t columns);
+nb::object complex_array(const std::vector<std::complex<double>>& values);
+
+/// A Python object that C++ may copy and drop in any thread, the interpreter free.
+using Kept = std::shared_ptr<const nb::object>;
+Kept kept(nb::object object);
+
+/// The function `name` of the Python module hamel.`module`, imported when it is called.
+nb::object helper(const char* module, const char* name);
+
+/// A system by data, or a mechanism, whose text is at hand; the name is its file's.
+struct SystemText {
+  std::string toml, name;
+};
+/// Of the system of a run that could start.
+ModelDescription described(const Simulation& simulation);
+
+/// A run as Python states it: the builder, and the text that its system was read from.
+struct Builder {
+  Simulation simulation;
+  std::string source = {};     // TOML; "" for a name or a file
+  bool by_parts = false;       // a Mechanism
+  bool has_functions = false;  // of Python
+  nb::object progress = {};
+};
+
+/// Of a registered name, a file, a TOML text (which has a line break), a Mechanism, a Config or a
+/// Builder.
+Builder builder_of(nb::handle system);
+Builder builder_of(nb::handle system, const nb::kwargs& options);
+/// The options as hamel.run has them; ConfigError with every one that does not fit.
+void apply(Builder& builder, const nb::kwargs& options);
+/// Their names and meanings, a line each.
+std::string options_of_a_run();
+/// The simulation with its progress, which Ctrl-C ends.
+Simulation watched(const Builder& builder);
+/// Runs with the interpreter free; Ctrl-C and exceptions of callbacks end it.
+Result run(const Builder& builder);
+
+/// The names by which a state is asked for.
+struct StateNames {
+  ModelDescription model;
+  enum class Part { coordinate, velocity, momentum };
+  std::map<std::string, std::pair<Part, size_t>> places;
+  explicit StateNames(const SystemModel& system);
+  double value(const Snapshot& state, const std::string& name) const;
+};
+
+/// A state with its names.
+struct NamedState {
+  Snapshot state;
+  std::shared_ptr<const StateNames> names;  // null: by number only
+};
+
+/// A result, and what is kept of one that was pickled.
+class StoredResult {
+ public:
+  using Places = std::map<std::string, std::pair<size_t, size_t>>;  // first column, number of them
+
+  Result result;
+  std::string source;          // as in Builder
+  std::string record, report;  // of one that was pickled, whose result.system is null
+
+  StoredResult(Result of, std::string text) : result(std::move(of)), source(std::move(text)) {}
+  /// Columns, vectors and velocities by name; a column has the number 0. Found when first asked
+  /// for.
+  const Places& places() const;
+  std::string record_text() const;
+  void write(const std::string& path);
+
+ private:
+  mutable Places places_;
+};
+
+nb::object result_of(Result result, std::string source);
+nb::dict pack(const StoredResult& stored);
+void unpack(StoredResult& self, const nb::dict& state);
+/// A run to be stepped by hand.
+nb::object by_hand(const Builder& builder);
+
+/// A constant, an InputTable, a pair (times, values), or the name of a file.
+InputSignal signal_of(const std::string& name, nb::handle value);
+
+constexpr Point kOrigin = {0, 0, 0};
+
+void bind_builder(nb::module_& m, nb::class_<Builder>& builder);
+void bind_config(nb::module_& m);
+void bind_ensemble(nb::module_& m);
+void bind_forces(nb::class_<Mechanism>& mechanism);
+void bind_mechanism(nb::module_& m);
+void bind_names(nb::module_& m);
+void bind_result(nb::module_& m);
+void bind_run(nb::module_& m);
+void bind_section(nb::module_& m);
+void bind_simulation(nb::module_& m);
+void bind_steady(nb::module_& m);
+void bind_study(nb::module_& m);
+
+}  // namespace hamel::python

@@ -1,0 +1,178 @@
+// What drives a mechanism by parts: motors, forces, springs, prescribed rates, events, the start;
+// functions of Python and compiled ones.
+#include <cstdint>
+#include <span>
+
+#include "bindings.hpp"
+
+namespace hamel::python {
+namespace {
+
+// A function of C as numba.cfunc compiles it, "float64(float64, CPointer(float64),
+// CPointer(float64), CPointer(float64))", of t, coordinates, velocity and inputs: called without
+// the interpreter.
+using Compiled = double (*)(double, const double*, const double*, const double*);
+using CompiledOfTime = double (*)(double);
+
+// The address of a compiled function: an attribute of what numba.cfunc returns.
+std::uintptr_t address_of(nb::handle function) {
+  return nb::hasattr(function, "address") ? nb::cast<std::uintptr_t>(function.attr("address")) : 0;
+}
+
+std::vector<double> copied(std::span<const double> values) {
+  return {values.begin(), values.end()};
+}
+
+// A number, a compiled function, or one of Python: f(t, coordinates, velocity, inputs).
+Signal signal(nb::handle value) {
+  if (const std::uintptr_t address = address_of(value); address != 0) {
+    const auto compiled = reinterpret_cast<Compiled>(address);
+    return [compiled, alive = kept(nb::borrow(value))](const SignalInput& in) {
+      return compiled(in.t, in.coordinates.data(), in.velocity.data(), in.inputs.data());
+    };
+  }
+  if (PyCallable_Check(value.ptr()) == 0) {
+    const double constant = number("signal", value);
+    return [constant](const SignalInput&) { return constant; };
+  }
+  return [function = kept(nb::borrow(value))](const SignalInput& in) {
+    const nb::gil_scoped_acquire gil;
+    return nb::cast<double>(
+        (*function)(in.t, copied(in.coordinates), copied(in.velocity), copied(in.inputs)));
+  };
+}
+
+std::function<double(double)> of_time(nb::handle value) {
+  if (value.is_none()) return {};
+  if (const std::uintptr_t address = address_of(value); address != 0)
+    return [compiled = reinterpret_cast<CompiledOfTime>(address),
+            alive = kept(nb::borrow(value))](double t) { return compiled(t); };
+  return [function = kept(nb::borrow(value))](double t) {
+    const nb::gil_scoped_acquire gil;
+    return nb::cast<double>((*function)(t));
+  };
+}
+
+Range range(std::optional<double> least, std::optional<double> most) {
+  Range out;
+  if (least) out.least = *least;
+  if (most) out.most = *most;
+  return out;
+}
+
+}  // namespace
+
+void bind_forces(nb::class_<Mechanism>& mechanism) {
+  mechanism
+      .def(
+          "prescribe",
+          [](Mechanism& self, const std::string& joint, nb::handle rate, nb::handle angle,
+             nb::handle slope, std::optional<double> least, std::optional<double> most) {
+            if (rate.is_none()) self.prescribe(joint, range(least, most));
+            else if (PyCallable_Check(rate.ptr()) != 0 || address_of(rate) != 0)
+              self.prescribe(joint, of_time(rate), of_time(angle), of_time(slope));
+            else self.prescribe(joint, number("rate", rate), of_time(angle));
+          },
+          "joint"_a, "rate"_a = nb::none(), nb::kw_only(), "angle"_a = nb::none(),
+          "slope"_a = nb::none(), "least"_a = nb::none(), "most"_a = nb::none(),
+          nb::sig(
+              "def prescribe(self, joint: str, rate: float | _OfTime | None = None, *, angle: "
+              "_OfTime | None = None, slope: _OfTime | None = None, least: float | None = None, "
+              "most: float | None = None) -> None"),
+          "The rate of a hinge or slider: a function of t, a constant, or (without one) an input "
+          "of the run, 'steer.rate', between least and most.")
+      .def(
+          "ground",
+          [](Mechanism& self, double rate, const Point& velocity) { self.ground(rate, velocity); },
+          "rate"_a, "velocity"_a = kOrigin,
+          "The ground turns about the origin [rad/s] and moves [m/s].")
+      .def("redundant", &Mechanism::redundant, "policy"_a,
+           "'refuse', or 'drop': what becomes of rows that repeat others.")
+      .def("gravity", &Mechanism::gravity, "acceleration"_a, "[m/s^2], three numbers")
+      .def(
+          "spring",
+          [](Mechanism& self, const std::string& name, const std::string& a, const std::string& b,
+             const Point& from, const Point& to, double stiffness, std::optional<double> rest,
+             double damping) {
+            self.spring(name, a, b, {from, to, stiffness, rest, damping});
+          },
+          "name"_a, "a"_a, "b"_a, nb::kw_only(), "from_"_a = kOrigin, "to"_a = kOrigin,
+          "stiffness"_a = 0.0, "rest"_a = nb::none(), "damping"_a = 0.0,
+          "Between two points [m] as drawn; stiffness [N/m], rest [m] (left out: as drawn).")
+      .def(
+          "motor",
+          [](Mechanism& self, const std::string& joint, nb::handle effort, bool time_dependent,
+             std::optional<double> least, std::optional<double> most) {
+            if (effort.is_none()) self.motor(joint, range(least, most));
+            else self.motor(joint, signal(effort), time_dependent);
+          },
+          "joint"_a, "effort"_a = nb::none(), nb::kw_only(), "time_dependent"_a = true,
+          "least"_a = nb::none(), "most"_a = nb::none(),
+          nb::sig("def motor(self, joint: str, effort: _SignalFunction | float | None = None, *, "
+                  "time_dependent: bool = True, least: float | None = None, most: float | None = "
+                  "None) -> None"),
+          "A torque [N m] or force [N] in a joint: a function f(t, coordinates, velocity, inputs) "
+          "of Python or of numba.cfunc, or (without one) an input of the run, 'steer.torque'.")
+      .def(
+          "force",
+          [](Mechanism& self, const std::string& name, const std::string& body, nb::sequence along,
+             const Point& at, bool of_body, bool time_dependent) {
+            if (nb::len(along) != 3)
+              throw ConfigError({"force '" + name + "': along has " +
+                                 std::to_string(nb::len(along)) + " entries, expected 3"});
+            self.force(name, body,
+                       {at,
+                        {signal(along[0]), signal(along[1]), signal(along[2])},
+                        of_body,
+                        time_dependent});
+          },
+          "name"_a, "body"_a, "along"_a, nb::kw_only(), "at"_a = kOrigin, "of_body"_a = false,
+          "time_dependent"_a = true,
+          nb::sig("def force(self, name: str, body: str, along: "
+                  "collections.abc.Sequence[_SignalFunction | float], "
+                  "*, at: _Point = (0, 0, 0), of_body: bool = False, time_dependent: bool = True) "
+                  "-> None"),
+          "Three components [N], numbers or functions, of the world or of the body as drawn.")
+      .def(
+          "input",
+          [](Mechanism& self, const std::string& name, const std::string& unit,
+             const std::string& meaning, std::optional<double> least, std::optional<double> most) {
+            self.input({name, unit, meaning, range(least, most)});
+          },
+          "name"_a, "unit"_a = "", "meaning"_a = "", nb::kw_only(), "least"_a = nb::none(),
+          "most"_a = nb::none(), "An input of the run that signals may use.")
+      .def(
+          "event",
+          [](Mechanism& self, const std::string& name, nb::callable value, int direction,
+             const std::string& meaning) {
+            self.event({name, meaning, direction,
+                        [function = kept(value)](double t, std::span<const double> coordinates,
+                                                 std::span<const double> velocity) {
+                          const nb::gil_scoped_acquire gil;
+                          return nb::cast<double>(
+                              (*function)(t, copied(coordinates), copied(velocity)));
+                        }});
+          },
+          "name"_a, "value"_a, nb::kw_only(), "direction"_a = 0, "meaning"_a = "",
+          nb::sig("def event(self, name: str, value: collections.abc.Callable[[float, list[float], "
+                  "list[float]], "
+                  "float], *, direction: int = 0, meaning: str = '') -> None"),
+          "An event of a run, where value(t, coordinates, velocity) is zero; direction +1, -1, or "
+          "0 for both ways.")
+      .def(
+          "start",
+          [](Mechanism& self, const std::map<std::string, double>& values, const nb::kwargs& more) {
+            std::map<std::string, double> all = values;
+            for (const auto& [key, value] : more)
+              all[nb::cast<std::string>(key)] = number(nb::cast<std::string>(key), value);
+            self.start(all);
+          },
+          "values"_a = std::map<std::string, double>(), "more"_a,
+          nb::sig("def start(self, values: collections.abc.Mapping[str, float] = {}, **more: "
+                  "float) -> None"),
+          "Coordinates and velocities by name, and 'speed'; the others follow from the rows.")
+      .def("push", &Mechanism::push, "name"_a, "value"_a,
+           "A velocity beside the speed of a run that starts at one.");
+}
+
+}  // namespace hamel::python

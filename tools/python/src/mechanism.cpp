@@ -1,0 +1,222 @@
+// Mechanisms by parts, hamel.Mechanism, with the parts and options of C++ as keywords.
+#include <limits>
+
+#include "bindings.hpp"
+
+namespace hamel::python {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> given(const char* name, nb::handle value) {
+  return value.is_none() ? std::vector<double>() : numbers(name, value);
+}
+
+Parameters parameters(const nb::kwargs& values) {
+  Parameters out;
+  for (const auto& [key, value] : values) {
+    const auto name = nb::cast<std::string>(key);
+    out[name] = numbers(name, value);
+  }
+  return out;
+}
+
+// The arguments that all joints have.
+JointOptions joint_options(const Point& at, const Point& axis, const Point& axis2, double stiffness,
+                           double rest, double damping, const nb::kwargs& values = {}) {
+  return {at,
+          axis,
+          axis2,
+          stiffness,
+          rest,
+          damping,
+          values.is_valid() ? parameters(values) : Parameters()};
+}
+
+constexpr Point kUp = {0, 0, 1}, kLeft = {0, 1, 0}, kAhead = {1, 0, 0};
+
+void bind_joints(nb::class_<Mechanism>& mechanism) {
+  using Root = void (Mechanism::*)(const std::string&, const std::string&, const JointOptions&);
+  const auto root = [&](const char* name, Root member, const char* help) {
+    mechanism.def(
+        name,
+        [member](Mechanism& self, const std::string& joint, const std::string& child,
+                 const Point& at, const Point& axis) {
+          (self.*member)(joint, child, joint_options(at, axis, kLeft, 0, 0, 0));
+        },
+        "name"_a, "child"_a, nb::kw_only(), "at"_a = kOrigin, "axis"_a = kUp, help);
+  };
+  root("free", &Mechanism::free, "The child moves freely in space.");
+  root("planar", &Mechanism::planar, "The child moves in a plane.");
+  using Between = void (Mechanism::*)(const std::string&, const std::string&, const std::string&,
+                                      const JointOptions&);
+  const auto between = [&](const char* name, Between member, const char* help) {
+    mechanism.def(
+        name,
+        [member](Mechanism& self, const std::string& joint, const std::string& parent,
+                 const std::string& child, const Point& at, const Point& axis, const Point& axis2,
+                 double stiffness, double rest, double damping) {
+          (self.*member)(joint, parent, child,
+                         joint_options(at, axis, axis2, stiffness, rest, damping));
+        },
+        "name"_a, "parent"_a, "child"_a, nb::kw_only(), "at"_a = kOrigin, "axis"_a = kUp,
+        "axis2"_a = kLeft, "stiffness"_a = 0.0, "rest"_a = 0.0, "damping"_a = 0.0, help);
+  };
+  between("hinge", &Mechanism::hinge,
+          "Turns about an axis through a point [m]; stiffness [N m/rad], rest [rad], damping "
+          "[N m s/rad].");
+  between("slider", &Mechanism::slider,
+          "Slides along an axis; stiffness [N/m], rest [m], damping [N s/m].");
+  between("ball_joint", &Mechanism::ball_joint, "Turns about a point.");
+  between("universal", &Mechanism::universal,
+          "Two hinges, axis on the parent and axis2 on the child, that meet at a point.");
+  mechanism.def("weld", &Mechanism::weld, "name"_a, "parent"_a, "child"_a, "The child is fixed.")
+      .def(
+          "joint",
+          [](Mechanism& self, const std::string& kind, const std::string& name,
+             const std::string& parent, const std::string& child, const Point& at,
+             const Point& axis, const Point& axis2, double stiffness, double rest, double damping,
+             const nb::kwargs& values) {
+            self.joint(kind, name, parent, child,
+                       joint_options(at, axis, axis2, stiffness, rest, damping, values));
+          },
+          "kind"_a, "name"_a, "parent"_a, "child"_a, nb::kw_only(), "at"_a = kOrigin,
+          "axis"_a = kUp, "axis2"_a = kLeft, "stiffness"_a = 0.0, "rest"_a = 0.0, "damping"_a = 0.0,
+          "values"_a,
+          nb::sig(
+              "def joint(self, kind: str, name: str, parent: str, child: str, *, at: _Point = "
+              "(0, 0, 0), axis: _Point = (0, 0, 1), axis2: _Point = (0, 1, 0), stiffness: float "
+              "= 0, rest: float = 0, damping: float = 0, **values: _Numbers) -> None"),
+          "By the name of its kind; values: what this kind has beside them.");
+}
+
+void bind_contacts(nb::class_<Mechanism>& mechanism) {
+  using Rolls = void (Mechanism::*)(const std::string&, const std::string&, const WheelOptions&);
+  const auto rolls = [&](const char* name, Rolls member, const char* help) {
+    mechanism.def(
+        name,
+        [member](Mechanism& self, const std::string& contact, const std::string& body,
+                 const Point& at, const Point& axle, double radius, double angle) {
+          (self.*member)(contact, body, {at, axle, radius, angle});
+        },
+        "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "axle"_a = kLeft, "radius"_a = 0.0,
+        "angle"_a = 0.0, help);
+  };
+  rolls("wheel", &Mechanism::wheel, "at: its centre [m]; axle to the left; radius [m].");
+  rolls("roller", &Mechanism::roller, "A wheel with rollers at an angle [rad] to its plane.");
+  rolls("ball", &Mechanism::ball, "A ball that rolls on the ground.");
+  mechanism
+      .def(
+          "blade",
+          [](Mechanism& self, const std::string& name, const std::string& body, const Point& at,
+             const Point& along) {
+            self.blade(name, body, {at, along});
+          },
+          "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "along"_a = kAhead,
+          "Slides along a direction, not across it.")
+      .def(
+          "contact",
+          [](Mechanism& self, const std::string& kind, const std::string& name,
+             const std::string& body, const Point& at, const nb::kwargs& values) {
+            self.contact(kind, name, body, {at, parameters(values)});
+          },
+          "kind"_a, "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "values"_a,
+          nb::sig("def contact(self, kind: str, name: str, body: str, *, at: _Point = (0, 0, 0), "
+                  "**values: _Numbers) -> None"),
+          "By the name of its kind; values: its fields.")
+      .def(
+          "loop",
+          [](Mechanism& self, const std::string& name, const std::string& a, const std::string& b,
+             const Point& at, const Point& axis) {
+            self.loop(name, a, b, {at, axis});
+          },
+          "name"_a, "a"_a, "b"_a, nb::kw_only(), "at"_a = kOrigin, "axis"_a = kOrigin,
+          "A joint that closes a chain; axis of a hinge, 0 of a ball joint.");
+}
+
+void bind_text(nb::module_& m) {
+  nb::class_<SystemText>(m, "SystemText",
+                         "A system by data, or a mechanism, as TOML: formulas of names, no "
+                         "compiler. Wherever a system is expected; pickles.")
+      .def(
+          "__init__",
+          [](SystemText* self, const std::string& toml, const std::string& name) {
+            new (self) SystemText{toml, name};
+          },
+          "toml"_a, "name"_a = "system.toml")
+      .def_ro("toml", &SystemText::toml)
+      .def_ro("name", &SystemText::name, "in messages and records")
+      .def(
+          "describe",
+          [](const SystemText& self) { return described(simulate_text(self.toml, self.name)); },
+          "What is stated about the system; ConfigError with line and column.")
+      .def("__getstate__",
+           [](const SystemText& self) { return nb::make_tuple(self.toml, self.name); })
+      .def("__setstate__",
+           [](SystemText& self, const std::pair<std::string, std::string>& state) {
+             new (&self) SystemText{state.first, state.second};
+           })
+      .def("__repr__",
+           [](const SystemText& self) { return "<hamel.SystemText " + self.name + ">"; });
+}
+
+}  // namespace
+
+ModelDescription described(const Simulation& simulation) {
+  return describe_model(simulation.build().system());
+}
+
+void bind_mechanism(nb::module_& m) {
+  bind_text(m);
+  nb::class_<Mechanism> mechanism(
+      m, "Mechanism",
+      "Bodies, joints, wheels, blades and balls put together; nothing is derived by hand. Points "
+      "[m] and directions are those of one pose as drawn: x ahead, z up, the ground z = 0. Names "
+      "are checked when it is used, all mistakes at once. The world is 'ground'.");
+  mechanism.def(nb::init<std::string>(), "name"_a)
+      .def_prop_ro("name", [](const Mechanism& self) { return self.name(); })
+      .def(
+          "body",
+          [](Mechanism& self, const std::string& name, double mass, const Point& at,
+             nb::handle inertia, const Point& box, nb::handle cylinder, double sphere,
+             const Point& axis) {
+            return self.body(name, {mass, at, given("inertia", inertia), box,
+                                    given("cylinder", cylinder), sphere, axis});
+          },
+          "name"_a, nb::kw_only(), "mass"_a = kNan, "at"_a = kOrigin, "inertia"_a = nb::none(),
+          "box"_a = kOrigin, "cylinder"_a = nb::none(), "sphere"_a = 0.0, "axis"_a = kUp,
+          nb::sig(
+              "def body(self, name: str, *, mass: float, at: _Point = (0, 0, 0), inertia: "
+              "_Numbers | None = None, box: _Point = (0, 0, 0), cylinder: _Numbers | None = None, "
+              "sphere: float = 0, axis: _Point = (0, 0, 1)) -> str"),
+          "mass [kg], at: its mass centre [m]; inertia: 3, 6 or 9 numbers [kg m^2], or that of a "
+          "shape: box (edges), cylinder (radius, length, about axis), sphere (radius). Returns "
+          "the name.");
+  bind_joints(mechanism);
+  bind_contacts(mechanism);
+  bind_forces(mechanism);
+  mechanism
+      .def_static(
+          "from_toml",
+          [](const std::string& toml, const std::string& name) {
+            return SystemText{toml, name};
+          },
+          "toml"_a, "name"_a = "mechanism.toml", "A mechanism in a text.")
+      .def_static(
+          "from_file",
+          [](nb::handle path) {
+            const nb::object file = nb::module_::import_("pathlib").attr("Path")(path);
+            return SystemText{nb::cast<std::string>(file.attr("read_text")("encoding"_a = "utf-8")),
+                              text("path", path)};
+          },
+          "path"_a, nb::sig("def from_file(path: str | os.PathLike[str]) -> SystemText"),
+          "A mechanism in a file.")
+      .def(
+          "describe", [](const Mechanism& self) { return described(simulate(self)); },
+          nb::sig("def describe(self) -> Description"), "What is stated about the system.")
+      .def("__repr__",
+           [](const Mechanism& self) { return "<hamel.Mechanism " + self.name() + ">"; });
+  m.attr("WORLD") = kWorld;
+}
+
+}  // namespace hamel::python

@@ -1,0 +1,155 @@
+// The pickle of a result: plain values, the rows as bytes; the system goes by its name or text.
+#include <cstring>
+
+#include "bindings.hpp"
+
+namespace hamel::python {
+namespace {
+
+using GroupState =
+    std::tuple<std::string, std::string, std::string, std::string, std::vector<std::string>>;
+
+struct Packer {  // of Measurements::serialize and invariants
+  std::vector<double> numbers;
+  std::vector<std::string> names;
+  void operator()(double& x) { numbers.push_back(x); }
+  void operator()(std::vector<InvariantDrift>& all) {
+    for (InvariantDrift& one : all) {
+      names.push_back(one.name);
+      numbers.push_back(one.start);
+      numbers.push_back(one.drift_max);
+    }
+  }
+};
+
+struct Unpacker {
+  std::vector<double> numbers;
+  std::vector<std::string> names;
+  size_t at = 0;
+  void operator()(double& x) { x = numbers.at(at++); }
+  void operator()(std::vector<InvariantDrift>& all) {
+    for (const std::string& name : names) {
+      const double start = numbers.at(at++), drift = numbers.at(at++);
+      all.push_back({name, start, drift});
+    }
+  }
+};
+
+nb::tuple pack(const Snapshot& s) {
+  return nb::make_tuple(s.step, s.time, s.coordinates, s.velocity, s.momentum, s.energy,
+                        s.constraint_rates, s.constraint, s.holonomic, s.group_defect, s.rotation,
+                        s.time_offset, s.iterations, s.residual);
+}
+
+Snapshot snapshot_of(const nb::tuple& t) {
+  Snapshot s;
+  const auto read = [&t, i = 0](auto& out) mutable {
+    out = nb::cast<std::remove_reference_t<decltype(out)>>(t[static_cast<size_t>(i++)]);
+  };
+  auto next = read;
+  next(s.step);
+  next(s.time);
+  next(s.coordinates);
+  next(s.velocity);
+  next(s.momentum);
+  next(s.energy);
+  next(s.constraint_rates);
+  next(s.constraint);
+  next(s.holonomic);
+  next(s.group_defect);
+  next(s.rotation);
+  next(s.time_offset);
+  next(s.iterations);
+  next(s.residual);
+  return s;
+}
+
+template <class Value>
+Value get(const nb::dict& state, const char* key) {
+  return nb::cast<Value>(state[key]);
+}
+
+}  // namespace
+
+nb::dict pack(const StoredResult& stored) {
+  const Result& result = stored.result;
+  nb::dict out;
+  out["record"] = stored.record_text();
+  out["report"] = result.system == nullptr ? stored.report : result.report();
+  out["source"] = stored.source;
+  out["config"] = result.config;
+  const Status& status = result.status;
+  out["status"] =
+      nb::make_tuple(status.ok, status.step, status.time, status.residual, status.reason);
+  out["last"] = pack(result.last);
+  out["steps"] = result.steps;
+  out["seconds"] = result.seconds;
+  out["notes"] = result.notes;
+  out["unused"] = result.unused;
+  out["stopped_by_event"] = result.stopped_by_event;
+  const SolverStats& stats = result.stats;
+  out["stats"] = nb::make_tuple(stats.iterations, stats.evaluations, stats.iterations_max,
+                                stats.residual_max, stats.rejected, stats.fallbacks);
+  nb::list events;
+  for (const EventMet& e : result.events)
+    events.append(nb::make_tuple(e.name, e.time, e.coordinates, e.velocity));
+  out["events"] = events;
+  Packer packer;
+  Measurements measured = result;
+  measured.serialize(packer);
+  out["measurements"] = nb::make_tuple(packer.numbers, packer.names);
+  std::vector<GroupState> groups;
+  for (const ColumnGroup& g : result.trajectory.groups())
+    groups.emplace_back(g.name, g.unit, g.meaning, g.frame, g.columns);
+  out["columns"] = groups;
+  out["stride"] = result.trajectory.stride();
+  const auto values = result.trajectory.values();
+  out["rows"] = nb::bytes(values.data(), values.size_bytes());
+  return out;
+}
+
+void unpack(StoredResult& self, const nb::dict& state) {
+  Result result;
+  result.config = get<Config>(state, "config");
+  using StatusState = std::tuple<bool, long, double, double, std::string>;
+  const auto [ok, step, time, residual, reason] = get<StatusState>(state, "status");
+  result.status = {ok, step, time, residual, reason};
+  result.last = snapshot_of(get<nb::tuple>(state, "last"));
+  result.steps = get<long>(state, "steps");
+  result.seconds = get<double>(state, "seconds");
+  result.notes = get<std::vector<std::string>>(state, "notes");
+  result.unused = get<std::vector<std::string>>(state, "unused");
+  result.stopped_by_event = get<bool>(state, "stopped_by_event");
+  using StatsState = std::tuple<long, long, int, double, long, long>;
+  const auto stats = get<StatsState>(state, "stats");
+  result.stats = {std::get<0>(stats),
+                  std::get<1>(stats),
+                  std::get<2>(stats),
+                  std::get<3>(stats),
+                  std::get<4>(stats),
+                  std::get<5>(stats),
+                  {}};
+  using EventState = std::tuple<std::string, double, std::vector<double>, std::vector<double>>;
+  for (const auto& [name, at, coordinates, velocity] :
+       get<std::vector<EventState>>(state, "events"))
+    result.events.push_back({name, at, coordinates, velocity});
+  const auto [values, names] =
+      get<std::pair<std::vector<double>, std::vector<std::string>>>(state, "measurements");
+  Unpacker unpacker{values, names};
+  static_cast<Measurements&>(result).serialize(unpacker);
+  std::vector<ColumnGroup> groups;
+  for (const auto& [name, unit, meaning, frame, columns] :
+       get<std::vector<GroupState>>(state, "columns"))
+    groups.push_back({name, unit, meaning, frame, columns});
+  result.trajectory = Trajectory(std::move(groups));
+  const nb::bytes rows = get<nb::bytes>(state, "rows");
+  std::vector<double> numbers(rows.size() / sizeof(double));
+  std::memcpy(numbers.data(), rows.data(), numbers.size() * sizeof(double));
+  result.trajectory.append(numbers);
+  result.trajectory.stride(get<size_t>(state, "stride"));
+  new (&self) StoredResult(std::move(result), get<std::string>(state, "source"));
+  self.record = get<std::string>(state, "record");
+  self.report = get<std::string>(state, "report");
+}
+
+}  // namespace hamel::python

@@ -1,0 +1,269 @@
+// What a run leaves behind, hamel.Result: its rows as views by name, its record, its pickle.
+#include <deque>
+
+#include "bindings.hpp"
+
+namespace hamel::python {
+namespace {
+
+// "nodal body velocity: omega1,omega2,omega3", as the columns of a run have it: the names.
+std::vector<std::string> names_in(const std::string& meaning) {
+  std::vector<std::string> out;
+  size_t at = meaning.find(": ");
+  if (at == std::string::npos) return out;
+  for (at += 2; at < meaning.size();) {
+    const size_t end = std::min(meaning.find(',', at), meaning.size());
+    out.push_back(meaning.substr(at, end - at));
+    at = end + 1;
+  }
+  return out;
+}
+
+std::vector<std::string> split(const std::string& words) {
+  std::vector<std::string> out(1);
+  for (const char c : words) {
+    if (c == ',') out.emplace_back();
+    else out.back() += c;
+  }
+  return out;
+}
+
+nb::object loads(const std::string& json) {
+  return nb::module_::import_("json").attr("loads")(json);
+}
+
+// Rows as they lie in the result, which the array keeps alive.
+nb::object view(nb::handle self, size_t first, size_t columns, bool is_vector) {
+  const auto& stored = nb::cast<const StoredResult&>(self);
+  const Trajectory& rows = stored.result.trajectory;
+  const double* data = rows.values().data() + first;
+  const auto stride = static_cast<int64_t>(rows.columns().size());
+  if (!is_vector) return nb::cast(ReadOnly(data, {rows.rows()}, self, {stride}));
+  return nb::cast(ReadOnly(data, {rows.rows(), columns}, self, {stride, 1}));
+}
+
+nb::object item(nb::handle self, const std::string& name) {
+  const auto& stored = nb::cast<const StoredResult&>(self);
+  const auto place = stored.places().find(name);
+  if (place != stored.places().end()) {
+    const auto [first, columns] = place->second;
+    return view(self, first, std::max<size_t>(columns, 1), columns > 0);
+  }
+  std::vector<std::string> known;
+  for (const auto& [key, unused] : stored.places()) known.push_back(key);
+  if (known.empty())
+    throw nb::key_error((name + ": the rows of this run are in its files").c_str());
+  throw nb::key_error(unknown_name("column", name, known).c_str());
+}
+
+std::map<std::string, std::string> units_of(const StoredResult& stored) {
+  std::map<std::string, std::string> out;
+  for (const ColumnGroup& group : stored.result.trajectory.groups()) {
+    const auto units = split(group.unit);
+    const auto names = names_in(group.meaning);
+    for (size_t i = 0; i < group.columns.size(); ++i) {
+      const std::string& unit = i < units.size() ? units[i] : units.front();
+      out[group.columns[i]] = unit;
+      if (group.name == "xi" && i < names.size()) out[names[i]] = unit;
+    }
+  }
+  return out;
+}
+
+void bind_measurements(nb::class_<StoredResult>& result) {
+  static std::deque<std::string> texts_kept;  // nanobind refers to them
+  Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
+    texts_kept.push_back(std::string(quantity.name) + suffix);
+    const char* name = texts_kept.back().c_str();
+    const std::string unit = quantity.unit;
+    texts_kept.push_back(std::string(quantity.meaning) + (unit == "1" ? "" : " [" + unit + "]") +
+                         "; NaN where it is not measured");
+    result.def_prop_ro(
+        name, [member](const StoredResult& s) { return s.result.*member; },
+        texts_kept.back().c_str());
+  });
+}
+
+void bind_rows(nb::class_<StoredResult>& result) {
+  result
+      .def("__getitem__", &item, "name"_a,
+           nb::sig("def __getitem__(self, name: str) -> numpy.typing.NDArray[numpy.float64]"),
+           "The rows of a column ('R11', 'xi1', 'energy', or by name, 'omega1'), shape (rows,), "
+           "or of a vector ('configuration', 'xi', 'mu', 'lambda'), shape (rows, n): a read-only "
+           "view, nothing is copied.")
+      .def("__contains__",
+           [](const StoredResult& s, const std::string& name) { return s.places().contains(name); })
+      .def(
+          "__iter__",
+          [](const StoredResult& s) {
+            return nb::cast(s.result.trajectory.columns()).attr("__iter__")();
+          },
+          nb::sig("def __iter__(self) -> collections.abc.Iterator[str]"))
+      .def(
+          "keys", [](const StoredResult& s) { return s.result.trajectory.columns(); },
+          "The columns.")
+      .def("__len__", [](const StoredResult& s) { return s.result.trajectory.rows(); })
+      .def_prop_ro(
+          "t", [](nb::handle self) { return item(self, "t"); },
+          nb::sig("def t(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "The times of the rows [s], shape (rows,).")
+      .def_prop_ro(
+          "values",
+          [](nb::handle self) {
+            const auto& s = nb::cast<const StoredResult&>(self);
+            return view(self, 0, s.result.trajectory.columns().size(), true);
+          },
+          nb::sig("def values(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "All rows, shape (rows, columns): a read-only view.")
+      .def_prop_ro("columns", [](const StoredResult& s) { return s.result.trajectory.columns(); })
+      .def_prop_ro(
+          "groups",
+          [](const StoredResult& s) {
+            std::map<std::string, std::vector<std::string>> out;
+            for (const ColumnGroup& g : s.result.trajectory.groups()) out[g.name] = g.columns;
+            return out;
+          },
+          "The columns of each vector or number.")
+      .def_prop_ro(
+          "names",
+          [](const StoredResult& s) {
+            for (const ColumnGroup& g : s.result.trajectory.groups())
+              if (g.name == "xi") return names_in(g.meaning);
+            return std::vector<std::string>();
+          },
+          "of the velocities xi1, xi2, …, in their order")
+      .def_prop_ro("units", &units_of, "The unit of each column, '1' or '' of plain numbers.");
+}
+
+}  // namespace
+
+const StoredResult::Places& StoredResult::places() const {
+  size_t first = 0;
+  if (!places_.empty()) return places_;
+  for (const ColumnGroup& group : result.trajectory.groups()) {
+    const size_t n = group.columns.size();
+    const auto add = [&](const std::string& name, size_t i) {
+      places_.emplace(name, std::pair(first + i, size_t{0}));
+    };
+    for (size_t i = 0; i < n; ++i) add(group.columns[i], i);
+    const auto names = group.name == "xi" ? names_in(group.meaning) : std::vector<std::string>();
+    for (size_t i = 0; i < std::min(n, names.size()); ++i) add(names[i], i);
+    if (n != 1 || group.columns.front() != group.name)
+      places_.emplace(group.name, std::pair(first, n));
+    first += n;
+  }
+  return places_;
+}
+
+std::string StoredResult::record_text() const {
+  return result.system == nullptr ? record : result.record();
+}
+
+// The system of a result that was pickled is made again, from its name or text.
+void StoredResult::write(const std::string& path) {
+  if (result.system == nullptr) {
+    Simulation again = source.empty() ? simulate(result.config.system)
+                                      : simulate_text(source, result.config.system);
+    const Result fresh = again.config(result.config).build().finish();
+    result.system = fresh.system;
+    result.inputs = fresh.inputs;
+  }
+  result.write(path);
+}
+
+nb::object result_of(Result result, std::string source) {
+  return nb::cast(StoredResult(std::move(result), std::move(source)));
+}
+
+void bind_result(nb::module_& m) {
+  nb::class_<EventMet>(m, "EventMet", "An event that was met, and the state there.")
+      .def_ro("name", &EventMet::name)
+      .def_ro("time", &EventMet::time, "[s]")
+      .def_prop_ro(
+          "coordinates", [](const EventMet& e) { return array(e.coordinates); },
+          nb::sig("def coordinates(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_prop_ro(
+          "velocity", [](const EventMet& e) { return array(e.velocity); },
+          nb::sig("def velocity(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def("__repr__", [](const EventMet& e) {
+        return "<hamel.EventMet " + e.name + " at t = " + text_of(e.time) + ">";
+      });
+  nb::class_<StoredResult> result(
+      m, "Result",
+      "What a run leaves behind: true where it ended well. result['omega1'] are the rows of a "
+      "column or a vector, as a read-only view. A numerical failure is in status; the good steps "
+      "are here.");
+  bind_rows(result);
+  bind_measurements(result);
+  const auto member = [](auto Result::*of) {
+    return [of](const StoredResult& s) { return s.result.*of; };
+  };
+  result.def_prop_ro("status", member(&Result::status))
+      .def("__bool__", [](const StoredResult& s) { return s.result.status.ok; })
+      .def_prop_ro("config", member(&Result::config), "As it was run, the start filled in.")
+      .def_prop_ro("notes", member(&Result::notes))
+      .def_prop_ro("unused", member(&Result::unused), "Options that the scheme makes no use of.")
+      .def_prop_ro("steps", member(&Result::steps))
+      .def_prop_ro("events", member(&Result::events))
+      .def_prop_ro("stopped_by_event", member(&Result::stopped_by_event))
+      .def_prop_ro("stats", member(&Result::stats))
+      .def_prop_ro("seconds", member(&Result::seconds), "Of the time loop, recording included.")
+      .def_prop_ro(
+          "last",
+          [](const StoredResult& s) {
+            const auto& system = s.result.system;
+            return NamedState{s.result.last,
+                              system ? std::make_shared<const StateNames>(*system) : nullptr};
+          },
+          "The last good state.")
+      .def_prop_ro(
+          "invariants",
+          [](const StoredResult& s) {
+            std::map<std::string, double> out;
+            for (const InvariantDrift& drift : s.result.invariants)
+              out[drift.name] = drift.drift_max;
+            return out;
+          },
+          "max |value - start| of each invariant of the exact motion")
+      .def_prop_ro(
+          "record", [](const StoredResult& s) { return loads(s.record_text()); },
+          nb::sig("def record(self) -> dict[str, typing.Any]"),
+          "The record, as hamel run --json has it.")
+      .def("json", &StoredResult::record_text, "The record as text.")
+      .def(
+          "report",
+          [](const StoredResult& s) {
+            return s.result.system == nullptr ? s.report : s.result.report();
+          },
+          "One screen of text.")
+      .def(
+          "write", [](StoredResult& s, nb::handle path) { s.write(text("path", path)); }, "path"_a,
+          nb::sig("def write(self, path: str | os.PathLike[str]) -> None"),
+          "By extension: .csv, .csv.gz, .h5 or .json. The file appears whole or not at all.")
+      .def(
+          "to_pandas", [](nb::handle self) { return helper("_frames", "to_pandas")(self); },
+          nb::sig("def to_pandas(self) -> pandas.DataFrame"),
+          "A row for each time (the index t), a column for each; attrs has the units.")
+      .def(
+          "to_xarray", [](nb::handle self) { return helper("_frames", "to_xarray")(self); },
+          nb::sig("def to_xarray(self) -> xarray.Dataset"),
+          "The dimension t, and one for each vector; units as attributes.")
+      .def(
+          "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of")(self); },
+          nb::sig("def _repr_html_(self) -> str"))
+      .def("__str__",
+           [](const StoredResult& s) {
+             return s.result.system == nullptr ? s.report : s.result.report();
+           })
+      .def("__repr__",
+           [](const StoredResult& s) {
+             return "<hamel.Result of " + s.result.config.system + ": " +
+                    (s.result.status.ok ? "ok" : "failed") + ", " + std::to_string(s.result.steps) +
+                    " steps to t = " + text_of(s.result.last.time) + ", " +
+                    std::to_string(s.result.trajectory.rows()) + " rows>";
+           })
+      .def("__getstate__", [](const StoredResult& s) { return pack(s); })
+      .def("__setstate__", [](StoredResult& s, const nb::dict& state) { unpack(s, state); });
+}
+
+}  // namespace hamel::python

@@ -1,0 +1,142 @@
+// Comparative studies: hamel.study.
+#include "long_call.hpp"
+
+namespace hamel::python {
+namespace {
+
+std::string word_of(nb::handle value) {
+  if (nb::isinstance<nb::str>(value)) return nb::cast<std::string>(value);
+  return text_of(number("value of an axis", value));
+}
+
+StudySystem system_of(nb::handle given) {
+  if (nb::isinstance<nb::str>(given)) {
+    const auto name = nb::cast<std::string>(given);
+    return {.label = name, .name = name};
+  }
+  StudySystem out;
+  for (const auto& [key, value] : dict("system", given)) {
+    const auto name = nb::cast<std::string>(key);
+    if (name == "label") out.label = text(name, value);
+    else if (name == "system" || name == "name") out.name = text(name, value);
+    else if (name == "configuration") out.start.configuration = numbers(name, value);
+    else if (name == "velocity") out.start.velocity = numbers(name, value);
+    else if (name == "momentum") out.start.momentum = numbers(name, value);
+    else if (name == "parameters") {
+      for (const auto& [parameter, number] : dict(name, value))
+        out.parameters[nb::cast<std::string>(parameter)] = numbers(name, number);
+    } else if (name == "inputs") {
+      for (const auto& [input, signal] : dict(name, value))
+        out.inputs[nb::cast<std::string>(input)] = signal_of(name, signal);
+    } else {
+      throw ConfigError({unknown_name(
+          "key of a system", name,
+          {"label", "system", "parameters", "inputs", "configuration", "velocity", "momentum"})});
+    }
+  }
+  if (out.label.empty()) out.label = out.name;
+  return out;
+}
+
+// A file, a text of one, or none: then keywords alone.
+StudyConfig config_of(nb::handle file, const nb::kwargs& options) {
+  StudyConfig config;
+  if (!file.is_none()) {
+    const std::string given = text("file", file);
+    config = given.find('\n') == std::string::npos ? read_study(given, registry())
+                                                   : parse_study(given, "study.toml", registry());
+  }
+  for (const auto& [key, value] : options) {
+    const auto name = nb::cast<std::string>(key);
+    if (name == "title") config.title = text(name, value);
+    else if (name == "until") config.until = number(name, value);
+    else if (name == "repeats") config.repeats = static_cast<int>(number(name, value));
+    else if (name == "zipped") config.zipped = nb::cast<bool>(value);
+    else if (name == "reference") config.reference = nb::cast<bool>(value);
+    else if (name == "system") {
+      config.systems.clear();
+      const bool one = nb::isinstance<nb::str>(value) || nb::isinstance<nb::dict>(value);
+      if (one) config.systems.push_back(system_of(value));
+      else
+        for (const nb::handle each : value) config.systems.push_back(system_of(each));
+    } else {
+      StudyValues& values = config.axes[name];
+      values.clear();
+      const bool one = nb::isinstance<nb::str>(value) || !nb::hasattr(value, "__iter__");
+      if (one) values.push_back(word_of(value));
+      else
+        for (const nb::handle each : value) values.push_back(word_of(each));
+    }
+  }
+  return config;
+}
+
+StudyResult study(nb::handle file, int threads, nb::handle folder, bool fresh, nb::object progress,
+                  const nb::kwargs& options) {
+  Study out(registry(), config_of(file, options));
+  out.threads(threads).fresh(fresh);
+  if (!folder.is_none()) out.folder(text("folder", folder));
+  return long_call(progress_of(progress),
+                   [&](std::atomic<bool>& stop, const std::function<void(double)>& report) {
+                     return out.stop(&stop).progress(report).run();
+                   });
+}
+
+}  // namespace
+
+void bind_study(nb::module_& m) {
+  nb::class_<StudyResult>(m, "StudyResult",
+                          "What a study measured: one row for each combination, axes and metrics "
+                          "as columns, study['error']; true where it is complete.")
+      .def("__bool__", [](const StudyResult& r) { return r.complete; })
+      .def("__len__", [](const StudyResult& r) { return r.cells.size(); })
+      .def(
+          "__getitem__",
+          [](const StudyResult& r, const std::string& name) { return column_of(r.table(), name); },
+          "name"_a,
+          nb::sig("def __getitem__(self, name: str) -> numpy.typing.NDArray[numpy.float64] | "
+                  "list[int] | list[str]"),
+          "A column: numbers as an array, shape (cells,), NaN where nothing was measured.")
+      .def_prop_ro("columns", [](const StudyResult& r) { return columns_of(r.table()); })
+      .def_prop_ro("units", [](const StudyResult& r) { return units_of(r.table()); })
+      .def_prop_ro(
+          "record",
+          [](const StudyResult& r) {
+            return nb::module_::import_("json").attr("loads")(r.record());
+          },
+          nb::sig("def record(self) -> dict[str, typing.Any]"), "record.json of the study.")
+      .def_ro("complete", &StudyResult::complete)
+      .def_ro("notes", &StudyResult::notes)
+      .def_ro("resumed", &StudyResult::resumed, "cells taken over from the journal")
+      .def_ro("threads", &StudyResult::threads)
+      .def_ro("seconds", &StudyResult::seconds)
+      .def("csv", [](const StudyResult& r) { return r.table().csv(); })
+      .def(
+          "write", [](const StudyResult& r, nb::handle folder) { r.write(text("folder", folder)); },
+          "folder"_a, nb::sig("def write(self, folder: str | os.PathLike[str]) -> None"),
+          "cells.csv, record.json and, where the build has HDF5, cells.h5.")
+      .def(
+          "to_pandas", [](nb::handle self) { return helper("_frames", "table_to_pandas")(self); },
+          nb::sig("def to_pandas(self) -> pandas.DataFrame"), "A row for each cell.")
+      .def(
+          "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of_study")(self); },
+          nb::sig("def _repr_html_(self) -> str"))
+      .def("__repr__", [](const StudyResult& r) {
+        return "<hamel.StudyResult of " + std::to_string(r.cells.size()) + " cells" +
+               (r.complete ? "" : ", stopped") + ">";
+      });
+  m.def(
+      "study", &study, "file"_a = nb::none(), nb::kw_only(), "threads"_a = 0,
+      "folder"_a = nb::none(), "fresh"_a = false, "progress"_a = nb::none(), "options"_a,
+      nb::sig("def study(file: str | os.PathLike[str] | None = None, *, threads: int = 0, folder: "
+              "str | os.PathLike[str] | None = None, fresh: bool = False, progress: "
+              "collections.abc.Callable[[float], object] | bool | None = None, **options: "
+              "typing.Any) -> StudyResult"),
+      "Every combination of the lists in a file (or its text), measured alike. Without a file, "
+      "or beside it: system (names, or dicts of system, label, parameters, inputs, velocity, "
+      "…), until [s], repeats, title, zipped, reference, and any option that a study may vary "
+      "with its values: scheme=['lift', 'balance'], step=[0.1, 0.05]. threads: 0 is all cores. "
+      "folder: keeps a journal there and resumes from it. Ctrl-C stops it.");
+}
+
+}  // namespace hamel::python

@@ -1,0 +1,103 @@
+"""Mechanisms by parts, with signals of Python and compiled ones."""
+
+import ctypes
+import pickle
+
+import numpy as np
+import pytest
+
+import hamel
+
+
+def scooter(name: str = "scooter") -> hamel.Mechanism:
+    mechanism = hamel.Mechanism(name)
+    deck = mechanism.body("deck", mass=5, at=[0.3, 0, 0.1], box=[0.8, 0.2, 0.05])
+    fork = mechanism.body("fork", mass=2, at=np.array([0.7, 0, 0.4]), inertia=[0.1, 0.1, 0.01])
+    mechanism.planar("road", deck)
+    mechanism.hinge("steer", deck, fork, at=[0.7, 0, 0], axis=[0, 0, 1], damping=0.1)
+    mechanism.blade("rear", deck)
+    mechanism.blade("front", fork, at=[0.7, 0, 0])
+    mechanism.start({"speed": 2, "steer.angle": 0.3})
+    return mechanism
+
+
+SCOOTER = """
+name = "scooter"
+body = [
+  { name = "deck", mass = 5, at = [0.3, 0, 0.1], box = [0.8, 0.2, 0.05] },
+  { name = "fork", mass = 2, at = [0.7, 0, 0.4], inertia = [0.1, 0.1, 0.01] },
+]
+blade = [
+  { name = "rear", body = "deck", at = [0, 0, 0] },
+  { name = "front", body = "fork", at = [0.7, 0, 0] },
+]
+motor = [{ joint = "steer" }]
+[[joint]]
+name = "road"
+kind = "planar"
+child = "deck"
+[[joint]]
+name = "steer"
+kind = "hinge"
+parent = "deck"
+child = "fork"
+at = [0.7, 0, 0]
+axis = [0, 0, 1]
+damping = 0.1
+[start]
+speed = 2
+"steer.angle" = 0.3
+"""
+
+
+def test_a_mechanism_by_parts_is_that_of_the_text(tmp_path):
+    by_parts = scooter()
+    by_parts.motor("steer", least=-5, most=5)
+    (tmp_path / "scooter.toml").write_text(SCOOTER)
+    texts = (
+        SCOOTER,
+        hamel.Mechanism.from_toml(SCOOTER),
+        hamel.Mechanism.from_file(tmp_path / "scooter.toml"),
+        str(tmp_path / "scooter.toml"),
+        pickle.loads(pickle.dumps(hamel.SystemText(SCOOTER))),
+    )
+    options = {"step": 0.01, "until": 2, "inputs": {"steer.torque": 0.5}}
+    expected = hamel.run(by_parts, **options)
+    for text in texts:
+        np.testing.assert_array_equal(hamel.run(text, **options).values, expected.values)
+    description = by_parts.describe()
+    assert description.parts == ["deck", "fork"] and description.inputs[0].name == "steer.torque"
+    assert description.coordinate_units[-1] == "rad"
+    assert hamel.describe(SCOOTER).velocities == description.velocities
+    with pytest.raises(hamel.ConfigError, match="toml:2:9"):
+        hamel.run('name = "x"\ngroup = 3\n')
+    with pytest.raises(hamel.ConfigError, match="wheel"):
+        wrong = scooter()
+        wrong.wheel("odd", "deck", radius=-1)
+        hamel.run(wrong)
+
+
+def test_signals_of_python_and_compiled():
+    signature = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, *[ctypes.c_void_p] * 3)
+
+    class Compiled:  # as numba.cfunc returns it
+        def __init__(self, function):
+            self.function = signature(function)
+            self.address = ctypes.cast(self.function, ctypes.c_void_p).value
+
+    runs = []
+    for effort in (0.25, lambda t, q, v, u: 0.25, Compiled(lambda t, q, v, u: 0.25)):
+        mechanism = scooter()
+        mechanism.motor("steer", effort, time_dependent=False)
+        runs.append(hamel.run(mechanism, step=0.01, until=1))
+    for other in runs[1:]:
+        np.testing.assert_array_equal(other.values, runs[0].values)
+
+    mechanism = scooter()
+    mechanism.motor("steer", lambda t, q, v, u: -2 * q[3])
+    mechanism.event("straight", lambda t, q, v: q[3])
+    assert hamel.run(mechanism, until=5, events="straight").events
+    broken = scooter()
+    broken.motor("steer", lambda t, q, v, u: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        hamel.run(broken, until=1)
