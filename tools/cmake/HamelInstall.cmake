@@ -1,36 +1,94 @@
-# `cmake --install`: libraries, headers, the program, and the package that find_package(hamel) finds.
+# `cmake --install`: libraries, headers, the program, and the packages that find_package(hamel) and pkg-config find. `cpack`
+# makes Debian packages of its four components: dev, program, doc, and python where the package was built.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 list(TRANSFORM HAMEL_ROOMS PREPEND hamel_ OUTPUT_VARIABLE rooms)
-install(TARGETS ${rooms} hamel_groups hamel_solvers hamel_systems hamel_umbrella
-        EXPORT hamelTargets FILE_SET HEADERS)
+set(libraries ${rooms} hamel_groups hamel_mechanisms hamel_solvers hamel_systems hamel_umbrella)
 foreach(package ceres nlopt)
   if(TARGET hamel_solvers_${package})
-    install(TARGETS hamel_solvers_${package} EXPORT hamelTargets)
+    list(APPEND libraries hamel_solvers_${package})
   endif()
 endforeach()
+if(HAMEL_HAS_XSIMD)
+  list(APPEND libraries ${HAMEL_LANE_TARGETS})
+endif()
+install(TARGETS ${libraries} EXPORT hamelTargets COMPONENT dev FILE_SET HEADERS COMPONENT dev)
 if(TARGET hamel_program)
-  install(TARGETS hamel_program)
+  install(TARGETS hamel_program COMPONENT program)
   get_target_property(schemas hamel_schemas hamel_files)
-  install(FILES ${schemas} DESTINATION ${CMAKE_INSTALL_DATADIR}/hamel/schema)
+  install(FILES ${schemas} DESTINATION ${CMAKE_INSTALL_DATADIR}/hamel/schema COMPONENT program)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/tools/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+          COMPONENT program OPTIONAL FILES_MATCHING PATTERN *.1.gz)
+  set(completion ${PROJECT_SOURCE_DIR}/tools/packages/completion)
+  install(PROGRAMS ${completion}/candidates DESTINATION ${CMAKE_INSTALL_DATADIR}/hamel COMPONENT program)
+  install(FILES ${completion}/hamel.bash RENAME hamel
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+  install(FILES ${completion}/_hamel DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program)
+  install(FILES ${completion}/hamel.fish
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
 endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hamel)
-install(EXPORT hamelTargets NAMESPACE hamel:: DESTINATION ${package_dir})
+install(EXPORT hamelTargets NAMESPACE hamel:: DESTINATION ${package_dir} COMPONENT dev)
 configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/tools/cmake/hamelConfig.cmake.in ${PROJECT_BINARY_DIR}/hamelConfig.cmake
   INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/hamelConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/hamelConfig.cmake ${PROJECT_BINARY_DIR}/hamelConfigVersion.cmake
-        DESTINATION ${package_dir})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+        DESTINATION ${package_dir} COMPONENT dev)
+
+# pkg-config: the archives, which use one another, as a group; what they need as they were found.
+set(archives "")
+set(needed "")
+foreach(library IN LISTS libraries)
+  get_target_property(type ${library} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    list(APPEND archives -l${library})
+  endif()
+endforeach()
+if(HAMEL_HAS_NLOPT)
+  list(APPEND needed -lnlopt)
+endif()
+if(HAMEL_HAS_CERES)
+  list(APPEND needed -lceres -lglog)
+endif()
+if(HAMEL_HDF5_ARCHIVE_LINKS)
+  cmake_path(GET HAMEL_HDF5_ARCHIVE FILENAME archive)
+  list(APPEND needed -l:${archive} -lsz -ldl -lm)
+elseif(HAMEL_HDF5_LIBRARY)
+  cmake_path(GET HAMEL_HDF5_LIBRARY FILENAME library)
+  list(APPEND needed -l:${library})
+endif()
+list(JOIN archives " " archives)
+list(JOIN needed " " needed)
+set(HAMEL_PC_LIBS "-Wl,--start-group ${archives} -Wl,--end-group ${needed}")
+get_target_property(HAMEL_PC_EIGEN Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+file(RELATIVE_PATH HAMEL_PC_PREFIX /p/${CMAKE_INSTALL_LIBDIR}/pkgconfig /p)
+configure_file(${PROJECT_SOURCE_DIR}/tools/packages/hamel.pc.in ${PROJECT_BINARY_DIR}/hamel.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/hamel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
 # The commands, and the four kinds of TOML files with an example of a system by data; folders as in the tree.
 foreach(page tools/README.md systems/README.md systems/mechanisms/README.md
         systems/mechanisms/kick_scooter.toml tests/examples/scooter_by_rows.toml
         tests/examples/skate_in_a_bowl.toml tests/examples/contact_oscillator.toml
         tests/examples/particle_in_potential.toml)
   cmake_path(GET page PARENT_PATH folder)
-  install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+  install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT doc)
 endforeach()
+# The site, where tools/docs/build has made it; only in the package, since it is no part of the build.
+install(DIRECTORY ${PROJECT_BINARY_DIR}/docs/html DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc
+        OPTIONAL EXCLUDE_FROM_ALL PATTERN .buildinfo EXCLUDE PATTERN .doctrees EXCLUDE)
+if(TARGET hamel_python)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/python/hamel DESTINATION lib/python3/dist-packages
+          COMPONENT python EXCLUDE_FROM_ALL FILES_MATCHING PATTERN *.py PATTERN py.typed)
+  install(TARGETS hamel_python DESTINATION lib/python3/dist-packages/hamel COMPONENT python EXCLUDE_FROM_ALL)
+  install(FILES ${PROJECT_BINARY_DIR}/tools/python/hamel/_hamel.pyi
+          DESTINATION lib/python3/dist-packages/hamel COMPONENT python EXCLUDE_FROM_ALL)
+endif()
+
+if(PROJECT_IS_TOP_LEVEL)
+  include(HamelPackages)
+endif()

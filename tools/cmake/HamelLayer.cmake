@@ -21,6 +21,10 @@ function(hamel_localise target)
   endif()
 endfunction()
 
+# Code that may become part of a shared library, such as the Python module (tools/python). Hidden symbols: calls
+# between objects stay direct.
+set(HAMEL_SHARED_CODE POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+
 # Eigen and the standard library, parsed once for all sources of the layers: half of the time to compile most of them. No
 # header of this project: an include against the arrows would go unseen. -fpch-preprocess lets ccache see through it.
 if(HAMEL_PCH)
@@ -30,8 +34,11 @@ if(HAMEL_PCH)
     $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>
     $<$<AND:$<BOOL:${HAMEL_LOCALISE}>,$<CXX_COMPILER_ID:GNU>>:-fno-gnu-unique>)
   target_compile_features(hamel_pch PRIVATE cxx_std_20)
-  set_target_properties(hamel_pch PROPERTIES CXX_EXTENSIONS OFF
-    CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_DEPEND=1;${CMAKE_CXX_COMPILER_LAUNCHER}")
+  set_target_properties(hamel_pch PROPERTIES CXX_EXTENSIONS OFF ${HAMEL_SHARED_CODE})
+  if(CMAKE_CXX_COMPILER_LAUNCHER)
+    set_target_properties(hamel_pch PROPERTIES
+      CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_DEPEND=1;${CMAKE_CXX_COMPILER_LAUNCHER}")
+  endif()
   target_precompile_headers(hamel_pch PRIVATE
     <Eigen/Core> <Eigen/Geometry> <Eigen/LU>
     <algorithm> <array> <cmath> <functional> <limits> <map> <memory> <optional> <set> <span> <sstream>
@@ -74,7 +81,7 @@ function(hamel_layer path)
       ${arg_LINK_PRIVATE} ${arg_LINK_HEADERS_PRIVATE} $<BUILD_INTERFACE:hamel_build_options>)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2>)
     set_source_files_properties(${arg_KERNELS} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
-    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF ${HAMEL_SHARED_CODE})
     # Small sources share headers: parsed once for eight of them. Not io, where GCC 12 then warns of strings that are not;
     # nor kernels, each of which takes its own time.
     if(NOT path STREQUAL "framework/io" AND NOT path STREQUAL "solvers")

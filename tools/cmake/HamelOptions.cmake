@@ -8,11 +8,13 @@ option(HAMEL_INSTALL "Define the install rules" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_WERROR "Treat warnings in our own sources as errors" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_PCH "Parse Eigen and the standard library once for all layers" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_UNITY "Compile sources but kernels eight at a time: half the processor time of a whole build" ON)
-option(HAMEL_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
-option(HAMEL_BUILD_FUZZERS "Build the fuzz targets: clang, with HAMEL_SANITIZE (tests/fuzz/run)" OFF)
+option(HAMEL_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer; with clang, the fuzz targets too" OFF)
 set(HAMEL_REPORT_PAGE AUTO CACHE STRING
     "The report page needs node and npm: ON fails without them, AUTO builds the program without it")
 set_property(CACHE HAMEL_REPORT_PAGE PROPERTY STRINGS AUTO ON OFF)
+set(HAMEL_PYTHON AUTO CACHE STRING
+    "The Python package needs build/venv (tools/setup --python): ON fails without, AUTO builds without it, OFF never")
+set_property(CACHE HAMEL_PYTHON PROPERTY STRINGS AUTO ON OFF)
 set(HAMEL_HDF5 AUTO CACHE STRING
     "Runs and studies also write HDF5 (libhdf5-dev): ON fails without it, AUTO builds without it")
 set_property(CACHE HAMEL_HDF5 PROPERTY STRINGS AUTO ON OFF)
@@ -29,6 +31,24 @@ else()  # CMake's FindHDF5 needs a C compiler, which this project does not
     message(STATUS "hamel: runs and studies write no HDF5 (libhdf5-dev is missing)")
   endif()
 endif()
+# Headers alone; its CMake target would link a library that Debian leaves out.
+set(HAMEL_LANES AUTO CACHE STRING
+    "Ensembles take several members at once (libxsimd-dev): ON fails without it, AUTO builds without, OFF never")
+set_property(CACHE HAMEL_LANES PROPERTY STRINGS AUTO ON OFF)
+set(HAMEL_HAS_XSIMD OFF)
+if(NOT HAMEL_LANES STREQUAL "OFF")
+  find_path(HAMEL_XSIMD_INCLUDE xsimd/xsimd.hpp)
+  if(HAMEL_XSIMD_INCLUDE AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set(HAMEL_HAS_XSIMD ON)
+  elseif(HAMEL_LANES STREQUAL "ON")
+    message(FATAL_ERROR "HAMEL_LANES is ON, but xsimd was not found, or this is no x86-64: install libxsimd-dev")
+  else()
+    message(STATUS "hamel: no lanes (libxsimd-dev is missing)")
+  endif()
+endif()
+# True of a library that is linked at run time, such as the Python module: Debian's archives cannot be part of it.
+set(HAMEL_OF_SHARED "$<OR:$<STREQUAL:$<TARGET_PROPERTY:TYPE>,MODULE_LIBRARY>,$<STREQUAL:$<TARGET_PROPERTY:TYPE>,SHARED_LIBRARY>>")
+
 # The archive, where it links: Debian's shared library brings curl and with it 30 libraries, which are two thirds of
 # what `hamel --version` takes.
 if(HAMEL_HDF5_LIBRARY)
@@ -45,7 +65,9 @@ if(HAMEL_HDF5_LIBRARY)
     unset(CMAKE_REQUIRED_INCLUDES)
     unset(CMAKE_REQUIRED_LIBRARIES)
     if(HAMEL_HDF5_ARCHIVE_LINKS)
-      set(HAMEL_HDF5_LINK ${archive})
+      list(REMOVE_AT archive 0)
+      set(HAMEL_HDF5_LINK
+          $<IF:${HAMEL_OF_SHARED},${HAMEL_HDF5_LIBRARY},${HAMEL_HDF5_ARCHIVE}> ${archive})
     endif()
   endif()
 endif()
@@ -107,9 +129,22 @@ if(HAMEL_SANITIZE)
   # The four checks left out cost minutes of compilation on Eigen code (62 s a unit against 11 s).
   set(sanitizers -fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size
                  -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_compile_options(hamel_build_options INTERFACE ${sanitizers} -O1 -g1)
+  # Tests are not optimised: what they call of the library, compiled there, is. (clang: 40 -> 21 s a unit)
+  set(CMAKE_CXX_FLAGS_DEBUG "-g1")
+  target_compile_options(hamel_build_options INTERFACE ${sanitizers}
+    $<IF:$<BOOL:$<TARGET_PROPERTY:HAMEL_IS_TEST>>,-O0,-O1>
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # the GCC manual: false with -fsanitize
   target_link_options(hamel_build_options INTERFACE ${sanitizers})
-endif()
-if(HAMEL_BUILD_FUZZERS)
-  target_compile_options(hamel_build_options INTERFACE -fsanitize=fuzzer-no-link)
+  # clang's libFuzzer (tests/fuzz/run) needs to see the branches of the library.
+  set(HAMEL_FUZZERS OFF)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    set(HAMEL_FUZZERS ON)
+    target_compile_options(hamel_build_options INTERFACE
+      -fno-sanitize=pointer-overflow  # Eigen's blocks of empty matrices
+      $<$<NOT:$<BOOL:$<TARGET_PROPERTY:HAMEL_IS_TEST>>>:-fsanitize=fuzzer-no-link>)
+  endif()
+  find_program(HAMEL_LLD ld.lld)  # GNU ld: 3 s a test
+  if(HAMEL_LLD)
+    target_link_options(hamel_build_options INTERFACE -fuse-ld=lld)
+  endif()
 endif()

@@ -21,17 +21,18 @@ add_library(hamel_mpreal INTERFACE)
 target_include_directories(hamel_mpreal SYSTEM INTERFACE ${HAMEL_MPREAL_INCLUDE})
 target_link_libraries(hamel_mpreal INTERFACE ${HAMEL_MPFR} ${HAMEL_GMP})
 add_library(hamel_page INTERFACE)
-target_sources(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel/page.cpp)
+target_sources(hamel_page INTERFACE
+  ${PROJECT_SOURCE_DIR}/tools/hamel/page.cpp ${PROJECT_SOURCE_DIR}/tools/hamel/curves.cpp)
 target_include_directories(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel)
 target_link_libraries(hamel_page INTERFACE fmt::fmt nlohmann_json::nlohmann_json)
 
-# Common to every test, example and benchmark: build/tests/<name>, the library, our warnings.
+# Common to every test, example and benchmark: build/tests/<name>, the libraries.
 function(hamel_test_executable target name)
   cmake_path(GET name PARENT_PATH folder)
   cmake_path(GET name FILENAME stem)
   add_executable(${target} ${name}.cpp)
-  target_link_libraries(${target} PRIVATE hamel::hamel hamel_build_options)
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF
+  target_link_libraries(${target} PRIVATE ${ARGN})
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF HAMEL_IS_TEST ON
     OUTPUT_NAME ${stem} RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/${folder})
 endfunction()
 
@@ -47,17 +48,35 @@ if(HAMEL_BUILD_TESTS)
   # A precompiled header knows the headers of #pragma once by the sum of their bytes. ccache takes sources for equal
   # that are so once comments are gone, and would hand out the precompiled header of other bytes ("redefinition of
   # class ..."); in this mode it compares the headers themselves.
-  set_target_properties(hamel_test_pch PROPERTIES CXX_EXTENSIONS OFF
+  set_target_properties(hamel_test_pch PROPERTIES CXX_EXTENSIONS OFF HAMEL_IS_TEST ON
     CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_DEPEND=1;${CMAKE_CXX_COMPILER_LAUNCHER}")
   target_precompile_headers(hamel_test_pch PRIVATE
     <Eigen/Dense> <gtest/gtest.h> <gmock/gmock.h> <hamel/hamel.hpp>
     <cmath> <functional> <optional> <random> <sstream> <string> <vector>)
+
+  # tests/cli/program.hpp, for tests that run the program: these see no header of the library, and are neither
+  # optimised nor sanitized, since all that they test is in the program.
+  add_library(hamel_test_program STATIC cli/program.cpp)
+  target_link_libraries(hamel_test_program PUBLIC GTest::gmock nlohmann_json::nlohmann_json)
+  if(HAMEL_SANITIZE)
+    target_compile_definitions(hamel_test_program PUBLIC HAMEL_PROGRAM_IS_SANITIZED)
+  else()
+    target_link_libraries(hamel_test_program PUBLIC hamel_build_options)
+  endif()
+  set(program_options $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess> $<$<CONFIG:Release>:-O0>)
+  target_compile_features(hamel_test_program PUBLIC cxx_std_20)
+  target_compile_options(hamel_test_program PRIVATE ${program_options})
+  set_target_properties(hamel_test_program PROPERTIES CXX_EXTENSIONS OFF
+    CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_DEPEND=1;${CMAKE_CXX_COMPILER_LAUNCHER}")
+  target_precompile_headers(hamel_test_program PRIVATE
+    <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp>
+    <algorithm> <cmath> <filesystem> <fstream> <map> <sstream> <string> <vector>)
 endif()
 
 # tests/<name>.cpp -> build/tests/<name>, ctest <name>.
 #   LABELS slow ...   PROGRAM   runs build/tools/hamel; the environment has its path, HAMEL_PROGRAM, and that
-#                               of the source tree, HAMEL_SOURCE
-#   HOT               compiled with full optimisation, and without the precompiled header
+#                               of the source tree, HAMEL_SOURCE. Sees the library where it NEEDS hamel::hamel
+#   HOT               compiled with full optimisation (-O1 under sanitizers), and without the precompiled header
 #   NEEDS target ...  further libraries to link
 #   PLAIN             left out of sanitized builds: it is about numbers or words, and others there run the same code
 function(hamel_test name)
@@ -70,11 +89,22 @@ function(hamel_test name)
     return()
   endif()
   string(REPLACE "/" "_" target test_${name})
-  hamel_test_executable(${target} ${name})
-  target_link_libraries(${target} PRIVATE GTest::gmock GTest::gtest_main ${arg_NEEDS})
-  if(NOT arg_HOT)
-    target_compile_options(${target} PRIVATE ${test_options})
-    target_precompile_headers(${target} REUSE_FROM hamel_test_pch)
+  if(arg_PROGRAM)
+    list(PREPEND arg_NEEDS hamel_test_program)
+  endif()
+  if(arg_PROGRAM AND NOT "hamel::hamel" IN_LIST arg_NEEDS)
+    hamel_test_executable(${target} ${name} ${arg_NEEDS} GTest::gtest_main)
+    target_compile_options(${target} PRIVATE ${program_options})
+    target_precompile_headers(${target} REUSE_FROM hamel_test_program)
+  else()
+    hamel_test_executable(${target} ${name} hamel::hamel hamel_build_options GTest::gmock GTest::gtest_main ${arg_NEEDS})
+    if(NOT arg_HOT)
+      target_compile_options(${target} PRIVATE ${test_options})
+      target_precompile_headers(${target} REUSE_FROM hamel_test_pch)
+    endif()
+  endif()
+  if(arg_HOT)
+    set_target_properties(${target} PROPERTIES HAMEL_IS_TEST OFF)
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
@@ -98,7 +128,7 @@ function(hamel_example stem)
     return()
   endif()
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "ARGS;LABELS")
-  hamel_test_executable(example_${stem} examples/${stem})
+  hamel_test_executable(example_${stem} examples/${stem} hamel::hamel hamel_build_options)
   target_compile_options(example_${stem} PRIVATE $<$<CONFIG:Release>:-O1>)
   add_test(NAME examples/${stem} COMMAND example_${stem} ${arg_ARGS}
            WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/examples)
@@ -113,8 +143,8 @@ function(hamel_benchmark stem)
     set(arg_QUICK --benchmark_min_time=0.001)
   endif()
   find_package(benchmark 1.7 REQUIRED)
-  hamel_test_executable(benchmark_${stem} benchmarks/${stem})
-  target_link_libraries(benchmark_${stem} PRIVATE benchmark::benchmark benchmark::benchmark_main)
+  hamel_test_executable(benchmark_${stem} benchmarks/${stem}
+    hamel::hamel hamel_build_options benchmark::benchmark benchmark::benchmark_main)
   add_test(NAME benchmarks/${stem} COMMAND benchmark_${stem} ${arg_QUICK})
   set_tests_properties(benchmarks/${stem} PROPERTIES LABELS benchmark TIMEOUT 120)
 endfunction()
@@ -155,7 +185,7 @@ endfunction()
 # tests/framework/rooms.cmake, with the include directories that the sources of each layer are compiled with.
 function(hamel_rooms_test)
   set(content "")
-  foreach(layer ${HAMEL_ROOMS} groups solvers systems)
+  foreach(layer ${HAMEL_ROOMS} groups solvers mechanisms systems)
     set(property INCLUDE_DIRECTORIES)
     get_target_property(type hamel_${layer} TYPE)
     if(type STREQUAL "INTERFACE_LIBRARY")
@@ -191,17 +221,27 @@ function(hamel_consumer_of_the_clone)
   set_tests_properties(consumers/subdirectory PROPERTIES LABELS consumer TIMEOUT 900)
 endfunction()
 
+# pytest <files of tools/python/tests>: ctest python/<name>.
+function(hamel_python_test name)
+  list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/tools/python/tests/ OUTPUT_VARIABLE files)
+  get_target_property(python hamel_python hamel_interpreter)
+  add_test(NAME python/${name} COMMAND ${python} -m pytest -q -p no:cacheprovider ${files})
+  set_tests_properties(python/${name} PROPERTIES TIMEOUT 600 ENVIRONMENT
+    "HAMEL_PROGRAM=$<TARGET_FILE:hamel_program>;PYTHONPATH=${PROJECT_BINARY_DIR}/tools/python;PYTHONDONTWRITEBYTECODE=1")
+endfunction()
+
 # node <arguments>, in the build's copy of tools/report: ctest page/<name>. Status 77, no browser, is a
 # skipped test, but a failure where HAMEL_REPORT_PAGE is ON, as it is in CI.
 function(hamel_page_script name)
   add_test(NAME page/${name} COMMAND ${HAMEL_NODE} ${ARGN}
            WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/tools/report)
-  set_tests_properties(page/${name} PROPERTIES LABELS page TIMEOUT 1200)
+  set_tests_properties(page/${name} PROPERTIES LABELS page TIMEOUT 1200 COST 1000)
   if(NOT HAMEL_REPORT_PAGE STREQUAL "ON")
     set_tests_properties(page/${name} PROPERTIES SKIP_RETURN_CODE 77)
   endif()
 endfunction()
 
+# Tests of pages begin first (COST): they wait more than they work, and would run alone at the end.
 # hamel_page(<name> <file> <arguments of hamel>): ctest page/<name>/write runs the program, which writes
 # the file into the folder page of the tests' build.
 function(hamel_page name file)
@@ -209,12 +249,12 @@ function(hamel_page name file)
   file(MAKE_DIRECTORY ${folder})
   add_test(NAME page/${name}/write COMMAND hamel_program ${ARGN} WORKING_DIRECTORY ${folder})
   set_tests_properties(page/${name}/write PROPERTIES
-    LABELS page TIMEOUT 300 FIXTURES_SETUP page_${name})
+    LABELS page TIMEOUT 300 COST 2000 FIXTURES_SETUP page_${name})
   set_property(DIRECTORY APPEND PROPERTY hamel_page_names page_${name})
   set_property(DIRECTORY APPEND PROPERTY hamel_page_files ${folder}/${file})
 endfunction()
 
-# ctest page/<name>: one headless Chromium looks at the pages of the hamel_page calls since the last such test.
+# ctest page/<name>: headless Chromium looks at the pages of the hamel_page calls since the last such test.
 function(hamel_look_at_pages name)
   get_property(pages DIRECTORY PROPERTY hamel_page_names)
   get_property(files DIRECTORY PROPERTY hamel_page_files)
@@ -228,17 +268,17 @@ endfunction()
 # schemes that it needs are compiled, erased, in tests/fuzz/registry.cpp.
 function(hamel_fuzz_options target)
   target_link_libraries(${target} PRIVATE
-    hamel::study hamel::groups hamel::solvers fmt::fmt hamel_build_options)
+    hamel::study hamel::mechanisms hamel::solvers fmt::fmt hamel_build_options)
   target_include_directories(${target} PRIVATE
     $<TARGET_PROPERTY:hamel_systems,INTERFACE_INCLUDE_DIRECTORIES>)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
 function(hamel_fuzz_library stem)
-  add_library(fuzz_${stem} OBJECT fuzz/${stem}.cpp)
+  add_library(fuzz_${stem} OBJECT EXCLUDE_FROM_ALL fuzz/${stem}.cpp)
   hamel_fuzz_options(fuzz_${stem})
 endfunction()
 function(hamel_fuzzer stem)
-  add_executable(fuzz_${stem} fuzz/${stem}.cpp)
+  add_executable(fuzz_${stem} EXCLUDE_FROM_ALL fuzz/${stem}.cpp)
   hamel_fuzz_options(fuzz_${stem})
   target_link_libraries(fuzz_${stem} PRIVATE fuzz_registry -fsanitize=fuzzer)
   set_target_properties(fuzz_${stem} PROPERTIES

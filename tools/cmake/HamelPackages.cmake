@@ -1,0 +1,66 @@
+# `cpack` in the build folder: Debian packages of the components of HamelInstall.cmake (tools/packages/README.md).
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME hamel)
+set(HAMEL_MAINTAINER "the authors of hamel <hamel@example.org>" CACHE STRING "Maintainer of the Debian packages")
+set(CPACK_PACKAGE_VENDOR "the authors of hamel")
+set(CPACK_PACKAGE_CONTACT ${HAMEL_MAINTAINER})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_COMPONENTS_ALL dev program doc)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+
+# hamel_package(<component> <name> <section> <description>): each with a changelog and a copyright of its own.
+function(hamel_package component name section text)
+  string(TOUPPER ${component} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section} PARENT_SCOPE)
+  set(CPACK_COMPONENT_${upper}_DESCRIPTION "${text}" PARENT_SCOPE)
+  set(folder ${PROJECT_BINARY_DIR}/packaging/${name})
+  file(CONFIGURE OUTPUT ${folder}/changelog CONTENT
+"${name} (${PROJECT_VERSION}) unstable; urgency=low\n\n  * Release notes: tools/docs/pages/releases.md\n\n -- ${HAMEL_MAINTAINER}  Mon, 23 Nov 2026 00:00:00 +0000\n")
+  find_program(HAMEL_GZIP gzip)
+  execute_process(COMMAND ${HAMEL_GZIP} -9nkf ${folder}/changelog)
+  file(READ ${PROJECT_SOURCE_DIR}/LICENSE license)
+  file(CONFIGURE OUTPUT ${folder}/copyright CONTENT
+"Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\nUpstream-Name: hamel\n\nThe files of hamel are under this license (BSD-3-Clause):\n\n${license}")
+  install(FILES ${folder}/changelog.gz ${folder}/copyright DESTINATION share/doc/${name}
+          COMPONENT ${component} EXCLUDE_FROM_ALL)
+endfunction()
+hamel_package(dev libhamel-dev libdevel
+  "Headers, static libraries, the CMake package hamel and hamel.pc.")
+hamel_package(program hamel science
+  "The program hamel, its manual pages, completion and schemas of its files.")
+hamel_package(doc hamel-doc doc
+  "The READMEs with their examples and, where it was built, the site.")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
+  "libeigen3-dev, libfmt-dev, libtomlplusplus-dev, libmuparser-dev, zlib1g-dev")
+foreach(package IN ITEMS CERES/libceres-dev NLOPT/libnlopt-dev NLOPT/libnlopt-cxx-dev)
+  cmake_path(GET package PARENT_PATH found)
+  cmake_path(GET package FILENAME debian)
+  if(HAMEL_HAS_${found})
+    string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", ${debian}")
+  endif()
+endforeach()
+if(HAMEL_HDF5_LIBRARY)
+  string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libhdf5-dev")
+endif()
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "hamel-doc, chromium, bash-completion")
+set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
+if(TARGET hamel_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  hamel_package(python python3-hamel python
+    "The package hamel for Python: runs, studies, ensembles; results in NumPy.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+endif()
+include(CPack)
