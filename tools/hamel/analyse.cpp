@@ -49,7 +49,7 @@ std::string verdict(const Analysis& a, const char* undecided) {
         "{}: brackets of up to {} fields{} span {} of {} directions{} (growth {}){}; {}",
         a.integrable() ? "nonholonomic" : "not decided", a.growth.looked_at, drift, reached,
         possible, left, growth, nearby,
-        a.growth.near_zero   ? "others are too small to tell from zero"
+        a.growth.near_zero   ? "others are too small to distinguish from zero"
         : a.growth.round_off ? "stopped: deeper ones drown in round-off"
                              : undecided);
   }
@@ -120,8 +120,8 @@ int analyse(const DescribeOptions& options) {
     say("  structure constants along direction {}: [X_i, X_j]\n", d + 1);
     print_rows(a.structure[d]);
   }
-  say("  kept along eight motions of up to 20 s (E energy, J spatial momentum, xi body "
-      "velocity)\n");
+  say("  kept along eight motions of up to 20 s (E energy, J spatial momentum, velocities by "
+      "name)\n");
   if (a.conserved.empty()) say("     nothing among their linear combinations\n");
   for (const auto& c : a.conserved) say("     {}   (change {:.1e})\n", c.expression, c.change);
   for (const std::string& note : a.notes) say("  {}\n", note);

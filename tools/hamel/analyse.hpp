@@ -1,4 +1,4 @@
-// What an analysis says, in words.
+// The text of an analysis.
 #pragma once
 
 #include <string>

@@ -1,7 +1,8 @@
-// The commands of the program; main.cpp reads the command line into these and calls them.
+// The commands of the program; command_lines.cpp reads the command line into these.
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -38,7 +39,8 @@ int run(const RunOptions& options);
 
 struct ReportOptions {
   std::vector<std::string> files;
-  std::string output = "report.html";
+  std::string output;         // empty: report.html, or the figure's name with .pdf
+  std::string figure, width;  // --figure, --width
 };
 int report(const ReportOptions& options);
 
@@ -48,14 +50,24 @@ struct ReproduceOptions {
 };
 int reproduce(const ReproduceOptions& options);
 
-struct StudyOptions {
-  std::string file, directory;  // empty: the file's name with -study
+/// Work in parts that share a folder (ranks.hpp).
+struct PartOptions {
+  std::string file, directory;  // empty: the file's name with -study or -ensemble
   int threads = 0;              // 0: all cores
+  std::string shard;            // "3/16"; empty: all
+  bool merge = false;
   bool fresh = false;
   bool json = false;
   bool quiet = false;
 };
+
+struct StudyOptions : PartOptions {};
 int study(const StudyOptions& options);
+
+struct EnsembleOptions : PartOptions {
+  std::optional<long> member;
+};
+int ensemble(const EnsembleOptions& options);
 
 /// The seconds that something takes whose end is not known, on standard error; silent when that is
 /// no terminal.

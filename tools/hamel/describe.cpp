@@ -24,7 +24,7 @@ std::string words_of(const Range& range) {
   return range.words() + (range.moments ? ", of a rigid body" : "");
 }
 
-// Where a system starts, its defaults filled in.
+// The start of a system, its defaults filled in.
 Json start_of(const SystemModel& model) {
   Json out;
   out["configuration"] = model.start.configuration;
@@ -72,7 +72,7 @@ std::string verdict_of(const std::string& name, const Parameters& given) {
   }
 }
 
-// Of a mechanism: its parts, freedoms and rows by name, and whether it is truly nonholonomic.
+// Adds parts, freedoms and rows of a mechanism by name, and whether it is truly nonholonomic.
 void add_parts(Json& out, const std::string& name, const SystemModel& model,
                const Parameters& given) {
   const Mechanics& mechanics = *model.mechanics;
@@ -81,7 +81,7 @@ void add_parts(Json& out, const std::string& name, const SystemModel& model,
   out["reactions"] = model.reactions;
   out["dimension"] = mechanics.dim();
   out["holonomic_rows"] = mechanics.holonomic_rows();
-  out["directions"] = mechanics.dim() - mechanics.rows();
+  out["directions"] = mechanics.dim() - mechanics.constraint_count();
   out["verdict"] = verdict_of(name, given);
   out["start_parameters"] = model.start_parameters;
   if (!model.notes.empty()) out["notes"] = model.notes;
@@ -115,7 +115,7 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
   return out;
 }
 
-// Formulas that have no value where the system starts are said before a run.
+// Formulas that have no value where the system starts are reported before a run.
 void check_start(const SystemModel& model) {
   const auto geometry = registry().geometry(model.group.name, "exp");
   if (!model.start_mistakes || geometry == nullptr) return;
@@ -158,30 +158,30 @@ Json describe_file(const std::string& path, const Parameters& given) {
 }
 
 Json describe_group(const GroupInfo& info) {
-  return {{"kind", "group"},
-          {"name", info.name},
-          {"summary", info.summary},
-          {"dim", info.dim},
-          {"columns", info.columns},
-          {"identity", info.identity},
-          {"retractions", registry().retractions_or_common(info.name)}};
+  return {{"kind", "group"},           {"name", info.name},
+          {"summary", info.summary},   {"formula", info.formula},
+          {"dim", info.dim},           {"columns", info.columns},
+          {"identity", info.identity}, {"retractions", registry().retractions_or_common(info.name)},
+          {"source", info.source}};
 }
 
 Json describe_retraction(const std::string& name) {
   Json where = Json::array();
+  std::string source;
   for (const std::string& group : registry().groups()) {
     if (const RetractionInfo* info = registry().retraction(group, name)) {
       where.push_back({{"group", group},
                        {"formula", info->formula},
                        {"domain", info->domain},
                        {"symmetric", info->symmetric}});
+      if (source.empty()) source = info->source;
     }
   }
-  return {{"kind", "retraction"}, {"name", name}, {"groups", where}};
+  return {{"kind", "retraction"}, {"name", name}, {"groups", where}, {"source", source}};
 }
 
-// What a scheme claims for each kind of run that it tells apart; one that makes no use of s has no
-// s in it.
+// Claims of a scheme for each kind of run that it distinguishes; one that makes no use of s has
+// no s in it.
 Json claims(const SchemeInfo& info, bool left_invariant) {
   Json out = Json::object();
   for (const double s : info.uses_s ? std::vector<double>{0.5, 0} : std::vector<double>{0}) {

@@ -192,8 +192,8 @@ std::string kind_in_words(const SystemInfo& info) {
   if (mechanics.holonomic_rows() > 0) return "holonomic rows";
   const std::string& group = model.group.name;
   const auto geometry = all.geometry(group, all.retractions_or_common(group).front());
-  Eigen::VectorXd g(geometry->size()), b(mechanics.rows());
-  Eigen::MatrixXd a(mechanics.rows(), mechanics.dim());
+  Eigen::VectorXd g(geometry->size()), b(mechanics.constraint_count());
+  Eigen::MatrixXd a(mechanics.constraint_count(), mechanics.dim());
   geometry->from_coordinates(model.start.configuration.empty()
                                  ? all.group_or_product(group)->identity
                                  : model.start.configuration,

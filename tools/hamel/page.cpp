@@ -1,6 +1,7 @@
 #include "page.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -33,10 +34,10 @@ Json numbers(std::span<const double> values, int digits = kDigits) {
   return out;
 }
 
-// As many digits of their range: a run from t = 10000 on has times of its own. Less than round-off
+// More digits for a narrow range: a run from t = 10000 on has distinct times. Less than round-off
 // shows.
 int digits_of(std::span<const double> values) {
-  double least = INFINITY, most = -INFINITY;
+  double least = HUGE_VAL, most = -HUGE_VAL;
   for (const double v : values) {
     if (!std::isfinite(v)) continue;
     least = std::min(least, v);
@@ -59,6 +60,7 @@ Json curves(const std::vector<Series>& series) {
     if (s.fit) curve["fit"] = {{"slope", number(s.fit->slope)}, {"text", s.fit->text}};
     if (!s.tags.empty()) curve["tags"] = s.tags;
     if (!s.key.empty()) curve["key"] = s.key;
+    if (!s.low.empty()) curve["low"] = coordinates(s.low);
   }
   return out;
 }
@@ -102,11 +104,55 @@ Json moving(const MovingBody& body) {
 
 constexpr std::string_view kPlaceholder = "__HAMEL_DATA__";
 
+// "Angular velocity" -> "angular-velocity".
+std::string one_word(const std::string& title) {
+  std::string out;
+  for (const char c : title) {
+    const bool kept = c < 0 || std::isalnum(c) != 0 || c == '.' || c == '_' || c == '\'';
+    if (kept) out += static_cast<char>(c < 0 ? c : std::tolower(c));
+    else if (!out.empty() && out.back() != '-') out += '-';
+  }
+  while (out.ends_with('-')) out.pop_back();
+  return out;
+}
+
+// The page with this data in its place.
+std::string filled(const Json& data) {
+  const std::string_view page = report_page();
+  const size_t at = page.find(kPlaceholder);
+  if (at == std::string_view::npos) {
+    throw ConfigError(
+        {"report: this program was built without the page (node and npm were missing "
+         "at build time); run tools/setup and build again"});
+  }
+  // No < of a text begins anything within <script>: neither its end nor a comment.
+  std::string text;
+  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<') text += "\\u003c";
+    else text += c;
+  }
+  return std::string(page.substr(0, at)) + text +
+         std::string(page.substr(at + kPlaceholder.size()));
+}
+
 }  // namespace
 
 struct Page::Data {
   Json page;
-  Json& blocks() { return page["sections"].back()["blocks"]; }
+  size_t count = 0;                                     // of blocks
+  std::vector<std::pair<std::string, size_t>> figures;  // names and numbers
+  void add(Json block) {
+    ++count;
+    page["sections"].back()["blocks"].push_back(std::move(block));
+  }
+  void add_figure(const std::string& name, Json block) {
+    const std::string word = one_word(name.empty() ? block["title"].get<std::string>() : name);
+    const auto like = std::count_if(figures.begin(), figures.end(), [&](const auto& figure) {
+      return figure.first == word || figure.first.starts_with(word + "-no");
+    });
+    add(std::move(block));
+    figures.emplace_back(like == 0 ? word : fmt::format("{}-no{}", word, like + 1), count);
+  }
 };
 
 Page::Page(std::string title, std::string subtitle) : data_(std::make_unique<Data>()) {
@@ -127,24 +173,29 @@ void Page::section(const std::string& title) {
   data_->page["sections"].push_back({{"title", title}, {"blocks", Json::array()}});
 }
 void Page::text(const std::vector<std::string>& paragraphs) {
-  data_->blocks().push_back({{"kind", "text"}, {"paragraphs", paragraphs}});
+  data_->add({{"kind", "text"}, {"paragraphs", paragraphs}});
 }
 void Page::verdict(const std::string& status, const std::string& text) {
-  data_->blocks().push_back({{"kind", "verdict"}, {"status", status}, {"text", text}});
+  data_->add({{"kind", "verdict"}, {"status", status}, {"text", text}});
 }
 void Page::table(const std::string& title, const std::vector<std::string>& columns,
                  const std::vector<std::vector<Cell>>& rows, const std::string& note, bool filter) {
   Json lines = Json::array();
-  for (const auto& row : rows) lines.push_back(cells(row));
-  data_->blocks().push_back({{"kind", "table"},
-                             {"title", title},
-                             {"columns", columns},
-                             {"rows", lines},
-                             {"filter", filter},
-                             {"note", note}});
+  for (const auto& row : std::span(rows).first(std::min(rows.size(), kMostRows)))
+    lines.push_back(cells(row));
+  std::string rest;
+  if (rows.size() > kMostRows)
+    rest =
+        fmt::format("{}The first {} of {} rows.", note.empty() ? "" : " ", kMostRows, rows.size());
+  data_->add({{"kind", "table"},
+              {"title", title},
+              {"columns", columns},
+              {"rows", lines},
+              {"filter", filter},
+              {"note", note + rest}});
 }
 void Page::record(const std::string& json) {
-  data_->blocks().push_back({{"kind", "record"}, {"record", Json::parse(json)}});
+  data_->add({{"kind", "record"}, {"record", Json::parse(json)}});
 }
 void Page::plot(const std::string& title, const Axes& axes, const std::vector<Series>& series,
                 const std::string& note, const std::vector<Filter>& filters) {
@@ -168,14 +219,14 @@ void Page::plot(const std::string& title, const Axes& axes, const std::vector<Se
                               {"to", number(band.to, kTimeDigits)},
                               {"text", band.text}});
   }
-  data_->blocks().push_back(std::move(block));
+  data_->add_figure(axes.name, std::move(block));
 }
 void Page::path(const std::string& title, const Axes& axes, const std::vector<Series>& series) {
-  data_->blocks().push_back({{"kind", "path"},
-                             {"title", title},
-                             {"x", axes.x},
-                             {"y", axes.y},
-                             {"series", curves(series)}});
+  data_->add_figure(axes.name, {{"kind", "path"},
+                                {"title", title},
+                                {"x", axes.x},
+                                {"y", axes.y},
+                                {"series", curves(series)}});
 }
 void Page::sphere(const std::string& title, const std::vector<SphereCurve>& series,
                   const std::string& note) {
@@ -185,8 +236,8 @@ void Page::sphere(const std::string& title, const std::vector<SphereCurve>& seri
     for (const auto& point : s.points) points.push_back(numbers(point));
     out.push_back({{"name", s.name}, {"points", points}});
   }
-  data_->blocks().push_back(
-      {{"kind", "sphere"}, {"title", title}, {"series", out}, {"note", note}});
+  data_->add_figure("axes",
+                    {{"kind", "sphere"}, {"title", title}, {"series", out}, {"note", note}});
 }
 
 void Page::heatmap(const HeatMap& map) {
@@ -203,79 +254,40 @@ void Page::heatmap(const HeatMap& map) {
                 {"unit", map.unit},
                 {"note", map.note}};
   if (!map.marks.empty()) block["marks"] = map.marks;
-  data_->blocks().push_back(block);
+  data_->add_figure("", std::move(block));
 }
 void Page::animation(const Animation& animation) {
   Json bodies = Json::array();
   for (const MovingBody& body : animation.bodies) bodies.push_back(moving(body));
-  data_->blocks().push_back({{"kind", "animation"},
-                             {"title", animation.title},
-                             {"view", animation.from_above ? "top" : "3d"},
-                             {"times", numbers(animation.times, kTimeDigits)},
-                             {"floor", animation.floor},
-                             {"bodies", bodies},
-                             {"note", animation.note}});
+  Json block = {{"kind", "animation"},
+                {"title", animation.title},
+                {"view", animation.from_above ? "top" : "3d"},
+                {"times", numbers(animation.times, kTimeDigits)},
+                {"floor", animation.floor},
+                {"bodies", bodies},
+                {"note", animation.note}};
   for (const MovingForce& force : animation.forces) {
     Json values = Json::array();
     for (const auto& value : force.values) values.push_back(numbers(value));
-    data_->blocks().back()["forces"].push_back({{"name", force.name}, {"values", values}});
+    block["forces"].push_back({{"name", force.name}, {"values", values}});
   }
+  data_->add_figure("motion", std::move(block));
 }
 
-void Page::write(const std::string& path) const {
-  const std::string_view page = report_page();
-  const size_t at = page.find(kPlaceholder);
-  if (at == std::string_view::npos) {
-    throw ConfigError(
-        {"report: this program was built without the page (node and npm were missing "
-         "at build time); run tools/setup and build again"});
-  }
-  // No < of a text begins anything within <script>: neither its end nor a comment.
-  std::string data;
-  for (const char c : data_->page.dump(-1, ' ', false, Json::error_handler_t::replace)) {
-    if (c == '<') data += "\\u003c";
-    else data += c;
-  }
-  write_file(path, std::string(page.substr(0, at)) + data +
-                       std::string(page.substr(at + kPlaceholder.size())));
-}
+void Page::write(const std::string& path) const { write_file(path, filled(data_->page)); }
 
-Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
-               bool peaks, size_t points) {
-  Series out{std::move(name), {}, {}};
-  const auto add = [&](size_t i) {
-    out.x.push_back(x[i]);
-    out.y.push_back(y[i]);
-  };
-  const size_t count = y.size(), buckets = std::max<size_t>(points / 2, 1);
-  if (count <= points) return {out.name, x, y};
-  const auto less = [&](size_t a, size_t b) {  // NaN first, so that it is never hidden
-    return std::isnan(y[a]) ? !std::isnan(y[b]) : y[a] < y[b];
-  };
-  for (size_t b = 0; b < buckets; ++b) {
-    const size_t begin = b * count / buckets, end = (b + 1) * count / buckets;
-    size_t low = begin, high = begin;
-    for (size_t i = begin; i < end; ++i) {
-      if (less(i, low)) low = i;
-      if (less(high, i)) high = i;
-    }
-    if (peaks && !std::isnan(y[low])) low = high;
-    if (low > high) std::swap(low, high);
-    if (!peaks && b == 0 && low > 0) add(0);
-    add(low);
-    if (low != high) add(high);
-    if (!peaks && b + 1 == buckets && high + 1 < count) add(count - 1);
-  }
+std::vector<std::string> Page::figures() const {
+  std::vector<std::string> out;
+  for (const auto& [name, number] : data_->figures) out.push_back(name);
   return out;
 }
 
-std::string with_unit(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
-}
-
-std::vector<double> magnitudes(std::vector<double> y) {
-  for (double& v : y) v = std::abs(v);
-  return y;
+std::string Page::picture(const std::string& figure, double width) const {
+  const auto at = std::find_if(data_->figures.begin(), data_->figures.end(),
+                               [&](const auto& known) { return known.first == figure; });
+  Json data = data_->page;
+  data["picture"] = {{"block", at->second}, {"width", width}};
+  return filled(data);
 }
 
 }  // namespace hamel::tools

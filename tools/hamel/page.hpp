@@ -15,7 +15,7 @@ namespace hamel::tools {
 /// The bundled page with its placeholder; empty when the program was built without node.
 std::string_view report_page();
 
-/// A fitted line, told in the legend: the text, or the slope where there is none.
+/// A fitted line, named in the legend: the text, or the slope where there is none.
 struct Fit {
   double slope = 0;
   std::string text = "";
@@ -30,6 +30,7 @@ struct Series {
   std::optional<Fit> fit = {};
   std::map<std::string, std::string> tags = {};  // what the plot's filters choose by
   std::string key = "";  // series with one key have one colour on the whole page; empty: the name
+  std::vector<double> low = {};  // none, or the lower edge of a band of which y is the upper one
 };
 
 /// A moment on the x axis, drawn as a line with this text.
@@ -55,11 +56,15 @@ struct Filter {
 struct Axes {
   std::string x, y;
   bool log_x = false, log_y = false;
-  double floor = 0;  // round-off: a line there, and a fixed axis while the curves stay near it
+  std::string name = "";  // of the figure, for --figure; empty: its title
+  double floor = 0;       // round-off: a line there, and a fixed axis while the curves stay near it
   std::vector<int> slopes = {};  // triangles of these slopes, on two logarithmic axes
   std::vector<Mark> marks = {};  // events
   std::vector<Band> bands = {};
 };
+
+/// The longest table of a page: a browser is slow on more, and a row takes up to 4 kB.
+constexpr size_t kMostRows = 2000;
 
 class Page {
  public:
@@ -71,7 +76,8 @@ class Page {
   void text(const std::vector<std::string>& paragraphs);
   /// status: ok, failed or note.
   void verdict(const std::string& status, const std::string& text);
-  /// filter: a text box over the table, and a drop-down for each column of few values.
+  /// The first kMostRows rows; the note counts the others. filter: a text box over the table, and a
+  /// drop-down for columns of 2 to 12 different values.
   void table(const std::string& title, const std::vector<std::string>& columns,
              const std::vector<std::vector<Cell>>& rows, const std::string& note = "",
              bool filter = false);
@@ -87,6 +93,11 @@ class Page {
   /// Throws ConfigError when the page is not in this program or the file cannot be written.
   void write(const std::string& path) const;
 
+  /// The names of its figures, each once.
+  std::vector<std::string> figures() const;
+  /// A page that holds the SVG of this figure alone, so many pixels wide.
+  std::string picture(const std::string& figure, double width) const;
+
  private:
   struct Data;
   std::unique_ptr<Data> data_;
@@ -97,6 +108,10 @@ class Page {
 /// others; else with both ends. NaN is never dropped.
 Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
                bool peaks, size_t points = 1200);
+
+/// The same of values of either sign; of a curve that goes up and down more often than a figure can
+/// show, a band from the least to the greatest value of each of equal windows.
+Series drawable(std::string name, const std::vector<double>& x, const std::vector<double>& y);
 
 /// "omega [rad/s]"; the name alone where nothing is known of its unit.
 std::string with_unit(const std::string& name, const std::string& unit);

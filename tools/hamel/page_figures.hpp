@@ -10,7 +10,7 @@
 
 namespace hamel::tools {
 
-/// A cell of a table, or a value on the axis of a heat map: a word, or a number that the page
+/// A cell of a table, or a value on the axis of a heat map: a text, or a number that the page
 /// formats.
 struct Cell {
   Cell(std::string word) : text(std::move(word)) {}
@@ -33,7 +33,7 @@ struct HeatMap {
   std::string x, y;  // labels
   std::vector<Cell> x_values, y_values;
   std::vector<std::vector<double>> values;           // a row for each y; NaN is an empty cell
-  std::vector<std::vector<std::string>> marks = {};  // none, or the same of short words ("failed")
+  std::vector<std::vector<std::string>> marks = {};  // none, or as many short texts ("failed")
   bool log = false;                                  // the scale of the values
   std::string unit = "";                             // what they are
   std::string note = "";

@@ -1,4 +1,4 @@
-// What is shown on a terminal while one waits.
+// Progress on a terminal while one waits.
 #include <unistd.h>
 
 #include <cmath>

@@ -12,14 +12,16 @@
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
+#include "figure_file.hpp"
 #include "run_figures.hpp"
+#include "run_names.hpp"
 #include "run_verdict.hpp"
 
 namespace hamel::tools {
 namespace {
 
 struct ReadRun {
-  std::string name, record;
+  std::string file, name, record;
   Result result;
 };
 
@@ -33,7 +35,7 @@ ReadRun read_run(const std::string& path) {
                      file.path())});
   }
   ReadRun out;
-  out.name = std::filesystem::path(file.path()).stem();
+  out.file = file.path();
   out.record = file.record();
   const Config config = file.config();
   const Run run = recorded_simulation(file, registry()).build();
@@ -47,35 +49,18 @@ ReadRun read_run(const std::string& path) {
   return out;
 }
 
-// The file's name with so many of its folders: "A/run".
-std::string called(const std::filesystem::path& file, int folders) {
-  std::filesystem::path out = file.stem(), rest = file.parent_path();
-  for (; folders > 0 && rest.has_relative_path(); --folders, rest = rest.parent_path())
-    out = rest.filename() / out;
-  return out.string();
-}
-
-// Runs of one file name are called by as many folders as tell them apart; one file given twice is
-// numbered.
-void name_apart(std::vector<ReadRun>& runs, std::vector<std::filesystem::path> files) {
-  constexpr int most = 50;
-  for (auto& file : files) file = std::filesystem::weakly_canonical(file);
-  std::map<std::string, int> seen;
-  for (size_t i = 0; i < runs.size(); ++i) {
-    int folders = 0;
-    const auto alone = [&] {
-      return std::count_if(files.begin(), files.end(), [&](const auto& file) {
-               return called(file, folders) == called(files[i], folders);
-             }) == 1;
-    };
-    while (folders < most && !alone()) ++folders;
-    runs[i].name = called(files[i], folders == most ? 0 : folders);
-    if (const int times = ++seen[runs[i].name]; times > 1)
-      runs[i].name += fmt::format(" ({})", times);
+void name_apart(std::vector<ReadRun>& runs) {
+  std::vector<const Result*> results;
+  std::vector<std::filesystem::path> files;
+  for (const ReadRun& run : runs) {
+    results.push_back(&run.result);
+    files.emplace_back(run.file);
   }
+  const std::vector<std::string> names = names_of(results, files);
+  for (size_t i = 0; i < runs.size(); ++i) runs[i].name = names[i];
 }
 
-// What the points of each curve are the largest of.
+// The windows whose largest values are the points of each curve.
 std::string windows_of(const std::vector<const ReadRun*>& runs, const std::string& column) {
   std::set<std::string> different;
   std::string each;
@@ -88,9 +73,9 @@ std::string windows_of(const std::vector<const ReadRun*>& runs, const std::strin
 }
 
 // An error of all runs that have it.
-void add_error(Page& page, const std::vector<ReadRun>& runs, const std::string& title,
-               const std::string& y, const std::string& column) {
-  Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true};
+void add_error(Page& page, const std::vector<ReadRun>& runs, const std::string& name,
+               const std::string& title, const std::string& y, const std::string& column) {
+  Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true, .name = name};
   std::vector<Series> series;
   std::vector<const ReadRun*> shown;
   for (const ReadRun& run : runs) {
@@ -158,7 +143,7 @@ Page compared(const std::vector<ReadRun>& runs) {
     const RunVerdict verdict = run_verdict(run.result);
     page.verdict(verdict.status, fmt::format("`{}`: {}", run.name, verdict.text));
   }
-  std::vector<std::string> columns = {"run", "system", "method", "steps", "ended"};
+  std::vector<std::string> columns = {"run", "file", "system", "method", "steps", "ended"};
   std::vector<std::string> measured;
   Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
     const bool any = std::any_of(runs.begin(), runs.end(), [&](const ReadRun& run) {
@@ -172,7 +157,8 @@ Page compared(const std::vector<ReadRun>& runs) {
   for (const ReadRun& run : runs) {
     const Result& r = run.result;
     std::vector<Cell>& row = rows.emplace_back(std::vector<Cell>{
-        run.name, r.system->name, r.method(), fmt::format("{} of {}", r.steps, r.steps_in_words()),
+        run.name, run.file, r.system->name, r.method(),
+        fmt::format("{} of {}", r.steps, r.steps_in_words()),
         r.status.ok ? fmt::format("at t = {:.6g}", r.last.time) : "failed: " + r.status.reason});
     Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
       const std::string name = std::string(quantity.name) + suffix;
@@ -188,14 +174,14 @@ Page compared(const std::vector<ReadRun>& runs) {
   }
 
   page.section("Accuracy");
-  add_error(page, runs, "Error of the configuration against the exact motion", "|difference|",
-            kExactError.name);
-  add_error(page, runs, "Error of the velocity against the exact motion", "|difference|",
-            kExactVelocityError.name);
-  add_error(page, runs, "Energy error, or defect of the energy balance", "relative",
+  add_error(page, runs, "error", "Error of the configuration against the exact motion",
+            "|difference|", kExactError.name);
+  add_error(page, runs, "velocity-error", "Error of the velocity against the exact motion",
+            "|difference|", kExactVelocityError.name);
+  add_error(page, runs, "energy-error", "Energy error, or defect of the energy balance", "relative",
             kEnergyError.name);
-  add_error(page, runs, "Constraint residual", "|A xi/h|", kConstraint.name);
-  add_error(page, runs, "Group defect", "defect", kGroupDefect.name);
+  add_error(page, runs, "constraint", "Constraint residual", "|A xi/h|", kConstraint.name);
+  add_error(page, runs, "group-defect", "Group defect", "defect", kGroupDefect.name);
 
   page.section("Motion");
   add_motions(page, runs);
@@ -209,7 +195,12 @@ Page compared(const std::vector<ReadRun>& runs) {
 }  // namespace
 
 int report(const ReportOptions& options) {
-  std::vector<std::string> mistakes = page_mistakes(options.output);
+  const bool alone = !options.figure.empty();
+  const std::string width = options.width.empty() ? "12cm" : options.width,
+                    usual = alone ? options.figure + ".pdf" : "report.html",
+                    output = options.output.empty() ? usual : options.output;
+  std::vector<std::string> mistakes =
+      alone ? figure_mistakes(output, width) : page_mistakes(output);
   std::vector<ReadRun> runs;
   for (const std::string& path : options.files) {
     try {
@@ -219,12 +210,11 @@ int report(const ReportOptions& options) {
     }
   }
   if (!mistakes.empty()) throw ConfigError(mistakes);
-  if (runs.size() == 1) {
-    run_page(runs.front().result, runs.front().record).write(options.output);
-  } else {
-    name_apart(runs, {options.files.begin(), options.files.end()});
-    compared(runs).write(options.output);
-  }
+  if (runs.size() > 1) name_apart(runs);
+  const Page page =
+      runs.size() > 1 ? compared(runs) : run_page(runs.front().result, runs.front().record);
+  if (alone) write_figure(page, options.figure, output, width);
+  else page.write(output);
   return 0;
 }
 

@@ -1,6 +1,6 @@
-// hamel reproduce: the story told by the studies of tools/studies/paper: the paper's two figures
-// with every reading of its method against the exact motion, then three systems on which the
-// readings separate, and what the paper's boxes needed.
+// hamel reproduce: the comparison made by the studies of tools/studies/paper: the paper's two
+// figures with every variant of its method against the exact motion, then three systems on which
+// the variants separate, and what the paper's boxes needed.
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -12,8 +12,8 @@
 #include <hamel/systems/suslov.hpp>
 
 #include "commands.hpp"
-#include "readings.hpp"
 #include "screen.hpp"
+#include "variants.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -25,7 +25,7 @@ const Outcome& find(const std::vector<Outcome>& outcomes, const std::string& nam
   throw std::logic_error("no outcome " + name);
 }
 
-// The angle by which the first step of a reading turns the body of figure 1.
+// The angle by which the first step of a variant turns the body of figure 1.
 double first_step_angle(const std::string& scheme) {
   const StudyConfig figure = paper_study("figure_1");
   Run one = simulate(figure.systems[0].name)
@@ -49,7 +49,7 @@ double spatial_momentum_jump(double sign) {
   return (r * (update * pi) - pi).norm();
 }
 
-// Collects what the page and summary.txt both say.
+// Collects what the page and summary.txt both state.
 class Story {
  public:
   explicit Story(Page& page) : page_(page) {}
@@ -77,7 +77,7 @@ class Story {
 class Report {
  public:
   Report(const ReproduceOptions& options)
-      : page_("The paper's experiment, every reading side by side",
+      : page_("The paper's experiment, every variant side by side",
               "Suslov problem of Vivek, Martín de Diego, Banavar: Geometric Integrators for "
               "Nonholonomic Systems on Lie Groups"),
         story_(page_),
@@ -110,9 +110,9 @@ class Report {
     }
     story_.verdict(
         ok ? "ok" : "failed",
-        fmt::format("180,000 steps of h = 0.01 for seven readings and two retractions: group "
+        fmt::format("180,000 steps of h = 0.01 for seven variants and two retractions: group "
                     "defect at most {:.1e}; constraint residual at most {:.1e} for the six "
-                    "adapted readings.",
+                    "adapted variants.",
                     defect, constraint));
     story_.say({
         fmt::format(
@@ -176,7 +176,7 @@ class Report {
     const StudyValues steps = study.values("step");
     const std::vector<Outcome> all = run_all(study);
     for (const StudySystem& system : study.systems) {
-      story_.section(system.label + ": where the readings separate");
+      story_.section(system.label + ": where the variants separate");
       std::vector<std::vector<Outcome>> runs;
       for (const std::string& h : steps)
         runs.push_back(with(with(all, "system", system.label), "step", h));
@@ -217,7 +217,7 @@ class Report {
       add_figures(page_, runs.front(), exact_momentum(runs.front().front().cell.config));
       page_.table(
           system.label + ", errors and measured order",
-          {"reading", "error, h = " + steps[0], "error, h = " + steps[1], "error, h = " + steps[2],
+          {"variant", "error, h = " + steps[0], "error, h = " + steps[1], "error, h = " + steps[2],
            "order", "order (finer)", "velocity error", "energy error"},
           rows, "Configuration error at the final time against the exact motion.");
       add_table(page_, system.label + ", h = " + steps[0], runs.front());
@@ -260,7 +260,7 @@ class Report {
       return (std::filesystem::path(options.directory) / name).string();
     };
     const std::string text =
-        fmt::format("The paper's experiment, every reading side by side\n{}", story_.text());
+        fmt::format("The paper's experiment, every variant side by side\n{}", story_.text());
     write_file(path("summary.txt"), text);
     write_file(path("readings.csv"), csv_);
     if (!options.quiet) say("{}\n", text);

@@ -14,14 +14,14 @@
 namespace hamel::tools {
 namespace {
 
-// Where the rows of an unfinished run are.
+// The files with the rows of an unfinished run.
 std::string kept(const RunOptions& options) {
   std::string out;
   for (const std::string& path : options.outputs) {
     std::error_code error;
     if (path == "-" || !std::filesystem::exists(part_of(path), error)) continue;
     out += fmt::format("; the rows so far are in '{}'", part_of(path));
-    if (path.ends_with(".h5")) out += fmt::format(", and --continue {} goes on", path);
+    if (path.ends_with(".h5")) out += fmt::format(", and --continue {} resumes it", path);
   }
   return out;
 }

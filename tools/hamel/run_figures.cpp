@@ -69,7 +69,7 @@ std::vector<Series> paths(const Result& result) {
   return out;
 }
 
-// The paths do not all stand still: a body that only turns about a fixed point of its way has none.
+// The paths are not all constant: a body that only turns about a fixed point of its way has none.
 bool moves(const std::vector<Series>& paths) {
   return std::any_of(paths.begin(), paths.end(), [](const Series& s) {
     const auto [x0, x1] = std::minmax_element(s.x.begin(), s.x.end());
@@ -78,15 +78,42 @@ bool moves(const std::vector<Series>& paths) {
   });
 }
 
-std::vector<SphereCurve> axes_on_sphere(const Result& result) {
-  const int first = find_column(result, "R11");
-  if (first < 0) return {};
+// Rows whose rotations are near each other, so that a curve through them is that of the motion: all
+// of the run thinned, or so much of its beginning as a figure shows.
+std::vector<size_t> near_rows(const Result& result, size_t first) {
+  constexpr size_t points = 2000, most = 4000;
+  constexpr double near = 0.1;  // rad
+  std::vector<size_t> rows = thin_rows(result, points);
+  if (rows.size() < 3) return rows;
+  const auto axis = [&](size_t row, size_t k) {
+    return Vec<3>(result.trajectory.at(row, first + k), result.trajectory.at(row, first + k + 3),
+                  result.trajectory.at(row, first + k + 6));
+  };
+  const size_t step = rows[1] - rows[0];
+  double widest = 0;
+  for (size_t i = 1; i < rows.size(); ++i)
+    for (size_t k = 0; k < 3; ++k)
+      widest = std::max(widest, (axis(rows[i], k) - axis(rows[i - 1], k)).norm());
+  if (widest <= near) return rows;
+  const auto finer =
+      std::max<size_t>(1, static_cast<size_t>(static_cast<double>(step) * near / widest));
+  rows.clear();
+  for (size_t row = 0; row < result.trajectory.rows() && rows.size() < most; row += finer)
+    rows.push_back(row);
+  return rows;
+}
+
+void add_axes_on_sphere(Page& page, const Result& result) {
+  const int column = find_column(result, "R11");
+  if (column < 0) return;
+  const auto first = static_cast<size_t>(column);
+  const std::vector<size_t> rows = near_rows(result, first);
   bool turns = false;
   std::vector<SphereCurve> out;
   for (size_t axis = 0; axis < 3; ++axis) {
     SphereCurve curve{fmt::format("body axis e{}", axis + 1), {}};
-    for (size_t i : thin_rows(result, 2000)) {
-      const size_t at = static_cast<size_t>(first) + axis;  // row-major: column `axis` of R
+    for (size_t i : rows) {
+      const size_t at = first + axis;  // row-major: column `axis` of R
       curve.points.push_back({result.trajectory.at(i, at), result.trajectory.at(i, at + 3),
                               result.trajectory.at(i, at + 6)});
     }
@@ -97,7 +124,13 @@ std::vector<SphereCurve> axes_on_sphere(const Result& result) {
             });
     out.push_back(std::move(curve));
   }
-  return turns ? out : std::vector<SphereCurve>{};  // nothing to see of a body that does not turn
+  if (!turns) return;  // nothing to see of a body that does not turn
+  std::string note = "Columns of R; drag to turn.";
+  const size_t stride = rows.size() > 1 ? rows[1] - rows[0] : 1;
+  if (rows.back() + stride < result.trajectory.rows())
+    note += fmt::format(" To t = {:.4g}: the whole run has more turns than this figure can show.",
+                        result.trajectory.at(rows.back(), 0));
+  page.sphere("Motion of the body axes", out, note);
 }
 
 std::optional<Animation> animation_of(const Result& result) {
@@ -146,7 +179,7 @@ Series curve(const Result& result, const std::string& name, const std::string& c
              bool magnitude) {
   std::vector<double> y = result.trajectory.column(column);
   return magnitude ? thinned(name, result.trajectory.column("t"), magnitudes(y), true, 2 * kWindows)
-                   : thinned(name, result.trajectory.column("t"), y, false);
+                   : drawable(name, result.trajectory.column("t"), y);
 }
 
 std::string windows_note(const Result& result, const std::vector<std::string>& columns) {
@@ -186,19 +219,19 @@ void add_motion(Page& page, const Result& r) {
   if (const auto animation = animation_of(r)) page.animation(*animation);
   if (r.system->drawing.has_floor || r.system->drawing.bodies.empty()) {
     const std::vector<Series> ways = paths(r);
-    if (moves(ways)) page.path("Path in the plane", {.x = "x [m]", .y = "y [m]"}, ways);
+    if (moves(ways))
+      page.path("Path in the plane", {.x = "x [m]", .y = "y [m]", .name = "path"}, ways);
   }
-  if (const auto axes = axes_on_sphere(r); !axes.empty())
-    page.sphere("Motion of the body axes", axes, "Columns of R; drag to turn.");
+  add_axes_on_sphere(page, r);
 }
 
 void add_accuracy(Page& page, const Result& r) {
   struct Curve {
     const char *name, *column;
   };
-  const auto plot = [&](const char* title, const char* y, const std::vector<Curve>& curves,
-                        const std::string& note = "") {
-    Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true};
+  const auto plot = [&](const char* figure, const char* title, const char* y,
+                        const std::vector<Curve>& curves, const std::string& note = "") {
+    Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true, .name = figure};
     axes.floor = floor_of(r, curves.front().column);
     std::vector<Series> series;
     for (const auto& [name, column] : curves) series.push_back(curve(r, name, column));
@@ -213,20 +246,22 @@ void add_accuracy(Page& page, const Result& r) {
               note.empty() || windows.empty() ? note + windows : windows + " " + note);
   };
   if (r.trajectory.columns().back() == "exact_velocity_error") {
-    plot("Error against the exact motion", "|difference|",
+    plot("error", "Error against the exact motion", "|difference|",
          {{"configuration", "exact_error"}, {"velocity", "exact_velocity_error"}},
          "Euclidean distance of the element's columns, and of the body velocities.");
   }
   if (does_work(r)) {
-    plot("Defect of the energy balance", "|E - E0 - W| / max E", {{"", "energy_error"}});
+    plot("energy-error", "Defect of the energy balance", "|E - E0 - W| / max E",
+         {{"", "energy_error"}});
   } else {
-    plot("Energy error", "|E - E0| / E0", {{"", "energy_error"}});
+    plot("energy-error", "Energy error", "|E - E0| / E0", {{"", "energy_error"}});
   }
-  plot("Constraint residual", "|A xi/h|", {{"", "constraint"}},
+  plot("constraint", "Constraint residual", "|A xi/h|", {{"", "constraint"}},
        "The step's velocity is recovered from consecutive configurations; its floor is about "
        "2e-16/h times the size of the coordinates.");
-  if (r.trajectory.has("holonomic")) plot("Holonomic residual", "|phi(g)|", {{"", "holonomic"}});
-  plot("Group defect", "defect", {{"", "group_defect"}});
+  if (r.trajectory.has("holonomic"))
+    plot("holonomic", "Holonomic residual", "|phi(g)|", {{"", "holonomic"}});
+  plot("group-defect", "Group defect", "defect", {{"", "group_defect"}});
 }
 
 }  // namespace hamel::tools

@@ -12,11 +12,12 @@ bool does_work(const Result& result);
 /// those that there are.
 void add_motion(Page& page, const Result& result);
 
-/// What drove it, by unit; nothing where all inputs are constant.
+/// The inputs that drove it, by unit; nothing where all inputs are constant.
 void add_inputs(Page& page, const Result& result, const std::vector<Mark>& marks);
 
 /// Body velocity and shape by unit, reactions with the sign of contacts, the energy balance where
-/// work is done, body momentum. A component has one colour in all of them. `marks` stand in each.
+/// work is done, body momentum. A component has one colour in all of them. `marks` are drawn in
+/// each.
 void add_physics(Page& page, const Result& result, const std::vector<Mark>& marks);
 
 /// Errors, energy, constraints and group, each with the floor of round-off.

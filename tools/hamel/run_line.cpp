@@ -52,16 +52,10 @@ void read_sets(const std::vector<std::string>& sets, Parameters& parameters) {
   if (!mistakes.empty()) throw ConfigError(mistakes);
 }
 
-void RunLine::define(CLI::App& app) {
+void RunLine::define_run(CLI::App& app, const std::set<std::string>& without) {
   app.add_option("SYSTEM", system,
                  "a registered system (hamel list systems) or a file my_system.toml");
-  CLI::Option* config = app.add_option("--config", config_file,
-                                       "a TOML file with the same names; the command line wins");
-  app.add_option(
-         "--continue", record_file,
-         "go on where the run of this record (-o x.json, x.h5) ended, as it was run, for as long "
-         "again; the command line wins. An unfinished .h5: with that run, bit for bit")
-      ->excludes(config);
+  app.add_option("--config", config_file, "a TOML file with the same names; the command line wins");
   app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
       ->allow_extra_args(false);
   app.add_option("--input", inputs,
@@ -72,9 +66,19 @@ void RunLine::define(CLI::App& app) {
     option<Value>(app, field, {}, [member](Config& c) -> Value& { return c.start.*member; });
   });
   Config::fields([&]<class Value>(const Option& field, Value Config::*member) {
+    if (without.contains(field.name)) return;
     option<Value>(app, field, Config().*member,
                   [member](Config& c) -> Value& { return c.*member; });
   });
+}
+
+void RunLine::define(CLI::App& app) {
+  define_run(app, {});
+  app.add_option(
+         "--continue", record_file,
+         "resume where the run of this record (-o x.json, x.h5) ended, as it was run, for as long "
+         "again; the command line wins. An unfinished .h5: with that run, bit for bit")
+      ->excludes("--config");
   app.add_option("-o,--output", options.outputs,
                  "write .csv, .csv.gz, .h5 or .json, as the rows come; - is CSV to standard output "
                  "(repeatable)")
@@ -96,11 +100,15 @@ void RunLine::define(CLI::App& app) {
       "Exit status: 0 done, 1 numerical failure (what was computed is written), or interrupted "
       "or disk\n"
       "full (it is in FILE.part), 2 bad input.\n"
+      "--events and --stop-at also take formulas, with = or with > or < for one direction, over "
+      "t,\n"
+      "columns, velocities by name, and parameters: 'x^2+y^2=1', 'theta>pi/2', 'omega1=omega2'.\n"
       "Examples:\n"
       "  hamel run suslov --until 20 --report suslov.html\n"
       "  hamel run suslov --set inertia=2,0.3,0.5,3,0.4,4 --velocity 1,0.5,0 --retraction exp\n"
       "  hamel run chaplygin_sleigh --scheme balance --step 0.05 -o sleigh.csv --json\n"
       "  hamel run bicycle --speed 5 --report bicycle.html\n"
+      "  hamel run bicycle --speed 5 --stop-at 'steer.angle<-0.02' -o bicycle.csv\n"
       "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv\n"
       "  hamel run segway --input right_torque=2 --input left_torque=torque.csv:hold\n"
       "  hamel run roller_racer -o first.json && hamel run --continue first.json --until 60\n"

@@ -1,8 +1,9 @@
-// The command line of `hamel run`: its options, and the run that they ask for.
+// The command line of `hamel run`: its options, and the run that they specify.
 #pragma once
 
 #include <algorithm>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace hamel::tools {
 /// do not fit.
 void read_sets(const std::vector<std::string>& sets, Parameters& parameters);
 
-/// The options of `hamel run` as given; the file first, then what the command line says.
+/// The options of `hamel run` as given; the file first, then the command line.
 struct RunLine {
   std::string system, config_file, record_file;
   std::vector<std::string> sets, inputs;
@@ -52,6 +53,8 @@ struct RunLine {
   }
 
   void define(CLI::App& app);
+  /// The system, its parameters and start, and every option of a run but these.
+  void define_run(CLI::App& app, const std::set<std::string>& without);
   RunOptions resolve(const CLI::App& app);
 
  private:

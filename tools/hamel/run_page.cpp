@@ -1,5 +1,6 @@
 #include "run_page.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ Cell cell(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-// What the record says of `member`, a list of objects, as a table.
+// The list of objects `member` of the record as a table.
 void add_list(Page& page, const Json& record, const char* member, const std::string& title) {
   if (!record.contains(member) || !record[member].is_array() || record[member].empty()) return;
   std::vector<std::string> columns;
@@ -41,10 +42,12 @@ void add_list(Page& page, const Json& record, const char* member, const std::str
 
 }  // namespace
 
-std::vector<std::string> page_mistakes(const std::string& path) {
+std::vector<std::string> page_mistakes(const std::string& path,
+                                       const std::vector<std::string>& formats) {
   std::vector<std::string> mistakes;
-  if (const std::string extension = std::filesystem::path(path).extension(); extension != ".html")
-    mistakes.push_back(unknown_name("output format", extension, {".html"}) + " in '" + path + "'");
+  const std::string extension = std::filesystem::path(path).extension();
+  if (std::find(formats.begin(), formats.end(), extension) == formats.end())
+    mistakes.push_back(unknown_name("output format", extension, formats) + " in '" + path + "'");
   else if (const std::string reason = unwritable(path); !reason.empty()) mistakes.push_back(reason);
   if (report_page().empty()) {
     mistakes.push_back(

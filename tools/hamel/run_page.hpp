@@ -16,17 +16,18 @@ constexpr size_t kRowsOfPage = 100'000;
 /// Verdict, motion, physics, accuracy, and the record; events and inputs where the record has them.
 Page run_page(const Result& result, const std::string& record);
 
-/// What is wrong with the file of a page, before anything runs.
-std::vector<std::string> page_mistakes(const std::string& path);
+/// Mistakes of the file of a page or of a figure, before anything runs.
+std::vector<std::string> page_mistakes(const std::string& path,
+                                       const std::vector<std::string>& formats = {".html"});
 
 /// One column of a run against time, thinned; as magnitude, for a logarithmic axis, the largest
 /// over windows.
 Series curve(const Result& result, const std::string& name, const std::string& column,
              bool magnitude = true);
 
-/// What windows those are; "" where every recorded state is shown. Where the run has more rows than
-/// are at hand it says so, and the largest of all of each of these columns, as far as a run
-/// measures it.
+/// Description of the windows; "" where every recorded state is shown. Where the run has more
+/// rows than are at hand this is stated, and the largest of all of each of these columns, as far
+/// as a run measures it.
 std::string windows_note(const Result& result, const std::vector<std::string>& columns);
 
 /// Round-off in coordinates as large as those of this run.

@@ -1,20 +1,27 @@
 // Velocities, shape, reactions, energy and momenta of a run, as curves.
 #include <algorithm>
 #include <map>
-#include <numeric>
+#include <memory>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
+#include <Eigen/Core>
 
 #include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
+#include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/run/run/events.hpp>
+#include <hamel/systems/by_name.hpp>
 
 #include "run_figures.hpp"
 
 namespace hamel::tools {
 namespace {
 
-// Curves that are measured in the same unit stand in one figure.
+constexpr size_t kMostParts = 8;  // that have a figure of their reactions each
+
+// Curves of the same unit share one figure.
 class ByUnit {
  public:
   void add(const std::string& unit, Series series) {
@@ -43,28 +50,36 @@ Series component(const Result& r, const std::string& name, const std::string& co
   return series;
 }
 
-// The reactions of one part together: a mechanism's rows of phi stand behind all others.
-std::vector<int> rows_by_part(const Result& r) {
-  const std::vector<std::string>& names = r.system->reactions;
-  std::vector<int> out(static_cast<size_t>(r.system->mechanics->rows()));
-  std::iota(out.begin(), out.end(), 0);
-  if (names.empty()) return out;
-  const auto part = [&](int row) {
-    const std::string& name = names[static_cast<size_t>(row)];
-    return name.substr(0, name.rfind('.'));
-  };
-  std::vector<std::string> parts;
-  for (const DrawnForce& force : r.system->forces) parts.push_back(force.name);
-  for (const int row : out) parts.push_back(part(row));
-  std::stable_sort(out.begin(), out.end(), [&](int a, int b) {
-    return std::find(parts.begin(), parts.end(), part(a)) <
-           std::find(parts.begin(), parts.end(), part(b));
-  });
-  return out;
+// The part of a mechanism that a reaction belongs to: "rear" of "rear.reaction3"; "" where there is
+// none.
+std::string part_of_reaction(const std::string& name) {
+  const size_t dot = name.rfind('.');
+  return dot == std::string::npos ? "" : name.substr(0, dot);
 }
 
-// Does the k-th contact push? The event says when it ceased to; the rows only what they show. Marks
-// the first that pulls.
+// The rows of each part, in the order in which the mechanism draws them; in one list where there
+// are more parts than figures help.
+std::vector<std::pair<std::string, std::vector<int>>> rows_by_part(const Result& r) {
+  const std::vector<std::string>& names = r.system->reactions;
+  std::vector<std::pair<std::string, std::vector<int>>> out;
+  const auto rows_of = [&](const std::string& part) -> std::vector<int>& {
+    const auto at = std::find_if(out.begin(), out.end(),
+                                 [&](const auto& known) { return known.first == part; });
+    return at != out.end() ? at->second : out.emplace_back(part, std::vector<int>{}).second;
+  };
+  if (!names.empty())
+    for (const DrawnForce& force : r.system->forces) rows_of(force.name);
+  for (int row = 0; row < r.system->mechanics->constraint_count(); ++row)
+    rows_of(names.empty() ? "" : part_of_reaction(names[static_cast<size_t>(row)])).push_back(row);
+  std::erase_if(out, [](const auto& part) { return part.second.empty(); });
+  if (out.size() <= kMostParts) return out;
+  std::vector<int> all;
+  for (const auto& [part, rows] : out) all.insert(all.end(), rows.begin(), rows.end());
+  return {{"", all}};
+}
+
+// Does the k-th contact push? The event has the time when it ceased to; the rows only what they
+// show. Marks the first that pulls.
 std::string contact_note(const Result& r, const std::string& column, size_t k, Axes& axes) {
   const std::string event = events_of(*r.system, nullptr)[r.system->events.size() + k].name;
   const auto met = std::find_if(r.events.begin(), r.events.end(),
@@ -89,18 +104,13 @@ std::string contact_note(const Result& r, const std::string& column, size_t k, A
   return is + in_rows + ".";
 }
 
-void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) {
+void add_reactions_of(Page& page, const Result& r, const std::vector<Mark>& marks,
+                      const std::string& part, const std::vector<int>& rows, std::string note) {
   std::vector<Series> reactions;
-  Axes axes{.x = "time t [s]", .y = ""};
+  Axes axes{.x = "time t [s]", .y = "", .name = part.empty() ? "reactions" : "reactions-" + part};
   bool forces = true;  // all in N
   axes.marks = marks;
-  std::string note = fmt::format(
-      "Multipliers of the rows A xi = b, from the equations of motion at the recorded "
-      "states. Their work over the run: {:.2e}, with A xi measured on the "
-      "configurations; where b = 0 a scheme that keeps the rows in its steps leaves it at "
-      "round-off.",
-      r.reaction_work);
-  for (const int i : rows_by_part(r)) {
+  for (const int i : rows) {
     const std::string column = r.system->reactions.empty()
                                    ? fmt::format("lambda{}", i + 1)
                                    : r.system->reactions[static_cast<size_t>(i)];
@@ -112,17 +122,76 @@ void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) 
     forces = forces && name != column;
     reactions.push_back(curve(r, is_contact ? name + ", contact" : name, column, false));
     if (is_contact)
-      note += " " + contact_note(r, column, static_cast<size_t>(contact - contacts.begin()), axes);
+      note += (note.empty() ? "" : " ") +
+              contact_note(r, column, static_cast<size_t>(contact - contacts.begin()), axes);
   }
   axes.y = with_unit("lambda", forces ? "N" : "");
-  if (!reactions.empty()) page.plot("Reaction forces", axes, reactions, note);
+  if (!reactions.empty())
+    page.plot(part.empty() ? "Reaction forces" : "Reaction forces: " + part, axes, reactions, note);
 }
+
+void add_reactions(Page& page, const Result& r, const std::vector<Mark>& marks) {
+  std::string note = fmt::format(
+      "Multipliers of the rows A xi = b, from the equations of motion at the recorded "
+      "states. Their work over the run: {:.2e}, with A xi measured on the "
+      "configurations; where b = 0 a scheme that keeps the rows in its steps leaves it at "
+      "round-off.",
+      r.reaction_work);
+  for (const auto& [part, rows] : rows_by_part(r)) {
+    add_reactions_of(page, r, marks, part, rows, note);
+    note.clear();  // of all parts
+  }
+}
+
+// Angles that the equations do not depend on: of wheels and rotors. They are as large as the way is
+// long.
+class Spins {
+ public:
+  explicit Spins(const Result& r)
+      : mechanics_(*r.system->mechanics),
+        geometry_(registry().geometry(r.system->group.name, r.config.retraction)) {
+    const std::span<const double> row = r.trajectory.row(r.trajectory.rows() - 1);
+    const size_t columns = r.system->group.columns.size();
+    time_ = row[0];
+    coordinates_.assign(row.begin() + 1, row.begin() + 1 + static_cast<std::ptrdiff_t>(columns));
+    velocity_ = Eigen::Map<const Eigen::VectorXd>(row.data() + 1 + columns, mechanics_.dim());
+    if (geometry_ != nullptr) here_ = equations(coordinates_);
+  }
+  bool has(const ShapeCoordinate& shape) const {
+    if (geometry_ == nullptr || shape.unit != "rad") return false;
+    std::vector<double> turned = coordinates_;
+    turned[static_cast<size_t>(shape.column)] += 1;
+    return (equations(turned) - here_).norm() <= kUnmoved * here_.norm();
+  }
+
+ private:
+  // I, A, b, the force and V, one behind the other.
+  Eigen::VectorXd equations(const std::vector<double>& coordinates) const {
+    const Eigen::Index n = mechanics_.dim(), k = mechanics_.constraint_count();
+    Eigen::VectorXd g(geometry_->size()), b = Eigen::VectorXd::Zero(k), force(n);
+    Eigen::MatrixXd inertia(n, n), rows(k, n);
+    geometry_->from_coordinates(coordinates, g.data());
+    mechanics_.inertia(g.data(), inertia);
+    mechanics_.constraints(time_, g.data(), rows, b);
+    mechanics_.force(time_, g.data(), velocity_, force);
+    Eigen::VectorXd out(n * n + k * n + k + n + 1);
+    out << inertia.reshaped(), rows.reshaped(), b, force, mechanics_.potential(g.data());
+    return out;
+  }
+
+  static constexpr double kUnmoved = 1e-10;
+  const Mechanics& mechanics_;
+  std::shared_ptr<const Geometry> geometry_;  // null of a group that is not registered
+  double time_ = 0;
+  std::vector<double> coordinates_;
+  Eigen::VectorXd velocity_, here_;
+};
 
 void add_energy_balance(Page& page, const Result& r, const std::vector<Mark>& marks) {
   std::vector<double> rest = r.trajectory.column("energy");
   const std::vector<double> work = r.trajectory.column("work");
   for (size_t i = 0; i < rest.size(); ++i) rest[i] -= work[i];
-  Axes axes{.x = "time t [s]", .y = "[J]"};
+  Axes axes{.x = "time t [s]", .y = "[J]", .name = "energy"};
   axes.marks = marks;
   page.plot("Energy balance", axes,
             {curve(r, "energy E [J]", "energy", false), curve(r, "work W [J]", "work", false),
@@ -136,24 +205,35 @@ void add_energy_balance(Page& page, const Result& r, const std::vector<Mark>& ma
 void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
   const std::vector<std::string>& columns = r.system->group.columns;
   const std::vector<Component> names = components_of(*r.system);
-  ByUnit velocity, momentum, shape;
+  ByUnit velocity, spin, momentum, shape, spun;
+  const Spins spins(r);
+  const std::vector<ShapeCoordinate> coordinates = shape_of(r.system->group, names);
+  const auto spinning = [&](size_t i) {
+    return std::any_of(coordinates.begin(), coordinates.end(), [&](const ShapeCoordinate& s) {
+      return s.component == static_cast<int>(i) && spins.has(s);
+    });
+  };
   for (size_t i = 0; i < names.size(); ++i) {
     const auto& [name, unit] = names[i];
-    velocity.add(unit, component(r, with_unit(name, unit), fmt::format("xi{}", i + 1), name));
+    (spinning(i) ? spin : velocity)
+        .add(unit, component(r, with_unit(name, unit), fmt::format("xi{}", i + 1), name));
     const std::string dual = unit == "rad/s" ? "N m s" : unit == "m/s" ? "N s" : "";
     momentum.add(dual,
                  component(r, with_unit("mu of " + name, dual), fmt::format("mu{}", i + 1), name));
   }
-  for (const ShapeCoordinate& s : shape_of(r.system->group, names)) {
+  for (const ShapeCoordinate& s : coordinates) {
     const std::string &column = columns[static_cast<size_t>(s.column)],
                       &rate = names[static_cast<size_t>(s.component)].name;
-    shape.add(s.unit, component(r, with_unit(rate.ends_with('\'') ? s.name : column, s.unit),
-                                column, rate));
+    (spins.has(s) ? spun : shape)
+        .add(s.unit,
+             component(r, with_unit(rate.ends_with('\'') ? s.name : column, s.unit), column, rate));
   }
   velocity.plot(page, {{"rad/s", "Angular velocity"}, {"m/s", "Velocity"}}, "Body velocity xi",
                 marks);
+  spin.plot(page, {{"rad/s", "Spin of wheels and rotors"}}, "", marks);
   shape.plot(page, {{"rad", "Angles of the shape"}, {"m", "Places"}}, "Shape", marks);
-  if (r.system->mechanics->rows() > 0) add_reactions(page, r, marks);
+  spun.plot(page, {{"rad", "Angles of wheels and rotors"}}, "", marks);
+  if (r.system->mechanics->constraint_count() > 0) add_reactions(page, r, marks);
   if (does_work(r)) add_energy_balance(page, r, marks);
   momentum.plot(page, {{"N m s", "Angular momentum in the body"}, {"N s", "Momentum in the body"}},
                 "Body momentum mu", marks);

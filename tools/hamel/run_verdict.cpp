@@ -100,7 +100,7 @@ class Judge {
     return out + "`--check` estimates it";
   }
 
-  // An estimate knows nothing of it: without the constraint it is the error of another motion.
+  // An estimate does not see it: without the constraint it is the error of another motion.
   std::string constraint() {
     const double floor = zero_ / std::abs(r_.config.step_or_usual());
     if (r_.constraint_max <= kKeptConstraint * size_.speed + 1e3 * floor) return "";

@@ -1,4 +1,4 @@
-// What a page says first of a run: whether it is right, as far as that is known.
+// The first statement of a page about a run: whether it is right, as far as that is known.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@
 
 namespace hamel::tools {
 
-/// Before any file is opened: closed standard streams get descriptors of their own, so that no file
+/// Before any file is opened: closed standard streams get descriptors, so that no file
 /// of a run becomes one, and a closed pipe or a limit on files is an error of the write instead of
 /// a signal.
 void begin_screen();

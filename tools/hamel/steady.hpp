@@ -1,4 +1,4 @@
-// hamel steady; main.cpp reads the command line into its options.
+// hamel steady; command_lines.cpp reads the command line into its options.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace hamel::tools {
 struct SteadyOptions {
   Config config;          // system, parameters, start
   std::string vary;       // name=from:to:count
-  bool branches = false;  // follow those that meet it, too
+  bool branches = false;  // follow those that cross it, too
   std::string report;     // --report
   bool json = false;
   std::optional<double> sample_time;  // of the discrete pair, in s

@@ -10,6 +10,8 @@
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/names/config.hpp>
 
+#include "screen.hpp"
+
 namespace hamel::tools {
 
 std::string known_text(double x, double round_off) {
@@ -28,7 +30,7 @@ namespace {
 
 std::string text_of(Bifurcation kind) {
   switch (kind) {
-    case Bifurcation::pitchfork: return "another branch meets this one (pitchfork)";
+    case Bifurcation::pitchfork: return "another branch crosses this one (pitchfork)";
     case Bifurcation::transcritical: return "another branch crosses this one (transcritical)";
     case Bifurcation::fold: return "the branch turns back (fold)";
     case Bifurcation::family: return "at this value the steady motions form a family";
@@ -52,7 +54,7 @@ std::string unit_of(const std::string& name, const SystemModel& system) {
   return out;
 }
 
-// What moves most in a mode, two names at most.
+// The parts that move most in a mode, two names at most.
 std::string name_of_mode(const SteadyMotion& motion, int place) {
   const std::vector<ModePart>& parts = motion.modes[static_cast<size_t>(place)];
   std::string out;

@@ -19,7 +19,7 @@ std::string modes_text(const std::vector<ModePart>& parts);
 std::string crossing_text(const SteadyCrossing& crossing);
 std::string end_text(const std::string& name, const SteadyEnd& end);
 
-/// Prints where the branch begins that meets this one.
+/// Prints where the branch begins that crosses this one.
 void print_other(const std::string& name, const SteadyPlace& place);
 
 /// Eigenvalues along the parameter `name`; command: the line that it is from.

@@ -1,7 +1,9 @@
-// Writes the JSON schemas of configurations and of studies: their options are Config::fields, their
-// names the registry's.
+// Writes the JSON schemas of configurations, of studies and of ensembles: their options are
+// Config::fields, their names the registry's; and completes that of mechanisms by the kinds of
+// joints and contacts.
 //
-//   write_schemas DIR       DIR/run.json, DIR/study.json
+//   write_schemas DIR mechanism.json       DIR/run.json, DIR/study.json, DIR/ensemble.json,
+//   DIR/mechanism.json
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -14,6 +16,7 @@
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/by_name.hpp>
+#include <hamel/systems/mechanisms/contact.hpp>
 
 namespace {
 
@@ -31,7 +34,7 @@ Json type_of(const std::string&) { return {{"type", "string"}}; }
 Json type_of(const std::vector<double>&) { return one_or_more(type_of(0.0)); }
 Json type_of(const std::vector<std::string>&) { return one_or_more(type_of(std::string())); }
 
-// The words that an option may be, where they are a list.
+// The values that an option may have, where they are a list.
 std::vector<std::string> words_of(const std::string& option) {
   std::vector<std::string> out;
   if (option == "scheme") {
@@ -139,7 +142,7 @@ Json study() {
                           {"additionalProperties", false},
                           {"properties", system}})}};
   Json excluded = {{"system", one_or_more({{"type", "string"}})},
-                   {"why", {{"type", "string"}, {"description", "said in every output"}}}};
+                   {"why", {{"type", "string"}, {"description", "repeated in every output"}}}};
   Config::fields([&](const Option& option, auto member) {
     if (!option.axis) return;
     const std::string name = option.name;
@@ -154,16 +157,109 @@ Json study() {
   return object("A study of hamel", properties, {"system"});
 }
 
+// The keys of a run, what is varied and what is kept.
+Json ensemble() {
+  const Json numbers = list_of(type_of(0.0)), text = type_of(std::string()),
+             law = {{"type", "object"},
+                    {"minProperties", 1},
+                    {"properties",
+                     {{"values", numbers},
+                      {"range", numbers},
+                      {"uniform", {{"anyOf", {numbers, {{"const", "so3"}}}}}},
+                      {"normal", numbers},
+                      {"log_uniform", numbers},
+                      {"tau_normal", type_of(std::vector<double>())},
+                      {"energy", type_of(0.0)}}},
+                    {"additionalProperties", {{"type", "object"}}}};
+  const auto with = [](Json value, const char* description) {
+    value["description"] = description;
+    return value;
+  };
+  const auto table = [](const Json& properties, const std::vector<std::string>& need) -> Json {
+    return {{"type", "object"},
+            {"required", need},
+            {"additionalProperties", false},
+            {"properties", properties}};
+  };
+  Json properties = run()["properties"];
+  properties["members"] = with(type_of(1L), "left out: as many as the lists have values");
+  properties["seed"] = with(type_of(1L), "of the random numbers");
+  properties["grid"] = with(type_of(true), "all combinations of the lists");
+  properties["vary"] = with({{"type", "object"}, {"additionalProperties", law}},
+                            "a parameter, an input, speed, start.omega: one law each");
+  properties["feedback"] = with({{"type", "object"},
+                                 {"required", {"period"}},
+                                 {"properties", {{"period", type_of(0.0)}}},
+                                 {"additionalProperties", text}},
+                                "inputs by formulas of the state, held for a period, s");
+  properties["keep"] = with(
+      list_of({{"anyOf", {text, table({{"name", text}, {"formula", text}}, {"name", "formula"})}}}),
+      "formulas of end.X, start.X, max.X, min.X, at(T).X, event.NAME.count, event.NAME.time");
+  properties["class"] =
+      with(table({{"formula", text}, {"names", list_of(text)}}, {"formula", "names"}),
+           "members by a formula whose value, 0, 1, ..., is that of a name");
+  properties["events"] = with(
+      {{"anyOf", {properties["events"], {{"type", "object"}, {"additionalProperties", text}}}}},
+      "events to locate, or by names, name = \"x > 1\"");
+  properties["statistics_at"] = with(type_of(std::vector<double>()), "times, s");
+  properties["statistics_of"] =
+      with(type_of(std::vector<std::string>()), "left out: coordinates and velocities");
+  properties["histograms"] = with(
+      {{"type", "object"},
+       {"additionalProperties",
+        {{"anyOf", {type_of(1L), table({{"bins", type_of(1L)}, {"range", numbers}}, {"bins"})}}}}},
+      "of kept quantities: bins, or { bins, range = [from, until] }");
+  properties["quantiles"] = with(type_of(std::vector<double>()), "of kept quantities, in [0, 1]");
+  properties["covariance"] = with(type_of(true), "of the kept quantities");
+  return object("An ensemble of hamel", properties, {"system", "keep"});
+}
+
+Json described(const char* definition, const Field& field) {
+  std::string text = field.meaning;
+  if (!field.unit.empty()) text += (text.empty() ? "" : ", ") + field.unit;
+  Json out = {{"$ref", std::string("#/definitions/") + definition}};
+  if (!text.empty()) out["description"] = text;
+  return out;
+}
+void add_fields(const std::vector<Field>& fields, Json& to) {
+  for (const Field& field : fields)
+    to[field.name] = described(mechanisms::is_direction(field) ? "point" : "formula", field);
+}
+
+// From what no kind of joint or contact decides.
+Json mechanism(std::istream& from) {
+  using namespace mechanisms;
+  Json out = Json::parse(from);
+  Json& joint = out["properties"]["joint"]["items"]["properties"];
+  joint["kind"] = {{"enum", names_of(joint_kinds())}};
+  for (const JointKind& kind : joint_kinds()) add_fields(kind.fields, joint);
+  for (const ContactKind& kind : contact_kinds()) {
+    Json keys = {{"name", {{"type", "string"}, {"description", "left out: the body's"}}},
+                 {"body", type_of(std::string())},
+                 {"at", {{"$ref", "#/definitions/point"}, {"description", "m"}}}};
+    add_fields(kind.fields, keys);
+    out["properties"][kind.name] = list_of({{"type", "object"},
+                                            {"required", {"body"}},
+                                            {"additionalProperties", false},
+                                            {"properties", keys}});
+    out["properties"][kind.name]["description"] = kind.summary;
+  }
+  return out;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: write_schemas DIR\n";
+  if (argc != 3) {
+    std::cerr << "usage: write_schemas DIR mechanism.json\n";
     return 2;
   }
   const std::string folder = argv[1];
   std::ofstream(folder + "/run.json") << run().dump(2) << "\n";
-  std::ofstream out(folder + "/study.json");
-  out << study().dump(2) << "\n";
+  std::ofstream(folder + "/study.json") << study().dump(2) << "\n";
+  std::ofstream(folder + "/ensemble.json") << ensemble().dump(2) << "\n";
+  std::ifstream from(argv[2]);
+  std::ofstream out(folder + "/mechanism.json");
+  out << mechanism(from).dump(2) << "\n";
   return out ? 0 : 1;
 }

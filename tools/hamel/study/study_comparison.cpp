@@ -10,7 +10,7 @@
 namespace hamel::tools {
 namespace {
 
-// The first few of a list, and how many more there are.
+// The first ones of a list, and how many more there are.
 std::string first_few(const std::vector<std::string>& words, size_t count) {
   std::string out;
   for (size_t i = 0; i < std::min(words.size(), count); ++i)
@@ -19,18 +19,18 @@ std::string first_few(const std::vector<std::string>& words, size_t count) {
   return out;
 }
 
-std::string time_words(double seconds) {
-  if (seconds < 1e-3) return fmt::format("{:.3g} µs", 1e6 * seconds);
-  return seconds < 1 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
-}
-
 class Comparison {
  public:
   Comparison(const StudyView& view, std::vector<Verdict>& out) : view_(view), out_(out) {}
 
   void all() {
     if (view_.result().config.reference) {
-      for (const auto& [system, cells] : view_.groups({"system"})) best(system[0], cells);
+      Verdict fastest{"note",
+                      "The least time at equal error, for each system, and the methods behind it:",
+                      {"system", "error", "least time [s]", "by", "next", "ratio", "slowest",
+                       "ratio", "not reached by"}};
+      for (const auto& [system, cells] : view_.groups({"system"})) best(system[0], cells, fastest);
+      if (!fastest.rows.empty()) out_.push_back(std::move(fastest));
       orders();
     }
     for (const std::string& axis : view_.varying_without({"system", "step", "rtol"})) worse(axis);
@@ -59,27 +59,27 @@ class Comparison {
     return kNotMeasured;
   }
 
-  // Of a control, which wins by chance if it does: "" for all others.
+  // Warning about a control, which wins by chance if it does: "" for all others.
   std::string warning(const std::vector<size_t>& cells) const {
     double left = 0;
     for (const size_t i : cells) {
       if (view_.cell(i).claimed_order > 0) return "";
       if (view_.metrics(i).constraint > left) left = view_.metrics(i).constraint;
     }
-    return left > 1e-9 ? fmt::format(
-                             " (a control: it claims no order, and leaves the constraint "
-                             "by up to {:.1e})",
-                             left)
-                       : " (a control: it claims no order)";
+    if (cells.empty()) return "";
+    const std::string control = "a control: it claims no order";
+    return left > 1e-9 ? control + fmt::format(", and leaves the constraint by up to {:.1e}", left)
+                       : control;
   }
 
-  void best(const std::string& system, const std::vector<size_t>& of_system) {
+  void best(const std::string& system, const std::vector<size_t>& of_system, Verdict& fastest) {
     const std::vector<std::string> axes = view_.varying_without({"system", "step", "rtol"});
     if (axes.empty()) return;
     std::map<std::string, std::vector<size_t>> methods;
     for (const size_t i : of_system) methods[view_.words(i, axes)].push_back(i);
     const auto called = [&](const std::string& name) {
-      return "`" + name + "`" + warning(methods.at(name));
+      const std::string remark = warning(methods.at(name));
+      return name + (remark.empty() ? "" : " (" + remark + ")");
     };
     // The error that a third of the methods reach, as a power of ten.
     std::vector<double> reached;
@@ -101,42 +101,25 @@ class Comparison {
     if (!(target > 0)) return;  // nothing moves
     std::vector<std::pair<double, std::string>> ranked;
     std::vector<std::string> never;
-    std::vector<size_t> never_cells;
     for (const auto& [name, cells] : methods) {
       const double time = time_at(cells, target);
       if (time > 0) {
         ranked.emplace_back(time, name);
       } else {
-        never.push_back("`" + name + "`");
-        never_cells.insert(never_cells.end(), cells.begin(), cells.end());
+        never.push_back(name);
       }
     }
-    if (ranked.empty())
-      return say("note",
-                 fmt::format("{}: no method gets the error down to {:.0e} with these steps.",
-                             system, target));
     std::sort(ranked.begin(), ranked.end());
-    std::string text = fmt::format("{}: at the error {:.0e} the least time is {} by {}", system,
-                                   target, time_words(ranked[0].first), called(ranked[0].second));
-    if (ranked.size() > 1) {
-      const double next = ranked[1].first / ranked[0].first;
-      text += next < 1.05
-                  ? fmt::format(", level with it {}", called(ranked[1].second))
-                  : fmt::format(", then {:.3g} times that by {}", next, called(ranked[1].second));
-      text +=
-          fmt::format("; the slowest of {} that get there takes {:.3g} times as long: `{}`",
-                      ranked.size(), ranked.back().first / ranked[0].first, ranked.back().second);
-    }
-    text += ".";
-    if (!never.empty())
-      text += fmt::format(
-          " {} with these steps: {}.",
-          never.size() == 1 ? "1 method does not get there"
-                            : fmt::format("{} methods do not get there", never.size()),
-          never.size() > 4
-              ? view_.where(never_cells, "system") + ", among them " + first_few(never, 3)
-              : first_few(never, 4));
-    say("note", text);
+    std::vector<Cell>& row = fastest.rows.emplace_back(std::vector<Cell>{system, target});
+    const auto add = [&](bool there, size_t k) {
+      row.emplace_back(there ? called(ranked[k].second) : "");
+      row.emplace_back(there ? ranked[k].first / ranked[0].first : kNotMeasured);
+    };
+    row.emplace_back(ranked.empty() ? kNotMeasured : ranked[0].first);
+    row.emplace_back(ranked.empty() ? "" : called(ranked[0].second));
+    add(ranked.size() > 1, 1);
+    add(ranked.size() > 2, ranked.size() - 1);
+    row.emplace_back(first_few(never, 4));
   }
 
   void orders() {
@@ -234,34 +217,38 @@ class Comparison {
       }
     }
     if (compared == 0) return;
-    std::string text = fmt::format(
-        "**{}**, {} of otherwise equal cells; error and time over the best of the group "
-        "(geometric mean): ",
-        axis, plural(compared, "group"));
     const auto mean = [](double sum, size_t n) {
       return n == 0 ? kNotMeasured : std::exp(sum / static_cast<double>(n));
     };
     std::pair<double, std::string> wrong = {1.05, ""}, slow = {1.05, ""};
-    bool first = true;
-    for (const std::string& value : view_.values(axis)) {
+    Verdict verdict{"note", "", {axis, "error ratio", "time ratio", "worst in"}};
+    const auto values = view_.values(axis);
+    const bool controls =
+        axis == "scheme" && std::any_of(values.begin(), values.end(), [&](const auto& v) {
+          return !warning(tallies[v].cells).empty();
+        });
+    const bool failures = std::any_of(values.begin(), values.end(),
+                                      [&](const auto& v) { return tallies[v].failed > 0; });
+    if (failures) verdict.columns.emplace_back("failed");
+    if (controls) verdict.columns.emplace_back("remark");
+    for (const std::string& value : values) {
       const Tally& tally = tallies[value];
       if (tally.groups + tally.failed == 0) continue;
       const double error = mean(tally.error, tally.groups), time = mean(tally.time, tally.timed);
       if (error > wrong.first) wrong = {error, value};
       if (time > slow.first) slow = {time, value};
-      text += fmt::format("{}`{}`{}", first ? "" : "; ", value,
-                          axis == "scheme" ? warning(tally.cells) : "");
-      if (tally.groups > 0) text += fmt::format(" error ×{:.3g}", error);
-      if (tally.timed > 0) text += fmt::format(", time ×{:.3g}", time);
-      if (tally.worst > 0) text += fmt::format(", worst in {}", tally.worst);
-      if (tally.failed > 0)
-        text += fmt::format("{}**{} failed**", tally.groups > 0 ? ", " : " ", tally.failed);
-      first = false;
+      std::vector<Cell>& row = verdict.rows.emplace_back(
+          std::vector<Cell>{value, error, time, static_cast<double>(tally.worst)});
+      if (failures) row.emplace_back(static_cast<double>(tally.failed));
+      if (controls) row.emplace_back(warning(tally.cells));
     }
-    text += wrong.second.empty() ? ". None is worse in error"
-                                 : ". Worst in error: `" + wrong.second + "`";
-    if (!slow.second.empty()) text += "; slowest: `" + slow.second + "`";
-    say("note", text + ".");
+    verdict.text = fmt::format(
+        "**{}**, {} of otherwise equal cells: {}{}. Error and time over the best of the group, as "
+        "geometric means:",
+        axis, plural(compared, "group"),
+        wrong.second.empty() ? "none is worse in error" : "worst in error `" + wrong.second + "`",
+        slow.second.empty() ? "" : ", slowest `" + slow.second + "`");
+    out_.push_back(std::move(verdict));
   }
 
   const StudyView& view_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -13,7 +14,18 @@
 namespace hamel::tools {
 namespace {
 
-constexpr size_t kMostNames = 12;  // curves that can be told apart in one figure
+constexpr size_t kMostNames = 12;    // curves that can be distinguished in one figure
+constexpr size_t kMostCurves = 200;  // of one figure with all its filters; rows of a heat map
+
+// Of so many curves each which is a multiple of this is drawn.
+size_t stride(size_t curves) { return (curves + kMostCurves - 1) / kMostCurves; }
+
+std::string not_drawn(size_t curves, const char* what) {
+  const size_t each = stride(curves);
+  if (each <= 1) return "";
+  return fmt::format(" {} of {} {}, at equal distances in the order of the file.",
+                     (curves + each - 1) / each, curves, what);
+}
 
 class StudyPage {
  public:
@@ -29,8 +41,11 @@ class StudyPage {
 
   Page make() {
     page_.section("Verdict");
-    for (const Verdict& verdict : study_verdicts(result_))
+    for (const Verdict& verdict : study_verdicts(result_)) {
       page_.verdict(verdict.status, verdict.text);
+      if (!verdict.rows.empty())
+        page_.table("By " + verdict.columns.front(), verdict.columns, verdict.rows);
+    }
     add_references(page_, result_);
     diagrams();
     add_growth(page_, view_);
@@ -43,8 +58,8 @@ class StudyPage {
   }
 
  private:
-  // Axes go into the names of the curves while these stay few; the others become filters over the
-  // figures.
+  // Axes go into the names of the curves up to kMostNames of these; the others become filters over
+  // the figures.
   void divide_axes() {
     filters_ =
         view_.varies("system") ? std::vector<std::string>{"system"} : std::vector<std::string>{};
@@ -67,6 +82,13 @@ class StudyPage {
     return out;
   }
 
+  // Of the curves that `curves` leaves out.
+  std::string left_out() const {
+    std::vector<std::string> axes = names_;
+    axes.insert(axes.end(), filters_.begin(), filters_.end());
+    return not_drawn(view_.groups(axes).size(), "curves");
+  }
+
   bool drawn(size_t i) const {
     return view_.metrics(i).ok && std::isfinite(view_.metrics(i).error);
   }
@@ -77,7 +99,9 @@ class StudyPage {
     std::vector<std::string> axes = names_;
     axes.insert(axes.end(), filters_.begin(), filters_.end());
     std::vector<Series> out;
-    for (const auto& [key, cells] : view_.groups(axes)) {
+    const std::vector<StudyView::Group> groups = view_.groups(axes);
+    for (size_t curve = 0; curve < groups.size(); curve += stride(groups.size())) {
+      const auto& [key, cells] = groups[curve];
       Series series{view_.words(cells.front(), names_), {}, {}};
       series.markers = true;
       for (size_t k = 0; k < filters_.size(); ++k)
@@ -117,10 +141,11 @@ class StudyPage {
   void diagrams() {
     const size_t failed = static_cast<size_t>(std::count_if(
         view_.run().begin(), view_.run().end(), [&](size_t i) { return !view_.metrics(i).ok; }));
-    const std::string missing =
+    std::string missing =
         failed == 0 ? ""
                     : fmt::format(" {} failed cell{} no point here: see the table of cells.",
                                   failed, failed == 1 ? " has" : "s have");
+    missing += left_out();
     const std::vector<Filter> filters = page_filters(filters_);
     const auto plot = [&](const char* title, const Axes& axes, const std::vector<Series>& series,
                           const std::string& note) {
@@ -195,6 +220,19 @@ class StudyPage {
     }
   }
 
+  // The cells with that key on the axes of the panels, in their order.
+  std::vector<size_t> mapped_cells(const std::vector<std::string>& panels,
+                                   const std::vector<std::string>& key) const {
+    std::vector<size_t> out;
+    for (size_t i = 0; i < result_.cells.size(); ++i) {
+      const StudyCell& cell = result_.cells[i];
+      bool here = cell.skipped != "duplicate" && !cell.config.chooses_steps();
+      for (size_t k = 0; k < panels.size(); ++k) here = here && cell.axes.at(panels[k]) == key[k];
+      if (here) out.push_back(i);
+    }
+    return out;
+  }
+
   template <class Value>
   void heat_map(const std::string& title, const std::string& unit,
                 const std::vector<std::string>& rows, const std::vector<std::string>& panels,
@@ -207,27 +245,29 @@ class StudyPage {
     map.y = "";
     const std::vector<std::string> steps = view_.values("step");
     for (const std::string& h : steps) map.x_values.emplace_back(std::stod(h));
-    std::vector<std::string> names;
-    for (size_t i = 0; i < result_.cells.size(); ++i) {
+    std::map<std::string, size_t> column_of, row_of;
+    for (size_t k = 0; k < steps.size(); ++k) column_of[steps[k]] = k;
+    const std::vector<size_t> cells = mapped_cells(panels, key);
+    for (const size_t i : cells) row_of.try_emplace(view_.words(i, rows), row_of.size());
+    const size_t each = stride(row_of.size());
+    for (const size_t i : cells) {
       const StudyCell& cell = result_.cells[i];
-      bool here = true;
-      for (size_t k = 0; k < panels.size(); ++k) here = here && cell.axes.at(panels[k]) == key[k];
-      if (!here || cell.skipped == "duplicate" || cell.config.chooses_steps()) continue;
       const std::string name = view_.words(i, rows);
-      size_t row = static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-      if (row == names.size()) {
-        names.push_back(name);
+      if (row_of[name] % each != 0) continue;
+      const size_t row = row_of[name] / each;
+      if (row == map.values.size()) {
         map.y_values.emplace_back(name);
         map.values.emplace_back(steps.size(), kNotMeasured);
         map.marks.emplace_back(steps.size(), "");
       }
-      const auto column = static_cast<size_t>(
-          std::find(steps.begin(), steps.end(), cell.axes.at("step")) - steps.begin());
-      if (column == steps.size()) continue;  // a step that no cell was run with
-      if (!cell.runs()) map.marks[row][column] = cell.skipped == "excluded" ? "excluded" : "none";
-      else if (!view_.metrics(i).ok) map.marks[row][column] = "failed";
-      else map.values[row][column] = value(i);
+      const auto column = column_of.find(cell.axes.at("step"));
+      if (column == column_of.end()) continue;  // a step that no cell was run with
+      std::string& mark = map.marks[row][column->second];
+      if (!cell.runs()) mark = cell.skipped == "excluded" ? "excluded" : "none";
+      else if (!view_.metrics(i).ok) mark = "failed";
+      else map.values[row][column->second] = value(i);
     }
+    map.note += not_drawn(row_of.size(), "rows");
     add_heat_map(map);
   }
 

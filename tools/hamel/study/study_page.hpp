@@ -1,4 +1,4 @@
-// The page of a study, and what its data say in words.
+// The page of a study, and its verdicts.
 #pragma once
 
 #include <string>
@@ -10,9 +10,12 @@
 
 namespace hamel::tools {
 
+/// A sentence, and the numbers that it rests on as a table.
 struct Verdict {
   std::string status;  // ok, failed or note
   std::string text;
+  std::vector<std::string> columns = {};
+  std::vector<std::vector<Cell>> rows = {};
 };
 
 /// Failures and where they lie, the best at equal error, orders against claims, which value of an

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -16,7 +18,7 @@ Cell axis_cell(const std::string& value) { return value.empty() ? kUnused : valu
 void add_references(Page& page, const StudyResult& result) {
   if (!result.config.reference) {
     page.text(
-        {"This study asks for times, not for errors (`reference = false`): nothing is compared."});
+        {"This study measures times, not errors (`reference = false`): nothing is compared."});
     return;
   }
   std::vector<std::vector<Cell>> rows;
@@ -84,23 +86,29 @@ void add_cells(Page& page, const StudyView& view) {
                         : fmt::format("{} [{}]", column.name, column.unit));
   }
   std::vector<std::vector<Cell>> rows;
-  for (const size_t i : view.run()) {
+  const size_t count = view.run().size();
+  for (const size_t i : std::span(view.run()).first(std::min(count, kMostRows))) {
     std::vector<Cell> row;
     for (const TableColumn* column : shown) {
       const auto* numbers = std::get_if<std::vector<double>>(&column->values);
-      const auto axis = view.cell(i).axes.find(column->name);
-      if (axis != view.cell(i).axes.end()) row.push_back(axis_cell(axis->second));
+      const StudyAxes& axes = view.cell(i).axes;
+      if (axes.contains(column->name)) row.push_back(axis_cell(axes.at(column->name)));
       else if (numbers != nullptr) row.emplace_back((*numbers)[i]);
       else row.emplace_back(column->text(i));
     }
     rows.push_back(std::move(row));
   }
-  page.table("All cells that were run", names, rows,
-             "The same, and what is empty or equal in all rows, is in `cells.csv` and `cells.h5`.",
+  page.table(count <= kMostRows
+                 ? "All cells that were run"
+                 : fmt::format("The first {} of {} cells that were run", kMostRows, count),
+             names, rows,
+             "All cells, with the columns that are empty or equal in all rows, are in `cells.csv` "
+             "and `cells.h5`.",
              true);
 }
 
 void add_skipped(Page& page, const StudyResult& result) {
+  std::map<std::vector<std::string>, size_t> index;
   std::vector<std::vector<std::string>> kinds;
   std::vector<std::string> steps;
   for (const StudyCell& cell : result.cells) {
@@ -110,12 +118,12 @@ void add_skipped(Page& page, const StudyResult& result) {
       if (axis != "step") row.push_back(cell.axes.at(axis));
     row.push_back(cell.skipped);
     row.push_back(cell.why);
-    const auto at = static_cast<size_t>(std::find(kinds.begin(), kinds.end(), row) - kinds.begin());
-    if (at == kinds.size()) {
+    const auto [at, added] = index.try_emplace(row, kinds.size());
+    if (added) {
       kinds.push_back(row);
       steps.push_back(cell.axes.at("step"));
     } else {
-      steps[at] += ", " + cell.axes.at("step");
+      steps[at->second] += ", " + cell.axes.at("step");
     }
   }
   if (kinds.empty()) return;

@@ -6,13 +6,13 @@
 
 namespace hamel::tools {
 
-/// What the cells of each system are compared with.
+/// The references of the cells of each system.
 void add_references(Page& page, const StudyResult& result);
 
 /// The measured order of each method against its claim.
 void add_orders(Page& page, const StudyView& view);
 
-/// Every cell that was run, without the columns that say the same in each row.
+/// Every cell that was run, without the columns that are equal in all rows.
 void add_cells(Page& page, const StudyView& view);
 
 /// The combinations that were not run and why, one row for all steps of a kind.

@@ -1,5 +1,6 @@
-// A study's verdicts: each sentence is computed from the cells, and says how many of them it rests
-// on. Here whether the runs can be relied on; methods against each other in study_comparison.cpp.
+// A study's verdicts: each sentence is computed from the cells, and states how many of them it
+// rests on. Here whether the runs can be relied on; methods against each other in
+// study_comparison.cpp.
 #include "study_verdict.hpp"
 
 #include <algorithm>
@@ -76,10 +77,11 @@ class Judge {
     for (const size_t i : view_.run())
       if (lost(i)) cells.push_back(i);
     if (cells.empty()) return;
-    say("note", fmt::format("{} {} saturated: an error above {} of the motion says that the motion "
-                            "is lost, not by how much. Where: {}.",
-                            plural(cells.size(), "cell"), cells.size() == 1 ? "is" : "are", kLost,
-                            view_.where(cells)));
+    say("note",
+        fmt::format("{} {} saturated: an error above {} of the motion means that the motion "
+                    "is lost, not by how much. Where: {}.",
+                    plural(cells.size(), "cell"), cells.size() == 1 ? "is" : "are", kLost,
+                    view_.where(cells)));
   }
 
   void energy() {
@@ -101,7 +103,7 @@ class Judge {
                     one ? "is" : "are", kLost, view_.where(kept)));
   }
 
-  // Where some solvers find a step's solution and others do not.
+  // Groups of otherwise equal cells that some solvers solve and others do not.
   void basins() {
     std::map<std::string, size_t> failed;
     std::vector<size_t> mixed;
@@ -158,18 +160,24 @@ class Judge {
     }
   }
 
+  // Verdicts on the references, whose table is separate (study_tables.cpp).
   void references() {
+    if (!view_.result().config.reference) return;
+    size_t runs = 0;
+    double bound = 0;
     for (size_t i = 0; i < view_.result().references.size(); ++i) {
       const StudyReference& reference = view_.result().references[i];
-      const std::string& label = view_.result().config.systems[i].label;
-      if (!view_.result().config.reference) continue;
       if (reference.kind.starts_with("none") || reference.kind.starts_with("not converged"))
-        say("note", fmt::format("{} has nothing to compare with: {}.", label, reference.kind));
-      else if (reference.kind.starts_with("converged"))
-        say("note", fmt::format("{}: errors are distances from a {} whose own error is at most "
-                                "{:.1e}.",
-                                label, "reference run (" + reference.kind + ")", reference.bound));
+        say("note", fmt::format("{} has nothing to compare with: {}.",
+                                view_.result().config.systems[i].label, reference.kind));
+      if (!reference.kind.starts_with("converged")) continue;
+      ++runs;
+      bound = std::max(bound, reference.bound);
     }
+    if (runs > 0)
+      say("note", fmt::format("Of {} errors are distances from a reference run whose own error is "
+                              "at most {:.1e}.",
+                              plural(runs, "system"), bound));
   }
 
   StudyView view_;

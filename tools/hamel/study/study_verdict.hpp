@@ -1,4 +1,4 @@
-// What the sources of a study's verdicts share.
+// Definitions that the sources of a study's verdicts share.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace hamel::tools {
 
-/// Adds what can be said about methods against each other: the best at equal error, orders against
+/// Adds comparisons of methods: the best at equal error, orders against
 /// claims, which value of an axis is worse.
 void compare_methods(const StudyView& view, std::vector<Verdict>& out);
 

@@ -40,10 +40,10 @@ bool StudyView::varies(const std::string& axis) const {
 
 std::vector<std::string> StudyView::values(const std::string& axis) const {
   std::vector<std::string> out;
+  std::set<std::string> seen;
   for (const size_t i : run_) {
     const std::string& value = cell(i).axes.at(axis);
-    if (!value.empty() && std::find(out.begin(), out.end(), value) == out.end())
-      out.push_back(value);
+    if (!value.empty() && seen.insert(value).second) out.push_back(value);
   }
   return out;
 }

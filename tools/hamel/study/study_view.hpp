@@ -36,22 +36,22 @@ class StudyView {
   /// The axes that vary, without those.
   std::vector<std::string> varying_without(const std::vector<std::string>& axes) const;
 
-  /// "lift, s = 0.5, cayley": the values of a cell on these axes. What it does not use is left out;
+  /// "lift, s = 0.5, cayley": the values of a cell on these axes. Axes not used are left out;
   /// where that leaves nothing, "solver unused".
   std::string words(size_t i, const std::vector<std::string>& axes) const;
   std::string words(const std::vector<std::string>& axes,
                     const std::vector<std::string>& values) const;
-  /// The words of a cell on all axes that vary but the step; never empty.
+  /// The names of a cell on all axes that vary but the step; never empty.
   std::string name(size_t i) const;
   /// The axes whose values all these cells share although the study has more: "solver nlopt; h 0.4,
-  /// 0.8". `known` is left out: the reader knows it.
+  /// 0.8". `known` is left out.
   std::string where(const std::vector<size_t>& some, const std::string& known = "") const;
   /// Groups of cells that differ in one axis only, which all of them use. A cell that does not use
   /// another axis, as boxed does not use s, is in every group of its kind.
   std::vector<std::vector<size_t>> otherwise_equal(const std::string& axis) const;
-  /// Of cells that differ in their step, the slopes over all steps and over the two finest against
-  /// the claim: "ok", "finest only"; "below its claim" where the slopes agree and the least error
-  /// is below kSmall of the motion, else "not asymptotic": too few steps, or too large, to tell.
+  /// Order of cells that differ in their step, the slopes over all steps and over the two finest
+  /// against the claim: "ok", "finest only"; "below its claim" where the slopes agree and the least
+  /// error is below kSmall of the motion, else "not asymptotic": too few steps, or too large.
   /// "claims none", "not measured".
   const char* order_verdict(const std::vector<size_t>& cells) const;
 
@@ -61,7 +61,7 @@ class StudyView {
   std::vector<std::string> varying_;
 };
 
-/// What tables show for a value that a scheme makes no use of.
+/// Text of tables for a value that a scheme makes no use of.
 constexpr const char* kUnused = "unused";
 
 /// An axis with a value as text shows it: "s = 0.5", "h = 0.1", "1e-13"; names as they are, nothing

@@ -101,7 +101,7 @@ export function animation(block) {
     seek(start);
     return drawn;
   };
-  return { element, draw };
+  return { element, draw, picture: () => stage.picture(false) };
 }
 
 /** 1 where the motion then takes a pleasant time, else what brings it near ten seconds. */

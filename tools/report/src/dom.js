@@ -1,5 +1,7 @@
 // One helper that makes elements. Text is always set as text, never as markup.
 
+import { prose } from './format.js';
+
 const SVG_TAGS = new Set(['svg', 'line', 'circle', 'text']);
 
 /** h('p', {class: 'note'}, 'text', child…) -> element; a null attribute or child is left out. */
@@ -25,9 +27,9 @@ export function inline(text) {
       return h('code', {}, code.length < 30 ? code.replaceAll(' ', '\u00a0') : code);
     }
     if (part.length > 4 && part.startsWith('**') && part.endsWith('**')) {
-      return h('strong', {}, part.slice(2, -2));
+      return h('strong', {}, prose(part.slice(2, -2)));
     }
-    return document.createTextNode(part);
+    return document.createTextNode(prose(part));
   });
 }
 

@@ -10,6 +10,10 @@ export function power(n) {
   return '10' + [...String(n)].map((digit) => SUPERSCRIPTS[digit]).join('');
 }
 
+/** A text in which numbers are written as everywhere on the page: 1.8e-13 is 1.8·10⁻¹³, 1e-08 is 10⁻⁸. (A sign behind the e: no name is meant.) */
+export const prose = (text) => text.replace(/(?<![\w.])(\d+(?:\.\d+)?)e([+-]\d+)(?!\w)/g,
+  (_, mantissa, exponent) => (+mantissa === 0 ? '0' : mantissa === '1' ? power(+exponent) : `${mantissa}·${power(+exponent)}`));
+
 /** The same without zeros at the end of the decimals: for parameters, which were typed by a person. */
 export function formatShort(value, digits = 6) {
   return formatNumber(value, digits).replace(/(\.\d*?)0+(?=·|$)/, '$1').replace(/\.(?=·|$)/, '');
@@ -50,7 +54,7 @@ export function formatValue(value, number = formatNumber) {
   if (typeof value === 'boolean') return value ? 'yes' : 'no';
   if (Array.isArray(value)) return formatList(value, number);
   if (typeof value === 'object') return JSON.stringify(value);
-  return String(value);
+  return prose(String(value));
 }
 
 function formatList(list, number) {

@@ -24,18 +24,18 @@ export function heatmap(block) {
     `${block.y || 'rows'} against ${block.x || 'columns'}. Arrow keys read the cells.` });
   let drawn = null;
   const tall = (width) => layout(map, width).height;
-  const svg = () => drawn.picture(SAVED, tall(SAVED), 0, {});
+  const picture = (width) => drawn.picture(width, tall(width), 0, {});
   const csv = () => columnsToCsv([{ name: block.y || 'row', values: map.rows }, ...map.columns.map((name, c) =>
     ({ name, values: map.values.map((row, r) => row[c] ?? map.marks[r]?.[c] ?? '') }))]);
   const element = figure(block, [holder, map.hidden ? remark(`${map.hidden} cell${map.hidden === 1 ? '' : 's'} at or below zero left white.`) : null,
     map.only !== null ? remark(`Every value is ${scaleText(map, map.only)} ${block.unit ?? ''}.`) : null,
-    map.values.flat().includes(null) ? remark('A hatched cell has no value.') : null, block.note ? remark(block.note) : null], { svg, csv });
+    map.values.flat().includes(null) ? remark('A hatched cell has no value.') : null, block.note ? remark(block.note) : null], { svg: () => picture(SAVED), csv });
   if (map.columns.length > WIDE) element.classList.add('wide');
   const draw = () => {
     drawn = makeChart(holder, tall, (width) => option(map, block, layout(map, width)));
     readByKeys(holder, drawn.chart, () => ({ series: 0, points: map.columns.length * map.rows.length, columns: map.columns.length }));
   };
-  return { element, draw };
+  return { element, draw, picture };
 }
 
 /** The block -> {columns, rows: texts; values, marks: rows from the top; at(value): on the scale; range; scaled: it has two ends, only: or one

@@ -4,6 +4,8 @@
 const COLOURS = { body: '#4d86bd', accent: '#d55e00', dark: '#2f3a46', light: '#dfe5ec' };
 const NEEDS = { box: 'size', cylinder: 'radius', sphere: 'radius', ellipsoid: 'radii', line: 'points', arrow: 'to' };
 
+const TOUCHING = 0.02;  // of the radius: what rolls inside a shell
+
 export const add = (a, b) => a.map((v, i) => v + b[i]);
 const isPoint = (p) => Array.isArray(p) && p.length === 3 && p.every(Number.isFinite);
 
@@ -87,6 +89,23 @@ function readForce(force, f, times) {
     (Array.isArray(v) && v.length === 6 && v.every(Number.isFinite) ? { at: v.slice(0, 3), force: v.slice(3) } : null)) };
 }
 
+/** Marks the balls that hold a whole other body in the first pose: one sees through them. */
+function markShells(bodies) {
+  const within = (shape, pose, { point, air }) => {
+    const back = ([w, ...v]) => [w, ...v.map((c) => -c)];
+    const apart = (p, from) => p.map((v, i) => v - from.at[i]);
+    const p = turned(back(shape.pose.turn), apart(turned(back(pose.turn), apart(point, pose)), shape.pose));
+    const radii = shape.radii ?? Array(3).fill(shape.radius);
+    return Math.hypot(...p.map((v, i) => v / radii[i])) + air / Math.min(...radii) < 1 + TOUCHING;
+  };
+  for (const { shapes, poses: [pose] } of bodies) {
+    for (const shape of shapes) {
+      shape.shell = Boolean(pose && (shape.radii || shape.shape === 'sphere')) && bodies.some(({ shapes: others, hull, poses: [other] }) =>
+        others !== shapes && hull.length > 0 && other && hull.every(({ point, air }) => within(shape, pose, { point: placed(other, point), air })));
+    }
+  }
+}
+
 /** The block -> {times, bodies, forces, strongest, box, reach, missing}; a body: {name, poses, shapes, hull, middle, way: points or null, reach}. */
 export function readMotion(block) {
   const { times } = block;
@@ -109,6 +128,7 @@ export function readMotion(block) {
       way: body.trail ? poses.map((pose) => (pose ? placed(pose, point) : null)) : null,
       reach: Math.max(0, ...hull.map((p) => Math.hypot(...p.point.map((v, k) => v - middle[k])) + p.air)) };
   });
+  markShells(bodies);
   const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   const take = (point, air) => point.forEach((v, i) => {
     box[0][i] = Math.min(box[0][i], v - air);

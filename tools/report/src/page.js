@@ -8,6 +8,7 @@ import { h, inline, problem } from './dom.js';
 import { assignStyles } from './palette.js';
 import { heatmap } from './heatmap.js';
 import { path, plot } from './plot.js';
+import { showPicture } from './picture.js';
 import { preparePrinting } from './print.js';
 import { record } from './record.js';
 import { sphere } from './sphere.js';
@@ -124,11 +125,12 @@ async function showPage() {
   }
   document.title = String(data.title || 'Report').replace(/[`*]/g, '');
   assignStyles(data.sections);
+  document.body.append(h('span', { id: 'light', class: 'light', hidden: true }));
+  if (data.picture) return showPicture(data, (block) => KINDS[block.kind](block));
   const [later, counter] = [[], { blocks: 0 }];
   const nav = contents(data.sections);
   if (nav) document.body.classList.add('with-contents');
   const main = h('main', {}, data.sections.map((section, i) => showSection(section, i + 1, counter, later)));
-  document.body.append(h('span', { id: 'light', class: 'light', hidden: true }));
   document.body.append(h('div', { class: 'page' }, header(data), nav, main,
     later.length ? h('footer', {}, HELP) : null));
   preparePrinting();

@@ -14,9 +14,10 @@ import { makeZoom, ZOOMS } from './zoom.js';
 
 const MARGIN = { left: 74, right: 18, top: 12, bottom: 46 };
 const BESIDE = 36;  // pixels left of the numbers of the y axis: its name
-const LEGEND_ROW = 20;
+const LEGEND_ROW = 24;
 const [LONG, MOST_READ] = [2000, 14];  // longer curves are drawn by their least and greatest values, so many are read out
-const SAVED = [720, 420];              // pixels of a figure that is saved
+const [SAVED, FLATTER, LOWEST] = [720, 12 / 7, 190];  // a figure that is saved: pixels across, width over height, its least height
+const SWATCH = 46;                     // pixels in the legend before a name
 const DECADES = 2;                     // so many on a logarithmic axis y: it ends at powers of ten
 
 export const plot = (block) => chartFigure(block, readSeries(block, true), false);
@@ -29,9 +30,9 @@ function chartFigure(block, data, equal) {
   let drawn = null;
   const redraw = () => {
     drawn?.redraw();
-    const pairs = covered(data, equal);
-    cover.textContent = pairs.map(([a, b]) => `${a} lies on ${b}`).join('; ') + (pairs.length ? '.' : '');
-    cover.hidden = pairs.length === 0;
+    const groups = covered(data, equal);
+    cover.textContent = groups.map((names) => `${names.join(names.some((name) => name.includes(',')) ? '; ' : ', ')} coincide.`).join(' ');
+    cover.hidden = groups.length === 0;
   };
   const filters = makeFilters(block.filters, () => offer());
   const legend = makeLegend(curves, (i, visible) => {
@@ -50,18 +51,20 @@ function chartFigure(block, data, equal) {
   const holder = h('div', { class: 'chart drawing', role: 'img', tabindex: 0, 'aria-label': describe(block, data, equal) });
   const zoom = makeZoom(holder, () => drawn.redraw());
   const alone = curves.length === 1 && (!curves[0].name || curves[0].name === block.title);
-  const notes = [cover, data.hidden ? remark(`${data.hidden} point${data.hidden === 1 ? '' : 's'} at or below zero not drawn.`) : null,
+  const bands = curves.some((curve) => curve.lows.length);
+  const notes = [cover, bands ? remark('A shaded curve goes up and down more often than this figure can show: it is drawn from its least to its greatest values.') : null, data.hidden ? remark(`${data.hidden} point${data.hidden === 1 ? '' : 's'} at or below zero not drawn.`) : null,
     block.note ? remark(block.note) : null];
-  const svg = () => {
+  const picture = (width) => {
     const shown = curves.filter((curve) => curve.show);
-    const wide = widest(shown.map((curve) => curve.name)) + 8;
-    const rows = alone ? 0 : Math.ceil(shown.length / Math.max(1, Math.floor((SAVED[0] - MARGIN.left) / (wide + 46))));
-    return drawn.picture(...SAVED, rows ? rows * LEGEND_ROW + 6 : 0, {
-      legend: { show: rows > 0, bottom: 2, left: MARGIN.left, right: 0, itemWidth: 28, itemGap: 12, textStyle: { ...TEXT, width: wide }, selectedMode: false } });
+    const left = Math.min(MARGIN.left, width / 12);
+    const wide = Math.min(widest(shown.map((curve) => curve.name)) + 8, width - left - SWATCH);
+    const rows = alone ? 0 : Math.ceil(shown.length / Math.max(1, Math.floor((width - left) / (wide + SWATCH))));
+    return drawn.picture(width, Math.max(LOWEST, Math.round(width / FLATTER)), rows ? rows * LEGEND_ROW + 6 : 0, {
+      legend: { show: rows > 0, data: shown.map(({ name, markers }) => ({ name, itemStyle: { opacity: markers ? 1 : 0 } })), bottom: 2, left, right: 0, itemWidth: 28, itemGap: 12, textStyle: { ...TEXT, width: wide, overflow: 'truncate' }, selectedMode: false } });
   };
   const csv = () => columnsToCsv(block.series.flatMap((s) => [{ name: block.x ?? 'x', values: s.x },
-    { name: `${s.name} ${block.y ?? ''}`.trim(), values: s.y }]));
-  const element = figure(block, [filters.element, holder, alone ? null : legend.element, notes], { svg, csv }, zoom.reset);
+    { name: `${s.name} ${block.y ?? ''}`.trim(), values: s.y }, ...(s.low ? [{ name: `${s.name}, least ${block.y ?? ''}`.trim(), values: s.low }] : [])]));
+  const element = figure(block, [filters.element, holder, alone ? null : legend.element, notes], { svg: () => picture(SAVED), csv }, zoom.reset);
   if (curves.length > MANY) element.classList.add('wide');
   offer();
 
@@ -70,7 +73,7 @@ function chartFigure(block, data, equal) {
     zoom.watch(drawn.chart);
     readByKeys(holder, drawn.chart, () => ({ series: curves.findIndex((c) => c.show), points: curves.find((c) => c.show)?.points.length ?? 0 }));
   };
-  return { element, draw };
+  return { element, draw, picture };
 }
 
 const isPoint = (p) => p[0] !== null && p[1] !== null;
@@ -86,8 +89,8 @@ function instead(block, data, count) {
 }
 
 function describe(block, { curves, y }, equal) {
-  const ranges = curves.map(({ name, points }) => {
-    const [low, high] = extent(points.map((p) => (p[1] === null ? null : y.from(p[1]))));
+  const ranges = curves.map(({ name, points, lows }) => {
+    const [low, high] = extent([...points, ...lows].map((p) => (p[1] === null ? null : y.from(p[1]))));
     return low <= high ? `${name} from ${formatShort(low, 3)} to ${formatShort(high, 3)}` : `${name} empty`;
   });
   return `${equal ? 'Path in the plane' : 'Plot'}: ${block.title ?? 'untitled'}; ${block.y || 'y'} against ${block.x || 'x'}; ` +
@@ -106,7 +109,7 @@ function option(block, data, equal, width, height, seen) {
   return {
     grid: { ...margin, outerBoundsMode: 'none' },
     xAxis: oneAxis(data.x, ranges.x, 28, ticksOf(data.x, seen.x ?? ranges.x, Math.max(4, width / 90))), yAxis: oneAxis(data.y, ranges.y, labels + 14, y),
-    series: [...shown.map((curve) => oneSeries(curve, !equal)), ...(marked?.series ?? [])],
+    series: [...shown.filter((curve) => curve.lows.length).flatMap(band), ...shown.map((curve) => oneSeries(curve, !equal)), ...(marked?.series ?? [])],
     tooltip: { ...TOOLTIP, trigger: 'axis', axisPointer: { type: equal ? 'cross' : 'line', label: { show: equal, backgroundColor: 'var(--ink)', color: 'var(--paper)',
       formatter: ({ value, axisDimension }) => formatNumber(data[axisDimension].from(value)) }, lineStyle: { color: 'var(--soft)' }, crossStyle: { color: 'var(--soft)' } },
     showContent: !equal, formatter: (list) => readOut(list, data) },
@@ -114,18 +117,24 @@ function option(block, data, equal, width, height, seen) {
   };
 }
 
-const oneSeries = ({ id, name, style, points, dots, markers }, sorted) => ({
+const oneSeries = ({ id, name, style, points, lows, dots, markers }, sorted) => ({
   id, name, type: 'line', data: points, clip: true, silent: true,
   showSymbol: Boolean(markers), symbol: 'circle', symbolSize: dots ? 4.5 : 6.5, sampling: sorted && !dots && points.length > LONG ? 'minmax' : undefined,
-  lineStyle: { color: style.colour, width: dots ? 0 : 1.6, type: style.dash.length ? style.dash : 'solid', cap: 'round', join: 'round' }, itemStyle: { color: style.colour, borderWidth: 0 },
+  lineStyle: { color: style.colour, width: dots ? 0 : lows.length ? 1 : 1.6, type: style.dash.length ? style.dash : 'solid', cap: 'round', join: 'round' }, itemStyle: { color: style.colour, borderWidth: 0 },
   emphasis: { focus: 'series', lineStyle: { color: style.colour, width: dots ? 0 : 2.4 }, itemStyle: { color: style.colour } }, blur: { lineStyle: { opacity: 0.18 }, itemStyle: { opacity: 0.18 } },
   markPoint: sorted || !points[0] ? undefined : { silent: true, symbol: 'circle', symbolSize: 8, label: { show: false },
     itemStyle: { color: 'var(--paper)', borderColor: style.colour, borderWidth: 2 }, data: [{ coord: points.find(isPoint) ?? [0, 0] }] },
 });
 
+/** The area between the edges of a curve that is a band, and the lower one. */
+const band = ({ id, style, points, lows }) => [
+  { id: `band ${id}`, name: '', type: 'custom', data: [[points[0][0], points[0][1]]], clip: true, silent: true, tooltip: { show: false }, renderItem: (_, api) => ({
+    type: 'polygon', shape: { points: [...points, ...[...lows].reverse()].filter(isPoint).map((p) => api.coord(p)) }, style: { fill: style.colour, opacity: 0.35 } }) },
+  { id: `low ${id}`, name: '', type: 'line', data: lows, clip: true, silent: true, showSymbol: false, tooltip: { show: false }, lineStyle: { color: style.colour, width: 1 } }];
+
 function rangeOf(shown, k, axis) {
   const markers = shown.some((curve) => curve.markers);
-  const [min, max] = extent(shown.flatMap((curve) => curve.points.filter(isPoint).map((p) => p[k])));
+  const [min, max] = extent(shown.flatMap((curve) => [...curve.points, ...curve.lows].filter(isPoint).map((p) => p[k])));
   if (!(min <= max)) return [0, 1];
   if (axis.log) return max - min >= DECADES && k === 1 ? [Math.floor(min), Math.ceil(max)] : [min - 0.1, max + 0.1];
   const air = max > min ? (k === 1 ? 0.05 : markers ? 0.03 : 0) * (max - min) : (Math.abs(min) || 1) * 0.1;
@@ -159,6 +168,9 @@ function readOut(list, data) {
   const value = (axis, v) => (v === null || v === undefined ? MISSING : formatNumber(axis.from(v)));
   return h('div', {}, h('b', {}, `${data.x.label || 'x'} = ${value(data.x, list[0].axisValue)}`),
     list.filter(({ seriesName }) => seriesName).flatMap((one) => beside(data.curves[one.seriesId], one.data).map((point) => ({ ...one, point })))
-      .slice(0, MOST_READ).map(({ seriesName, point, color }) =>
-        h('div', { class: 'read' }, h('i', { style: `background:${color}` }), `${seriesName} `, h('span', {}, value(data.y, point[1])))));
+      .slice(0, MOST_READ).map(({ seriesName, seriesId, dataIndex, point, color }) => {
+        const low = data.curves[seriesId]?.lows[dataIndex];
+        return h('div', { class: 'read' }, h('i', { style: `background:${color}` }), `${seriesName} `,
+          h('span', {}, `${low ? `${value(data.y, low[1])} … ` : ''}${value(data.y, point[1])}`));
+      }));
 }

@@ -1,14 +1,17 @@
 // Shapes and lines as three.js draws them: finely for WebGL, of fewer faces and with lines of its own for SVG.
 
-import { AmbientLight, BoxGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, EdgesGeometry, Float32BufferAttribute, Group,
-  LineBasicMaterial, LineSegments, BufferGeometry, Mesh, MeshLambertMaterial, SphereGeometry } from 'three';
+import { AmbientLight, BoxGeometry, CircleGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, EdgesGeometry, Float32BufferAttribute, Group,
+  LineBasicMaterial, LineSegments, BufferGeometry, Mesh, MeshLambertMaterial, RingGeometry, SphereGeometry } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import { luminance } from './colours.js';
 import { turnFromZ } from './motion.js';
 
-const MARK = 0.7;  // radians
+const MARK = 0.7;   // radians
+const STRIP = 0.2;  // the same, along a cylinder
+const RIM = 0.82;   // of the radius: so far a mark reaches
+const SHEER = 0.3;  // opacity of what has something inside
 
 /** A colour of the style sheet, as it is now. */
 export const styled = (name) => new Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
@@ -49,8 +52,8 @@ export function addLight(scene, solid) {
   };
 }
 
-/** Light on dark and dark on light: the mark by which one sees a round body turn. */
-const markOf = (colour) => (luminance([1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16))) > 0.4 ? '#2f3a46' : '#f6f8fa');
+/** Amber on dark and dark on light: the mark by which one sees a round body turn. (White looks like a hole.) */
+const markOf = (colour) => (luminance([1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16))) > 0.4 ? '#2f3a46' : '#e9b949');
 
 export function stand(object, { at, turn: [w, x, y, z] }) {
   object.position.set(...at);
@@ -59,7 +62,24 @@ export function stand(object, { at, turn: [w, x, y, z] }) {
 }
 
 const upright = (geometry) => geometry.rotateX(Math.PI / 2);  // along z, where three.js puts it along y
-const lit = (color, side) => new MeshLambertMaterial(side ? { color, side } : { color });
+/** shell: one sees through it. */
+const lit = (color, shell) => new MeshLambertMaterial(shell ? { color, transparent: true, opacity: SHEER, depthWrite: false } : { color });
+
+/** A cylinder with a wedge of another colour inside the rim of both ends, and along it where it is long. No face lies on
+ * another: SVG sorts whole faces. */
+function cylinder({ radius: r, length, colour, shell }, round) {
+  const [body, mark, rest] = [lit(colour, shell), lit(markOf(colour), shell), 2 * Math.PI - MARK];
+  const [sides, few] = [round, Math.max(3, Math.round((round * MARK) / (2 * Math.PI)))];
+  const mantle = (material, count, from, angle) => new Mesh(upright(new CylinderGeometry(r, r, length, count, 1, true, from, angle)), material);
+  const wall = length > r ? [mantle(body, sides, (Math.PI + STRIP) / 2, 2 * Math.PI - STRIP), mantle(mark, few, (Math.PI - STRIP) / 2, STRIP)]
+    : [mantle(body, sides, 0, 2 * Math.PI)];
+  const ends = [0, Math.PI].flatMap((turn) => {  // about x: the wedge is on both sides of it
+    const at = (geometry, material) => new Mesh(geometry.translate(0, 0, length / 2).rotateX(turn), material);
+    return [at(new RingGeometry(RIM * r, r, sides, 1), body), at(new CircleGeometry(RIM * r, sides, MARK / 2, rest), body),
+      at(new CircleGeometry(RIM * r, few, -MARK / 2, MARK), mark)];
+  });
+  return [...wall, ...ends];
+}
 
 /** The parts of a shape, in its own frame. */
 export function solids(shape, solid) {
@@ -70,16 +90,12 @@ export function solids(shape, solid) {
       const box = new BoxGeometry(...shape.size);
       return [new Mesh(box, lit(colour)), lines(solid, [...new EdgesGeometry(box).attributes.position.array], new Color(colour).multiplyScalar(0.45), 1.3)];
     }
-    case 'cylinder': {
-      const { radius: r, length } = shape;
-      const sector = upright(new CylinderGeometry(r * 1.004, r * 1.004, length * 1.004 + r * 0.002, 8, 1, false, 0, MARK));
-      return [new Mesh(upright(new CylinderGeometry(r, r, length, round)), lit(colour)), new Mesh(sector, lit(markOf(colour), DoubleSide))];
-    }
+    case 'cylinder': return cylinder(shape, round);
     case 'sphere': case 'ellipsoid': {
       const ball = (radius, ...part) => upright(new SphereGeometry(radius, ...part));
-      const mark = lit(markOf(colour));
+      const mark = lit(markOf(colour), shape.shell);
       const [few, over] = solid ? [6, 1.004] : [4, 1.03];  // (SVG sorts whole faces)
-      const parts = [new Mesh(ball(1, round, round / 2), lit(colour)), new Mesh(ball(over, few, round / 2, 0, MARK), mark),
+      const parts = [new Mesh(ball(1, round, round / 2), lit(colour, shape.shell)), new Mesh(ball(over, few, round / 2, 0, MARK), mark),
         new Mesh(ball(over, few, round / 2, Math.PI, MARK), mark), new Mesh(ball(over + 0.002, round, 3, 0, 2 * Math.PI, 0, 0.3), mark)];
       parts.forEach((part) => part.scale.set(...(shape.radii ?? Array(3).fill(shape.radius))));
       return parts;

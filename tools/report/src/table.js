@@ -8,6 +8,8 @@ import { compare, makeFilter } from './table_filter.js';
 
 const SLICE = 150;  // rows made at a time
 const TALL = 40;    // more rows stand in a box
+const PRINTED = 80; // rows on paper
+const ROOM = 830;   // pixels of columns on the screen that A4 has room for: its text is smaller
 
 export function table(block) {
   if (!Array.isArray(block.columns) || !Array.isArray(block.rows)) throw new Error('no list "columns" or "rows"');
@@ -53,8 +55,11 @@ export function table(block) {
     if (box.scrollTop + 3 * box.clientHeight > box.scrollHeight) grow(body.childElementCount + SLICE);
   });
   onPaper(() => {
-    grow(order.length);
+    body.replaceChildren();
+    grow(Math.min(order.length, PRINTED));
     splitForPaper(box);
+    if (order.length > PRINTED)
+      box.parentElement.append(h('p', { class: 'part remark' }, `The first ${PRINTED} of ${order.length} rows; what is sorted and filtered on the screen is printed so.`));
   }, () => {
     box.parentElement.querySelectorAll('.part').forEach((part) => part.remove());
     refill();
@@ -70,12 +75,11 @@ export function table(block) {
 function splitForPaper(box) {
   const whole = box.querySelector('table');
   const widths = [...whole.tHead.rows[0].cells].map((cell) => cell.offsetWidth);
-  const room = box.clientWidth;
-  if (whole.offsetWidth <= room + 1) return;
+  if (whole.offsetWidth <= ROOM) return;
   const parts = [[0]];
   let used = widths[0];
   widths.slice(1).forEach((width, i) => {
-    if (used + width > room && parts.at(-1).length > 1) {
+    if (used + width > ROOM && parts.at(-1).length > 1) {
       parts.push([0]);
       used = widths[0];
     }

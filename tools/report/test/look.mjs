@@ -163,6 +163,9 @@ async function checkPrint(page, check, path) {
   check('prints to PDF', pdf.length > 5000);
   await page.setViewportSize({ width: 700, height: 1000 });
   await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));  // while the page has the screen's layout
+  const rows = await page.evaluate(() => [...document.querySelectorAll('.table-block')].map((block) => ({ told: Boolean(block.querySelector('p.part')),
+    rows: Math.max(...[...block.querySelectorAll('tbody')].map((body) => body.rows.length)) })));
+  check('tables on paper are short, or tell that they go on', rows.every(({ rows: count, told }) => count <= 80 && (!told || count === 80)), JSON.stringify(rows));
   await page.emulateMedia({ media: 'print' });
   const cut = await page.evaluate(() => [...document.querySelectorAll('.drawing')].filter((drawing) => {
     const frame = drawing.closest('figure').getBoundingClientRect();

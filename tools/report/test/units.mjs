@@ -1,7 +1,7 @@
 // What can be checked without a browser: [what, whether it is so].
 
 import { luminance, sequential } from '../src/colours.js';
-import { logTicks, niceTicks } from '../src/format.js';
+import { logTicks, niceTicks, prose } from '../src/format.js';
 import { floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/motion.js';
 import { columnsToCsv } from '../src/save.js';
 import { covered, readSeries } from '../src/series.js';
@@ -22,8 +22,11 @@ const at = (t) => poseAt(motion.bodies[0], placeInTime(motion.times, t));
 const grid = floorGrid([[0, 0, 0], [10, 3, 1]]);
 
 const x = [0, 1, 2, 3];
-const over = (a, b) => covered(readSeries({ series: [{ name: 'a', x, y: a }, { name: 'b', x, y: b }] }, true)).length;
+const over = (a, b, more = {}) => covered(readSeries({ series: [{ name: 'a', x, y: a }, { name: 'b', x, y: b, ...more }] }, true)).length;
 const pathsOver = (shift) => covered(readSeries({ series: [0, shift].map((d) => ({ name: `${d}`, x: x.map((v) => v + d), y: x.map((v) => d * v) })) }, false), true).length;
+const four = covered(readSeries({ series: [[0, 1, 0, 1], [5, 5, 5, 4], [0, 1, 0, 1], [0, 1, 0, 1]].map((y, i) => ({ name: `w${i + 1}`, x, y })) }, true));
+const ball = (radius, y) => ({ name: `${radius}`, shapes: [{ shape: 'sphere', radius, at: [1, 0, 0] }], poses: [[-1, y, 0, 1, 0, 0, 0]] });
+const shells = (y) => readMotion({ times: [0], bodies: [ball(2, 0), ball(0.5, y)] }).bodies.map(({ shapes: [shape] }) => shape.shell).join();
 const ticks = niceTicks(-0.31, 0.42, 5);
 const spans = [0.02, 0.1, 0.3, 0.399, 0.401, 0.5, 0.7, 0.9, 1, 1.3, 1.99, 2.01, 3, 7, 14];  // decades, each from many places
 const counts = spans.flatMap((span) => Array.from({ length: 100 }, (_, i) => logTicks(-4 + i / 100, -4 + i / 100 + span, 5).at.length));
@@ -50,6 +53,10 @@ export const units = [
   ['the room that a motion takes', near(motion.box[0], [-1, -1, -1]) && near(motion.box[1], [3, 1, 1])],
   ['the floor reaches under all of it', Math.max(...grid.lines.flat().map((p) => p[0])) >= 10 && grid.lines.length < 40],
   ['curves that cover each other are found', over([0, 1, 0, 1], [0, 1.001, 0, 1]) === 1 && over([0, 1, 0, 1], [0, 1, 0, 0.9]) === 0],
+  ['one way to write numbers', prose('at most **1.8e-13**, 0.0e+00, rtol = 1e-08, 2e+05 of 981e-4ab, x1e-3') === 'at most **1.8·10⁻¹³**, 0, rtol = 10⁻⁸, 2·10⁵ of 981e-4ab, x1e-3'],
+  ['of curves that coincide each is named once', four.map((names) => names.join()).join(';') === 'w1,w3,w4'],
+  ['a ball that holds another body is a shell', shells(1.4) === 'true,false' && shells(1.7) === 'false,false'],
+  ['a band and a curve do not coincide', over([0, 1, 0, 1], [0, 1, 0, 1], { low: [-1, -1, -1, -1] }) === 0],
   ['a logarithm leaves out what is not above zero', readSeries({ log_y: true, series: [{ name: 'a', x, y: [1, 0, -1, null] }] }, true).hidden === 2],
   ['ticks at round numbers with equal decimals', near(ticks.at, [-0.2, 0, 0.2, 0.4]) && ticks.read(0) === '0.0' && ticks.read(-0.2) === '−0.2'],
   ['an axis of logarithms has ticks, however far it is zoomed', Math.min(...counts) >= 3 && Math.max(...counts) <= 12],

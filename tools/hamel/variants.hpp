@@ -1,4 +1,4 @@
-// The readings of the paper's method, and what one run of each leaves for figures and tables.
+// The variants of the paper's method, and what one run of each leaves for figures and tables.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@
 namespace hamel::tools {
 
 /// A study of tools/studies/paper by its stem, as the program carries it; its cells are the
-/// readings of the paper's method.
+/// variants of the paper's method.
 StudyConfig paper_study(const std::string& stem);
 
-/// What one run of one reading leaves: its largest errors and its thinned curves.
+/// Results of one run of one variant: its largest errors and its thinned curves.
 struct Outcome {
   std::string name;  // "boxed", "lift s=1/2"
   StudyCell cell;
@@ -39,7 +39,7 @@ const std::vector<Figure>& figures();
 /// Runs all cells of a study, on both cores; the outcomes are in their order.
 std::vector<Outcome> run_all(const StudyConfig& study);
 
-/// Those with this value on this axis.
+/// The outcomes with this value on this axis.
 std::vector<Outcome> with(const std::vector<Outcome>& all, const std::string& axis,
                           const std::string& value);
 

@@ -1,4 +1,4 @@
-#include "readings.hpp"
+#include "variants.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ double Figure::floor(double step) const {
 
 namespace {
 
-Outcome run_reading(const StudyCell& cell) {
+Outcome run_variant(const StudyCell& cell) {
   const Result result = simulate(cell.config.system).config(cell.config).run();
   Outcome out;
   const bool adapted = registry().scheme(cell.config.scheme)->adapted;
@@ -64,11 +64,13 @@ Outcome run_reading(const StudyCell& cell) {
 }  // namespace
 
 std::vector<Outcome> run_all(const StudyConfig& study) {
-  std::vector<StudyCell> cells = study_cells(study, registry());
-  std::erase_if(cells, [](const StudyCell& cell) { return !cell.runs(); });
+  const StudyCells all = study_cells(study, registry());
+  std::vector<StudyCell> cells;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(cells),
+               [](const StudyCell& cell) { return cell.runs(); });
   std::vector<Outcome> out(cells.size());
   const auto part = [&](size_t first) {
-    for (size_t i = first; i < cells.size(); i += 2) out[i] = run_reading(cells[i]);
+    for (size_t i = first; i < cells.size(); i += 2) out[i] = run_variant(cells[i]);
   };
   auto other = std::async(std::launch::async, part, size_t{1});
   part(0);
@@ -132,7 +134,7 @@ void add_table(Page& page, const std::string& title, const std::vector<Outcome>&
                     o.nanoseconds});
   }
   page.table(title,
-             {"reading", "status", "energy error", "configuration error", "velocity error",
+             {"variant", "status", "energy error", "configuration error", "velocity error",
               "constraint residual", "group defect", "ns per step"},
              rows,
              "Largest values over the run, every step measured; time includes the measuring.");

@@ -1,0 +1,171 @@
+// hamel ensemble: all members of a file, or a part of them, with a journal from which an
+// interrupted one resumes.
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hamel/framework/ensemble/ensemble.hpp>
+#include <hamel/systems/by_name.hpp>
+
+#include "commands.hpp"
+#include "ensemble_page.hpp"
+#include "interrupt.hpp"
+#include "ranks.hpp"
+#include "screen.hpp"
+
+namespace hamel::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string folder_of(const EnsembleOptions& options) {
+  return options.directory.empty() ? fs::path(options.file).stem().string() + "-ensemble"
+                                   : options.directory;
+}
+
+// "skew = 0.3, start.omega3 = -1": what a member is varied by.
+std::string varied_of(const EnsembleResult& result, long member) {
+  std::string out;
+  for (const TableColumn& column : result.table.columns)
+    if (column.meaning.starts_with("varied"))
+      out += fmt::format(
+          "{}{} = {:.6g}", out.empty() ? "" : ", ", column.name,
+          std::get<std::vector<double>>(column.values)[static_cast<size_t>(member - result.first)]);
+  return out;
+}
+
+std::string summary(const EnsembleResult& result) {
+  std::string out = fmt::format("{}: {} members", result.config.run.system, result.members);
+  if (result.resumed > 0) out += fmt::format(", {} were there", result.resumed);
+  out += fmt::format("\n  failed                 {}\n", result.failures.size());
+  constexpr size_t most = 5;
+  for (size_t i = 0; i < std::min(result.failures.size(), most); ++i)
+    out += fmt::format("    member {}: {} (t = {:.6g}; {})\n", result.failures[i].member,
+                       result.failures[i].reason, result.failures[i].time,
+                       varied_of(result, result.failures[i].member));
+  if (result.failures.size() > most)
+    out += fmt::format("    and {} more, in ensemble.json\n", result.failures.size() - most);
+  size_t width = 22;
+  for (const std::string& name : result.kept) width = std::max(width, name.size());
+  for (const std::string& name : result.kept) {
+    const Moments& m = result.moments.at(name);
+    if (m.count == 0) {
+      out += fmt::format("  {:<{}} no member has it\n", name, width);
+      continue;
+    }
+    out += fmt::format("  {:<{}} mean {:.6g}, deviation {:.3g}, {:.6g} to {:.6g}", name, width,
+                       m.mean, m.deviation(), m.least, m.most);
+    if (m.count != result.members) out += fmt::format(", of {} members", m.count);
+    out += '\n';
+  }
+  for (size_t i = 0; i < result.class_counts.size(); ++i)
+    out +=
+        fmt::format("  {:<{}} {}\n", result.config.classes.names[i], width, result.class_counts[i]);
+  for (const std::string& note : result.notes)
+    out += fmt::format("  note                   {}\n", note);
+  return out + fmt::format("  time                   {:.2f} s on {} thread{}\n", result.seconds,
+                           result.threads, result.threads == 1 ? "" : "s");
+}
+
+int finish(const EnsembleOptions& options, const EnsembleResult& result) {
+  const std::string folder = folder_of(options);
+  const bool part = result.shard.count > 1;
+  if (!part) {
+    result.write(folder);
+    if (report_page().empty())
+      complain("hamel: no report.html: this program was built without node and npm\n");
+    else ensemble_page(result).write((fs::path(folder) / "report.html").string());
+  }
+  if (options.json) {
+    say("{}\n", result.record());
+  } else if (!options.quiet) {
+    const std::string where =
+        part ? fmt::format(
+                   "  kept in                {}/: --merge joins the {} shards when all are "
+                   "there\n",
+                   folder, result.shard.count)
+             : fmt::format("  written to             {}/: {}ensemble.csv, ensemble.json{}\n",
+                           folder, hdf5_version().empty() ? "" : "ensemble.h5, ",
+                           report_page().empty() ? "" : ", report.html");
+    say("{}{}", summary(result), where);
+  }
+  return 0;
+}
+
+// One member, as values and as a run with its page.
+int one_member(const EnsembleOptions& options, const Ensemble& ensemble) {
+  const Member member = ensemble.member(*options.member);
+  std::string page;
+  const bool is_run = !member.config.system.empty() && ensemble.config().feedback.inputs.empty();
+  if (!options.directory.empty() && !is_run)
+    complain("hamel: no page: {}\n",
+             member.failed ? "this member does not start" : "a run has no feedback by formulas");
+  if (!options.directory.empty() && is_run) {
+    fs::create_directories(options.directory);
+    const fs::path stem = fs::path(options.directory) / fmt::format("member-{}", member.index);
+    write_file(stem.string() + ".toml", member.config.to_toml());
+    if (!report_page().empty()) {
+      page = stem.string() + ".html";
+      RunOptions running;
+      running.config = member.config;
+      running.report = page;
+      running.quiet = true;
+      run(running);
+    }
+  }
+  const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
+  Json out = {{"member", member.index}, {"failed", member.failed}};
+  out["reason"] = member.failed ? Json(member.failure.reason) : Json(nullptr);
+  out["values"] = out["kept"] = Json::object();
+  for (const auto& [name, value] : member.varied) out["values"][name] = number(value);
+  for (const auto& [name, value] : member.kept) out["kept"][name] = number(value);
+  if (options.json) {
+    say("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
+  } else if (!options.quiet) {
+    std::string text = fmt::format("member {}\n", member.index);
+    for (const auto& [name, value] : member.varied)
+      text += fmt::format("  {:<22} {:.10g}\n", name, value);
+    if (member.failed)
+      text += fmt::format("  failed                 {} (t = {:.6g})\n", member.failure.reason,
+                          member.failure.time);
+    for (const auto& [name, value] : member.kept)
+      if (!member.failed) text += fmt::format("  {:<22} {:.10g}\n", name, value);
+    if (!page.empty()) text += fmt::format("  page                   {}\n", page);
+    say("{}", text);
+  }
+  return member.failed ? 1 : 0;
+}
+
+}  // namespace
+
+int ensemble(const EnsembleOptions& given) {
+  EnsembleOptions options = given;
+  const std::string folder = folder_of(options);
+  const std::optional<Rank> rank = options.member ? std::nullopt : take_part_as_rank(options);
+  Ensemble ensemble(registry(), read_ensemble(options.file, registry()));
+  ensemble.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_when_asked());
+  if (options.member) return one_member(options, ensemble);
+  if (options.merge) return finish(options, ensemble.merge());
+  if (!options.shard.empty()) ensemble.shard(shard_of(options.shard));
+  EnsembleResult result;
+  {
+    Progress progress("ensemble", options.quiet);
+    result = ensemble.progress([&](double fraction) { progress(fraction); }).run();
+  }
+  if (!result.complete) {
+    complain(
+        "hamel: interrupted: {} of {} members are finished and kept in {}; the same command "
+        "resumes there\n",
+        result.done, result.members, folder);
+    return 1;
+  }
+  if (!rank) return finish(options, result);
+  if (rank->index > 0) return 0;
+  return merge_when_there(folder, [&] { return finish(options, ensemble.merge()); });
+}
+
+}  // namespace hamel::tools

@@ -1,0 +1,221 @@
+// hamel section: the states in which motions cross an event, as a table and as a page.
+#include "section.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/version.hpp>
+#include <hamel/systems/by_name.hpp>
+
+#include "help.hpp"
+#include "interrupt.hpp"
+#include "page.hpp"
+#include "run_page.hpp"
+#include "screen.hpp"
+
+namespace hamel::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::vector<double>& numbers(const TableColumn& column) {
+  return std::get<std::vector<double>>(column.values);
+}
+
+// The columns for the axes of the page: those given, else the first two that vary most beside t.
+std::vector<const TableColumn*> axes_of(const Table& points, const std::string& given) {
+  std::vector<const TableColumn*> out;
+  if (!given.empty()) {
+    const size_t comma = given.find(',');
+    if (comma == std::string::npos)
+      throw ConfigError({fmt::format("--axes: got '{}', expected two columns, A,B", given)});
+    return {&points.column(given.substr(0, comma)), &points.column(given.substr(comma + 1))};
+  }
+  std::vector<std::pair<double, const TableColumn*>> spread;
+  for (size_t j = 3; j + 1 < points.columns.size(); ++j) {
+    const std::vector<double>& values = numbers(points.columns[j]);
+    if (values.empty()) continue;
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    const double size = std::max({1.0, std::abs(*least), std::abs(*most)});
+    if (*most - *least > 1e-6 * size) out.push_back(&points.columns[j]);
+    if (out.size() == 2) return out;
+  }
+  return {};
+}
+
+Page page_of(const SectionOptions& options, const Section& section) {
+  Page page(
+      "Section of " + options.config.system,
+      fmt::format("the states where {}, {} points", options.request.event, section.points.rows()));
+  page.section("Points");
+  const std::vector<const TableColumn*> axes = axes_of(section.points, options.axes);
+  if (axes.size() == 2) {
+    const auto& of_start = std::get<std::vector<long long>>(section.points.columns[0].values);
+    std::vector<Series> series;
+    for (size_t i = 0; i < of_start.size(); ++i) {
+      const auto start = static_cast<size_t>(of_start[i]);
+      while (series.size() < start) {
+        Series& one = series.emplace_back();
+        one.name = fmt::format("start {}", series.size());
+        one.dots = true;
+      }
+      series[start - 1].x.push_back(numbers(*axes[0])[i]);
+      series[start - 1].y.push_back(numbers(*axes[1])[i]);
+    }
+    std::erase_if(series, [](const Series& one) { return one.x.empty(); });
+    const auto label = [](const TableColumn& column) {
+      return with_unit(column.name.starts_with("xi") ? column.meaning : column.name, column.unit);
+    };
+    page.plot("Section", {.x = label(*axes[0]), .y = label(*axes[1]), .name = "section"}, series,
+              "One colour for each start. Points on a closed curve belong to a quasi-periodic "
+              "motion, points that fill an area to a chaotic one.");
+  } else {
+    page.text({"No two columns vary over the points: the motions are periodic, or at rest."});
+  }
+  page.section("Motions");
+  std::vector<std::vector<Cell>> rows;
+  for (size_t i = 0; i < section.orbits.size(); ++i) {
+    const SectionOrbit& o = section.orbits[i];
+    rows.push_back({Cell(static_cast<double>(i + 1)), Cell(static_cast<double>(o.found)),
+                    Cell(o.time), Cell(o.energy), Cell(o.energy_change),
+                    Cell(o.reason.empty() ? "all found" : o.reason)});
+  }
+  page.table("Starts", {"start", "points", "t [s]", "energy [J]", "its change [J]", "end"}, rows);
+  return page;
+}
+
+Json json_of(const SectionOptions& options, const Section& section) {
+  Json starts = Json::array();
+  for (const SectionOrbit& o : section.orbits) {
+    starts.push_back({{"configuration", o.start.configuration},
+                      {"velocity", o.start.velocity},
+                      {"energy", o.energy},
+                      {"energy_change", o.energy_change},
+                      {"found", o.found},
+                      {"time", o.time},
+                      {"reason", o.reason}});
+  }
+  Json columns = Json::array(), units = Json::array(), rows = Json::array();
+  for (const TableColumn& column : section.points.columns) {
+    columns.push_back(column.name);
+    units.push_back(column.unit);
+  }
+  for (size_t i = 0; i < section.points.rows(); ++i) {
+    Json row = Json::array();
+    for (const TableColumn& column : section.points.columns)
+      std::visit([&](const auto& values) { row.push_back(values[i]); }, column.values);
+    rows.push_back(std::move(row));
+  }
+  return {{"system", options.config.system},
+          {"event", options.request.event},
+          {"direction", options.request.direction},
+          {"status", section.complete ? "ok" : "failed"},
+          {"points", section.points.rows()},
+          {"starts", starts},
+          {"columns", columns},
+          {"units", units},
+          {"rows", rows},
+          {"version", version()},
+          {"git", git_hash()}};
+}
+
+void print(const SectionOptions& options, const Section& section) {
+  say("{}: {} points where {}\n", options.config.system, section.points.rows(),
+      options.request.event);
+  constexpr size_t kMost = 20;
+  for (size_t i = 0; i < std::min(kMost, section.orbits.size()); ++i) {
+    const SectionOrbit& o = section.orbits[i];
+    say("  start {:<4} {} points to t = {:.6g} s, energy {:.6g} J, changed by {:.1e} J{}\n", i + 1,
+        o.found, o.time, o.energy, o.energy_change, o.reason.empty() ? "" : "; " + o.reason);
+  }
+  if (section.orbits.size() > kMost) say("  and {} more\n", section.orbits.size() - kMost);
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (const SectionOrbit& o : section.orbits) {
+    least = std::min(least, o.energy);
+    most = std::max(most, o.energy);
+  }
+  if (most - least > 1e-6 * std::max(std::abs(least), std::abs(most)))
+    say("  note       the starts have energies from {:.6g} to {:.6g} J: not one surface; --energy "
+        "E "
+        "gives all the same\n",
+        least, most);
+}
+
+}  // namespace
+
+void SectionLine::define(CLI::App& app) {
+  line_.define_run(app, {"every", "output_step", "output_times", "events", "stop_at", "check",
+                         "no_exact", "until", "step_max"});
+  app.add_option("--event", options_.request.event,
+                 "the event that is crossed: a name (hamel describe SYSTEM) or a formula, as for "
+                 "--events of hamel run")
+      ->required();
+  app.add_option("--direction", options_.request.direction,
+                 "1: crossings where its function grows, -1: where it falls [0: both]");
+  app.add_option("--count", options_.request.count, "points of each start")->required();
+  app.add_option("--starts", options_.starts,
+                 "a CSV file of starts: the columns of the element and xi1, xi2, ... or their "
+                 "names, as -o writes them");
+  app.add_option("--energy", options_.request.energy,
+                 "every start gets this energy, in J, by a factor of its velocity");
+  app.add_option("--until", options_.request.longest, "give a start up after so many seconds");
+  app.add_option("-o,--output", options_.output, "write the points, .csv or .h5");
+  app.add_option("--report", options_.report, "write a self-contained HTML page");
+  app.add_option("--axes", options_.axes, "columns of the page's axes, A,B [the first that vary]");
+  app.add_flag("--json", options_.json, "print everything as JSON");
+  app.add_flag("--quiet", options_.quiet, "print nothing but errors (and --json)");
+  group_options(app, "Section", {"--event", "--direction", "--count", "--starts", "--energy"});
+  group_options(app, "Motion",
+                {"--config", "--set", "--input", "--configuration", "--velocity", "--momentum",
+                 "--speed", "--from", "--until"});
+  group_options(app, "Method",
+                {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--solver",
+                 "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
+  group_options(app, "Output", {"--output", "--report", "--axes", "--json", "--quiet"});
+  app.footer(
+      "Without a scheme, a step and a tolerance: dop853 at rtol 1e-10.\n"
+      "Exit status: 0 done, 1 points are missing (those found are written), 2 bad input.\n"
+      "Examples:\n"
+      "  hamel section suslov_in_potential --set inertia=2,0,0,3,0,4 --event 'xi1=0' --count 400\n"
+      "  hamel section routh_sphere --event '1_R33=0.5' --count 200 -o sphere.csv\n"
+      "  hamel section rattleback --event reversed --direction 1 --count 10 --json");
+}
+
+SectionOptions SectionLine::resolve(const CLI::App& app) {
+  options_.config = line_.resolve(app).config;
+  return options_;
+}
+
+int section(const SectionOptions& given) {
+  SectionOptions options = given;
+  if (!options.report.empty()) {
+    if (const auto mistakes = page_mistakes(options.report); !mistakes.empty())
+      throw ConfigError(mistakes);
+  }
+  const bool hdf5 = options.output.ends_with(".h5");
+  if (!options.output.empty() && !hdf5 && !options.output.ends_with(".csv"))
+    throw ConfigError({fmt::format("--output: got '{}', expected .csv or .h5", options.output)});
+  Simulation simulation(registry(), options.config.system);
+  simulation.config(options.config);
+  if (!options.starts.empty())
+    options.request.starts = read_starts(options.starts, registry(), options.config);
+  Section section;
+  {
+    Progress progress("section", options.quiet);
+    section = hamel::section(
+        simulation, options.request, [&](double fraction) { progress(fraction); },
+        &stop_when_asked());
+  }
+  if (hdf5) section.points.write_hdf5(options.output, {{"event", options.request.event}});
+  else if (!options.output.empty()) write_file(options.output, section.points.csv());
+  if (!options.report.empty()) page_of(options, section).write(options.report);
+  if (options.json) say_json(json_of(options, section));
+  else if (!options.quiet) print(options, section);
+  return section.complete ? 0 : 1;
+}
+
+}  // namespace hamel::tools
