@@ -20,16 +20,14 @@ std::string text_without(const std::string& axis) {
 
 // The order that the scheme claims here. A composition reaches its own over a reversible step of
 // order 2.
-int claim(const Registry& registry, const StudyCell& cell, const SystemModel& system) {
-  const SchemeInfo* scheme = registry.scheme(cell.config.scheme);
-  if (cell.config.chooses_steps()) return 1;  // of the tolerance
-  if (!scheme->adapted) return 0;  // of the free motion only: here it approximates nothing
-  const TauTraits tau = registry.geometry(system.group.name, cell.config.retraction)->traits();
-  const ClaimedOrder plain =
-      scheme->claim(cell.config.s, tau, *system.mechanics, cell.config.force_at);
+int claim(const Registry& registry, const Config& run, const SystemModel& system) {
+  const SchemeInfo* scheme = registry.scheme(run.scheme);
+  if (run.chooses_steps()) return 1;  // of the tolerance
+  if (!scheme->adapted) return 0;     // of the free motion only: here it approximates nothing
+  const TauTraits tau = registry.geometry(system.group.name, run.retraction)->traits();
+  const ClaimedOrder plain = scheme->claim(run.s, tau, *system.mechanics, run.force_at);
   for (const Composition& table : compositions()) {
-    if (table.name == cell.config.compose && plain.reversible && plain.order == 2)
-      return table.order;
+    if (table.name == run.compose && plain.reversible && plain.order == 2) return table.order;
   }
   return plain.order;
 }
@@ -40,20 +38,26 @@ size_t axis_index(const std::string& axis) {
   return static_cast<size_t>(std::find(all.begin(), all.end(), axis) - all.begin());
 }
 
-// Axes that a scheme makes no use of are empty in `axes` and the default in `run`, so that one cell
-// represents all values.
-void leave_unused(const SchemeInfo& scheme, bool halving, StudyAxes& axes, Config& run) {
-  static const auto unused = std::make_shared<const std::string>();
-  static const Config usual = [] {
-    Config out;
+using AxisValue = std::shared_ptr<const StudyAxisValue>;
+
+// With the value of every axis that a study does not name.
+const Config& usual() {
+  static const Config out = [] {
+    Config made;
     for (const std::string& axis : study_axes())
-      if (axis != "system") out.set(axis, text_without(axis));
-    return out;
+      if (axis != "system") made.set(axis, text_without(axis));
+    return made;
   }();
+  return out;
+}
+
+// The axes that a scheme makes no use of; `run` gets the default there.
+std::vector<std::string> leave_unused(const SchemeInfo& scheme, Config& run) {
+  std::vector<std::string> out;
   const auto leave = [&](const std::string& axis) {
-    axes.set(axis, unused);
+    out.push_back(axis);
     Config::fields([&](const Option& option, auto member) {
-      if (option.name == axis) run.*member = usual.*member;
+      if (option.name == axis) run.*member = usual().*member;
     });
   };
   const bool chooses = scheme.estimates_error || (scheme.varies_steps && run.s == 0.5);
@@ -63,12 +67,35 @@ void leave_unused(const SchemeInfo& scheme, bool halving, StudyAxes& axes, Confi
   } else if (run.chooses_steps() && scheme.estimates_error) {
     leave("step");
   }
-  for (const std::string& option : unused_options(scheme, run)) {
-    if (!axes.contains(option)) continue;
-    leave(option);
-    if (option == "on_failure" && halving)
-      axes.set(option, std::make_shared<const std::string>(run.on_failure));
+  const std::vector<std::string>& axes = study_axes();
+  for (const std::string& option : unused_options(scheme, run))
+    if (std::find(axes.begin(), axes.end(), option) != axes.end()) leave(option);
+  return out;
+}
+
+// An axis of a study: its values as they are used, and as texts that change nothing in a run.
+struct Axis {
+  std::vector<AxisValue> used, unused;
+
+  Axis(const std::string& name, const StudyValues& texts) {
+    for (const std::string& text : texts) {
+      StudyAxisValue value{text};
+      if (name != "system") value.config.set(name, text);
+      used.push_back(std::make_shared<const StudyAxisValue>(std::move(value)));
+      unused.push_back(std::make_shared<const StudyAxisValue>(StudyAxisValue{text, usual()}));
+    }
   }
+};
+
+// The configuration of the cells of one system, but for their axes.
+std::shared_ptr<const Config> base_of(const StudySystem& system, double until) {
+  Config out;
+  out.system = system.name;
+  out.parameters = system.parameters;
+  out.start = system.start;
+  out.inputs = system.inputs;
+  out.until = until;
+  return std::make_shared<const Config>(std::move(out));
 }
 
 // Why a cell is another one's duplicate: "boxed does not use s: one cell represents all".
@@ -82,7 +109,7 @@ std::string same_as_above(const std::vector<StudyValues>& values, const StudyCel
   }
   return unused.empty() ? "the same combination is listed above"
                         : fmt::format("{} does not use {}: one cell represents all",
-                                      cell.config.scheme, unused);
+                                      cell.axes.at("scheme"), unused);
 }
 
 // The exclusions, for look-up.
@@ -147,17 +174,23 @@ StudyValues StudyConfig::values(const std::string& axis) const {
 }
 
 const std::string& StudyAxes::at(const std::string& axis) const {
-  return *values_.at(axis_index(axis));
+  return values_.at(axis_index(axis))->text;
 }
 bool StudyAxes::contains(const std::string& axis) const {
   return axis_index(axis) < values_.size();
 }
-void StudyAxes::set(const std::string& axis, std::shared_ptr<const std::string> value) {
+void StudyAxes::set(const std::string& axis, AxisValue value) {
   values_.resize(study_axes().size());
   values_.at(axis_index(axis)) = std::move(value);
 }
+void StudyAxes::apply(Config& run) const {
+  size_t k = 0;  // of the system, which is no option
+  Config::fields([&](const Option& option, auto member) {
+    if (option.axis) run.*member = values_.at(++k)->config.*member;
+  });
+}
 StudyAxes StudyAxes::without(const std::string& axis) const {
-  static const auto none = std::make_shared<const std::string>();
+  static const auto none = std::make_shared<const StudyAxisValue>();
   StudyAxes out = *this;
   out.values_.at(axis_index(axis)) = none;
   return out;
@@ -165,30 +198,37 @@ StudyAxes StudyAxes::without(const std::string& axis) const {
 bool StudyAxes::operator<(const StudyAxes& other) const {
   return std::lexicographical_compare(
       values_.begin(), values_.end(), other.values_.begin(), other.values_.end(),
-      [](const auto& a, const auto& b) { return a != b && *a < *b; });
+      [](const auto& a, const auto& b) { return a != b && a->text < b->text; });
+}
+
+Config StudyCell::config() const {
+  Config out = *base;
+  axes.apply(out);
+  return out;
 }
 
 StudyCells study_cells(const StudyConfig& config, const Registry& registry) {
+  static const auto hidden = std::make_shared<const StudyAxisValue>(StudyAxisValue{"", usual()});
   std::vector<StudyValues> values;
-  std::vector<std::vector<std::shared_ptr<const std::string>>> shared;
-  std::vector<std::vector<Config>> parsed;  // with that value of that axis
+  std::vector<Axis> axes;
   std::vector<size_t> sizes;
   size_t count = 1;
   for (const std::string& axis : study_axes()) {
     values.push_back(config.values(axis));
-    auto& texts = shared.emplace_back();
-    auto& configs = parsed.emplace_back(values.back().size());
-    for (size_t j = 0; j < values.back().size(); ++j) {
-      texts.push_back(std::make_shared<const std::string>(values.back()[j]));
-      if (axis != "system") configs[j].set(axis, values.back()[j]);
-    }
+    axes.emplace_back(axis, values.back());
     sizes.push_back(values.back().size());
     count = config.zipped ? std::max(count, sizes.back()) : count * sizes.back();
   }
   std::vector<SystemModel> models;
-  for (const StudySystem& system : config.systems) models.push_back(study::model(registry, system));
+  std::vector<std::shared_ptr<const Config>> bases;
+  for (const StudySystem& system : config.systems) {
+    models.push_back(study::model(registry, system));
+    bases.push_back(base_of(system, config.until));
+  }
   const StudyValues policies = config.values("on_failure");
   const bool halving = std::find(policies.begin(), policies.end(), "halve") != policies.end();
+  const auto stop =
+      std::make_shared<const StudyAxisValue>(StudyAxisValue{usual().on_failure, usual()});
   const Exclusions exclusions(config);
   std::vector<StudyCell> cells;
   cells.reserve(count);
@@ -198,36 +238,30 @@ StudyCells study_cells(const StudyConfig& config, const Registry& registry) {
     const std::vector<size_t> at = indices(config, sizes, i);
     StudyCell cell;
     cell.system = at[0];
-    const StudySystem& system = config.systems[at[0]];
-    cell.config.system = system.name;
-    cell.config.parameters = system.parameters;
-    cell.config.start = system.start;
-    cell.config.inputs = system.inputs;
-    cell.config.until = config.until;
-    for (size_t k = 0; k < at.size(); ++k) cell.axes.set(study_axes()[k], shared[k][at[k]]);
-    size_t k = 0;
-    Config::fields([&](const Option& option, auto member) {
-      if (!option.axis) return;
-      ++k;
-      cell.config.*member = parsed[k][at[k]].*member;
-    });
+    cell.base = bases[at[0]];
+    for (size_t k = 0; k < at.size(); ++k) cell.axes.set(study_axes()[k], axes[k].used[at[k]]);
 
     const std::string& group = models[at[0]].group.name;
+    Config run = cell.config();
     StudyAxes same = cell.axes;
-    leave_unused(*registry.scheme(cell.config.scheme), halving, same, cell.config);
+    for (const std::string& axis : leave_unused(*registry.scheme(run.scheme), run)) {
+      const size_t k = axis_index(axis);
+      same.set(axis, axis == "on_failure" && halving ? stop : hidden);
+      cell.axes.set(axis, axes[k].unused[at[k]]);
+    }
     if (cell.why = exclusions.of(cell); !cell.why.empty()) {
       cell.skipped = "excluded";
-    } else if (registry.geometry(group, cell.config.retraction) == nullptr) {
+    } else if (registry.geometry(group, run.retraction) == nullptr) {
       cell.skipped = "impossible";
-      cell.why = fmt::format("{} has no retraction {}", group, cell.config.retraction);
-    } else if (cell.config.on_failure == "retry:" + cell.config.solver) {
+      cell.why = fmt::format("{} has no retraction {}", group, run.retraction);
+    } else if (run.on_failure == "retry:" + run.solver) {
       cell.skipped = "impossible";
-      cell.why = fmt::format("{} is the solver that failed", cell.config.solver);
+      cell.why = fmt::format("{} is the solver that failed", run.solver);
     } else if (seen.contains(&same)) {
       cell.skipped = "duplicate";
       cell.why = same_as_above(values, cell, same);
     } else {
-      cell.claimed_order = claim(registry, cell, models[at[0]]);
+      cell.claimed_order = claim(registry, run, models[at[0]]);
       cell.axes = std::move(same);
     }
     cells.push_back(std::move(cell));

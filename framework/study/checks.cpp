@@ -255,9 +255,9 @@ class Checks {
       if (!cell.runs()) continue;
       ++count;
       const std::string key =
-          fmt::format("{}/{}/{}", cell.system, cell.config.scheme, cell.config.retraction);
+          fmt::format("{}/{}/{}", cell.system, cell.config().scheme, cell.config().retraction);
       if (!seen.insert(key).second) continue;
-      for (const std::string& mistake : mistakes_of(study_.systems[cell.system], cell.config))
+      for (const std::string& mistake : mistakes_of(study_.systems[cell.system], cell.config()))
         add(fmt::format("system[{}]", cell.system), mistake);
     }
     if (count == 0) add("exclude", "nothing is left to run");

@@ -27,13 +27,13 @@ void compare(const StudyConfig& config, const StudyCells& cells,
              const std::vector<StudyReference>& references, std::vector<StudyMetrics>& metrics) {
   // Over the step; where steps are chosen over the tolerance.
   const auto size = [&](size_t i) {
-    const Config& c = cells[i].config;
+    const Config c = cells[i].config();
     return c.chooses_steps() ? c.relative() + c.absolute() : c.step_or_usual();
   };
   std::vector<std::vector<size_t>> over;
   for (const bool chosen : {false, true}) {
     for (auto& group : groups(cells, chosen ? "rtol" : "step")) {
-      std::erase_if(group, [&](size_t i) { return cells[i].config.chooses_steps() != chosen; });
+      std::erase_if(group, [&](size_t i) { return cells[i].config().chooses_steps() != chosen; });
       over.push_back(std::move(group));
     }
   }

@@ -177,12 +177,13 @@ static Status follow_chosen(Run& run, RunRecorder& meter, const StudyReference& 
 StudyMetrics measure(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const StudyReference& reference, const std::atomic<bool>* stop) {
   StudyMetrics out;
-  Simulation made = simulation(registry, system, cell.config);
+  const Config config = cell.config();
+  Simulation made = simulation(registry, system, config);
   Run run = made.build();
   const auto balance = [&] {
     const std::shared_ptr<const Mechanics>& mechanics = run.system().mechanics;
-    const bool adapted = registry.scheme(cell.config.scheme)->adapted;
-    return EnergyBalance(registry.geometry(run.system().group.name, cell.config.retraction),
+    const bool adapted = registry.scheme(config.scheme)->adapted;
+    return EnergyBalance(registry.geometry(run.system().group.name, config.retraction),
                          adapted ? mechanics : std::make_shared<UnconstrainedMechanics>(mechanics),
                          run.inputs());
   };
@@ -200,8 +201,8 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
   meter.node(run.state());
   static_cast<void>(meter.row(run.state()));
   meter.compare(run.state(), 0);
-  const Status status = cell.config.chooses_steps() ? follow_chosen(run, meter, reference, stop)
-                                                    : follow(run, meter, reference, stop);
+  const Status status = config.chooses_steps() ? follow_chosen(run, meter, reference, stop)
+                                               : follow(run, meter, reference, stop);
   if (stopped(stop)) return out;
   if (!status.ok) {
     out.ok = false;
@@ -215,15 +216,16 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
 double time_per_step(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const std::atomic<bool>* stop) {
   constexpr double kShortest = 2e5;  // ns: a shorter run is repeated until this is reached
-  Run run = simulation(registry, system, cell.config).build();
+  const Config config = cell.config();
+  Run run = simulation(registry, system, config).build();
   const Start start = run.config().start;
   double nanoseconds = 0;
   long steps = 0;
   for (int i = 0; i < 100 && nanoseconds < kShortest; ++i) {
     if (i > 0) run.restart(start);
     const double begin = processor_time();
-    if (cell.config.chooses_steps()) run.advance_to(cell.config.until);
-    else advance(run, cell.config.steps(), stop);
+    if (config.chooses_steps()) run.advance_to(config.until);
+    else advance(run, config.steps(), stop);
     if (stopped(stop)) return kNotMeasured;
     nanoseconds += processor_time() - begin;
     steps += run.state().step;

@@ -28,7 +28,7 @@ void Runner::list() {
   for (size_t i = 0; i < result_.cells.size(); ++i) {
     const StudyCell& cell = result_.cells[i];
     if (!result_.runs(i)) continue;
-    all_ += static_cast<long>(rounds + 1) * expected_steps(cell.config);
+    all_ += static_cast<long>(rounds + 1) * expected_steps(cell.config());
     const bool there = !result_.references[cell.system].times.empty();
     if (!used[cell.system]) {
       used[cell.system] = true;
@@ -41,13 +41,13 @@ void Runner::list() {
     }
     if (result_.metrics[i].done) continue;
     (there ? ready_ : waiting_[cell.system]).push_back({Kind::measure, i});
-    left += expected_steps(cell.config);
+    left += expected_steps(cell.config());
   }
   for (size_t round = 0; round < rounds; ++round) {
     for (size_t i = 0; i < result_.cells.size(); ++i) {
       if (!result_.runs(i) || result_.metrics[i].nanoseconds[round] != kPending) continue;
       timings_.push_back({Kind::time, i, round});
-      left += expected_steps(result_.cells[i].config);
+      left += expected_steps(result_.cells[i].config());
     }
   }
   finished_ = all_ - left;
@@ -111,7 +111,7 @@ bool Runner::done(const Piece& piece) {
   if (piece.kind == Kind::reference) return make_reference(piece.index);
   if (!(piece.kind == Kind::measure ? measure(piece.index) : time(piece.index, piece.round)))
     return false;
-  finished(expected_steps(result_.cells[piece.index].config));
+  finished(expected_steps(result_.cells[piece.index].config()));
   return true;
 }
 
@@ -125,7 +125,7 @@ bool Runner::make_reference(size_t system) {
     left -= std::min(steps, left);
   };
   StudyReference made = study::reference(registry_, result_.config, result_.config.systems[system],
-                                         cell->config, stepped, stop_);
+                                         cell->config(), stepped, stop_);
   if (made.times.empty()) return false;
   if (journal_ != nullptr) journal_->referred(system, made);
   finished(left);

@@ -142,7 +142,7 @@ class Report {
             configuration_error(exp, "lift s=1/2"), configuration_error(cayley, "lift s=0"),
             configuration_error(cayley, "lift s=1/2")),
     });
-    const std::vector<Series> exact = exact_momentum(exp.front().cell.config);
+    const std::vector<Series> exact = exact_momentum(exp.front().cell.config());
     for (size_t i = 0; i < 2; ++i) {
       page_.section(i == 0 ? "Figure 1 with exp" : "Figure 1 with Cayley");
       add_figures(page_, i == 0 ? exp : cayley, exact);
@@ -194,8 +194,8 @@ class Report {
                         finest.measured.energy_error_max});
         Series& line = convergence.emplace_back(
             Series{finest.name,
-                   {runs[0][i].cell.config.step_or_usual(), runs[1][i].cell.config.step_or_usual(),
-                    finest.cell.config.step_or_usual()},
+                   {runs[0][i].cell.config().step_or_usual(),
+                    runs[1][i].cell.config().step_or_usual(), finest.cell.config().step_or_usual()},
                    {e0, e1, e2}});
         const double order = std::log2(e1 / e2);
         line.fit = Fit{order, fmt::format("order {:.2f}", order)};
@@ -214,7 +214,7 @@ class Report {
           fmt::format("{} s with Cayley at h = {}. Configuration error at the end for the finest "
                       "step, and the order measured: {}.",
                       study.until, join(steps), orders));
-      add_figures(page_, runs.front(), exact_momentum(runs.front().front().cell.config));
+      add_figures(page_, runs.front(), exact_momentum(runs.front().front().cell.config()));
       page_.table(
           system.label + ", errors and measured order",
           {"variant", "error, h = " + steps[0], "error, h = " + steps[1], "error, h = " + steps[2],
@@ -281,8 +281,8 @@ class Report {
     for (const Outcome& o : outcomes) {
       const Measurements& m = o.measured;
       csv_ += fmt::format("{},{},{},{},{},{:.6e},{:.6e},{:.6e},{:.6e},{:.6e}\n",
-                          o.cell.axes.at("system"), o.name, o.cell.config.retraction,
-                          o.cell.config.step_or_usual(), o.status.ok ? "ok" : "failed",
+                          o.cell.axes.at("system"), o.name, o.cell.config().retraction,
+                          o.cell.config().step_or_usual(), o.status.ok ? "ok" : "failed",
                           m.energy_error_max, m.exact_error_max, m.exact_velocity_error_max,
                           m.constraint_max, m.group_defect_max);
       ok_ = ok_ && o.status.ok;

@@ -46,11 +46,12 @@ double Figure::floor(double step) const {
 namespace {
 
 Outcome run_variant(const StudyCell& cell) {
-  const Result result = simulate(cell.config.system).config(cell.config).run();
+  const Config config = cell.config();
+  const Result result = simulate(config.system).config(config).run();
   Outcome out;
-  const bool adapted = registry().scheme(cell.config.scheme)->adapted;
+  const bool adapted = registry().scheme(config.scheme)->adapted;
   const std::string s = adapted ? cell.axes.at("s") : "";
-  out.name = cell.config.scheme + (s.empty() ? "" : s == "0.5" ? " s=1/2" : " s=" + s);
+  out.name = config.scheme + (s.empty() ? "" : s == "0.5" ? " s=1/2" : " s=" + s);
   out.cell = cell;
   out.status = result.status;
   out.measured = result;
@@ -117,7 +118,7 @@ void add_figures(Page& page, const std::vector<Outcome>& outcomes,
     if (figure.column == "mu1" && !exact.empty()) series.push_back(exact[0]);
     if (figure.column == "mu2" && !exact.empty()) series.push_back(exact[1]);
     Axes axes{.x = "time t [s]", .y = figure.label, .log_x = false, .log_y = figure.magnitude};
-    axes.floor = figure.floor(outcomes.front().cell.config.step_or_usual());
+    axes.floor = figure.floor(outcomes.front().cell.config().step_or_usual());
     const std::string& windows = outcomes.front().windows;
     page.plot(
         figure.title, axes, series,

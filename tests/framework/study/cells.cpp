@@ -49,10 +49,10 @@ TEST_F(DataFile, IsASystem) {
   for (size_t i = 0; i < study.cells.size(); ++i) {
     const StudyCell& cell = study.cells[i];
     if (cell.system == 0) continue;
-    const Result alone = Simulation(registry(), path).config(cell.config).run();
+    const Result alone = Simulation(registry(), path).config(cell.config()).run();
     const auto last = alone.trajectory.row(alone.trajectory.rows() - 1);
     EXPECT_THAT(study.metrics[i].final, ElementsAre(last[1], last[2], last[3]));
-    EXPECT_EQ(cell.claimed_order, cell.config.scheme == "lift" ? 2 : 4);
+    EXPECT_EQ(cell.claimed_order, cell.config().scheme == "lift" ? 2 : 4);
     EXPECT_NEAR(study.metrics[i].order, cell.claimed_order, 0.15);
   }
 }
@@ -90,7 +90,7 @@ TEST(StudyCells, ExplicitSchemesUseNoSolver) {
   size_t duplicates = 0;
   for (size_t i = 0; i < study.cells.size(); ++i) {
     const StudyCell& cell = study.cells[i];
-    if (cell.config.scheme != "rkmk4") continue;
+    if (cell.config().scheme != "rkmk4") continue;
     if (cell.runs()) of_rkmk4.push_back(i);
     else ++duplicates;
   }
@@ -110,7 +110,7 @@ TEST(StudyCells, ExplicitSchemesUseNoSolver) {
   config.axes["on_failure"] = {"retry:newton", "stop", "halve"};
   std::vector<std::string> policies;
   for (const StudyCell& cell : study_cells(config, registry()))
-    if (cell.runs() && cell.config.scheme == "rkmk4")
+    if (cell.runs() && cell.config().scheme == "rkmk4")
       policies.push_back(cell.axes.at("on_failure"));
   EXPECT_THAT(policies, ElementsAre("stop", "halve"));
 }
@@ -122,7 +122,18 @@ TEST(StudyCells, AnUnusedValueIsTheDefault) {
   config.axes["s"] = {0, 0.5};
   const StudyCells cells = study_cells(config, registry());
   EXPECT_TRUE(cells.front().runs());
-  EXPECT_EQ(cells.front().config.s, Config{}.s);
+  EXPECT_EQ(cells.front().config().s, Config{}.s);
+}
+
+/// 1e5 cells fit into memory: what is the same for all cells of a system is kept once.
+TEST(StudyCells, ShareWhatIsTheSame) {
+  StudyConfig config = small();
+  config.axes["step"] = {0.1, 0.05};
+  const StudyCells cells = study_cells(config, registry());
+  ASSERT_GE(cells.size(), 2u);
+  EXPECT_EQ(cells[0].base, cells[1].base);
+  EXPECT_NE(cells[0].config().step, cells[1].config().step);
+  EXPECT_LT(sizeof(StudyCell), sizeof(Config) / 3);
 }
 
 /// The axes are the options that Config::fields lets a study vary; a program may misname one.
@@ -163,10 +174,10 @@ why = "by tolerance"
     if (!cell.runs()) continue;
     const StudyMetrics& m = study.metrics[i];
     EXPECT_TRUE(m.ok) << m.reason;
-    const bool chosen = cell.config.chooses_steps();
-    ++runs[cell.config.scheme + (chosen ? " chosen" : " fixed")];
-    EXPECT_EQ(cell.claimed_order, chosen ? 1 : cell.config.scheme == "lift" ? 2 : 4);
-    EXPECT_NEAR(m.order, cell.claimed_order, chosen ? 0.3 : 0.35) << cell.config.scheme;
+    const bool chosen = cell.config().chooses_steps();
+    ++runs[cell.config().scheme + (chosen ? " chosen" : " fixed")];
+    EXPECT_EQ(cell.claimed_order, chosen ? 1 : cell.config().scheme == "lift" ? 2 : 4);
+    EXPECT_NEAR(m.order, cell.claimed_order, chosen ? 0.3 : 0.35) << cell.config().scheme;
     EXPECT_NEAR(m.time, 4, 1e-12);
   }
   EXPECT_THAT(runs, ElementsAre(Pair("dopri5 chosen", 3), Pair("lift chosen", 6),

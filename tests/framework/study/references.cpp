@@ -22,7 +22,7 @@ using testing::Not;
 StudyReference reference_of(const Registry& all, const StudyConfig& config) {
   const StudyCells cells = study_cells(config, all);
   return study::reference(
-      all, config, config.systems[0], cells[0].config, [](long) {}, nullptr);
+      all, config, config.systems[0], cells[0].config(), [](long) {}, nullptr);
 }
 
 /// Cells of more steps than a reference may have are compared with a coarser run of order 6.

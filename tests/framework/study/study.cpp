@@ -61,7 +61,7 @@ TEST(Study, BalancesTheWorkOfAJumpAsARunDoes) {
   const StudyResult result = Study(registry(), config).run();
   ASSERT_EQ(result.cells.size(), 4u);
   for (size_t i = 0; i < 4; ++i) {
-    const Config& cell = result.cells[i].config;
+    const Config cell = result.cells[i].config();
     const Result run = simulate("differential_drive")
                            .scheme(cell.scheme)
                            .step(*cell.step)
@@ -81,7 +81,7 @@ TEST(Study, MeasuresOrders) {
   for (const StudyResult study = run(config); const StudyCell& cell : study.cells) {
     if (!cell.runs()) continue;
     const StudyMetrics& m = study.metrics[static_cast<size_t>(&cell - &study.cells.front())];
-    const std::string& scheme = cell.config.scheme;
+    const std::string scheme = cell.config().scheme;
     const int order = scheme == "unadapted"                            ? 0
                       : scheme == "lift" || cell.axes.at("s") == "0.5" ? 2
                                                                        : 1;
@@ -136,7 +136,7 @@ TEST(Study, ZippedListsRunTogether) {
   std::vector<std::string> names;
   const Study study(registry(), config);
   for (const StudyCell& cell : study.cells())
-    names.push_back(cell.config.scheme + " " + cell.axes.at("step"));
+    names.push_back(cell.config().scheme + " " + cell.axes.at("step"));
   EXPECT_THAT(names, ElementsAre("lift 0.1", "boxed 0.05", "balance 0.025"));
   config.axes["scheme"].pop_back();
   EXPECT_THAT(mistakes_of(config), ElementsAre(HasSubstr("scheme: 2 values, but step has 3")));

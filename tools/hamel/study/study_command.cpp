@@ -37,7 +37,7 @@ void announce(const Study& study, const std::string& folder, bool quiet) {
   for (const StudyCell& cell : study.cells()) {
     if (!cell.runs()) continue;
     ++cells;
-    steps += static_cast<double>(expected_steps(cell.config)) * (1 + study.config().repeats);
+    steps += static_cast<double>(expected_steps(cell.config())) * (1 + study.config().repeats);
   }
   if (quiet || cells < kMany) return;
   complain(

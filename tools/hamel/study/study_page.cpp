@@ -167,7 +167,7 @@ class StudyPage {
     page_.section("Orders");
     const std::vector<Series> by_step = curves(
         [&](size_t i) {
-          const Config& c = view_.cell(i).config;
+          const Config c = view_.cell(i).config();
           return c.chooses_steps() ? kNotMeasured : c.step_or_usual();
         },
         true);
@@ -185,7 +185,7 @@ class StudyPage {
            {.x = "rtol", .y = "trajectory error", .log_x = true, .log_y = true},
            curves(
                [&](size_t i) {
-                 const Config& c = view_.cell(i).config;
+                 const Config c = view_.cell(i).config();
                  return c.chooses_steps() ? c.relative() + c.absolute() : kNotMeasured;
                },
                true),
@@ -226,7 +226,7 @@ class StudyPage {
     std::vector<size_t> out;
     for (size_t i = 0; i < result_.cells.size(); ++i) {
       const StudyCell& cell = result_.cells[i];
-      bool here = cell.skipped != "duplicate" && !cell.config.chooses_steps();
+      bool here = cell.skipped != "duplicate" && !cell.config().chooses_steps();
       for (size_t k = 0; k < panels.size(); ++k) here = here && cell.axes.at(panels[k]) == key[k];
       if (here) out.push_back(i);
     }

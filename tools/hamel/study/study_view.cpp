@@ -54,8 +54,8 @@ std::vector<StudyView::Group> StudyView::groups(const std::vector<std::string>& 
   for (const size_t i : run_) {
     std::vector<std::string> key;
     for (const std::string& axis : axes) key.push_back(cell(i).axes.at(axis));
-    key.emplace_back(cell(i).config.chooses_steps() ? "chosen"
-                                                    : "");  // never beside steps of one size
+    key.emplace_back(cell(i).config().chooses_steps() ? "chosen"
+                                                      : "");  // never beside steps of one size
     const auto [at, added] = index.try_emplace(key, out.size());
     if (added) out.push_back({key, {}});
     out[at->second].second.push_back(i);
@@ -89,7 +89,7 @@ std::string StudyView::words(size_t i, const std::vector<std::string>& axes) con
 
 std::string StudyView::name(size_t i) const {
   const std::vector<std::string> axes = varying_without({"step", "rtol"});
-  return axes.empty() ? cell(i).config.scheme : words(i, axes);
+  return axes.empty() ? cell(i).config().scheme : words(i, axes);
 }
 
 std::vector<std::vector<size_t>> StudyView::otherwise_equal(const std::string& axis) const {
