@@ -56,7 +56,12 @@ void expect_contract(const Json& r) {
                {"rejected", 'i'},
                {"residual_max", 'n'}},
               "solver_stats.");
-  expect_keys(r["timing"], {{"seconds", 'n'}, {"nanoseconds_per_step", 'n'}}, "timing.");
+  expect_keys(r["timing"],
+              {{"seconds", 'n'},
+               {"nanoseconds_per_step", 'n'},
+               {"recording_seconds", 'n'},
+               {"comparing_seconds", 'n'}},
+              "timing.");
 }
 
 /// Adding a key is free but deliberate: every key of the record is listed here.
@@ -88,6 +93,9 @@ TEST_F(Record, OfEverySystem) {
     EXPECT_LE(r["diagnostics"]["group_defect_max"], 1e-14);
     EXPECT_LE(r["diagnostics"]["exact_error_final"], 1e-3);
     EXPECT_GT(r["timing"]["nanoseconds_per_step"], 1);
+    EXPECT_GT(r["timing"]["recording_seconds"], 0);
+    EXPECT_LT(r["timing"]["recording_seconds"], r["timing"]["seconds"]);
+    EXPECT_GT(r["timing"]["comparing_seconds"], 0);
   }
   // The element: the matrix, or one for each factor.
   EXPECT_EQ(record({"suslov", "--until", "1"})["final"]["element"].size(), 3u);

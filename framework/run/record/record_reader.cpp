@@ -216,7 +216,10 @@ void read_record(const std::string& record, const std::string& origin, Result& o
     out.stats.first_fallbacks.push_back(
         {f["step"].as<long>(), f["time"].measured(), f["action"].as<std::string>()});
   }
-  out.seconds = all["timing"]["seconds"].measured();
+  const Entry timing = all["timing"];
+  out.seconds = timing["seconds"].measured();
+  timing["recording_seconds"].get(out.recording_seconds);
+  timing["comparing_seconds"].get(out.comparing_seconds);
 }
 
 }  // namespace hamel

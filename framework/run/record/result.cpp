@@ -147,8 +147,13 @@ std::string Result::report() const {
   if (config.check && status.ok) {
     line("estimated error", estimated_error_in_words(*this));
   }
-  if (std::isfinite(seconds))
-    line("time", fmt::format("{:.3f} s, {:.0f} ns a step", seconds, seconds * 1e9 / count));
+  if (std::isfinite(seconds)) {
+    const double in_steps = seconds - recording_seconds;
+    line("time",
+         fmt::format("{:.3f} s in steps, {:.0f} ns each; recording {:.3f} s, comparison "
+                     "{:.3f} s",
+                     in_steps, in_steps * 1e9 / count, recording_seconds, comparing_seconds));
+  }
   return out;
 }
 

@@ -73,6 +73,8 @@ struct Result : Measurements {
   bool stopped_by_event = false;
   SolverStats stats;
   double seconds = 0;  // of the time loop, recording included; NaN of steps by hand without rows
+  double recording_seconds = 0;  // of these, to measure and write states
+  double comparing_seconds = 0;  // beside them: equations of motion, invariants, exact motion
 
   explicit operator bool() const { return status.ok; }
   /// "lift (s = 0.5), cayley, newton": the method, without what the scheme makes no use of.

@@ -129,9 +129,8 @@ Status Driver::advance(long count, bool to_end) {
     entered_ = Clock::now();
     begin();
     take_steps(count, to_end);
-    seconds_ = elapsed();
+    lap();
     entered_ = {};
-    comparing_ = {};
   } catch (...) {
     rows_to_files_after_failure();
     throw;
@@ -255,7 +254,7 @@ void Driver::restart(const Start& start) {
   next_ = 0;
   recorded_ = -1;
   rows_ = kept_at_ = impacts_met_ = 0;
-  seconds_ = 0;
+  seconds_ = {};
   begun_ = sinks_begun_ = flawed_ = false;
   make_observers();
 }

@@ -50,6 +50,15 @@ class Driver {
 
  private:
   using Clock = std::chrono::steady_clock;
+  // Adds its lifetime.
+  struct Timed {
+    explicit Timed(Clock::duration& to) : sum(to) {}
+    ~Timed() { sum += Clock::now() - begin; }
+    Timed(const Timed&) = delete;
+    Timed& operator=(const Timed&) = delete;
+    Clock::duration& sum;
+    const Clock::time_point begin = Clock::now();
+  };
 
   void begin();
   void make_observers();
@@ -84,13 +93,15 @@ class Driver {
   // Rows to their files; the run can be resumed from here where a sink keeps its state.
   void keep();
   void rows_to_files_after_failure();
-  double elapsed() const;
+  // The time up to now into seconds_.
+  void lap();
   Result head() const;
   void measure_ends_only();
   // All that a resumed run needs but the events that were met.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(*kernel_, steps_left_, next_, recorded_, result_.seconds, *plan_.events, *recorder_);
+    archive(*kernel_, steps_left_, next_, recorded_, seconds_.all, seconds_.recording,
+            seconds_.comparing, *plan_.events, *recorder_);
   }
 
   RunPlan plan_;
@@ -112,9 +123,13 @@ class Driver {
   long rows_ = 0, kept_at_ = 0;  // since the last keep(); its step
   long kept_events_ = 0;         // events that are in the files
   long impacts_met_ = 0;
-  double seconds_ = 0;  // spent in steps, and in the parts of the run before this one
+  // Result::seconds and its parts, up to entered_, those before a file was resumed too.
+  struct Seconds {
+    double all = 0, recording = 0, comparing = 0;
+  };
+  Seconds seconds_;
   Clock::time_point entered_;
-  Clock::duration comparing_{};  // is no part of the time of a run
+  Clock::duration in_rows_{}, comparing_{};  // since then; what compares is within rows
 };
 
 }  // namespace hamel

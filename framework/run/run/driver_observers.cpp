@@ -97,17 +97,19 @@ bool Driver::record(const Snapshot& state) {
   if (own) {
     if (node_.step == recorded_) return true;  // nothing new
     recorded_ = node_.step;
-    kernel_->measure(row_);
   }
+  const Timed timed(in_rows_);
+  if (own) kernel_->measure(row_);
   const bool good_row = good(own ? row_ : state);
   if (!good_row && sinks_begun_) return false;
   if (own) std::swap(result_.last, row_);
   else result_.last = state;
   const Snapshot& row = result_.last;
   recorder_->take(row);
-  const auto begin = Clock::now();
-  recorder_->compare(row);
-  comparing_ += Clock::now() - begin;
+  {
+    const Timed compared(comparing_);
+    recorder_->compare(row);
+  }
   ++rows_;
   if (!sinks_begun_) {
     Result at_start = head();
@@ -179,12 +181,13 @@ void Driver::keep() {
   rows_ = 0;
   kept_at_ = node_.step;
   if (!recording_) return;
+  const Timed timed(in_rows_);
   deliver();
   if (resumable_) {
     kernel_->begin_anew();
     dense_.reset();
     kernel_->state(node_);
-    result_.seconds = elapsed();
+    lap();
     CheckpointWriter state, news;
     serialize(state);
     std::vector<EventMet> met(result_.events.begin() + kept_events_, result_.events.end());
@@ -203,7 +206,6 @@ void Driver::resume(const RunFile& file) {
   dense_.reset();
   kernel_->state(node_);
   begun_ = true;
-  seconds_ = result_.seconds;
   kept_at_ = node_.step;
   for (const std::string& piece : kept.news) {
     std::vector<EventMet> met;
@@ -244,10 +246,16 @@ void Driver::rows_to_files_after_failure() {
   }
 }
 
-double Driver::elapsed() const {
-  const Clock::duration now =
-      entered_ == Clock::time_point() ? Clock::duration() : Clock::now() - entered_;
-  return seconds_ + std::chrono::duration<double>(now - comparing_).count();
+void Driver::lap() {
+  const auto seconds = [](Clock::duration time) {
+    return std::chrono::duration<double>(time).count();
+  };
+  const Clock::time_point now = Clock::now();
+  seconds_.all += seconds(now - entered_ - comparing_);
+  seconds_.recording += seconds(in_rows_ - comparing_);
+  seconds_.comparing += seconds(comparing_);
+  entered_ = now;
+  in_rows_ = comparing_ = {};
 }
 
 // ---- the end ------------------------------------------------------------------------------------
@@ -300,7 +308,9 @@ Result& Driver::end() {
     result_.inputs = std::move(shell.inputs);
     result_.unused = std::move(shell.unused);
     result_.notes = std::move(shell.notes);
-    result_.seconds = watching_ || seconds_ > 0 ? seconds_ : Measurements::kNone;
+    result_.seconds = watching_ || seconds_.all > 0 ? seconds_.all : Measurements::kNone;
+    result_.recording_seconds = seconds_.recording;
+    result_.comparing_seconds = seconds_.comparing;
     result_.steps = flawed_ && recording_ ? result_.last.step : node_.step;
     result_.stats = kernel_->stats();
     if (!recording_) {

@@ -83,7 +83,8 @@ nb::dict pack(const StoredResult& stored) {
       nb::make_tuple(status.ok, status.step, status.time, status.residual, status.reason);
   out["last"] = pack(result.last);
   out["steps"] = result.steps;
-  out["seconds"] = result.seconds;
+  out["seconds"] =
+      nb::make_tuple(result.seconds, result.recording_seconds, result.comparing_seconds);
   out["notes"] = result.notes;
   out["unused"] = result.unused;
   out["stopped_by_event"] = result.stopped_by_event;
@@ -116,7 +117,9 @@ void unpack(StoredResult& self, const nb::dict& state) {
   result.status = {ok, step, time, residual, reason};
   result.last = snapshot_of(get<nb::tuple>(state, "last"));
   result.steps = get<long>(state, "steps");
-  result.seconds = get<double>(state, "seconds");
+  using Seconds = std::tuple<double, double, double>;
+  std::tie(result.seconds, result.recording_seconds, result.comparing_seconds) =
+      get<Seconds>(state, "seconds");
   result.notes = get<std::vector<std::string>>(state, "notes");
   result.unused = get<std::vector<std::string>>(state, "unused");
   result.stopped_by_event = get<bool>(state, "stopped_by_event");

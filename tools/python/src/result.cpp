@@ -208,6 +208,10 @@ void bind_result(nb::module_& m) {
       .def_prop_ro("stopped_by_event", member(&Result::stopped_by_event))
       .def_prop_ro("stats", member(&Result::stats))
       .def_prop_ro("seconds", member(&Result::seconds), "Of the time loop, recording included.")
+      .def_prop_ro("recording_seconds", member(&Result::recording_seconds),
+                   "Of these, to measure and write states.")
+      .def_prop_ro("comparing_seconds", member(&Result::comparing_seconds),
+                   "Beside them: equations of motion, invariants, exact motion.")
       .def_prop_ro(
           "last",
           [](const StoredResult& s) {
