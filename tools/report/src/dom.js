@@ -2,7 +2,7 @@
 
 import { prose } from './format.js';
 
-const SVG_TAGS = new Set(['svg', 'line', 'circle', 'text']);
+const SVG_TAGS = new Set(['svg', 'g', 'line', 'circle', 'rect', 'path', 'text']);
 
 /** h('p', {class: 'note'}, 'text', child…) -> element; a null attribute or child is left out. */
 export function h(tag, attributes = {}, ...children) {

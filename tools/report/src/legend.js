@@ -4,7 +4,8 @@ import { h } from './dom.js';
 
 export const MANY = 12;  // more entries scroll, and the figure takes the whole width
 
-const swatch = ({ colour, dash }, { dots, markers }) => h('svg', { class: 'swatch', viewBox: '0 0 28 10', width: 28, height: 10, 'aria-hidden': 'true' },
+export const swatch = ({ colour, dash }, { dots, markers, cell }) => cell ? h('svg', { class: 'swatch', viewBox: '0 0 14 11', width: 14, height: 11, 'aria-hidden': 'true' },
+  h('rect', { width: 14, height: 11, fill: colour })) : h('svg', { class: 'swatch', viewBox: '0 0 28 10', width: 28, height: 10, 'aria-hidden': 'true' },
   dots ? null : h('line', { x1: 1, y1: 5, x2: 27, y2: 5, stroke: colour, 'stroke-width': 2.2, 'stroke-dasharray': dash.length ? dash.join(' ') : null }),
   markers ? h('circle', { cx: 14, cy: 5, r: 3, fill: colour }) : null);
 

@@ -5,22 +5,26 @@ import './figures.css';
 import './print.css';
 import { animation } from './animation.js';
 import { h, inline, problem } from './dom.js';
-import { assignStyles } from './palette.js';
 import { heatmap } from './heatmap.js';
+import { members } from './members.js';
+import { assignStyles } from './palette.js';
 import { path, plot } from './plot.js';
 import { showPicture } from './picture.js';
 import { preparePrinting } from './print.js';
 import { record } from './record.js';
+import { scatter } from './scatter.js';
 import { sphere } from './sphere.js';
 import { stateOf } from './state.js';
 import { table } from './table.js';
 import { text, verdict } from './text.js';
 
-const KINDS = { text, verdict, table, record, plot, path, sphere, heatmap, animation };
-const FIGURES = new Set(['plot', 'path', 'sphere', 'heatmap', 'animation']);
+const MOTIONS = { path, sphere, animation };  // what a member may carry
+const KINDS = { text, verdict, table, record, plot, path, sphere, heatmap, scatter, animation, members: (block) => members(block, (motion) => MOTIONS[motion.kind](motion)) };
+const FIGURES = new Set(['plot', 'path', 'sphere', 'heatmap', 'scatter', 'animation']);
 const HELP = 'Charts: a box drawn with the mouse zooms, Ctrl and wheel zoom at the pointer, a double click shows all again; the arrow ' +
   'keys read the points. A click on a name hides or shows its curve. Spheres and bodies turn by dragging or with the arrow keys; ' +
   'Ctrl and wheel or plus and minus zoom.';
+const CHOOSING = ' A click on a dot, a point or a cell of a member shows this member; on a figure that is read by the arrow keys, Enter.';
 
 function readData() {
   const source = document.getElementById('hamel-data')?.textContent.trim() ?? '';
@@ -132,7 +136,7 @@ async function showPage() {
   if (nav) document.body.classList.add('with-contents');
   const main = h('main', {}, data.sections.map((section, i) => showSection(section, i + 1, counter, later)));
   document.body.append(h('div', { class: 'page' }, header(data), nav, main,
-    later.length ? h('footer', {}, HELP) : null));
+    later.length ? h('footer', {}, HELP + (data.sections.some((section) => section?.blocks?.some((block) => block?.kind === 'members')) ? CHOOSING : '')) : null));
   preparePrinting();
   await Promise.all(drawAll(later));
 }

@@ -10,6 +10,10 @@ let styles = new Map();
 
 const nameOf = (series) => String(series?.key ?? series?.name);
 
+/** What of a block has a look: its series, or its classes. */
+const seriesOf = (block) => (Array.isArray(block?.series) ? block.series : block?.kind === 'scatter' && !block.classes ? [{ name: 'members' }] :
+  Array.isArray(block?.classes) ? block.classes.map((name) => ({ name })) : null);
+
 /** The names of a block that are seen at one time: all, or those whose tags a filter shows together. */
 function seenTogether(block) {
   if (!Array.isArray(block.filters)) return [block.series.map(nameOf)];
@@ -20,7 +24,7 @@ function seenTogether(block) {
 /** Gives every name of the page its style. */
 export function assignStyles(sections) {
   styles = new Map();
-  const blocks = sections.flatMap((section) => section?.blocks ?? []).filter((block) => Array.isArray(block?.series));
+  const blocks = sections.flatMap((section) => section?.blocks ?? []).flatMap((block) => (seriesOf(block) ? [{ filters: block.filters, series: seriesOf(block) }] : []));
   const figures = blocks.flatMap(seenTogether);
   const inBlock = blocks.map((block) => block.series.map(nameOf));
   const all = DASHES.flatMap((dash) => COLOURS.map((colour) => ({ colour, dash, names: 0 })));

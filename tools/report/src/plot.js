@@ -8,6 +8,7 @@ import { formatNumber, formatShort, logTicks, MISSING, niceTicks } from './forma
 import { readByKeys } from './keys.js';
 import { makeLegend, MANY } from './legend.js';
 import { markings } from './markings.js';
+import { choosable } from './choosing.js';
 import { columnsToCsv } from './save.js';
 import { covered, extent, readSeries } from './series.js';
 import { makeZoom, ZOOMS } from './zoom.js';
@@ -25,7 +26,7 @@ export const path = (block) => chartFigure(block, readSeries(block, false), true
 
 function chartFigure(block, data, equal) {
   const { curves } = data;
-  const points = new Set(curves.flatMap((curve) => curve.points.filter(isPoint).map((p) => p.join())));
+  const points = new Set(curves.flatMap((curve) => curve.points.filter(isPoint).map(([x, y]) => `${x},${y}`)));
   if (points.size < 2) return { element: instead(block, data, points.size) };
   let drawn = null;
   const redraw = () => {
@@ -71,7 +72,13 @@ function chartFigure(block, data, equal) {
   const draw = () => {
     drawn = makeChart(holder, (width) => Math.min(320, Math.max(240, 0.72 * width)), (width, height) => option(block, data, equal, width, height, zoom.seen));
     zoom.watch(drawn.chart);
-    readByKeys(holder, drawn.chart, () => ({ series: curves.findIndex((c) => c.show), points: curves.find((c) => c.show)?.points.length ?? 0 }));
+    const chosen = curves.some(({ points: [first] }) => first?.length > 2) ? choosable(holder, drawn.chart, curves) : null;
+    readByKeys(holder, drawn.chart, (turn) => {
+      const shown = curves.flatMap((curve, i) => (curve.show && curve.points.length ? [i] : []));
+      const i = shown[((turn % shown.length) + shown.length) % shown.length];
+      const series = drawn.chart.getModel().getSeries().find(({ id }) => id === String(i))?.seriesIndex ?? 0;
+      return { series, points: curves[i]?.points.length ?? 0, curves: shown.length, choose: chosen && ((at) => chosen(curves[i].points[at][2])) };
+    });
   };
   return { element, draw, picture };
 }
@@ -94,7 +101,7 @@ function describe(block, { curves, y }, equal) {
     return low <= high ? `${name} from ${formatShort(low, 3)} to ${formatShort(high, 3)}` : `${name} empty`;
   });
   return `${equal ? 'Path in the plane' : 'Plot'}: ${block.title ?? 'untitled'}; ${block.y || 'y'} against ${block.x || 'x'}; ` +
-    `${ranges.join(', ')}. Left and right arrow keys read the points.`;
+    `${ranges.join(', ')}. Left and right arrow keys read the points${curves.some(({ points: [first] }) => first?.length > 2) ? ', page keys change the curve, Enter shows the member' : ''}.`;
 }
 
 /** seen: the part of each axis that is zoomed to. */
@@ -171,6 +178,6 @@ function readOut(list, data) {
       .slice(0, MOST_READ).map(({ seriesName, seriesId, dataIndex, point, color }) => {
         const low = data.curves[seriesId]?.lows[dataIndex];
         return h('div', { class: 'read' }, h('i', { style: `background:${color}` }), `${seriesName} `,
-          h('span', {}, `${low ? `${value(data.y, low[1])} … ` : ''}${value(data.y, point[1])}`));
+          h('span', {}, point[2] === undefined ? '' : `member ${point[2]}: `, `${low ? `${value(data.y, low[1])} … ` : ''}${value(data.y, point[1])}`));
       }));
 }

@@ -1,5 +1,6 @@
 // The record of a run as keys and values, nested keys joined by dots, with its JSON to copy.
 
+import { copyButton } from './copy.js';
 import { h } from './dom.js';
 import { formatShort, formatValue, MISSING } from './format.js';
 
@@ -9,7 +10,7 @@ const SOUGHT = /^(system|group|scheme|s|retraction|solver|compose|tolerance|rtol
 export function record(block) {
   const values = block.record;
   if (values === null || typeof values !== 'object') throw new Error('no object "record"');
-  const copy = h('button', { type: 'button', class: 'copy', onclick: () => copyText(values, copy) }, 'copy JSON');
+  const copy = copyButton('copy JSON', () => JSON.stringify(values, null, 2));
   const entries = flatten(values);
   const sought = entries.filter(([key, value]) => SOUGHT.test(key) && value !== null && !isEmpty(value) && value !== 'none');
   const title = block.title ?? ['system', 'scheme', 'retraction', 'solver'].map((key) => values[key])
@@ -41,26 +42,4 @@ function flatten(object, prefix = '') {
     const nested = value !== null && typeof value === 'object' && !Array.isArray(value);
     return nested ? flatten(value, `${prefix}${key}.`) : [[prefix + key, value]];
   });
-}
-
-async function copyText(values, button) {
-  const text = JSON.stringify(values, null, 2);
-  let done = true;
-  try {
-    await navigator.clipboard.writeText(text);
-  } catch {
-    done = copyBySelection(text);  // pages opened from a file may have no clipboard
-  }
-  button.textContent = done ? 'copied' : 'could not copy';
-  setTimeout(() => { button.textContent = 'copy JSON'; }, 1500);
-}
-
-function copyBySelection(text) {
-  const area = h('textarea', { class: 'copied' });
-  area.value = text;
-  document.body.append(area);
-  area.select();
-  const done = document.execCommand('copy');
-  area.remove();
-  return done;
 }

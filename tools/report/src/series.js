@@ -30,19 +30,20 @@ export function extent(values) {
   return values.reduce(([a, b], v) => (Number.isFinite(v) ? [Math.min(a, v), Math.max(b, v)] : [a, b]), [Infinity, -Infinity]);
 }
 
-/** -> {x, y: axes, curves: [{name, style, points: [[x, y], …], lows: the same of the lower edge of a band, dots, markers, tags, fit}], hidden}; `sorted` in order of x. */
+/** -> {x, y: axes, curves: [{name, style, points: [[x, y, member?], …], lows: the same of the lower edge of a band, dots, markers, tags, fit}], hidden}; `sorted` in order of x. */
 export function readSeries(block, sorted) {
   if (!Array.isArray(block.series)) throw new Error('no list "series"');
   block.series.forEach((s, i) => {
     if (!Array.isArray(s?.x) || !Array.isArray(s?.y)) throw new Error(`series ${i + 1} (${s?.name}) needs the lists x and y`);
     if (s.x.length !== s.y.length) throw new Error(`series ${s.name}: x has ${s.x.length} values, y has ${s.y.length}`);
+    if (s.members && s.members.length !== s.x.length) throw new Error(`series ${s.name}: x has ${s.x.length} values, members has ${s.members.length}`);
     if (s.low && s.low.length !== s.y.length) throw new Error(`series ${s.name}: y has ${s.y.length} values, low has ${s.low.length}`);
   });
   const x = readAxis(block.x, block.log_x, block.series.map((s) => s.x));
   const y = readAxis(block.y, block.log_y, block.series.flatMap((s) => [s.y, s.low ?? []]));
   let hidden = 0;
   const curves = block.series.map((s) => {
-    const points = s.x.map((v, i) => [x.to(v), y.to(s.y[i])]);
+    const points = s.x.map((v, i) => (s.members ? [x.to(v), y.to(s.y[i]), s.members[i]] : [x.to(v), y.to(s.y[i])]));
     hidden += s.x.filter((v, i) => (x.log && v !== null && v <= 0) || (y.log && s.y[i] !== null && s.y[i] <= 0)).length;
     if (sorted && s.x.some((v, i) => i > 0 && v < s.x[i - 1])) points.sort((a, b) => a[0] - b[0]);
     return { name: prose(String(s.name ?? '')), style: styleOf(s), points, lows: s.low?.map((v, i) => [points[i][0], y.to(v)]) ?? [], dots: Boolean(s.dots), markers: s.dots || (s.markers ?? (sorted && points.length <= FEW)), tags: s.tags,

@@ -9,6 +9,7 @@ import { fileURLToPath } from 'node:url';
 import { serve } from './browser.mjs';
 import { fill } from './fill.mjs';
 import { sample } from './sample_data.mjs';
+import { classMap, crowd, matrix, memberDots, members } from './sample_members.mjs';
 import { body } from './sample_motion.mjs';
 import { convergence, errorMap, longTable } from './sample_study.mjs';
 import { units } from './units.mjs';
@@ -25,7 +26,7 @@ if (!built) {
 }
 const page = readFileSync(built, 'utf8');
 const good = fill(page, JSON.stringify(sample));
-const small = (block) => fill(page, JSON.stringify({ title: 'Fault', sections: [{ title: 'One', blocks: [block] }] }));
+const small = (...blocks) => fill(page, JSON.stringify({ title: 'Fault', sections: [{ title: 'One', blocks }] }));
 const text = { kind: 'text', paragraphs: ['A text.'] };
 const series = [{ name: 'a', x: [0, 1, 2], y: [0, 1, 0] }];
 const plot = { kind: 'plot', title: 'A plot', x: 'x', y: 'y', series };
@@ -37,7 +38,7 @@ const planted = (html, script) => {
   return `${html.slice(0, end)}<script>${script}</script>${html.slice(end)}`;
 };
 
-/** A page built from sources in which one text was replaced: a planted bug. */
+/** A page built from sources in which one text was replaced: a planted bug. block: one, or a list. */
 function bent(block, file, from, to) {
   const copy = mkdtempSync(join(folder, 'bent-'));
   for (const part of ['src', 'build.mjs', 'package.json']) cpSync(join(here, '..', part), join(copy, part), { recursive: true });
@@ -48,7 +49,7 @@ function bent(block, file, from, to) {
   const output = join(copy, 'page.html');
   const build = spawnSync(process.execPath, [join(copy, 'build.mjs'), output], { encoding: 'utf8' });
   if (build.status !== 0) throw new Error(`${file} with “${to}” does not build: ${build.stderr}`);
-  return fill(readFileSync(output, 'utf8'), JSON.stringify({ title: 'Fault', sections: [{ title: 'One', blocks: [block] }] }));
+  return fill(readFileSync(output, 'utf8'), JSON.stringify({ title: 'Fault', sections: [{ title: 'One', blocks: [block].flat() }] }));
 }
 
 // A disk that turns about its own axis and leaves no trail: only its mark shows it.
@@ -108,6 +109,22 @@ const cases = [
   ['a first drawing that stays too wide', () => bent(plot, 'figures.css', '.chart > div:first-child { max-width: 100%; }', ''), 1, /drawings shrink with their cards: 1 do not/],
   ['no word about WebGL', () => bent(spin, 'stage.js', 'Drawn without WebGL', 'Drawn'), 1, /drawn all the same and say so: 1 say nothing/],
   ['a saved figure without its colours', () => bent(plot, 'save.js', 'print.getPropertyValue(name).trim()', '`var(${name})`'), 1, /SVG: colours of its own/],
+  ['an ensemble', small(members, classMap, memberDots, matrix), 0, /passed, 0 failed/],
+  ['4000 dots in ten pairs', small({ ...members, count: 100000, index: crowd(4000).members, columns: [], failures: {}, motions: {} }, crowd(4000)), 0, /passed, 0 failed/],
+  ['a scatter matrix without members', small({ ...matrix, members: undefined }), 0, /passed, 0 failed/],
+  ['columns of different lengths', small({ ...matrix, columns: [matrix.columns[0], { name: 'b', values: [1] }] }), 1, /column b has 1 values, angle has 40/],
+  ['members without values', small({ ...members, columns: [{ name: 'b', values: [1] }] }), 1, /column b has 1 values, there are 40 members/],
+  ['a click that chooses another', () => bent([members, classMap], 'heatmap.js', "({ dataIndex }) => choose(member(dataIndex), holder)", '({ dataIndex }) => choose(member(dataIndex + 1), holder)'), 1, /heatmap: a click there shows a member/],
+  ['rows of members upside down', () => bent([members, classMap], 'heatmap.js', 'order.map((i) => block.members[i])', 'block.members'), 1, /heatmap: the first cell is that member/],
+  ['a dead click on dots', () => bent([members, memberDots], 'choosing.js', "chart.getZr().on('click'", "chart.getZr().on('none'"), 1, /plot: a click there shows a member/],
+  ['a dead Enter', () => bent([members, memberDots], 'keys.js', "event.key === 'Enter' &&", 'false &&'), 1, /plot: Enter shows the member/],
+  ['a matrix that finds no dot', () => bent([members, matrix], 'scatter.js', 'if (away < distance) [best', 'if (away < 0) [best'), 1, /scatter: a click there shows a member/],
+  ['a matrix that marks another', () => bent([members, matrix], 'scatter.js', 'if (i >= 0 && data.members) choose(data.members[i], holder)', 'if (i >= 0 && data.members) choose(data.members[(i + 7) % data.count], holder)'), 1, /scatter: the mark is where the click was/],
+  ['a matrix without dots', () => bent(matrix, 'scatter.js', 'if (c >= r) continue;\n      const d', 'if (c >= 0) continue;\n      const d'), 1, /every pair has its dots: 0 dots/],
+  ['a command line of another member', () => bent([members, classMap], 'members.js', "replace('{}', member)", "replace('{}', member + 1)"), 1, /a member is shown by its number, with its command line/],
+  ['a motion that is not there', () => bent([members, classMap], 'members.js', 'store.motions[member] ?? []', '[]'), 1, /the motion of a member is drawn in its box/],
+  ['classes on a scale', () => bent(classMap, 'heatmap.js', 'scaled: min < max && !classes', 'scaled: min < max'), 1, /no scale of numbers/],
+  ['classes of one colour', () => bent(classMap, 'heatmap.js', 'map.classes[value]?.colour ?? HATCH', 'map.classes[0].colour'), 1, /a colour for each class/],
   ['ticks that stay when zoomed', () => bent(plot, 'zoom.js', 'zoomed ? { x: ranges[0]', 'false ? { x: ranges[0]'), 1, /a drag zooms|has ticks/],
 ];
 

@@ -9,6 +9,7 @@ import { countPixels } from './pixels.mjs';
 import { misfit } from './schema.mjs';
 import { useAnimation, useSphere } from './use_animation.mjs';
 import { useChart, useSaving } from './use_chart.mjs';
+import { useMembers, useScatter } from './use_members.mjs';
 import { useFilters, useHeatmap, useTable } from './use_study.mjs';
 
 /** Runs in the page before anything else: a browser without WebGL. */
@@ -69,6 +70,7 @@ function drawable() {
   return data.sections.flatMap((section) => section.blocks ?? []).map((block) => {
     if (block.kind === 'sphere') return block.series.some((s) => s.points.filter((p) => p?.every(Number.isFinite)).length > 1);
     if (block.kind === 'heatmap') return true;  // its scale at least
+    if (block.kind === 'scatter') return block.columns.filter(({ values }) => values.filter(Number.isFinite).length > 1).length > 1;
     if (block.kind === 'animation') {
       return block.bodies.some(({ poses, shapes }) => poses[0]?.every(Number.isFinite) &&
         shapes.some(({ color }) => ['body', 'accent', undefined].includes(color)));
@@ -133,7 +135,7 @@ async function checkShrinking(page, check) {
   const wide = await page.evaluate(() => {
     const main = document.querySelector('main');
     main.style.width = '280px';
-    const out = [...document.querySelectorAll('.chart svg')].filter((svg) => svg.getBoundingClientRect().right > svg.closest('.figure').getBoundingClientRect().right);
+    const out = [...document.querySelectorAll('.chart:not(.scroll *) svg')].filter((svg) => svg.getBoundingClientRect().right > svg.closest('.figure').getBoundingClientRect().right);
     main.style.width = '';
     return out.length;
   });
@@ -155,6 +157,8 @@ async function useIt(page, check) {
   await useTable(page, check);
   await useAnimation(page, check);
   await useSphere(page, check);
+  await useScatter(page, check);
+  await useMembers(page, check);
 }
 
 /** On paper every drawing is as wide as its frame at most, in light colours, and none is cut. */

@@ -1,6 +1,7 @@
 // A report with every kind of block and the awkward cases: 2000-point curves, 8 and 10 series, logarithms over
 // 19 decades, zeros, NaN gaps, tiny and nearly constant ranges, hostile text.
 
+import { ensemble } from './sample_members.mjs';
 import { motion } from './sample_motion.mjs';
 import { study } from './sample_study.mjs';
 
@@ -92,6 +93,7 @@ export const sample = {
     ] },
     study,
     motion,
+    ensemble,
     { title: 'Corner cases', blocks: [
       plot('Constant', 't [s]', 'value', [{ name: 'constant', x: [0, 1, 2], y: [1, 1, 1] }]),
       plot('Less than one decade', 'h', 'error', [{ name: 'lift s=1', x: t(50, 1), y: t(50, 1).map((v) => 3e-7 * (1 + v)) }], { log_y: true }),

@@ -13,7 +13,7 @@ export async function useHeatmap(page, check) {
   const blocks = await page.evaluate(() => JSON.parse(document.getElementById('hamel-data').textContent)
     .sections.flatMap((section) => section.blocks ?? []).filter((block) => block.kind === 'heatmap'));
   for (let n = 0; n < await maps.count(); ++n) {
-    const { title, log, values, marks, y_values: ys } = blocks[n];
+    const { title, log, values, marks, y_values: ys, classes } = blocks[n];
     const map = maps.nth(n);
     await map.scrollIntoViewIfNeeded();
     await map.focus();
@@ -29,12 +29,13 @@ export async function useHeatmap(page, check) {
       await page.keyboard.press('ArrowLeft');  // (at the first cell it stays; elsewhere it goes there and back)
       if (c + row > 0) await page.keyboard.press('ArrowRight');
       return map.evaluate((holder, number) => {
-        const cells = [...holder.querySelectorAll('svg path')].filter((path) => /^(rgb|url|var\(--paper)/.test(path.getAttribute('fill') ?? ''));
+        const cells = [...holder.querySelectorAll('svg path')].filter((path) => /^(rgb|url|var\(--(paper|c\d))/.test(path.getAttribute('fill') ?? ''));
         const fill = cells[number]?.getAttribute('fill') ?? '';
         return { fill, light: (fill.match(/\d+/g) ?? []).reduce((sum, v) => sum + Number(v), 0), tip: holder.parentElement.querySelector('[role=status]').textContent };
       }, row * values[0].length + c);
     };
-    if (known.length > 1 && known.at(-1).value > known[0].value) {
+    if (classes) await lookAtClasses(page, check, n, title, classes, known, look);
+    else if (known.length > 1 && known.at(-1).value > known[0].value) {
       const [least, most] = [await look(known[0]), await look(known.at(-1))];
       check(`heat map ${title}: larger is darker`, /rgb/.test(most.fill) && most.light < least.light - 20, `${most.fill} and ${least.fill}`);
       check(`heat map ${title}: the cell is read out`, /\d/.test(most.tip) && most.tip !== least.tip, most.tip);
@@ -47,6 +48,22 @@ export async function useHeatmap(page, check) {
     const marked = all.find(({ mark }) => mark);
     if (marked) check(`heat map ${title}: a mark is read out`, (await look(marked)).tip.includes(`(${marked.mark})`));
   }
+}
+
+/** Each class has a colour, its name in the legend and where its cells are read, and there is no scale of numbers. */
+async function lookAtClasses(page, check, n, title, classes, known, look) {
+  const seen = classes.flatMap((name, c) => known.filter(({ value }) => value === c).slice(0, 1).map((cell) => ({ name, cell })));
+  const fills = [];
+  for (const { name, cell } of seen) {
+    const { fill, tip } = await look(cell);
+    fills.push(fill);
+    check(`heat map ${title}: the class ${name} is read out`, tip.includes(name), tip);
+  }
+  check(`heat map ${title}: a colour for each class`, new Set(fills).size === seen.length && fills.every((fill) => /^var\(--c/.test(fill)), String(fills));
+  const figure = page.locator('.figure.heatmap').nth(n);
+  const [legend, inside] = [await figure.locator('.legend').textContent(), await figure.locator('svg text').allTextContents()];
+  check(`heat map ${title}: the legend has all names`, classes.every((name) => legend.includes(name)), legend);
+  check(`heat map ${title}: no scale of numbers`, await figure.locator('.chart svg linearGradient').count() === 0, String(inside));
 }
 
 /** A plot with filters shows exactly the series of the chosen tags, by keyboard too. */
