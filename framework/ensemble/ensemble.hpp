@@ -85,8 +85,9 @@ struct EnsembleConfig {
   std::map<std::string, HistogramRequest> histograms = {};
   std::vector<double> quantiles = {};
   bool covariance = false;
-  std::string data = {};               // the text of the system's file, read once
-  std::string origin = {}, text = {};  // the ensemble's file, for the record
+  std::vector<long> trajectories = {};  // members whose runs the program writes and shows, too
+  std::string data = {};                // the text of the system's file, read once
+  std::string origin = {}, text = {};   // the ensemble's file, for the record
 
   /// "file:line:column" by key, "vary.skew"; empty for an ensemble made in a program.
   std::map<std::string, std::string> where = {};

@@ -47,9 +47,10 @@ class EnsembleReader {
   };
 
   static std::vector<std::string> keys() {
-    std::vector<std::string> out = {"members",    "seed",      "grid",          "vary",
-                                    "keep",       "class",     "statistics_at", "statistics_of",
-                                    "histograms", "quantiles", "covariance",    "feedback"};
+    std::vector<std::string> out = {"members",     "seed",      "grid",          "vary",
+                                    "keep",        "class",     "statistics_at", "statistics_of",
+                                    "histograms",  "quantiles", "covariance",    "feedback",
+                                    "trajectories"};
     for (std::string& key : config_keys()) out.push_back(std::move(key));
     return out;
   }
@@ -80,6 +81,7 @@ class EnsembleReader {
     else if (key == "statistics_of") read_.value(node, key, config_.statistics_of);
     else if (key == "histograms") histograms(node);
     else if (key == "quantiles") quantiles(node);
+    else if (key == "trajectories") trajectories(node);
     else if (key == "covariance") read_.value(node, key, config_.covariance);
     else if (key == "events" && node.is_table()) events(*node.as_table());
     else return false;
@@ -91,6 +93,16 @@ class EnsembleReader {
     read_.value(node, "seed", value);
     if (value < 0) read_.wrong(node, "seed", "a whole number of at least 0");
     config_.seed = static_cast<uint64_t>(value);
+  }
+
+  void trajectories(const toml::node& node) {
+    std::vector<double> given;
+    read_.value(node, "trajectories", given);
+    for (const double member : given) {
+      const auto whole = static_cast<long>(member);
+      if (member == static_cast<double>(whole)) config_.trajectories.push_back(whole);
+      else read_.wrong(node, "trajectories", "the numbers of members, from 0");
+    }
   }
 
   void vary(const toml::node& node) {

@@ -58,6 +58,7 @@ Plan::Plan(const Registry& given, EnsembleConfig& from, std::vector<std::string>
   } catch (const ConfigError& error) {
     add_placed(config, error.mistakes(), mistakes);
   }
+  check_trajectories(mistakes);
   if (!mistakes.empty()) return;
   for (const std::string& event : kept->events())
     if (std::ranges::find(base.events, event) == base.events.end()) base.events.push_back(event);
@@ -71,12 +72,27 @@ Plan::Plan(const Registry& given, EnsembleConfig& from, std::vector<std::string>
   }
 }
 
+void Plan::check_trajectories(std::vector<std::string>& mistakes) const {
+  constexpr size_t most = 100;
+  const auto add = [&](const std::string& text) {
+    mistakes.push_back(placed(config, "trajectories", "trajectories: " + text));
+  };
+  for (const long member : config.trajectories)
+    if (member < 0 || member >= config.members)
+      add(fmt::format("got {}, expected 0 to {}", member, config.members - 1));
+  if (config.trajectories.size() > most)
+    add(fmt::format("{} members, expected at most {}", config.trajectories.size(), most));
+  if (!config.trajectories.empty() && !config.feedback.inputs.empty())
+    add("a run has no inputs by formulas ([feedback])");
+}
+
 const LaneInfo* Plan::find_lanes(const Run& run) const {
   const KernelSetup& setup = run.driver().plan().setup;
   const bool plain = !resolved.chooses_steps() && setup.composition.size() == 1 &&
                      setup.solver == nullptr && setup.inputs == nullptr;
   const bool nodes = kept->times().empty() && kept->events().empty() && base.events.empty() &&
-                     !kept->wants_solver() && !(kept->wants_peaks() && !rows.empty());
+                     !kept->wants_solver() && !kept->wants_reactions() && !kept->wants_balance() &&
+                     !(kept->wants_peaks() && !rows.empty());
   if (!plain || !nodes || feedback->any()) return nullptr;
   const std::string& group = run.system().group.name;
   const Mechanics& mechanics = *setup.mechanics;

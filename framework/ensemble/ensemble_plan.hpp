@@ -48,6 +48,7 @@ class Plan {
  private:
   bool give_inputs(const SystemModel& system);
   const LaneInfo* find_lanes(const Run& run) const;
+  void check_trajectories(std::vector<std::string>& mistakes) const;
 };
 
 }  // namespace hamel::ensemble

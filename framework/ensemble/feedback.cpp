@@ -11,7 +11,7 @@ namespace hamel::ensemble {
 
 FeedbackFormulas::FeedbackFormulas(const EnsembleConfig& config, const SystemModel& system,
                                    const Variations& variations, std::vector<std::string>& mistakes)
-    : states_(system), constants_(config, system, variations) {
+    : states_(system, false), constants_(config, system, variations) {
   const std::vector<std::string> variables = constants_.behind(states_.names());
   for (const auto& [input, text] : config.feedback.inputs) {
     const std::string key = "feedback." + input;
@@ -44,7 +44,7 @@ FeedbackFormulas::FeedbackFormulas(const EnsembleConfig& config, const SystemMod
 
 void FeedbackFormulas::act(Run& run) {
   const Snapshot& state = run.state();
-  states_.values(state, state.energy, values_);
+  states_.values(state, {}, state.energy, values_);
   values_.insert(values_.end(), constants_.values().begin(), constants_.values().end());
   for (const auto& [input, formula] : formulas_) run.input(input, formula(values_));
 }

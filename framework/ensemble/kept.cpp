@@ -26,7 +26,7 @@ void measured(F&& f) {
 
 }  // namespace
 
-StateNames::StateNames(const SystemModel& system) {
+StateNames::StateNames(const SystemModel& system, bool measures) {
   const std::vector<std::string> variables = state_variables(system);
   const std::vector<Component> components = components_of(system);
   std::vector<std::string> units = units_of_element(system.group);
@@ -43,8 +43,21 @@ StateNames::StateNames(const SystemModel& system) {
   for (size_t i = 0; i < components.size(); ++i)
     add(fmt::format("mu{}", i + 1), unit_of_momentum(components[i]));
   add(kEnergy.name, kEnergy.unit);
-  add(kEnergyError.name, kEnergyError.unit);
+  add(measures ? kEnergyError.name : "", kEnergyError.unit);
   measured([&](const Quantity& quantity, auto) { add(quantity.name, quantity.unit); });
+  if (!measures) return;
+  works_ = works(*system.mechanics);
+  if (works_) add(kWork.name, kWork.unit);
+  for (int row = 0; row < system.mechanics->constraint_count(); ++row) {
+    const auto i = static_cast<size_t>(row);
+    reactions_.push_back(i < system.reactions.size() ? system.reactions[i]
+                                                     : fmt::format("lambda{}", row + 1));
+    add(reactions_.back(), unit_of_reaction(system, row));
+  }
+}
+
+bool StateNames::works(const Mechanics& mechanics) {
+  return mechanics.has_force() || mechanics.has_drift();
 }
 
 void StateNames::add(const std::string& name, const std::string& unit) {
@@ -52,7 +65,7 @@ void StateNames::add(const std::string& name, const std::string& unit) {
   units_.push_back(unit);
 }
 
-void StateNames::values(const Snapshot& state, double energy_start,
+void StateNames::values(const Snapshot& state, const StateExtras& extras, double energy_start,
                         std::vector<double>& out) const {
   out.assign(1, state.time);
   out.insert(out.end(), state.coordinates.begin(), state.coordinates.end());
@@ -61,8 +74,11 @@ void StateNames::values(const Snapshot& state, double energy_start,
   for (const NamedColumn& shape : shapes_) out.push_back(state.coordinates[shape.column]);
   out.insert(out.end(), state.momentum.begin(), state.momentum.end());
   out.push_back(state.energy);
-  out.push_back(energy_error(state.energy, energy_start));
+  out.push_back(extras.balanced ? extras.energy_error : energy_error(state.energy, energy_start));
   measured([&](const Quantity&, auto of) { out.push_back(of(state)); });
+  if (works_) out.push_back(extras.work);
+  for (size_t i = 0; i < reactions_.size(); ++i)
+    out.push_back(extras.reactions.empty() ? 0 : extras.reactions[i]);
 }
 
 MemberConstants::MemberConstants(const EnsembleConfig& config, const SystemModel& system,
@@ -107,7 +123,7 @@ std::vector<std::string> MemberConstants::behind(std::vector<std::string> others
 
 KeptFormulas::KeptFormulas(const EnsembleConfig& config, const SystemModel& system,
                            const Variations& variations, std::vector<std::string>& mistakes)
-    : states_(system), constants_(config, system, variations) {
+    : states_(system, true), constants_(config, system, variations) {
   Parser parser(*this, config, system);
   const auto add = [&](const std::string& key, const std::string& name, const std::string& text) {
     try {
@@ -200,7 +216,7 @@ double KeptFormulas::value_of(const Atom& atom) const {
 }
 
 void KeptFormulas::look_at(const Snapshot& state) {
-  states_.values(state, energy_start_, values_);
+  states_.values(state, extras_, energy_start_, values_);
   values_.insert(values_.end(), constants_.values().begin(), constants_.values().end());
 }
 

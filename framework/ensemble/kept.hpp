@@ -17,19 +17,34 @@
 
 namespace hamel::ensemble {
 
+/// What is measured at a state beside it (member_physics.hpp).
+struct StateExtras {
+  std::vector<double> reactions = {};  // the multipliers of the rows
+  bool balanced = false;               // work is done, and the next two are known
+  double work = 0, energy_error = 0;
+};
+
 /// The numbers of a state by name: t, the coordinates, the velocities by name and number, the
 /// momenta, and what is measured.
 class StateNames {
  public:
-  explicit StateNames(const SystemModel& system);
+  /// measures: with the energy error, work and reactions, for which values() needs the extras.
+  StateNames(const SystemModel& system, bool measures);
   const std::vector<std::string>& names() const { return names_; }
   const std::string& unit(size_t i) const { return units_[i]; }
   /// In the order of the names, and of nothing else.
-  void values(const Snapshot& state, double energy_start, std::vector<double>& out) const;
+  void values(const Snapshot& state, const StateExtras& extras, double energy_start,
+              std::vector<double>& out) const;
+  /// Do forces or moving constraints?
+  static bool works(const Mechanics& mechanics);
+  /// The names among them of reactions.
+  const std::vector<std::string>& reactions() const { return reactions_; }
 
  private:
   void add(const std::string& name, const std::string& unit);
   std::vector<std::string> names_, units_;  // "": the name of another one
+  std::vector<std::string> reactions_;
+  bool works_ = false;
   std::vector<NamedColumn> shapes_;
 };
 
@@ -83,9 +98,13 @@ class KeptFormulas {
   bool wants_peaks() const { return wants_peaks_; }
   /// Iterations and residuals of steps?
   bool wants_solver() const { return wants_solver_; }
+  bool wants_reactions() const { return wants_reactions_; }
+  /// Work, or the energy error where work is done: every node is to be seen.
+  bool wants_balance() const { return wants_balance_; }
 
-  // Of one member, in this order.
+  // Of one member, in this order; extras: of the next state.
   void begin(long member);
+  void extras(const StateExtras& of_next) { extras_ = of_next; }
   void start(const Snapshot& state);
   void peak(const Snapshot& state);
   void at(size_t time, const Snapshot& state);
@@ -128,6 +147,8 @@ class KeptFormulas {
   std::vector<std::string> events_, quantities_;
   size_t kept_ = 0, classes_ = 0;
   bool wants_start_ = false, wants_peaks_ = false, wants_solver_ = false;
+  bool wants_reactions_ = false, wants_balance_ = false;
+  StateExtras extras_;
   double energy_start_ = 0;
 };
 

@@ -161,13 +161,7 @@ class KeptFormulas::Parser {
     out_.wants_start_ = out_.wants_start_ || speaks_of(kEnergyError);  // against that of the start
     out_.wants_solver_ = out_.wants_solver_ || speaks_of(kIterations) || speaks_of(kResidual);
     const auto it = std::ranges::find(names, text);
-    const Mechanics& mechanics = *system_.mechanics;
-    if (text.find("energy_error") != std::string::npos &&
-        (mechanics.has_force() || mechanics.has_drift()))
-      throw std::invalid_argument(fmt::format(
-          "energy_error: forces or moving constraints do work on {}, and the balance of a member "
-          "is not followed; keep energy",
-          system_.name));
+    physics(text);
     if (it != names.end() && !text.empty()) {
       out.quantity = static_cast<size_t>(it - names.begin());
       out.unit = out_.states_.unit(out.quantity);
@@ -180,6 +174,34 @@ class KeptFormulas::Parser {
       throw std::invalid_argument(unknown_name("quantity of " + system_.name, quantity, known));
     }
     out.formula.emplace(text, out_.constants_.behind(names));
+  }
+
+  // What needs more than the states.
+  void physics(const std::string& text) {
+    const bool works = StateNames::works(*system_.mechanics);
+    const std::vector<std::string>& reactions = out_.states_.reactions();
+    for (const std::string& word : words_of(text)) {
+      if (word == kWork.name && !works)
+        throw std::invalid_argument(
+            fmt::format("work: no forces and no moving constraints do work on {}", system_.name));
+      const bool reaction = std::ranges::find(reactions, word) != reactions.end();
+      if (word.starts_with("lambda") && !reaction && reactions.empty())
+        throw std::invalid_argument(
+            fmt::format("{}: {} has no constraints, and no reactions", word, system_.name));
+      out_.wants_reactions_ = out_.wants_reactions_ || reaction;
+      out_.wants_balance_ =
+          out_.wants_balance_ || (works && (word == kWork.name || word == kEnergyError.name));
+    }
+  }
+  static std::vector<std::string> words_of(const std::string& text) {
+    std::vector<std::string> out;
+    for (size_t i = 0; i < text.size();) {
+      size_t end = i;
+      while (end < text.size() && of_name(text[end])) ++end;
+      if (end > i) out.push_back(text.substr(i, end - i));
+      i = end + 1;
+    }
+    return out;
   }
 
   KeptFormulas& out_;

@@ -21,7 +21,11 @@ std::string first_line(const std::exception& error) {
 }  // namespace
 
 MemberRunner::MemberRunner(const Plan& plan, const std::atomic<bool>* stop)
-    : plan_(plan), stop_(stop), kept_(*plan.kept), feedback_(*plan.feedback) {
+    : plan_(plan),
+      stop_(stop),
+      kept_(*plan.kept),
+      feedback_(*plan.feedback),
+      physics_(plan.kept->wants_reactions(), plan.kept->wants_balance()) {
   const std::vector<Target>& targets = plan.variations->targets();
   for (size_t i = 0; i < targets.size(); ++i)
     if (targets[i].kind == Kind::velocity) given_.push_back(i);
@@ -104,6 +108,7 @@ bool MemberRunner::run(long member, std::span<double> out, MemberFailure& failur
     kept_.begin(member);
     feedback_.begin(member);
     prepare(member);
+    physics_.begin(*run_, !plan_.builds_each());
     if (!follow(failure)) return false;
     if (failure.reason.empty()) failure.reason = kept_.finish(out);
   } catch (const std::exception& error) {  // a start that is none, no state within a step
@@ -113,24 +118,39 @@ bool MemberRunner::run(long member, std::span<double> out, MemberFailure& failur
   return true;
 }
 
+// To the formulas, with what is measured beside the state: at once, or when that is known.
+template <class Use>
+void MemberRunner::give(const Snapshot& state, const Use& use) {
+  if (!physics_.any()) return use(state);
+  physics_.give(state, [this, use](const Snapshot& then, const StateExtras& extras) {
+    kept_.extras(extras);
+    use(then);
+  });
+}
+
+void MemberRunner::peak(const Snapshot& state) {
+  give(state, [this](const Snapshot& then) { kept_.peak(then); });
+}
+
 // States at times, and rows of max and min, up to now.
 void MemberRunner::look(double now) {
   const double sign = plan_.base.until >= plan_.base.from ? 1 : -1;
   const double slack = 1e-12 * std::abs(plan_.base.until - plan_.base.from);
   const std::vector<double>&times = kept_.times(), &rows = plan_.rows;
   while (time_ < times.size() && sign * (times[time_] - now) <= slack) {
-    kept_.at(time_, run_->at(times[time_]));
+    give(run_->at(times[time_]),
+         [this, place = time_](const Snapshot& state) { kept_.at(place, state); });
     ++time_;
   }
   if (!kept_.wants_peaks()) return;
   for (; row_ < rows.size() && sign * (rows[row_] - now) <= slack; ++row_)
-    kept_.peak(run_->at(rows[row_]));
+    peak(run_->at(rows[row_]));
 }
 
 // Steps of one size, so many that what is looked for lies in the last.
 long MemberRunner::steps_to_next(long done, long total) const {
   constexpr long kMost = 4096;  // between two looks at the flag that stops a run
-  long out = std::min(total - done, kMost);
+  long out = physics_.wants_nodes() ? 1 : std::min(total - done, kMost);
   const double h = plan_.resolved.step_or_usual(), from = plan_.base.from;
   const auto reach = [&](double t) {
     const double steps = std::ceil((t - from) / h * (1 - 1e-12) - 1e-9);
@@ -168,9 +188,10 @@ bool MemberRunner::follow(MemberFailure& failure) {
   const bool nodes = kept_.wants_peaks() && plan_.rows.empty();
   time_ = row_ = 0;
   acted_ = 0;
+  if (physics_.wants_nodes()) physics_.node(run.state());
   if (kept_.wants_start() || kept_.wants_peaks() || !kept_.times().empty()) {
-    kept_.start(run.state());
-    if (nodes) kept_.peak(run.state());
+    give(run.state(), [this](const Snapshot& state) { kept_.start(state); });
+    if (nodes) peak(run.state());
     look(plan_.base.from);
   }
   double now = plan_.base.from;
@@ -187,14 +208,16 @@ bool MemberRunner::follow(MemberFailure& failure) {
       failure.reason = status.reason;
       return true;
     }
+    if (physics_.wants_nodes()) physics_.step(run, before, run.state());
     look(now);
-    if (nodes && done % plan_.base.every == 0) kept_.peak(run.state());
+    if (nodes && done % plan_.base.every == 0) peak(run.state());
     if (chosen && now == before) break;
   }
   const Snapshot& last = run.state();
   failure.time = last.time;
-  if (kept_.wants_peaks()) kept_.peak(last);
-  kept_.end(last, run.events());
+  if (kept_.wants_peaks()) peak(last);
+  give(last, [this](const Snapshot& state) { kept_.end(state, run_->events()); });
+  physics_.finish();
   return true;
 }
 

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/ensemble/ensemble_plan.hpp>
+#include <hamel/framework/ensemble/member_physics.hpp>
 #include <hamel/framework/loop/kernel.hpp>
 #include <hamel/framework/run/run/run.hpp>
 
@@ -50,6 +51,9 @@ class MemberRunner {
   void matrices(const Start& start) const;
   bool follow(MemberFailure& failure);
   void look(double now);
+  template <class Use>
+  void give(const Snapshot& state, const Use& use);
+  void peak(const Snapshot& state);
   long steps_to_next(long done, long total) const;
   double act_by_state(double now);
 
@@ -57,6 +61,7 @@ class MemberRunner {
   const std::atomic<bool>* stop_;
   KeptFormulas kept_;
   FeedbackFormulas feedback_;
+  MemberPhysics physics_;
   std::optional<Run> run_;
   std::optional<GivenComponents> components_;  // where they are the same for all
   std::vector<size_t> given_;                  // variations of a velocity's component

@@ -50,7 +50,6 @@ void Driver::make_observers() {
   for (const auto& sink : sinks_) resumable_ = resumable_ || sink->resumable();
 }
 
-// The mechanics as the scheme treats it.
 std::shared_ptr<const Mechanics> Driver::acting() const {
   const auto& mechanics = plan_.setup.mechanics;
   return plan_.keeps_rows ? mechanics : std::make_shared<UnconstrainedMechanics>(mechanics);

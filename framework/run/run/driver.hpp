@@ -47,6 +47,10 @@ class Driver {
   const RunPlan& plan() const { return plan_; }
   const SolverStats& stats() const { return kernel_->stats(); }
   long impacts_met() const { return impacts_met_; }
+  /// The mechanics as the scheme treats it.
+  std::shared_ptr<const Mechanics> acting() const;
+  /// The state within the last step, of the explicit pairs; false: the scheme has none.
+  bool interpolate(double t, Snapshot& out) const { return kernel_->interpolate(t, out); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -62,7 +66,6 @@ class Driver {
 
   void begin();
   void make_observers();
-  std::shared_ptr<const Mechanics> acting() const;
   // Steps, so many, or to the end of the run, each of them followed by the observers.
   Status advance(long count, bool to_end = false);
   Status take_unseen(long count);

@@ -98,8 +98,14 @@ TEST(EnsembleFile, MistakesHaveTheirPlace) {
       {"system = 'suslov'\nmembers = 3\nkeep = ['end.omega1']\n[vary]\nstart.omega3 = { uniform = "
        "[1, 2] }",
        "the constraint rows of suslov leave no choice of it"},
-      {"system = 'segway'\nmembers = 3\nkeep = ['max.energy_error']\n[inputs]\nleft_torque = 1",
-       "do work on segway"},
+      {head + "keep = ['end.work']",
+       "many.toml:3:9: keep[0]: 'end.work': work: no forces and no moving constraints do work on "
+       "rattleback"},
+      {head + keep + "trajectories = [3]", "many.toml:4:16: trajectories: got 3, expected 0 to 2"},
+      {head + keep + "trajectories = [0.5]", "expected the numbers of members, from 0"},
+      {"system = 'segway'\nmembers = 3\nkeep = ['end.t']\nstep = 0.01\ntrajectories = [1]\n"
+       "[feedback]\nperiod = 0.01\nleft_torque = 'v1'",
+       "trajectories: a run has no inputs by formulas"},
       {"system = 'none.toml'\nkeep = ['end.t']\n", "many.toml:1:10: system: cannot read"},
       {"system = 'segway'\nkeep = ['end.t']\n[inputs]\nleft_torque = 'none.csv'",
        "many.toml:3:1: input left_torque: cannot read"},

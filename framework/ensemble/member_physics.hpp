@@ -1,0 +1,56 @@
+// What a member's states do not carry themselves: the reactions of the constraints, and the energy
+// balance, for which every node is needed. As a run's rows have them (run_recorder.hpp). Not
+// installed.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include <hamel/framework/ensemble/kept.hpp>
+#include <hamel/framework/run/run/energy_balance.hpp>
+#include <hamel/framework/run/run/run.hpp>
+
+namespace hamel::ensemble {
+
+class MemberPhysics {
+ public:
+  /// Where nothing of this is wanted it costs nothing.
+  MemberPhysics(bool reactions, bool balance) : reactions_(reactions), balanced_(balance) {}
+  bool any() const { return reactions_ || balanced_; }
+  bool wants_nodes() const { return balanced_; }
+
+  /// A member at its start. same: the system is that of the member before.
+  void begin(const Run& run, bool same);
+  /// The node that a step led to, from the time `before`; inner: states within the step, too, as
+  /// the explicit pairs have them.
+  void node(const Snapshot& state);
+  void step(const Run& run, double before, const Snapshot& state);
+  /// Calls use(state, extras) as soon as the extras are known, in the order of these calls: at
+  /// once, or, where the balance needs further nodes, after some of them.
+  using Use = std::function<void(const Snapshot&, const StateExtras&)>;
+  void give(const Snapshot& state, Use use);
+  /// After the last node: none waits.
+  void finish();
+
+ private:
+  struct Waiting {
+    Snapshot state;
+    StateExtras extras;
+    Use use;
+  };
+  void react(const Snapshot& state, std::vector<double>& out);
+  void settle();
+
+  bool reactions_, balanced_;
+  std::shared_ptr<const Geometry> geometry_;
+  std::unique_ptr<EquationsOfMotion<DynamicProblem>> motion_;
+  std::unique_ptr<EnergyBalance> balance_;
+  std::deque<Waiting> waiting_;
+  std::vector<BalancedState> settled_;
+  Snapshot inner_;
+  Eigen::VectorXd g_, xi_;
+};
+
+}  // namespace hamel::ensemble
