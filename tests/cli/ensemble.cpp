@@ -231,65 +231,6 @@ TEST_F(EnsembleCommand, ReadyFilesRun) {
   EXPECT_EQ(rows.size(), 62u);
 }
 
-/// Two lists give heat maps, failed members are marked; draws give dots and distributions.
-TEST_F(EnsembleCommand, ThePageShowsWhatIsKeptOverWhatIsVaried) {
-  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
-  write("grid.toml", R"toml(system = "chaplygin_sleigh"
-until = 2
-grid = true
-keep = ["end.theta", { name = "bad", formula = "1 / (member - 4)" }]
-[vary]
-start.omega = { values = [-1, 1] }
-offset = { values = [0.1, 0.2, 0.3] }
-)toml");
-  const nlohmann::json grid =
-      page_by({"ensemble", "grid.toml", "-o", "out", "--quiet"}, "out/report.html");
-  const nlohmann::json map = figure_of(grid, "end.theta [rad]");
-  EXPECT_EQ(map["kind"], "heatmap");
-  EXPECT_EQ(map["x"], "offset [m]");
-  EXPECT_EQ(map["values"][1][1], nullptr);
-  EXPECT_EQ(map["marks"][1][1], "failed");
-  EXPECT_EQ(map["marks"][0][0], "");
-  const std::vector<std::string> rows = lines(contents(file("out/ensemble.csv")));
-  EXPECT_NEAR(map["values"][1][2].get<double>(), std::stod(split(rows[6])[3]), 1e-5);
-  EXPECT_EQ(figure_of(grid, "Failed members")["rows"][0][0], 4);
-
-  const nlohmann::json drawn =
-      page_by({"ensemble", many(), "-o", "drawn", "--quiet"}, "drawn/report.html");
-  EXPECT_EQ(figure_of(drawn, "end.omega3 over skew")["series"][0]["x"].size(), 300u);
-  double members = 0;
-  const nlohmann::json counts = figure_of(drawn, "Members by end.omega3")["series"][0]["y"];
-  for (const auto& count : counts) members += count.get<double>() / 2;  // each bin has two edges
-  EXPECT_EQ(members, 300);
-}
-
-/// In the plane of what is varied, and over each: a colour for each class, one for failures.
-TEST_F(EnsembleCommand, ThePageColoursClassesAndFailures) {
-  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
-  write("classes.toml", R"toml(system = "chaplygin_sleigh"
-until = 2
-members = 40
-keep = ["end.theta", { name = "bad", formula = "1 / (member - 4)" }]
-class = { formula = "start.omega > 0 ? 1 : 0", names = ["right", "left"] }
-[vary]
-start.omega = { uniform = [-1, 1] }
-offset = { uniform = [0.1, 0.3] }
-)toml");
-  const nlohmann::json page =
-      page_by({"ensemble", "classes.toml", "-o", "out", "--quiet"}, "out/report.html");
-  std::map<std::string, std::vector<double>> spins;
-  const nlohmann::json plane = figure_of(page, "Members over start.omega and offset");
-  for (const auto& series : plane["series"])
-    spins[series["name"]] = series["x"].get<std::vector<double>>();
-  ASSERT_EQ(spins["failed"].size(), 1u);
-  EXPECT_EQ(spins["right"].size() + spins["left"].size(), 39u);
-  for (const double spin : spins["right"]) EXPECT_LE(spin, 0);
-  for (const double spin : spins["left"]) EXPECT_GT(spin, 0);
-  const nlohmann::json over = figure_of(page, "end.theta over offset")["series"];
-  EXPECT_EQ(over[0]["name"], "right");
-  EXPECT_EQ(over[0]["x"].size(), spins["right"].size());
-}
-
 /// A range without members, an unknown quantity, in one answer, before anything is written.
 TEST_F(EnsembleCommand, BadInputIsRefusedBeforeAnythingRuns) {
   write("bad.toml",

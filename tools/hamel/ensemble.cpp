@@ -11,9 +11,11 @@
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
+#include "ensemble_members.hpp"
 #include "ensemble_page.hpp"
 #include "interrupt.hpp"
 #include "ranks.hpp"
+#include "run_figures.hpp"
 #include "screen.hpp"
 
 namespace hamel::tools {
@@ -71,14 +73,55 @@ std::string summary(const EnsembleResult& result) {
                            result.threads, result.threads == 1 ? "" : "s");
 }
 
-int finish(const EnsembleOptions& options, const EnsembleResult& result) {
+// The member as a run; no result where it does not start, or is interrupted.
+std::optional<Result> run_of(const Member& member, const std::string& output = "") {
+  if (member.config.system.empty()) return std::nullopt;
+  Simulation simulation(registry(), member.config.system);
+  simulation.config(member.config).keep_rows(kRowsOfPage);
+  if (!output.empty()) simulation.record_to(output);
+  const std::atomic<bool>& stop = stop_when_asked();
+  simulation.progress([&](double) {
+    if (stop) throw Unfinished("interrupted");
+  });
+  return simulation.run();
+}
+
+// The members that the file names as runs: their configurations and rows.
+void write_trajectories(const Ensemble& ensemble, const std::string& folder) {
+  for (const long k : ensemble.config().trajectories) {
+    const Member member = ensemble.member(k);
+    if (member.config.system.empty()) continue;  // it does not start: the table has the reason
+    const std::string stem = (fs::path(folder) / fmt::format("member-{}", k)).string();
+    write_file(stem + ".toml", member.config.to_toml());
+    run_of(member, stem + (hdf5_version().empty() ? ".csv" : ".h5"));
+  }
+}
+
+// The figures of the motions that the page shows.
+std::map<long, Page> motions_of(const Ensemble& ensemble, const EnsembleResult& result) {
+  std::map<long, Page> out;
+  for (const long k : members_in_motion(result)) {
+    const std::optional<Result> one = run_of(ensemble.member(k));
+    if (!one || !one->status.ok) continue;
+    Page page(fmt::format("Member {}", k), "");
+    page.section("Motion");
+    add_motion(page, *one);
+    if (!page.figures().empty()) out.emplace(k, std::move(page));
+  }
+  return out;
+}
+
+int finish(const EnsembleOptions& options, const Ensemble& ensemble, const EnsembleResult& result) {
   const std::string folder = folder_of(options);
   const bool part = result.shard.count > 1;
   if (!part) {
     result.write(folder);
+    write_trajectories(ensemble, folder);
     if (report_page().empty())
       complain("hamel: no report.html: this program was built without node and npm\n");
-    else ensemble_page(result).write((fs::path(folder) / "report.html").string());
+    else
+      ensemble_page(result, motions_of(ensemble, result))
+          .write((fs::path(folder) / "report.html").string());
   }
   if (options.json) {
     say("{}\n", result.record());
@@ -149,7 +192,7 @@ int ensemble(const EnsembleOptions& given) {
   Ensemble ensemble(registry(), read_ensemble(options.file, registry()));
   ensemble.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_when_asked());
   if (options.member) return one_member(options, ensemble);
-  if (options.merge) return finish(options, ensemble.merge());
+  if (options.merge) return finish(options, ensemble, ensemble.merge());
   if (!options.shard.empty()) ensemble.shard(shard_of(options.shard));
   EnsembleResult result;
   {
@@ -163,9 +206,9 @@ int ensemble(const EnsembleOptions& given) {
         result.done, result.members, folder);
     return 1;
   }
-  if (!rank) return finish(options, result);
+  if (!rank) return finish(options, ensemble, result);
   if (rank->index > 0) return 0;
-  return merge_when_there(folder, [&] { return finish(options, ensemble.merge()); });
+  return merge_when_there(folder, [&] { return finish(options, ensemble, ensemble.merge()); });
 }
 
 }  // namespace hamel::tools

@@ -6,16 +6,14 @@
 
 #include <fmt/format.h>
 
+#include "ensemble_members.hpp"
+
 namespace hamel::tools {
 namespace {
 
 using Law = Variation::Law;
 
-constexpr size_t kMostDots = 4000, kMostBins = 60;
-
-const std::vector<double>& numbers(const EnsembleResult& result, const std::string& name) {
-  return std::get<std::vector<double>>(result.table.column(name).values);
-}
+constexpr size_t kMostBins = 60, kMostCells = 100;  // in each direction of a heat map
 
 std::string labelled(const EnsembleResult& result, const std::string& name) {
   const std::string& unit = result.table.column(name).unit;
@@ -30,20 +28,13 @@ struct Shown {
 std::vector<Shown> shown(const EnsembleResult& result) {
   std::vector<Shown> out;
   for (const std::string& name : result.kept)
-    out.push_back(
-        {name, labelled(result, name), result.table.column(name).unit, "", numbers(result, name)});
+    out.push_back({name, labelled(result, name), result.table.column(name).unit, "",
+                   numbers_of(result, name)});
   if (result.config.classes.names.empty()) return out;
   const TableColumn& column = result.table.column("class");
   Shown& one = out.emplace_back(Shown{"class", "class", "", column.meaning.substr(10), {}});
   for (const long long c : std::get<std::vector<long long>>(column.values))
     one.values.push_back(c < 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(c));
-  return out;
-}
-
-std::vector<bool> failed_members(const EnsembleResult& result) {
-  std::vector<bool> out(static_cast<size_t>(result.members));
-  for (const MemberFailure& failure : result.failures)
-    out[static_cast<size_t>(failure.member)] = true;
   return out;
 }
 
@@ -54,30 +45,59 @@ std::vector<const Variation*> lists_of(const EnsembleConfig& config) {
   return out;
 }
 
-// A cell for each combination of two lists: the mean over its members that have a value.
+// A cell for each combination of two lists, or for some that are neighbours: the mean over its
+// members that have a value, or their most frequent class.
 void add_heatmap(Page& page, const EnsembleResult& result, const Shown& column,
                  const std::vector<const Variation*>& lists, const std::vector<bool>& failed) {
-  const size_t rows = lists[0]->numbers.size(), columns = lists[1]->numbers.size();
+  const size_t all_rows = lists[0]->numbers.size(), all_columns = lists[1]->numbers.size();
+  const size_t tall = (all_rows + kMostCells - 1) / kMostCells,
+               wide = (all_columns + kMostCells - 1) / kMostCells;
+  const size_t rows = (all_rows + tall - 1) / tall, columns = (all_columns + wide - 1) / wide;
+  const bool classes = column.name == "class";
   HeatMap map;
   map.title = column.label;
   map.x = labelled(result, lists[1]->name);
   map.y = labelled(result, lists[0]->name);
-  map.x_values.assign(lists[1]->numbers.begin(), lists[1]->numbers.end());
-  map.y_values.assign(lists[0]->numbers.begin(), lists[0]->numbers.end());
+  const auto ticks = [](const std::vector<double>& list, size_t together) {
+    std::vector<Cell> out;
+    for (size_t i = 0; i < list.size(); i += together)
+      out.emplace_back((list[i] + list[std::min(i + together, list.size()) - 1]) / 2);
+    return out;
+  };
+  map.x_values = ticks(lists[1]->numbers, wide);
+  map.y_values = ticks(lists[0]->numbers, tall);
   map.unit = column.unit == "1" ? "" : column.unit;
-  map.note = column.note;
+  if (!classes) map.note = column.note;
+  if (classes) map.classes = result.config.classes.names;
   map.values.assign(rows, std::vector<double>(columns));
-  std::vector<std::vector<int>> counts(rows, std::vector<int>(columns));
+  map.members.assign(rows, std::vector<long>(columns, -1));
+  const size_t kinds = std::max<size_t>(map.classes.size(), 1);
+  std::vector<std::vector<std::vector<int>>> counts(
+      rows, std::vector<std::vector<int>>(columns, std::vector<int>(kinds)));
   std::vector<std::vector<std::string>> marks(rows, std::vector<std::string>(columns));
   for (size_t k = 0; k < column.values.size(); ++k) {
-    const size_t i = k / columns % rows, j = k % columns;
+    const size_t i = k / all_columns % all_rows / tall, j = k % all_columns / wide;
     if (failed[k]) marks[i][j] = "failed";
+    if (map.members[i][j] < 0) map.members[i][j] = static_cast<long>(k);
     if (std::isnan(column.values[k])) continue;
     map.values[i][j] += column.values[k];
-    ++counts[i][j];
+    ++counts[i][j][classes ? static_cast<size_t>(column.values[k]) : 0];
   }
   for (size_t i = 0; i < rows; ++i)
-    for (size_t j = 0; j < columns; ++j) map.values[i][j] /= counts[i][j];  // NaN of none
+    for (size_t j = 0; j < columns; ++j) {
+      const std::vector<int>& of = counts[i][j];
+      const auto most = std::ranges::max_element(of);
+      if (classes && *most > 0) map.values[i][j] = static_cast<double>(most - of.begin());
+      else map.values[i][j] /= of[0];  // NaN of none
+    }
+  const size_t together = column.values.size() / (all_rows * all_columns);
+  if (together > 1 || tall > 1 || wide > 1) {
+    map.note += fmt::format("{}A cell shows the {} of its {} members, a click the first of them.",
+                            map.note.empty() ? "" : ". ", classes ? "most frequent class" : "mean",
+                            together * tall * wide);
+    if (tall > 1 || wide > 1)
+      map.note += fmt::format(" {} x {} combinations are one cell.", tall, wide);
+  }
   if (!result.failures.empty()) map.marks = marks;
   page.heatmap(map);
 }
@@ -87,10 +107,6 @@ std::vector<long long> classes_of(const EnsembleResult& result) {
   if (result.config.classes.names.empty())
     return std::vector<long long>(static_cast<size_t>(result.members), 0);
   return std::get<std::vector<long long>>(result.table.column("class").values);
-}
-
-std::string sampled(size_t stride) {
-  return stride > 1 ? fmt::format("Each {}th member.", stride) : "";
 }
 
 // Dots of a series for each class, those without a value left out; the last are those that failed.
@@ -110,6 +126,7 @@ std::vector<Series> coloured(const EnsembleResult& result, const std::vector<dou
     Series& one = is_failed[k] ? failed : out[static_cast<size_t>(classes[k])];
     one.x.push_back(x[k]);
     one.y.push_back(y[k]);
+    one.members.push_back(static_cast<long>(k));
   }
   if (!failed.x.empty()) out.push_back(std::move(failed));
   std::erase_if(out, [](const Series& one) { return one.x.empty(); });
@@ -117,26 +134,37 @@ std::vector<Series> coloured(const EnsembleResult& result, const std::vector<dou
   return out;
 }
 
+// Each stride-th member of a list as a point of a curve.
+Series curve_of(const std::string& name, const std::vector<double>& x, const std::vector<double>& y,
+                size_t stride) {
+  Series out{name, {}, {}};
+  for (size_t k = 0; k < x.size(); k += stride) {
+    out.x.push_back(x[k]);
+    out.y.push_back(y[k]);
+    out.members.push_back(static_cast<long>(k));
+  }
+  return out;
+}
+
 // One dot a member, coloured by its class, or, along one list, a curve.
 void add_dots(Page& page, const EnsembleResult& result, const Shown& column,
               const std::string& name, bool curve) {
-  const std::vector<double>& x = numbers(result, name);
-  const size_t stride = (column.values.size() + kMostDots - 1) / kMostDots;
+  const std::vector<double>& x = numbers_of(result, name);
+  const size_t stride = stride_of_dots(column.values.size());
   page.plot(fmt::format("{} over {}", column.name, name),
             {.x = labelled(result, name), .y = column.label},
-            curve ? std::vector<Series>{{column.name, x, column.values}}
+            curve ? std::vector{curve_of(column.name, x, column.values, stride)}
                   : coloured(result, x, column.values, column.name, stride),
-            sampled(curve ? 1 : stride));
+            sampled(stride));
 }
 
 // The members in the plane of two varied numbers, coloured by class and failure.
 void add_classes(Page& page, const EnsembleResult& result, const std::string& x,
                  const std::string& y) {
-  const size_t count = static_cast<size_t>(result.members);
-  const size_t stride = (count + kMostDots - 1) / kMostDots;
+  const size_t stride = stride_of_dots(static_cast<size_t>(result.members));
   page.plot(fmt::format("Members over {} and {}", x, y),
             {.x = labelled(result, x), .y = labelled(result, y)},
-            coloured(result, numbers(result, x), numbers(result, y), "members", stride),
+            coloured(result, numbers_of(result, x), numbers_of(result, y), "members", stride),
             sampled(stride));
 }
 
@@ -196,7 +224,7 @@ void add_histograms(Page& page, const EnsembleResult& result) {
       const auto bins = std::min(
           kMostBins, static_cast<size_t>(std::ceil(std::sqrt(static_cast<double>(m.count)))));
       h = {m.least, m.most, std::vector<long>(bins), 0, 0};
-      for (const double x : numbers(result, name)) {
+      for (const double x : numbers_of(result, name)) {
         if (std::isnan(x)) continue;
         const double place = (x - h.from) / (h.until - h.from) * static_cast<double>(bins);
         ++h.counts[std::min(static_cast<size_t>(place), bins - 1)];
@@ -255,7 +283,7 @@ void add_kept(Page& page, const EnsembleResult& result) {
 
 }  // namespace
 
-Page ensemble_page(const EnsembleResult& result) {
+Page ensemble_page(const EnsembleResult& result, const std::map<long, Page>& motions) {
   const std::string file = result.config.origin;
   Page page(result.config.run.system, fmt::format("{} members of {}", result.members, file));
   page.section("Members");
@@ -263,11 +291,7 @@ Page ensemble_page(const EnsembleResult& result) {
       result.failures.empty() ? "ok" : "note",
       fmt::format("{} of {} members have values.",
                   result.members - static_cast<long>(result.failures.size()), result.members));
-  page.text(
-      {fmt::format("One member, k from 0: `hamel ensemble {} --member k -o FOLDER` writes "
-                   "its values, its configuration and its own page. Row k of ensemble.csv "
-                   "and of each data set of ensemble.h5 is that member.",
-                   file)});
+  add_members(page, result, motions);
   add_kept(page, result);
   if (!result.failures.empty()) {
     constexpr size_t most = 100;
@@ -279,6 +303,7 @@ Page ensemble_page(const EnsembleResult& result) {
                result.failures.size() > most ? "The first 100." : "");
   }
   add_dependence(page, result);
+  add_scatter_matrix(page, result);
   add_histograms(page, result);
   add_times(page, result);
   return page;

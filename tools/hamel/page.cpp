@@ -61,6 +61,7 @@ Json curves(const std::vector<Series>& series) {
     if (!s.tags.empty()) curve["tags"] = s.tags;
     if (!s.key.empty()) curve["key"] = s.key;
     if (!s.low.empty()) curve["low"] = coordinates(s.low);
+    if (!s.members.empty()) curve["members"] = s.members;
   }
   return out;
 }
@@ -254,7 +255,44 @@ void Page::heatmap(const HeatMap& map) {
                 {"unit", map.unit},
                 {"note", map.note}};
   if (!map.marks.empty()) block["marks"] = map.marks;
+  if (!map.members.empty()) block["members"] = map.members;
+  if (!map.classes.empty()) block["classes"] = map.classes;
   data_->add_figure("", std::move(block));
+}
+void Page::scatter(const ScatterMatrix& matrix) {
+  Json block = {{"kind", "scatter"}, {"title", matrix.title}, {"columns", Json::array()}};
+  for (const ScatterMatrix::Column& c : matrix.columns) {
+    Json& column = block["columns"].emplace_back(
+        Json{{"name", c.name}, {"unit", c.unit}, {"values", coordinates(c.values)}});
+    if (!c.correlation.empty()) column["correlation"] = numbers(c.correlation);
+  }
+  block["members"] = matrix.members;
+  if (!matrix.classes.empty()) {
+    block["classes"] = matrix.classes;
+    block["class"] = matrix.class_of;
+  }
+  block["note"] = matrix.note;
+  data_->add_figure("scatter-matrix", std::move(block));
+}
+void Page::members(const Members& members) {
+  Json block = {{"kind", "members"},
+                {"paragraphs", members.paragraphs},
+                {"command", members.command},
+                {"count", members.count}};
+  if (!members.index.empty()) block["index"] = members.index;
+  block["columns"] = Json::array();
+  for (const Members::Column& c : members.columns) {
+    Json& column = block["columns"].emplace_back(Json{{"name", c.name},
+                                                      {"unit", c.unit},
+                                                      {"varied", c.varied},
+                                                      {"values", coordinates(c.values)}});
+    if (!c.names.empty()) column["names"] = c.names;
+  }
+  for (const auto& [member, reason] : members.failures)
+    block["failures"][std::to_string(member)] = reason;
+  for (const auto& [member, page] : members.motions)
+    block["motions"][std::to_string(member)] = page->data_->page["sections"][0]["blocks"];
+  data_->add(std::move(block));
 }
 void Page::animation(const Animation& animation) {
   Json bodies = Json::array();

@@ -30,7 +30,8 @@ struct Series {
   std::optional<Fit> fit = {};
   std::map<std::string, std::string> tags = {};  // what the plot's filters choose by
   std::string key = "";  // series with one key have one colour on the whole page; empty: the name
-  std::vector<double> low = {};  // none, or the lower edge of a band of which y is the upper one
+  std::vector<double> low = {};    // none, or the lower edge of a band of which y is the upper one
+  std::vector<long> members = {};  // none, or of the points: a click shows the member
 };
 
 /// A moment on the x axis, drawn as a line with this text.
@@ -89,6 +90,8 @@ class Page {
   void sphere(const std::string& title, const std::vector<SphereCurve>& curves,
               const std::string& note = "");
   void heatmap(const HeatMap& map);
+  void scatter(const ScatterMatrix& matrix);
+  void members(const Members& members);
   void animation(const Animation& animation);
   /// Throws ConfigError when the page is not in this program or the file cannot be written.
   void write(const std::string& path) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,42 @@ struct HeatMap {
   bool log = false;                                  // the scale of the values
   std::string unit = "";                             // what they are
   std::string note = "";
+  std::vector<std::vector<long>> members = {};  // none, or of the cells: a click shows the member
+  std::vector<std::string> classes = {};        // names of the values 0, 1, ... in place of a scale
+};
+
+/// All pairs of columns, a dot for each member.
+struct ScatterMatrix {
+  struct Column {
+    std::string name, unit;
+    std::vector<double> values;
+    std::vector<double> correlation = {};  // with each column
+  };
+  std::string title;
+  std::vector<Column> columns;
+  std::vector<long> members;              // of the dots
+  std::vector<std::string> classes = {};  // none, or their names
+  std::vector<long> class_of = {};        // of the dots
+  std::string note = "";
+};
+
+class Page;
+
+/// The members of an ensemble: what a click on one of them shows.
+struct Members {
+  struct Column {
+    std::string name, unit;
+    bool varied = false;  // else kept
+    std::vector<double> values;
+    std::vector<std::string> names = {};  // of the values 0, 1, ...
+  };
+  std::vector<std::string> paragraphs;
+  std::string command;           // of a member, {} in place of its index
+  long count = 0;                // of all members
+  std::vector<long> index = {};  // of those with values here; none: all
+  std::vector<Column> columns;
+  std::map<long, std::string> failures = {};  // reasons
+  std::map<long, const Page*> motions = {};   // the blocks of its first section
 };
 
 /// Position, and rotation as a unit quaternion (w, x, y, z), body to space.

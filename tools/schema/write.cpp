@@ -211,6 +211,8 @@ Json ensemble() {
       "of kept quantities: bins, or { bins, range = [from, until] }");
   properties["quantiles"] = with(type_of(std::vector<double>()), "of kept quantities, in [0, 1]");
   properties["covariance"] = with(type_of(true), "of the kept quantities");
+  properties["trajectories"] =
+      with(list_of(type_of(1L)), "members, from 0, whose runs are written and shown on the page");
   return object("An ensemble of hamel", properties, {"system", "keep"});
 }
 
