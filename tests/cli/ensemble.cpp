@@ -2,6 +2,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <thread>
 
@@ -229,6 +230,42 @@ TEST_F(EnsembleCommand, ReadyFilesRun) {
   for (size_t i = 1; i < rows.size(); ++i)  // it starts 1e-6 from the axis
     EXPECT_NEAR(std::stod(split(rows[i])[2]), std::stod(split(rows[i])[3]), 2e-6) << rows[i];
   EXPECT_EQ(rows.size(), 62u);
+}
+
+/// Lorenz's equations as a system by data, fewer of them: a stable rest is where it is known to be.
+TEST_F(EnsembleCommand, LorenzComesToRestWhereItIsStable) {
+  const auto with = [](std::string text, const std::string& from, const std::string& to) {
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  };
+  write("lorenz_system.toml", source_file("tools/studies/lorenz_system.toml"));
+  write("lorenz.toml", with(with(source_file("tools/studies/lorenz_ensemble.toml"),
+                                 "system = \"tools/studies/", "system = \""),
+                            "members = 10000", "members = 300"));
+  const nlohmann::json record = answer({"ensemble", "lorenz.toml", "-o", "out"});
+  EXPECT_EQ(record["failed"], 0);
+  const std::vector<std::string> rows = lines(contents(file("out/ensemble.csv")));
+  ASSERT_EQ(rows[0].substr(0, 39), "member,sigma,rho,beta,end.X,end.Y,end.Z");
+  int at_origin = 0, at_rest = 0;
+  for (size_t i = 1; i < rows.size(); ++i) {
+    std::vector<double> of;
+    for (const std::string& cell : split(rows[i])) of.push_back(std::stod(cell));
+    const double sigma = of[1], rho = of[2], beta = of[3], x = of[4], z = of[6];
+    if (sigma < 1 || beta < 0.5) continue;  // too slow
+    const double unstable =
+        sigma > beta + 1 ? sigma * (sigma + beta + 3) / (sigma - beta - 1) : HUGE_VAL;
+    if (rho < 0.8) {
+      EXPECT_LT(of[7], 1e-3) << rows[i];
+      ++at_origin;
+    } else if (rho > 2 && rho < 0.7 * unstable) {
+      EXPECT_NEAR(z, rho - 1, 0.02 * rho) << rows[i];
+      EXPECT_NEAR(x * x, beta * (rho - 1), 0.04 * beta * rho) << rows[i];
+      ++at_rest;
+    }
+  }
+  EXPECT_GE(at_origin, 2);
+  EXPECT_GE(at_rest, 50);
 }
 
 /// A range without members, an unknown quantity, in one answer, before anything is written.
