@@ -10,6 +10,7 @@
 #endif
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
+#include <hamel/systems/mechanisms/urdf.hpp>
 #include <hamel/systems/n_trailer.hpp>
 
 namespace hamel {
@@ -51,6 +52,7 @@ void add_solvers(Registry& registry) {
 void add_mechanisms(Registry& registry) {
   registry.add(
       FileKind{{"body", "joint", "wheel", "roller", "ball", "blade", "loop"}, mechanism_from});
+  registry.add(urdf_format());
   for (const auto& [name, text] : mechanisms::library()) {
     registry.add_deferred(
         name, [&name = name, &text = text] { return mechanism_info(text, name + ".toml"); });

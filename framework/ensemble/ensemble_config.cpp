@@ -5,7 +5,7 @@
 
 #include <hamel/framework/ensemble/ensemble_plan.hpp>
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/io/text_file.hpp>
+#include <hamel/framework/run/names/system_file.hpp>
 
 namespace hamel {
 namespace {
@@ -48,8 +48,8 @@ void read_data(EnsembleConfig& config) {
         signal = read_input_table("input " + name, *file);
   });
   placing("system", [&] {
-    if (config.run.system.ends_with(".toml") && config.data.empty())
-      config.data = read_text_file("system", config.run.system);
+    if (names_file(config.run.system) && config.data.empty())
+      config.data = read_system_file(config.run.system);
   });
 }
 

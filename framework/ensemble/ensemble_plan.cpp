@@ -115,7 +115,7 @@ bool Plan::give_inputs(const SystemModel& system) {
 }
 
 Simulation Plan::simulation(const Config& run) const {
-  if (!run.system.ends_with(".toml")) return Simulation(registry, run.system).config(run);
+  if (!names_file(run.system)) return Simulation(registry, run.system).config(run);
   return Simulation(registry, run.system,
                     OwnSystem{data_system_maker(registry, run.system, config.data)})
       .config(run);

@@ -103,4 +103,7 @@ class TomlReader {
   std::string origin_;
 };
 
+/// A text as TOML has it, in double quotes.
+std::string toml_string(const std::string& text);
+
 }  // namespace hamel

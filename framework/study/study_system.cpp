@@ -1,5 +1,4 @@
 // The systems of a study: registered ones, and data files as they were when the study began.
-#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/run/own_system.hpp>
 #include <hamel/framework/study/parts.hpp>
@@ -9,7 +8,7 @@ namespace {
 
 // Null for a name that is neither registered nor a file's.
 OwnSystem::Maker maker(const Registry& registry, const StudySystem& system) {
-  if (system.name.ends_with(".toml"))
+  if (names_file(system.name))
     return system.data.empty() ? data_system_maker(registry, system.name)
                                : data_system_maker(registry, system.name, system.data);
   const SystemInfo* info = registry.system(system.name);
@@ -27,9 +26,9 @@ void read_data(StudyConfig& config) {
       } catch (const ConfigError&) {  // the checks report it
       }
     }
-    if (!system.name.ends_with(".toml") || !system.data.empty()) continue;
+    if (!names_file(system.name) || !system.data.empty()) continue;
     try {
-      system.data = read_text_file("system", system.name);
+      system.data = read_system_file(system.name);
     } catch (const ConfigError&) {  // the checks report it
     }
   }

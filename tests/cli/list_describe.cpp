@@ -197,6 +197,7 @@ TEST_F(Help, IsGroupedAndNarrow) {
 // Without the pages, which not every build writes, and without lines of two commands.
 TEST_F(Help, ExamplesWork) {
   write("torque.csv", "t,value\n0,1\n20,0\n");
+  write("robot.urdf", source_file("tests/examples/diff_drive.urdf"));
   int tried = 0;
   for (const char* command : {"list", "describe", "run", "section", "steady", "--help"}) {
     const bool all = std::string(command) == "--help";
@@ -213,6 +214,7 @@ TEST_F(Help, ExamplesWork) {
           report != words.end())
         words.erase(report, report + 2);
       const Outcome outcome = run(words);
+      if (outcome.err.find("this build reads no .urdf files") != std::string::npos) continue;
       EXPECT_EQ(outcome.status, 0) << line << outcome.err;
       EXPECT_EQ((outcome.out + outcome.err).find("is not used"), std::string::npos) << line;
       ++tried;

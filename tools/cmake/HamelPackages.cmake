@@ -43,7 +43,7 @@ hamel_package(doc hamel-doc doc
   "The READMEs with their examples and, where it was built, the site.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
   "libeigen3-dev, libfmt-dev, libtomlplusplus-dev, libmuparser-dev, zlib1g-dev")
-foreach(package IN ITEMS CERES/libceres-dev NLOPT/libnlopt-dev NLOPT/libnlopt-cxx-dev)
+foreach(package IN ITEMS CERES/libceres-dev NLOPT/libnlopt-dev NLOPT/libnlopt-cxx-dev URDFDOM/liburdfdom-dev)
   cmake_path(GET package PARENT_PATH found)
   cmake_path(GET package FILENAME debian)
   if(HAMEL_HAS_${found})

@@ -44,21 +44,28 @@ Action define_list(CLI::App& app) {
 Action define_describe(CLI::App& app) {
   struct Line {
     DescribeOptions options;
+    RobotLine robot;
     std::vector<std::string> sets;
   };
   const auto line = std::make_shared<Line>();
-  app.add_option("NAME", line->options.name, "a name (hamel list) or a file my_system.toml")
+  app.add_option("NAME", line->options.name,
+                 "a name (hamel list) or a file, my_system.toml, robot.urdf")
       ->required();
   app.add_option("--set", line->sets, "a parameter of a system, name=value[,value...] (repeatable)")
       ->allow_extra_args(false);
   app.add_flag("--analyse", line->options.analyse,
                "a system: frame, structure constants, growth of brackets, what is kept");
+  line->robot.define(app);
+  app.add_flag("--toml", line->options.toml,
+               "print the file of a mechanism, of a robot in URDF too, for further changes");
   app.add_flag("--json", line->options.json, "as JSON");
   app.footer(
       "Examples:\n  hamel describe suslov\n  hamel describe 'se2*so2'\n  hamel describe cayley "
-      "--json\n  hamel describe --analyse chaplygin_sleigh --set offset=0");
+      "--json\n  hamel describe --analyse chaplygin_sleigh --set offset=0\n"
+      "  hamel describe robot.urdf --wheel left_wheel --wheel right_wheel --toml");
   return [line] {
     read_sets(line->sets, line->options.parameters);
+    line->options.name = line->robot.resolve(line->options.name);
     return describe(line->options);
   };
 }
@@ -125,14 +132,16 @@ Action define_ensemble(CLI::App& app) {
 Action define_steady(CLI::App& app) {
   struct Line {
     SteadyOptions options;
+    RobotLine robot;
     std::vector<std::string> sets;
     std::string configuration, velocity;
   };
   const auto line = std::make_shared<Line>();
   SteadyOptions& options = line->options;
   app.add_option("SYSTEM", options.config.system,
-                 "a system (hamel list systems) or a file my_system.toml")
+                 "a system (hamel list systems) or a file, my_system.toml, robot.urdf")
       ->required();
+  line->robot.define(app);
   app.add_option("--set", line->sets, "a parameter, name=value[,value...] (repeatable)")
       ->allow_extra_args(false);
   app.add_option("--speed", options.config.speed,
@@ -158,6 +167,7 @@ Action define_steady(CLI::App& app) {
       "  hamel steady segway --speed 0 --vary height=0.2:1.2:11 --json");
   return [line] {
     Config& config = line->options.config;
+    config.system = line->robot.resolve(config.system);
     read_sets(line->sets, config.parameters);
     if (!line->configuration.empty())
       read_text("--configuration", line->configuration, config.start.configuration);

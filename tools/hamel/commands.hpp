@@ -22,6 +22,7 @@ struct DescribeOptions {
   std::string name;
   Parameters parameters;
   bool analyse = false;
+  bool toml = false;
   bool json = false;
 };
 int describe(const DescribeOptions& options);

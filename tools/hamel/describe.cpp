@@ -10,6 +10,7 @@
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/by_name.hpp>
+#include <hamel/systems/mechanisms/library.hpp>
 
 #include "analyse.hpp"
 #include "commands.hpp"
@@ -237,7 +238,7 @@ Json describe_solver(const SolverInfo& info, bool built) {
 Json description_of(const std::string& name, const Parameters& given) {
   const Registry& all = registry();
   if (const SystemInfo* info = all.system(name)) return describe_system(*info, given);
-  if (name.ends_with(".toml")) return describe_file(name, given);
+  if (names_file(name)) return describe_file(name, given);
   if (!given.empty()) throw ConfigError({fmt::format("set: {} is no system", name)});
   if (const SchemeInfo* info = all.scheme(name)) {
     Json out = describe_scheme(*info);
@@ -304,7 +305,26 @@ void print(const Json& json) {
 
 }  // namespace
 
+namespace {
+
+// A mechanism as its file.
+std::string toml_of(const std::string& name) {
+  if (names_file(name)) return converted(registry(), name, read_system_file(name)).toml;
+  std::vector<std::string> known;
+  for (const auto& [mechanism, text] : mechanisms::library()) {
+    if (mechanism == name) return text;
+    known.push_back(mechanism);
+  }
+  throw ConfigError({"--toml: " + unknown_name("mechanism", name, known)});
+}
+
+}  // namespace
+
 int describe(const DescribeOptions& options) {
+  if (options.toml) {
+    say("{}", toml_of(options.name));
+    return 0;
+  }
   if (options.analyse) return analyse(options);
   const Json json = description_of(options.name, options.parameters);
   if (options.json) say_json(json);

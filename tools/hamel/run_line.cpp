@@ -54,7 +54,7 @@ void read_sets(const std::vector<std::string>& sets, Parameters& parameters) {
 
 void RunLine::define_run(CLI::App& app, const std::set<std::string>& without) {
   app.add_option("SYSTEM", system,
-                 "a registered system (hamel list systems) or a file my_system.toml");
+                 "a registered system (hamel list systems) or a file, my_system.toml, robot.urdf");
   app.add_option("--config", config_file, "a TOML file with the same names; the command line wins");
   app.add_option("--set", sets, "a parameter, name=value[,value...] (repeatable)")
       ->allow_extra_args(false);
@@ -62,6 +62,7 @@ void RunLine::define_run(CLI::App& app, const std::set<std::string>& without) {
                  "an input, name=value or name=table.csv (columns t,value; linear, or held from "
                  "row to row with :hold behind the file) (repeatable)")
       ->allow_extra_args(false);
+  robot.define(app);
   Config::start_fields([&]<class Value>(const Option& field, Value Start::*member) {
     option<Value>(app, field, {}, [member](Config& c) -> Value& { return c.start.*member; });
   });
@@ -110,6 +111,7 @@ void RunLine::define(CLI::App& app) {
       "  hamel run bicycle --speed 5 --report bicycle.html\n"
       "  hamel run bicycle --speed 5 --stop-at 'steer.angle<-0.02' -o bicycle.csv\n"
       "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv\n"
+      "  hamel run robot.urdf --wheel left_wheel --wheel right_wheel --speed 0.5\n"
       "  hamel run segway --input right_torque=2 --input left_torque=torque.csv:hold\n"
       "  hamel run roller_racer -o first.json && hamel run --continue first.json --until 60\n"
       "  hamel run rolling_disk --until 1e5 -o disk.h5 || hamel run --continue disk.h5");
@@ -141,6 +143,7 @@ RunOptions RunLine::resolve(const CLI::App& app) {
     }
   };
   for (const auto& override : overrides) collect([&] { override(config); });
+  collect([&] { config.system = robot.resolve(config.system); });
   collect([&] { read_sets(sets, config.parameters); });
   collect([&] { read_inputs(inputs, config.inputs); });
   if (!mistakes.empty()) throw ConfigError(mistakes);

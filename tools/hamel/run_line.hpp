@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.hpp"
+#include "robot_line.hpp"
 
 namespace hamel::tools {
 
@@ -21,6 +22,7 @@ void read_sets(const std::vector<std::string>& sets, Parameters& parameters);
 /// The options of `hamel run` as given; the file first, then the command line.
 struct RunLine {
   std::string system, config_file, record_file;
+  RobotLine robot;
   std::vector<std::string> sets, inputs;
   std::vector<std::function<void(Config&)>> overrides;  // of what is given, in its order
   RunOptions options;

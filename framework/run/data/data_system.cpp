@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/run/data/data_drawing.hpp>
 #include <hamel/framework/run/data/data_formulas.hpp>
 #include <hamel/framework/run/data/toml_events.hpp>
@@ -246,21 +245,58 @@ SystemModel data_system(const Registry& registry, const std::string& text,
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path) {
   return [&registry, path](const Parameters& given) {
-    return data_system_maker(registry, path, read_text_file("system", path))(given);
+    return data_system_maker(registry, path, read_system_file(path))(given);
   };
+}
+
+namespace {
+
+SystemModel read_toml(const Registry& registry, const std::string& path, const std::string& text,
+                      const Parameters& given) {
+  const toml::table table = TomlReader(path).parse(text);
+  for (const FileKind& kind : registry.file_kinds()) {
+    const bool its_own =
+        std::ranges::any_of(kind.keys, [&](const auto& key) { return table.contains(key); });
+    if (its_own) return kind.read(text, path, given);
+  }
+  return data_system(registry, text, path, given);
+}
+
+const FileFormat* format_of(const Registry& registry, const std::string& system) {
+  const std::string extension = extension_of_system(system);
+  for (const FileFormat& format : registry.file_formats())
+    if (format.extension == extension) return &format;
+  return nullptr;
+}
+
+}  // namespace
+
+FileFormat::Converted converted(const Registry& registry, const std::string& system,
+                                const std::string& text) {
+  const FileFormat* format = format_of(registry, system);
+  if (format == nullptr) return {text};
+  const std::string path = path_of_system(system);
+  if (!format->convert)
+    throw ConfigError(
+        {fmt::format("{}: this build reads no {} files: install {} and build it "
+                     "again",
+                     path, format->extension, format->package)});
+  const FileOptions options = options_of_system(system);
+  for (const auto& [name, values] : options)
+    if (std::ranges::find(format->options, name) == format->options.end())
+      throw ConfigError({unknown_name("option of " + path, name, format->options)});
+  return format->convert(text, path, options);
 }
 
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path,
                                                                 const std::string& text) {
   return [&registry, path, text](const Parameters& given) {
-    const toml::table table = TomlReader(path).parse(text);
-    for (const FileKind& kind : registry.file_kinds()) {
-      const bool its_own =
-          std::ranges::any_of(kind.keys, [&](const auto& key) { return table.contains(key); });
-      if (its_own) return kind.read(text, path, given);
-    }
-    return data_system(registry, text, path, given);
+    if (format_of(registry, path) == nullptr) return read_toml(registry, path, text, given);
+    const auto [toml, notes] = converted(registry, path, text);
+    SystemModel out = read_toml(registry, path_of_system(path) + " as TOML", toml, given);
+    out.notes.insert(out.notes.end(), notes.begin(), notes.end());
+    return out;
   };
 }
 

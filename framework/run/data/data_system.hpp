@@ -45,7 +45,7 @@ SystemModel data_system(const Registry& registry, const std::string& text,
                         const std::string& origin, const Parameters& given = {});
 
 /// A maker of a file's system; it reads the file when called. A file of another kind
-/// (Registry::file_kinds) is read as that.
+/// (Registry::file_kinds) or of another format (Registry::file_formats) is read as that.
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path);
 
@@ -53,5 +53,10 @@ std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& 
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path,
                                                                 const std::string& text);
+
+/// The text of a file in another format, "robot.urdf?wheel=left", as TOML. ConfigError with every
+/// mistake, or the package that this build lacks.
+FileFormat::Converted converted(const Registry& registry, const std::string& system,
+                                const std::string& text);
 
 }  // namespace hamel

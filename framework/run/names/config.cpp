@@ -15,34 +15,20 @@
 namespace hamel {
 namespace {
 
-// A TOML basic string.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-      continue;
-    }
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
-
 // A TOML key: bare where it may be.
 std::string key_of(const std::string& name) {
   const bool bare =
       !name.empty() &&
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
           std::string::npos;
-  return bare ? name : quoted(name);
+  return bare ? name : toml_string(name);
 }
 
 // A value as TOML has it; floats need a point or an exponent.
 template <class Value>
 std::string toml_of(const Value& value) {
   std::string out = text_of(value);
-  if constexpr (std::is_same_v<Value, std::string>) return quoted(out);
+  if constexpr (std::is_same_v<Value, std::string>) return toml_string(out);
   if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>)
     return out.find_first_of(".en") == std::string::npos ? out + ".0" : out;
   else if constexpr (std::is_class_v<Value> && !std::is_same_v<Value, std::string>) {
@@ -62,7 +48,7 @@ constexpr bool is_text(const Value&) {
 std::string toml_of_signal(const InputSignal& signal) {
   if (const double* value = std::get_if<double>(&signal)) return toml_of(*value);
   const InputTable* table = std::get_if<InputTable>(&signal);
-  if (table == nullptr) return quoted(text_of(signal));
+  if (table == nullptr) return toml_string(text_of(signal));
   return fmt::format("{{t = {}, value = {}, hold = {}}}", toml_of(table->times),
                      toml_of(table->values), table->hold);
 }
@@ -212,7 +198,7 @@ Config Config::from_toml(const std::string& text, const std::string& origin) {
 }
 
 std::string Config::to_toml() const {
-  std::string out = fmt::format("system = {}\n", quoted(system));
+  std::string out = fmt::format("system = {}\n", toml_string(system));
   start_fields([&](const Option& option, auto member) {
     if (!(start.*member).empty())
       out += fmt::format("{} = {}\n", option.name, toml_of(start.*member));

@@ -89,6 +89,7 @@ void Registry::add_scheme_alias(const std::string& alias, const std::string& sch
 }
 void Registry::add(SystemInfo info) { systems_[info.name] = std::move(info); }
 void Registry::add(FileKind kind) { file_kinds_.push_back(std::move(kind)); }
+void Registry::add(FileFormat format) { file_formats_.push_back(std::move(format)); }
 void Registry::add_deferred(const std::string& name, std::function<SystemInfo()> make) {
   const auto entry = std::make_shared<Deferred>();
   entry->make = std::move(make);

@@ -16,6 +16,7 @@
 #include <hamel/framework/loop/kernel.hpp>
 #include <hamel/framework/loop/lane_kernel.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/names/system_file.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
@@ -81,6 +82,22 @@ struct FileKind {
       read;
 };
 
+/// A format of other programs, recognised by its extension: a text in it becomes one of our TOML
+/// files.
+struct FileFormat {
+  std::string extension;             // ".urdf"
+  std::vector<std::string> options;  // accepted behind the name: robot.urdf?wheel=left
+  std::string package = {};          // the Debian package that a build without it lacks
+  struct Converted {
+    std::string toml;
+    std::vector<std::string> notes = {};  // what the TOML leaves out
+  };
+  /// Null in a build without the package. Throws ConfigError with every mistake.
+  std::function<Converted(const std::string& text, const std::string& path,
+                          const FileOptions& options)>
+      convert = {};
+};
+
 /// The key for which kernels are compiled: the type of a system (typeid of its Mechanics), or,
 /// left-invariant, group and m.
 std::string problem_key(const std::string& group, int m);
@@ -98,6 +115,7 @@ class Registry {
   void add(SolverInfo info);
   void add(SystemInfo info);
   void add(FileKind kind);
+  void add(FileFormat format);
   /// A system whose description is made when its name is first looked up: of files that go by name,
   /// listed apart.
   void add_deferred(const std::string& name, std::function<SystemInfo()> make);
@@ -157,6 +175,7 @@ class Registry {
   /// Both: every name that system(name) accepts.
   std::vector<std::string> systems_and_files() const;
   const std::vector<FileKind>& file_kinds() const { return file_kinds_; }
+  const std::vector<FileFormat>& file_formats() const { return file_formats_; }
 
   /// alias -> scheme.
   const std::map<std::string, std::string>& scheme_aliases() const { return scheme_aliases_; }
@@ -171,6 +190,7 @@ class Registry {
   struct Deferred;
   std::map<std::string, std::shared_ptr<Deferred>> deferred_;
   std::vector<FileKind> file_kinds_;
+  std::vector<FileFormat> file_formats_;
   std::map<std::string, KernelFactory> kernels_;
   std::map<std::string, LaneInfo> lanes_;
 };

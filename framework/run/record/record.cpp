@@ -10,6 +10,7 @@
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/names/system_file.hpp>
 #include <hamel/framework/run/record/run_file.hpp>
 
 namespace hamel {
@@ -90,7 +91,7 @@ Json record_of(const Result& r) {
   diagnostics["invariants"] = invariants;
   const std::string& system = r.config.system;
   Json out = {{"system", r.system->name},
-              {"system_file", system.ends_with(".toml") ? Json(system) : Json(nullptr)},
+              {"system_file", names_file(system) ? Json(system) : Json(nullptr)},
               {"group", r.system->group.name}};
   Config::fields([&](const Option& option, auto member) {
     const bool used = std::find(r.unused.begin(), r.unused.end(), option.name) == r.unused.end();

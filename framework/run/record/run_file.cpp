@@ -11,6 +11,7 @@
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/version.hpp>
+#include <hamel/framework/run/names/system_file.hpp>
 #include <hamel/framework/run/record/checkpoint.hpp>
 
 namespace hamel {
@@ -97,8 +98,7 @@ Config RunFile::config() const { return Config::from_toml(rows_.text("config"), 
 
 std::string texts_of_files(const Config& config) {
   Json out = Json::object();
-  if (config.system.ends_with(".toml"))
-    out[config.system] = read_text_file("system", config.system);
+  if (names_file(config.system)) out[config.system] = read_system_file(config.system);
   for (const auto& [name, signal] : config.inputs) {
     if (const auto* file = std::get_if<InputFile>(&signal))
       out[file->path] = read_text_file(name, file->path);
@@ -139,7 +139,7 @@ Recorded read_recorded(const std::string& path) {
   if (!file.finished()) return {file.path(), false, file.config()};
   const Config config = Config::continued(file.record(), path);
   const std::string& system = config.system;
-  if (system.ends_with(".toml") && file.file(system) != read_text_file("system", system)) {
+  if (names_file(system) && file.file(system) != read_system_file(system)) {
     throw ConfigError({fmt::format(
         "continue: '{}': the file of its system, '{}', is not what it was", file.path(), system)});
   }

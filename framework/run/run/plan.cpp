@@ -55,7 +55,7 @@ std::function<SystemModel(const Parameters&)> maker_of(const Registry& registry,
                                                        const Config& config, const OwnSystem* own,
                                                        Mistakes& mistakes) {
   if (own != nullptr) return own->make;
-  if (config.system.ends_with(".toml")) return data_system_maker(registry, config.system);
+  if (names_file(config.system)) return data_system_maker(registry, config.system);
   if (const SystemInfo* info = registry.system(config.system)) return info->make;
   mistakes.add(unknown_name("system", config.system, registry.systems_and_files()));
   return {};

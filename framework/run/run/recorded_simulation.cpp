@@ -15,7 +15,7 @@ Simulation recorded_simulation(const RunFile& run, const Registry& registry) {
   }
   const std::string& system = config.system;
   Simulation out =
-      system.ends_with(".toml")
+      names_file(system)
           ? Simulation(registry, system,
                        OwnSystem{data_system_maker(registry, system, run.file(system))})
           : Simulation(registry, system);

@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/simulate.hpp>
 #include <hamel/systems/by_text.hpp>
@@ -39,6 +40,45 @@ TEST(Registry, HoldsItsKindsOfFiles) {
   EXPECT_TRUE(Registry().file_kinds().empty());
   ASSERT_EQ(registry().file_kinds().size(), 1u);
   EXPECT_EQ(registry().file_kinds().front().keys.front(), "body");
+}
+
+// A format whose package a build lacks is named with it; one that it has becomes TOML, its notes
+// those of the system.
+TEST(Registry, ReadsFormatsOfOtherPrograms) {
+  Registry lacking;
+  lacking.add(FileFormat{".urdf", {"wheel"}, "liburdfdom-dev"});
+  try {
+    (void)data_system_maker(lacking, "robot.urdf?wheel=left", "<robot/>")({});
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(),
+                 "robot.urdf: this build reads no .urdf files: install liburdfdom-dev and build it "
+                 "again");
+  }
+  Registry having = registry();
+  FileFormat format{".own", {"size"}};
+  format.convert = [](const std::string& text, const std::string& path, const FileOptions&) {
+    return FileFormat::Converted{text + "name = \"own\"\n", {path + " has more"}};
+  };
+  having.add(format);
+  const SystemModel model =
+      data_system_maker(having, "x.own", "group = \"r1\"\ninertia = [1]\n")({});
+  EXPECT_EQ(model.name, "own");
+  EXPECT_THAT(model.notes, testing::ElementsAre("x.own has more"));
+}
+
+// Names of files, and the options behind the question mark.
+TEST(Registry, RecognisesFilesByName) {
+  EXPECT_TRUE(names_file("a/b.toml"));
+  EXPECT_TRUE(names_file("robot.urdf"));
+  const std::string name = with_file_option(
+      with_file_option("a?/robot.urdf", "wheel", {"left", "right"}), "root", {"free"});
+  EXPECT_EQ(name, "a?/robot.urdf?wheel=left,right&root=free");
+  EXPECT_TRUE(names_file(name));
+  EXPECT_EQ(path_of_system(name), "a?/robot.urdf");
+  EXPECT_EQ(options_of_system(name),
+            (FileOptions{{"wheel", {"left", "right"}}, {"root", {"free"}}}));
+  for (const char* other : {"suslov", "robot.urdf.gz", "urdf"}) EXPECT_FALSE(names_file(other));
 }
 
 TEST(ByName, ListsAndDescribes) {

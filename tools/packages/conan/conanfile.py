@@ -52,6 +52,7 @@ class Hamel(ConanFile):
         toolchain = CMakeToolchain(self)
         for name in ("TOOLS", "TESTS", "BENCHMARKS"):
             toolchain.cache_variables[f"HAMEL_BUILD_{name}"] = "OFF"
+        toolchain.cache_variables["HAMEL_URDFDOM"] = "OFF"
         for name in ("hdf5", "nlopt", "ceres"):
             toolchain.cache_variables[f"HAMEL_{name.upper()}"] = "ON" if self.options.get_safe(f"with_{name}") else "OFF"
         toolchain.generate()

@@ -1,4 +1,6 @@
 // What there is by name: hamel.list and hamel.describe.
+#include <hamel/framework/run/names/system_file.hpp>
+
 #include "bindings.hpp"
 
 namespace hamel::python {
@@ -18,7 +20,7 @@ std::vector<std::string> names_of(const std::string& kind) {
 ModelDescription describe(nb::handle system) {
   const bool named = nb::isinstance<nb::str>(system);
   const std::string name = named ? nb::cast<std::string>(system) : "";
-  if (!named || name.ends_with(".toml") || name.find('\n') != std::string::npos)
+  if (!named || names_file(name) || name.find('\n') != std::string::npos)
     return described(builder_of(system).simulation);
   const SystemDescription stated = describe_system(name);  // ConfigError where there is none
   ModelDescription out = described(simulate(name));

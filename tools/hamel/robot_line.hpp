@@ -1,0 +1,21 @@
+// --wheel and --root, of commands that take a system: what a robot in URDF leaves open.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace hamel::tools {
+
+struct RobotLine {
+  std::vector<std::string> wheels;
+  std::string root;
+
+  void define(CLI::App& app);
+  /// The name of the system with these: robot.urdf?wheel=left,right&root=free. Throws ConfigError
+  /// where they are given for what is no robot.
+  std::string resolve(const std::string& system) const;
+};
+
+}  // namespace hamel::tools
