@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/mechanics/input_table.hpp>
 #include <hamel/framework/mechanics/parameters.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
@@ -14,22 +15,22 @@ namespace hamel {
 
 /// The library's registry, filled on first use; a program may add to it (add_group, add_system,
 /// ...). Not thread-safe while something is being added.
-Registry& registry();
+HAMEL_API Registry& registry();
 
 /// A registered system, or one by data ("my_system.toml").
 inline Simulation simulate(std::string system) { return {registry(), std::move(system)}; }
 
 /// A mechanism by parts.
-Simulation simulate(const Mechanism& mechanism);
+HAMEL_API Simulation simulate(const Mechanism& mechanism);
 
 // Names of what is registered, sorted. `hamel list` prints the same.
-std::vector<std::string> groups();
+HAMEL_API std::vector<std::string> groups();
 /// Retractions of a group, also of a product "se2*so2^3"; without one all.
-std::vector<std::string> retractions(const std::string& group = "");
-std::vector<std::string> schemes();
-std::vector<std::string> solvers();
+HAMEL_API std::vector<std::string> retractions(const std::string& group = "");
+HAMEL_API std::vector<std::string> schemes();
+HAMEL_API std::vector<std::string> solvers();
 /// Registered systems, those of files too.
-std::vector<std::string> systems();
+HAMEL_API std::vector<std::string> systems();
 
 /// Description of a system.
 struct SystemDescription {
@@ -42,6 +43,6 @@ struct SystemDescription {
   std::vector<std::string> events;
 };
 /// ConfigError with the nearest name where there is none.
-SystemDescription describe_system(const std::string& name);
+HAMEL_API SystemDescription describe_system(const std::string& name);
 
 }  // namespace hamel

@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/systems/by_name.hpp>
 
 namespace hamel {
 
 /// A system by data, or a mechanism, as TOML; the origin, "skate.toml", is its name in messages and
 /// records. Throws ConfigError with every mistake when the run is built.
-Simulation simulate_text(const std::string& text, const std::string& origin);
+HAMEL_API Simulation simulate_text(const std::string& text, const std::string& origin);
 
 /// What is stated about the system of a run, a result or a mechanism, with its units. Summary,
 /// formula, known and source are those of a registered system: empty here.
@@ -19,6 +20,6 @@ struct ModelDescription : SystemDescription {
   std::vector<std::string> coordinate_units, velocity_units;
   std::vector<std::string> parts;  // the bodies of a mechanism
 };
-ModelDescription describe_model(const SystemModel& model);
+HAMEL_API ModelDescription describe_model(const SystemModel& model);
 
 }  // namespace hamel

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <hamel/framework/analysis/steady.hpp>
+#include <hamel/framework/io/export.hpp>
 
 namespace hamel {
 
@@ -32,7 +33,7 @@ struct DiscretePair {
   NumberMatrix a, b;
 };
 
-struct Linearisation {
+struct HAMEL_API Linearisation {
   SteadyMotion motion;
   std::vector<std::string> states, inputs, quantities;
   NumberMatrix a, b, c;        // x' = a x + b u, y = values + c x
@@ -52,6 +53,6 @@ struct Linearisation {
 
 /// About the steady motion near the start of a run; its inputs are zero. ConfigError where there is
 /// none.
-Linearisation linearisation(const Registry& registry, const Simulation& run);
+HAMEL_API Linearisation linearisation(const Registry& registry, const Simulation& run);
 
 }  // namespace hamel

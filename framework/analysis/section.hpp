@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
@@ -56,14 +57,14 @@ struct Section {
 /// Runs each start until it has crossed the event count times. progress: the fraction done. stop:
 /// ends it, with the points so far. ConfigError before anything runs: no such event, a direction
 /// that the event does not have, a count below 1, an energy that a start cannot have.
-Section section(const Simulation& simulation, const SectionRequest& request,
-                const std::function<void(double)>& progress = {},
-                const std::atomic<bool>* stop = nullptr);
+HAMEL_API Section section(const Simulation& simulation, const SectionRequest& request,
+                          const std::function<void(double)>& progress = {},
+                          const std::atomic<bool>* stop = nullptr);
 
 /// The starts of this configuration's system in a CSV file: a header with columns of the element
 /// (all or none) and components of xi, by name or number, as `hamel section -o` writes them; other
 /// columns are left out. ConfigError, with the line.
-std::vector<Start> read_starts(const std::string& path, const Registry& registry,
-                               const Config& config);
+HAMEL_API std::vector<Start> read_starts(const std::string& path, const Registry& registry,
+                                         const Config& config);
 
 }  // namespace hamel

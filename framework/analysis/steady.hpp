@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {
@@ -34,7 +35,7 @@ struct ModePart {
   double size;
 };
 
-struct SteadyMotion {
+struct HAMEL_API SteadyMotion {
   std::vector<double> element, velocity;  // coordinates and xi
   bool found = false;                     // else no eigenvalues
   double residual = 0;                    // of Z = X_s, phi and A xi = b
@@ -52,9 +53,10 @@ struct SteadyMotion {
 
 /// The steady motion near a start, its rates named by components_of(model). Throws ConfigError when
 /// the system depends on time.
-SteadyMotion steady_motion(const Registry& registry, const SystemModel& model, const Start& guess);
+HAMEL_API SteadyMotion steady_motion(const Registry& registry, const SystemModel& model,
+                                     const Start& guess);
 /// The same near the start of a run: also `speed(5)`, of systems that define such a motion.
-SteadyMotion steady_motion(const Registry& registry, const Simulation& run);
+HAMEL_API SteadyMotion steady_motion(const Registry& registry, const Simulation& run);
 
 /// Changes of the steady motions where their stability changes, or where a branch ends.
 enum class Bifurcation {
@@ -68,7 +70,7 @@ enum class Bifurcation {
   unknown,           // a branch was lost, without a fold
 };
 /// "pitchfork", "hamiltonian_hopf".
-std::string name_of(Bifurcation kind);
+HAMEL_API std::string name_of(Bifurcation kind);
 
 /// A steady motion at a value of the parameter.
 struct SteadyPlace {
@@ -104,16 +106,17 @@ struct SteadySweep {
 /// The branch through the steady motion near the start of at(values[0]), or of the first value that
 /// has one. Where steady motions form a family, it is that of the momentum along the start of
 /// at(value). others: the branches that cross it are followed too, and those that cross them.
-SteadySweep sweep_steady(const Registry& registry, const std::vector<double>& values,
-                         const std::function<Simulation(double value)>& at, bool others = false);
+HAMEL_API SteadySweep sweep_steady(const Registry& registry, const std::vector<double>& values,
+                                   const std::function<Simulation(double value)>& at,
+                                   bool others = false);
 
 /// Which eigenvalue of each motion continues as which of the next: entry i of a curve is the place
 /// of the eigenvalue in motions[i], or -1 where the curve is not.
-std::vector<std::vector<int>> eigenvalue_curves(const std::vector<SteadyMotion>& motions);
+HAMEL_API std::vector<std::vector<int>> eigenvalue_curves(const std::vector<SteadyMotion>& motions);
 
 /// A number rounded to the decimals that are known of it.
-double round_to_known(double x, double round_off);
+HAMEL_API double round_to_known(double x, double round_off);
 /// How many decimals these are, 15 at most.
-int known_decimals(double round_off);
+HAMEL_API int known_decimals(double round_off);
 
 }  // namespace hamel

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/names/config.hpp>
 #include <hamel/framework/run/record/shard.hpp>
@@ -70,7 +71,7 @@ struct Feedback {
 };
 
 /// An ensemble as plain data.
-struct EnsembleConfig {
+struct HAMEL_API EnsembleConfig {
   Config run;        // what all members have in common
   long members = 0;  // 0: as many as the lists have values
   uint64_t seed = 0;
@@ -99,9 +100,9 @@ struct EnsembleConfig {
 };
 
 /// Throws ConfigError with all mistakes of the file, each with line and column.
-EnsembleConfig parse_ensemble(const std::string& text, const std::string& origin,
-                              const Registry& registry);
-EnsembleConfig read_ensemble(const std::string& path, const Registry& registry);
+HAMEL_API EnsembleConfig parse_ensemble(const std::string& text, const std::string& origin,
+                                        const Registry& registry);
+HAMEL_API EnsembleConfig read_ensemble(const std::string& path, const Registry& registry);
 
 /// A member that has no kept values, and why.
 struct MemberFailure {
@@ -111,7 +112,7 @@ struct MemberFailure {
 };
 
 /// Of the members where it has a value; the deviation is that of a sample, n - 1.
-struct Moments {
+struct HAMEL_API Moments {
   long count = 0;
   double mean = 0, squares = 0;  // sum of (x - mean)^2
   double least = 0, most = 0;
@@ -133,7 +134,7 @@ struct StatisticsAt {
   std::vector<std::pair<std::string, Moments>> quantities;
 };
 
-struct EnsembleResult {
+struct HAMEL_API EnsembleResult {
   EnsembleConfig config;
   Shard shard;
   long first = 0, members = 0;  // those of the shard
@@ -171,7 +172,7 @@ struct Member {
   MemberFailure failure;
 };
 
-class Ensemble {
+class HAMEL_API Ensemble {
  public:
   /// Throws ConfigError with everything that is wrong.
   Ensemble(const Registry& registry, EnsembleConfig config);

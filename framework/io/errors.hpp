@@ -10,11 +10,12 @@
 #include <vector>
 
 #include <hamel/framework/io/built_with.hpp>
+#include <hamel/framework/io/export.hpp>
 
 namespace hamel {
 
 /// Every mistake found in a configuration; what() is one line per mistake.
-class ConfigError : public std::invalid_argument {
+class HAMEL_API ConfigError : public std::invalid_argument {
  public:
   explicit ConfigError(std::vector<std::string> mistakes);
   const std::vector<std::string>& mistakes() const { return mistakes_; }
@@ -24,14 +25,14 @@ class ConfigError : public std::invalid_argument {
 };
 
 /// "unknown scheme 'lfit': expected one of balance, boxed, lift; did you mean 'lift'?"
-std::string unknown_name(const std::string& kind, const std::string& value,
-                         const std::vector<std::string>& known);
+HAMEL_API std::string unknown_name(const std::string& kind, const std::string& value,
+                                   const std::vector<std::string>& known);
 
 /// The beginning of a text that is too long for a message.
-std::string shortened(const std::string& text);
+HAMEL_API std::string shortened(const std::string& text);
 
 /// Comma-separated, in the shortest form that reads back to the same double.
-std::string join(std::span<const double> values);
-std::string join(const std::vector<std::string>& words);
+HAMEL_API std::string join(std::span<const double> values);
+HAMEL_API std::string join(const std::vector<std::string>& words);
 
 }  // namespace hamel

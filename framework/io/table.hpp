@@ -10,9 +10,11 @@
 #include <variant>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
+
 namespace hamel {
 
-struct TableColumn {
+struct HAMEL_API TableColumn {
   using Values =
       std::variant<std::vector<double>, std::vector<long long>, std::vector<std::string>>;
   std::string name, unit, meaning;
@@ -23,7 +25,7 @@ struct TableColumn {
   std::string text(size_t row) const;
 };
 
-struct Table {
+struct HAMEL_API Table {
   std::vector<TableColumn> columns;
 
   size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
@@ -36,12 +38,13 @@ struct Table {
 };
 
 /// A text as a field of a CSV, quoted where it must be (RFC 4180).
-std::string csv_field(const std::string& text);
+HAMEL_API std::string csv_field(const std::string& text);
 
 /// Whether this build can write HDF5, and the version it uses ("" without).
-std::string hdf5_version();
+HAMEL_API std::string hdf5_version();
 
 /// Reads back what write_hdf5 wrote (texts: the attributes of the file).
-Table read_hdf5(const std::string& path, std::map<std::string, std::string>* texts = nullptr);
+HAMEL_API Table read_hdf5(const std::string& path,
+                          std::map<std::string, std::string>* texts = nullptr);
 
 }  // namespace hamel

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/mechanics/parameters.hpp>
 
 namespace hamel {
@@ -16,7 +17,7 @@ struct InputField {
 
 /// An input over time: linear between its times, or held from each time to the next. Times
 /// increase.
-struct InputTable {
+struct HAMEL_API InputTable {
   std::vector<double> times, values;
   bool hold = false;
   bool operator==(const InputTable&) const = default;

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
+
 namespace hamel {
 
 /// The numbers that make physical sense.
-struct Range {
+struct HAMEL_API Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
   bool open = false;  // least and most themselves are left out

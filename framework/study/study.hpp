@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/names/config.hpp>
 #include <hamel/framework/run/record/shard.hpp>
@@ -59,7 +60,7 @@ struct StudyValues : std::vector<std::string> {
 };
 
 /// A study as plain data: systems, and for each option that it varies (Config::fields) its values.
-struct StudyConfig {
+struct HAMEL_API StudyConfig {
   std::string title = "Study";
   bool zipped = false;            // the lists run together instead of in all combinations
   double until = Config().until;  // seconds
@@ -82,12 +83,12 @@ struct StudyConfig {
 };
 
 /// system, then the options that Config::fields lets a study vary: the last, step, runs fastest.
-const std::vector<std::string>& study_axes();
+HAMEL_API const std::vector<std::string>& study_axes();
 
 /// Throws ConfigError with all mistakes of the file, each with line and column.
-StudyConfig parse_study(const std::string& text, const std::string& origin,
-                        const Registry& registry);
-StudyConfig read_study(const std::string& path, const Registry& registry);
+HAMEL_API StudyConfig parse_study(const std::string& text, const std::string& origin,
+                                  const Registry& registry);
+HAMEL_API StudyConfig read_study(const std::string& path, const Registry& registry);
 
 /// A value on an axis: as text, and as the option of a run.
 struct StudyAxisValue {
@@ -96,7 +97,7 @@ struct StudyAxisValue {
 };
 
 /// The values of a cell on the axes. Cells of one study share them: a cell has addresses.
-class StudyAxes {
+class HAMEL_API StudyAxes {
  public:
   /// The text. Throws std::out_of_range on a name that is not in study_axes().
   const std::string& at(const std::string& axis) const;
@@ -113,7 +114,7 @@ class StudyAxes {
 };
 
 /// One combination: run, or skipped and why.
-struct StudyCell {
+struct HAMEL_API StudyCell {
   size_t system = 0;                   // index into the systems
   std::shared_ptr<const Config> base;  // of the cells of one system: all but the axes
   /// The value on each axis as text; of a cell that is run, empty where its scheme makes no use
@@ -146,7 +147,7 @@ class StudyCells {
 };
 
 /// All combinations in order, those that are not run too.
-StudyCells study_cells(const StudyConfig& config, const Registry& registry);
+HAMEL_API StudyCells study_cells(const StudyConfig& config, const Registry& registry);
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
@@ -159,7 +160,7 @@ inline long expected_steps(const Config& config) {
 }
 
 /// Results of one cell. NaN: not measured, or nothing finite.
-struct StudyMetrics {
+struct HAMEL_API StudyMetrics {
   bool done = false;  // false: the study was stopped before
   bool ok = false;
   std::string reason;  // of a failure
@@ -195,7 +196,7 @@ struct StudyReference {
   std::vector<std::vector<double>> coordinates, velocities;
 };
 
-struct StudyResult {
+struct HAMEL_API StudyResult {
   StudyConfig config;
   StudyCells cells;
   std::vector<StudyMetrics> metrics;       // one for each cell; not done where the cell is skipped
@@ -218,7 +219,7 @@ struct StudyResult {
   void write(const std::string& folder) const;
 };
 
-class Study {
+class HAMEL_API Study {
  public:
   /// Throws ConfigError with everything that is wrong.
   Study(const Registry& registry, StudyConfig config);

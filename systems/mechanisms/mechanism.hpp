@@ -26,6 +26,7 @@
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/mechanics/event.hpp>
 #include <hamel/framework/mechanics/input_table.hpp>
 #include <hamel/framework/mechanics/parameters.hpp>
@@ -93,7 +94,7 @@ struct ForceOptions {
   bool time_dependent = true;  // may `along` use t? If not, there are steady motions
 };
 
-class Mechanism {
+class HAMEL_API Mechanism {
  public:
   explicit Mechanism(std::string name) : name_(std::move(name)) {}
 
@@ -267,8 +268,8 @@ class Mechanism {
 };
 
 /// A mechanism has no parameters to set.
-std::function<SystemModel(const Parameters&)> maker(const Mechanism& mechanism);
+HAMEL_API std::function<SystemModel(const Parameters&)> maker(const Mechanism& mechanism);
 /// The registry entry of a mechanism: registry().add(system_info(mechanism)).
-SystemInfo system_info(const Mechanism& mechanism);
+HAMEL_API SystemInfo system_info(const Mechanism& mechanism);
 
 }  // namespace hamel

@@ -1,5 +1,5 @@
 # `cmake --install`: libraries, headers, the program, and the packages that find_package(hamel) and pkg-config find. `cpack`
-# makes Debian packages of its four components: dev, program, doc, and python where the package was built.
+# makes Debian packages of its components: dev, program, doc, lib with HAMEL_SHARED, and python where the package was built.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -14,6 +14,9 @@ if(HAMEL_HAS_XSIMD)
   list(APPEND libraries ${HAMEL_LANE_TARGETS})
 endif()
 install(TARGETS ${libraries} EXPORT hamelTargets COMPONENT dev FILE_SET HEADERS COMPONENT dev)
+if(TARGET hamel_shared)
+  install(TARGETS hamel_shared EXPORT hamelTargets LIBRARY COMPONENT lib NAMELINK_COMPONENT dev)
+endif()
 if(TARGET hamel_program)
   install(TARGETS hamel_program COMPONENT program)
   get_target_property(schemas hamel_schemas hamel_files)
@@ -70,6 +73,10 @@ set(HAMEL_PC_LIBS "-Wl,--start-group ${archives} -Wl,--end-group ${needed}")
 get_target_property(HAMEL_PC_EIGEN Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 file(RELATIVE_PATH HAMEL_PC_PREFIX /p/${CMAKE_INSTALL_LIBDIR}/pkgconfig /p)
 configure_file(${PROJECT_SOURCE_DIR}/tools/packages/hamel.pc.in ${PROJECT_BINARY_DIR}/hamel.pc @ONLY)
+if(TARGET hamel_shared)
+  configure_file(${PROJECT_SOURCE_DIR}/tools/packages/hamel-shared.pc.in ${PROJECT_BINARY_DIR}/hamel-shared.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/hamel-shared.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+endif()
 install(FILES ${PROJECT_BINARY_DIR}/hamel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)

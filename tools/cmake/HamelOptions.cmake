@@ -4,6 +4,7 @@
 option(HAMEL_BUILD_TOOLS "Build the program `hamel`" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_BUILD_TESTS "Build the tests and examples" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_BUILD_BENCHMARKS "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
+option(HAMEL_SHARED "Link libhamel.so, the library by name, beside the archives: for packages" OFF)
 option(HAMEL_INSTALL "Define the install rules" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_WERROR "Treat warnings in our own sources as errors" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_PCH "Parse Eigen and the standard library once for all layers" ${PROJECT_IS_TOP_LEVEL})

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/mechanics/parameters.hpp>
 #include <hamel/framework/mechanics/start.hpp>
 #include <hamel/framework/run/names/input_signals.hpp>
@@ -27,7 +28,7 @@ struct Option {
   const char* expected = "";         // the allowed values, as text
 };
 
-struct Config {
+struct HAMEL_API Config {
   std::string system;
   Parameters parameters;
   InputSignals inputs;
@@ -171,23 +172,26 @@ struct Config {
 };
 
 /// Reads a file with from_toml; ConfigError when it cannot be read.
-Config read_config(const std::string& path);
+HAMEL_API Config read_config(const std::string& path);
 
 /// The value of an option as text, lists separated by commas, and back: exact for numbers.
 /// ConfigError that begins with `option` for text that does not fit.
-std::string text_of(double value);
-std::string text_of(std::optional<double> value);  // "" for none
-std::string text_of(long value);
-std::string text_of(bool value);
-std::string text_of(const std::string& value);
-std::string text_of(const std::vector<double>& value);
-std::string text_of(const std::vector<std::string>& value);
-void read_text(const std::string& option, const std::string& text, double& out);
-void read_text(const std::string& option, const std::string& text, std::optional<double>& out);
-void read_text(const std::string& option, const std::string& text, long& out);
-void read_text(const std::string& option, const std::string& text, bool& out);
-void read_text(const std::string& option, const std::string& text, std::string& out);
-void read_text(const std::string& option, const std::string& text, std::vector<double>& out);
-void read_text(const std::string& option, const std::string& text, std::vector<std::string>& out);
+HAMEL_API std::string text_of(double value);
+HAMEL_API std::string text_of(std::optional<double> value);  // "" for none
+HAMEL_API std::string text_of(long value);
+HAMEL_API std::string text_of(bool value);
+HAMEL_API std::string text_of(const std::string& value);
+HAMEL_API std::string text_of(const std::vector<double>& value);
+HAMEL_API std::string text_of(const std::vector<std::string>& value);
+HAMEL_API void read_text(const std::string& option, const std::string& text, double& out);
+HAMEL_API void read_text(const std::string& option, const std::string& text,
+                         std::optional<double>& out);
+HAMEL_API void read_text(const std::string& option, const std::string& text, long& out);
+HAMEL_API void read_text(const std::string& option, const std::string& text, bool& out);
+HAMEL_API void read_text(const std::string& option, const std::string& text, std::string& out);
+HAMEL_API void read_text(const std::string& option, const std::string& text,
+                         std::vector<double>& out);
+HAMEL_API void read_text(const std::string& option, const std::string& text,
+                         std::vector<std::string>& out);
 
 }  // namespace hamel

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/mechanics/input_table.hpp>
 
 namespace hamel {
@@ -30,14 +31,14 @@ using InputSignal = std::variant<double, InputFile, InputTable>;
 using InputSignals = std::map<std::string, InputSignal>;
 
 /// A number, or a file's name with or without ":hold"; and back (a table: its size).
-InputSignal input_signal(const std::string& text);
-std::string text_of(const InputSignal& signal);
+HAMEL_API InputSignal input_signal(const std::string& text);
+HAMEL_API std::string text_of(const InputSignal& signal);
 
 /// The table of a file. ConfigError "what: path:line: ...".
-InputTable read_input_table(const std::string& what, const InputFile& file);
+HAMEL_API InputTable read_input_table(const std::string& what, const InputFile& file);
 /// The same of a file whose text is at hand.
-InputTable read_input_table(const std::string& what, const InputFile& file,
-                            const std::string& text);
+HAMEL_API InputTable read_input_table(const std::string& what, const InputFile& file,
+                                      const std::string& text);
 
 /// The span of a run, either way.
 struct RunSpan {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/row_file.hpp>
 #include <hamel/framework/loop/snapshot.hpp>
@@ -19,7 +20,7 @@ class Inputs;
 struct SystemModel;
 
 /// The recorded rows: named columns, row-major numbers.
-class Trajectory {
+class HAMEL_API Trajectory {
  public:
   explicit Trajectory(std::vector<ColumnGroup> groups = {});
   /// The columns with their units, those of a vector together.
@@ -59,7 +60,7 @@ struct EventMet {
   std::vector<double> coordinates, velocity;
 };
 
-struct Result : Measurements {
+struct HAMEL_API Result : Measurements {
   Config config;                              // as it was run: start and parameters filled in
   std::shared_ptr<const SystemModel> system;  // <hamel/hamel.hpp> has its members
   std::shared_ptr<const Inputs> inputs;       // null without
@@ -99,12 +100,12 @@ struct Recorded {
   bool finished;
   Config config;  // unfinished: as it was given; finished: where it ended, for as long again
 };
-Recorded read_recorded(const std::string& path);
+HAMEL_API Recorded read_recorded(const std::string& path);
 
 /// The machine this runs on: node name, system, architecture.
 std::string host_name();
 
 /// The extensions that Result::write and Simulation::record_to accept.
-const std::vector<std::string>& output_formats();
+HAMEL_API const std::vector<std::string>& output_formats();
 
 }  // namespace hamel

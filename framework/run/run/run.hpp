@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/run/names/config.hpp>
 #include <hamel/framework/run/record/result.hpp>
 
@@ -23,7 +24,7 @@ namespace hamel {
 
 class Driver;
 
-class Run {
+class HAMEL_API Run {
  public:
   explicit Run(std::unique_ptr<Driver> driver);
   Run(Run&&) noexcept;

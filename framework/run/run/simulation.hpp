@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/io/export.hpp>
 #include <hamel/framework/run/names/config.hpp>
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/run/run/run.hpp>
@@ -58,7 +59,7 @@ struct RunRequest {
   std::string resumed;
 };
 
-class Simulation {
+class HAMEL_API Simulation {
  public:
   /// A registered system; the name is looked up when the run is built.
   Simulation(const Registry& registry, std::string system);
