@@ -107,8 +107,7 @@ class Writer {
   static bool is_frame(const RobotLink& l) {
     return l.mass == 0 && l.inertia.isZero(0) && l.visuals.empty() && l.collisions.empty();
   }
-  // The body that stands for a link: for a frame without mass and shape the one that it is welded
-  // to.
+  // The body of a link; of a frame, without mass and shape, the one that it is welded to.
   void find_bodies() {
     bodies_of_.resize(links_.size());
     for (int i = 0; i < count(); ++i) bodies_of_[static_cast<size_t>(i)] = i;

@@ -58,6 +58,9 @@ if(TARGET hamel_shared)
   hamel_package(lib libhamel${PROJECT_VERSION_MAJOR} libs
     "The shared library of programs that include <hamel/simulate.hpp>.")
   set(CPACK_DEBIAN_LIB_PACKAGE_SHLIBDEPS ON)
+  # Beside the maintainer scripts of CPack, which call ldconfig, the trigger that lintian requires.
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/packaging/triggers CONTENT "activate-noawait ldconfig\n")
+  set(CPACK_DEBIAN_LIB_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/packaging/triggers)
   set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
   set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libhamel${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION})")
