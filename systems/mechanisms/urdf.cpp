@@ -133,15 +133,19 @@ class Writer {
     if (shape.kind == Kind::cylinder)
       return fmt::format(", cylinder = [{}, {}], axis = {}", spelled(shape.size[0]),
                          spelled(shape.size[1]), spelled(shape.axis()));
-    if (shape.kind == Kind::mesh) {
-      if (undrawn_.empty() || undrawn_.back() != l.name) undrawn_.push_back(l.name);
-      return "";
-    }
+    if (shape.kind == Kind::mesh) return "";
     const Mat<3, 3> turned = shape.pose.rotation.cwiseAbs();
     const Mat<3, 3> near = turned.array().round();
     if ((turned - near).isZero(1e-9)) return ", box = " + spelled(Vec3(near * shape.size));
     turned_.push_back(l.name);
     return "";
+  }
+
+  // The visuals; where all of them are meshes, the collisions.
+  const std::vector<RobotShape>& drawn_shapes(const RobotLink& l) {
+    const auto mesh = [](const RobotShape& s) { return s.kind == RobotShape::Kind::mesh; };
+    if (std::ranges::any_of(l.visuals, mesh)) undrawn_.push_back(l.name);
+    return std::ranges::all_of(l.visuals, mesh) ? l.collisions : l.visuals;
   }
 
   void write_bodies() {
@@ -159,7 +163,7 @@ class Writer {
       }
       bool drawn = false;
       std::vector<std::string> others;
-      for (const RobotShape& shape : l.visuals.empty() ? l.collisions : l.visuals) {
+      for (const RobotShape& shape : drawn_shapes(l)) {
         const std::string words = words_of(shape, l);
         if (words.empty()) continue;
         if (!drawn && (shape.pose.position - l.centre).isZero(1e-12)) {

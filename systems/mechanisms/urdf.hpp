@@ -1,7 +1,7 @@
 // Robots in URDF as mechanisms: hamel run 'robot.urdf?wheel=left,right', or with --wheel.
 //
-//   link                        a body: mass, inertia about its mass centre; visuals (without any,
-//                               collisions) of boxes, cylinders and spheres are its shapes
+//   link                        a body: mass, inertia about its mass centre; visuals (where all
+//                               are meshes collisions) of boxes, cylinders, spheres are its shapes
 //   revolute, continuous        hinge, with its damping, and a motor within its effort limit
 //   prismatic                   slider, the same
 //   planar, floating, fixed     planar, free, weld

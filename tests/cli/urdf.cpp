@@ -138,6 +138,8 @@ TEST_F(Urdf, NotesWhatItLeavesOut) {
                            "friction is left out, damping is kept: \\\"axle\\\"",
                            "meshes are not drawn: \\\"left\\\""})
     EXPECT_THAT(notes, HasSubstr(note));
+  EXPECT_THAT(run({"describe", file("robot.urdf"), "--toml"}).out,
+              HasSubstr("cylinder = [0.1, 0.02]"));  // its collision instead
 }
 
 TEST_F(Urdf, RefusesWithNames) {
