@@ -160,15 +160,20 @@ scheme = "lift"
 grid = true
 members = 100000
 keep = ["end.omega1", "end.omega2"]
+trajectories = [50001]
 [vary]
 start.omega1 = { range = [-1, 1, 400] }
 start.omega2 = { range = [-1, 1, 250] }
 )toml");
   const nlohmann::json members = block_of(shown, "members"), map = block_of(shown, "heatmap");
   EXPECT_EQ(members["count"], 100000);
-  EXPECT_EQ(members["index"].size(), 4000u);
-  EXPECT_EQ(members["columns"][0]["values"].size(), 4000u);
-  EXPECT_THAT(members["paragraphs"].dump(), HasSubstr("4000 of the 100000 members: each 25th"));
+  // 27 shares no factor with 400 and 250; the member that moves is there too.
+  EXPECT_EQ(members["index"].size(), 3705u);
+  EXPECT_EQ(members["index"][1], 27);
+  EXPECT_THAT(members["index"], testing::Contains(50001));
+  EXPECT_TRUE(members["motions"].contains("50001"));
+  EXPECT_EQ(members["columns"][0]["values"].size(), 3705u);
+  EXPECT_THAT(members["paragraphs"].dump(), HasSubstr("3705 of the 100000 members: each 27th"));
   EXPECT_EQ(map["values"].size(), 100u);
   EXPECT_EQ(map["values"][0].size(), 84u);  // 3 of 250 together
   EXPECT_THAT(std::string(map["note"]), HasSubstr("4 x 3 combinations are one cell"));

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -87,7 +88,14 @@ std::vector<bool> failed_members(const EnsembleResult& result) {
   return out;
 }
 
-size_t stride_of_dots(size_t members) { return (members + kMostDots - 1) / kMostDots; }
+size_t stride_of_dots(const EnsembleResult& result) {
+  size_t out = (static_cast<size_t>(result.members) + kMostDots - 1) / kMostDots;
+  const auto meets = [&](const Variation& v) {
+    return v.law == Variation::Law::values && std::gcd(out, v.numbers.size()) > 1;
+  };
+  while (out > 1 && result.config.grid && std::ranges::any_of(result.config.vary, meets)) ++out;
+  return out;
+}
 
 std::string sampled(size_t stride) {
   return stride > 1 ? fmt::format("Each {} member.", ordinal(stride)) : "";
@@ -116,8 +124,12 @@ std::vector<long> members_in_motion(const EnsembleResult& result) {
 
 void add_members(Page& page, const EnsembleResult& result, const std::map<long, Page>& motions) {
   const size_t count = static_cast<size_t>(result.members);
-  const size_t stride = count <= kMostValues ? 1 : stride_of_dots(count);
-  const std::vector<long> index = every(count, stride);
+  const size_t stride = count <= kMostValues ? 1 : stride_of_dots(result);
+  std::vector<long> index = every(count, stride);
+  for (const auto& [member, motion] : motions) {
+    const auto at = std::ranges::lower_bound(index, member);
+    if (at == index.end() || *at != member) index.insert(at, member);
+  }
   Members out;
   out.count = result.members;
   if (stride > 1) out.index = index;
@@ -148,7 +160,7 @@ void add_members(Page& page, const EnsembleResult& result, const std::map<long, 
     }
   }
   for (const MemberFailure& failure : result.failures)
-    if (failure.member % static_cast<long>(stride) == 0)
+    if (std::ranges::binary_search(index, failure.member))
       out.failures[failure.member] = failure.reason;
   for (const auto& [member, motion] : motions) out.motions[member] = &motion;
   page.members(out);
@@ -162,7 +174,7 @@ void add_scatter_matrix(Page& page, const EnsembleResult& result) {
     (!varies ? constant : names.size() < kMostColumns ? names : more).push_back(name);
   }
   if (names.size() < 2) return;
-  const size_t count = static_cast<size_t>(result.members), stride = stride_of_dots(count);
+  const size_t count = static_cast<size_t>(result.members), stride = stride_of_dots(result);
   ScatterMatrix out;
   out.title = "What is kept, in pairs";
   const bool classes = !result.config.classes.names.empty();

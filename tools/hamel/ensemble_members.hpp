@@ -17,8 +17,9 @@ const std::vector<double>& numbers_of(const EnsembleResult& result, const std::s
 
 std::vector<bool> failed_members(const EnsembleResult& result);
 
-/// Of so many members each stride-th is drawn as a dot.
-size_t stride_of_dots(size_t members);
+/// Each stride-th member is drawn as a dot; on a grid it shares no factor with the lists, so that
+/// it does not miss most of their values.
+size_t stride_of_dots(const EnsembleResult& result);
 
 /// "Each 25th member."; "" where all are shown.
 std::string sampled(size_t stride);

@@ -150,7 +150,7 @@ Series curve_of(const std::string& name, const std::vector<double>& x, const std
 void add_dots(Page& page, const EnsembleResult& result, const Shown& column,
               const std::string& name, bool curve) {
   const std::vector<double>& x = numbers_of(result, name);
-  const size_t stride = stride_of_dots(column.values.size());
+  const size_t stride = stride_of_dots(result);
   page.plot(fmt::format("{} over {}", column.name, name),
             {.x = labelled(result, name), .y = column.label},
             curve ? std::vector{curve_of(column.name, x, column.values, stride)}
@@ -161,7 +161,7 @@ void add_dots(Page& page, const EnsembleResult& result, const Shown& column,
 // The members in the plane of two varied numbers, coloured by class and failure.
 void add_classes(Page& page, const EnsembleResult& result, const std::string& x,
                  const std::string& y) {
-  const size_t stride = stride_of_dots(static_cast<size_t>(result.members));
+  const size_t stride = stride_of_dots(result);
   page.plot(fmt::format("Members over {} and {}", x, y),
             {.x = labelled(result, x), .y = labelled(result, y)},
             coloured(result, numbers_of(result, x), numbers_of(result, y), "members", stride),
