@@ -1,6 +1,8 @@
 # libhamel.so.<major>: the door by name (<hamel/simulate.hpp>) as a shared library, hamel::shared, beside the archives and of
 # their objects. What carries HAMEL_API (framework/io/export.hpp) is visible, all else hidden. A program that links it needs
 # no package of the archives, and takes a new version without being linked again.
+include(GNUInstallDirs)
+
 set(layers ${HAMEL_ROOMS} groups mechanisms solvers systems)
 set(archives "")
 set(roots ${PROJECT_BINARY_DIR}/include/umbrella)
