@@ -300,13 +300,16 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     return out;
   }
   /// The transpose of the even part is [[omega omega^T, omega v^T - (omega.v) I], [0, 0]]/4.
-  static Vec<6> solve_even_transposed(const Vec<6>& xi, double c, const Vec<6>& m) {
+  template <class T>
+  static VecT<T, 6> solve_even_transposed(const VecT<T, 6>& xi, double c, const VecT<T, 6>& m) {
     const double k = 0.25 * c;
-    const Vec<3> omega = xi.head<3>(), v = xi.tail<3>(), force = m.tail<3>();
-    const Vec<3> moment = m.head<3>() + k * (omega.dot(v) * force - v.dot(force) * omega);
-    Vec<6> out;
-    out.head<3>() = moment - (k * omega.dot(moment) / (1 + k * omega.dot(omega))) * omega;
-    out.tail<3>() = force;
+    const VecT<T, 3> omega = xi.template head<3>(), v = xi.template tail<3>(),
+                     force = m.template tail<3>();
+    const VecT<T, 3> moment =
+        m.template head<3>() + k * (omega.dot(v) * force - v.dot(force) * omega);
+    VecT<T, 6> out;
+    out.template head<3>() = moment - (k * omega.dot(moment) / (1 + k * omega.dot(omega))) * omega;
+    out.template tail<3>() = force;
     return out;
   }
   /// [[N(omega, m) + (v.f I - f v^T)/4, -(f + omega x f/2)^/2], [-f^/2, 0]], N the derivative on
@@ -327,5 +330,13 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     return m;
   }
 };
+
+// Compiled once, geometries.cpp.
+template <>
+std::shared_ptr<const Geometry> erased_geometry<Cayley<SO3>>();
+template <>
+std::shared_ptr<const Geometry> erased_geometry<Cayley<SE2>>();
+template <>
+std::shared_ptr<const Geometry> erased_geometry<Cayley<SE3>>();
 
 }  // namespace hamel

@@ -144,7 +144,7 @@ struct Exp<SE2> : ExpDefaults<SE2> {
   }
 };
 
-// Compiled once, exp.cpp: for the registry, and for joints.
+// Compiled once, geometries.cpp: for the registry, and for joints.
 template <>
 std::shared_ptr<const Geometry> erased_geometry<Exp<Rn<1>>>();
 template <>

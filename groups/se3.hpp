@@ -148,33 +148,14 @@ struct SE3 {
     return xi;
   }
 
-  static std::vector<std::string> columns() {
-    std::vector<std::string> names = SO3::columns();
-    names.insert(names.end(), {"x", "y", "z"});
-    return names;
-  }
-  static std::vector<std::string> units() {
-    std::vector<std::string> units = SO3::units();
-    units.insert(units.end(), 3, "m");
-    return units;
-  }
-  static std::vector<Component> components() {
-    std::vector<Component> components = SO3::components();
-    components.insert(components.end(), {{"v1", "m/s"}, {"v2", "m/s"}, {"v3", "m/s"}});
-    return components;
-  }
+  static std::vector<std::string> columns();
+  static std::vector<std::string> units();
+  static std::vector<Component> components();
   /// R' = R hat(omega), (x, y, z)' = R v.
   static void coordinate_rates(std::span<const double> x, std::span<const double> xi,
-                               std::span<double> out) {
-    SO3::coordinate_rates(x, xi, out);
-    Eigen::Map<Vec<3>>(out.data() + 9) = Rows(x.data()) * Eigen::Map<const Vec<3>>(xi.data() + 3);
-  }
+                               std::span<double> out);
   static void add_pulled_back(std::span<const double> x, std::span<const double> slope,
-                              std::span<double> out) {
-    SO3::add_pulled_back(x, slope, out);
-    Eigen::Map<Vec<3>>(out.data() + 3) +=
-        Rows(x.data()).transpose() * Eigen::Map<const Vec<3>>(slope.data() + 9);
-  }
+                              std::span<double> out);
   template <class T>
   static Coordinates<T, 12> coordinates(const SE3Element<T>& g) {
     const auto rotation = SO3::coordinates(g.rotation);
@@ -184,24 +165,21 @@ struct SE3 {
     return values;
   }
   /// R row by row, then x, y, z. Throws std::invalid_argument.
-  static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates<SE3>(values);
-    return {SO3::rotation_from("se3", values), {values[9], values[10], values[11]}};
-  }
+  static Element<double> from_coordinates(std::span<const double> values);
+  /// The element nearest to values whose rotation is off by less than about 0.3.
+  static Element<double> nearest(std::span<const double> values);
 
   /// m^-T u for a matrix of the shape of dR: block lower triangular.
-  static Vec<6> solve_transposed(const Mat<6, 6>& m, const Vec<6>& u) {
-    const Mat<3, 3> a = m.topLeftCorner<3, 3>(), b = m.bottomLeftCorner<3, 3>(),
-                    c = m.bottomRightCorner<3, 3>();
-    const Vec<3> lower = c.inverse().transpose() * u.tail<3>();
-    Vec<6> out;
-    out << a.inverse().transpose() * Vec<3>(u.head<3>() - b.transpose() * lower), lower;
+  template <class T>
+  static VecT<T, 6> solve_transposed(const MatT<T, 6, 6>& m, const VecT<T, 6>& u) {
+    const MatT<T, 3, 3> a = m.template topLeftCorner<3, 3>(),
+                        b = m.template bottomLeftCorner<3, 3>(),
+                        c = m.template bottomRightCorner<3, 3>();
+    const VecT<T, 3> lower = c.inverse().transpose() * u.template tail<3>();
+    VecT<T, 6> out;
+    out << a.inverse().transpose() * VecT<T, 3>(u.template head<3>() - b.transpose() * lower),
+        lower;
     return out;
-  }
-
-  /// The element nearest to values whose rotation is off by less than about 0.3.
-  static Element<double> nearest(std::span<const double> values) {
-    return {SO3::nearest(values), {values[9], values[10], values[11]}};
   }
 
   /// [[a, 0], [b, a]]: the shape of Ad, of ad and of every function of ad.
@@ -214,9 +192,6 @@ struct SE3 {
     m.template bottomRightCorner<3, 3>() = a;
     return m;
   }
-
- private:
-  using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 };
 
 }  // namespace hamel

@@ -126,7 +126,7 @@ struct SO3 {
   /// cos.
   static double rotation_angle(const Mat<3, 3>& g) {
     const double sine = std::hypot(g(2, 1) - g(1, 2), g(0, 2) - g(2, 0), g(1, 0) - g(0, 1));
-    return std::atan2(sine, g.trace() - 1);
+    return std::atan2(sine, g(0, 0) + (g(1, 1) + g(2, 2)) - 1);
   }
 
   template <class T>
@@ -142,61 +142,26 @@ struct SO3 {
     return {0.5 * (m(2, 1) - m(1, 2)), 0.5 * (m(0, 2) - m(2, 0)), 0.5 * (m(1, 0) - m(0, 1))};
   }
 
-  static std::vector<std::string> columns() {
-    return {"R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"};
-  }
-  static std::vector<std::string> units() { return std::vector<std::string>(9); }
-  static std::vector<Component> components() {
-    return {{"omega1", "rad/s"}, {"omega2", "rad/s"}, {"omega3", "rad/s"}};
-  }
+  static std::vector<std::string> columns();
+  static std::vector<std::string> units();
+  static std::vector<Component> components();
   /// R' = R hat(xi).
   static void coordinate_rates(std::span<const double> x, std::span<const double> xi,
-                               std::span<double> out) {
-    const Eigen::Map<const Vec<3>> turn(xi.data());
-    for (std::size_t i = 0; i < 9; i += 3) {  // row by row
-      const Eigen::Map<const Vec<3>> row(x.data() + i);
-      Eigen::Map<Vec<3>>(out.data() + i) = row.cross(turn);
-    }
-  }
+                               std::span<double> out);
   static void add_pulled_back(std::span<const double> x, std::span<const double> slope,
-                              std::span<double> out) {
-    using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-    const Mat<3, 3> b = Rows(x.data()).transpose() * Rows(slope.data());
-    out[0] += b(2, 1) - b(1, 2);
-    out[1] += b(0, 2) - b(2, 0);
-    out[2] += b(1, 0) - b(0, 1);
-  }
+                              std::span<double> out);
   /// Row by row.
   template <class T>
   static Coordinates<T, 9> coordinates(const MatT<T, 3, 3>& g) {
     return {g(0, 0), g(0, 1), g(0, 2), g(1, 0), g(1, 1), g(1, 2), g(2, 0), g(2, 1), g(2, 2)};
   }
   /// A rotation to 1e-6, which is then normalised. Throws std::invalid_argument.
-  static Element<double> from_coordinates(std::span<const double> values) {
-    check_coordinates<SO3>(values);
-    return rotation_from("so3", values);
-  }
-
+  static Element<double> from_coordinates(std::span<const double> values);
   /// The rotation nearest to the first 9 values, row by row, which are off by less than about 0.3.
-  static Element<double> nearest(std::span<const double> values) {
-    Element<double> g;
-    for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(i)];
-    for (int i = 0; i < 6; ++i) g = normalise(g);
-    return g;
-  }
-
+  static Element<double> nearest(std::span<const double> values);
   /// The rotation in the first 9 values, row by row, if its defect is at most 1e-6 (then normalised
   /// to round-off), else std::invalid_argument in the name of `group`.
-  static Element<double> rotation_from(const std::string& group, std::span<const double> values) {
-    Element<double> g;
-    for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(i)];
-    const double error = defect(g);
-    if (!(error <= 1e-6)) {
-      throw std::invalid_argument(group + ": R11..R33 has max(|R^T R - I|, |det R - 1|) = " +
-                                  to_text(error) + ", expected a rotation matrix (at most 1e-6)");
-    }
-    return error > 2e-15 ? normalise(normalise(g)) : g;
-  }
+  static Element<double> rotation_from(const std::string& group, std::span<const double> values);
 };
 
 }  // namespace hamel
