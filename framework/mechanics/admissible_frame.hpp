@@ -18,12 +18,14 @@
 
 #include <Eigen/Core>
 
+#include <hamel/framework/mechanics/run_time_frame.hpp>
+
 namespace hamel {
 
-/// Vectors and matrices of n, k and m = n - k, fixed or chosen at run time (Eigen::Dynamic).
+/// Vectors and matrices of n, k and m = n - k.
 template <int N, int K>
 struct Sized {
-  static constexpr int M = N == Eigen::Dynamic ? Eigen::Dynamic : N - K;
+  static constexpr int M = N - K;
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
   using ConstraintMatrix = Eigen::Matrix<double, K, N>;
@@ -51,22 +53,7 @@ class AdmissibleFrame {
       : inertia(system.dim(), system.dim()),
         a(system.constraint_count(), system.dim()),
         b(system.constraint_count()),
-        n_(system.dim()),
-        k_(system.constraint_count()),
-        weights_(n_),
-        reflections_(n_, k_),
-        l_transposed_(k_, k_),
-        row_weights_(k_),
-        factors_(k_),
-        l_inverse_diagonal_(k_),
-        signs_(Multipliers::Zero(k_)),
-        frame_(n_, n_ - k_),
-        reduced_inertia_(n_ - k_, n_ - k_),
-        few_(k_),
-        work_(n_),
-        image_(n_),
-        moved_(n_),
-        y_(n_ - k_) {}
+        signs_(Multipliers::Zero()) {}
 
   /// Everything at (t, g). same_frame: the reflections keep their signs, for calls within one step.
   template <class System, class Element>
@@ -139,20 +126,14 @@ class AdmissibleFrame {
   }
 
  private:
-  int n() const { return N == Eigen::Dynamic ? n_ : N; }
-  int k() const { return K == Eigen::Dynamic ? k_ : K; }
-  int m() const { return n() - k(); }
+  static constexpr int n() { return N; }
+  static constexpr int k() { return K; }
+  static constexpr int m() { return N - K; }
 
-  // Loops that unroll where sizes are known at compile time; else Eigen's, with packets.
   static double dot(const double* x, const double* y, int count) {
-    if constexpr (N == Eigen::Dynamic) {
-      using Map = Eigen::Map<const Eigen::VectorXd>;
-      return Map(x, count).dot(Map(y, count));
-    } else {
-      double sum = 0;
-      for (int i = 0; i < count; ++i) sum += x[i] * y[i];
-      return sum;
-    }
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += x[i] * y[i];
+    return sum;
   }
   static void add(double factor, const double* x, double* y, int count) {
     for (int i = 0; i < count; ++i) y[i] += factor * x[i];
@@ -181,8 +162,7 @@ class AdmissibleFrame {
         l_transposed_(i, j) = reflections_(i, j);
         reflections_(i, j) = 0;
       }
-      const double norm =
-          std::sqrt(dot(&reflections_(from(j), j), &reflections_(from(j), j), left(j)));
+      const double norm = std::sqrt(dot(&reflections_(0, j), &reflections_(0, j), n()));
       if (signs_[j] == 0) signs_[j] = v[0] < 0 ? -1 : 1;
       else if (!keep_signs && signs_[j] * v[0] < -0.1 * norm) signs_[j] = -signs_[j];
       const double diagonal = signs_[j] * norm;
@@ -192,14 +172,11 @@ class AdmissibleFrame {
       for (int l = j + 1; l < k(); ++l) reflect(j, &reflections_(0, l));
     }
   }
+  // All loops have n rounds and unroll.
   void reflect(int j, double* y) const {
-    const double* v = &reflections_(from(j), j);
-    add(-factors_[j] * dot(v, y + from(j), left(j)), v, y + from(j), left(j));
+    const double* v = &reflections_(0, j);
+    add(-factors_[j] * dot(v, y, n()), v, y, n());
   }
-  // The first index of reflection j. With sizes known at compile time all loops have n rounds and
-  // unroll.
-  int from(int j) const { return N == Eigen::Dynamic ? j : 0; }
-  int left(int j) const { return N == Eigen::Dynamic ? n_ - j : N; }
   // L^-1 c, to the first k entries.
   void impulses(const Multipliers& c, Vector& out) const {
     for (int j = 0; j < k(); ++j) {
@@ -269,7 +246,6 @@ class AdmissibleFrame {
     }
   }
 
-  int n_, k_;
   Vector weights_;  // D^-1/2
   typename Z::Columns reflections_;
   typename Z::FewSquare l_transposed_;  // but for its diagonal
@@ -280,6 +256,56 @@ class AdmissibleFrame {
   Vector work_, image_, moved_;
   typename Z::Reduced y_;
   bool known_ = false, diagonal_ = false;
+};
+
+/// Of sizes known at run time only.
+template <>
+class AdmissibleFrame<Eigen::Dynamic, Eigen::Dynamic> {
+ public:
+  using Vector = Eigen::VectorXd;
+  using Multipliers = Eigen::VectorXd;
+  Eigen::MatrixXd inertia, a;
+  Multipliers b;
+
+  template <class System>
+  explicit AdmissibleFrame(const System& system)
+      : inertia(system.dim(), system.dim()),
+        a(system.constraint_count(), system.dim()),
+        b(system.constraint_count()),
+        frame_(system.dim(), system.constraint_count()) {}
+
+  template <class System, class Element>
+  void set(const System& system, double t, const Element& g, bool same_frame = false) {
+    const bool inertia_changes = !known_ || !system.constant_inertia();
+    const bool rows_change = b.size() > 0 && (!known_ || !system.constant_constraints());
+    if (inertia_changes) system.inertia(g, inertia);
+    if (rows_change) system.constraints(t, g, a, b);
+    if (inertia_changes || rows_change) frame_.set(inertia.data(), a.data(), same_frame && known_);
+    known_ = true;
+  }
+  void assemble(const Vector& r, const Multipliers& c, Vector& f) {
+    frame_.assemble(r.data(), c.data(), f.data());
+  }
+  void assemble(Vector& r, const Multipliers& c) { assemble(r, c, r); }
+  void weigh(Vector& mu) const { frame_.weigh(mu.data()); }
+  template <class State>
+  double size(const State& /*x*/, const Vector& mu) const {
+    return size(mu);
+  }
+  double size(const Vector& mu) const { return frame_.size(mu.data()); }
+  void velocity(const Vector& mu, const Multipliers& c, Vector& xi) {
+    xi.resize(mu.size());
+    frame_.velocity(inertia.data(), mu.data(), c.data(), xi.data());
+  }
+  void expand(double* z) { frame_.expand(inertia.data(), z); }
+  void admissible(const Vector& mu, Vector& xi) { velocity(mu, b, xi); }
+  void multipliers(const Vector& reaction, Multipliers& lambda) {
+    frame_.multipliers(reaction.data(), lambda.data());
+  }
+
+ private:
+  RunTimeFrame frame_;
+  bool known_ = false;
 };
 
 }  // namespace hamel

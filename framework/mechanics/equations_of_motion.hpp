@@ -3,19 +3,25 @@
 // Lagrange-d'Alembert with multipliers, d/dt along the motion:
 //   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,   A xi' = db/dt - (dA/dt) xi.
 // (dI/dt) xi and db/dt - (dA/dt) xi: by one dual number where the problem has its formulas over any
-// scalar, its own where it has them (Mechanics::rates), else by differences along g tau(e xi) at t,
-// and in t at g (lie/differences.hpp). A left-invariant problem has y' in closed form.
+// scalar, its own where it has them (Mechanics::motion and rates), else by differences along g tau(e
+// xi) at t, and in t at g (lie/differences.hpp). A left-invariant problem has y' in closed form.
+// With W^T W = I^-1, Y = W A^T and c = W change:
+//   Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,   xi' = W^T (c + Y lambda),
+// W and the factors of Y^T Y those of dense_factors.hpp, or of branched_factors.hpp where sizes are
+// known at run time only.
 #pragma once
 
 #include <array>
 #include <cmath>
-#include <limits>
+#include <type_traits>
 #include <utility>
 
 #include <Eigen/Core>
 
 #include <hamel/framework/lie/differences.hpp>
 #include <hamel/framework/lie/types.hpp>
+#include <hamel/framework/mechanics/branched_factors.hpp>
+#include <hamel/framework/mechanics/dense_factors.hpp>
 
 namespace hamel {
 
@@ -59,11 +65,8 @@ class EquationsOfMotion {
         moved_b_(problem.constraint_count()),
         inertia_(problem.dim(), problem.dim()),
         moved_inertia_(problem.dim(), problem.dim()),
-        root_(problem.dim(), problem.dim()),
-        weights_(problem.dim()),
         rows_(problem.dim(), problem.constraint_count()),
-        y_(problem.dim(), problem.constraint_count()),
-        gram_(problem.constraint_count(), problem.constraint_count()),
+        factors_(problem.dim(), problem.constraint_count()),
         moved_(problem.element()) {}
 
   /// The rate of the carried velocity at an admissible (t, g, x): the equations without
@@ -80,29 +83,30 @@ class EquationsOfMotion {
   }
   /// xi' and lambda (k entries, N or N m as the rows have it) at (t, g, xi).
   void solve(double t, const Element& g, const Vector& xi) {
-    if (has_dual_rates() && known_) {
-      evaluate_with_rates(g, xi);
-      factor(t, g);
-    } else {
-      set(t, g);
-      find_rates(t, g, xi);
+    if (!evaluate_at_once(t, g, xi)) {
+      if (has_dual_rates() && known_) {
+        evaluate_with_rates(g, xi);
+        factor(t, g);
+      } else {
+        set(t, g);
+        find_rates(t, g, xi);
+      }
+      factors_.apply_inertia(inertia_, xi, momentum_);
+      problem_.force(t, g, xi, change_);
+      if (!problem_.constant_inertia()) change_ -= momentum_rate_;
+      problem_.ad_transpose(xi, momentum_, work_);
+      change_ += work_;
     }
-    apply_inertia(xi, momentum_);
-    problem_.force(t, g, xi, change_);
-    if (!problem_.constant_inertia()) change_ -= momentum_rate_;
-    problem_.ad_transpose(xi, momentum_, work_);
-    change_ += work_;
-    apply_root(change_, work_);
+    factors_.apply_root(change_, work_);
     if (problem_.constraint_count() > 0) {
-      reaction_.noalias() = row_rate_ - y_.transpose().lazyProduct(work_);
-      solve_gram(reaction_);
-      work_ += y_.lazyProduct(reaction_);
+      factors_.subtract_rows(row_rate_, work_, reaction_);
+      factors_.solve_gram(reaction_);
+      factors_.add_reaction(reaction_, work_);
       if (singular_) reaction_ -= stiffness_ * row_rate_;
     }
-    apply_root_transpose(work_, acceleration_);
+    factors_.apply_root_transpose(work_, acceleration_);
   }
-  /// Sets what depends on (t, g) alone. With W^T W = I^-1 (W lower triangular), Y = W A^T and c = W
-  /// change: Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,  xi' = W^T (c + Y lambda).
+  /// Sets what depends on (t, g) alone.
   void set(double t, const Element& g) {
     if (!known_ || !problem_.constant_inertia()) problem_.inertia(g, inertia_);
     if (problem_.constraint_count() > 0 && (!known_ || !problem_.constant_constraints()))
@@ -113,15 +117,15 @@ class EquationsOfMotion {
   /// size, v . I v.
   double smallest(const Multipliers& c, Vector& v) {
     reaction_ = c;
-    solve_gram(reaction_);
-    work_ = y_.lazyProduct(reaction_);
-    apply_root_transpose(work_, v);
+    factors_.solve_gram(reaction_);
+    factors_.find_reaction(reaction_, work_);
+    factors_.apply_root_transpose(work_, v);
     return work_.squaredNorm();
   }
   /// Moves xi onto A xi = b in the metric I (A, b, I those of the last set()); returns the squared
   /// sizes of what was added, and of xi.
   std::pair<double, double> project(Vector& xi) {
-    apply_inertia(xi, momentum_);
+    factors_.apply_inertia(inertia_, xi, momentum_);
     const double size = momentum_.dot(xi);
     if (problem_.constraint_count() == 0) return {0, size};
     row_rate_ = b_ - a_.lazyProduct(xi);
@@ -134,7 +138,7 @@ class EquationsOfMotion {
     if constexpr (Problem::left_invariant) {
       return v.norm();
     } else {
-      apply_inertia(v, momentum_);
+      factors_.apply_inertia(inertia_, v, momentum_);
       return std::sqrt(std::fmax(0, momentum_.dot(v)));
     }
   }
@@ -146,6 +150,20 @@ class EquationsOfMotion {
     if constexpr (requires { Problem::has_dual_rates(); }) return Problem::has_dual_rates();
     else return false;
   }
+  static constexpr bool fixed_size = Vector::RowsAtCompileTime != Eigen::Dynamic;
+
+  // All at once, by the problem itself.
+  bool evaluate_at_once([[maybe_unused]] double t, [[maybe_unused]] const Element& g,
+                        [[maybe_unused]] const Vector& xi) {
+    if constexpr (requires { problem_.motion(t, g, xi, inertia_, a_, b_, row_rate_, change_); }) {
+      if (!known_) set(t, g);
+      if (!problem_.motion(t, g, xi, inertia_, a_, b_, row_rate_, change_)) return false;
+      factor(t, g);
+      return true;
+    } else {
+      return false;
+    }
+  }
   // By one dual number; nothing in b is a function of time.
   void evaluate_with_rates(const Element& g, const Vector& xi) {
     if constexpr (has_dual_rates())
@@ -153,24 +171,22 @@ class EquationsOfMotion {
   }
   void set_rows(double t, const Element& g) {
     problem_.constraints(t, g, a_, b_);
-    rows_ = a_.transpose();
+    if constexpr (fixed_size) rows_ = a_.transpose();
   }
   // Recomputes what depends on inertia_ and a_.
   void factor(double t, const Element& g) {
     const bool inertia_changes = !known_ || !problem_.constant_inertia();
     const bool rows_change =
         problem_.constraint_count() > 0 && (!known_ || !problem_.constant_constraints());
-    if (inertia_changes) find_root(inertia_);
+    if (inertia_changes) {
+      known_ = true;
+      singular_ = !factors_.find_root(inertia_);
+    }
     if (singular_) [[unlikely]]
       find_stiff_root(t, g);
     if (problem_.constraint_count() == 0 || !(inertia_changes || rows_change)) return;
-    if (diagonal_) y_ = weights_.asDiagonal() * rows_;
-    else y_ = root_.lazyProduct(rows_);
-    factor_gram();
-  }
-  void apply_inertia(const Vector& xi, Vector& mu) const {
-    if (diagonal_) mu = inertia_.diagonal().cwiseProduct(xi);
-    else mu = inertia_.lazyProduct(xi);
+    if constexpr (fixed_size) factors_.find_rows(rows_);
+    else factors_.find_rows(a_);
   }
 
   void find_rates(double t, const Element& g, const Vector& xi) {
@@ -214,39 +230,6 @@ class EquationsOfMotion {
     else return true;
   }
 
-  // root_ = W = L^-1, I = L L^T: rows of W from those above.
-  void find_root(const typename Problem::Matrix& inertia) {
-    known_ = true;
-    singular_ = false;
-    const int n = problem_.dim();
-    diagonal_ = true;
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) diagonal_ = diagonal_ && (i == j || inertia(i, j) == 0);
-    }
-    root_.setZero();
-    if (diagonal_) {
-      for (int i = 0; i < n; ++i) {
-        singular_ = singular_ || !(inertia(i, i) > 0);
-        root_(i, i) = weights_[i] = 1 / std::sqrt(inertia(i, i));
-      }
-      return;
-    }
-    // w_i = (e_i - sum_{j<i} (w_j I e_i) w_j) / its length: Gram-Schmidt on e_i in the metric I,
-    // row by row.
-    for (int i = 0; i < n; ++i) {
-      for (int l = 0; l <= i; ++l) work_[l] = l == i ? 1 : 0;
-      for (int j = 0; j < i; ++j) {
-        double product = 0;
-        for (int l = 0; l <= j; ++l) product += root_(j, l) * inertia(l, i);
-        for (int l = 0; l <= j; ++l) work_[l] -= product * root_(j, l);
-      }
-      double square = 0;
-      for (int l = 0; l <= i; ++l) square += work_[l] * inertia(l, i);  // orthogonal to e_j, j < i
-      singular_ = singular_ || !(square > 1e-14 * inertia(i, i));
-      const double scale = 1 / std::sqrt(square);
-      for (int l = 0; l <= i; ++l) root_(i, l) = scale * work_[l];
-    }
-  }
   // With massless links I is definite on ker A only. I + kappa A^T A has the same motions, as the
   // term it adds to the momentum is a reaction: (I + kappa A^T A) xi' = change + A^T (lambda +
   // kappa A xi').
@@ -254,53 +237,11 @@ class EquationsOfMotion {
     set_rows(t, g);
     stiffness_ = inertia_.trace() / a_.squaredNorm();
     const typename Problem::Matrix stiff = inertia_ + stiffness_ * a_.transpose().lazyProduct(a_);
-    find_root(stiff);
-    singular_ = true;
-  }
-  void apply_root(const Vector& mu, Vector& out) const {
-    if (diagonal_) out = weights_.cwiseProduct(mu);
-    else out = root_.lazyProduct(mu);
-  }
-  void apply_root_transpose(const Vector& v, Vector& out) const {
-    if (diagonal_) out = weights_.cwiseProduct(v);
-    else out = root_.transpose().lazyProduct(v);
-  }
-  // Y^T Y = L D L^T, L with a unit diagonal: below the diagonal of gram_ L D, on it D^-1, so that a
-  // solve does not divide; not a number where a row depends on those before.
-  void factor_gram() {
-    const int k = problem_.constraint_count();
-#pragma GCC unroll 4
-    for (int j = 0; j < k; ++j) {
-#pragma GCC unroll 4
-      for (int i = j; i < k; ++i) {
-        double sum = y_.col(i).dot(y_.col(j));
-#pragma GCC unroll 4
-        for (int l = 0; l < j; ++l) sum -= gram_(i, l) * gram_(j, l) * gram_(l, l);
-        gram_(i, j) = sum;
-      }
-      gram_(j, j) = gram_(j, j) > 0 ? 1 / gram_(j, j) : std::numeric_limits<double>::quiet_NaN();
-    }
-  }
-  // c <- (Y^T Y)^-1 c.
-  void solve_gram(Multipliers& c) const {
-    const int k = problem_.constraint_count();
-#pragma GCC unroll 4
-    for (int i = 0; i < k; ++i) {
-#pragma GCC unroll 4
-      for (int l = 0; l < i; ++l) c[i] -= gram_(i, l) * c[l];
-      c[i] *= gram_(i, i);
-    }
-#pragma GCC unroll 4
-    for (int i = k - 1; i >= 0; --i) {
-      double sum = 0;
-#pragma GCC unroll 4
-      for (int l = i + 1; l < k; ++l) sum += gram_(l, i) * c[l];
-      c[i] -= gram_(i, i) * sum;
-    }
+    factors_.find_root(stiff);
   }
 
   Problem problem_;
-  bool known_ = false, diagonal_ = false, singular_ = false;
+  bool known_ = false, singular_ = false;
   double stiffness_ = 0;
   Vector acceleration_, momentum_, change_, work_;
   Multipliers reaction_, b_, row_rate_, time_rate_;  // row_rate_: of b - A xi at constant xi
@@ -308,11 +249,13 @@ class EquationsOfMotion {
   Vector momentum_rate_;  // of I xi at constant xi
   typename Problem::ConstraintMatrix a_, moved_a_;
   Multipliers moved_b_;
-  typename Problem::Matrix inertia_, moved_inertia_, root_;
-  Vector weights_;  // the diagonal of W, where there is no more
-  Eigen::Matrix<double, Vector::RowsAtCompileTime, Multipliers::RowsAtCompileTime> rows_,
-      y_;  // A^T, W A^T
-  Eigen::Matrix<double, Multipliers::RowsAtCompileTime, Multipliers::RowsAtCompileTime> gram_;
+  typename Problem::Matrix inertia_, moved_inertia_;
+  struct Nothing {
+    Nothing(int /*n*/, int /*k*/) {}
+  };
+  using Columns = typename DenseFactors<Vector, Multipliers>::Columns;
+  [[no_unique_address]] std::conditional_t<fixed_size, Columns, Nothing> rows_;  // A^T
+  std::conditional_t<fixed_size, DenseFactors<Vector, Multipliers>, BranchedFactors> factors_;
   Element moved_;
 };
 

@@ -37,8 +37,10 @@ class Mechanics {
 
   /// I(g), n x n.
   virtual void inertia(const double* g, Matrix out) const = 0;
-  /// I(g) xi, n entries, where a system has it without I(g); false: it has not.
-  virtual bool momentum(const double* /*g*/, ConstVector /*xi*/, Vector /*out*/) const {
+  /// I(g) xi and 1/2 d(xi^T I(g) xi), n entries each, where a system has them without I(g); false:
+  /// it has not.
+  virtual bool momentum(const double* /*g*/, ConstVector /*xi*/, Vector /*out*/,
+                        Vector /*inertial_force*/) const {
     return false;
   }
   /// A(t, g), k x n, and b(t, g).
@@ -47,6 +49,13 @@ class Mechanics {
   /// system computes them; false: it does not.
   virtual bool rates(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector /*rows*/,
                      Vector /*momentum*/) const {
+    return false;
+  }
+  /// All of the equations of motion, where a system has them at once (false: it has not): I and A, b
+  /// (left as they are where they are constant), db/dt - (dA/dt) xi, and
+  /// ad*_xi I xi + F - (dI/dt) xi.
+  virtual bool motion(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Matrix /*inertia*/,
+                      Matrix /*a*/, Vector /*b*/, Vector /*row_rates*/, Vector /*change*/) const {
     return false;
   }
   /// phi(g).
@@ -58,6 +67,11 @@ class Mechanics {
   /// Its last part, 1/2 d(xi^T I(g) xi); zero where I is constant.
   virtual void inertial_force(const double* /*g*/, ConstVector /*xi*/, Vector out) const {
     out.setZero();
+  }
+  /// The rest of it, f - dV, where a system has it alone; false: it has not.
+  virtual bool applied_force(double /*t*/, const double* /*g*/, ConstVector /*xi*/,
+                             Vector /*out*/) const {
+    return false;
   }
   /// Does f of (M3) depend on xi?
   virtual bool force_depends_on_velocity() const { return true; }
@@ -90,19 +104,26 @@ class LeftInvariantMechanics : public Mechanics {
 class UnconstrainedMechanics final : public Mechanics {
  public:
   explicit UnconstrainedMechanics(std::shared_ptr<const Mechanics> system)
-      : system_(std::move(system)), rows_(system_->constraint_count()) {}
+      : system_(std::move(system)),
+        a_(system_->constraint_count(), system_->dim()),
+        b_(system_->constraint_count()),
+        rows_(b_) {}
   int dim() const override { return system_->dim(); }
   int constraint_count() const override { return 0; }
   bool constant_inertia() const override { return system_->constant_inertia(); }
   bool constant_constraints() const override { return true; }
   bool left_invariant() const override { return system_->left_invariant(); }
   void inertia(const double* g, Matrix out) const override { system_->inertia(g, out); }
-  bool momentum(const double* g, ConstVector xi, Vector out) const override {
-    return system_->momentum(g, xi, out);
+  bool momentum(const double* g, ConstVector xi, Vector out, Vector force) const override {
+    return system_->momentum(g, xi, out, force);
   }
   void constraints(double, const double*, Matrix, Vector) const override {}
   bool rates(double t, const double* g, ConstVector xi, Vector, Vector momentum) const override {
     return system_->rates(t, g, xi, rows_, momentum);
+  }
+  bool motion(double t, const double* g, ConstVector xi, Matrix inertia, Matrix, Vector, Vector,
+              Vector change) const override {
+    return system_->motion(t, g, xi, inertia, a_, b_, rows_, change);
   }
   bool autonomous() const override { return system_->autonomous(); }
   bool has_force() const override { return system_->has_force(); }
@@ -112,6 +133,9 @@ class UnconstrainedMechanics final : public Mechanics {
   void inertial_force(const double* g, ConstVector xi, Vector out) const override {
     system_->inertial_force(g, xi, out);
   }
+  bool applied_force(double t, const double* g, ConstVector xi, Vector out) const override {
+    return system_->applied_force(t, g, xi, out);
+  }
   bool force_depends_on_velocity() const override { return system_->force_depends_on_velocity(); }
   double power(double t, const double* g, ConstVector xi) const override {
     return system_->power(t, g, xi);
@@ -120,7 +144,8 @@ class UnconstrainedMechanics final : public Mechanics {
 
  private:
   std::shared_ptr<const Mechanics> system_;
-  mutable Eigen::VectorXd rows_;  // work space
+  mutable Eigen::MatrixXd a_;  // work space
+  mutable Eigen::VectorXd b_, rows_;
 };
 
 }  // namespace hamel

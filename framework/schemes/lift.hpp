@@ -153,13 +153,8 @@ class Lift::General {
 
     const double t = from_->t + s_ * h_;
     find_momentum();
-    if (!nodal_) {
-      problem_.force(t, base_, v_, nu_);
-      nu_ *= h_;
-    } else if (!problem_.constant_inertia()) {
-      problem_.inertial_force(base_, v_, nu_);
-      nu_ *= h_;
-    }
+    if (!nodal_) problem_.force(t, base_, v_, nu_);
+    if (!nodal_ || !problem_.constant_inertia()) nu_ *= h_;
     problem_.base_momentum(s_, step_, p_, nu_, m_);
     if (s_ == 0) mu_ = m_;
     else problem_.Ad_transpose(f0_, m_, mu_);
@@ -179,19 +174,23 @@ class Lift::General {
     }
   }
 
-  // p_ = I(g) v.
+  // p_ = I(g) v, and nu_ = d(v^T I(g) v)/2 where that is not 0.
   void find_momentum() const {
     if (!problem_.constant_inertia()) {
-      if constexpr (requires { problem_.momentum_at(base_, v_, p_); }) {
-        if (problem_.momentum_at(base_, v_, p_)) return;
+      if constexpr (requires { problem_.momentum_at(base_, v_, p_, nu_); }) {
+        if (problem_.momentum_at(base_, v_, p_, nu_)) return;
       }
       problem_.inertia(base_, inertia_);
+      if (nodal_) problem_.inertial_force(base_, v_, nu_);
     }
     p_ = inertia_.lazyProduct(v_);
   }
 
   // force_: f - dV with the velocity v; at the base point the whole F serves as its size.
   void apply(double t, const typename P::Element& g, const Vector& v) const {
+    if constexpr (requires { problem_.applied_force(t, g, v, force_); }) {
+      if (nodal_ && problem_.applied_force(t, g, v, force_)) return;
+    }
     problem_.force(t, g, v, force_);
     if (nodal_ && !problem_.constant_inertia()) {
       problem_.inertial_force(g, v, p_);

@@ -1,4 +1,4 @@
-// The rows of a closed chain, and their rates along the motion, from one formula.
+// The rows of a closed chain, also with their rates along the motion, from one formula.
 #include <hamel/systems/mechanisms/closed_loop.hpp>
 
 namespace hamel::mechanisms {
@@ -74,26 +74,30 @@ void each_row(const Loop& loop, const Tree& tree, F&& row) {
   }
 }
 
-}  // namespace
-
-void Loop::rows(const Tree& tree, Row* out) const {
-  each_row<double>(*this, tree, [&](int i, auto&& wrench, double phi) {
+template <class T>
+void find_rows(const Loop& loop, const Tree& tree, Row* out) {
+  each_row<T>(loop, tree, [&](int i, auto&& wrench, const T& phi) {
     Row& row = out[i];
-    row.link = b;
-    row.other = a;
-    row.wrench = wrench(b);
-    row.other_wrench = wrench(a);
-    row.phi = phi;
+    const VecT<T, 6> on_b = wrench(loop.b), on_a = wrench(loop.a);
+    row.link = loop.b;
+    row.other = loop.a;
+    row.wrench = value(on_b);
+    row.other_wrench = value(on_a);
+    if constexpr (std::is_same_v<T, Dual>) {
+      row.phi = phi.value;
+      row.rate = power_rate(on_a, tree.twist(loop.a), tree.acceleration(loop.a)) -
+                 power_rate(on_b, tree.twist(loop.b), tree.acceleration(loop.b));
+    } else {
+      row.phi = phi;
+    }
   });
 }
 
-void Loop::rates(const Tree& tree, double* out) const {
-  each_row<Dual>(*this, tree, [&](int i, auto&& wrench, const Dual&) {
-    const auto of = [&](int link) {
-      return power_rate(wrench(link), tree.twist(link), tree.acceleration(link));
-    };
-    out[i] = of(a) - of(b);
-  });
+}  // namespace
+
+void Loop::rows(const Tree& tree, bool with_rates, Row* out) const {
+  if (with_rates) find_rows<Dual>(*this, tree, out);
+  else find_rows<double>(*this, tree, out);
 }
 
 }  // namespace hamel::mechanisms

@@ -37,12 +37,12 @@ struct Ground {
 };
 
 /// One row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and
-/// phi.
+/// phi, and d/dt (b - A xi) along the motion, xi held.
 struct Row {
   int link = kGround, other = kGround;
   Wrench wrench = Wrench::Zero(), other_wrench = Wrench::Zero();
   int dof = -1;
-  double drift = 0, phi = 0;
+  double drift = 0, phi = 0, rate = 0;
 };
 
 class ContactModel;
@@ -78,12 +78,9 @@ class ContactModel {
   virtual double radius() const = 0;
   virtual std::vector<BodyShape> shapes(const Point& at) const = 0;
 
-  /// At a tree that was placed.
-  virtual void rows(const Contact& contact, const Tree& tree, const Ground& ground,
+  /// At a tree that was placed; with rates one that moved and accelerated.
+  virtual void rows(const Contact& contact, const Tree& tree, const Ground& ground, bool with_rates,
                     Row* out) const = 0;
-  /// d/dt (b - A xi) of each row along the motion, xi held; of a tree that moved and accelerated.
-  virtual void rates(const Contact& contact, const Tree& tree, const Ground& ground,
-                     double* out) const = 0;
   /// The point of contact with the ground, in the world.
   virtual Vec3 touch(const Contact& contact, const Tree& tree) const = 0;
 
@@ -147,6 +144,7 @@ class ContactView {
                   root_.rotation * (rate(q) + velocity_at(root_twist_, value(q))));
     else return root_.apply(q);
   }
+  double height(const Vector& q) const { return root_.apply(value(q))[2]; }
   Vector direction_in_world(const Vector& u) const {
     if constexpr (has_rates)
       return dual(root_.rotation * value(u),

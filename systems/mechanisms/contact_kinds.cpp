@@ -1,4 +1,4 @@
-// The kinds of contacts by name, and their rows and rates from one formula each.
+// The kinds of contacts by name, and their rows, also with rates, from one formula each.
 //
 // The power of a wrench F on a link changes by F' . V + F . D, D the change of its twist
 // (tree.hpp); seen from the root F = (q x u, u).
@@ -45,35 +45,10 @@ class ContactOf final : public ContactModel {
   }
   std::vector<BodyShape> shapes(const Point& at) const override { return kind_.shapes(at); }
 
-  HAMEL_FLATTEN void rows(const Contact& contact, const Tree& tree, const Ground& ground,
-                          Row* out) const override {
-    const ContactView<double> view(contact, tree);
-    const auto touch = kind_.touch(view);
-    for (const Vec3& u : touch.directions) {
-      out->link = contact.link;
-      out->wrench = force_at(touch.point, u);
-      if (ground.moves()) out->drift = drift(view, ground, touch.point, u);
-      ++out;
-    }
-    out->link = contact.link;
-    out->wrench = force_at(touch.point, view.vertical);
-    out->phi = view.point_in_world(touch.point)[2];
-  }
-
-  HAMEL_FLATTEN void rates(const Contact& contact, const Tree& tree, const Ground& ground,
-                           double* out) const override {
-    const ContactView<Dual> view(contact, tree);
-    const auto touch = kind_.touch(view);
-    const Twist twist = tree.twist(contact.link), change = tree.acceleration(contact.link);
-    const auto power = [&](const VecT<Dual, 3>& u) {
-      return power_rate(force_at(touch.point, u), twist, change);
-    };
-    for (const VecT<Dual, 3>& u : touch.directions) {
-      *out = -power(u);
-      if (ground.moves()) *out += drift(view, ground, touch.point, u).rate;
-      ++out;
-    }
-    *out = -power(view.vertical);
+  void rows(const Contact& contact, const Tree& tree, const Ground& ground, bool with_rates,
+            Row* out) const override {
+    if (with_rates) find_rows<Dual>(contact, tree, ground, out);
+    else find_rows<double>(contact, tree, ground, out);
   }
 
   Vec3 touch(const Contact& contact, const Tree& tree) const override {
@@ -82,6 +57,36 @@ class ContactOf final : public ContactModel {
   }
 
  private:
+  template <class T>
+  HAMEL_FLATTEN void find_rows(const Contact& contact, const Tree& tree, const Ground& ground,
+                               Row* out) const {
+    constexpr bool with_rates = std::is_same_v<T, Dual>;
+    const ContactView<T> view(contact, tree);
+    const auto touch = kind_.touch(view);
+    const auto set = [&](const VecT<T, 3>& u) {
+      const VecT<T, 6> wrench = force_at(touch.point, u);
+      out->link = contact.link;
+      out->wrench = value(wrench);
+      if constexpr (with_rates)
+        out->rate = -power_rate(wrench, tree.twist(contact.link), tree.acceleration(contact.link));
+    };
+    for (const VecT<T, 3>& u : touch.directions) {
+      set(u);
+      if (ground.moves()) {
+        const T given = drift(view, ground, touch.point, u);
+        if constexpr (with_rates) {
+          out->drift = given.value;
+          out->rate += given.rate;
+        } else {
+          out->drift = given;
+        }
+      }
+      ++out;
+    }
+    set(view.vertical);
+    out->phi = view.height(touch.point);
+  }
+
   Kind kind_;
 };
 

@@ -55,6 +55,12 @@ inline VecT<Dual, 3> dual(const Vec3& value, const Vec3& rate) {
 }
 inline Vec3 value(const VecT<Dual, 3>& v) { return {v[0].value, v[1].value, v[2].value}; }
 inline Vec3 rate(const VecT<Dual, 3>& v) { return {v[0].rate, v[1].rate, v[2].rate}; }
+inline Wrench value(const VecT<Dual, 6>& v) {
+  return {v[0].value, v[1].value, v[2].value, v[3].value, v[4].value, v[5].value};
+}
+/// Of a formula evaluated without rates.
+inline const Vec3& value(const Vec3& v) { return v; }
+inline const Wrench& value(const Wrench& v) { return v; }
 
 /// The force along u at the point q (screw.hpp), and a moment.
 inline VecT<Dual, 6> force_at(const VecT<Dual, 3>& q, const VecT<Dual, 3>& u) {

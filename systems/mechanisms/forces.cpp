@@ -66,6 +66,11 @@ double Forces::potential(const Tree& tree, const double* g) const {
 void Forces::add_potential_force(const Tree& tree, const double* g,
                                  Eigen::Ref<Eigen::VectorXd> out) const {
   tree.add_weight(gravity, out);
+  add_spring_force(tree, g, out);
+}
+
+void Forces::add_spring_force(const Tree& tree, const double* g,
+                              Eigen::Ref<Eigen::VectorXd> out) const {
   for (const Spring& spring : springs) {
     if (spring.stiffness == 0) continue;
     if (spring.joint >= 0) {

@@ -51,6 +51,8 @@ struct Forces {
   bool time_dependent() const;
   bool has_signals() const { return !motors.empty() || !forces.empty(); }
   double potential(const Tree& tree, const double* g) const;
+  /// out -= dV of the springs.
+  void add_spring_force(const Tree& tree, const double* g, Eigen::Ref<Eigen::VectorXd> out) const;
   /// out -= dV.
   void add_potential_force(const Tree& tree, const double* g,
                            Eigen::Ref<Eigen::VectorXd> out) const;

@@ -85,10 +85,11 @@ void Multibody::inertia(const double* g, Matrix out) const {
   else carrying(g).inertia(out);
 }
 
-bool Multibody::momentum(const double* g, ConstVector xi, Vector out) const {
+bool Multibody::momentum(const double* g, ConstVector xi, Vector out,
+                         Vector inertial_force) const {
   Tree& at = carrying(g);
   at.move(xi);
-  at.momentum(out);
+  at.momentum(out, inertial_force);
   return true;
 }
 
@@ -106,29 +107,48 @@ void write(const Row& row, const Tree& tree, Mechanics::Matrix a, int to) {
 
 }  // namespace
 
-void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const {
+// Those that vary, of a tree that was placed; with rates one that moved and accelerated.
+template <bool with_rates>
+void Multibody::find_rows(const Tree& tree, double t, Matrix a, Vector b, double* rates) const {
   if (a.outerStride() == a.rows()) std::copy_n(fixed_rows_.data(), fixed_rows_.size(), a.data());
   else a = fixed_rows_;
   b.setZero();
-  if (constant_rows_) return;
-  const Tree& at = placed(g);
-  rows_.each(
-      at, t, [&](size_t i) { return varies_[i] != 0; },
+  rows_.each<with_rates>(
+      tree, t, [&](size_t i) { return varies_[i] != 0; },
       [&](size_t i, const Row& row) {
-        write(row, at, a, slots_[i]);
+        write(row, tree, a, slots_[i]);
         b[slots_[i]] = row.drift;
+        if constexpr (with_rates) rates[slots_[i]] = row.rate;
       });
 }
 
-bool Multibody::rates(double t, const double* g, ConstVector xi, Vector rows,
-                      Vector momentum) const {
-  rows.setZero();
-  momentum.setZero();
-  Tree& at = constant_inertia_ ? placed(g) : carrying(g);
-  at.move(xi);
-  at.accelerate();
-  if (!constant_rows_) rows_.rates(at, t, varies_, slots_, rows);
-  if (!constant_inertia_) at.add_inertia_rate(momentum);
+void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const {
+  if (constant_rows_) {
+    a = fixed_rows_;
+    b.setZero();
+  } else {
+    find_rows<false>(placed(g), t, a, b, nullptr);
+  }
+}
+
+bool Multibody::motion(double t, const double* g, ConstVector xi, Matrix inertia, Matrix a,
+                       Vector b, Vector row_rates, Vector change) const {
+  const bool moves = !constant_rows_ || !constant_inertia_ || forces_.any();
+  Tree& at = constant_inertia_ && constant_potential_ ? placed(g) : carrying(g);
+  if (moves) at.move(xi);
+  if (!constant_rows_ || !constant_inertia_) at.accelerate();
+  row_rates.setZero();
+  if (!constant_rows_) find_rows<true>(at, t, a, b, row_rates.data());
+  if (!constant_inertia_) {
+    at.inertia(inertia);
+    at.bias(forces_.gravity, change);
+    if (!constant_potential_) forces_.add_spring_force(at, g, change);
+  } else {
+    work_ = inertia_.lazyProduct(xi);
+    geometry_->ad_transpose(xi.data(), work_.data(), change.data());
+    if (!constant_potential_) forces_.add_potential_force(at, g, change);
+  }
+  if (forces_.any()) add_force(at, t, g, xi, change);
   return true;
 }
 
@@ -180,21 +200,32 @@ void Multibody::add_force(const Tree& tree, double t, const double* g, ConstVect
 }
 
 void Multibody::force(double t, const double* g, ConstVector xi, Vector out) const {
+  inertial_force(g, xi, out);
+  add_applied_force(t, g, xi, out);
+}
+
+bool Multibody::applied_force(double t, const double* g, ConstVector xi, Vector out) const {
   out.setZero();
-  Tree& at = constant_inertia_ && constant_potential_ ? placed(g) : carrying(g);
-  const bool other = forces_.any();
-  if (!constant_inertia_ || other) at.move(xi);
-  if (!constant_potential_) forces_.add_potential_force(at, g, out);
-  if (!constant_inertia_) at.add_inertial_force(out);
-  if (other) add_force(at, t, g, xi, out);
+  add_applied_force(t, g, xi, out);
+  return true;
+}
+
+void Multibody::add_applied_force(double t, const double* g, ConstVector xi, Vector out) const {
+  if (!constant_potential_) forces_.add_potential_force(carrying(g), g, out);
+  if (!forces_.any()) return;
+  Tree& at = placed(g);
+  at.move(xi);
+  add_force(at, t, g, xi, out);
 }
 
 void Multibody::inertial_force(const double* g, ConstVector xi, Vector out) const {
-  out.setZero();
-  if (constant_inertia_) return;
+  if (constant_inertia_) {
+    out.setZero();
+    return;
+  }
   Tree& at = carrying(g);
   at.move(xi);
-  at.add_inertial_force(out);
+  at.momentum(work_, out);
 }
 
 double Multibody::power(double t, const double* g, ConstVector xi) const {

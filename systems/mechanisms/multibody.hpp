@@ -45,13 +45,14 @@ class Multibody final : public Mechanics {
   bool constant_potential() const { return constant_potential_; }
 
   void inertia(const double* g, Matrix out) const override;
-  bool momentum(const double* g, ConstVector xi, Vector out) const override;
+  bool momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
-  bool rates(double t, const double* g, ConstVector xi, Vector rows,
-             Vector momentum) const override;
+  bool motion(double t, const double* g, ConstVector xi, Matrix inertia, Matrix a, Vector b,
+              Vector row_rates, Vector change) const override;
   void holonomic(const double* g, Vector out) const override;
   void force(double t, const double* g, ConstVector xi, Vector out) const override;
   void inertial_force(const double* g, ConstVector xi, Vector out) const override;
+  bool applied_force(double t, const double* g, ConstVector xi, Vector out) const override;
   bool force_depends_on_velocity() const override { return forces_.any(); }
   double power(double t, const double* g, ConstVector xi) const override;
   double potential(const double* g) const override;
@@ -73,7 +74,11 @@ class Multibody final : public Mechanics {
   Tree& placed(const double* g) const;
   /// The tree at g with its inertias.
   Tree& carrying(const double* g) const;
+  /// out += f - dV.
+  void add_applied_force(double t, const double* g, ConstVector xi, Vector out) const;
   void add_force(const Tree& tree, double t, const double* g, ConstVector xi, Vector out) const;
+  template <bool with_rates>
+  void find_rows(const Tree& tree, double t, Matrix a, Vector b, double* rates) const;
 
   mutable std::array<Tree, 2> trees_;
   mutable size_t last_ = 0;  // of trees_

@@ -10,7 +10,7 @@ namespace hamel::mechanisms {
 namespace {
 
 // The derivative of a function that comes without one.
-double slope(const std::function<double(double)>& rate, double t) {
+double by_differences(const std::function<double(double)>& rate, double t) {
   std::array<Vec<1>, 2> work;
   Vec<1> out = Vec<1>::Zero();
   differentiate_in_time(
@@ -65,7 +65,7 @@ void ConstraintRows::find_fixed(const Tree& tree) {
     if (ground.moves() || contact.model->of_world() || !tree.planar(contact.carrier)) continue;
     const Rigid back = tree.from_root(contact.carrier).inverse();
     Row rows[Contact::most_rows];
-    evaluate(contact, tree, rows);
+    evaluate(contact, tree, false, rows);
     for (size_t k = 0; k < contact.row_count(); ++k)
       contact.wrenches[k] = back.move_wrench(rows[k].wrench);
     contact.height = rows[contact.row_count() - 1].phi;
@@ -79,43 +79,8 @@ double ConstraintRows::beyond(const Prescribed& p, const Tree& tree) {
   return joint.only_turns() ? std::remainder(apart, 2 * std::numbers::pi) : apart;
 }
 
-// A wrench fixed in a link that moves with U against its root: F . (D - ad_U V).
-HAMEL_FLATTEN void ConstraintRows::rates(const Contact& contact, const Tree& tree,
-                                         double* out) const {
-  if (!contact.fixed) {
-    contact.model->rates(contact, tree, ground, out);
-    return;
-  }
-  const Twist change = tree.acceleration(contact.link) -
-                       ad(tree.against_root(contact.carrier), tree.twist(contact.link));
-  Row row;
-  for (size_t k = 0; k < contact.row_count(); ++k) {
-    take(contact, k, tree, row);
-    out[k] = -row.wrench.dot(change);
-  }
-}
-
-void ConstraintRows::rates(const Tree& tree, double t, const std::vector<char>& varies,
-                           const std::vector<int>& slots, Eigen::Ref<Eigen::VectorXd> out) const {
-  size_t i = 0;
-  const auto find = [&](const auto& part) {
-    const size_t count = part.row_count();
-    bool any = false;
-    for (size_t k = 0; k < count; ++k) any = any || varies[i + k] != 0;
-    if (any) {
-      double values[5];
-      rates(part, tree, values);
-      for (size_t k = 0; k < count; ++k)
-        if (varies[i + k] != 0) out[slots[i + k]] = values[k];
-    }
-    i += count;
-  };
-  for (const Contact& contact : contacts) find(contact);
-  for (const Loop& loop : loops) find(loop);
-  for (const Prescribed& p : prescribed) {
-    if (varies[i] != 0) out[slots[i]] = p.slope ? p.slope(t) : slope(p.rate, t);
-    ++i;
-  }
+double ConstraintRows::slope(const Prescribed& p, double t) {
+  return p.slope ? p.slope(t) : by_differences(p.rate, t);
 }
 
 }  // namespace hamel::mechanisms

@@ -43,13 +43,14 @@ struct ConstraintRows {
   std::vector<RowInfo> info() const;
   /// Finds the contacts whose rows do not change; before the rest.
   void find_fixed(const Tree& tree);
-  /// f(i, row) for the rows i selected by a predicate at a tree that was placed.
-  template <class Wants, class F>
+  /// f(i, row) for the rows i selected by a predicate at a tree that was placed; with rates one that
+  /// moved and accelerated.
+  template <bool with_rates = false, class Wants, class F>
   void each(const Tree& tree, double t, Wants&& wants, F&& f) const {
     size_t i = 0;
     const auto evaluate_all = [&](const auto& part) {
       Row rows[5];
-      evaluate(part, tree, rows);
+      evaluate(part, tree, with_rates, rows);
       for (size_t k = 0; k < part.row_count(); ++k)
         if (wants(i + k)) f(i + k, rows[k]);
     };
@@ -62,9 +63,12 @@ struct ConstraintRows {
     for (const Contact& contact : contacts) {
       const size_t count = contact.row_count();
       if (contact.fixed) {
+        Twist change;
+        if constexpr (with_rates) change = change_of(contact, tree);
         for (size_t k = 0; k < count; ++k) {
           if (!wants(i + k)) continue;
           take(contact, k, tree, row);
+          if constexpr (with_rates) row.rate = -row.wrench.dot(change);
           f(i + k, row);
         }
       } else if (any(count)) {
@@ -81,6 +85,7 @@ struct ConstraintRows {
         Row given;
         given.dof = p.dof;
         given.drift = p.rate(t);
+        if constexpr (with_rates) given.rate = slope(p, t);
         if (p.held >= 0) given.phi = beyond(p, tree);
         f(i, given);
       }
@@ -93,10 +98,6 @@ struct ConstraintRows {
     each(
         tree, t, [](size_t) { return true; }, f);
   }
-  /// out[slots[i]] = d/dt (b - A xi) along the motion at constant xi, of the rows that vary; of a
-  /// tree that moved and accelerated.
-  void rates(const Tree& tree, double t, const std::vector<char>& varies,
-             const std::vector<int>& slots, Eigen::Ref<Eigen::VectorXd> out) const;
   /// The point of contact with the ground, in the world.
   static Vec3 touch(const Contact& contact, const Tree& tree) {
     return contact.model->touch(contact, tree);
@@ -111,14 +112,22 @@ struct ConstraintRows {
     if (tree.parent(contact.carrier) == kGround) row.wrench = wrench;
     else row.wrench = tree.in_plane_of_root(contact.carrier).move_wrench(wrench);
   }
-  void evaluate(const Contact& contact, const Tree& tree, Row* rows) const {
-    contact.model->rows(contact, tree, ground, rows);
+  // A wrench fixed in a link that moves with U against its root: its power changes by F . (D - ad_U
+  // V).
+  static Twist change_of(const Contact& contact, const Tree& tree) {
+    return tree.acceleration(contact.link) -
+           ad(tree.against_root(contact.carrier), tree.twist(contact.link));
   }
-  static void evaluate(const Loop& loop, const Tree& tree, Row* rows) { loop.rows(tree, rows); }
+  void evaluate(const Contact& contact, const Tree& tree, bool with_rates, Row* rows) const {
+    contact.model->rows(contact, tree, ground, with_rates, rows);
+  }
+  static void evaluate(const Loop& loop, const Tree& tree, bool with_rates, Row* rows) {
+    loop.rows(tree, with_rates, rows);
+  }
   // The coordinate of a joint that is held, from where it is held.
   static double beyond(const Prescribed& p, const Tree& tree);
-  void rates(const Contact& contact, const Tree& tree, double* out) const;
-  static void rates(const Loop& loop, const Tree& tree, double* out) { loop.rates(tree, out); }
+  // Of its rate, at t.
+  static double slope(const Prescribed& p, double t);
 };
 
 }  // namespace hamel::mechanisms

@@ -17,6 +17,10 @@
 //   D_j = D_parent + ad_{U_parent} (V_j - V_parent),   D_root = 0,   (ds_a/dt = ad_{U_parent} s_a)
 //   (dI/dt xi)_a = s_a^T (ad_{U_parent}^T P_a + dP_a/dt),
 //   d(I_j V_j)/dt = I_j (D_j - ad_{U_j} V_j) - ad_{U_j}^T I_j V_j.
+// So all that turns and moves, ad*_xi I xi + 1/2 d(xi^T I xi) - (dI/dt) xi, is s_a^T F_a, F_a the sum
+// over what link a carries of
+//   ad_{V_j}^T I_j V_j - I_j (D_j - ad_{U_j} V_j),
+// as V_root = V_parent - U_parent in the last two terms, and ad*_xi is that of the joint alone.
 // The axis of a joint with one velocity is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant
 // on a root. Less is left to do for
 //   planar links  that turn about the vertical of a root which does no more: plane.hpp;
@@ -116,12 +120,11 @@ class Tree {
   Twist against_root(int link) const { return link == kGround ? Twist::Zero() : at(link).against; }
 
   void inertia(Eigen::Ref<Eigen::MatrixXd> out) const;
-  /// out = I xi; accumulate_inertia() and move() first.
-  void momentum(Eigen::Ref<Eigen::VectorXd> out);
-  /// out += 1/2 d(xi^T I xi); accumulate_inertia() and move() first.
-  void add_inertial_force(Eigen::Ref<Eigen::VectorXd> out);
-  /// out += (dI/dt) xi along the motion; accumulate_inertia() and accelerate() first.
-  void add_inertia_rate(Eigen::Ref<Eigen::VectorXd> out);
+  /// I xi and 1/2 d(xi^T I xi); accumulate_inertia() and move() first.
+  void momentum(Eigen::Ref<Eigen::VectorXd> out, Eigen::Ref<Eigen::VectorXd> inertial_force);
+  /// ad*_xi I xi + 1/2 d(xi^T I xi) - (dI/dt) xi and what the weights do on xi;
+  /// accumulate_inertia() and accelerate() first.
+  void bias(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out);
   /// out += what the weights do on xi; accumulate_inertia() first.
   void add_weight(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) const;
   /// out += sign * what a wrench on a link does on xi; seen from its root. On the ground nothing.
@@ -151,7 +154,8 @@ class Tree {
     Rigid place, world;  // X; W of a root
     PlaneMotion flat;    // X of a planar link
     Twist twist = Twist::Zero(), against = Twist::Zero(), acceleration = Twist::Zero();  // V, U, D
-    Wrench spin_here = Wrench::Zero(), momentum = Wrench::Zero(), momentum_rate = Wrench::Zero();
+    Wrench spin_here = Wrench::Zero(), momentum = Wrench::Zero(), force = Wrench::Zero();  // P, F
+    Vec3 gravity = Vec3::Zero();  // seen from a root
     Inertia own, carried;  // with all that the link carries
 
     Rigid across(const double* g) const;  // from the parent

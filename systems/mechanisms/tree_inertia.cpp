@@ -82,7 +82,8 @@ HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> to) const {
   }
 }
 
-HAMEL_FLATTEN void Tree::momentum(Eigen::Ref<Eigen::VectorXd> out) {
+HAMEL_FLATTEN void Tree::momentum(Eigen::Ref<Eigen::VectorXd> out,
+                                  Eigen::Ref<Eigen::VectorXd> inertial_force) {
   for (Node& node : nodes_) {
     if (node.rotor) node.momentum = node.rate * node.spin_here;
     else if (node.planar)
@@ -91,41 +92,31 @@ HAMEL_FLATTEN void Tree::momentum(Eigen::Ref<Eigen::VectorXd> out) {
   }
   for (size_t j = nodes_.size(); j-- > 0;) {
     const Node& node = nodes_[j];
-    if (node.rotor) {  // turned by its parent, too
-      const Node& parent = at(node.link.parent);
+    if (node.link.parent == kGround) {  // its own velocity is left-trivialised
+      for (int i = 0; i < node.count; ++i) {
+        out[node.dof + i] = node.along(i, node.momentum);
+        inertial_force[node.dof + i] = 0;
+      }
+      continue;
+    }
+    Node& parent = at(node.link.parent);
+    if (node.rotor) {  // turned by its parent, too; its inertia is the same at all angles
       const double turned = parent.planar ? in_plane(node.spin_here).dot(in_plane(parent.twist))
                                           : node.spin_here.dot(parent.twist);
       out[node.dof] = turned + node.moment * node.rate;
+      inertial_force[node.dof] = 0;
+    } else if (node.planar) {
+      const Vec3 momentum = in_plane(node.momentum), column = in_plane(node.columns.col(0));
+      out[node.dof] = column.dot(momentum);
+      inertial_force[node.dof] =
+          column.dot(ad_transpose_in_plane(in_plane(parent.twist), momentum));
     } else {
-      for (int i = 0; i < node.count; ++i) out[node.dof + i] = node.along(i, node.momentum);
-    }
-    if (node.link.parent == kGround) continue;
-    Node& parent = at(node.link.parent);
-    if (parent.planar) in_plane(parent.momentum) += in_plane(node.momentum);
-    else parent.momentum += node.momentum;
-  }
-}
-
-HAMEL_FLATTEN void Tree::add_inertial_force(Eigen::Ref<Eigen::VectorXd> out) {
-  for (Node& node : nodes_) {
-    if (node.link.parent == kGround) continue;  // its own velocity is left-trivialised
-    if (node.rotor) node.momentum = node.rate * node.spin_here;
-    else if (node.planar)
-      in_plane(node.momentum) = momentum_in_plane(node.own, in_plane(node.twist));
-    else node.momentum = node.own * node.twist;
-  }
-  for (size_t j = nodes_.size(); j-- > 0;) {
-    const Node& node = nodes_[j];
-    if (node.link.parent == kGround) continue;
-    Node& parent = at(node.link.parent);
-    if (node.planar) {
-      const Vec3 force = ad_transpose_in_plane(in_plane(parent.twist), in_plane(node.momentum));
-      out[node.dof] += in_plane(node.columns.col(0)).dot(force);
-    } else if (!node.rotor) {  // the inertia of a rotor is the same at all angles
       const Wrench force = ad_transpose(parent.twist, node.momentum);
-      for (int i = 0; i < node.count; ++i) out[node.dof + i] += node.columns.col(i).dot(force);
+      for (int i = 0; i < node.count; ++i) {
+        out[node.dof + i] = node.columns.col(i).dot(node.momentum);
+        inertial_force[node.dof + i] = node.columns.col(i).dot(force);
+      }
     }
-    if (node.on_root) continue;
     if (parent.planar) in_plane(parent.momentum) += in_plane(node.momentum);
     else parent.momentum += node.momentum;
   }

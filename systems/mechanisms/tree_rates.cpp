@@ -1,4 +1,4 @@
-// Rates along the motion with xi held: twists, and the momentum I(g) xi.
+// Rates along the motion with xi held: twists, and what turning and moving does on xi.
 #include <hamel/systems/mechanisms/tree.hpp>
 
 namespace hamel::mechanisms {
@@ -22,60 +22,44 @@ HAMEL_FLATTEN void Tree::accelerate() {
   }
 }
 
-HAMEL_FLATTEN void Tree::add_inertia_rate(Eigen::Ref<Eigen::VectorXd> out) {
+HAMEL_FLATTEN void Tree::bias(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) {
+  const bool sloping = gravity[0] != 0 || gravity[1] != 0;
   for (Node& node : nodes_) {
-    if (node.rotor) continue;
+    const bool is_root = node.link.parent == kGround;
+    if (is_root) node.gravity = node.world.rotation.transpose().lazyProduct(gravity);
+    if (node.rotor) continue;  // its weight is its parent's
+    const Inertia& own = node.own;
+    const Vec3& a = at(node.root).gravity;
     if (node.planar) {
       const Vec3 u = in_plane(node.against), v = in_plane(node.twist);
-      const Vec3 momentum = momentum_in_plane(node.own, v);
-      in_plane(node.momentum) = momentum;
-      in_plane(node.momentum_rate) =
-          momentum_in_plane(node.own, in_plane(node.acceleration) - ad_in_plane(u, v)) -
-          ad_transpose_in_plane(u, momentum);
-    } else if (node.link.parent == kGround) {
-      node.momentum = node.own * node.twist;
-      node.momentum_rate.setZero();
+      Vec3 force = ad_transpose_in_plane(v, momentum_in_plane(own, v));
+      if (!is_root)
+        force -= momentum_in_plane(own, in_plane(node.acceleration) - ad_in_plane(u, v));
+      if (sloping)
+        force += Vec3(own.first[0] * a[1] - own.first[1] * a[0], own.mass * a[0], own.mass * a[1]);
+      in_plane(node.force) = force;
     } else {
-      node.momentum = node.own * node.twist;
-      node.momentum_rate = node.own * (node.acceleration - ad(node.against, node.twist)) -
-                           ad_transpose(node.against, node.momentum);
+      Wrench force = ad_transpose(node.twist, own * node.twist);
+      if (!is_root) force -= own * (node.acceleration - ad(node.against, node.twist));
+      node.force = force + stack(own.first.cross(a), own.mass * a);
     }
   }
   for (size_t j = nodes_.size(); j-- > 0;) {
     const Node& node = nodes_[j];
-    if (node.link.parent == kGround) {
-      for (int i = 0; i < node.count; ++i) out[node.dof + i] += node.along(i, node.momentum_rate);
-      continue;
-    }
+    if (!node.rotor)
+      for (int i = 0; i < node.count; ++i) out[node.dof + i] = node.along(i, node.force);
+    if (node.link.parent == kGround) continue;
     Node& parent = at(node.link.parent);
     if (node.rotor) {  // its spin is a wrench fixed in the parent
-      out[node.dof] += node.spin_here.dot(parent.acceleration - ad(parent.against, parent.twist));
-      const Wrench change = -node.rate * ad_transpose(parent.against, node.spin_here);
-      if (parent.planar) {
-        in_plane(parent.momentum) += node.rate * in_plane(node.spin_here);
-        in_plane(parent.momentum_rate) += in_plane(change);
-      } else {
-        parent.momentum += node.rate * node.spin_here;
-        parent.momentum_rate += change;
-      }
-      continue;
-    }
-    if (node.planar) {
-      const Vec3 force = ad_transpose_in_plane(in_plane(parent.against), in_plane(node.momentum)) +
-                         in_plane(node.momentum_rate);
-      out[node.dof] += in_plane(node.columns.col(0)).dot(force);
-    } else {  // the axes of a ball joint turn with the child, that of a hinge or slider with the
-              // parent
-      const Twist& carrier = node.count > 1 ? node.against : parent.against;
-      const Wrench force = ad_transpose(carrier, node.momentum) + node.momentum_rate;
-      for (int i = 0; i < node.count; ++i) out[node.dof + i] += node.columns.col(i).dot(force);
-    }
-    if (parent.planar) {
-      in_plane(parent.momentum) += in_plane(node.momentum);
-      in_plane(parent.momentum_rate) += in_plane(node.momentum_rate);
+      out[node.dof] =
+          node.spin_here.dot(ad(parent.against, parent.twist) - parent.acceleration);
+      const Wrench force = node.rate * ad_transpose(parent.twist, node.spin_here);
+      if (parent.planar) in_plane(parent.force) += in_plane(force);
+      else parent.force += force;
+    } else if (parent.planar) {
+      in_plane(parent.force) += in_plane(node.force);
     } else {
-      parent.momentum += node.momentum;
-      parent.momentum_rate += node.momentum_rate;
+      parent.force += node.force;
     }
   }
 }

@@ -1,4 +1,4 @@
-// What mechanisms answer to rates(): against differences, and fast motions against what they are
+// What mechanisms answer to motion(): against differences, and fast motions against what they are
 // known to be.
 #include <gtest/gtest.h>
 
@@ -28,16 +28,16 @@ auto slope(F&& f) {
   return ((64 * fine - coarse) / 63).eval();
 }
 
-// rates() at a pose off the rows, in a motion that satisfies none: the formulas need no more than a
-// curve.
+// motion() at a pose off the rows, in a motion that satisfies none: the formulas need no more than
+// a curve.
 void check_rates(const SystemModel& model) {
   SCOPED_TRACE(model.name);
   const Mechanics& mechanics = *model.mechanics;
   if (mechanics.left_invariant()) return;  // nothing changes
   const auto geometry = registry().geometry(model.group.name, "exp");
   const int n = mechanics.dim(), k = mechanics.constraint_count();
-  VectorXd g(geometry->size()), moved(g.size()), xi(n), shift(n), b(k), rows(k), momentum(n),
-      carried(n);
+  VectorXd g(geometry->size()), moved(g.size()), xi(n), shift(n), b(k), rows(k), change(n),
+      expected(n), force(n), inertial(n), carried(n);
   MatrixXd a(k, n), inertia(n, n);
   geometry->from_coordinates(model.start.configuration, g.data());
   for (int pose = 0; pose < 3; ++pose) {
@@ -63,15 +63,24 @@ void check_rates(const SystemModel& model) {
       at(e);
       return inertia * xi;
     });
-    ASSERT_TRUE(mechanics.rates(t, g.data(), xi, rows, momentum));
+    at(0);
+    MatrixXd same_a = a, same_inertia = inertia;
+    VectorXd same_b = b;
+    ASSERT_TRUE(mechanics.motion(t, g.data(), xi, same_inertia, same_a, same_b, rows, change));
+    EXPECT_LE((same_a - a).norm(), 1e-14 * a.norm());
+    EXPECT_LE((same_b - b).norm(), 1e-14 * b.norm());
+    EXPECT_EQ(same_inertia, inertia);
     for (int i = 0; i < k; ++i)
       EXPECT_NEAR(rows[i], rows_change[i], 1e-8 * (1 + std::abs(rows[i]))) << "row " << i;
-    at(0);
-    ASSERT_TRUE(mechanics.momentum(g.data(), xi, carried));
+    ASSERT_TRUE(mechanics.momentum(g.data(), xi, carried, inertial));
     EXPECT_LE((carried - inertia * xi).norm(), 1e-14 * inertia.norm() * xi.norm());
-    for (int i = 0; i < n; ++i) {
-      EXPECT_NEAR(momentum[i], momentum_change[i], 1e-8 * (1 + inertia.norm())) << "velocity " << i;
-    }
+    geometry->ad_transpose(xi.data(), carried.data(), expected.data());
+    mechanics.force(t, g.data(), xi, force);
+    expected += force - momentum_change;
+    for (int i = 0; i < n; ++i)
+      EXPECT_NEAR(change[i], expected[i], 1e-8 * (1 + inertia.norm())) << "velocity " << i;
+    ASSERT_TRUE(mechanics.applied_force(t, g.data(), xi, carried));
+    EXPECT_LE((carried + inertial - force).norm(), 1e-14 * (1 + force.norm() + carried.norm()));
   }
 }
 

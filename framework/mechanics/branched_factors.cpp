@@ -1,0 +1,223 @@
+#include <hamel/framework/mechanics/branched_factors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include <hamel/framework/mechanics/short_vectors.hpp>
+
+namespace hamel {
+
+using short_vectors::add, short_vectors::dot, short_vectors::scale;
+
+namespace {
+
+// Rows of Y are as many pairs of numbers long, the last one padded by 0.
+int pairs_of(int k) { return (k + 1) / 2; }
+
+// f(P) with P pairs where they are few, whose loops then unroll; else P = 0.
+template <class F>
+void with_pairs(int pairs, F&& f) {
+  switch (pairs) {
+    case 1: return f(std::integral_constant<int, 1>());
+    case 2: return f(std::integral_constant<int, 2>());
+    case 3: return f(std::integral_constant<int, 3>());
+    case 4: return f(std::integral_constant<int, 4>());
+    default: f(std::integral_constant<int, 0>());
+  }
+}
+
+}  // namespace
+
+BranchedFactors::BranchedFactors(int n, int k)
+    : n_(n),
+      k_(k),
+      lower_(static_cast<size_t>(n) * static_cast<size_t>(n)),
+      inverse_(static_cast<size_t>(n)),
+      runs_(static_cast<size_t>(n) * static_cast<size_t>(n + 1)),
+      run_count_(static_cast<size_t>(n)),
+      y_(static_cast<size_t>(n) * static_cast<size_t>(2 * pairs_of(k))),
+      spans_(static_cast<size_t>(n)),
+      gram_(static_cast<size_t>(k) * static_cast<size_t>(2 * pairs_of(k))),
+      sums_(static_cast<size_t>(2 * pairs_of(k))) {}
+
+// Row i leaves the rows of its entries: those of I without the velocities from i on. (Pointers are
+// local throughout: numbers that are written could else be those of a vector's own.)
+bool BranchedFactors::find_root(const double* inertia) {
+  const int n = n_;
+  double *const lower = lower_.data(), *const inverses = inverse_.data();
+  int* const counts = run_count_.data();
+  for (int i = 0; i < n; ++i) scale(1, inertia + i * n, lower + i * n, i + 1);
+  bool definite = true;
+  for (int i = n - 1; i >= 0; --i) {
+    double* const here = lower + i * n;
+    int* const runs = runs_.data() + i * (n + 1);
+    definite = definite && here[i] > 1e-14 * inertia[i * (n + 1)];
+    const double inverse = inverses[i] = 1 / std::sqrt(here[i]);
+    int end = 0;
+    for (int j = 0; j < i; ++j) {
+      if (here[j] == 0) continue;
+      const int begin = runs[end] = j;
+      while (j < i && here[j] != 0) ++j;
+      scale(inverse, here + begin, here + begin, j - begin);
+      runs[end + 1] = j;
+      end += 2;
+    }
+    counts[i] = end;
+    for (int r = 0; r < end; r += 2) {
+      const int begin = runs[r], after = runs[r + 1];
+      for (int j = begin; j < after; ++j) {
+        double* const there = lower + j * n;
+        const double factor = -here[j];
+        for (int part = 0; part < r; part += 2)
+          add(factor, here + runs[part], there + runs[part], runs[part + 1] - runs[part]);
+        add(factor, here + begin, there + begin, j + 1 - begin);
+      }
+    }
+  }
+  return definite;
+}
+
+// L^T Y = A^T, all columns at once, and Y^T Y on the way.
+void BranchedFactors::find_rows(const double* a) {
+  with_pairs(pairs_of(k_), [&](auto pairs) {
+    constexpr int P = decltype(pairs)::value;
+    const int n = n_, k = k_, width = P > 0 ? 2 * P : 2 * pairs_of(k);
+    double *const y = y_.data(), *const gram = gram_.data();
+    const double *const lower = lower_.data(), *const inverses = inverse_.data();
+    Span* const spans = spans_.data();
+    for (int i = 0; i < n; ++i) {
+      double* const here = y + i * width;
+      for (int j = 0; j < k; ++j) here[j] = a[i * k + j];
+      spans[i] = {0, width};
+      if constexpr (P == 0) spans[i] = span_of(here, k);
+    }
+    std::fill_n(gram, k * width, 0.0);
+    for (int i = n - 1; i >= 0; --i) {
+      const Span span = P > 0 ? Span{0, 2 * P} : spans[i];
+      double* const here = y + i * width + span.begin;
+      scale(inverses[i], here, here, span.end - span.begin);
+      const int* const runs = runs_.data() + i * (n + 1);
+      const int end = run_count_[static_cast<size_t>(i)];
+      for (int r = 0; r < end; r += 2) {
+        const int after = runs[r + 1];
+        for (int j = runs[r]; j < after; ++j) {
+          add(-lower[i * n + j], here, y + j * width + span.begin, span.end - span.begin);
+          if constexpr (P == 0) spans[j].join(span);
+        }
+      }
+      for (int j = span.begin; j < span.end && j < k; ++j) {
+        const double factor = here[j - span.begin];
+        if constexpr (P > 0) add(factor, here, gram + j * width, 2 * P);
+        else add(factor, here, gram + j * width + span.begin, j + 1 - span.begin);
+      }
+    }
+    factor_gram(width);
+  });
+}
+
+// But for its last zeros and those before the first entry, in whole pairs.
+BranchedFactors::Span BranchedFactors::span_of(const double* row, int k) {
+  Span out = {k, 0};
+  for (int j = 0; j < k; ++j) {
+    if (row[j] != 0) out.join({j / 2 * 2, j / 2 * 2 + 2});
+  }
+  return out;
+}
+
+void BranchedFactors::factor_gram(int width) {
+  double* const gram = gram_.data();
+  for (int j = 0; j < k_; ++j) {
+    double* const here = gram + j * width;
+    double own = here[j];
+    for (int l = 0; l < j; ++l) {  // L D, then L
+      const double* const there = gram + l * width;
+      double left = here[l];
+      for (int i = 0; i < l; ++i) left -= here[i] * there[i];
+      here[l] = left;
+      own -= left * left * there[l];
+    }
+    for (int l = 0; l < j; ++l) here[l] *= gram[l * width + l];
+    here[j] = own > 0 ? 1 / own : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+void BranchedFactors::apply_inertia(const double* inertia, const double* xi, double* mu) const {
+  const int n = n_;
+  for (int i = 0; i < n; ++i) mu[i] = dot(inertia + i * n, xi, n);
+}
+
+// x <- L^-T x.
+void BranchedFactors::solve_transposed(double* x) const {
+  const int n = n_;
+  const double *const lower = lower_.data(), *const inverses = inverse_.data();
+  const int* const counts = run_count_.data();
+  for (int i = n - 1; i >= 0; --i) {
+    const double value = x[i] *= inverses[i];
+    const int* const runs = runs_.data() + i * (n + 1);
+    const int end = counts[i];
+    for (int r = 0; r < end; r += 2)
+      add(-value, lower + i * n + runs[r], x + runs[r], runs[r + 1] - runs[r]);
+  }
+}
+
+void BranchedFactors::solve(double* x) const {
+  const int n = n_;
+  const double *const lower = lower_.data(), *const inverses = inverse_.data();
+  const int* const counts = run_count_.data();
+  for (int i = 0; i < n; ++i) {
+    double sum = x[i];
+    const int* const runs = runs_.data() + i * (n + 1);
+    const int end = counts[i];
+    for (int r = 0; r < end; r += 2)
+      sum -= dot(lower + i * n + runs[r], x + runs[r], runs[r + 1] - runs[r]);
+    x[i] = sum * inverses[i];
+  }
+}
+
+void BranchedFactors::subtract_rows(const double* c, const double* v, double* out) const {
+  with_pairs(pairs_of(k_), [&](auto pairs) {
+    constexpr int P = decltype(pairs)::value;
+    const int n = n_, k = k_, width = P > 0 ? 2 * P : 2 * pairs_of(k);
+    const double* const y = y_.data();
+    double *const sums = sums_.data();
+    std::fill_n(sums, width, 0.0);
+    for (int i = 0; i < n; ++i) {
+      const Span span = P > 0 ? Span{0, 2 * P} : spans_[static_cast<size_t>(i)];
+      add(v[i], y + i * width + span.begin, sums + span.begin, span.end - span.begin);
+    }
+    for (int j = 0; j < k; ++j) out[j] = c[j] - sums[j];
+  });
+}
+
+void BranchedFactors::add_reaction(const double* lambda, double* out) const {
+  with_pairs(pairs_of(k_), [&](auto pairs) {
+    constexpr int P = decltype(pairs)::value;
+    const int n = n_, k = k_, width = P > 0 ? 2 * P : 2 * pairs_of(k);
+    const double* const y = y_.data();
+    double *const padded = sums_.data();
+    for (int j = 0; j < width; ++j) padded[j] = j < k ? lambda[j] : 0;
+    for (int i = 0; i < n; ++i) {
+      const Span span = P > 0 ? Span{0, 2 * P} : spans_[static_cast<size_t>(i)];
+      out[i] += dot(y + i * width + span.begin, padded + span.begin, span.end - span.begin);
+    }
+  });
+}
+
+void BranchedFactors::solve_gram(double* c) const {
+  const int k = k_, width = 2 * pairs_of(k);
+  const double* const gram = gram_.data();
+  for (int i = 0; i < k; ++i) {
+    double sum = c[i];
+    for (int l = 0; l < i; ++l) sum -= gram[i * width + l] * c[l];
+    c[i] = sum;
+  }
+  for (int i = k - 1; i >= 0; --i) {
+    double sum = c[i] * gram[i * width + i];
+    for (int l = i + 1; l < k; ++l) sum -= gram[l * width + i] * c[l];
+    c[i] = sum;
+  }
+}
+
+}  // namespace hamel
