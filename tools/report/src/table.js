@@ -90,7 +90,7 @@ function splitForPaper(box) {
     const copy = whole.cloneNode(true);
     for (const row of copy.rows) row.replaceChildren(...columns.map((c) => row.cells[c].cloneNode(true)));
     copy.caption.append(` (part ${i + 1} of ${parts.length})`);
-    return h('div', { class: 'part' }, copy);
+    return h('div', { class: box.matches('.tall') ? 'part tall' : 'part' }, copy);
   });
   box.after(...copies);
 }

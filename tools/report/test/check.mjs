@@ -89,6 +89,8 @@ const cases = [
   ['a dead drop-down', () => bent(longTable(50, 8), 'table_filter.js', "=== list[select.value]", '!== undefined'), 1, /a drop-down filters the rows/],
   ['all rows at once', () => bent(longTable(400, 8), 'table.js', 'const SLICE = 150', 'const SLICE = 1e9'), 1, /made in slices/],
   ['a long table whole on paper', () => bent(longTable(200, 8), 'table.js', 'grow(Math.min(order.length, PRINTED))', 'grow(order.length)'), 1, /tables on paper are short/],
+  ['parts of a table kept together on paper', () => bent(longTable(20, 20), 'print.css', '.table-block:not(:has(.tall, div.part))', '.table-block:not(:has(.tall))'), 1, /does not ask for a page of its own: 1 do/],
+  ['long parts of a table kept whole on paper', () => bent(longTable(60, 20), 'table.js', "box.matches('.tall') ? 'part tall' : 'part'", "'part'"), 1, /does not ask for a page of its own: 3 do/],
   ['rows that never come', () => bent(longTable(400, 8), 'table.js', 'grow(body.childElementCount + SLICE)', 'grow(0)'), 1, /scrolling makes more rows/],
   ['a moving body alone', small(spin), 0, /passed, 0 failed/],
   ['data that do not fit the schema', small({ ...plot, log: true }), 1, /the data fit schema.json: .*blocks.0/],

@@ -171,6 +171,8 @@ async function checkPrint(page, check, path) {
     rows: Math.max(...[...block.querySelectorAll('tbody')].map((body) => body.rows.length)) })));
   check('tables on paper are short, or tell that they go on', rows.every(({ rows: count, told }) => count <= 80 && (!told || count === 80)), JSON.stringify(rows));
   await page.emulateMedia({ media: 'print' });
+  const kept = await page.evaluate(() => [...document.querySelectorAll('.table-block:has(div.part), div.part:has(tr:nth-child(41))')].filter((block) => getComputedStyle(block).breakInside === 'avoid').length);
+  check('a table in parts does not ask for a page of its own', kept === 0, `${kept} do`);
   const cut = await page.evaluate(() => [...document.querySelectorAll('.drawing')].filter((drawing) => {
     const frame = drawing.closest('figure').getBoundingClientRect();
     const inside = ({ left, right }) => left >= frame.left - 1 && right <= frame.right + 1;
