@@ -59,7 +59,7 @@ std::shared_ptr<const Mechanics> Driver::acting() const {
 
 Status Driver::refuse(double t, const std::string& reason) const {
   Snapshot now;
-  kernel_->state(now);
+  kernel().state(now);
   return {false, now.step + 1, now.time, 0, fmt::format(fmt::runtime(reason), t)};
 }
 
@@ -69,35 +69,41 @@ Status Driver::covered(double t) const {
   return refuse(t, "the table of an input does not cover t = {:.10g}");
 }
 
+// Made when it is first needed: a member of an ensemble that runs in lanes needs none.
+RestartedKernel& Driver::kernel() const {
+  if (kernel_ == nullptr) kernel_ = std::make_unique<RestartedKernel>(plan_.kernel, plan_.setup);
+  return *kernel_;
+}
+
 Status Driver::step(long count) {
   const bool chosen = plan_.config.chooses_steps();
-  const double h = kernel_->next_step();
+  const double h = kernel().next_step();
   if (plan_.setup.inputs != nullptr && !chosen) {
-    kernel_->state(row_);
+    kernel().state(row_);
     const double end = row_.time + static_cast<double>(count) * h;
     if (const Status status = covered(end); !status.ok) return status;
   }
-  if (chosen) kernel_->set_end_time(std::copysign(kInfinite, h));
+  if (chosen) kernel().set_end_time(std::copysign(kInfinite, h));
   return advance(count);
 }
 
 Status Driver::step_towards(double t) {
   if (plan_.config.chooses_steps()) {
-    kernel_->state(row_);
-    if (!((t - row_.time) * kernel_->next_step() > 0)) return refuse(t, "t = {} lies behind");
-    kernel_->set_end_time(t);
+    kernel().state(row_);
+    if (!((t - row_.time) * kernel().next_step() > 0)) return refuse(t, "t = {} lies behind");
+    kernel().set_end_time(t);
   }
   return advance(1);
 }
 
 Status Driver::advance_to(double t) {
   if (const Status status = covered(t); !status.ok) return status;
-  kernel_->state(row_);
-  const double steps = (t - row_.time) / kernel_->next_step();
+  kernel().state(row_);
+  const double steps = (t - row_.time) / kernel().next_step();
   if (plan_.config.chooses_steps()) {
     if (!(steps >= -1e-9)) return refuse(t, "t = {} lies behind");
     if (steps <= 0) return {};
-    kernel_->set_end_time(t);
+    kernel().set_end_time(t);
     return advance(std::numeric_limits<long>::max());
   }
   if (!(steps >= -0.5)) return refuse(t, "t = {} lies behind");
@@ -109,12 +115,12 @@ Status Driver::advance_to(double t) {
 // So many steps of one size from here the run ends: a jump of an input next to that does not move
 // it.
 void Driver::limit_grid(long count) {
-  kernel_->state(row_);
-  kernel_->set_end_time(row_.time + static_cast<double>(count) * kernel_->next_step());
+  kernel().state(row_);
+  kernel().set_end_time(row_.time + static_cast<double>(count) * kernel().next_step());
 }
 
 Status Driver::complete() {
-  if (plan_.config.chooses_steps()) kernel_->set_end_time(plan_.config.until);
+  if (plan_.config.chooses_steps()) kernel().set_end_time(plan_.config.until);
   else limit_grid(steps_left_);
   advance(0, true);
   if (request_.progress && result_.status.ok) request_.progress(1);
@@ -142,10 +148,10 @@ Status Driver::take_unseen(long count) {
   long left = count, before = -1;
   Status status;
   while (status.ok && left > 0 && std::exchange(before, left) != left) {
-    const long whole = kernel_->whole_steps();
-    status = kernel_->advance(left);
-    left -= kernel_->whole_steps() - whole;
-    if (kernel_->off_grid()) before = -1;
+    const long whole = kernel().whole_steps();
+    status = kernel().advance(left);
+    left -= kernel().whole_steps() - whole;
+    if (kernel().off_grid()) before = -1;
   }
   return status;
 }
@@ -166,11 +172,11 @@ void Driver::take_steps(long count, bool to_end) {
   const double from = plan_.config.from, until = plan_.config.until;
   auto next_progress = Clock::now() + std::chrono::milliseconds(200);
   while (!over_ && (to_end ? !reached_end() : count > 0)) {
-    const long before = node_.step, whole = kernel_->whole_steps();
-    result_.status = kernel_->advance(steps_at_once(count, to_end));
-    kernel_->state(node_);
-    steps_left_ -= kernel_->whole_steps() - whole;
-    count -= kernel_->whole_steps() - whole;
+    const long before = node_.step, whole = kernel().whole_steps();
+    result_.status = kernel().advance(steps_at_once(count, to_end));
+    kernel().state(node_);
+    steps_left_ -= kernel().whole_steps() - whole;
+    count -= kernel().whole_steps() - whole;
     bool go_on = good(node_);
     if (go_on && every_node_ && node_.step > before) go_on = observe_step();
     else if (go_on && recording_ && times_.empty() && node_.step % plan_.config.every == 0)
@@ -181,7 +187,7 @@ void Driver::take_steps(long count, bool to_end) {
       request_.progress((node_.time - from) / (until - from));
       next_progress = Clock::now() + std::chrono::milliseconds(200);
     }
-    if (!over_ && !(to_end && reached_end()) && !kernel_->off_grid() &&
+    if (!over_ && !(to_end && reached_end()) && !kernel().off_grid() &&
         (rows_ >= kRows || node_.step - kept_at_ >= kSteps))
       keep();
   }
@@ -191,10 +197,10 @@ void Driver::take_steps(long count, bool to_end) {
 // The first row.
 void Driver::begin() {
   if (std::exchange(begun_, true)) return;
-  kernel_->state(node_);
+  kernel().state(node_);
   if (node_.step > 0) return;
   if (recording_) {
-    kernel_->measure(result_.last);
+    kernel().measure(result_.last);
     recorder_->begin(result_.last);
     if (recorder_->wants_nodes()) recorder_->node(node_);
     over_ = !(times_.empty() ? record(node_) : output(plan_.config.from));
@@ -202,7 +208,7 @@ void Driver::begin() {
   if (!over_ && plan_.events->any()) observe_start();
 }
 
-void Driver::turn_back() { kernel_->turn_back(); }
+void Driver::turn_back() { kernel().turn_back(); }
 
 void Driver::input(const std::string& name, double value) {
   const SystemModel& system = *plan_.system;
@@ -240,7 +246,7 @@ void Driver::restart(const Start& start) {
   config.start = planned.start;
   plan_.setup.configuration = planned.start.configuration;
   plan_.setup.velocity = planned.start.velocity;
-  kernel_ = std::make_unique<RestartedKernel>(plan_.kernel, plan_.setup);
+  kernel_.reset();
   dense_.reset();
   over_ = false;
   result_.status = {};
@@ -260,14 +266,14 @@ void Driver::restart(const Start& start) {
 
 DenseOutput& Driver::dense() {
   if (dense_ == nullptr)
-    dense_ = std::make_unique<DenseOutput>(*kernel_, plan_.kernel, plan_.setup);
+    dense_ = std::make_unique<DenseOutput>(kernel(), plan_.kernel, plan_.setup);
   return *dense_;
 }
 
 const Snapshot& Driver::at(double t) {
-  kernel_->state(row_);
-  const double end = row_.time, slack = 1e-12 * std::abs(kernel_->next_step());
-  kernel_->beginning(row_);
+  kernel().state(row_);
+  const double end = row_.time, slack = 1e-12 * std::abs(kernel().next_step());
+  kernel().beginning(row_);
   if (!(std::min(row_.time, end) - slack <= t && t <= std::max(row_.time, end) + slack)) {
     throw std::runtime_error(
         fmt::format("no state at t = {}: the last step is from {} to {}", t, row_.time, end));
@@ -279,13 +285,13 @@ const Snapshot& Driver::at(double t) {
 
 double Driver::time() {
   if (result_.stopped_by_event) return result_.last.time;
-  kernel_->state(row_);
+  kernel().state(row_);
   return row_.time;
 }
 
 const Snapshot& Driver::state() {
   if (result_.stopped_by_event) return result_.last;
-  kernel_->measure(row_);
+  kernel().measure(row_);
   return row_;
 }
 

@@ -45,12 +45,12 @@ class Driver {
   void close();
 
   const RunPlan& plan() const { return plan_; }
-  const SolverStats& stats() const { return kernel_->stats(); }
+  const SolverStats& stats() const { return kernel().stats(); }
   long impacts_met() const { return impacts_met_; }
   /// The mechanics as the scheme treats it.
   std::shared_ptr<const Mechanics> acting() const;
   /// The state within the last step, of the explicit pairs; false: the scheme has none.
-  bool interpolate(double t, Snapshot& out) const { return kernel_->interpolate(t, out); }
+  bool interpolate(double t, Snapshot& out) const { return kernel().interpolate(t, out); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -64,6 +64,7 @@ class Driver {
     const Clock::time_point begin = Clock::now();
   };
 
+  RestartedKernel& kernel() const;
   void begin();
   void make_observers();
   // Steps, so many, or to the end of the run, each of them followed by the observers.
@@ -103,14 +104,14 @@ class Driver {
   // All that a resumed run needs but the events that were met.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(*kernel_, steps_left_, next_, recorded_, seconds_.all, seconds_.recording,
+    archive(kernel(), steps_left_, next_, recorded_, seconds_.all, seconds_.recording,
             seconds_.comparing, *plan_.events, *recorder_);
   }
 
   RunPlan plan_;
   RunRequest request_;
   bool recording_, watching_ = false, every_node_ = false;
-  std::unique_ptr<RestartedKernel> kernel_;
+  mutable std::unique_ptr<RestartedKernel> kernel_;  // of plan_; null behind a restart
   std::optional<StartMatrices> matrices_;  // of a restart, where they are the same everywhere
   std::unique_ptr<DenseOutput> dense_;     // made when it is first needed
   std::unique_ptr<RunRecorder> recorder_;  // null where nothing is recorded

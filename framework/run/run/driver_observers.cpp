@@ -36,7 +36,7 @@ void Driver::observe_start() {
     result_.events.push_back(
         {event.name, event.state.time, event.state.coordinates, event.state.velocity});
     if (event.stops) {
-      kernel_->measure(result_.last);
+      kernel().measure(result_.last);
       result_.stopped_by_event = over_ = true;
       result_.status.reason = "stopped at " + event.name;
       return;
@@ -70,10 +70,10 @@ bool Driver::observe_event(const Events::Found& event, bool& go_on) {
 // The explicit pairs take long steps with a dense output: the work is not known from their ends
 // alone.
 void Driver::observe_within_step() {
-  kernel_->beginning(row_);
+  kernel().beginning(row_);
   const double begin = row_.time;
   for (const double part : {0.25, 0.5, 0.75}) {
-    if (!kernel_->interpolate(begin + part * (node_.time - begin), row_)) return;
+    if (!kernel().interpolate(begin + part * (node_.time - begin), row_)) return;
     recorder_->node(row_);
   }
 }
@@ -99,7 +99,7 @@ bool Driver::record(const Snapshot& state) {
     recorded_ = node_.step;
   }
   const Timed timed(in_rows_);
-  if (own) kernel_->measure(row_);
+  if (own) kernel().measure(row_);
   const bool good_row = good(own ? row_ : state);
   if (!good_row && sinks_begun_) return false;
   if (own) std::swap(result_.last, row_);
@@ -148,16 +148,16 @@ void Driver::restart_behind(const EventState& state, const Events::Found& event)
   ++impacts_met_;
   const Config& config = plan_.config;
   const std::vector<double> velocity = admissible(*plan_.system, plan_.geometry, state, event.name);
-  const double h = kernel_->next_step();
-  const double limit = kernel_->end_time();
-  kernel_->restart(state.time, state.coordinates, velocity, h);
-  if (config.chooses_steps()) kernel_->set_end_time(limit);
+  const double h = kernel().next_step();
+  const double limit = kernel().end_time();
+  kernel().restart(state.time, state.coordinates, velocity, h);
+  if (config.chooses_steps()) kernel().set_end_time(limit);
   else {
     steps_left_ =
         static_cast<long>(std::floor((config.until - state.time) / h * (1 + 1e-12) + 1e-9));
     limit_grid(steps_left_);
   }
-  kernel_->state(node_);
+  kernel().state(node_);
   if (recorder_ != nullptr) recorder_->impact(event.state, node_);
   plan_.events->resume(node_, event.name);
 }
@@ -184,9 +184,9 @@ void Driver::keep() {
   const Timed timed(in_rows_);
   deliver();
   if (resumable_) {
-    kernel_->begin_anew();
+    kernel().begin_anew();
     dense_.reset();
-    kernel_->state(node_);
+    kernel().state(node_);
     lap();
     CheckpointWriter state, news;
     serialize(state);
@@ -204,7 +204,7 @@ void Driver::resume(const RunFile& file) {
   CheckpointReader state(kept.state);
   serialize(state);
   dense_.reset();
-  kernel_->state(node_);
+  kernel().state(node_);
   begun_ = true;
   kept_at_ = node_.step;
   for (const std::string& piece : kept.news) {
@@ -298,10 +298,10 @@ Result& Driver::end() {
     if (recording_ && !over_ && times_.empty()) record(node_);
     over_ = true;
     if (!result_.stopped_by_event && !flawed_) {
-      kernel_->measure(row_);
+      kernel().measure(row_);
       if (good(row_) || !recording_) std::swap(result_.last, row_);
     }
-    kernel_->state(node_);
+    kernel().state(node_);
     Result shell = head();
     result_.config = std::move(shell.config);
     result_.system = std::move(shell.system);
@@ -312,7 +312,7 @@ Result& Driver::end() {
     result_.recording_seconds = seconds_.recording;
     result_.comparing_seconds = seconds_.comparing;
     result_.steps = flawed_ && recording_ ? result_.last.step : node_.step;
-    result_.stats = kernel_->stats();
+    result_.stats = kernel().stats();
     if (!recording_) {
       measure_ends_only();
       return result_;
