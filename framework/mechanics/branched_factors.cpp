@@ -3,28 +3,47 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include <hamel/framework/mechanics/short_vectors.hpp>
 
 namespace hamel {
 
-using short_vectors::add, short_vectors::dot, short_vectors::scale;
+using short_vectors::add, short_vectors::dot, short_vectors::pairs_of, short_vectors::scale,
+    short_vectors::with_pairs, short_vectors::kFewPairs;
 
 namespace {
 
-// Rows of Y are as many pairs of numbers long, the last one padded by 0.
-int pairs_of(int k) { return (k + 1) / 2; }
+template <class Span>
+struct Parts {
+  int n, k;
+  const double *lower, *inverses;
+  const int *runs, *counts;
+  double *y, *gram;
+  Span* spans;
+};
 
-// f(P) with P pairs where they are few, whose loops then unroll; else P = 0.
-template <class F>
-void with_pairs(int pairs, F&& f) {
-  switch (pairs) {
-    case 1: return f(std::integral_constant<int, 1>());
-    case 2: return f(std::integral_constant<int, 2>());
-    case 3: return f(std::integral_constant<int, 3>());
-    case 4: return f(std::integral_constant<int, 4>());
-    default: f(std::integral_constant<int, 0>());
+// Row i of Y, all below it eliminated: leaves those above, and goes to Y^T Y.
+template <int P, class Span>
+void eliminate(const Parts<Span>& parts, int i) {
+  const int n = parts.n, width = P > 0 ? 2 * P : 2 * pairs_of(parts.k);
+  Span span = {0, width};
+  if constexpr (P == 0) span = parts.spans[i];
+  const int count = span.end - span.begin;
+  double* const here = parts.y + i * width + span.begin;
+  scale(parts.inverses[i], here, here, count);
+  const int* const runs = parts.runs + i * (n + 1);
+  const int end = parts.counts[i];
+  for (int r = 0; r < end; r += 2) {
+    const int after = runs[r + 1];
+    for (int j = runs[r]; j < after; ++j) {
+      add(-parts.lower[i * n + j], here, parts.y + j * width + span.begin, count);
+      if constexpr (P == 0) parts.spans[j].join(span);
+    }
+  }
+  const int last = std::min(span.end, parts.k);
+  for (int j = span.begin; j < last; ++j) {
+    double* const row = parts.gram + j * width + span.begin;  // up to its diagonal
+    add(here[j - span.begin], here, row, P > 0 ? 2 * P : j + 1 - span.begin);
   }
 }
 
@@ -81,40 +100,27 @@ bool BranchedFactors::find_root(const double* inertia) {
 
 // L^T Y = A^T, all columns at once, and Y^T Y on the way.
 void BranchedFactors::find_rows(const double* a) {
-  with_pairs(pairs_of(k_), [&](auto pairs) {
-    constexpr int P = decltype(pairs)::value;
-    const int n = n_, k = k_, width = P > 0 ? 2 * P : 2 * pairs_of(k);
-    double *const y = y_.data(), *const gram = gram_.data();
-    const double *const lower = lower_.data(), *const inverses = inverse_.data();
-    Span* const spans = spans_.data();
-    for (int i = 0; i < n; ++i) {
-      double* const here = y + i * width;
-      for (int j = 0; j < k; ++j) here[j] = a[i * k + j];
-      spans[i] = {0, width};
-      if constexpr (P == 0) spans[i] = span_of(here, k);
-    }
-    std::fill_n(gram, k * width, 0.0);
-    for (int i = n - 1; i >= 0; --i) {
-      const Span span = P > 0 ? Span{0, 2 * P} : spans[i];
-      double* const here = y + i * width + span.begin;
-      scale(inverses[i], here, here, span.end - span.begin);
-      const int* const runs = runs_.data() + i * (n + 1);
-      const int end = run_count_[static_cast<size_t>(i)];
-      for (int r = 0; r < end; r += 2) {
-        const int after = runs[r + 1];
-        for (int j = runs[r]; j < after; ++j) {
-          add(-lower[i * n + j], here, y + j * width + span.begin, span.end - span.begin);
-          if constexpr (P == 0) spans[j].join(span);
-        }
-      }
-      for (int j = span.begin; j < span.end && j < k; ++j) {
-        const double factor = here[j - span.begin];
-        if constexpr (P > 0) add(factor, here, gram + j * width, 2 * P);
-        else add(factor, here, gram + j * width + span.begin, j + 1 - span.begin);
-      }
-    }
-    factor_gram(width);
+  const int n = n_, k = k_, width = 2 * pairs_of(k);
+  for (int i = 0; i < n; ++i) {
+    double* const here = y_.data() + i * width;
+    for (int j = 0; j < k; ++j) here[j] = a[i * k + j];
+    if (k < width) here[k] = 0;  // also after values that were not finite
+    if (width > 2 * kFewPairs) spans_[static_cast<size_t>(i)] = span_of(here, k);
+  }
+  std::fill(gram_.begin(), gram_.end(), 0.0);
+  with_pairs(pairs_of(k), [&](auto pairs) {
+    const Parts<Span> parts = {n,
+                               k,
+                               lower_.data(),
+                               inverse_.data(),
+                               runs_.data(),
+                               run_count_.data(),
+                               y_.data(),
+                               gram_.data(),
+                               spans_.data()};
+    for (int i = n - 1; i >= 0; --i) eliminate<decltype(pairs)::value>(parts, i);
   });
+  factor_gram(width);
 }
 
 // But for its last zeros and those before the first entry, in whole pairs.
@@ -181,7 +187,7 @@ void BranchedFactors::subtract_rows(const double* c, const double* v, double* ou
     constexpr int P = decltype(pairs)::value;
     const int n = n_, k = k_, width = P > 0 ? 2 * P : 2 * pairs_of(k);
     const double* const y = y_.data();
-    double *const sums = sums_.data();
+    double* const sums = sums_.data();
     std::fill_n(sums, width, 0.0);
     for (int i = 0; i < n; ++i) {
       const Span span = P > 0 ? Span{0, 2 * P} : spans_[static_cast<size_t>(i)];
@@ -196,7 +202,7 @@ void BranchedFactors::add_reaction(const double* lambda, double* out) const {
     constexpr int P = decltype(pairs)::value;
     const int n = n_, k = k_, width = P > 0 ? 2 * P : 2 * pairs_of(k);
     const double* const y = y_.data();
-    double *const padded = sums_.data();
+    double* const padded = sums_.data();
     for (int j = 0; j < width; ++j) padded[j] = j < k ? lambda[j] : 0;
     for (int i = 0; i < n; ++i) {
       const Span span = P > 0 ? Span{0, 2 * P} : spans_[static_cast<size_t>(i)];

@@ -1,11 +1,11 @@
-// W with W^T W = I^-1, Y = W A^T and the factors of Y^T Y, of sizes known at run time only, along the
-// branches of I.
+// W with W^T W = I^-1, Y = W A^T and the factors of Y^T Y, of sizes known at run time only, along
+// the branches of I.
 //
-// I = L^T L with L lower triangular, W = L^-T. In a tree of bodies whose links come after those that
-// carry them, row i of L has entries only at the velocities on the way from i to the root, as I has:
-// nothing fills in. They are found as L is, by looking: another order or a full I costs time alone.
-// Source: Featherstone, Efficient factorization of the joint-space inertia matrix for branched
-// kinematic trees, Int. J. Robotics Research 24 (2005).
+// I = L^T L with L lower triangular, W = L^-T. In a tree of bodies whose links come after those
+// that carry them, row i of L has entries only at the velocities on the way from i to the root, as
+// I has: nothing fills in. They are found as L is, by looking: another order or a full I costs time
+// alone. Source: Featherstone, Efficient factorization of the joint-space inertia matrix for
+// branched kinematic trees, Int. J. Robotics Research 24 (2005).
 #pragma once
 
 #include <algorithm>
@@ -81,11 +81,11 @@ class BranchedFactors {
   int n_, k_;
   std::vector<double> lower_;    // L by rows, but for its diagonal
   std::vector<double> inverse_;  // of its diagonal
-  std::vector<int> runs_;        // of row i from i (n + 1) on: [begin, end) of entries that are not 0
-  std::vector<int> run_count_;   // how many numbers these are
-  std::vector<double> y_;        // Y by rows
-  std::vector<Span> spans_;      // of a row of Y: but for these entries it is 0
-  std::vector<double> gram_;     // L D L^T as in dense_factors.hpp, by rows
+  std::vector<int> runs_;  // of row i from i (n + 1) on: [begin, end) of entries that are not 0
+  std::vector<int> run_count_;        // how many numbers these are
+  std::vector<double> y_;             // Y by rows
+  std::vector<Span> spans_;           // of a row of Y: but for these entries it is 0
+  std::vector<double> gram_;          // L D L^T as in dense_factors.hpp, by rows
   mutable std::vector<double> sums_;  // work space
 };
 

@@ -1,5 +1,5 @@
-// W with W^T W = I^-1, Y = W A^T and the factors of Y^T Y, of sizes known at compile time: all loops
-// unroll.
+// W with W^T W = I^-1, Y = W A^T and the factors of Y^T Y, of sizes known at compile time: all
+// loops unroll.
 #pragma once
 
 #include <cmath>
@@ -89,13 +89,9 @@ class DenseFactors {
     out.noalias() = c - y_.transpose().lazyProduct(v);
   }
   /// out = Y lambda.
-  void find_reaction(const Multipliers& lambda, Vector& out) const {
-    out = y_.lazyProduct(lambda);
-  }
+  void find_reaction(const Multipliers& lambda, Vector& out) const { out = y_.lazyProduct(lambda); }
   /// out += Y lambda.
-  void add_reaction(const Multipliers& lambda, Vector& out) const {
-    out += y_.lazyProduct(lambda);
-  }
+  void add_reaction(const Multipliers& lambda, Vector& out) const { out += y_.lazyProduct(lambda); }
   /// c <- (Y^T Y)^-1 c.
   void solve_gram(Multipliers& c) const {
 #pragma GCC unroll 4

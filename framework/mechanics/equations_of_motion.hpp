@@ -3,9 +3,9 @@
 // Lagrange-d'Alembert with multipliers, d/dt along the motion:
 //   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,   A xi' = db/dt - (dA/dt) xi.
 // (dI/dt) xi and db/dt - (dA/dt) xi: by one dual number where the problem has its formulas over any
-// scalar, its own where it has them (Mechanics::motion and rates), else by differences along g tau(e
-// xi) at t, and in t at g (lie/differences.hpp). A left-invariant problem has y' in closed form.
-// With W^T W = I^-1, Y = W A^T and c = W change:
+// scalar, its own where it has them (Mechanics::motion and rates), else by differences along g
+// tau(e xi) at t, and in t at g (lie/differences.hpp). A left-invariant problem has y' in closed
+// form. With W^T W = I^-1, Y = W A^T and c = W change:
 //   Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,   xi' = W^T (c + Y lambda),
 // W and the factors of Y^T Y those of dense_factors.hpp, or of branched_factors.hpp where sizes are
 // known at run time only.

@@ -45,17 +45,22 @@ class Mechanics {
   }
   /// A(t, g), k x n, and b(t, g).
   virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
+  /// A xi - b, k entries, where a system has it without A; false: it has not.
+  virtual bool constraint_values(double /*t*/, const double* /*g*/, ConstVector /*xi*/,
+                                 Vector /*out*/) const {
+    return false;
+  }
   /// db/dt - (dA/dt) xi, k entries, and (dI/dt) xi, n entries, along (t, g) at g' = g xi, where a
   /// system computes them; false: it does not.
   virtual bool rates(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector /*rows*/,
                      Vector /*momentum*/) const {
     return false;
   }
-  /// All of the equations of motion, where a system has them at once (false: it has not): I and A, b
-  /// (left as they are where they are constant), db/dt - (dA/dt) xi, and
-  /// ad*_xi I xi + F - (dI/dt) xi.
+  /// All of the equations of motion, where a system has them at once (false: it has not): I and A,
+  /// b (left as they are where they are constant), db/dt - (dA/dt) xi, and ad*_xi I xi + F -
+  /// (dI/dt) xi.
   virtual bool motion(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Matrix /*inertia*/,
-                      Matrix /*a*/, Vector /*b*/, Vector /*row_rates*/, Vector /*change*/) const {
+                      Matrix /*a*/, Vector /*b*/, Vector /*rows*/, Vector /*change*/) const {
     return false;
   }
   /// phi(g).

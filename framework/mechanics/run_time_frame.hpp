@@ -1,9 +1,9 @@
-// The frame of admissible_frame.hpp with sizes known at run time only, along the entries that are not
-// 0.
+// The frame of admissible_frame.hpp with sizes known at run time only, along the entries that are
+// not 0.
 //
 // The rows of A end at the last velocity that moves their part. Reflection j takes the velocities
-// from j to the last that one of the rows up to j has: few where the rows come in the order of their
-// links, as along a train.
+// from j to the last that one of the rows up to j has: few where the rows come in the order of
+// their links, as along a train.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 namespace hamel {
 
 /// Functions of pointers, compiled once: Eigen's vectors stay in the caller's code, whose flags may
-/// align them differently. Matrices by columns.
+/// align them differently.
 class RunTimeFrame {
  public:
   RunTimeFrame(int n, int k);
@@ -26,31 +26,26 @@ class RunTimeFrame {
   void multipliers(const double* reaction, double* lambda);
 
  private:
-  int m() const { return n_ - k_; }
-  double* reflection(int j) { return reflections_.data() + j * n_; }
-  const double* reflection(int j) const { return reflections_.data() + j * n_; }
-  double* frame(int j) { return frame_.data() + j * n_; }
-  double* reduced(int j) { return reduced_inertia_.data() + j * m(); }
-
   void find_weights(const double* inertia);
   void factor_rows(const double* a, bool keep_signs);
   void find_frame();
   void reduce_inertia(const double* inertia);
-  bool reflect(int j, double* y) const;
-  void reduce(const double* mu);
+  void factor_reduced();
+  void reflect(int j, double* y) const;
+  void reduce(const double* mu, double* to) const;
   void solve_reduced();
   void combine(const double* inertia, const double* c, double* xi);
 
-  int n_, k_;
+  int n_, k_, m_;
   bool diagonal_ = false;
   std::vector<double> weights_;                        // D^-1/2
-  std::vector<double> reflections_;                    // by columns, from their index on
-  std::vector<int> ends_;                              // of their entries that are not 0
-  std::vector<double> l_, l_inverse_diagonal_;         // L by rows
+  std::vector<double> reflections_;                    // column j: before entry j row j of L
+  std::vector<int> ends_;                              // of the entries of a column that are not 0
+  std::vector<double> l_inverse_diagonal_;             // of L
   std::vector<double> row_weights_, factors_, signs_;  // 2/|v|^2
   std::vector<double> frame_;                          // E
   std::vector<double> reduced_inertia_;
-  std::vector<double> few_, work_, image_, y_;
+  std::vector<double> few_, work_, image_, y_, sums_;
 };
 
 }  // namespace hamel

@@ -1,9 +1,10 @@
-// Sums over a dozen numbers whose count is known at run time only, where a call of Eigen's costs more
-// than the sum: by packets of two, which every x86-64 and ARM processor has. For sources of the
-// library.
+// Sums over a dozen numbers whose count is known at run time only, where a call of Eigen's costs
+// more than the sum: by packets of two, which every x86-64 and ARM processor has. For sources of
+// the library.
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 namespace hamel::short_vectors {
 
@@ -16,7 +17,8 @@ inline Pair& pair_at(double* x) { return *reinterpret_cast<Pair*>(x); }
 inline double dot(const double* x, const double* y, std::ptrdiff_t count) {
   Pair sum = {0, 0};
   std::ptrdiff_t i = 0;
-  for (const std::ptrdiff_t last = count - 1; i < last; i += 2) sum += pair_at(x + i) * pair_at(y + i);
+  for (const std::ptrdiff_t last = count - 1; i < last; i += 2)
+    sum += pair_at(x + i) * pair_at(y + i);
   double out = sum[0] + sum[1];
   if (i < count) out += x[i] * y[i];
   return out;
@@ -36,6 +38,58 @@ inline void scale(double factor, const double* x, double* to, std::ptrdiff_t cou
   for (const std::ptrdiff_t last = count - 1; i < last; i += 2)
     pair_at(to + i) = factors * pair_at(x + i);
   if (i < count) to[i] = factor * x[i];
+}
+
+// Matrices by rows, each of as many pairs, the last of which may be padded by a 0. P: that many
+// pairs, whose loops unroll; 0: any.
+
+inline constexpr int kFewPairs = 4;
+inline int pairs_of(int columns) { return (columns + 1) / 2; }
+/// f(P), P an integral_constant.
+template <class F>
+void with_pairs(int pairs, F&& f) {
+  switch (pairs) {
+    case 1: return f(std::integral_constant<int, 1>());
+    case 2: return f(std::integral_constant<int, 2>());
+    case 3: return f(std::integral_constant<int, 3>());
+    case 4: return f(std::integral_constant<int, 4>());
+    default: f(std::integral_constant<int, 0>());
+  }
+}
+/// to = sum of x_i times row i; the x_i are so far apart.
+template <int P>
+void combine_rows(const double* x, std::ptrdiff_t apart, const double* rows, std::ptrdiff_t pairs,
+                  std::ptrdiff_t count, double* to) {
+  if constexpr (P > 0) {
+    Pair sums[P] = {};
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const Pair factors = {x[i * apart], x[i * apart]};
+      for (int p = 0; p < P; ++p) sums[p] += factors * pair_at(rows + 2 * (i * P + p));
+    }
+    for (int p = 0; p < P; ++p) pair_at(to + 2 * p) = sums[p];
+  } else {
+    for (std::ptrdiff_t j = 0; j < 2 * pairs; ++j) to[j] = 0;
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      if (x[i * apart] != 0) add(x[i * apart], rows + 2 * pairs * i, to, 2 * pairs);
+    }
+  }
+}
+/// row i += factor x_i times y; the x_i may be among the rows where y is 0.
+template <int P>
+void add_to_rows(double factor, const double* x, std::ptrdiff_t apart, const double* y,
+                 double* rows, std::ptrdiff_t pairs, std::ptrdiff_t count) {
+  if constexpr (P > 0) {
+    Pair scaled[P];
+    for (int p = 0; p < P; ++p) scaled[p] = Pair{factor, factor} * pair_at(y + 2 * p);
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const Pair factors = {x[i * apart], x[i * apart]};
+      for (int p = 0; p < P; ++p) pair_at(rows + 2 * (i * P + p)) += factors * scaled[p];
+    }
+  } else {
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      if (x[i * apart] != 0) add(factor * x[i * apart], y, rows + 2 * pairs * i, 2 * pairs);
+    }
+  }
 }
 
 }  // namespace hamel::short_vectors

@@ -103,13 +103,16 @@ class DynamicProblem {
   void constraints(double t, const Element& g, ConstraintMatrix& a, Multipliers& b) const {
     mechanics_->constraints(t, g.data(), a, b);
   }
+  bool constraint_values(double t, const Element& g, const Vector& xi, Multipliers& out) const {
+    return mechanics_->constraint_values(t, g.data(), xi, out);
+  }
   bool rates(double t, const Element& g, const Vector& xi, Multipliers& rows,
              Vector& momentum) const {
     return mechanics_->rates(t, g.data(), xi, rows, momentum);
   }
   bool motion(double t, const Element& g, const Vector& xi, Matrix& inertia, ConstraintMatrix& a,
-              Multipliers& b, Multipliers& row_rates, Vector& change) const {
-    return mechanics_->motion(t, g.data(), xi, inertia, a, b, row_rates, change);
+              Multipliers& b, Multipliers& rows, Vector& change) const {
+    return mechanics_->motion(t, g.data(), xi, inertia, a, b, rows, change);
   }
   bool autonomous() const { return mechanics_->autonomous(); }
   void holonomic(const Element& g, HolonomicValues& phi) const {

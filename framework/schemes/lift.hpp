@@ -164,9 +164,7 @@ class Lift::General {
       mu_ -= (h_ / 2) * force_;
     }
     if (rows_.size() > 0) {
-      problem_.constraints(t, base_, a_, b_);
-      rows_ = a_.lazyProduct(v_);
-      rows_ -= b_;
+      find_rows(t);
       if (phi_.size() > 0) {  // in metres: a velocity error would show as h times itself
         problem_.holonomic(g1_, phi_);
         rows_.tail(phi_.size()) = phi_;
@@ -174,6 +172,15 @@ class Lift::General {
     }
   }
 
+  // A(g) v - b.
+  void find_rows(double t) const {
+    if constexpr (requires { problem_.constraint_values(t, base_, v_, rows_); }) {
+      if (problem_.constraint_values(t, base_, v_, rows_)) return;
+    }
+    problem_.constraints(t, base_, a_, b_);
+    rows_ = a_.lazyProduct(v_);
+    rows_ -= b_;
+  }
   // p_ = I(g) v, and nu_ = d(v^T I(g) v)/2 where that is not 0.
   void find_momentum() const {
     if (!problem_.constant_inertia()) {

@@ -43,6 +43,13 @@ struct Row {
   Wrench wrench = Wrench::Zero(), other_wrench = Wrench::Zero();
   int dof = -1;
   double drift = 0, phi = 0, rate = 0;
+
+  /// A xi of wrenches, on a tree that moved.
+  double power(const Tree& tree) const {
+    double out = wrench.dot(tree.twist(link));
+    if (other != kGround) out -= other_wrench.dot(tree.twist(other));
+    return out;
+  }
 };
 
 class ContactModel;

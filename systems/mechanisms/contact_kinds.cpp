@@ -51,7 +51,7 @@ class ContactOf final : public ContactModel {
     else find_rows<double>(contact, tree, ground, out);
   }
 
-  Vec3 touch(const Contact& contact, const Tree& tree) const override {
+  HAMEL_FLATTEN Vec3 touch(const Contact& contact, const Tree& tree) const override {
     const ContactView<double> view(contact, tree);
     return view.point_in_world(kind_.touch(view).point);
   }

@@ -85,8 +85,7 @@ void Multibody::inertia(const double* g, Matrix out) const {
   else carrying(g).inertia(out);
 }
 
-bool Multibody::momentum(const double* g, ConstVector xi, Vector out,
-                         Vector inertial_force) const {
+bool Multibody::momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const {
   Tree& at = carrying(g);
   at.move(xi);
   at.momentum(out, inertial_force);
@@ -131,14 +130,30 @@ void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const
   }
 }
 
+bool Multibody::constraint_values(double t, const double* g, ConstVector xi, Vector out) const {
+  for (int i = 0; i < constraint_count(); ++i) {
+    if (varies_[static_cast<size_t>(kept_[static_cast<size_t>(i)])] == 0)
+      out[i] = fixed_rows_.row(i).dot(xi);
+  }
+  if (constant_rows_) return true;
+  Tree& at = placed(g);
+  at.move(xi);
+  rows_.each(
+      at, t, [&](size_t i) { return varies_[i] != 0; },
+      [&](size_t i, const Row& row) {
+        out[slots_[i]] = (row.dof >= 0 ? xi[row.dof] : row.power(at)) - row.drift;
+      });
+  return true;
+}
+
 bool Multibody::motion(double t, const double* g, ConstVector xi, Matrix inertia, Matrix a,
-                       Vector b, Vector row_rates, Vector change) const {
+                       Vector b, Vector rows, Vector change) const {
   const bool moves = !constant_rows_ || !constant_inertia_ || forces_.any();
   Tree& at = constant_inertia_ && constant_potential_ ? placed(g) : carrying(g);
   if (moves) at.move(xi);
   if (!constant_rows_ || !constant_inertia_) at.accelerate();
-  row_rates.setZero();
-  if (!constant_rows_) find_rows<true>(at, t, a, b, row_rates.data());
+  rows.setZero();
+  if (!constant_rows_) find_rows<true>(at, t, a, b, rows.data());
   if (!constant_inertia_) {
     at.inertia(inertia);
     at.bias(forces_.gravity, change);
@@ -181,9 +196,9 @@ Vec3 Multibody::reaction(size_t contact, const double* g,
 void Multibody::holonomic(const double* g, Vector out) const {
   if (holonomic_ == 0) return;
   const int before = constraint_count() - holonomic_;
-  rows_.each(
-      placed(g), 0, [&](size_t i) { return slots_[i] >= before; },
-      [&](size_t i, const Row& row) { out[slots_[i] - before] = row.phi; });
+  rows_.each_holonomic(
+      placed(g), [&](size_t i) { return slots_[i] >= before; },
+      [&](size_t i, double phi) { out[slots_[i] - before] = phi; });
 }
 
 void Multibody::add_force(const Tree& tree, double t, const double* g, ConstVector xi,

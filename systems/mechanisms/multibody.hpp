@@ -47,8 +47,9 @@ class Multibody final : public Mechanics {
   void inertia(const double* g, Matrix out) const override;
   bool momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
+  bool constraint_values(double t, const double* g, ConstVector xi, Vector out) const override;
   bool motion(double t, const double* g, ConstVector xi, Matrix inertia, Matrix a, Vector b,
-              Vector row_rates, Vector change) const override;
+              Vector rows, Vector change) const override;
   void holonomic(const double* g, Vector out) const override;
   void force(double t, const double* g, ConstVector xi, Vector out) const override;
   void inertial_force(const double* g, ConstVector xi, Vector out) const override;

@@ -43,8 +43,8 @@ struct ConstraintRows {
   std::vector<RowInfo> info() const;
   /// Finds the contacts whose rows do not change; before the rest.
   void find_fixed(const Tree& tree);
-  /// f(i, row) for the rows i selected by a predicate at a tree that was placed; with rates one that
-  /// moved and accelerated.
+  /// f(i, row) for the rows i selected by a predicate at a tree that was placed; with rates one
+  /// that moved and accelerated.
   template <bool with_rates = false, class Wants, class F>
   void each(const Tree& tree, double t, Wants&& wants, F&& f) const {
     size_t i = 0;
@@ -59,21 +59,10 @@ struct ConstraintRows {
       while (k < count && !wants(i + k)) ++k;
       return k < count;
     };
-    Row row;
     for (const Contact& contact : contacts) {
       const size_t count = contact.row_count();
-      if (contact.fixed) {
-        Twist change;
-        if constexpr (with_rates) change = change_of(contact, tree);
-        for (size_t k = 0; k < count; ++k) {
-          if (!wants(i + k)) continue;
-          take(contact, k, tree, row);
-          if constexpr (with_rates) row.rate = -row.wrench.dot(change);
-          f(i + k, row);
-        }
-      } else if (any(count)) {
-        evaluate_all(contact);
-      }
+      if (contact.fixed) each_fixed<with_rates>(contact, tree, i, wants, f);
+      else if (any(count)) evaluate_all(contact);
       i += count;
     }
     for (const Loop& loop : loops) {
@@ -92,6 +81,25 @@ struct ConstraintRows {
       ++i;
     }
   }
+  /// f(i, phi) for the holonomic rows i selected by a predicate.
+  template <class Wants, class F>
+  void each_holonomic(const Tree& tree, Wants&& wants, F&& f) const {
+    size_t i = 0;
+    for (const Contact& contact : contacts) {
+      i += contact.row_count();
+      if (wants(i - 1)) f(i - 1, contact.fixed ? contact.height : touch(contact, tree)[2]);
+    }
+    for (const Loop& loop : loops) {
+      Row rows[5];
+      evaluate(loop, tree, false, rows);
+      for (size_t k = 0; k < loop.row_count(); ++k, ++i)
+        if (wants(i)) f(i, rows[k].phi);
+    }
+    for (const Prescribed& p : prescribed) {
+      if (p.held >= 0 && wants(i)) f(i, beyond(p, tree));
+      ++i;
+    }
+  }
   /// All of them.
   template <class F>
   void each(const Tree& tree, double t, F&& f) const {
@@ -104,6 +112,20 @@ struct ConstraintRows {
   }
 
  private:
+  // Those of a fixed contact, of which the first is row `first`.
+  template <bool with_rates, class Wants, class F>
+  static void each_fixed(const Contact& contact, const Tree& tree, size_t first, Wants& wants,
+                         F& f) {
+    Twist change;
+    if constexpr (with_rates) change = change_of(contact, tree);
+    Row row;
+    for (size_t k = 0; k < contact.row_count(); ++k) {
+      if (!wants(first + k)) continue;
+      take(contact, k, tree, row);
+      if constexpr (with_rates) row.rate = -row.wrench.dot(change);
+      f(first + k, row);
+    }
+  }
   // Row k of a fixed contact.
   static void take(const Contact& contact, size_t k, const Tree& tree, Row& row) {
     const Wrench& wrench = contact.wrenches[k];

@@ -17,8 +17,8 @@
 //   D_j = D_parent + ad_{U_parent} (V_j - V_parent),   D_root = 0,   (ds_a/dt = ad_{U_parent} s_a)
 //   (dI/dt xi)_a = s_a^T (ad_{U_parent}^T P_a + dP_a/dt),
 //   d(I_j V_j)/dt = I_j (D_j - ad_{U_j} V_j) - ad_{U_j}^T I_j V_j.
-// So all that turns and moves, ad*_xi I xi + 1/2 d(xi^T I xi) - (dI/dt) xi, is s_a^T F_a, F_a the sum
-// over what link a carries of
+// So all that turns and moves, ad*_xi I xi + 1/2 d(xi^T I xi) - (dI/dt) xi, is s_a^T F_a, F_a the
+// sum over what link a carries of
 //   ad_{V_j}^T I_j V_j - I_j (D_j - ad_{U_j} V_j),
 // as V_root = V_parent - U_parent in the last two terms, and ad*_xi is that of the joint alone.
 // The axis of a joint with one velocity is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant
@@ -156,7 +156,7 @@ class Tree {
     Twist twist = Twist::Zero(), against = Twist::Zero(), acceleration = Twist::Zero();  // V, U, D
     Wrench spin_here = Wrench::Zero(), momentum = Wrench::Zero(), force = Wrench::Zero();  // P, F
     Vec3 gravity = Vec3::Zero();  // seen from a root
-    Inertia own, carried;  // with all that the link carries
+    Inertia own, carried;         // with all that the link carries
 
     Rigid across(const double* g) const;  // from the parent
     /// Effect of a wrench on velocity i; of one on a planar link only its entries in the plane
@@ -167,6 +167,7 @@ class Tree {
   };
   const Node& at(int link) const { return nodes_[static_cast<size_t>(link)]; }
   Node& at(int link) { return nodes_[static_cast<size_t>(link)]; }
+  Wrench force_on(const Node& node) const;
   void find_planar(Node& node, const double* drawn) const;
   void find_rotors();
   void write(const Node* from, int count, int column, const Wrench& momentum, double* out,

@@ -22,27 +22,31 @@ HAMEL_FLATTEN void Tree::accelerate() {
   }
 }
 
+// What is summed in F of a link that is no rotor, and its weight.
+inline Wrench Tree::force_on(const Node& node) const {
+  const bool is_root = node.link.parent == kGround;
+  const Inertia& own = node.own;
+  const Vec3& a = at(node.root).gravity;
+  if (node.planar) {
+    const Vec3 u = in_plane(node.against), v = in_plane(node.twist);
+    Wrench out = Wrench::Zero();
+    in_plane(out) =
+        ad_transpose_in_plane(v, momentum_in_plane(own, v)) +
+        Vec3(own.first[0] * a[1] - own.first[1] * a[0], own.mass * a[0], own.mass * a[1]);
+    if (!is_root)
+      in_plane(out) -= momentum_in_plane(own, in_plane(node.acceleration) - ad_in_plane(u, v));
+    return out;
+  }
+  Wrench out = ad_transpose(node.twist, own * node.twist) + stack(own.first.cross(a), own.mass * a);
+  if (!is_root) out -= own * (node.acceleration - ad(node.against, node.twist));
+  return out;
+}
+
 HAMEL_FLATTEN void Tree::bias(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) {
-  const bool sloping = gravity[0] != 0 || gravity[1] != 0;
   for (Node& node : nodes_) {
-    const bool is_root = node.link.parent == kGround;
-    if (is_root) node.gravity = node.world.rotation.transpose().lazyProduct(gravity);
-    if (node.rotor) continue;  // its weight is its parent's
-    const Inertia& own = node.own;
-    const Vec3& a = at(node.root).gravity;
-    if (node.planar) {
-      const Vec3 u = in_plane(node.against), v = in_plane(node.twist);
-      Vec3 force = ad_transpose_in_plane(v, momentum_in_plane(own, v));
-      if (!is_root)
-        force -= momentum_in_plane(own, in_plane(node.acceleration) - ad_in_plane(u, v));
-      if (sloping)
-        force += Vec3(own.first[0] * a[1] - own.first[1] * a[0], own.mass * a[0], own.mass * a[1]);
-      in_plane(node.force) = force;
-    } else {
-      Wrench force = ad_transpose(node.twist, own * node.twist);
-      if (!is_root) force -= own * (node.acceleration - ad(node.against, node.twist));
-      node.force = force + stack(own.first.cross(a), own.mass * a);
-    }
+    if (node.link.parent == kGround)
+      node.gravity = node.world.rotation.transpose().lazyProduct(gravity);
+    if (!node.rotor) node.force = force_on(node);  // a rotor's weight is its parent's
   }
   for (size_t j = nodes_.size(); j-- > 0;) {
     const Node& node = nodes_[j];
@@ -51,8 +55,7 @@ HAMEL_FLATTEN void Tree::bias(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> o
     if (node.link.parent == kGround) continue;
     Node& parent = at(node.link.parent);
     if (node.rotor) {  // its spin is a wrench fixed in the parent
-      out[node.dof] =
-          node.spin_here.dot(ad(parent.against, parent.twist) - parent.acceleration);
+      out[node.dof] = node.spin_here.dot(ad(parent.against, parent.twist) - parent.acceleration);
       const Wrench force = node.rate * ad_transpose(parent.twist, node.spin_here);
       if (parent.planar) in_plane(parent.force) += in_plane(force);
       else parent.force += force;

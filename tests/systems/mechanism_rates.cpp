@@ -70,6 +70,8 @@ void check_rates(const SystemModel& model) {
     EXPECT_LE((same_a - a).norm(), 1e-14 * a.norm());
     EXPECT_LE((same_b - b).norm(), 1e-14 * b.norm());
     EXPECT_EQ(same_inertia, inertia);
+    ASSERT_TRUE(mechanics.constraint_values(t, g.data(), xi, same_b));
+    EXPECT_LE((same_b - (a * xi - b)).norm(), 1e-14 * (b.norm() + a.norm() * xi.norm()));
     for (int i = 0; i < k; ++i)
       EXPECT_NEAR(rows[i], rows_change[i], 1e-8 * (1 + std::abs(rows[i]))) << "row " << i;
     ASSERT_TRUE(mechanics.momentum(g.data(), xi, carried, inertial));
