@@ -1,7 +1,6 @@
 // Every group with every retraction.
 #pragma once
 
-#include <hamel/framework/lie/group_info.hpp>
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/heisenberg.hpp>
@@ -14,12 +13,3 @@
 #include <hamel/groups/second_kind.hpp>
 #include <hamel/groups/so2.hpp>
 #include <hamel/groups/so3.hpp>
-
-namespace hamel {
-
-// Compiled once, geometries.cpp.
-extern template GroupInfo group_info<SO3>();
-extern template GroupInfo group_info<SE2>();
-extern template GroupInfo group_info<SE3>();
-
-}  // namespace hamel

@@ -36,8 +36,4 @@ std::shared_ptr<const Geometry> erased_geometry<Cayley<SE3>>() {
   return std::make_shared<TypedGeometry<Cayley<SE3>>>();
 }
 
-template GroupInfo group_info<SO3>();
-template GroupInfo group_info<SE2>();
-template GroupInfo group_info<SE3>();
-
 }  // namespace hamel

@@ -44,4 +44,9 @@ SE3Element<double> SE3::nearest(std::span<const double> values) {
   return {SO3::nearest(values), {values[9], values[10], values[11]}};
 }
 
+template <>
+GroupInfo group_info<SE3>() {
+  return detail::erased_group<SE3>();
+}
+
 }  // namespace hamel

@@ -16,6 +16,7 @@
 
 #include <Eigen/LU>
 #include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/group_info.hpp>
 #include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/so3.hpp>
@@ -193,5 +194,8 @@ struct SE3 {
     return m;
   }
 };
+
+template <>
+GroupInfo group_info<SE3>();
 
 }  // namespace hamel

@@ -54,4 +54,9 @@ Mat<3, 3> SO3::rotation_from(const std::string& group, std::span<const double> v
   return error > 2e-15 ? normalise(normalise(g)) : g;
 }
 
+template <>
+GroupInfo group_info<SO3>() {
+  return detail::erased_group<SO3>();
+}
+
 }  // namespace hamel

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/group_info.hpp>
 #include <hamel/framework/lie/types.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <span>
@@ -163,5 +164,8 @@ struct SO3 {
   /// to round-off), else std::invalid_argument in the name of `group`.
   static Element<double> rotation_from(const std::string& group, std::span<const double> values);
 };
+
+template <>
+GroupInfo group_info<SO3>();
 
 }  // namespace hamel

@@ -124,11 +124,8 @@ std::vector<GroupFactor> factors_of() {
   }
 }
 
-}  // namespace detail
-
-/// Erases G.
-template <Group G>
-GroupInfo group_info() {
+template <class G>
+GroupInfo erased_group() {
   GroupInfo info;
   info.name = G::name();
   if constexpr (requires { G::summary(); }) info.summary = G::summary();
@@ -152,6 +149,14 @@ GroupInfo group_info() {
   };
   info.factors = detail::factors_of<G>();
   return info;
+}
+
+}  // namespace detail
+
+/// Erases G. Specialised where a library has it compiled.
+template <Group G>
+GroupInfo group_info() {
+  return detail::erased_group<G>();
 }
 
 }  // namespace hamel
