@@ -201,6 +201,10 @@ bool StudyAxes::operator<(const StudyAxes& other) const {
       [](const auto& a, const auto& b) { return a != b && a->text < b->text; });
 }
 
+StudyCells::StudyCells() : StudyCells(std::vector<StudyCell>()) {}
+StudyCells::StudyCells(std::vector<StudyCell> cells)
+    : cells_(std::make_shared<const std::vector<StudyCell>>(std::move(cells))) {}
+
 Config StudyCell::config() const {
   Config out = *base;
   axes.apply(out);

@@ -132,9 +132,8 @@ struct HAMEL_API StudyCell {
 /// The cells of a study, which its results share.
 class StudyCells {
  public:
-  StudyCells() : StudyCells(std::vector<StudyCell>()) {}
-  explicit StudyCells(std::vector<StudyCell> cells)
-      : cells_(std::make_shared<const std::vector<StudyCell>>(std::move(cells))) {}
+  StudyCells();
+  explicit StudyCells(std::vector<StudyCell> cells);
   size_t size() const { return cells_->size(); }
   bool empty() const { return cells_->empty(); }
   const StudyCell& operator[](size_t i) const { return (*cells_)[i]; }

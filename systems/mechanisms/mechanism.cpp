@@ -13,6 +13,15 @@ std::vector<double> values_of(const Point& p) { return {p.begin(), p.end()}; }
 
 }  // namespace
 
+Mechanism::Mechanism(std::string name) : name_(std::move(name)) {}
+Mechanism::Mechanism(const Mechanism&) = default;
+Mechanism::Mechanism(Mechanism&&) noexcept = default;
+Mechanism& Mechanism::operator=(const Mechanism&) = default;
+Mechanism& Mechanism::operator=(Mechanism&&) noexcept = default;
+Mechanism::~Mechanism() = default;
+
+Mechanism::Part Mechanism::part(const std::string& name) const { return {name, where_}; }
+
 std::string Mechanism::body(const std::string& name, const BodyOptions& options) {
   bodies_.push_back({part(name), options});
   return name;
@@ -75,6 +84,24 @@ void Mechanism::motor(const std::string& joint, const Range& range) {
 void Mechanism::force(const std::string& name, const std::string& body,
                       const ForceOptions& options) {
   forces_.push_back({part(name), options, body});
+}
+
+void Mechanism::redundant(const std::string& policy) { redundant_ = part(policy); }
+void Mechanism::input(const InputField& field) { inputs_.push_back({part(field.name), field}); }
+void Mechanism::event(Event event) { events_.push_back(std::move(event)); }
+
+void Mechanism::start(const std::map<std::string, double>& values) {
+  start_.clear();
+  for (const auto& [name, value] : values) start(name, value);
+}
+void Mechanism::start(const std::string& name, double value) {
+  start_.push_back({part(name), value});
+}
+void Mechanism::push(const std::string& name, double value) {
+  push_.push_back({part(name), value});
+}
+void Mechanism::start_arguments(std::vector<std::string> names) {
+  start_arguments_ = {part("start_arguments"), std::move(names)};
 }
 
 SystemModel Mechanism::model() const { return Assembly(*this).model(); }

@@ -96,7 +96,12 @@ struct ForceOptions {
 
 class HAMEL_API Mechanism {
  public:
-  explicit Mechanism(std::string name) : name_(std::move(name)) {}
+  explicit Mechanism(std::string name);
+  Mechanism(const Mechanism&);
+  Mechanism(Mechanism&&) noexcept;
+  Mechanism& operator=(const Mechanism&);
+  Mechanism& operator=(Mechanism&&) noexcept;
+  ~Mechanism();
 
   /// A body; what it returns is its name.
   std::string body(const std::string& name, const BodyOptions& options);
@@ -157,7 +162,7 @@ class HAMEL_API Mechanism {
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});
   /// "refuse", or "drop": policy for rows that are implied by others.
-  void redundant(const std::string& policy) { redundant_ = part(policy); }
+  void redundant(const std::string& policy);
 
   // Forces.
   /// m/s^2; an incline is a direction of gravity that is not -z.
@@ -172,27 +177,22 @@ class HAMEL_API Mechanism {
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
   /// An input of the run that signals may use: SignalInput::inputs, behind those of motors and
   /// prescribed joints.
-  void input(const InputField& field) { inputs_.push_back({part(field.name), field}); }
+  void input(const InputField& field);
 
   /// An event of a run (--events, --stop-at), a function of time, coordinates and velocities.
-  void event(Event event) { events_.push_back(std::move(event)); }
+  void event(Event event);
 
   /// The start: coordinates and velocities by name, and "speed", that of the first planar or free
   /// root joint ahead. Those that are not given follow from the rows: coordinates stay near the
   /// drawn pose, velocities have the least energy.
-  void start(const std::map<std::string, double>& values) {
-    start_.clear();
-    for (const auto& [name, value] : values) start(name, value);
-  }
-  void start(const std::string& name, double value) { start_.push_back({part(name), value}); }
+  void start(const std::map<std::string, double>& values);
+  void start(const std::string& name, double value);
   /// A velocity by name beside the speed of a run that starts at one (`--speed`): a motion to be
   /// seen where straight ahead there would be none.
-  void push(const std::string& name, double value) { push_.push_back({part(name), value}); }
+  void push(const std::string& name, double value);
   /// Meaning of the numbers given for a start (`--velocity`): names as those of start(). Left out:
   /// speed.
-  void start_arguments(std::vector<std::string> names) {
-    start_arguments_ = {part("start_arguments"), std::move(names)};
-  }
+  void start_arguments(std::vector<std::string> names);
 
   const std::string& name() const { return name_; }
   /// The system. Throws ConfigError with all mistakes, each with the name of its part.
@@ -247,7 +247,7 @@ class HAMEL_API Mechanism {
   struct StartArguments : Part {
     std::vector<std::string> names;
   };
-  Part part(const std::string& name) const { return {name, where_}; }
+  Part part(const std::string& name) const;
 
   std::string name_, where_;
   Part redundant_ = {"refuse", ""};

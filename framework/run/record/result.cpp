@@ -16,6 +16,10 @@ Trajectory::Trajectory(std::vector<ColumnGroup> groups) : groups_(std::move(grou
     columns_.insert(columns_.end(), group.columns.begin(), group.columns.end());
 }
 
+void Trajectory::append(std::span<const double> row) {
+  values_.insert(values_.end(), row.begin(), row.end());
+}
+
 void Trajectory::thin() {
   const size_t width = columns_.size(), count = (rows() + 1) / 2;
   for (size_t i = 1; i < count; ++i)
@@ -40,6 +44,14 @@ std::vector<double> Trajectory::column(const std::string& name) const {
   for (size_t i = 0; i < out.size(); ++i) out[i] = at(i, j);
   return out;
 }
+
+// Compiled here rather than in each program that includes it.
+Result::Result() = default;
+Result::Result(const Result&) = default;
+Result::Result(Result&&) noexcept = default;
+Result& Result::operator=(const Result&) = default;
+Result& Result::operator=(Result&&) noexcept = default;
+Result::~Result() = default;
 
 std::string Result::method() const {
   const auto used = [&](const char* option) {

@@ -37,9 +37,7 @@ class HAMEL_API Trajectory {
   size_t index(const std::string& column) const;
   std::vector<double> column(const std::string& name) const;
   bool has(const std::string& column) const;
-  void append(std::span<const double> row) {
-    values_.insert(values_.end(), row.begin(), row.end());
-  }
+  void append(std::span<const double> row);
   /// Drops every second row.
   void thin();
   /// 1: every recorded row is here; else every so manyth, and the last.
@@ -61,6 +59,13 @@ struct EventMet {
 };
 
 struct HAMEL_API Result : Measurements {
+  Result();
+  Result(const Result&);
+  Result(Result&&) noexcept;
+  Result& operator=(const Result&);
+  Result& operator=(Result&&) noexcept;
+  ~Result();
+
   Config config;                              // as it was run: start and parameters filled in
   std::shared_ptr<const SystemModel> system;  // <hamel/hamel.hpp> has its members
   std::shared_ptr<const Inputs> inputs;       // null without

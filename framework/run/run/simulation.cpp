@@ -57,6 +57,36 @@ Simulation::Simulation(const Registry& registry, std::string name, OwnSystem own
   request_.config.scheme = own_->scheme.name;
   request_.config.retraction = own_->retraction.name;
 }
+Simulation::Simulation(const Simulation&) = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(const Simulation&) = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+Simulation& Simulation::set(const std::string& name, std::vector<double> value) {
+  request_.config.parameters[name] = std::move(value);
+  return *this;
+}
+Simulation& Simulation::input(const std::string& name, double value) {
+  return input(name, InputSignal(value));
+}
+Simulation& Simulation::input(const std::string& name, InputSignal signal) {
+  request_.config.inputs[name] = std::move(signal);
+  return *this;
+}
+Simulation& Simulation::on_event(const std::string& name, Impact impact) {
+  request_.config.events.push_back(name);
+  request_.impacts[name] = std::move(impact);
+  return *this;
+}
+Simulation& Simulation::config(Config config) {
+  request_.config = std::move(config);
+  return *this;
+}
+Simulation& Simulation::record_to(std::string path) {
+  request_.records.push_back(std::move(path));
+  return *this;
+}
 
 std::vector<std::string> Simulation::mistakes() const {
   Mistakes mistakes;

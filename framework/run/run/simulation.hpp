@@ -65,25 +65,22 @@ class HAMEL_API Simulation {
   Simulation(const Registry& registry, std::string system);
   /// A system of the program's own.
   Simulation(const Registry& registry, std::string name, OwnSystem own);
+  Simulation(const Simulation&);
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(const Simulation&);
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
 
   /// A parameter by its field name. Units as the field states them.
-  Simulation& set(const std::string& name, std::vector<double> value) {
-    request_.config.parameters[name] = std::move(value);
-    return *this;
-  }
+  Simulation& set(const std::string& name, std::vector<double> value);
   Simulation& set(const std::string& name, std::initializer_list<double> value) {
     return set(name, std::vector<double>(value));
   }
   Simulation& set(const std::string& name, double value) { return set(name, {value}); }
   /// An input of the system: a constant, or InputTable{times, values, hold}, or
   /// InputFile{"table.csv"}. A run that is driven by Run::input needs a first value of some input.
-  Simulation& input(const std::string& name, double value) {
-    return input(name, InputSignal(value));
-  }
-  Simulation& input(const std::string& name, InputSignal signal) {
-    request_.config.inputs[name] = std::move(signal);
-    return *this;
-  }
+  Simulation& input(const std::string& name, double value);
+  Simulation& input(const std::string& name, InputSignal signal);
   /// The start. Velocity and momentum are projected onto d and d*, and a note states what was
   /// lost.
   Simulation& start(Start start) { return with(&Config::start, std::move(start)); }
@@ -138,16 +135,9 @@ class HAMEL_API Simulation {
   }
   /// Locates an event, and lets the caller change the state there; also in the two finer runs of a
   /// check.
-  Simulation& on_event(const std::string& name, Impact impact) {
-    request_.config.events.push_back(name);
-    request_.impacts[name] = std::move(impact);
-    return *this;
-  }
+  Simulation& on_event(const std::string& name, Impact impact);
   /// Everything at once; system and parameters too.
-  Simulation& config(Config config) {
-    request_.config = std::move(config);
-    return *this;
-  }
+  Simulation& config(Config config);
   /// Called with each recorded state; returning false stops the run there.
   Simulation& observe(std::function<bool(const Snapshot&)> observer) {
     request_.observer = std::move(observer);
@@ -156,10 +146,7 @@ class HAMEL_API Simulation {
   /// Rows are written as they come, to a file by its extension, output_formats(), or "-" (CSV to
   /// standard output); repeatable. The file is `path`.part until the run is done, whatever ends it.
   /// Then the Result has no trajectory.
-  Simulation& record_to(std::string path) {
-    request_.records.push_back(std::move(path));
-    return *this;
-  }
+  Simulation& record_to(std::string path);
   /// A trajectory of about so many rows beside the files: every second row is dropped, again and
   /// again.
   Simulation& keep_rows(size_t most) {
