@@ -2,10 +2,6 @@
 #include <hamel/groups/se3.hpp>
 
 namespace hamel {
-namespace {
-using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-}  // namespace
-
 std::vector<std::string> SE3::columns() {
   std::vector<std::string> names = SO3::columns();
   names.insert(names.end(), {"x", "y", "z"});
@@ -24,12 +20,14 @@ std::vector<Component> SE3::components() {
 
 void SE3::coordinate_rates(std::span<const double> x, std::span<const double> xi,
                            std::span<double> out) {
+  using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   SO3::coordinate_rates(x, xi, out);
   Eigen::Map<Vec<3>>(out.data() + 9) = Rows(x.data()) * Eigen::Map<const Vec<3>>(xi.data() + 3);
 }
 
 void SE3::add_pulled_back(std::span<const double> x, std::span<const double> slope,
                           std::span<double> out) {
+  using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   SO3::add_pulled_back(x, slope, out);
   Eigen::Map<Vec<3>>(out.data() + 3) +=
       Rows(x.data()).transpose() * Eigen::Map<const Vec<3>>(slope.data() + 9);
