@@ -2,6 +2,7 @@
 #include <hamel/groups/se3.hpp>
 
 namespace hamel {
+
 std::vector<std::string> SE3::columns() {
   std::vector<std::string> names = SO3::columns();
   names.insert(names.end(), {"x", "y", "z"});
