@@ -4,14 +4,24 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 namespace hamel::short_vectors {
 
-using Pair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+using Pair [[gnu::vector_size(16)]] = double;
 
-inline const Pair& pair_at(const double* x) { return *reinterpret_cast<const Pair*>(x); }
-inline Pair& pair_at(double* x) { return *reinterpret_cast<Pair*>(x); }
+// By memcpy, as numbers are aligned by 8 (a type aligned by less than its size is GCC's alone).
+inline Pair pair_at(const double* x) {
+  Pair out;
+  std::memcpy(&out, x, sizeof out);
+  return out;
+}
+inline void store(const Pair& pair, double* x) { std::memcpy(x, &pair, sizeof pair); }
+/// y += factors x, a pair each.
+inline void add_pair(const Pair& factors, const double* x, double* y) {
+  store(pair_at(y) + factors * pair_at(x), y);
+}
 
 /// x . y.
 inline double dot(const double* x, const double* y, std::ptrdiff_t count) {
@@ -27,8 +37,7 @@ inline double dot(const double* x, const double* y, std::ptrdiff_t count) {
 inline void add(double factor, const double* x, double* y, std::ptrdiff_t count) {
   const Pair factors = {factor, factor};
   std::ptrdiff_t i = 0;
-  for (const std::ptrdiff_t last = count - 1; i < last; i += 2)
-    pair_at(y + i) += factors * pair_at(x + i);
+  for (const std::ptrdiff_t last = count - 1; i < last; i += 2) add_pair(factors, x + i, y + i);
   if (i < count) y[i] += factor * x[i];
 }
 /// to = factor x.
@@ -36,7 +45,7 @@ inline void scale(double factor, const double* x, double* to, std::ptrdiff_t cou
   const Pair factors = {factor, factor};
   std::ptrdiff_t i = 0;
   for (const std::ptrdiff_t last = count - 1; i < last; i += 2)
-    pair_at(to + i) = factors * pair_at(x + i);
+    store(factors * pair_at(x + i), to + i);
   if (i < count) to[i] = factor * x[i];
 }
 
@@ -66,7 +75,7 @@ void combine_rows(const double* x, std::ptrdiff_t apart, const double* rows, std
       const Pair factors = {x[i * apart], x[i * apart]};
       for (int p = 0; p < P; ++p) sums[p] += factors * pair_at(rows + 2 * (i * P + p));
     }
-    for (int p = 0; p < P; ++p) pair_at(to + 2 * p) = sums[p];
+    for (int p = 0; p < P; ++p) store(sums[p], to + 2 * p);
   } else {
     for (std::ptrdiff_t j = 0; j < 2 * pairs; ++j) to[j] = 0;
     for (std::ptrdiff_t i = 0; i < count; ++i) {
@@ -83,7 +92,10 @@ void add_to_rows(double factor, const double* x, std::ptrdiff_t apart, const dou
     for (int p = 0; p < P; ++p) scaled[p] = Pair{factor, factor} * pair_at(y + 2 * p);
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       const Pair factors = {x[i * apart], x[i * apart]};
-      for (int p = 0; p < P; ++p) pair_at(rows + 2 * (i * P + p)) += factors * scaled[p];
+      for (int p = 0; p < P; ++p) {
+        double* const at = rows + 2 * (i * P + p);
+        store(pair_at(at) + factors * scaled[p], at);
+      }
     }
   } else {
     for (std::ptrdiff_t i = 0; i < count; ++i) {
