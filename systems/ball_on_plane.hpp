@@ -42,6 +42,28 @@ auto contact_velocity(const auto& g, double radius) {
 }
 
 /// The ball on its floor, with marks fixed in it; the trail follows a point of the body.
+/// (x', y') = B omega of the same rows.
+auto frame(const auto& g, double radius) {
+  const auto& r = g.template part<0>();
+  using T = std::decay_t<decltype(r(0, 0))>;
+  MatT<T, 2, 3> b;
+  for (int i = 0; i < 3; ++i) {
+    b(0, i) = radius * r(1, i);
+    b(1, i) = -radius * r(0, i);
+  }
+  return b;
+}
+
+/// And B': a row of R has the rate row x omega.
+inline Mat<2, 3> frame_rate(const Element& g, const Vec<5>& xi, double radius) {
+  const Mat<3, 3>& r = g.part<0>();
+  const Vec<3> omega = xi.head<3>(), x = r.row(0).transpose(), y = r.row(1).transpose();
+  Mat<2, 3> b;
+  b.row(0) = radius * y.cross(omega).transpose();
+  b.row(1) = -radius * x.cross(omega).transpose();
+  return b;
+}
+
 void draw(auto& scene, double radius, const std::vector<BodyShape>& marks = {}, Point trail = {}) {
   scene.floor();
   std::vector<BodyShape> shapes = {shapes::sphere(radius)};

@@ -30,6 +30,16 @@ MatT<T, 1, 6> contact_velocity(const VecT<T, 3>& r, const VecT<T, 3>& u) {
   row.template tail<3>() = u;
   return row;
 }
+/// v = r x omega as B of v = B omega: the contact at r rests.
+template <class T>
+MatT<T, 3, 3> frame(const VecT<T, 3>& r) {
+  MatT<T, 3, 3> b;
+  b(0, 0) = b(1, 1) = b(2, 2) = T(0.0);
+  b(0, 1) = -r[2], b(0, 2) = r[1];
+  b(1, 0) = r[2], b(1, 2) = -r[0];
+  b(2, 0) = -r[1], b(2, 1) = r[0];
+  return b;
+}
 /// The scalar of an element, a double or a dual number.
 template <class Element>
 using ScalarOf = typename std::decay_t<decltype(std::declval<Element>().rotation)>::Scalar;

@@ -40,6 +40,10 @@ struct ChaplyginBall {
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(moments, mass); }
   auto constraints(const auto& g) const { return ball_on_plane::contact_velocity(g, radius); }
+  auto frame(const auto& g) const { return ball_on_plane::frame(g, radius); }
+  auto frame_rate(const Element& g, const Vec<5>& xi) const {
+    return ball_on_plane::frame_rate(g, xi, radius);
+  }
   Start start() const {
     return {.configuration = {}, .velocity = {1.2, 2.0, 0.7, 1.0, -0.6}, .momentum = {}};
   }

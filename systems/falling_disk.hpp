@@ -73,9 +73,17 @@ struct FallingDisk {
       s = gamma[1] * inverse;
     }
   };
-  Vec<3> contact(const Element& g) const {
+  auto contact(const auto& g) const {
+    using T = body_on_plane::ScalarOf<decltype(g)>;
+    const Contact<T> at(g);
+    return VecT<T, 3>(-radius * at.c, -radius * at.s, T(0.0));
+  }
+  auto frame(const auto& g) const { return body_on_plane::frame(contact(g)); }
+  /// r' = -rho (c, s)' = -rho a (-s, c), a h = c gamma_2' - s gamma_1', gamma' = gamma x omega.
+  Mat<3, 3> frame_rate(const Element& g, const Vec<6>& xi) const {
     const Contact<double> at(g);
-    return {-radius * at.c, -radius * at.s, 0};
+    const double turn = xi[2] - at.gamma[2] * (at.c * xi[0] + at.s * xi[1]) / at.h;  // -a
+    return body_on_plane::frame(Vec<3>(-radius * turn * at.s, radius * turn * at.c, 0));
   }
   /// Rows (r x u, u) of body_on_plane.hpp, multiplied out: u = (-s, c, 0), where it rolls, and
   /// u = gamma x (-s, c, 0) = (-gamma_3 c, -gamma_3 s, h).

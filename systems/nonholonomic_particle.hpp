@@ -40,6 +40,11 @@ struct NonholonomicParticle {
     using T = std::decay_t<decltype(g[1])>;
     return MatT<T, 1, 3>(-g[1], T(0.0), T(1.0));
   }
+  /// z' = y x'.
+  auto frame(const auto& g) const {
+    using T = std::decay_t<decltype(g[1])>;
+    return MatT<T, 1, 2>(g[1], T(0.0));
+  }
   auto potential(const auto& g) const { return (0.5 * spring) * (g[1] * g[1]); }
   Start start() const {
     return {.configuration = {0, 0.5, 0}, .velocity = {1, 0.7, 0.5}, .momentum = {}};

@@ -73,6 +73,20 @@ struct Rattleback {
     r[2] += depth;
     return r;
   }
+  auto frame(const auto& g) const { return body_on_plane::frame(contact(g)); }
+  /// r' = (D^2 gamma (gamma' . D^2 gamma) / s^2 - D^2 gamma') / s, s^2 = gamma . D^2 gamma, gamma'
+  /// = gamma x omega.
+  Mat<3, 3> frame_rate(const Element& g, const Vec<6>& xi) const {
+    const Vec<3> gamma = g.rotation.row(2).transpose(), rate = gamma.cross(xi.head<3>());
+    Vec<3> d, moved;
+    for (int i = 0; i < 3; ++i) {
+      const double square = semi_axes[i] * semi_axes[i];
+      d[i] = square * gamma[i];
+      moved[i] = square * rate[i];
+    }
+    const double s2 = gamma.dot(d), part = rate.dot(d) / s2;
+    return body_on_plane::frame(Vec<3>((part * d - moved) / std::sqrt(s2)));
+  }
   auto constraints(const auto& g) const {
     using T = body_on_plane::ScalarOf<decltype(g)>;
     const VecT<T, 3> r = contact(g);

@@ -37,6 +37,10 @@ struct RollingBall {
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(Vec<3>::Constant(moment), mass); }
   auto constraints(const auto& g) const { return ball_on_plane::contact_velocity(g, radius); }
+  auto frame(const auto& g) const { return ball_on_plane::frame(g, radius); }
+  auto frame_rate(const Element& g, const Vec<5>& xi) const {
+    return ball_on_plane::frame_rate(g, xi, radius);
+  }
   Start start() const {
     return {.configuration = {}, .velocity = {0.4, 1.5, 0.8, 0.75, -0.2}, .momentum = {}};
   }

@@ -72,7 +72,21 @@ struct RouthSphere {
     }
     return i;
   }
+  /// Of m a (x' r_1 + y' r_2) . (w2, -w1, 0), r_i the rows of R: m a (w2, -w1, 0) x (x' r_1 + y'
+  /// r_2).
+  Vec<5> inertia_differential(const Element& g, const Vec<5>& xi) const {
+    const Mat<3, 3>& r = g.part<0>();
+    const Vec<3> along = r.topRows<2>().transpose().lazyProduct(xi.tail<2>());
+    const Vec<3> across(xi[1], -xi[0], 0);
+    Vec<5> d;
+    d << mass * offset * across.cross(along), 0, 0;
+    return d;
+  }
   auto constraints(const auto& g) const { return ball_on_plane::contact_velocity(g, radius); }
+  auto frame(const auto& g) const { return ball_on_plane::frame(g, radius); }
+  auto frame_rate(const Element& g, const Vec<5>& xi) const {
+    return ball_on_plane::frame_rate(g, xi, radius);
+  }
   auto potential(const auto& g) const {
     return (mass * gravity * offset) * g.template part<0>()(2, 2);
   }

@@ -5,7 +5,9 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
+#include <hamel/framework/schemes/dynamic_problem.hpp>
 
 namespace hamel {
 namespace check {
@@ -45,6 +47,38 @@ void inputs_of_zero(const SystemModel& model, const Geometry& geometry, const St
   report.push_back({"every input acts", idle, 0});
 }
 
+// The frame that a system states, at its start and at four configurations near it: A E = 0, and the
+// rates of y are those of the equations with multipliers.
+void frame(const SystemModel& model, const Geometry& geometry, const Start& start,
+           LawReport& report) {
+  const Mechanics& mechanics = *model.mechanics;
+  const Eigen::Index n = mechanics.dim(), m = mechanics.framed_size();
+  const DynamicProblem problem({std::shared_ptr<const void>(), &geometry}, model.mechanics);
+  EquationsOfMotion<DynamicProblem> motion(problem);
+  Eigen::VectorXd g(geometry.size()), moved(g), shift(n), xi(n), rate(m);
+  geometry.from_coordinates(start.configuration, g.data());
+  Largest rows, rates;
+  for (int i = 0; i < 5; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) shift[j] = i * std::sin(1.0 + i + 2.0 * double(j)) / 5;
+    geometry.tau(shift.data(), moved.data());
+    geometry.compose(g.data(), moved.data(), moved.data());
+    Eigen::MatrixXd a(n - m, n);
+    Eigen::VectorXd b(n - m);
+    mechanics.constraints(0, moved.data(), a, b);
+    for (Eigen::Index j = 0; j < m; ++j) {
+      mechanics.expand(moved.data(), Eigen::VectorXd::Unit(m, j), xi);
+      rows((a * xi).norm() / (a.norm() * xi.norm()));
+      rows(xi.head(m) == Eigen::VectorXd::Unit(m, j) ? 0 : 1);
+    }
+    const Eigen::VectorXd y = Eigen::VectorXd::LinSpaced(m, 0.7, -1.2);
+    mechanics.framed_motion(0, moved.data(), y, xi, rate);
+    motion.solve(0, moved, xi);
+    rates((rate - motion.acceleration().head(m)).norm() / (1 + rate.norm()));
+  }
+  report.push_back({"the frame spans ker A", rows.value, algebraic});
+  report.push_back({"rates in the frame are those with multipliers", rates.value, 1e-10});
+}
+
 }  // namespace
 }  // namespace check
 
@@ -79,6 +113,8 @@ LawReport check_system(const SystemModel& model, double until, const Geometry* g
        check::difference(model.group.element(start.configuration), start.configuration),
        check::algebraic});
   if (model.drive && geometry != nullptr) check::inputs_of_zero(model, *geometry, start, report);
+  if (model.mechanics->framed_size() > 0 && geometry != nullptr)
+    check::frame(model, *geometry, start, report);
   if (!model.exact) return report;
 
   for (const double sign : {1.0, -1.0}) {

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Core>
+
+#include <hamel/framework/mechanics/small_factors.hpp>
 
 namespace hamel {
 
@@ -52,22 +53,16 @@ class DenseFactors {
     }
     return definite;
   }
-  /// Y and the factors of Y^T Y = L D L^T, L with a unit diagonal: below the diagonal of gram_ L D,
-  /// on it D^-1, so that a solve does not divide; not a number where a row depends on those before.
+  /// Y and the factors of Y^T Y; not a number where a row depends on those before.
   void find_rows(const Columns& rows) {
     if (diagonal_) y_ = weights_.asDiagonal() * rows;
     else y_ = root_.lazyProduct(rows);
 #pragma GCC unroll 4
     for (int j = 0; j < K; ++j) {
 #pragma GCC unroll 4
-      for (int i = j; i < K; ++i) {
-        double sum = y_.col(i).dot(y_.col(j));
-#pragma GCC unroll 4
-        for (int l = 0; l < j; ++l) sum -= gram_(i, l) * gram_(j, l) * gram_(l, l);
-        gram_(i, j) = sum;
-      }
-      gram_(j, j) = gram_(j, j) > 0 ? 1 / gram_(j, j) : std::numeric_limits<double>::quiet_NaN();
+      for (int i = j; i < K; ++i) gram_(i, j) = y_.col(i).dot(y_.col(j));
     }
+    factor_small(gram_);
   }
 
   void apply_inertia(const Matrix& inertia, const Vector& xi, Vector& mu) const {
@@ -93,21 +88,7 @@ class DenseFactors {
   /// out += Y lambda.
   void add_reaction(const Multipliers& lambda, Vector& out) const { out += y_.lazyProduct(lambda); }
   /// c <- (Y^T Y)^-1 c.
-  void solve_gram(Multipliers& c) const {
-#pragma GCC unroll 4
-    for (int i = 0; i < K; ++i) {
-#pragma GCC unroll 4
-      for (int l = 0; l < i; ++l) c[i] -= gram_(i, l) * c[l];
-      c[i] *= gram_(i, i);
-    }
-#pragma GCC unroll 4
-    for (int i = K - 1; i >= 0; --i) {
-      double sum = 0;
-#pragma GCC unroll 4
-      for (int l = i + 1; l < K; ++l) sum += gram_(l, i) * c[l];
-      c[i] -= gram_(i, i) * sum;
-    }
-  }
+  void solve_gram(Multipliers& c) const { solve_small(gram_, c); }
 
  private:
   bool diagonal_ = false;

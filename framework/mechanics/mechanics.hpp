@@ -63,6 +63,14 @@ class Mechanics {
                       Matrix /*a*/, Vector /*b*/, Vector /*rows*/, Vector /*change*/) const {
     return false;
   }
+  /// How many velocities are independent in the frame that a system states, the first of xi
+  /// (framed_equations.hpp); 0: it states none.
+  virtual int framed_size() const { return 0; }
+  /// xi = E(g) y.
+  virtual void expand(const double* /*g*/, ConstVector /*y*/, Vector /*xi*/) const {}
+  /// xi, and y' of the equations of motion.
+  virtual void framed_motion(double /*t*/, const double* /*g*/, ConstVector /*y*/, Vector /*xi*/,
+                             Vector /*rate*/) const {}
   /// phi(g).
   virtual void holonomic(const double* /*g*/, Vector /*out*/) const {}
   /// F = f - dV + 1/2 d(xi^T I(g) xi) of (M3): the force on the momentum in the dual.

@@ -18,7 +18,7 @@ namespace named {
 struct Names {
   int constraints, drift, holonomic, potential, force, start, exact, has_exact, invariants, fields,
       draw, name, summary, formula, known, source, potential_differential, holonomic_differential,
-      inertia_differential, contacts, events, inputs, shape, at_speed;
+      inertia_differential, frame, frame_rate, contacts, events, inputs, shape, at_speed;
 };
 template <class S, bool = std::is_final_v<S>>
 struct Both : S, Names {};
@@ -55,6 +55,8 @@ HAMEL_NAMED(source)
 HAMEL_NAMED(potential_differential)
 HAMEL_NAMED(holonomic_differential)
 HAMEL_NAMED(inertia_differential)
+HAMEL_NAMED(frame)
+HAMEL_NAMED(frame_rate)
 HAMEL_NAMED(contacts)
 HAMEL_NAMED(events)
 HAMEL_NAMED(inputs)

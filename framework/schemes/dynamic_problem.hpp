@@ -19,6 +19,7 @@ class DynamicProblem {
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
   using State = Eigen::VectorXd;  // xi
+  using Stage = Eigen::VectorXd;
   using StateMatrix = Eigen::MatrixXd;
   using TwoStates = Eigen::VectorXd;
   using TwoStatesMatrix = Eigen::MatrixXd;
@@ -113,6 +114,14 @@ class DynamicProblem {
   bool motion(double t, const Element& g, const Vector& xi, Matrix& inertia, ConstraintMatrix& a,
               Multipliers& b, Multipliers& rows, Vector& change) const {
     return mechanics_->motion(t, g.data(), xi, inertia, a, b, rows, change);
+  }
+  bool framed() const { return mechanics_->framed_size() > 0; }
+  int framed_size() const { return mechanics_->framed_size(); }
+  void expand(const Element& g, const Stage& y, Vector& xi) const {
+    mechanics_->expand(g.data(), y, xi);
+  }
+  void framed_motion(double t, const Element& g, const Stage& y, Vector& xi, Stage& rate) const {
+    mechanics_->framed_motion(t, g.data(), y, xi, rate);
   }
   bool autonomous() const { return mechanics_->autonomous(); }
   void holonomic(const Element& g, HolonomicValues& phi) const {

@@ -2,12 +2,13 @@
 // tableau.
 //
 // In coordinates q of the element that it chooses, a scheme integrates
-//   q' = rate(q, xi),   x' = a(t, g, x)   (mechanics/equations_of_motion.hpp),   g = element(q).
-// At the end of a step g goes to the group and xi onto A xi = b, orthogonally in the metric I. A
-// scheme that keeps the holonomic rows (Derived::keeps_rows) moves g onto phi = 0 before, g <- g
-// tau(v) with the smallest v in that metric that has A v = (0, -phi): the change is of the size of
-// the step's error, so that the order stays. Source: Hairer, Norsett, Wanner, Solving Ordinary
-// Differential Equations I, II.1 to II.6; Hairer, Lubich, Wanner, IV.4.
+//   q' = rate(q, xi),   x' = a(t, g, x)   (stage_motion.hpp),   g = element(q).
+// At the end of a step g goes to the group and xi onto A xi = b, orthogonally in the metric I (in a
+// frame xi = E(g) y is there already). A scheme that keeps the holonomic rows (Derived::keeps_rows)
+// moves g onto phi = 0 before, g <- g tau(v) with the smallest v in that metric that has A v = (0,
+// -phi): the change is of the size of the step's error, so that the order stays. Source: Hairer,
+// Norsett, Wanner, Solving Ordinary Differential Equations I, II.1 to II.6; Hairer, Lubich, Wanner,
+// IV.4.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +17,8 @@
 #include <vector>
 
 #include <hamel/framework/lie/types.hpp>
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
+#include <hamel/framework/schemes/stage_motion.hpp>
 #include <hamel/framework/schemes/tableau.hpp>
 
 namespace hamel {
@@ -33,6 +34,7 @@ class RungeKutta {
   using Element = typename P::Element;
   using Vector = typename P::Vector;
   using State = typename P::State;
+  using Stage = typename StageMotion<P>::Stage;
 
   /// Evaluations of the equations of motion in the last step.
   int evaluations() const { return evaluations_; }
@@ -44,10 +46,11 @@ class RungeKutta {
     self().start(node.g, q0_);
     problem_.velocity(node.x, xi_);
     self().rate(q0_, node.g, xi_, q_rates_[0]);
+    motion_.begin(node.x, x0_);
     if (is(end_, node)) {
       x_rates_[0] = x_rates_[at(last())];
     } else if (!is(begin_, node)) {  // else the step is taken again with another size
-      motion_(node.t, node.g, node.x, x_rates_[0]);
+      motion_(node.t, node.g, x0_, xi_, x_rates_[0]);
       ++evaluations_;
     }
     begin_ = node;
@@ -62,15 +65,13 @@ class RungeKutta {
     sum(last());
     if (!self().element(q_, next.g)) return false;
     next.t = from_->t + h_;
-    next.x = x_;
     if constexpr (!P::left_invariant) {
       if (!settle(next)) return false;
     }
-    if (table_.estimates()) {
-      problem_.velocity(next.x, xi_);
-      self().rate(q_, next.g, xi_, q_rates_[at(last())]);
-    }
-    motion_(next.t, next.g, next.x, x_rates_[at(last())]);
+    if (!P::left_invariant || table_.estimates()) motion_.velocity(x_, xi_);
+    motion_(next.t, next.g, x_, xi_, x_rates_[at(last())]);
+    motion_.end(x_, xi_, next.x);
+    if (table_.estimates()) self().rate(q_, next.g, xi_, q_rates_[at(last())]);
     end_ = next;
     return next.x.allFinite();
   }
@@ -96,9 +97,9 @@ class RungeKutta {
   // q_ and x_ at stage i.
   void sum(int i) const {
     Local<Q> q = q_;
-    Local<State> x = x_;
+    Local<Stage> x = x_;
     q = q0_;
-    x = from_->x;
+    x = x0_;
     for (int j = 0; j < i; ++j) {
       const double weight = h_ * table_.at(i, j);
       if (weight == 0) continue;
@@ -113,7 +114,14 @@ class RungeKutta {
   using Local = std::conditional_t<V::SizeAtCompileTime == Eigen::Dynamic, V&, V>;
   HAMEL_FLATTEN [[gnu::noinline]] bool stage(int i) const {
     sum(i);
-    problem_.velocity(x_, xi_);
+    const double t = from_->t + table_.c[at(i)] * h_;
+    if (motion_.framed()) {  // xi follows from g
+      if (!self().element(q_, g_)) return false;
+      motion_(t, g_, x_, xi_, x_rates_[at(i)]);
+      self().rate(q_, g_, xi_, q_rates_[at(i)]);
+      return true;
+    }
+    motion_.velocity(x_, xi_);
     if constexpr (P::left_invariant && Derived::rate_in_algebra) {
       if (!problem_.in_domain(q_)) return false;
       self().rate(q_, g_, xi_, q_rates_[at(i)]);
@@ -123,7 +131,7 @@ class RungeKutta {
       if (!self().element(q_, g_)) return false;
       self().rate(q_, g_, xi_, q_rates_[at(i)]);
     }
-    motion_(from_->t + table_.c[at(i)] * h_, g_, x_, x_rates_[at(i)]);
+    motion_(t, g_, x_, xi_, x_rates_[at(i)]);
     return true;
   }
   // Onto the constraints. They must hold to a percent of the velocity before they are imposed: the
@@ -132,17 +140,22 @@ class RungeKutta {
   bool settle(Node& node) const {
     constexpr double most = 0.01;
     double off = 0;  // squared, of the rows of phi, in the metric
-    if (const int held = problem_.holonomic_rows(); held > 0) {
+    const int held = problem_.holonomic_rows();
+    if (motion_.framed()) {
+      lost_ = false;
+      if (held == 0) return true;
+      motion_.rows().set(node.t, node.g);  // the stages have set none
+    }
+    if (held > 0) {
       gaps_.setZero();
       problem_.holonomic(from_->g, phi_);
       gaps_.tail(held) = phi_;
       problem_.holonomic(node.g, phi_);
       gaps_.tail(held) = (gaps_.tail(held) - phi_) / h_;
-      off = motion_.smallest(gaps_, move_);
+      off = motion_.rows().smallest(gaps_, move_);
       if (self().keeps_rows() && !onto_rows(node.g)) return false;
     }
-    motion_.set(node.t, node.g);
-    const auto [added, size] = motion_.project(node.x);
+    const auto [added, size] = motion_.settle(node.t, node.g, x_);
     lost_ = !(std::max(off, added) <= most * most * size);
     return !lost_;
   }
@@ -159,7 +172,7 @@ class RungeKutta {
       if (now == 0) break;
       gaps_.setZero();
       gaps_.tail(held) = -phi_;
-      motion_.smallest(gaps_, move_);
+      motion_.rows().smallest(gaps_, move_);
       problem_.tau(move_, g_);
       problem_.compose(g, g_, g);
     }
@@ -170,7 +183,7 @@ class RungeKutta {
   static constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
   P problem_;
   Tableau table_;
-  mutable EquationsOfMotion<OfMotion<P>> motion_{OfMotion<P>(problem_)};
+  mutable StageMotion<P> motion_{problem_};
   const Node* from_ = nullptr;
   // Whose rates are those of the first and the last stage.
   mutable Node begin_{problem_}, end_{problem_};
@@ -179,9 +192,10 @@ class RungeKutta {
   Q q0_;
   mutable Element g_ = problem_.element();
   mutable Q q_ = q0_;
-  mutable State x_ = State::Zero(problem_.state_size());
+  Stage x0_ = Stage::Zero(motion_.size());
+  mutable Stage x_ = x0_;
   mutable std::vector<Q> q_rates_ = std::vector<Q>(at(table_.all_stages()), q0_);
-  mutable std::vector<State> x_rates_ = std::vector<State>(q_rates_.size(), x_);
+  mutable std::vector<Stage> x_rates_ = std::vector<Stage>(q_rates_.size(), x_);
   mutable Vector xi_ = Vector::Zero(problem_.dim()), move_ = xi_;
   mutable typename P::HolonomicValues phi_{problem_.holonomic_rows()};
   mutable typename P::Multipliers gaps_{problem_.constraint_count()};

@@ -18,6 +18,8 @@ class WithoutRows : public P {
   using HolonomicValues = Vec<0>;
   using AdmissibleFrame = hamel::AdmissibleFrame<P::n, 0>;
   using OfMotion = WithoutRows;
+  using Stage = typename P::State;
+  static constexpr bool framed() { return false; }
   explicit WithoutRows(const P& problem) : P(problem) {}
   static constexpr int constraint_count() { return 0; }
   static constexpr int holonomic_rows() { return 0; }
@@ -39,6 +41,9 @@ class StaticProblem : public GroupOperations<Tau> {
   using Vector = Vec<n>;
   using Matrix = Mat<n, n>;
   using State = Vec<n>;  // xi
+  /// y of a frame that the system states, else xi: what the stages of explicit schemes carry.
+  static constexpr bool framed() { return F::framed(); }
+  using Stage = Vec<framed() ? n - k : n>;
   using StateMatrix = Mat<n, n>;
   using TwoStates = Vec<2 * n>;
   using TwoStatesMatrix = Mat<2 * n, 2 * n>;
@@ -55,11 +60,12 @@ class StaticProblem : public GroupOperations<Tau> {
   StaticProblem(const std::shared_ptr<const Geometry>& /*geometry*/,
                 const std::shared_ptr<const Mechanics>& mechanics)
       : owner_(mechanics),
-        formulas_(&static_cast<const TypedMechanics<System>&>(*mechanics).formulas()) {}
+        typed_(&static_cast<const TypedMechanics<System>&>(*mechanics)),
+        formulas_(&typed_->formulas()) {}
 
   template <class Other>
   explicit StaticProblem(const StaticProblem<System, Other>& other)
-      : owner_(other.owner_), formulas_(other.formulas_) {}
+      : owner_(other.owner_), typed_(other.typed_), formulas_(other.formulas_) {}
 
   Unconstrained unconstrained() const { return Unconstrained(*this); }
 
@@ -95,24 +101,22 @@ class StaticProblem : public GroupOperations<Tau> {
   void dual_rates(const Element& g, const Vector& xi, Mat<n, k>& rows, Multipliers& row_rate,
                   Matrix& inertia, Vector& momentum_rate) const {
     using Dual = typename F::Dual;
-    if constexpr (requires { Group::template along<Dual>(g, xi); }) {
-      formulas_->dual_rates(Group::template along<Dual>(g, xi), xi, rows, row_rate, inertia,
-                            momentum_rate);
-    } else {
-      VecT<Dual, n> eta;
-      for (int i = 0; i < n; ++i) {
-        eta[i].a = 0;
-        eta[i].v[0] = xi[i];
-      }
-      formulas_->dual_rates(Group::compose(constant_element<Dual, Group>(g), Tau::tau(eta)), xi,
-                            rows, row_rate, inertia, momentum_rate);
-    }
+    formulas_->dual_rates(element_along<Dual, Group>(g, xi), xi, rows, row_rate, inertia,
+                          momentum_rate);
+  }
+  /// xi = E(g) y, and with y' (framed_equations.hpp).
+  void expand(const Element& g, const Stage& y, Vector& xi) const {
+    typed_->framed_equations().expand(*formulas_, g, y, xi);
+  }
+  void framed_motion(double t, const Element& g, const Stage& y, Vector& xi, Stage& rate) const {
+    typed_->framed_equations()(*formulas_, t, g, y, xi, rate);
   }
 
  private:
   template <class, class>
   friend class StaticProblem;
   std::shared_ptr<const Mechanics> owner_;
+  const TypedMechanics<System>* typed_;
   const F* formulas_;
 };
 
