@@ -15,6 +15,7 @@
 #include <hamel/hamel.hpp>
 
 #include "../systems/mechanism_systems.hpp"
+#include "chains.hpp"
 
 namespace {
 
@@ -51,30 +52,9 @@ void compare(benchmark::State& state, const Simulation& written, const Simulatio
   state.counters["ratio"] = median(ratios);
 }
 
-Mechanism chain(int n) {
-  Mechanism m("chain");
-  std::string ahead;
-  for (int i = 0; i < n; ++i) {
-    const std::string name = fmt::format("link {}", i);
-    m.body(name, {.mass = 1, .at = {-0.3 * i, 0, 0.1}, .box = {0.3, 0.1, 0.05}});
-    const Point at = {-0.3 * i + 0.15, 0, 0.1};
-    if (i == 0) m.free("space", name, {.at = {0, 0, 0.1}});
-    else
-      m.hinge(
-          fmt::format("hinge {}", i), ahead, name,
-          {.at = at, .axis = {0, i % 2 == 0 ? 1.0 : 0.0, i % 2 == 0 ? 0.0 : 1.0}, .stiffness = 50});
-    ahead = name;
-  }
-  m.ball("head", "link 0", {.at = {0, 0, 0.1}, .radius = 0.1});
-  std::map<std::string, double> start = {{"v1", 0.3}};
-  for (int i = 1; i < n; ++i) start[fmt::format("hinge {}.rate", i)] = 0.1 * std::cos(i);
-  m.start(start);
-  return m;
-}
-
 void equations(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
-  const SystemModel model = chain(n).model();
+  const SystemModel model = benchmarks::snake(n).model();
   const Mechanics& mechanics = *model.mechanics;
   const auto geometry = registry().geometry(model.group.name, "exp");
   Eigen::VectorXd g(geometry->size()), turn(geometry->size()), force(mechanics.dim()),
@@ -95,7 +75,7 @@ void equations(benchmark::State& state) {
 
 void step(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
-  hamel::Run run = simulate(chain(n)).step(0.001).build();
+  hamel::Run run = simulate(benchmarks::snake(n)).step(0.001).build();
   const Start start = run.config().start;
   long taken = 0;
   for (auto _ : state) {  // the first second again and again: later a long chain lies in knots
