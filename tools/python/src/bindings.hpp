@@ -108,12 +108,16 @@ class StoredResult {
   const Places& places() const;
   std::string record_text() const;
   void write(const std::string& path);
+  /// Makes the system of a result that was pickled again, from its name or text.
+  void restore_system();
 
  private:
   mutable Places places_;
 };
 
 nb::object result_of(Result result, std::string source);
+/// At most `most` poses of the bodies that are drawn, and their shapes.
+nb::dict motion(StoredResult& stored, size_t most);
 nb::dict pack(const StoredResult& stored);
 void unpack(StoredResult& self, const nb::dict& state);
 /// A run to be stepped by hand.

@@ -159,15 +159,17 @@ std::string StoredResult::record_text() const {
   return result.system == nullptr ? record : result.record();
 }
 
-// The system of a result that was pickled is made again, from its name or text.
+void StoredResult::restore_system() {
+  if (result.system != nullptr) return;
+  Simulation again =
+      source.empty() ? simulate(result.config.system) : simulate_text(source, result.config.system);
+  const Result fresh = again.config(result.config).build().finish();
+  result.system = fresh.system;
+  result.inputs = fresh.inputs;
+}
+
 void StoredResult::write(const std::string& path) {
-  if (result.system == nullptr) {
-    Simulation again = source.empty() ? simulate(result.config.system)
-                                      : simulate_text(source, result.config.system);
-    const Result fresh = again.config(result.config).build().finish();
-    result.system = fresh.system;
-    result.inputs = fresh.inputs;
-  }
+  restore_system();
   result.write(path);
 }
 
@@ -255,6 +257,17 @@ void bind_result(nb::module_& m) {
       .def(
           "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of")(self); },
           nb::sig("def _repr_html_(self) -> str"))
+      .def(
+          "animation",
+          [](nb::handle self, int height) {
+            return helper("_animation", "Animation")(self, height);
+          },
+          "height"_a = 320,
+          nb::sig("def animation(self, height: int = 320) -> _Animation"),
+          "The drawing of the system in motion, which a notebook shows; height in pixels. "
+          "ValueError where the system has no drawing, or the rows are in files.")
+      .def("_motion", &motion, "most"_a,
+           nb::sig("def _motion(self, most: int) -> dict[str, typing.Any]"))
       .def("__str__",
            [](const StoredResult& s) {
              return s.result.system == nullptr ? s.report : s.result.report();

@@ -118,6 +118,22 @@ def test_options_that_are_none():
         hamel.run(3)
 
 
+def test_a_call_costs_little_more_than_its_run():
+    """Keywords and the builder take at most 20 µs; the least of many, in turns."""
+    options = {"step": 0.01, "until": 0.1}
+    simulation = hamel.simulate("suslov", **options)
+    call, run = [], []
+    for _ in range(400):
+        for times, function in (
+            (call, lambda: hamel.run("suslov", **options)),
+            (run, simulation.run),
+        ):
+            begin = time.perf_counter()
+            function()
+            times.append(time.perf_counter() - begin)
+    assert min(call) - min(run) < 20e-6
+
+
 def test_long_calls_leave_the_interpreter_free():
     done = threading.Event()
 

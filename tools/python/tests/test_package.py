@@ -1,6 +1,7 @@
 """The additions of Python: views, frames, files, pickles, notebooks, help."""
 
 import gc
+import json
 import pickle
 import runpy
 import sys
@@ -134,6 +135,25 @@ def test_a_result_shows_itself():
     assert "failed in step" in failed._repr_html_()
     assert hamel.run("suslov", from_=1, until=0, step=-0.01)._repr_html_().count("<polyline") == 3
     assert "<td>" in hamel.study(system="suslov", step=[0.1], until=1, repeats=1)._repr_html_()
+
+
+def test_a_result_moves(tmp_path):
+    result = hamel.run("rattleback", until=1, output_step=0.1)
+    animation = result.animation()
+    assert "<iframe" in animation._repr_html_() and "http" not in animation.page()
+    data = json.loads(
+        animation.page().split('id="motion">')[1].split("</script>")[0].replace("<\\/", "</")
+    )
+    assert data["times"] == list(result.t)
+    pose = data["bodies"][0]["poses"][-1]
+    np.testing.assert_allclose(pose[:3], [result[x][-1] for x in "xyz"], atol=1e-6)
+    w, x, y, z = pose[3:]
+    assert 2 * (x * y + w * z) == pytest.approx(result["R21"][-1], abs=1e-5)
+    assert pickle.loads(pickle.dumps(result)).animation().page() == animation.page()
+    animation.write(tmp_path / "motion.html")
+    assert (tmp_path / "motion.html").read_text() == animation.page()
+    with pytest.raises(ValueError, match="fewer than two rows"):
+        hamel.run("rattleback", until=1, record_to=str(tmp_path / "x.csv")).animation()
 
 
 @pytest.mark.parametrize("name", ["first_steps", "segway"])
