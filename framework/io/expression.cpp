@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstring>
 #include <iterator>
 #include <numbers>
 #include <optional>
@@ -23,6 +24,17 @@ using namespace rules;
 double call_one(void* rule, double x) { return static_cast<const Rule*>(rule)->value(x, 0); }
 double call_two(void* rule, double x, double y) {
   return static_cast<const Rule*>(rule)->value(x, y);
+}
+// A number where a formula goes on, read by muParser: 1e-400 would be 0 there.
+int read_number(const char* text, int* place, double* out) {
+  if (std::isdigit(static_cast<unsigned char>(*text)) == 0 && *text != '.') return 0;
+  const auto [behind, why] = std::from_chars(text, text + std::strlen(text), *out);
+  if (why == std::errc::result_out_of_range)
+    throw ExpressionError(
+        fmt::format("the number {} is too large or too small", std::string(text, behind)),
+        static_cast<size_t>(*place));
+  *place += static_cast<int>(behind - text);
+  return behind == text ? 0 : 1;
 }
 double minus(double x) { return -x; }
 double plus(double x) { return x; }
@@ -47,6 +59,7 @@ class Expression::Reader {
                  [](const std::string& name) { return !allows(name); });
     parser_.EnableOptimizer(false);
     parser_.DefineNameChars(kLetters);
+    parser_.AddValIdent(read_number);
     parser_.ClearFun();
     parser_.ClearConst();
     parser_.ClearInfixOprt();
@@ -95,12 +108,6 @@ class Expression::Reader {
       if (const size_t there = text_.find(name); !name.empty() && there != std::string::npos)
         throw ExpressionError(cannot_stand(name), there);
     if (error.GetCode() != mu::ecUNASSIGNABLE_TOKEN) throw ExpressionError(error.GetMsg(), at);
-    double number = 0;
-    const char* const begin = text_.data() + at;
-    if (const auto [behind, why] = std::from_chars(begin, text_.data() + text_.size(), number);
-        why == std::errc::result_out_of_range)
-      throw ExpressionError(
-          fmt::format("the number {} is too large or too small", std::string(begin, behind)), at);
     const size_t end = std::min(text_.size(), text_.find_first_not_of(kLetters, at));
     if (end == at) {
       size_t next = at + 1;  // of a letter in UTF-8 all bytes

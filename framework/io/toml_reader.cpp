@@ -1,6 +1,9 @@
 #include <hamel/framework/io/toml_reader.hpp>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <system_error>
 
 #include <hamel/framework/io/text_file.hpp>
 
@@ -9,16 +12,19 @@ namespace {
 
 constexpr int kMaxDepth = 30;  // of brackets, and of the dots of one key
 
-// Walks through a text as far as brackets, dots, strings and comments are concerned.
-class Depth {
+// Walks through a text as far as brackets, dots, numbers, strings and comments are concerned.
+class Scan {
  public:
-  explicit Depth(const std::string& text) : text_(text) {}
+  explicit Scan(const std::string& text) : text_(text) {}
 
-  // The first place that is too deep, else the end.
+  // The first place that is too deep, or has a number that no double holds; else the end.
   size_t find() {
-    while (at_ < text_.size() && brackets_ <= kMaxDepth && dots_ <= kMaxDepth) step();
-    return brackets_ > kMaxDepth || dots_ > kMaxDepth ? at_ : text_.size();
+    while (at_ < text_.size() && brackets_ <= kMaxDepth && dots_ <= kMaxDepth && number_.empty())
+      step();
+    return number_.empty() && brackets_ <= kMaxDepth && dots_ <= kMaxDepth ? text_.size() : at_;
   }
+  // The number there, if it is one.
+  const std::string& number() const { return number_; }
 
  private:
   void step() {
@@ -28,12 +34,28 @@ class Depth {
       at_ = std::min(text_.find('\n', at_), text_.size());
       return;
     }
+    if (is_digit(c) && (at_ == 0 || !is_of_name(text_[at_ - 1]))) return skip_number();
     ++at_;
     if (c == '.') ++dots_;
     else if (c == '[' || c == '{') ++brackets_;
     else if (c == ']' || c == '}') brackets_ = std::max(0, brackets_ - 1);
     // Dots add up along one key; a float has one, a list of floats a comma after each.
     if (c == ',' || c == '=' || c == '\n' || c == '[' || c == ']') dots_ = 0;
+  }
+  static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+  static bool is_of_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+  }
+  // toml++ takes 1e-400 for 0.
+  void skip_number() {
+    const size_t end = std::min(text_.find_first_not_of("0123456789_.eE+-", at_), text_.size());
+    std::string digits = text_.substr(at_, end - at_);
+    std::erase(digits, '_');
+    double value = 0;
+    const auto [behind, why] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (why == std::errc::result_out_of_range)
+      number_ = digits.substr(0, static_cast<size_t>(behind - digits.data()));
+    else at_ += 1;
   }
   // "...", '...', or one of three quotes, which may end with two more.
   void skip_string(char quote) {
@@ -54,6 +76,7 @@ class Depth {
   const std::string& text_;
   size_t at_ = 0;
   int brackets_ = 0, dots_ = 0;
+  std::string number_;
 };
 
 }  // namespace
@@ -62,12 +85,20 @@ toml::table TomlReader::parse(const std::string& text) const {
   const auto refuse = [&](size_t at, const std::string& why) {
     const auto begin = text.begin(), here = begin + static_cast<std::ptrdiff_t>(at);
     const auto line = static_cast<toml::source_index>(1 + std::count(begin, here, '\n'));
-    throw ConfigError({fmt::format("{}:{}: {}", origin_, line, why)});
+    throw ConfigError({fmt::format("{}:{}:{}", origin_, line, why)});
   };
   if (text.size() > kMaxText)
-    refuse(0, fmt::format("{} characters, more than {}", text.size(), kMaxText));
-  if (const size_t at = Depth(text).find(); at < text.size())
-    refuse(at, fmt::format("nested more than {} deep", kMaxDepth));
+    refuse(0, fmt::format(" {} characters, more than {}", text.size(), kMaxText));
+  Scan scan(text);
+  if (const size_t at = scan.find(); at < text.size()) {
+    if (scan.number().empty()) refuse(at, fmt::format(" nested more than {} deep", kMaxDepth));
+    const size_t line = text.rfind('\n', at) + 1;  // (npos + 1 is 0)
+    const auto column = std::count_if(text.begin() + static_cast<std::ptrdiff_t>(line),
+                                      text.begin() + static_cast<std::ptrdiff_t>(at),
+                                      [](unsigned char c) { return (c & 0xC0) != 0x80; });
+    refuse(at,
+           fmt::format("{}: the number {} is too large or too small", column + 1, scan.number()));
+  }
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {

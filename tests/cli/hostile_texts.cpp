@@ -96,8 +96,31 @@ TEST_F(HostileTexts, FormulasAndNumbers) {
   refused(scooter("1 \\u0000 garbage"), "system.toml:13:16: potential: a character U+0000");
   refused(scooter("2*x + 1e400"), "system.toml:13:20: potential: the number 1e400 is too large");
   refused(scooter("1e+400*x"), "system.toml:13:14: potential: the number 1e+400 is too large");
+  refused(scooter("x + 1e-400"), "system.toml:13:18: potential: the number 1e-400 is too large or");
   EXPECT_THAT(run({"run", "suslov", "--set", "inertia=1,2,1e400"}).err,
               HasSubstr("'1e400' in '1,2,1e400' is too large"));
+  for (const char* number : {"1e400", "1e-400"}) {
+    const Outcome o = run({"run", "suslov", "--until", number});
+    EXPECT_EQ(o.status, 2) << o.out;
+    EXPECT_EQ(o.err, std::string("hamel: --until: '") + number +
+                         "' is too large or too small for a number (2.3e-308 to 1.7e308)\n");
+  }
+}
+
+/// Where they are, whatever stands before them: toml++ took 1e-400 for 0.
+TEST_F(HostileTexts, NumbersOfFiles) {
+  const auto refused = [&](const std::string& line, const std::string& place) {
+    write("a.toml", "system = \"suslov\"\n" + line + "\n");
+    const Outcome o = run({"run", "--config", "a.toml", "--step", "0.1", "--until", "1"});
+    EXPECT_EQ(o.status, 2) << o.out;
+    EXPECT_EQ(o.err, "hamel: a.toml:" + place + " is too large or too small\n");
+  };
+  refused("until = 1e400", "2:9: the number 1e400");
+  refused("until = 1e-400", "2:9: the number 1e-400");
+  refused("# 1e999\nset = { inertia = [1, 2, -1_0.0e+9_99] }", "3:27: the number 10.0e+999");
+  refused("\"caf\u00e9 1e999\" = 1e-999", "2:16: the number 1e-999");
+  write("a.toml", "system = \"suslov\"\nuntil = 1_0e-1  # 1e-400\nstep = 0.1\n");
+  EXPECT_EQ(run({"run", "--config", "a.toml"}).status, 0);
 }
 
 TEST_F(HostileTexts, RecordsOfAnotherType) {

@@ -41,16 +41,26 @@ struct RunLine {
     if constexpr (std::is_same_v<Value, bool>) {
       app.add_flag_callback(
           flag, [give] { give(true); }, option.meaning);
-    } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+    } else if constexpr (std::is_same_v<Value, std::string>) {
       app.add_option_function<Value>(flag, give, help);
-    } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      app.add_option_function<double>(
-          flag, [give](const double& value) { give(value); }, help);
-    } else {
+    } else if constexpr (std::is_same_v<Value, std::vector<double>> ||
+                         std::is_same_v<Value, std::vector<std::string>>) {
       const auto read = [this, flag, member](const std::string& text) {
         overrides.emplace_back([=](Config& config) { read_text(flag, text, member(config)); });
       };
       app.add_option_function<std::string>(flag, read, help)->type_name("A,B,...");
+    } else {  // a number; CLI11 would take 1e-400 for 0
+      const auto read = [give, flag](const std::string& text) {
+        Value value{};
+        try {
+          read_text(flag, text, value);
+        } catch (const ConfigError& error) {
+          throw CLI::ValidationError(error.what());
+        }
+        give(value);
+      };
+      app.add_option_function<std::string>(flag, read, help)
+          ->type_name(std::is_same_v<Value, long> ? "INT" : "FLOAT");
     }
   }
 
