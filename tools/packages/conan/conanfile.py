@@ -37,11 +37,11 @@ class Hamel(ConanFile):
         self.requires("eigen/3.4.0", transitive_headers=True)
         self.requires("fmt/9.1.0")
         self.requires("tomlplusplus/3.3.0")
-        self.requires("muparser/2.3.4")
+        self.requires("muparser/[>=2.3.3 <3]")
         self.requires("nlohmann_json/3.11.2")
         self.requires("zlib/[>=1.2.11 <2]")
         if self.options.with_hdf5:
-            self.requires("hdf5/1.14.3")
+            self.requires("hdf5/[>=1.10.8 <1.15]")
         if self.options.with_nlopt:
             self.requires("nlopt/2.7.1")
         if self.options.with_ceres:
@@ -52,7 +52,8 @@ class Hamel(ConanFile):
         toolchain = CMakeToolchain(self)
         for name in ("TOOLS", "TESTS", "BENCHMARKS"):
             toolchain.cache_variables[f"HAMEL_BUILD_{name}"] = "OFF"
-        toolchain.cache_variables["HAMEL_URDFDOM"] = "OFF"
+        for name in ("URDFDOM", "LANES", "PYTHON"):
+            toolchain.cache_variables[f"HAMEL_{name}"] = "OFF"
         for name in ("hdf5", "nlopt", "ceres"):
             toolchain.cache_variables[f"HAMEL_{name.upper()}"] = "ON" if self.options.get_safe(f"with_{name}") else "OFF"
         toolchain.generate()
