@@ -14,6 +14,7 @@ use([CustomChart, HeatmapChart, LineChart, DataZoomComponent, GridComponent, Leg
 export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', 'DejaVu Sans', sans-serif";  // (in an attribute of the SVG)
 const PRINTED = 0.72;  // of its height on the screen is a chart on paper
 const [WHOLE, HALF] = [664, 313];  // pixels: its width on A4, alone and beside another (print.css); other paper scales it
+const WIDE_ON_PAPER = ':only-child, :is(.wide, .heatmap):not(.paired)';
 
 export const TEXT = { color: 'var(--soft)', fontFamily: FONT, fontSize: 12 };
 const BASE = { animation: false, textStyle: TEXT, legend: { show: false } };
@@ -60,7 +61,7 @@ export function makeChart(holder, height, option) {
     redraw();
   });
   onPaper(() => {
-    width = holder.closest('.figure').matches('.wide, .heatmap, :only-child') ? WHOLE : HALF;
+    width = holder.closest('.figure').matches(WIDE_ON_PAPER) ? WHOLE : HALF;
     redraw(PRINTED);
   }, () => {
     width = holder.clientWidth;

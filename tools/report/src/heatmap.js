@@ -41,6 +41,7 @@ export function heatmap(block) {
     map.only !== null && !map.classes ? remark(`Every value is ${scaleText(map, map.only)} ${block.unit ?? ''}.`) : null,
     map.values.flat().includes(null) ? remark('A hatched cell has no value.') : null, block.note ? remark(block.note) : null], { svg: () => picture(SAVED), csv });
   if (map.columns.length > WIDE) element.classList.add('wide');
+  if (map.paired) element.classList.add('paired');
   const draw = () => {
     drawn = makeChart(holder, tall, (width) => option(map, block, layout(map, width)));
     const member = (i) => map.members?.[Math.floor(i / map.columns.length)][i % map.columns.length];
@@ -88,7 +89,9 @@ function readMap(block) {
   const classes = block.classes?.map((name, c) => ({ name: String(name), colour: styleOf({ name }).colour, count: block.values.flat().filter((v) => v === c).length })) ?? null;
   return { label: String(block.y ?? ''), unit: block.unit ? `  ${block.unit}` : '', columns, rows: order.map((i) => names[i]), values: order.map((i) => block.values[i]), marks: order.map((i) => block.marks?.[i] ?? []), at, classes,
     members: block.members ? order.map((i) => block.members[i]) : null,
-    range: min < max ? [min, max] : min === max ? [min - 0.5, max + 0.5] : [0, 1], scaled: min < max && !classes, only: min === max ? min : null, numbers, log: Boolean(block.log),
+    range: min < max ? [min, max] : min === max ? [min - 0.5, max + 0.5] : [0, 1], scaled: min < max && !classes, only: min === max ? min : null, numbers,
+    paired: numbers && block.x_values.every((v) => typeof v === 'number'),  // two a row on paper: no long names
+    log: Boolean(block.log),
     hidden: block.values.flat().filter((v) => typeof v === 'number' && at(v) === null).length };
 }
 

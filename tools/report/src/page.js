@@ -74,7 +74,7 @@ function drawAll(later) {
   });
 }
 
-/** Neighbouring figures share a grid: two side by side where there is room. */
+/** Neighbouring figures share a grid: two side by side where there is room, wide ones one below the other. */
 function showSection(section, place, counter, later) {
   const element = h('section', { id: `section-${place}`, 'aria-labelledby': `heading-${place}` },
     h('h2', { id: `heading-${place}` }, inline(section?.title)));
@@ -86,9 +86,8 @@ function showSection(section, place, counter, later) {
       element.append(shown);
     } else {
       const wide = shown.classList.contains('wide');
-      if (!grid || wide) element.append(grid = h('div', { class: 'figures' }));
+      if (!grid || wide !== grid.matches('.stacked')) element.append(grid = h('div', { class: wide ? 'figures stacked' : 'figures' }));
       grid.append(shown);
-      if (wide) grid = null;
     }
   }
   return element;

@@ -9,7 +9,7 @@ import { fileURLToPath } from 'node:url';
 import { serve } from './browser.mjs';
 import { fill } from './fill.mjs';
 import { sample } from './sample_data.mjs';
-import { classMap, crowd, matrix, memberDots, members } from './sample_members.mjs';
+import { classMap, crowd, matrix, memberDots, members, wideMap } from './sample_members.mjs';
 import { body } from './sample_motion.mjs';
 import { convergence, errorMap, longTable } from './sample_study.mjs';
 import { units } from './units.mjs';
@@ -116,6 +116,8 @@ const cases = [
   ['a scatter matrix without members', small({ ...matrix, members: undefined }), 0, /passed, 0 failed/],
   ['columns of different lengths', small({ ...matrix, columns: [matrix.columns[0], { name: 'b', values: [1] }] }), 1, /column b has 1 values, angle has 40/],
   ['members without values', small({ ...members, columns: [{ name: 'b', values: [1] }] }), 1, /column b has 1 values, there are 40 members/],
+  ['maps one a row on paper', () => bent([members, classMap, wideMap, wideMap], 'print.css', ':is(.wide, .heatmap):not(.paired)', ':is(.wide, .heatmap)'), 1, /two a row on paper: 1 are not/],
+  ['wide maps two a row on paper', small(members, wideMap, wideMap, matrix), 0, /passed, 0 failed/],
   ['a click that chooses another', () => bent([members, classMap], 'heatmap.js', "({ dataIndex }) => choose(member(dataIndex), holder)", '({ dataIndex }) => choose(member(dataIndex + 1), holder)'), 1, /heatmap: a click there shows a member/],
   ['rows of members upside down', () => bent([members, classMap], 'heatmap.js', 'order.map((i) => block.members[i])', 'block.members'), 1, /heatmap: the first cell is that member/],
   ['a dead click on dots', () => bent([members, memberDots], 'choosing.js', "chart.getZr().on('click'", "chart.getZr().on('none'"), 1, /plot: a click there shows a member/],

@@ -180,6 +180,8 @@ async function checkPrint(page, check, path) {
     return picture.width < 100 || picture.height < 60 || frame.bottom < picture.bottom || !inside(picture) || ![...drawing.querySelectorAll('.chart svg text')].every((text) => inside(text.getBoundingClientRect()));
   }).length);
   check('every drawing fits the paper', cut === 0, `${cut} do not`);
+  const apart = await page.evaluate(() => [...document.querySelectorAll('.paired:first-child + .paired')].filter((map) => map.offsetTop !== map.previousElementSibling.offsetTop).length);
+  check('maps of numbers are two a row on paper', apart === 0, `${apart} are not`);
   await page.emulateMedia({ media: null });
   await page.setViewportSize({ width: 1280, height: 800 });
   await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));

@@ -21,6 +21,12 @@ export const classMap = {
   values: grid(range(count, (k) => (k === 11 ? null : kind[k]))), marks: grid(range(count, (k) => (k === 11 ? 'failed' : ''))), members: grid(range(count, (k) => k)), classes,
 };
 
+/** So many columns that it takes the whole width of the page. */
+export const wideMap = {
+  kind: 'heatmap', title: 'angle', x: 'number', y: 'half', x_values: range(count / 2, (c) => c), y_values: [0, 1], unit: 'rad',
+  values: range(2, (r) => range(count / 2, (c) => angle[(r * count) / 2 + c])), members: range(2, (r) => range(count / 2, (c) => (r * count) / 2 + c)),
+};
+
 export const memberDots = {
   kind: 'plot', title: 'angle over speed', x: 'speed [m/s]', y: 'angle [rad]',
   series: classes.map((name, c) => {
