@@ -33,8 +33,9 @@ void add_lanes(Registry& registry) {
   static_assert(is_left_invariant<S>(), "lanes are offered for left-invariant systems");
   using P = LeftInvariant<G, G::dim - constraint_count<S>(), Cayley<G>>;
   using Arch = xsimd::default_arch;
-  add_lanes<Lift, P>(registry, Arch::name(), Lane<Arch>::width, &make_lanes<Lift, P, Arch>);
-  add_lanes<Rkmk4, P>(registry, Arch::name(), Lane<Arch>::width, &make_lanes<Rkmk4, P, Arch>);
+  constexpr int width = 2 * Lane<Arch>::width;
+  add_lanes<Lift, P>(registry, Arch::name(), width, &make_lanes<Lift, P, Arch>);
+  add_lanes<Rkmk4, P>(registry, Arch::name(), width, &make_lanes<Rkmk4, P, Arch>);
 }
 
 }  // namespace hamel

@@ -10,7 +10,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <tuple>
+#include <vector>
 
 #include <xsimd/xsimd.hpp>
 
@@ -37,6 +39,12 @@ struct Lane {
   friend Lane operator-(const Lane& a, const Lane& b) { return a.v - b.v; }
   friend Lane operator*(const Lane& a, const Lane& b) { return a.v * b.v; }
   friend Lane operator/(const Lane& a, const Lane& b) { return a.v / b.v; }
+  friend Mask below(const Lane& a, const Lane& b) { return a.v < b.v; }
+  friend Mask at_most(const Lane& a, const Lane& b) { return a.v <= b.v; }
+  /// a where the mask is true, else b.
+  friend Lane select(const Mask& mask, const Lane& a, const Lane& b) {
+    return xsimd::select(mask, a.v, b.v);
+  }
   /// In all lanes?
   friend bool operator==(const Lane& a, const Lane& b) { return xsimd::all(a.v == b.v); }
   /// 1 or 0 in each lane.
@@ -46,7 +54,6 @@ struct Lane {
   friend Lane equal(const Lane& a, const Lane& b) {
     return xsimd::select(a.v == b.v, Batch(1.0), Batch(0.0));
   }
-  friend bool isfinite(const Lane& a) { return a - a == Lane(0.0); }
   friend Lane sqrt(const Lane& a) { return xsimd::sqrt(a.v); }
 
   /// The number of one lane.
@@ -54,10 +61,25 @@ struct Lane {
   void set(int lane, double x) { reinterpret_cast<double*>(&v)[lane] = x; }
 };
 
-/// In all lanes of a vector: one test of its sum.
+/// A mask's truth in one lane.
+template <class T>
+bool get_lane(const typename T::Mask& mask, int lane) {
+  alignas(64) bool all[T::width];
+  mask.store_aligned(all);
+  return all[lane];
+}
+template <class T>
+void set_lane(typename T::Mask& mask, int lane, bool truth) {
+  alignas(64) bool all[T::width];
+  mask.store_aligned(all);
+  all[lane] = truth;
+  mask = T::Mask::load_aligned(all);
+}
+
+/// Lanes that are not finite are looked for by a batch, at the end of a step.
 template <class Arch, int N>
-bool all_finite(const Eigen::Matrix<Lane<Arch>, N, 1>& x) {
-  return isfinite(x.sum());
+constexpr bool all_finite(const Eigen::Matrix<Lane<Arch>, N, 1>& /*x*/) {
+  return true;
 }
 
 /// visit(number of a, number of b) for each number of two elements, nodes' parts or matrices of one
@@ -101,6 +123,9 @@ template <class One>
 class EachBody {
  public:
   explicit EachBody(std::vector<const One*> bodies) : bodies_(std::move(bodies)) {}
+  /// count of them, from the one with that index.
+  EachBody(std::span<const One* const> bodies, int first, int count)
+      : bodies_(bodies.begin() + first, bodies.begin() + first + count) {}
   const One& first() const { return *bodies_.front(); }
   template <class Part, class Out>
   void operator()(Part One::*member, Out& out) const {

@@ -22,7 +22,8 @@ class LaneRescue {
     int count = 0;
     State x;  // out
     typename P::StateMatrix inverse;
-    bool kept = false;  // may the next solve begin with one correction by `inverse`?
+    bool kept = false;     // may the next solve begin with one correction by `inverse`?
+    bool trusted = false;  // is x, and was what came before, the principal root?
   };
   /// false: the step fails.
   virtual bool solve(int lane, Solve& step) = 0;
@@ -53,7 +54,8 @@ struct LaneSetup {
   using P = typename Step::Problem;
   std::span<const P* const> problems;
   std::span<const Step* const> steps;
-  double h, tolerance;    // tolerance: that at which one correction is enough
+  double h;
+  double enough, aimed;   // residuals at which one correction is enough, and further ones end
   LaneRescue<P>* rescue;  // outlives it
 };
 

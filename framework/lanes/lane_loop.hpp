@@ -37,7 +37,9 @@ class LaneLoop final : public LaneKernel, private LaneRescue<P> {
       steps.push_back(&body->step);
     }
     const KernelSetup& common = bodies_.front()->setup;
-    batch_ = maker({problems, steps, common.step, Newton::aim(common.tolerance), this});
+    const double enough = Newton::aim(common.tolerance);
+    batch_ =
+        maker({problems, steps, common.step, enough, std::min(enough, common.tolerance), this});
     restart(setups);
   }
 
@@ -106,11 +108,14 @@ class LaneLoop final : public LaneKernel, private LaneRescue<P> {
       body.node.x = step.node;
       body.memory.extrapolation.restore(step.differences, step.count);
       body.step.begin(body.node, body.setup.step);
+      // The batch has tried the Jacobian that it kept.
+      if (HasJacobian<Step> && body.memory.trusted) body.memory.newton.valid = false;
       if (!body.unknown.solve(body.step, body.node, body.setup.step, body.memory).ok())
         return false;
       step.x = body.unknown.x();
       step.inverse = body.memory.newton.factors.matrix();
-      step.kept = body.memory.newton.valid && body.memory.trusted;
+      step.trusted = body.memory.trusted;
+      step.kept = body.memory.newton.valid && step.trusted;
     }
     return true;
   }

@@ -61,38 +61,42 @@ class Lift::Reduced {
   [[gnu::always_inline]] void residual(const Unknown& y, Unknown& f) const {
     if constexpr (Form::exists()) {
       if (contracted()) [[likely]] {
-        f = form_(y, h_) - from_->x;
+        f = form_.start_momentum(y, h_) - from_->x;
         return;
       }
     }
     full_residual(y, f);
   }
 
-  /// F and dF/dy.
-  [[gnu::noinline, gnu::cold]] void linearise(const Unknown& y, Unknown& f,
-                                              Jacobian& j) const requires HasJacobians<P> {
+  /// F and dF/dy. Over lanes only in the Hamel form.
+  static constexpr bool linearised = Form::has_derivative() || std::is_same_v<T, double>;
+  void linearise(const Unknown& y, Unknown& f, Jacobian& j) const
+      requires(HasJacobians<P>&& linearised) {
     residual(y, f);
-    const Vec<n> p = momentum(y), step = xi(y);
-    if (one_sided_) {
-      j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
-          problem_.reduce_momentum(Tau::dtau_right_inverse(step).transpose());
-      return;
+    if constexpr (Form::has_derivative()) {
+      if (contracted()) return form_.derivative(y, h_, j);
     }
-    // dm = C^-1 (I E dy - dC m),  dmu0 = Ad_{f0}^T dm + K(mu0) dL_{z0} dz0.
-    const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
-    const Mat<n, n> c = (s_ * z0.right + (1 - s_) * z1.right).transpose();
-    const Mat<n, n> c_inverse = inverse_of(c);
-    const Vec<n> m = c_inverse * p;
-    const Mat<n, n> dc_m = (1 - s_) * (1 - s_) * z1.right_transpose_derivative(m) -
-                           s_ * s_ * z0.right_transpose_derivative(m);
-    const Mat<n, n> pull = G::Ad(z0.f).transpose() * c_inverse;
-    j = problem_.reduce_momentum(pull) -
-        h_ * problem_.reduce_both(pull * dc_m + s_ * z0.pull_derivative(z0.pull(m)));
+    if constexpr (std::is_same_v<T, double>) full_derivative(y, j);
   }
 
   [[gnu::always_inline]] bool finish(const Unknown& y, Node& next) const {
+    if (!Tau::in_domain(xi(y))) return false;
+    finish_state(y, next);
+    finish_element(y, next);
+    return true;
+  }
+  /// Its two halves, for xi in the domain. The first shares its terms with the residual at y.
+  [[gnu::always_inline]] void finish_state(const Unknown& y, Node& next) const {
+    if constexpr (Form::exists()) {
+      if (contracted()) [[likely]] {
+        next.x = form_.end_momentum(y, h_);
+        return;
+      }
+    }
+    full_finish(y, xi(y), next.x);
+  }
+  [[gnu::always_inline]] void finish_element(const Unknown& y, Node& next) const {
     const Vector step = xi(y);
-    if (!Tau::in_domain(step)) return false;
     Element increment;
     if (one_sided_) {
       increment = Tau::tau(step);
@@ -104,14 +108,6 @@ class Lift::Reduced {
     }
     next.t = from_->t + h_;
     next.g = G::compose(from_->g, increment);
-    if constexpr (Form::exists()) {
-      if (contracted()) [[likely]] {
-        next.x = form_(y, -h_);
-        return true;
-      }
-    }
-    full_finish(y, step, next.x);
-    return true;
   }
 
  private:
@@ -156,6 +152,26 @@ class Lift::Reduced {
       next = problem_.reduce(G::Ad_transpose(Tau::tau(Vector((1 - s_) * step)),
                                              base_momentum<Tau, T>(s_, step, p, Vector::Zero())));
     }
+  }
+
+  // dF/dy by the matrices of the group.
+  [[gnu::noinline, gnu::cold]] void full_derivative(const Unknown& y, Jacobian& j) const {
+    const Vec<n> p = momentum(y), step = xi(y);
+    if (one_sided_) {
+      j = h_ * problem_.reduce_both(Tau::dtau_right_inverse_transpose_derivative(step, p)) +
+          problem_.reduce_momentum(Tau::dtau_right_inverse(step).transpose());
+      return;
+    }
+    // dm = C^-1 (I E dy - dC m),  dmu0 = Ad_{f0}^T dm + K(mu0) dL_{z0} dz0.
+    const At<Tau> z0(-s_ * step), z1((1 - s_) * step);
+    const Mat<n, n> c = (s_ * z0.right + (1 - s_) * z1.right).transpose();
+    const Mat<n, n> c_inverse = inverse_of(c);
+    const Vec<n> m = c_inverse * p;
+    const Mat<n, n> dc_m = (1 - s_) * (1 - s_) * z1.right_transpose_derivative(m) -
+                           s_ * s_ * z0.right_transpose_derivative(m);
+    const Mat<n, n> pull = G::Ad(z0.f).transpose() * c_inverse;
+    j = problem_.reduce_momentum(pull) -
+        h_ * problem_.reduce_both(pull * dc_m + s_ * z0.pull_derivative(z0.pull(m)));
   }
 
   struct NoForm {
