@@ -54,7 +54,7 @@ class LaneNodes {
   Problem problem_;
   double h_;
   NodeRing<Problem> nodes_;
-  Mask failed_{false};
+  Mask failed_ = Mask(false);  // (in braces: a list of lanes)
 };
 
 /// With an equation.
@@ -147,9 +147,9 @@ class ImplicitLanes : public LaneNodes<P, T> {
   // and to a solution near the guess if it took several. Returns the lanes that it solved.
   HAMEL_FLATTEN [[gnu::noinline]] Mask iterate(const Mask& open, Unknown& result) {
     constexpr int kMost = 8;
-    Unknown first, f, trial, trial_f;
+    Unknown first, trial, trial_f;
     guess(first);
-    Unknown x = first;
+    Unknown x = first, f = Unknown::Zero();
     Jacobian inverse = inverse_;
     const T scale = step_.scale_squared(), aimed = aimed_ * scale;
     T size(0.0);
@@ -218,7 +218,7 @@ class ImplicitLanes : public LaneNodes<P, T> {
   LaneRescue<P>* rescue_;
   int first_;
   Jacobian inverse_;
-  Mask kept_{false}, trusted_{false};
+  Mask kept_ = Mask(false), trusted_ = kept_;
   Extrapolation<Unknown> history_{Unknown::Zero()};
 };
 
