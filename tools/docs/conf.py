@@ -60,6 +60,14 @@ def _number_equations(app, pagename, templatename, context, doctree):
     context["body"] = "".join(parts)
 
 
+def _break_paths(app, pagename, templatename, context, doctree):
+    """Lets inline code break behind a slash, so that a narrow column does not break a path within a word."""
+    if context.get("body"):
+        inline = re.compile(r'<span class="pre">[^<]*</span>')
+        context["body"] = inline.sub(lambda match: match[0].replace("/", "/<wbr>").replace("</<wbr>", "</"), context["body"])
+
+
 def setup(app):
     app.connect("html-page-context", _number_equations)
+    app.connect("html-page-context", _break_paths)
     app.config.breathe_projects["hamel"] = str(Path(app.srcdir).parent / "doxygen" / "xml")

@@ -98,6 +98,11 @@ for (const [size, options] of Object.entries(sizes)) {
   const first = await picture();
   await page.waitForTimeout(700);
   expect(first !== await picture(), 'the motion of the front page stands still');
+  const printed = (await page.pdf({ format: 'A4' })).toString('latin1').match(/\/Type \/Page\b/g).length;
+  expect(printed === 1, `the front page takes ${printed} sheets of paper`);
+  await page.goto(pathToFileURL(join(html, 'verification.html')).href);
+  const path = page.locator('td code', { hasText: 'benchmarks/forward_dynamics' });
+  expect(await path.locator('wbr').count() === 3, 'a path in a table does not break behind its slashes');
   await context.close();
 }
 
