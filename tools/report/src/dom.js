@@ -23,8 +23,8 @@ export function inline(text) {
   const parts = String(text ?? '').split(/(`[^`]+`|\*\*[^*]+\*\*)/);
   return parts.filter((part) => part !== '').map((part) => {
     if (part.length > 2 && part.startsWith('`') && part.endsWith('`')) {
-      const code = part.slice(1, -1);  // a short one is kept on its line
-      return h('code', {}, code.length < 30 ? code.replaceAll(' ', '\u00a0') : code);
+      const code = part.slice(1, -1);
+      return h('code', { class: code.length < 30 ? 'short' : null }, code);
     }
     if (part.length > 4 && part.startsWith('**') && part.endsWith('**')) {
       return h('strong', {}, prose(part.slice(2, -2)));

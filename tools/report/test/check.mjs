@@ -82,6 +82,7 @@ const cases = [
   ['rows upside down', () => bent(errorMap, 'heatmap.js', 'if (numbers && block.y_values[ny - 1] > block.y_values[0]) order', 'order'), 1, /larger is darker|is hatched|mark is read out/],
   ['empty cells left white', () => bent(unmarked, 'heatmap.js', ": HATCH }", ": 'var(--paper)' }"), 1, /is hatched and says so/],
   ['a scale that does not fit', () => bent({ ...errorMap, unit: 'largest |E − E0| / |E0| of the run, of all its recorded states' }, 'heatmap.js', 'const long = Math.max(0, Math.min(LONGEST, width - 2 * GAP - words))', 'const long = LONGEST'), 1, /no words are cut at 390 px/],
+  ['a broken option', () => bent({ kind: 'text', paragraphs: ['`--check` estimates it '.repeat(40)] }, 'dom.js', "'short' : null", 'null : null'), 1, /no option is broken at 390 px/],
   ['a dead arrow key', () => bent(errorMap, 'keys.js', 'ArrowDown: columns', 'ArrowDown: 0'), 1, /heat map .*(darker|read out)/],
   ['filters that hide nothing', () => bent(convergence, 'filters.js', '|| tag(tags, name) === select.value', '|| true'), 1, /the first value is chosen at the start: 40 series, not 4/],
   ['fits left out', () => bent(convergence, 'series.js', 's.fit.text || ', ''), 1, /a fit is in the legend/],

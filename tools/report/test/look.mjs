@@ -128,6 +128,9 @@ async function checkWidth(page, width, check) {
     }).map((text) => `${svg.closest('figure')?.querySelector('.title')?.textContent}: ${text.textContent}`);
   }));
   check(`no words are cut at ${width} px`, cut.length === 0, cut.slice(0, 3).join('; '));
+  const broken = await page.evaluate(() => [...document.querySelectorAll('main code')]
+    .filter((code) => code.textContent.length < 30 && code.getClientRects().length > 1).map((code) => code.textContent));
+  check(`no option is broken at ${width} px`, broken.length === 0, broken.slice(0, 3).join('; '));
 }
 
 /** A card that gets narrower shrinks its drawing at once: a plain screenshot may come before that is made again. */
