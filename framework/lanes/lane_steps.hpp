@@ -252,7 +252,7 @@ class ExplicitLanes : public LaneNodes<P, T> {
     this->nodes_.turn(this->problem_);
   }
 
-  // These lanes go on from rest, where their numbers stay finite.
+  // These lanes continue from rest, where their numbers remain finite.
   [[gnu::noinline, gnu::cold]] void fail_where_not_finite() {
     auto& next = this->nodes_.next();
     for (int lane = 0; lane < Base::width; ++lane) {

@@ -30,7 +30,11 @@ class PrincipalRoot {
   /// Is x, a solution for h, where the path from lambda = 0 arrives? Leaves the step begun with h.
   [[gnu::noinline, gnu::cold]] bool leads_to(const Unknown& x, const StepOnPath<Unknown>& step,
                                              double h) {
-    const double size = x.squaredNorm(), small = 1e-20 * step.equation.scale_squared();
+    // Two solutions that move nothing by more than 1e-11 (rad, m) in the step are one: at rest all
+    // that there is of a solution is round-off, on the path a thousand times larger.
+    const double place = 1e-11 / h;
+    const double size = x.squaredNorm(),
+                 small = 1e-20 * step.equation.scale_squared() + place * place;
     follow(step, h, size + small);
     step.begin(h);
     if ((x - end_).squaredNorm() <= 1e-10 * size + small) return true;

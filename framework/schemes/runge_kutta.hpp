@@ -156,8 +156,17 @@ class RungeKutta {
       if (self().keeps_rows() && !onto_rows(node.g)) return false;
     }
     const auto [added, size] = motion_.settle(node.t, node.g, x_);
-    lost_ = !(std::max(off, added) <= most * most * size);
+    lost_ = !(std::max(off, added) <= most * most * size) &&
+            !(std::max(off, added) <= square_of_round_off());
     return !lost_;
+  }
+  // A velocity that moves nothing by more than the round-off of a place, squared in the metric: all
+  // that there is of a motion at rest.
+  [[gnu::noinline, gnu::cold]] double square_of_round_off() const {
+    constexpr double place = 1e-14;  // rad, m
+    move_.setConstant(place / h_);
+    const double size = motion_.rows().size(move_);
+    return size * size;
   }
   // By Newton's method with the rows of the last stage.
   bool onto_rows(Element& g) const {

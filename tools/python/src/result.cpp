@@ -262,8 +262,7 @@ void bind_result(nb::module_& m) {
           [](nb::handle self, int height) {
             return helper("_animation", "Animation")(self, height);
           },
-          "height"_a = 320,
-          nb::sig("def animation(self, height: int = 320) -> _Animation"),
+          "height"_a = 320, nb::sig("def animation(self, height: int = 320) -> _Animation"),
           "The drawing of the system in motion, which a notebook shows; height in pixels. "
           "ValueError where the system has no drawing, or the rows are in files.")
       .def("_motion", &motion, "most"_a,
