@@ -126,5 +126,28 @@ TEST(ContactLost, IsMetAtTheStart) {
   EXPECT_EQ(seen.steps, 10);
 }
 
+/// At rest all of a step is round-off, in which its rows are as large as it is: it is taken all the
+/// same. (Upright at rest the bicycle is in equilibrium, though unstable.)
+TEST(AtRest, EverySchemeStands) {
+  for (const Vehicle& vehicle : kVehicles) {
+    const std::vector<double> still(model(vehicle.name).mechanics->dim(), 0);
+    for (const std::string scheme :
+         {"lift", "balance", "reversible", "gni", "rkmk4", "rk4_projected", "dopri5", "dop853"}) {
+      SCOPED_TRACE(vehicle.name + (" " + scheme));
+      Simulation run = simulate(vehicle.name);
+      run.start({.velocity = still}).scheme(scheme).until(0.1);
+      for (const double step : {0.01, 0.001}) {
+        const Result fixed = Simulation(run).step(step).run();
+        EXPECT_TRUE(fixed) << step << ": " << fixed.status.reason;
+        for (const double v : fixed.last.velocity) EXPECT_NEAR(v, 0, 1e-10) << step;
+      }
+      if (!scheme.starts_with("dop")) continue;
+      const Result chosen = Simulation(run).tolerance({.relative = 1e-8}).run();
+      EXPECT_TRUE(chosen) << chosen.status.reason;
+      for (const double v : chosen.last.velocity) EXPECT_NEAR(v, 0, 1e-10);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hamel
