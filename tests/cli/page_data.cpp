@@ -188,6 +188,14 @@ TEST(PageData, ManyOscillationsAreABand) {
   EXPECT_TRUE(drawable("noisy", x, noisy).low.empty());
   const Json b = block([&](Page& page) { page.plot("Band", {.x = "t", .y = "x"}, {band}); });
   EXPECT_EQ(b["series"][0]["low"].size(), band.y.size());
+  // Round-off beside a velocity is no band.
+  Series narrow = band, still{"v", {0, 20}, {4, 4}};
+  for (std::vector<double>* values : {&narrow.y, &narrow.low})
+    for (double& v : *values) v *= 1e-17;
+  const Json beside = block([&](Page& page) {
+    page.plot("Band", {.x = "t", .y = "x"}, {still, narrow});
+  });
+  EXPECT_FALSE(beside["series"][1].contains("low"));
 }
 
 }  // namespace

@@ -186,6 +186,19 @@ TEST_F(Steady, DigitsThatAreKnown) {
 }
 
 /// A, B, C by names, and the pair for a sample time; for small h it is 1 + A h and B h.
+/// The velocity has names, without digits that are round-off; the start can be given again.
+TEST_F(Steady, AStartToCopy) {
+  const Outcome o = run({"steady", "falling_disk", "--speed", "3"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("  velocity      omega1 = 0, omega2 = 0, omega3 = 6, v1 = -3, "
+                               "v2 = 0, v3 = 0\n"));
+  const std::string start = "--configuration 1,0,0,0,0,-1,0,1,0,0,0,0.5 --velocity 0,0,6,-3,0,0";
+  EXPECT_THAT(o.out, HasSubstr("  as a start    " + start + "\n"));
+  const Outcome again = run({"steady", "falling_disk", "--configuration",
+                             "1,0,0,0,0,-1,0,1,0,0,0,0.5", "--velocity", "0,0,6,-3,0,0"});
+  EXPECT_THAT(again.out, HasSubstr(start));
+}
+
 TEST_F(Steady, LinearisationForControl) {
   const json s = answer({"steady", "segway", "--speed", "1", "--sample-time", "1e-6"});
   const json& linear = s["linearisation"];

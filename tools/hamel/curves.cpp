@@ -1,5 +1,6 @@
 // Curves of a page: as many points as a figure shows.
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -83,6 +84,19 @@ Series drawable(std::string name, const std::vector<double>& x, const std::vecto
     out.low.push_back(low);
   }
   return out;
+}
+
+double range_of(std::span<const Series> series) {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (const Series& s : series) {
+    for (const std::vector<double>* values : {&s.y, &s.low}) {
+      for (const double v : *values) {
+        least = std::fmin(least, v);
+        most = std::fmax(most, v);
+      }
+    }
+  }
+  return most - least;
 }
 
 std::string with_unit(const std::string& name, const std::string& unit) {

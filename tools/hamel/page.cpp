@@ -50,9 +50,13 @@ int digits_of(std::span<const double> values) {
 
 Json coordinates(std::span<const double> values) { return numbers(values, digits_of(values)); }
 
-Json curves(const std::vector<Series>& series) {
+// A band too narrow to be seen beside the other curves is drawn as a curve: round-off, mostly.
+Json curves(const std::vector<Series>& series, bool logarithmic = false) {
+  constexpr double seen = 1e-3;
+  const double range = range_of(series);
   Json out = Json::array();
   for (const Series& s : series) {
+    const bool band = !s.low.empty() && (logarithmic || range_of({&s, 1}) > seen * range);
     Json& curve = out.emplace_back(Json{
         {"name", s.name}, {"x", coordinates(s.x)}, {"y", coordinates(s.y)}, {"dashed", s.dashed}});
     if (s.markers) curve["markers"] = true;
@@ -60,7 +64,7 @@ Json curves(const std::vector<Series>& series) {
     if (s.fit) curve["fit"] = {{"slope", number(s.fit->slope)}, {"text", s.fit->text}};
     if (!s.tags.empty()) curve["tags"] = s.tags;
     if (!s.key.empty()) curve["key"] = s.key;
-    if (!s.low.empty()) curve["low"] = coordinates(s.low);
+    if (band) curve["low"] = coordinates(s.low);
     if (!s.members.empty()) curve["members"] = s.members;
   }
   return out;
@@ -208,7 +212,7 @@ void Page::plot(const std::string& title, const Axes& axes, const std::vector<Se
                 {"y", axes.y},
                 {"log_x", axes.log_x},
                 {"log_y", axes.log_y},
-                {"series", curves(series)},
+                {"series", curves(series, axes.log_y)},
                 {"filters", selectors},
                 {"note", note}};
   if (axes.floor > 0) block["floor"] = number(axes.floor);

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -115,6 +116,9 @@ Series thinned(std::string name, const std::vector<double>& x, const std::vector
 /// The same of values of either sign; of a curve that goes up and down more often than a figure can
 /// show, a band from the least to the greatest value of each of equal windows.
 Series drawable(std::string name, const std::vector<double>& x, const std::vector<double>& y);
+
+/// From the least to the greatest value of all curves.
+double range_of(std::span<const Series> series);
 
 /// "omega [rad/s]"; the name alone where nothing is known of its unit.
 std::string with_unit(const std::string& name, const std::string& unit);

@@ -10,6 +10,7 @@
 #include <hamel/framework/analysis/linearisation.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/names/registry.hpp>
+#include <hamel/framework/run/record/velocity_text.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "run_page.hpp"
@@ -136,9 +137,11 @@ Json json_of(const SteadySweep& sweep) {
   return out;
 }
 
-void print(const std::string& system, const SteadyMotion& motion) {
-  say("{}: steady motion, residual {:.1e}\n", system, motion.residual);
-  say("  configuration {}\n  velocity      {}\n", join(motion.element), join(motion.velocity));
+void print(const SystemModel& system, const SteadyMotion& motion) {
+  say("{}: steady motion, residual {:.1e}\n", system.name, motion.residual);
+  say("  velocity      {}\n", velocity_in_words(system, motion.velocity));
+  say("  as a start    --configuration {} --velocity {}\n", start_text(motion.element),
+      start_text(motion.velocity));
   say("  neutral       {}, of them {} along the family of steady motions\n", motion.neutral,
       motion.family);
   const int growing = motion.growing();
@@ -246,7 +249,7 @@ int steady(const SteadyOptions& options) {
     }
     say_json(out);
   } else {
-    if (motion.found) print(system.name, motion);
+    if (motion.found) print(system, motion);
     else if (!vary) say("{}: no steady motion was found near this start\n", system.name);
     if (vary) print(vary->name, sweep);
     for (size_t i = 0; i < sweep.branches.size(); ++i) {

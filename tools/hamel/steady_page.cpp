@@ -19,6 +19,14 @@ std::string known_text(double x, double round_off) {
   return fmt::format("{:.{}f}", rounded, std::min(12, known_decimals(round_off)));
 }
 
+std::string start_text(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double x : values) largest = std::max(largest, std::abs(x));
+  std::vector<double> out;
+  for (const double x : values) out.push_back(round_to_known(x, 1e-14 * largest));
+  return join(out);
+}
+
 std::string modes_text(const std::vector<ModePart>& parts) {
   std::string out;
   for (const ModePart& part : parts)
@@ -152,7 +160,8 @@ std::string end_text(const std::string& name, const SteadyEnd& end) {
 
 void print_other(const std::string& name, const SteadyPlace& place) {
   say("    the other branch, at {} = {:.12g} (--branches follows it):\n", name, place.value);
-  say("      --configuration {} --velocity {}\n", join(place.element), join(place.velocity));
+  say("      --configuration {} --velocity {}\n", start_text(place.element),
+      start_text(place.velocity));
 }
 
 Page steady_page(const std::string& name, const SystemModel& system, const SteadySweep& sweep,

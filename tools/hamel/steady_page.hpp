@@ -13,6 +13,8 @@ namespace hamel::tools {
 
 /// A number with the decimals that are known of it.
 std::string known_text(double x, double round_off);
+/// Numbers of a start as an option has them, without the round-off of the largest.
+std::string start_text(const std::vector<double>& values);
 /// "steer.rate 1.00, w1 0.31".
 std::string modes_text(const std::vector<ModePart>& parts);
 /// "4.29238253634, a pair of complex eigenvalues crosses the imaginary axis (Hopf)".

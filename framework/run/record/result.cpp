@@ -8,6 +8,7 @@
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/record/sink.hpp>
+#include <hamel/framework/run/record/velocity_text.hpp>
 
 namespace hamel {
 
@@ -83,23 +84,9 @@ static std::string estimated_error_in_words(const Result& result) {
                      result.config.chooses_steps() ? " in the tolerance" : "");
 }
 
-// "omega = 0.25 rad/s, v1 = 1": by names, to six digits but none below round-off of the largest or
-// the error where that is known.
-static std::string velocity_in_words(const Result& result) {
-  const std::vector<double>& xi = result.last.velocity;
-  const std::vector<Component> components = components_of(*result.system);
-  double unknown = 0;
-  for (const double v : xi) unknown = std::max(unknown, 1e-13 * std::abs(v));
-  unknown = std::fmax(unknown, result.exact_velocity_error_max);
-  std::string out;
-  for (size_t i = 0; i < xi.size(); ++i) {
-    const double v = std::abs(xi[i]) <= unknown ? 0 : xi[i];
-    const double digits = v == 0 ? 1 : std::log10(std::abs(v) / unknown) + 1;
-    out += fmt::format("{}{} = {:.{}g}", i == 0 ? "" : ", ",
-                       i < components.size() ? components[i].name : fmt::format("xi{}", i + 1), v,
-                       static_cast<int>(std::clamp(digits, 1.0, 6.0)));
-  }
-  return out;
+static std::string final_velocity(const Result& result) {
+  return velocity_in_words(*result.system, result.last.velocity,
+                           std::fmax(0, result.exact_velocity_error_max));
 }
 
 std::string Result::report() const {
@@ -121,7 +108,7 @@ std::string Result::report() const {
     line("kept", fmt::format("{} good steps to t = {:.6g}", steps, last.time));
   }
   for (const std::string& note : notes) line("note", note);
-  line("final velocity", velocity_in_words(*this));
+  line("final velocity", final_velocity(*this));
   if (std::find(unused.begin(), unused.end(), "solver") == unused.end()) {
     line("solver", fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
                                static_cast<double>(stats.iterations) / count, stats.iterations_max,
