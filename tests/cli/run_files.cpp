@@ -53,6 +53,11 @@ TEST_F(Files, CsvColumnsOfEverySystem) {
                  3);
   expect_columns(table("chaplygin_sleigh"), {"theta", "x", "y"}, 3);
   expect_columns(table("rolling_disk"), {"1_theta", "1_x", "1_y", "2_theta"}, 4);
+  // A mechanism's by its parts, as in tools/README.md.
+  const auto bicycle = table("bicycle").columns;
+  for (const char* name : {"steer.angle", "holonomic", "rear.reaction1", "rear.reaction3"}) {
+    EXPECT_THAT(bicycle, testing::Contains(name));
+  }
 }
 
 // Events are a table beside the rows: names, times and states as the record has them.
