@@ -55,7 +55,7 @@ void frame(const SystemModel& model, const Geometry& geometry, const Start& star
   const Eigen::Index n = mechanics.dim(), m = mechanics.framed_size();
   const DynamicProblem problem({std::shared_ptr<const void>(), &geometry}, model.mechanics);
   EquationsOfMotion<DynamicProblem> motion(problem);
-  Eigen::VectorXd g(geometry.size()), moved(g), shift(n), xi(n), rate(m);
+  Eigen::VectorXd g(geometry.size()), moved(g), shift(n), xi(n), rate(n);
   geometry.from_coordinates(start.configuration, g.data());
   Largest rows, rates;
   for (int i = 0; i < 5; ++i) {
@@ -66,14 +66,14 @@ void frame(const SystemModel& model, const Geometry& geometry, const Start& star
     Eigen::VectorXd b(n - m);
     mechanics.constraints(0, moved.data(), a, b);
     for (Eigen::Index j = 0; j < m; ++j) {
-      mechanics.expand(moved.data(), Eigen::VectorXd::Unit(m, j), xi);
+      mechanics.expand(moved.data(), Eigen::VectorXd::Unit(n, j), xi);
       rows((a * xi).norm() / (a.norm() * xi.norm()));
       rows(xi.head(m) == Eigen::VectorXd::Unit(m, j) ? 0 : 1);
     }
-    const Eigen::VectorXd y = Eigen::VectorXd::LinSpaced(m, 0.7, -1.2);
+    const Eigen::VectorXd y = Eigen::VectorXd::LinSpaced(n, 0.7, -1.2);
     mechanics.framed_motion(0, moved.data(), y, xi, rate);
     motion.solve(0, moved, xi);
-    rates((rate - motion.acceleration().head(m)).norm() / (1 + rate.norm()));
+    rates((rate - motion.acceleration()).norm() / (1 + rate.norm()));
   }
   report.push_back({"the frame spans ker A", rows.value, algebraic});
   report.push_back({"rates in the frame are those with multipliers", rates.value, 1e-10});

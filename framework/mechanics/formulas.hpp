@@ -229,7 +229,8 @@ class Formulas {
     return system_.frame(g);
   }
   /// B' y along g tau(e xi), y the first of xi.
-  Vec<k> frame_turn(const Element& g, const Vec<n>& xi, const Vec<n - k>& y) const {
+  Vec<k> frame_turn(const Element& g, const Vec<n>& xi) const {
+    const Vec<n - k> y = xi.template head<n - k>();
     Vec<k> out;
     if constexpr (requires { system_.frame_rate(g, xi); }) {
       const Mat<k, n - k> rate = system_.frame_rate(g, xi);

@@ -32,48 +32,52 @@ class FramedEquations {
     }
   }
 
-  /// xi = E(g) y.
-  static void expand(const F& formulas, const Element& g, const Vec<m>& y, Vec<n>& xi) {
-    assemble(formulas.frame(g), y, xi);
+  /// xi = E(g) y, y the first m entries of x.
+  static void expand(const F& formulas, const Element& g, const Vec<n>& x, Vec<n>& xi) {
+    assemble(formulas.frame(g), x, xi);
   }
-  /// xi, and y'.
+  /// The same, and xi' = (y', B y' + B' y).
   HAMEL_FLATTEN [[gnu::noinline]] void operator()(const F& formulas, double t, const Element& g,
-                                                  const Vec<m>& y, Vec<n>& to_xi,
-                                                  Vec<m>& to_rate) const {
+                                                  const Vec<n>& x, Vec<n>& to_xi,
+                                                  Vec<n>& to_rate) const {
     const Mat<k, m> b = formulas.frame(g);
-    Vec<n> xi, change;
-    assemble(b, y, xi);
+    Vec<n> xi, change, rate;
+    assemble(b, x, xi);
     formulas.force(t, g, xi, change);
-    const Vec<k> turn = formulas.frame_turn(g, xi, y);
+    const Vec<k> turn = formulas.frame_turn(g, xi);
     if constexpr (F::constant_inertia()) {
-      reduce(inertia_, b, xi, turn, change, to_rate);
+      reduce(inertia_, b, xi, turn, change, rate);
     } else {
       Mat<n, n> inertia;
       Vec<n> momentum_rate;
       formulas.inertia_rate(element_along<typename F::Dual, G>(g, xi), xi, inertia, momentum_rate);
       change -= momentum_rate;
-      reduce(inertia, b, xi, turn, change, to_rate);
+      reduce(inertia, b, xi, turn, change, rate);
     }
     to_xi = xi;
+    assemble(b, rate, to_rate);
+    to_rate.template tail<k>() += turn;
   }
 
  private:
-  static void assemble(const Mat<k, m>& b, const Vec<m>& y, Vec<n>& xi) {
+  // (y, B y), y the first entries of x.
+  static void assemble(const Mat<k, m>& b, const Vec<n>& x, Vec<n>& xi) {
 #pragma GCC unroll 4
-    for (int i = 0; i < m; ++i) xi[i] = y[i];
+    for (int i = 0; i < m; ++i) xi[i] = x[i];
 #pragma GCC unroll 4
     for (int i = 0; i < k; ++i) {
-      xi[m + i] = b(i, 0) * y[0];
+      xi[m + i] = b(i, 0) * x[0];
 #pragma GCC unroll 4
-      for (int j = 1; j < m; ++j) xi[m + i] += b(i, j) * y[j];
+      for (int j = 1; j < m; ++j) xi[m + i] += b(i, j) * x[j];
     }
   }
-  // rate = M^-1 E^T (ad*_xi I xi + change - I (0, turn)).
+  // The first of rate = M^-1 E^T (ad*_xi I xi + change - I (0, turn)).
   void reduce(const Mat<n, n>& inertia, const Mat<k, m>& b, const Vec<n>& xi, const Vec<k>& turn,
-              Vec<n>& change, Vec<m>& rate) const {
+              Vec<n>& change, Vec<n>& to_rate) const {
     Mat<m, m> reduced;
     Mat<k, m> c;  // the last k rows of I E
     Vec<n> momentum, transported;
+    Vec<m> rate;
 #pragma GCC unroll 4
     for (int i = 0; i < k; ++i) {
       momentum[m + i] = inertia(m + i, m + i) * xi[m + i];
@@ -111,6 +115,7 @@ class FramedEquations {
     }
     factor_small(reduced);
     solve_small(reduced, rate);
+    to_rate.template head<m>() = rate;
   }
   // out_i += I_ij x_j off the diagonal, of the rows from `row` on.
   template <int row, int column, int size>

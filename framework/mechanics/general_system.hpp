@@ -80,21 +80,20 @@ class TypedMechanics final : public Mechanics {
     Eigen::Map<Vec<k>>(to_b.data()) = b;
   }
   int framed_size() const override { return F::framed() ? n - k : 0; }
-  void expand(const double* g, ConstVector y, Vector to) const override {
+  void expand(const double* g, ConstVector x, Vector to) const override {
     if constexpr (F::framed()) {
       Vec<n> xi;
-      Framed::expand(formulas_, load(g), Eigen::Map<const Vec<n - k>>(y.data()), xi);
+      Framed::expand(formulas_, load(g), Eigen::Map<const Vec<n>>(x.data()), xi);
       Eigen::Map<Vec<n>>(to.data()) = xi;
     }
   }
-  void framed_motion(double t, const double* g, ConstVector y, Vector to_xi,
+  void framed_motion(double t, const double* g, ConstVector x, Vector to_xi,
                      Vector to_rate) const override {
     if constexpr (F::framed()) {
-      Vec<n> xi;
-      Vec<n - k> rate;
-      framed_(formulas_, t, load(g), Eigen::Map<const Vec<n - k>>(y.data()), xi, rate);
+      Vec<n> xi, rate;
+      framed_(formulas_, t, load(g), Eigen::Map<const Vec<n>>(x.data()), xi, rate);
       Eigen::Map<Vec<n>>(to_xi.data()) = xi;
-      Eigen::Map<Vec<n - k>>(to_rate.data()) = rate;
+      Eigen::Map<Vec<n>>(to_rate.data()) = rate;
     }
   }
   HAMEL_FLATTEN void holonomic(const double* g, Vector out) const override {

@@ -66,10 +66,10 @@ class Mechanics {
   /// How many velocities are independent in the frame that a system states, the first of xi
   /// (framed_equations.hpp); 0: it states none.
   virtual int framed_size() const { return 0; }
-  /// xi = E(g) y.
-  virtual void expand(const double* /*g*/, ConstVector /*y*/, Vector /*xi*/) const {}
-  /// xi, and y' of the equations of motion.
-  virtual void framed_motion(double /*t*/, const double* /*g*/, ConstVector /*y*/, Vector /*xi*/,
+  /// xi = E(g) y, y the first entries of x.
+  virtual void expand(const double* /*g*/, ConstVector /*x*/, Vector /*xi*/) const {}
+  /// The same, and xi' of the equations of motion.
+  virtual void framed_motion(double /*t*/, const double* /*g*/, ConstVector /*x*/, Vector /*xi*/,
                              Vector /*rate*/) const {}
   /// phi(g).
   virtual void holonomic(const double* /*g*/, Vector /*out*/) const {}

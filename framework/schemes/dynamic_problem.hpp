@@ -19,7 +19,6 @@ class DynamicProblem {
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
   using State = Eigen::VectorXd;  // xi
-  using Stage = Eigen::VectorXd;
   using StateMatrix = Eigen::MatrixXd;
   using TwoStates = Eigen::VectorXd;
   using TwoStatesMatrix = Eigen::MatrixXd;
@@ -116,12 +115,11 @@ class DynamicProblem {
     return mechanics_->motion(t, g.data(), xi, inertia, a, b, rows, change);
   }
   bool framed() const { return mechanics_->framed_size() > 0; }
-  int framed_size() const { return mechanics_->framed_size(); }
-  void expand(const Element& g, const Stage& y, Vector& xi) const {
-    mechanics_->expand(g.data(), y, xi);
+  void expand(const Element& g, const State& x, Vector& xi) const {
+    mechanics_->expand(g.data(), x, xi);
   }
-  void framed_motion(double t, const Element& g, const Stage& y, Vector& xi, Stage& rate) const {
-    mechanics_->framed_motion(t, g.data(), y, xi, rate);
+  void framed_motion(double t, const Element& g, const State& x, Vector& xi, State& rate) const {
+    mechanics_->framed_motion(t, g.data(), x, xi, rate);
   }
   bool autonomous() const { return mechanics_->autonomous(); }
   void holonomic(const Element& g, HolonomicValues& phi) const {

@@ -33,7 +33,7 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
   using Base::at, Base::last;
 
  public:
-  using typename Base::Element, typename Base::Node, typename Base::Stage, typename Base::Vector;
+  using typename Base::Element, typename Base::Node, typename Base::State, typename Base::Vector;
   static constexpr bool rate_in_algebra = true;
   /// Pairs keep the holonomic rows.
   bool keeps_rows() const { return this->table_.estimates(); }
@@ -76,8 +76,8 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
   double first_step(const Node& node, double rtol, double atol) {
     const int n = this->problem_.dim();
     this->begin(node, 1);
-    const auto size = [&](const Vector& eta_rate, const Stage& x_rate) {
-      this->motion_.expand(node.g, x_rate, error_);
+    const auto size = [&](const Vector& eta_rate, const State& x_rate) {
+      this->problem_.velocity(x_rate, error_);
       double sum = eta_rate.squaredNorm() / ((atol + rtol) * (atol + rtol));
       for (int i = 0; i < n; ++i) {
         const double part = error_[i] / (atol + rtol * std::abs(after_[i]));
@@ -87,14 +87,14 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     };
     this->problem_.velocity(node.x, after_);
     const Vector one = Vector::Ones(n);
-    const double value = size(one, this->x0_), rate = size(this->q_rates_[0], this->x_rates_[0]);
+    const double value = size(one, node.x), rate = size(this->q_rates_[0], this->x_rates_[0]);
     double h = rate > 1e-5 && value > 1e-5 ? 0.01 * value / rate : 1e-6;
     this->q_ = h * this->q_rates_[0];
-    this->x_ = this->x0_ + h * this->x_rates_[0];
+    this->x_ = node.x + h * this->x_rates_[0];
     Vector eta_rate = this->q_rates_[0];
-    Stage x_rate = this->x_rates_[0];
+    State x_rate = this->x_rates_[0];
     if (element(this->q_, this->g_)) {
-      this->motion_.velocity(this->x_, this->xi_);
+      this->problem_.velocity(this->x_, this->xi_);
       this->motion_(node.t + h, this->g_, this->x_, this->xi_, x_rate);
       this->rate(this->q_, this->g_, this->xi_, eta_rate);
     }
@@ -113,7 +113,7 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     }
     this->extended_ = true;
     this->q_.setZero();
-    this->x_ = this->x0_;
+    this->x_ = this->from_->x;
     for (int i = 0; i < this->table_.all_stages(); ++i) {
       const double weight = this->h_ * this->table_.weight(i, theta);
       this->q_ += weight * this->q_rates_[at(i)];
@@ -124,8 +124,7 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     if constexpr (!P::left_invariant) {
       if (!this->settle(out)) return false;
     }
-    this->motion_.expand(out.g, this->x_, this->xi_);
-    this->motion_.end(this->x_, this->xi_, out.x);
+    out.x = this->x_;
     return true;
   }
 
@@ -143,7 +142,7 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     double most = error_.cwiseAbs().maxCoeff() / (atol + rtol);
     this->problem_.velocity(this->from_->x, this->xi_);
     this->problem_.velocity(next.x, after_);
-    this->motion_.expand(next.g, x_error_, error_);
+    this->problem_.velocity(x_error_, error_);
     for (int i = 0; i < this->problem_.dim(); ++i) {
       const double size = std::max(std::abs(this->xi_[i]), std::abs(after_[i]));
       const double part = std::abs(error_[i]) / (atol + rtol * size);
@@ -154,7 +153,7 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
 
   Element g0_ = this->problem_.element();
   mutable Vector error_ = Vector::Zero(this->problem_.dim()), after_ = error_;
-  mutable Stage x_error_ = this->x0_;
+  mutable State x_error_ = State::Zero(this->problem_.state_size());
 };
 
 }  // namespace hamel

@@ -3,12 +3,12 @@
 //
 // In coordinates q of the element that it chooses, a scheme integrates
 //   q' = rate(q, xi),   x' = a(t, g, x)   (stage_motion.hpp),   g = element(q).
-// At the end of a step g goes to the group and xi onto A xi = b, orthogonally in the metric I (in a
-// frame xi = E(g) y is there already). A scheme that keeps the holonomic rows (Derived::keeps_rows)
-// moves g onto phi = 0 before, g <- g tau(v) with the smallest v in that metric that has A v = (0,
-// -phi): the change is of the size of the step's error, so that the order stays. Source: Hairer,
-// Norsett, Wanner, Solving Ordinary Differential Equations I, II.1 to II.6; Hairer, Lubich, Wanner,
-// IV.4.
+// At the end of a step g goes to the group and xi onto A xi = b, orthogonally in the metric I or,
+// in a frame that the system states, to E(g) y. A scheme that keeps the holonomic rows
+// (Derived::keeps_rows) moves g onto phi = 0 before, g <- g tau(v) with the smallest v in that
+// metric that has A v = (0, -phi): the change is of the size of the step's error, so that the order
+// stays. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.1 to II.6;
+// Hairer, Lubich, Wanner, IV.4.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,6 @@ class RungeKutta {
   using Element = typename P::Element;
   using Vector = typename P::Vector;
   using State = typename P::State;
-  using Stage = typename StageMotion<P>::Stage;
 
   /// Evaluations of the equations of motion in the last step.
   int evaluations() const { return evaluations_; }
@@ -46,11 +45,10 @@ class RungeKutta {
     self().start(node.g, q0_);
     problem_.velocity(node.x, xi_);
     self().rate(q0_, node.g, xi_, q_rates_[0]);
-    motion_.begin(node.x, x0_);
     if (is(end_, node)) {
       x_rates_[0] = x_rates_[at(last())];
     } else if (!is(begin_, node)) {  // else the step is taken again with another size
-      motion_(node.t, node.g, x0_, xi_, x_rates_[0]);
+      motion_(node.t, node.g, node.x, xi_, x_rates_[0]);
       ++evaluations_;
     }
     begin_ = node;
@@ -68,9 +66,9 @@ class RungeKutta {
     if constexpr (!P::left_invariant) {
       if (!settle(next)) return false;
     }
-    if (!P::left_invariant || table_.estimates()) motion_.velocity(x_, xi_);
-    motion_(next.t, next.g, x_, xi_, x_rates_[at(last())]);
-    motion_.end(x_, xi_, next.x);
+    next.x = x_;
+    if (table_.estimates() && !motion_.framed()) problem_.velocity(next.x, xi_);
+    motion_(next.t, next.g, next.x, xi_, x_rates_[at(last())]);
     if (table_.estimates()) self().rate(q_, next.g, xi_, q_rates_[at(last())]);
     end_ = next;
     return next.x.allFinite();
@@ -97,9 +95,9 @@ class RungeKutta {
   // q_ and x_ at stage i.
   void sum(int i) const {
     Local<Q> q = q_;
-    Local<Stage> x = x_;
+    Local<State> x = x_;
     q = q0_;
-    x = x0_;
+    x = from_->x;
     for (int j = 0; j < i; ++j) {
       const double weight = h_ * table_.at(i, j);
       if (weight == 0) continue;
@@ -121,7 +119,7 @@ class RungeKutta {
       self().rate(q_, g_, xi_, q_rates_[at(i)]);
       return true;
     }
-    motion_.velocity(x_, xi_);
+    problem_.velocity(x_, xi_);
     if constexpr (P::left_invariant && Derived::rate_in_algebra) {
       if (!problem_.in_domain(q_)) return false;
       self().rate(q_, g_, xi_, q_rates_[at(i)]);
@@ -141,12 +139,8 @@ class RungeKutta {
     constexpr double most = 0.01;
     double off = 0;  // squared, of the rows of phi, in the metric
     const int held = problem_.holonomic_rows();
-    if (motion_.framed()) {
-      lost_ = false;
-      if (held == 0) return true;
-      motion_.rows().set(node.t, node.g);  // the stages have set none
-    }
     if (held > 0) {
+      if (motion_.framed()) motion_.rows().set(node.t, node.g);  // the stages have set none
       gaps_.setZero();
       problem_.holonomic(from_->g, phi_);
       gaps_.tail(held) = phi_;
@@ -201,10 +195,9 @@ class RungeKutta {
   Q q0_;
   mutable Element g_ = problem_.element();
   mutable Q q_ = q0_;
-  Stage x0_ = Stage::Zero(motion_.size());
-  mutable Stage x_ = x0_;
+  mutable State x_ = State::Zero(problem_.state_size());
   mutable std::vector<Q> q_rates_ = std::vector<Q>(at(table_.all_stages()), q0_);
-  mutable std::vector<Stage> x_rates_ = std::vector<Stage>(q_rates_.size(), x_);
+  mutable std::vector<State> x_rates_ = std::vector<State>(q_rates_.size(), x_);
   mutable Vector xi_ = Vector::Zero(problem_.dim()), move_ = xi_;
   mutable typename P::HolonomicValues phi_{problem_.holonomic_rows()};
   mutable typename P::Multipliers gaps_{problem_.constraint_count()};

@@ -1,6 +1,6 @@
-// What the stages of an explicit scheme carry beside the element, and its rate: y of the frame that
-// the system states (mechanics/framed_equations.hpp), else the velocity in the problem's own
-// coordinates (mechanics/equations_of_motion.hpp).
+// The equations of motion as the stages of an explicit scheme evaluate them: in the frame that the
+// system states (mechanics/framed_equations.hpp), else with multipliers
+// (mechanics/equations_of_motion.hpp).
 #pragma once
 
 #include <utility>
@@ -9,18 +9,6 @@
 
 namespace hamel {
 
-namespace detail {
-template <class P>
-struct StageOf {
-  using type = typename P::State;
-};
-template <class P>
-requires requires { typename P::Stage; }
-struct StageOf<P> {
-  using type = typename P::Stage;
-};
-}  // namespace detail
-
 template <class P>
 class StageMotion {
  public:
@@ -28,7 +16,6 @@ class StageMotion {
   using Element = typename P::Element;
   using Vector = typename P::Vector;
   using State = typename P::State;
-  using Stage = typename detail::StageOf<P>::type;
 
   explicit StageMotion(const P& problem) : problem_(problem), equations_(problem_) {}
 
@@ -38,53 +25,20 @@ class StageMotion {
     else if constexpr (kFrame == Frame::always) return true;
     else return problem_.framed();
   }
-  int size() const {
-    if constexpr (kFrame == Frame::sometimes) {
-      if (framed()) return problem_.framed_size();
-    }
-    if constexpr (kFrame == Frame::always) return Stage::RowsAtCompileTime;
-    else return problem_.state_size();
-  }
-  /// What is carried at a node of velocity x.
-  void begin(const State& x, Stage& y) const { y = x.head(y.size()); }
-  /// The velocity of a node at which y and xi are carried.
-  void end(const Stage& y, const Vector& xi, State& x) const {
-    if constexpr (P::left_invariant) x = y;
-    else x = xi;
-  }
-  /// xi of y, where it does not depend on the element.
-  void velocity(const Stage& y, Vector& xi) const {
-    if constexpr (kFrame != Frame::always) {
-      if (!framed()) problem_.velocity(y, xi);
-    }
-  }
-  /// xi of y at g.
-  void expand(const Element& g, const Stage& y, Vector& xi) const {
+  /// The rate of x at (t, g). In a frame the first entries y of x decide, xi = E(g) y is set, and
+  /// the other entries are integrated to be compared with it; without one xi is left as it is.
+  void operator()(double t, const Element& g, const State& x, Vector& xi, State& rate) {
     if constexpr (kFrame != Frame::never) {
-      if (framed()) return problem_.expand(g, y, xi);
+      if (framed()) return problem_.framed_motion(t, g, x, xi, rate);
     }
-    velocity(y, xi);
+    if constexpr (kFrame != Frame::always) equations_(t, g, x, rate);
   }
-  /// y' at (t, g, y), and xi in a frame; without one xi is left as it is.
-  void operator()(double t, const Element& g, const Stage& y, Vector& xi, Stage& rate) {
-    if constexpr (kFrame != Frame::never) {
-      if (framed()) return problem_.framed_motion(t, g, y, xi, rate);
-    }
-    if constexpr (kFrame != Frame::always) equations_(t, g, y, rate);
-  }
-  /// Moves the velocity y onto A xi = b at (t, g); returns the squared sizes of what was added, and
-  /// of the velocity. In a frame it is there.
-  std::pair<double, double> settle(double t, const Element& g, Stage& y) {
-    if constexpr (kFrame != Frame::always) {
-      if (!framed()) {
-        equations_.set(t, g);
-        return equations_.project(y);
-      }
-    }
-    Vector xi(problem_.dim());
-    expand(g, y, xi);
-    const double size = equations_.size(xi);
-    return {0, size * size};
+  /// Moves the velocity x onto A xi = b at (t, g): in a frame to E(g) y, else orthogonally in the
+  /// metric I. Returns the squared sizes of what was added, and of the velocity.
+  std::pair<double, double> settle(double t, const Element& g, State& x) {
+    if constexpr (kFrame == Frame::always) return onto_frame(t, g, x);
+    else if constexpr (kFrame == Frame::never) return onto_rows(t, g, x);
+    else return framed() ? onto_frame(t, g, x) : onto_rows(t, g, x);
   }
   /// The rows and the metric of the last set() or evaluation without a frame.
   EquationsOfMotion<Problem>& rows() { return equations_; }
@@ -99,8 +53,24 @@ class StageMotion {
     else return Frame::never;
   }();
 
+  std::pair<double, double> onto_rows(double t, const Element& g, State& x) {
+    equations_.set(t, g);
+    return equations_.project(x);
+  }
+  std::pair<double, double> onto_frame(double t, const Element& g, State& x) {
+    if (!known_ || !problem_.constant_inertia()) equations_.set(t, g);
+    known_ = true;
+    added_ = x;
+    problem_.expand(g, added_, x);
+    added_ -= x;
+    const double added = equations_.size(added_), size = equations_.size(x);
+    return {added * added, size * size};
+  }
+
   Problem problem_;
   EquationsOfMotion<Problem> equations_;
+  bool known_ = false;  // the metric
+  State added_ = State::Zero(problem_.state_size());
 };
 
 }  // namespace hamel

@@ -18,7 +18,6 @@ class WithoutRows : public P {
   using HolonomicValues = Vec<0>;
   using AdmissibleFrame = hamel::AdmissibleFrame<P::n, 0>;
   using OfMotion = WithoutRows;
-  using Stage = typename P::State;
   static constexpr bool framed() { return false; }
   explicit WithoutRows(const P& problem) : P(problem) {}
   static constexpr int constraint_count() { return 0; }
@@ -41,9 +40,6 @@ class StaticProblem : public GroupOperations<Tau> {
   using Vector = Vec<n>;
   using Matrix = Mat<n, n>;
   using State = Vec<n>;  // xi
-  /// y of a frame that the system states, else xi: what the stages of explicit schemes carry.
-  static constexpr bool framed() { return F::framed(); }
-  using Stage = Vec<framed() ? n - k : n>;
   using StateMatrix = Mat<n, n>;
   using TwoStates = Vec<2 * n>;
   using TwoStatesMatrix = Mat<2 * n, 2 * n>;
@@ -104,12 +100,14 @@ class StaticProblem : public GroupOperations<Tau> {
     formulas_->dual_rates(element_along<Dual, Group>(g, xi), xi, rows, row_rate, inertia,
                           momentum_rate);
   }
-  /// xi = E(g) y, and with y' (framed_equations.hpp).
-  void expand(const Element& g, const Stage& y, Vector& xi) const {
-    typed_->framed_equations().expand(*formulas_, g, y, xi);
+  /// Does the system state a frame? Then xi = E(g) y of the first entries y of x, and its rate
+  /// (framed_equations.hpp).
+  static constexpr bool framed() { return F::framed(); }
+  void expand(const Element& g, const State& x, Vector& xi) const {
+    typed_->framed_equations().expand(*formulas_, g, x, xi);
   }
-  void framed_motion(double t, const Element& g, const Stage& y, Vector& xi, Stage& rate) const {
-    typed_->framed_equations()(*formulas_, t, g, y, xi, rate);
+  void framed_motion(double t, const Element& g, const State& x, Vector& xi, State& rate) const {
+    typed_->framed_equations()(*formulas_, t, g, x, xi, rate);
   }
 
  private:
