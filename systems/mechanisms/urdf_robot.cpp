@@ -12,6 +12,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/io/visible.hpp>
 
 namespace hamel::mechanisms {
 namespace {
@@ -55,7 +56,16 @@ class Messages : public console_bridge::OutputHandler {
   std::vector<std::string> errors;
 };
 
+void require_utf8(std::string_view text, const std::string& path) {
+  for (int line = 1; !text.empty(); ++line) {
+    const std::string_view own = text.substr(0, text.find('\n'));
+    if (!is_utf8(own)) throw ConfigError({fmt::format("{}:{}: is no UTF-8", path, line)});
+    text.remove_prefix(std::min(own.size() + 1, text.size()));
+  }
+}
+
 urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& path) {
+  require_utf8(text, path);
   if (const int depth = depth_of(text); depth > kMaxDepth)
     throw ConfigError(
         {fmt::format("{}: elements nested {} deep, more than {}", path, depth, kMaxDepth)});

@@ -177,6 +177,8 @@ TEST_F(Urdf, RefusesWithNames) {
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   refuses({write("robot.urdf", deep)}, "nested 100000 deep");
+  refuses({write("robot.urdf", "<robot name=\"r\">\n<link name=\"b\xe9\"/></robot>")},
+          "robot.urdf:2: is no UTF-8");
   refuses({file("none.urdf")}, "there is no such file");
 }
 
