@@ -107,6 +107,40 @@ TEST_F(HostileTexts, FormulasAndNumbers) {
   }
 }
 
+/// The commands beside run: CLI11 took 1e-400 for 0.
+TEST_F(HostileTexts, NumbersOfOptions) {
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& option,
+                           const std::string& before = "", const std::string& behind = "") {
+    for (const std::string number : {"1e400", "1e-400"}) {
+      std::vector<std::string> line = arguments;
+      line.insert(line.end(), {option, before + number + behind});
+      const Outcome o = run(line);
+      EXPECT_EQ(o.status, 2) << o.out;
+      EXPECT_EQ(o.err, "hamel: " + option + ": '" + number +
+                           "' is too large or too small for a number (2.3e-308 to 1.7e308)\n");
+    }
+  };
+  const std::vector<std::string> section = {"section", "suslov",  "--event",
+                                            "xi1=0",   "--count", "2"};
+  refused(section, "--energy");
+  refused(section, "--until");
+  refused(section, "--step");
+  const std::vector<std::string> steady = {"steady", "bicycle", "--json"};
+  refused(steady, "--speed");
+  refused(steady, "--sample-time");
+  refused(steady, "--vary", "speed=", ":8:7");
+  refused(steady, "--vary", "speed=1:");
+  const auto whole = [&](const std::vector<std::string>& arguments, const std::string& option) {
+    std::vector<std::string> line = arguments;
+    line.insert(line.end(), {option, "1e-400"});
+    const Outcome o = run(line);
+    EXPECT_EQ(o.status, 2) << o.out;
+    EXPECT_EQ(o.err, "hamel: " + option + ": '1e-400' is not a whole number\n");
+  };
+  whole({"section", "suslov", "--event", "xi1=0"}, "--count");
+  whole({"ensemble", "x.toml"}, "--member");
+}
+
 /// Where they are, whatever stands before them: toml++ took 1e-400 for 0.
 TEST_F(HostileTexts, NumbersOfFiles) {
   const auto refused = [&](const std::string& line, const std::string& place) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "number_option.hpp"
 #include "run_line.hpp"
 #include "section.hpp"
 #include "steady.hpp"
@@ -112,8 +113,9 @@ Action define_ensemble(CLI::App& app) {
   const auto options = std::make_shared<EnsembleOptions>();
   add_parts(app, *options, "an ensemble", "members",
             "ensemble.h5, ensemble.csv, ensemble.json, report.html [FILE's name with -ensemble]");
-  app.add_option("--member", options->member,
-                 "one member alone, from 0; with -o its configuration and its page")
+  number_option<long>(
+      app, "--member", [options](long member) { options->member = member; },
+      "one member alone, from 0; with -o its configuration and its page")
       ->excludes(app.get_option("--shard"))
       ->excludes(app.get_option("--merge"));
   app.footer(
@@ -144,9 +146,9 @@ Action define_steady(CLI::App& app) {
   line->robot.define(app);
   app.add_option("--set", line->sets, "a parameter, name=value[,value...] (repeatable)")
       ->allow_extra_args(false);
-  app.add_option("--speed", options.config.speed,
-                 "the guess: straight ahead at this speed, in m/s, for systems that define a "
-                 "straight motion");
+  number_option(app, "--speed", options.config.speed,
+                "the guess: straight ahead at this speed, in m/s, for systems that define a "
+                "straight motion");
   app.add_option("--configuration", line->configuration, "the guess, as for hamel run")
       ->type_name("A,B,...");
   app.add_option("--velocity", line->velocity, "the guess, as for hamel run")->type_name("A,B,...");
@@ -156,8 +158,8 @@ Action define_steady(CLI::App& app) {
                "with --vary: follow the branches that meet it, too");
   app.add_option("--report", options.report, "write a self-contained HTML page, with --vary");
   app.add_flag("--json", options.json, "as JSON; without --vary with the linearisation: A, B, C");
-  app.add_option("--sample-time", options.sample_time,
-                 "with --json: the discrete pair for inputs held so long, in s");
+  number_option(app, "--sample-time", options.sample_time,
+                "with --json: the discrete pair for inputs held so long, in s");
   app.footer(
       "Exit status: 0 done, 1 none found or disk full, 2 bad input.\n"
       "Examples:\n"

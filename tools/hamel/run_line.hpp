@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.hpp"
+#include "number_option.hpp"
 #include "robot_line.hpp"
 
 namespace hamel::tools {
@@ -49,18 +50,8 @@ struct RunLine {
         overrides.emplace_back([=](Config& config) { read_text(flag, text, member(config)); });
       };
       app.add_option_function<std::string>(flag, read, help)->type_name("A,B,...");
-    } else {  // a number; CLI11 would take 1e-400 for 0
-      const auto read = [give, flag](const std::string& text) {
-        Value value{};
-        try {
-          read_text(flag, text, value);
-        } catch (const ConfigError& error) {
-          throw CLI::ValidationError(error.what());
-        }
-        give(value);
-      };
-      app.add_option_function<std::string>(flag, read, help)
-          ->type_name(std::is_same_v<Value, long> ? "INT" : "FLOAT");
+    } else {
+      number_option<Value>(app, flag, give, help);
     }
   }
 

@@ -156,13 +156,13 @@ void SectionLine::define(CLI::App& app) {
       ->required();
   app.add_option("--direction", options_.request.direction,
                  "1: crossings where its function grows, -1: where it falls [0: both]");
-  app.add_option("--count", options_.request.count, "points of each start")->required();
+  number_option(app, "--count", options_.request.count, "points of each start")->required();
   app.add_option("--starts", options_.starts,
                  "a CSV file of starts: the columns of the element and xi1, xi2, ... or their "
                  "names, as -o writes them");
-  app.add_option("--energy", options_.request.energy,
-                 "every start gets this energy, in J, by a factor of its velocity");
-  app.add_option("--until", options_.request.longest, "give a start up after so many seconds");
+  number_option(app, "--energy", options_.request.energy,
+                "every start gets this energy, in J, by a factor of its velocity");
+  number_option(app, "--until", options_.request.longest, "give a start up after so many seconds");
   app.add_option("-o,--output", options_.output, "write the points, .csv or .h5");
   app.add_option("--report", options_.report, "write a self-contained HTML page");
   app.add_option("--axes", options_.axes, "columns of the page's axes, A,B [the first that vary]");

@@ -1,7 +1,6 @@
 // hamel steady: a steady motion near a guess, its eigenvalues; along a parameter, with the points
 // where stability changes.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -39,15 +38,11 @@ struct Vary {
     if (equal == std::string::npos || equal == 0) throw wrong();
     name = text.substr(0, equal);
     std::vector<double> numbers;
-    const char *at = text.data() + equal + 1, *const end = text.data() + text.size();
-    while (true) {
-      double x = 0;
-      const auto [next, error] = std::from_chars(at, end, x);
-      if (error != std::errc() || !std::isfinite(x)) throw wrong();
-      numbers.push_back(x);
-      if (next == end) break;
-      if (*next != ':') throw wrong();
-      at = next + 1;
+    for (size_t at = equal; at != std::string::npos;) {
+      const size_t from = at + 1;
+      at = text.find(':', from);
+      read_text("--vary", text.substr(from, at - from), numbers.emplace_back());
+      if (!std::isfinite(numbers.back())) throw wrong();
     }
     if (numbers.size() == 2) numbers.push_back(101);
     if (numbers.size() != 3) throw wrong();
