@@ -1,4 +1,6 @@
 // A step that fails: stop, retry with another solver, halve; and the record of it.
+#include <bit>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -101,6 +103,53 @@ TEST(OnFailure, AHalvedStepIsTwoStepsOfHalfTheSize) {
     EXPECT_NEAR(halved.last.velocity[i], two.last.velocity[i], 1e-13);
   }
   EXPECT_LE(halved.constraint_max, 1e-13);
+}
+
+/// A solver that refuses every step of more than a part in 2^depth of the first: it follows the
+/// tree of halvings, whose leaves, in order, have the numbers leaf_.
+class Halved final : public Solver {
+ public:
+  Halved(int depth, long* calls) : depth_(depth), calls_(calls) {}
+  SolveReport solve(const Equation& equation, std::span<double> x, double tolerance) override {
+    ++*calls_;
+    if (level_++ < depth_) return {Reason::stagnated, 0.5, 7, 9};
+    level_ = depth_ - std::countr_zero(++leaf_);
+    return inner_->solve(equation, x, tolerance);
+  }
+
+ private:
+  std::shared_ptr<Solver> inner_ = registry().solver("hybrid")->make();
+  int depth_, level_ = 0;
+  unsigned leaf_ = 0;
+  long* calls_;
+};
+
+/// A step is halved ten times and not once more: into 1,024 parts at most, in 2,047 solves.
+TEST(OnFailure, HalvingHasABound) {
+  long calls = 0;
+  const auto in_parts_of = [&](int depth) {
+    calls = 0;
+    Registry mine = registry();
+    mine.add(SolverInfo{"halved", "", "",
+                        [&, depth] { return std::make_shared<Halved>(depth, &calls); }});
+    return Simulation(mine, "chaplygin_sleigh")
+        .solver("halved")
+        .on_failure("halve")
+        .step(0.05)
+        .until(0.05)
+        .run();
+  };
+  const Result most = in_parts_of(10);
+  ASSERT_TRUE(most.status.ok) << most.status.reason;
+  EXPECT_EQ(calls, 2047);
+  ASSERT_EQ(most.stats.first_fallbacks.size(), 1u);
+  EXPECT_EQ(most.stats.first_fallbacks[0].action, "taken in 1024 parts");
+  EXPECT_EQ(most.last.time, 0.05);
+  const Result more = in_parts_of(11);
+  EXPECT_FALSE(more.status.ok);
+  EXPECT_THAT(more.status.reason, HasSubstr("in halved steps too"));
+  EXPECT_EQ(calls, 11);  // the step, and the first part of each of ten halvings
+  EXPECT_EQ(more.steps, 0);
 }
 
 /// A composed step that fails in its third substep is taken back whole before it is rescued.
