@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,6 +28,20 @@ size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+// x1_2 of x1, steer.angle of angle: two letters or more that begin the name, or are its last word.
+bool is_part(const std::string& given, const std::string& name) {
+  if (given.size() < 2 || given.size() >= name.size()) return false;
+  const size_t before = name.size() - given.size();
+  return name.starts_with(given) ||
+         (name.ends_with(given) && std::string("._ ").find(name[before - 1]) != std::string::npos);
+}
+
+// How far a name is from what was given: the shortest that has it as a part is the nearest.
+std::pair<size_t, size_t> remoteness(const std::string& given, const std::string& name) {
+  if (is_part(given, name)) return {0, name.size()};
+  return {edit_distance(given, name), 0};
+}
+
 }  // namespace
 
 ConfigError::ConfigError(std::vector<std::string> mistakes)
@@ -44,12 +59,12 @@ std::string unknown_name(const std::string& kind, const std::string& given,
   if (known.empty()) return fmt::format("unknown {} '{}': there are none", kind, value);
   std::string text = fmt::format("unknown {} '{}': expected one of {}", kind, value, join(known));
   const auto nearest = std::min_element(known.begin(), known.end(), [&](auto& a, auto& b) {
-    return edit_distance(value, a) < edit_distance(value, b);
+    return remoteness(value, a) < remoteness(value, b);
   });
-  if (nearest != known.end() &&
-      edit_distance(value, *nearest) <= std::max<size_t>(2, nearest->size() / 2)) {
+  const size_t edits = remoteness(value, *nearest).first;
+  const size_t longest = std::max(value.size(), nearest->size());
+  if (edits < longest && edits <= std::max<size_t>(2, nearest->size() / 2))
     text += fmt::format("; did you mean '{}'?", *nearest);
-  }
   return text;
 }
 

@@ -66,6 +66,27 @@ TEST(EventFormulas, ColumnsOfAProduct) {
     EXPECT_NEAR(r.events[i].coordinates[1], 1 + static_cast<double>(i) / 2, 1e-9);
 }
 
+// A coordinate of a factor by its name alone: nearer than a velocity that is one letter off.
+TEST(EventFormulas, TheNearestNameHasWhatWasGiven) {
+  const auto offered = [](const std::string& given) -> std::string {
+    try {
+      simulate("chaplygin_ball").events({given + "=3"}).build();
+    } catch (const ConfigError& error) {
+      const std::string what = error.what(), mean = "did you mean '";
+      const size_t at = what.find(mean);
+      return at == std::string::npos
+                 ? ""
+                 : what.substr(at + mean.size(), what.size() - at - mean.size() - 2);
+    }
+    return "";
+  };
+  EXPECT_EQ(offered("x1"), "x1_2");
+  EXPECT_EQ(offered("R33"), "R33_1");
+  EXPECT_EQ(offered("omega"), "omega1");
+  EXPECT_EQ(offered("omga1"), "omega1");
+  EXPECT_EQ(offered("Q"), "");  // t has no letter of it
+}
+
 TEST(EventFormulas, MistakesAreNamed) {
   const auto mistake = [](const std::string& text) -> std::string {
     try {
