@@ -81,8 +81,10 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
     inverses((dR.transpose() * q - p).norm() / (condition * p.norm()));
     const Vector nu = 0.3 * p.reverse();
     for (const double s : {0.0, 0.3, 0.5}) {  // m0 of the cotangent lift (trivialised.hpp)
-      Vector m0(n);
-      geometry.base_momentum(s, xi.data(), p.data(), nu.data(), m0.data());
+      Vector m0(n), mixed(n);
+      const Vector z0 = -s * xi;
+      geometry.mixed_momentum(s, xi.data(), p.data(), nu.data(), mixed.data());
+      geometry.dtau_right_inverse_transpose(z0.data(), mixed.data(), m0.data());
       const Matrix d0 = on.dtau_right(-s * xi), d1 = on.dtau_right((1 - s) * xi);
       const Vector sum = s * d0.transpose() * m0 + (1 - s) * d1.transpose() * (m0 + nu) - p;
       base(sum.norm() / (condition * condition * (p.norm() + m0.norm())));
@@ -114,7 +116,7 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
       {"dL tau against differences of tau", left.value, differentiated},
       {"dR tau = Ad(tau) dL tau", adjoint.value, algebraic},
       {"dR^T dR^-T = id", inverses.value, algebraic},
-      {"s dR_z0^T m0 + (1-s) dR_z1^T (m0 + nu) = p for base_momentum", base.value, algebraic},
+      {"s dR_z0^T m0 + (1-s) dR_z1^T (m0 + nu) = p for mixed_momentum", base.value, algebraic},
       {"tau^-1(tau(xi)) = xi from |xi| = 1e-12 to the edge", round_trip.value, algebraic},
       {"0 and everything up to the edge is in the domain, and tau^-1 is defined there",
        domain.value, 0},

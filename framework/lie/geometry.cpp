@@ -114,10 +114,10 @@ void ProductGeometry::dtau_left_inverse(const double* xi, const double* eta, dou
     f.geometry->dtau_left_inverse(xi + f.at, eta + f.at, out + f.at);
   }
 }
-void ProductGeometry::base_momentum(double s, const double* xi, const double* p, const double* nu,
-                                    double* m0) const {
+void ProductGeometry::mixed_momentum(double s, const double* xi, const double* p, const double* nu,
+                                     double* q) const {
   for (const Factor& f : factors_) {
-    f.geometry->base_momentum(s, xi + f.at, p + f.at, nu + f.at, m0 + f.at);
+    f.geometry->mixed_momentum(s, xi + f.at, p + f.at, nu + f.at, q + f.at);
   }
 }
 bool ProductGeometry::in_domain(const double* xi) const {

@@ -68,9 +68,9 @@ class Geometry {
   virtual void dtau_right_inverse_transpose(const double* xi, const double* p,
                                             double* out) const = 0;
   virtual void dtau_left_inverse(const double* xi, const double* eta, double* out) const = 0;
-  /// base_momentum of trivialised.hpp.
-  virtual void base_momentum(double s, const double* xi, const double* p, const double* nu,
-                             double* m0) const = 0;
+  /// mixed_momentum of trivialised.hpp.
+  virtual void mixed_momentum(double s, const double* xi, const double* p, const double* nu,
+                              double* q) const = 0;
   virtual bool in_domain(const double* xi) const = 0;
   // CSV columns.
   virtual int columns() const = 0;
@@ -146,9 +146,9 @@ class TypedGeometry final : public Geometry {
     GroupOperations<Tau>::dtau_left_inverse(vec(xi), vec(eta), image);
     put(image, out);
   }
-  HAMEL_FLATTEN void base_momentum(double s, const double* xi, const double* p, const double* nu,
-                                   double* m0) const override {
-    put(hamel::base_momentum<Tau>(s, vec(xi), vec(p), vec(nu)), m0);
+  HAMEL_FLATTEN void mixed_momentum(double s, const double* xi, const double* p, const double* nu,
+                                    double* q) const override {
+    put(hamel::mixed_momentum<Tau>(s, vec(xi), vec(p), vec(nu)), q);
   }
   bool in_domain(const double* xi) const override { return Tau::in_domain(vec(xi)); }
   int columns() const override { return static_cast<int>(coordinate_count<G>); }
@@ -189,8 +189,8 @@ class ProductGeometry final : public Geometry {
   void dtau_right_transpose(const double* xi, const double* m, double* out) const override;
   void dtau_right_inverse_transpose(const double* xi, const double* p, double* out) const override;
   void dtau_left_inverse(const double* xi, const double* eta, double* out) const override;
-  void base_momentum(double s, const double* xi, const double* p, const double* nu,
-                     double* m0) const override;
+  void mixed_momentum(double s, const double* xi, const double* p, const double* nu,
+                      double* q) const override;
   bool in_domain(const double* xi) const override;
   int columns() const override;
   void coordinates(const double* g, double* out) const override;

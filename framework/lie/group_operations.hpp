@@ -73,10 +73,10 @@ struct GroupOperations {
   static void tau_with_rate(const Vector& xi, const Vector& eta, Element& g, Vector& rate) {
     g = hamel::tau_with_rate<Tau>(xi, eta, rate);
   }
-  /// base_momentum of trivialised.hpp.
-  static void base_momentum(double s, const Vector& xi, const Vector& p, const Vector& nu,
-                            Vector& m0) {
-    m0 = hamel::base_momentum<Tau, T>(s, xi, p, nu);
+  /// mixed_momentum of trivialised.hpp.
+  static void mixed_momentum(double s, const Vector& xi, const Vector& p, const Vector& nu,
+                             Vector& q) {
+    q = hamel::mixed_momentum<Tau, T>(s, xi, p, nu);
   }
   static bool in_domain(const Vector& xi) { return Tau::in_domain(xi); }
   /// xi with tau_s(xi) = delta; false where there is none.

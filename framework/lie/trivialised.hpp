@@ -14,27 +14,30 @@
 
 namespace hamel {
 
-/// m0 of the cotangent lift at the base point, m1 = m0 + nu, by (M13) of
+/// The momenta of the cotangent lift at the base point, m0 and m1 = m0 + nu, by (M13) of
 /// framework/schemes/README.md:
 ///   s dR_{z0}^T m0 + (1-s) dR_{z1}^T (m0 + nu) = p,            z0 = -s xi, z1 = (1-s) xi
-///   m0 = A_0^T M^-T (A_1^T p - (1-s) nu),  A_i = dR_{z_i}^-1,  M = s A_1 + (1-s) A_0
-/// No dR is formed. Where A is quadratic, A(xi) = 1 + odd + even (Cayley), the odd parts cancel:
+///   m0 = A_0^T q,  q = M^-T (A_1^T p - (1-s) nu),  A_i = dR_{z_i}^-1,  M = s A_1 + (1-s) A_0
+/// and at its end mu0 = Ad_{tau(z0)}^T m0 = dL_{z0}^-T q; with a symmetric tau dR_{-z0}^-T q.
+/// This is q. No dR is formed. Where A is quadratic, A(xi) = 1 + odd + even (Cayley), the odd
+/// parts cancel:
 ///   M = 1 + s (1-s) even(xi),
 /// which the retraction solves in closed form.
 template <class Tau, class T = double>
-VecT<T, Tau::Group::dim> base_momentum(double s,
-                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& xi,
-                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& p,
-                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& nu) {
+VecT<T, Tau::Group::dim> mixed_momentum(double s,
+                                        const VecT<std::type_identity_t<T>, Tau::Group::dim>& xi,
+                                        const VecT<std::type_identity_t<T>, Tau::Group::dim>& p,
+                                        const VecT<std::type_identity_t<T>, Tau::Group::dim>& nu) {
   using G = typename Tau::Group;
   constexpr int n = G::dim;
   if (s == 0) return Tau::dtau_right_inverse_transpose(xi, p) - nu;
-  const VecT<T, n> z0 = -s * xi, z1 = (1 - s) * xi;
+  const VecT<T, n> z1 = (1 - s) * xi;
   VecT<T, n> m = Tau::dtau_right_inverse_transpose(z1, p) - (1 - s) * nu;
   if constexpr (requires { Tau::solve_even_transposed(xi, s, m); }) {
     m = Tau::solve_even_transposed(xi, s * (1 - s), m);
   } else {
-    MatT<T, n, n> mix = s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(z0);
+    MatT<T, n, n> mix =
+        s * Tau::dtau_right_inverse(z1) + (1 - s) * Tau::dtau_right_inverse(VecT<T, n>(-s * xi));
     if constexpr (requires { G::solve_transposed(mix, m); }) m = G::solve_transposed(mix, m);
     else if constexpr (n <= 4) m = (mix.transpose().inverse() * m).eval();
     else {
@@ -42,7 +45,17 @@ VecT<T, Tau::Group::dim> base_momentum(double s,
       solve_linear(mix.data(), m.data(), n, 1);
     }
   }
-  return Tau::dtau_right_inverse_transpose(z0, m);
+  return m;
+}
+/// m0.
+template <class Tau, class T = double>
+VecT<T, Tau::Group::dim> base_momentum(double s,
+                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& xi,
+                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& p,
+                                       const VecT<std::type_identity_t<T>, Tau::Group::dim>& nu) {
+  const VecT<T, Tau::Group::dim> q = mixed_momentum<Tau, T>(s, xi, p, nu);
+  if (s == 0) return q;
+  return Tau::dtau_right_inverse_transpose(VecT<T, Tau::Group::dim>(-s * xi), q);
 }
 
 /// tau and its right derivative at one point z.

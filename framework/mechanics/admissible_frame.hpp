@@ -35,23 +35,80 @@ struct Sized {
   using Frame = Eigen::Matrix<double, N, M>;
   using Reduced = Eigen::Matrix<double, M, 1>;
   using ReducedMatrix = Eigen::Matrix<double, M, M>;
+  using FewByReduced = Eigen::Matrix<double, K, M>;
+};
+
+/// An inertia, and the units of (*).
+template <int N>
+class InertiaUnits {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  Eigen::Matrix<double, N, N> inertia;  // I
+
+  /// The inertia was set.
+  void set_weights() {
+    diagonal_ = true;
+    for (int j = 0; j < N; ++j) {
+      if (!(inertia(j, j) > 0)) [[unlikely]]
+        diagonal_ = false;
+      weights_[j] = 1 / std::sqrt(diagonal_of_weights(j));
+      for (int i = 0; i < N; ++i) diagonal_ = diagonal_ && (i == j || inertia(i, j) == 0);
+    }
+  }
+  /// I xi.
+  void momentum(const Vector& xi, Vector& out) const {
+    if (diagonal_) out = inertia.diagonal().cwiseProduct(xi);
+    else out = inertia.lazyProduct(xi);
+  }
+  /// D^-1/2 mu, in place: a momentum in the units of (*).
+  void weigh(Vector& mu) const {
+    for (int i = 0; i < N; ++i) mu[i] *= weights_[i];
+  }
+  /// |D^-1/2 mu|: its size there.
+  template <class State>
+  double size(const State& /*x*/, const Vector& mu) const {
+    return size(mu);
+  }
+  double size(const Vector& mu) const {
+    double sum = 0;
+    for (int i = 0; i < N; ++i) sum += (weights_[i] * mu[i]) * (weights_[i] * mu[i]);
+    return std::sqrt(sum);
+  }
+
+ protected:
+  Vector weights_;  // D^-1/2
+  bool diagonal_ = false;
+
+ private:
+  double diagonal_of_weights(int j) const { return inertia(j, j) > 0 ? inertia(j, j) : lightest(); }
+  [[gnu::noinline, gnu::cold]] double lightest() const {
+    double out = 0;
+    for (int i = 0; i < N; ++i) {
+      if (inertia(i, i) > 0 && (out == 0 || inertia(i, i) < out)) out = inertia(i, i);
+    }
+    return out;
+  }
 };
 
 template <int N = Eigen::Dynamic, int K = Eigen::Dynamic>
-class AdmissibleFrame {
+class AdmissibleFrame : public InertiaUnits<N> {
+  using Units = InertiaUnits<N>;
+  using Units::diagonal_;
+  using Units::weights_;
+
  public:
   using Z = Sized<N, K>;
   using Vector = typename Z::Vector;
   using Multipliers = typename Z::Multipliers;
-  typename Z::Matrix inertia;      // I
+  using Units::inertia;
+  using Units::weigh;
   typename Z::ConstraintMatrix a;  // A
   Multipliers b;
 
   /// Any system with dim() and constraint_count(): Mechanics, or a problem of schemes/problem.hpp.
   template <class System>
   explicit AdmissibleFrame(const System& system)
-      : inertia(system.dim(), system.dim()),
-        a(system.constraint_count(), system.dim()),
+      : a(system.constraint_count(), system.dim()),
         b(system.constraint_count()),
         signs_(Multipliers::Zero()) {}
 
@@ -62,13 +119,7 @@ class AdmissibleFrame {
     const bool rows_change = k() > 0 && (!known_ || !system.constant_constraints());
     if (inertia_changes) {
       system.inertia(g, inertia);
-      diagonal_ = true;
-      for (int j = 0; j < n(); ++j) {
-        if (!(inertia(j, j) > 0)) [[unlikely]]
-          diagonal_ = false;
-        weights_[j] = 1 / std::sqrt(diagonal_of_weights(j));
-        for (int i = 0; i < n(); ++i) diagonal_ = diagonal_ && (i == j || inertia(i, j) == 0);
-      }
+      Units::set_weights();
     }
     if (rows_change) system.constraints(t, g, a, b);
     if (inertia_changes || rows_change) {
@@ -85,20 +136,6 @@ class AdmissibleFrame {
     for (int j = 0; j < m(); ++j) f[k() + j] = y_[j];
   }
   void assemble(Vector& r, const Multipliers& c) { assemble(r, c, r); }
-  /// D^-1/2 mu, in place: a momentum in the units of (*).
-  void weigh(Vector& mu) const {
-    for (int i = 0; i < n(); ++i) mu[i] *= weights_[i];
-  }
-  /// |D^-1/2 mu|: its size there.
-  template <class State>
-  double size(const State& /*x*/, const Vector& mu) const {
-    return size(mu);
-  }
-  double size(const Vector& mu) const {
-    double sum = 0;
-    for (int i = 0; i < n(); ++i) sum += (weights_[i] * mu[i]) * (weights_[i] * mu[i]);
-    return std::sqrt(sum);
-  }
   /// The velocity with A xi = c, E^T I xi = E^T mu. xi may be mu.
   void velocity(const Vector& mu, const Multipliers& c, Vector& xi) {
     reduce(mu);
@@ -137,15 +174,6 @@ class AdmissibleFrame {
   }
   static void add(double factor, const double* x, double* y, int count) {
     for (int i = 0; i < count; ++i) y[i] += factor * x[i];
-  }
-
-  double diagonal_of_weights(int j) const { return inertia(j, j) > 0 ? inertia(j, j) : lightest(); }
-  [[gnu::noinline, gnu::cold]] double lightest() const {
-    double out = 0;
-    for (int i = 0; i < n(); ++i) {
-      if (inertia(i, i) > 0 && (out == 0 || inertia(i, i) < out)) out = inertia(i, i);
-    }
-    return out;
   }
 
   // Column j of reflections_ is the vector of reflection j; its first j entries are 0.
@@ -246,7 +274,6 @@ class AdmissibleFrame {
     }
   }
 
-  Vector weights_;  // D^-1/2
   typename Z::Columns reflections_;
   typename Z::FewSquare l_transposed_;  // but for its diagonal
   Multipliers row_weights_, factors_, l_inverse_diagonal_, signs_;
@@ -255,7 +282,7 @@ class AdmissibleFrame {
   Multipliers few_;
   Vector work_, image_, moved_;
   typename Z::Reduced y_;
-  bool known_ = false, diagonal_ = false;
+  bool known_ = false;
 };
 
 /// Of sizes known at run time only.
@@ -288,6 +315,7 @@ class AdmissibleFrame<Eigen::Dynamic, Eigen::Dynamic> {
   }
   void assemble(Vector& r, const Multipliers& c) { assemble(r, c, r); }
   void weigh(Vector& mu) const { frame_.weigh(mu.data()); }
+  void momentum(const Vector& xi, Vector& out) const { out.noalias() = inertia.lazyProduct(xi); }
   template <class State>
   double size(const State& /*x*/, const Vector& mu) const {
     return size(mu);

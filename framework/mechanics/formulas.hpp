@@ -88,17 +88,14 @@ class Formulas {
   void inertia(const Element& g, Mat<n, n>& out) const { out = inertia_at(g); }
   void constraints(double t, const Element& g, Mat<k, n>& a, Vec<k>& b) const {
     b.setZero();
-    if constexpr (own > 0) {
-      if constexpr (requires { system_.constraints(t, g); }) {
-        a.template topRows<own>() = system_.constraints(t, g);
-      } else if constexpr (requires { system_.constraints(g); }) {
-        a.template topRows<own>() = system_.constraints(g);
-      } else {
-        a.template topRows<own>() = system_.constraints();
-      }
-    }
+    if constexpr (own > 0) a.template topRows<own>() = rows(t, g);
     if constexpr (has_drift<S>()) b.template head<own>() = drift_of(system_, t, g);
     if constexpr (r > 0) a.template bottomRows<r>() = holonomic_differential(g);
+  }
+  /// A v - b of the rows that are no differentials.
+  void constraint_values(double t, const Element& g, const Vec<n>& v, Vec<k>& out) const {
+    if constexpr (own > 0) out.template head<own>() = rows(t, g).lazyProduct(v);
+    if constexpr (has_drift<S>()) out.template head<own>() -= drift_of(system_, t, g);
   }
   void holonomic(const Element& g, Vec<r>& out) const {
     if constexpr (r > 0) out = system_.holonomic(g);
@@ -253,6 +250,12 @@ class Formulas {
 #endif
 
  private:
+  Mat<own, n> rows([[maybe_unused]] double t, [[maybe_unused]] const Element& g) const
+      requires(own > 0) {
+    if constexpr (requires { system_.constraints(t, g); }) return system_.constraints(t, g);
+    else if constexpr (requires { system_.constraints(g); }) return system_.constraints(g);
+    else return system_.constraints();
+  }
   Mat<n, n> inertia_at([[maybe_unused]] const Element& g) const {
     if constexpr (constant_inertia()) return system_.inertia();
     else return system_.inertia(g);

@@ -71,9 +71,9 @@ class DynamicProblem {
     tau(xi, g);
     dtau_left_inverse(xi, eta, rate);
   }
-  void base_momentum(double s, const Vector& xi, const Vector& p, const Vector& nu,
-                     Vector& m0) const {
-    geometry_->base_momentum(s, xi.data(), p.data(), nu.data(), m0.data());
+  void mixed_momentum(double s, const Vector& xi, const Vector& p, const Vector& nu,
+                      Vector& q) const {
+    geometry_->mixed_momentum(s, xi.data(), p.data(), nu.data(), q.data());
   }
   bool in_domain(const Vector& xi) const { return geometry_->in_domain(xi.data()); }
   bool recover_step(const Element& delta, double s, Vector& xi) const {

@@ -6,7 +6,8 @@
 //   p = I(g) v,   nu = h F(t + s h, g, v),   C = (s dR_{z0} + (1-s) dR_{z1})^T.
 // Momenta carried to the base point, m_i = Ad*_{f_i^-1} mu_i, satisfy (lie/trivialised.hpp)
 //   (1)  s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 = p,     (2)  m1 - m0 = nu,
-// hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu), m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i. The step solves
+// hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu) = dR_{z0}^-T q, m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i; at
+// s = 1/2 with a symmetric tau mu0 = dR_{z1}^-T q. The step solves
 //   E(g0)^T (mu0 - I(g0) xi_0) = 0,    A(g) v = b(t + s h, g),   phi(g1) = 0 in place of its rows,
 // in the frame at g0 ((*) of mechanics/admissible_frame.hpp), and xi_1 is the admissible velocity
 // of mu1 at g1.
@@ -85,8 +86,7 @@ class Lift::General {
       place_g_ = node.g;
       apply(node.t, node.g, node.x);
     }
-    inertia_ = place_.inertia;
-    target_ = inertia_.lazyProduct(node.x);
+    place_.momentum(node.x, target_);
     // |mu0| + |I xi/h| + |h force| in the units of (*); at rest without force those of unit
     // velocities.
     const double size = 2 * place_.size(target_) + std::abs(h) * place_.size(force_);
@@ -114,6 +114,10 @@ class Lift::General {
   bool finish(const Unknown& x, Node& next) const {
     if ((v_.array() != x.array()).any()) evaluate_again(x);
     if (!problem_.in_domain(step_)) return false;
+    if (mirrored_) {
+      z_ = -s_ * step_;
+      problem_.dtau_right_inverse_transpose(z_, q_, m_);
+    }
     m_ += nu_;
     problem_.Ad_transpose(f1_, m_, mu_);
     next.t = from_->t + h_;
@@ -140,8 +144,7 @@ class Lift::General {
     problem_.tau(z_, f1_);
     if (s_ == 0) {
       base_ = from_->g;
-    } else if (mirrored_) {  // f0 = f1^-1
-      problem_.inverse(f1_, f0_);
+    } else if (mirrored_) {  // f0 = f1^-1, z0 = -z1
       problem_.compose(from_->g, f1_, base_);
     } else {
       z_ = -s_ * step_;
@@ -155,9 +158,15 @@ class Lift::General {
     find_momentum();
     if (!nodal_) problem_.force(t, base_, v_, nu_);
     if (!nodal_ || !problem_.constant_inertia()) nu_ *= h_;
-    problem_.base_momentum(s_, step_, p_, nu_, m_);
-    if (s_ == 0) mu_ = m_;
-    else problem_.Ad_transpose(f0_, m_, mu_);
+    problem_.mixed_momentum(s_, step_, p_, nu_, q_);
+    if (mirrored_) {
+      problem_.dtau_right_inverse_transpose(z_, q_, mu_);
+    } else if (s_ == 0) {
+      m_ = mu_ = q_;
+    } else {
+      problem_.dtau_right_inverse_transpose(z_, q_, m_);
+      problem_.Ad_transpose(f0_, m_, mu_);
+    }
     mu_ -= target_;
     if (nodal_ && problem_.force_depends_on_velocity()) {
       apply(from_->t, from_->g, v_);
@@ -183,13 +192,12 @@ class Lift::General {
   }
   // p_ = I(g) v, and nu_ = d(v^T I(g) v)/2 where that is not 0.
   void find_momentum() const {
-    if (!problem_.constant_inertia()) {
-      if constexpr (requires { problem_.momentum_at(base_, v_, p_, nu_); }) {
-        if (problem_.momentum_at(base_, v_, p_, nu_)) return;
-      }
-      problem_.inertia(base_, inertia_);
-      if (nodal_) problem_.inertial_force(base_, v_, nu_);
+    if (problem_.constant_inertia()) return place_.momentum(v_, p_);
+    if constexpr (requires { problem_.momentum_at(base_, v_, p_, nu_); }) {
+      if (problem_.momentum_at(base_, v_, p_, nu_)) return;
     }
+    problem_.inertia(base_, inertia_);
+    if (nodal_) problem_.inertial_force(base_, v_, nu_);
     p_ = inertia_.lazyProduct(v_);
   }
 
@@ -217,7 +225,7 @@ class Lift::General {
   mutable typename P::Element place_g_ = problem_.element();
   mutable double place_time_ = kNothing;
   mutable typename P::Element f0_ = place_g_, f1_ = f0_, base_ = f0_, g1_ = f0_;
-  mutable Vector v_ = target_, z_ = v_, step_ = v_, p_ = v_, nu_ = v_, m_ = v_, mu_ = v_,
+  mutable Vector v_ = target_, z_ = v_, step_ = v_, p_ = v_, nu_ = v_, q_ = v_, m_ = v_, mu_ = v_,
                  force_ = v_;
   mutable typename P::Matrix inertia_{problem_.dim(), problem_.dim()};
   mutable typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};

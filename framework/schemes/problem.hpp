@@ -51,7 +51,7 @@ concept Problem = requires(const P& problem, typename P::Element& g, typename P:
   problem.tau(v, g);
   problem.dtau_right_transpose(v, v, v);
   problem.dtau_left_inverse(v, v, v);
-  problem.base_momentum(t, v, v, v, v);
+  problem.mixed_momentum(t, v, v, v, v);
   { problem.in_domain(v) } -> std::convertible_to<bool>;
   // xi of a carried velocity, and back; its momentum I xi, given I(g).
   problem.velocity(x, v);

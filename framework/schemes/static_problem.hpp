@@ -6,6 +6,7 @@
 #include <hamel/framework/lie/group_operations.hpp>
 #include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/general_system.hpp>
+#include <hamel/framework/mechanics/stated_frame.hpp>
 
 namespace hamel {
 
@@ -46,7 +47,8 @@ class StaticProblem : public GroupOperations<Tau> {
   using ConstraintMatrix = Mat<k, n>;
   using Multipliers = Vec<k>;
   using HolonomicValues = Vec<r>;
-  using AdmissibleFrame = hamel::AdmissibleFrame<n, k>;
+  using AdmissibleFrame =
+      std::conditional_t<F::framed(), StatedFrame<n, k>, hamel::AdmissibleFrame<n, k>>;
   using Unconstrained = WithoutRows<StaticProblem>;
   /// Whose equations of motion are compiled: they are the same with every retraction.
   using OfMotion = StaticProblem<System, typename FirstOf<typename Group::Retractions>::type>;
@@ -83,6 +85,12 @@ class StaticProblem : public GroupOperations<Tau> {
   void constraints(double t, const Element& g, ConstraintMatrix& a, Multipliers& b) const {
     formulas_->constraints(t, g, a, b);
   }
+  /// A v - b, but for the rows that are differentials.
+  bool constraint_values(double t, const Element& g, const Vector& v, Multipliers& out) const {
+    out.setZero();
+    formulas_->constraint_values(t, g, v, out);
+    return true;
+  }
   void holonomic(const Element& g, HolonomicValues& phi) const { formulas_->holonomic(g, phi); }
   void force(double t, const Element& g, const Vector& xi, Vector& out) const {
     formulas_->force(t, g, xi, out);
@@ -103,6 +111,7 @@ class StaticProblem : public GroupOperations<Tau> {
   /// Does the system state a frame? Then xi = E(g) y of the first entries y of x, and its rate
   /// (framed_equations.hpp).
   static constexpr bool framed() { return F::framed(); }
+  Mat<k, n - k> frame(const Element& g) const requires(F::framed()) { return formulas_->frame(g); }
   void expand(const Element& g, const State& x, Vector& xi) const {
     typed_->framed_equations().expand(*formulas_, g, x, xi);
   }

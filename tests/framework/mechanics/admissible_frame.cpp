@@ -1,11 +1,15 @@
-// The frame of the general schemes (framework/mechanics/admissible_frame.hpp) against its
-// definition, on random full inertias and rows, for sizes known at compile time and at run time.
+// The frames of the general schemes (framework/mechanics/admissible_frame.hpp, stated_frame.hpp)
+// against their definition, on random full inertias and rows, for sizes known at compile time and
+// at run time.
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include <Eigen/QR>
+
 #include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/mechanics/stated_frame.hpp>
 
 namespace hamel {
 namespace {
@@ -14,7 +18,7 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 // The same system at every (t, g).
-struct Given final : Mechanics {
+struct Given : Mechanics {
   Eigen::MatrixXd i, a;
   Eigen::VectorXd b;
   int dim() const override { return static_cast<int>(i.rows()); }
@@ -44,31 +48,42 @@ Given random_system(std::mt19937& random, int n, int k, bool diagonal = false) {
   return out;
 }
 
-template <int N, int K>
-void expect_definition(const Given& system, std::mt19937& random) {
+// The same that states its frame, of k rows without a drift.
+template <int K>
+struct GivenWithFrame : Given {
+  explicit GivenWithFrame(const Given& given) : Given(given) { b.setZero(); }
+  auto frame(const double* /*g*/) const {
+    return Eigen::MatrixXd(-a.rightCols<K>().inverse() * a.leftCols(a.cols() - K));
+  }
+};
+
+// metric: E^T metric E = 1.
+template <class Frame, class System>
+void expect_definition(const System& system, const Matrix& metric, std::mt19937& random) {
   const int n = system.dim(), k = system.constraint_count();
-  AdmissibleFrame<N, K> place(system);
+  Frame place(system);
   place.set(system, 0, nullptr);
   std::normal_distribution<double> normal;
-  typename AdmissibleFrame<N, K>::Vector mu(n), xi(n);
+  typename Frame::Vector mu(n), xi(n);
   for (double& x : mu) x = normal(random);
 
   // A xi = b, and I xi - mu is a reaction, whose multipliers are found.
   place.admissible(mu, xi);
   EXPECT_LT((system.a * xi - system.b).norm(), 1e-13 * (1 + system.a.norm() * xi.norm()));
-  typename AdmissibleFrame<N, K>::Multipliers lambda(k);
   const Vector reaction = system.i * xi - mu;
-  place.multipliers(reaction, lambda);
+  typename Frame::Multipliers lambda = system.a.transpose().fullPivHouseholderQr().solve(reaction);
+  if constexpr (requires { place.multipliers(reaction, lambda); })
+    place.multipliers(reaction, lambda);
   EXPECT_LT((reaction - system.a.transpose() * lambda).norm(),
             1e-13 * (1 + system.i.norm() * xi.norm() + system.a.norm() * lambda.norm()));
 
   // (*) is c_i / |D^-1/2 a_i| and E^T r, E of n - k columns: zero for reactions alone, unit in the
-  // metric D.
-  typename AdmissibleFrame<N, K>::Multipliers c(k);
+  // metric.
+  typename Frame::Multipliers c(k);
   for (double& x : c) x = normal(random);
   const Vector root = system.i.diagonal().cwiseSqrt();
-  typename AdmissibleFrame<N, K>::Vector r = system.a.transpose() * c;
-  place.assemble(r, c);
+  typename Frame::Vector r = system.a.transpose() * c;
+  place.assemble(r, c, r);
   for (int j = 0; j < k; ++j) {
     const double size = (system.a.row(j).transpose().array() / root.array()).matrix().norm();
     EXPECT_NEAR(r[j], c[j] / size, 1e-12);
@@ -77,21 +92,19 @@ void expect_definition(const Given& system, std::mt19937& random) {
   Matrix e(n, n - k);
   for (int i = 0; i < n; ++i) {
     r = Vector::Unit(n, i);
-    place.assemble(r, c);
+    place.assemble(r, c, r);
     e.row(i) = r.tail(n - k).transpose();
   }
-  EXPECT_LT((e.transpose() * system.i.diagonal().asDiagonal() * e - Matrix::Identity(n - k, n - k))
-                .norm(),
-            1e-11);
+  EXPECT_LT((e.transpose() * metric * e - Matrix::Identity(n - k, n - k)).norm(), 1e-11);
 
   // expand: A dxi and E^T I dxi have the values given.
-  typename AdmissibleFrame<N, K>::Vector z(n);
+  typename Frame::Vector z(n);
   for (double& x : z) x = normal(random);
-  typename AdmissibleFrame<N, K>::Vector moved = z;
+  typename Frame::Vector moved = z;
   place.expand(moved.data());
   EXPECT_LT((e.transpose() * system.i * moved - z.tail(n - k)).norm(), 1e-11);
   r = Vector::Zero(n);
-  place.assemble(r, typename AdmissibleFrame<N, K>::Multipliers(system.a * moved));
+  place.assemble(r, typename Frame::Multipliers(system.a * moved), r);
   EXPECT_LT((r.head(k) - z.head(k)).norm(), 1e-11);
 
   // Sizes.
@@ -101,10 +114,25 @@ void expect_definition(const Given& system, std::mt19937& random) {
 TEST(AdmissibleFrame, IsItsDefinition) {
   std::mt19937 random(1);
   for (int trial = 0; trial < 20; ++trial) {
-    expect_definition<6, 3>(random_system(random, 6, 3), random);
-    expect_definition<6, 3>(random_system(random, 6, 3, true), random);
+    for (const bool diagonal : {false, true}) {
+      const Given system = random_system(random, 6, 3, diagonal);
+      expect_definition<AdmissibleFrame<6, 3>>(system, system.i.diagonal().asDiagonal(), random);
+    }
     for (const auto& [n, k] : {std::pair{1, 0}, {3, 1}, {5, 4}, {6, 3}, {6, 6}, {20, 17}}) {
-      expect_definition<Eigen::Dynamic, Eigen::Dynamic>(random_system(random, n, k), random);
+      const Given system = random_system(random, n, k);
+      expect_definition<AdmissibleFrame<>>(system, system.i.diagonal().asDiagonal(), random);
+    }
+  }
+}
+
+TEST(StatedFrame, IsItsDefinition) {
+  std::mt19937 random(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    for (const bool diagonal : {false, true}) {
+      const GivenWithFrame<3> body(random_system(random, 6, 3, diagonal));
+      expect_definition<StatedFrame<6, 3>>(body, body.i, random);
+      const GivenWithFrame<1> particle(random_system(random, 3, 1, diagonal));
+      expect_definition<StatedFrame<3, 1>>(particle, particle.i, random);
     }
   }
 }
