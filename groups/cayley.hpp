@@ -90,7 +90,7 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
   /// dR^-1 is quadratic in xi, so the weight of its even part is one
   /// (framework/schemes/hamel_form.hpp).
   static double quadratic_weight(const auto& /*x*/) { return 1.0; }
-  static constexpr bool quadratic_weight_is_constant = true;
+  static constexpr bool quadratic_weight_is_one = true;
   static double angle_squared(const Vec<3>& xi) { return xi.dot(xi); }
   /// I + (omega^ + omega^2/2)/(1 + |omega|^2/4).
   template <class T>
@@ -167,7 +167,7 @@ struct Cayley<SE2> : CayleyDefaults<SE2> {
   /// dR^-1 is quadratic in xi, so the weight of its even part is one
   /// (framework/schemes/hamel_form.hpp).
   static double quadratic_weight(const auto& /*x*/) { return 1.0; }
-  static constexpr bool quadratic_weight_is_constant = true;
+  static constexpr bool quadratic_weight_is_one = true;
   static double angle_squared(const Vec<3>& xi) { return xi[0] * xi[0]; }
   /// (cay omega, (I - omega J/2)^-1 v).
   template <class T>

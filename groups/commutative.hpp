@@ -20,6 +20,7 @@ struct IdentityRetraction : RetractionDefaults<Derived, G> {
   static constexpr int N = G::dim;
   static constexpr bool symmetric = true;
   static constexpr bool one_parameter = true;
+  static constexpr bool addition = true;
   static std::string formula() { return "tau(x) = x"; }
   template <class T>
   static VecT<T, N> tau(const VecT<T, N>& xi) {
@@ -55,15 +56,26 @@ template <class Derived>
 struct AddedAngle : RetractionDefaults<Derived, SO2> {
   static constexpr bool symmetric = true;
   static constexpr bool one_parameter = true;
+  static constexpr bool addition = true;
   static std::string formula() { return "tau(omega) = the rotation by omega, turns counted"; }
 
   template <class T>
   static SO2Element<T> tau(const VecT<T, 1>& xi) {
     const T x = xi[0] * xi[0];
-    if (x < detail::minimax_end) [[likely]] {
-      return {1.0 - x * cosc(x), xi[0] * sinc(x), 0};
+    if constexpr (SO2Element<T>::in_lanes) {
+      using namespace detail;
+      SO2Element<T> g{1.0 - x * polynomial<cosc_minimax.size()>(cosc_minimax, x),
+                      xi[0] * polynomial<sinc_minimax.size()>(sinc_minimax, x), 0};
+      const auto near = below(x, minimax_end);
+      if (!all(near)) [[unlikely]]
+        put_others(near, xi[0], g, [](double omega) { return SO2::from_angle(omega); });
+      return g;
+    } else {
+      if (x < detail::minimax_end) [[likely]] {
+        return {1.0 - x * cosc(x), xi[0] * sinc(x), 0};
+      }
+      return SO2::from_angle(xi[0]);
     }
-    return SO2::from_angle(xi[0]);
   }
   template <class T>
   static VecT<T, 1> dtau_left_inverse(const VecT<T, 1>&, const VecT<T, 1>& eta) {

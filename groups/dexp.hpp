@@ -30,8 +30,8 @@ namespace detail {
 inline constexpr double minimax_end = 2.5;  // x below this: a minimax polynomial (double)
 inline constexpr double series_end = 8.0;   // x below this: the whole Taylor table
 
-template <std::size_t Begin, std::size_t Count, std::size_t N>
-double estrin(const std::array<double, N>& a, const double* powers) {
+template <std::size_t Begin, std::size_t Count, std::size_t N, class T>
+T estrin(const std::array<double, N>& a, const T* powers) {
   if constexpr (Count == 1) {
     return a[Begin];
   } else {
@@ -41,13 +41,19 @@ double estrin(const std::array<double, N>& a, const double* powers) {
   }
 }
 
-/// a_0 + a_1 x + ... of the first Terms entries. Estrin's order for double (short chains), Horner's
-/// otherwise.
+/// double, or one in each lane (lanes/lane.hpp)?
+template <class T>
+inline constexpr bool is_number = std::is_same_v<T, double> || requires {
+  T::width;
+};
+
+/// a_0 + a_1 x + ... of the first Terms entries. Estrin's order for numbers (short chains),
+/// Horner's otherwise.
 template <std::size_t Terms, std::size_t N, class T>
 T polynomial(const std::array<double, N>& a, const T& x) {
   static_assert(Terms <= N);
-  if constexpr (std::is_same_v<T, double>) {
-    double powers[6] = {x};
+  if constexpr (is_number<T>) {
+    T powers[6] = {x};
     for (std::size_t i = 1; i < std::bit_width(Terms - 1); ++i) {
       powers[i] = powers[i - 1] * powers[i - 1];
     }

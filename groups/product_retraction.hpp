@@ -17,9 +17,55 @@
 
 namespace hamel {
 
+/// Where tau is addition on all factors but number I: what R, its retraction there, has for the
+/// Hamel form (framework/schemes/hamel_form.hpp).
+template <class G, std::size_t I, class R>
+struct OfOneFactor {
+  static constexpr bool quadratic_weight_is_one = requires { requires R::quadratic_weight_is_one; };
+  static auto quadratic_weight(const auto& x) requires(requires { R::quadratic_weight(x); }) {
+    return R::quadratic_weight(x);
+  }
+  static double angle_squared(const Vec<G::dim>& xi) requires(requires(const Vec<R::dim>& own) {
+    R::angle_squared(own);
+  }) {
+    return R::angle_squared(G::template segment<I>(xi));
+  }
+  template <class T>
+  static VecT<T, G::dim> solve_even_transposed(
+      const VecT<T, G::dim>& xi, double c,
+      const VecT<T, G::dim>& m) requires(requires(const VecT<T, R::dim>& own) {
+    R::solve_even_transposed(own, c, own);
+  }) {
+    const VecT<T, R::dim> part = G::template segment<I>(xi), own = G::template segment<I>(m);
+    VecT<T, G::dim> out = m;
+    out.template segment<R::dim>(G::offsets[I]) = R::solve_even_transposed(part, c, own);
+    return out;
+  }
+};
+struct OfNoFactor {};
+/// Of the one factor on which tau is not addition, where there is one.
+template <class... Rs>
+struct OneFactorOf {
+  static constexpr std::size_t index() {
+    const bool add[] = {adds<Rs>()...};
+    std::size_t i = 0;
+    while (i + 1 < sizeof...(Rs) && add[i]) ++i;
+    return i;
+  }
+  template <class R>
+  static constexpr bool adds() {
+    return requires { requires R::addition; };
+  }
+  static constexpr bool exists = ((adds<Rs>() ? 0 : 1) + ...) == 1;
+  using type = std::conditional_t<exists,
+                                  OfOneFactor<Product<typename Rs::Group...>, index(),
+                                              std::tuple_element_t<index(), std::tuple<Rs...>>>,
+                                  OfNoFactor>;
+};
+
 /// tau = (tau_1, tau_2, ...): one retraction for each factor.
 template <class... Rs>
-struct ProductRetraction {
+struct ProductRetraction : OneFactorOf<Rs...>::type {
   using Group = Product<typename Rs::Group...>;
   static constexpr int dim = Group::dim;
   static constexpr bool symmetric = (Rs::symmetric && ...);

@@ -118,6 +118,14 @@ void get_lane(const A& lanes, int lane, B& one) {
   });
 }
 
+/// one(x) into the lanes of `out` that the mask leaves out, x the lane's number.
+template <class Arch, class Out, class One>
+[[gnu::noinline, gnu::cold]] void put_others(const typename Lane<Arch>::Mask& mask,
+                                             const Lane<Arch>& x, Out& out, const One& one) {
+  for (int lane = 0; lane < Lane<Arch>::width; ++lane)
+    if (!get_lane<Lane<Arch>>(mask, lane)) put_lane(out, lane, one(x.get(lane)));
+}
+
 /// Bodies of one type, whose members are joined over them.
 template <class One>
 class EachBody {

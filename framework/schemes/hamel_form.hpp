@@ -91,29 +91,32 @@ class HamelForm {
     return out;
   }
 
+  /// For steps of h: before what follows.
+  void scale(double h) {
+    hb_ = h * b_;
+    ht_ = (h * h) * t_;
+    hg_ = (h * h) * g_;
+  }
   /// E^T mu0.
-  Reduced start_momentum(const Reduced& y, double h) const {
-    const auto [odd, even] = terms(y, h);
+  Reduced start_momentum(const Reduced& y) const {
+    const auto [odd, even] = terms(y);
     return {y[0] + odd[0] + even[0], y[1] + odd[1] + even[1]};
   }
   /// E^T mu1.
-  Reduced end_momentum(const Reduced& y, double h) const {
-    const auto [odd, even] = terms(y, h);
+  Reduced end_momentum(const Reduced& y) const {
+    const auto [odd, even] = terms(y);
     return {y[0] - odd[0] + even[0], y[1] - odd[1] + even[1]};
   }
-  /// Is w the same for all x? Then the derivative of E^T mu0 by y is a polynomial.
-  static constexpr bool has_derivative() {
-    return exists() && requires { requires Tau::quadratic_weight_is_constant; };
-  }
-  void derivative(const Reduced& y, double h, MatT<T, 2, 2>& out) const {
+  /// Is w = 1? Then the derivative of E^T mu0 by y is a polynomial.
+  static constexpr bool has_derivative() { return exists() && weight_is_one(); }
+  void derivative(const Reduced& y, MatT<T, 2, 2>& out) const {
     const T u = y[0], v = y[1], uu = u * u, uv = u * v, vv = v * v;
-    const double hh = h * h * Tau::quadratic_weight(0.0);
     for (int i = 0; i < 2; ++i) {
-      const T p_u = 2.0 * b_(i, 0) * u + b_(i, 1) * v, p_v = b_(i, 1) * u + 2.0 * b_(i, 2) * v;
-      const T q_u = 3.0 * t_(i, 0) * uu + 2.0 * t_(i, 1) * uv + t_(i, 2) * vv;
-      const T q_v = t_(i, 1) * uu + 2.0 * t_(i, 2) * uv + 3.0 * t_(i, 3) * vv;
-      out(i, 0) = h * p_u + hh * q_u;
-      out(i, 1) = h * p_v + hh * q_v;
+      const T p_u = 2.0 * hb_(i, 0) * u + hb_(i, 1) * v, p_v = hb_(i, 1) * u + 2.0 * hb_(i, 2) * v;
+      const T q_u = 3.0 * ht_(i, 0) * uu + 2.0 * ht_(i, 1) * uv + ht_(i, 2) * vv;
+      const T q_v = ht_(i, 1) * uu + 2.0 * ht_(i, 2) * uv + 3.0 * ht_(i, 3) * vv;
+      out(i, 0) = p_u + q_u;
+      out(i, 1) = p_v + q_v;
     }
     out(0, 0) += 1.0;
     out(1, 1) += 1.0;
@@ -121,25 +124,34 @@ class HamelForm {
 
  private:
   HamelForm() = default;
+  static constexpr bool weight_is_one() {
+    return requires { requires Tau::quadratic_weight_is_one; };
+  }
   struct Terms {
     Reduced odd, even;
   };
   // h b(y, y) and h^2 w t(y, y, y).
-  Terms terms(const Reduced& y, double h) const {
-    const T u = y[0], v = y[1], uu = u * u, uv = u * v, vv = v * v;
-    const double hh = h * h;
-    const auto w = hh * Tau::quadratic_weight(hh * (g_[0] * uu + g_[1] * uv + g_[2] * vv));
-    const T p0 = b_(0, 0) * uu + b_(0, 1) * uv + b_(0, 2) * vv;
-    const T p1 = b_(1, 0) * uu + b_(1, 1) * uv + b_(1, 2) * vv;
-    const T q0 = u * (t_(0, 0) * uu + t_(0, 1) * uv + t_(0, 2) * vv) + t_(0, 3) * v * vv;
-    const T q1 = u * (t_(1, 0) * uu + t_(1, 1) * uv + t_(1, 2) * vv) + t_(1, 3) * v * vv;
-    return {{h * p0, h * p1}, {w * q0, w * q1}};
+  Terms terms(const Reduced& y) const {
+    const T u = y[0], v = y[1], uu = u * u, uv = u * v, vv = v * v, vvv = v * vv;
+    const T p0 = hb_(0, 0) * uu + hb_(0, 1) * uv + hb_(0, 2) * vv;
+    const T p1 = hb_(1, 0) * uu + hb_(1, 1) * uv + hb_(1, 2) * vv;
+    const T q0 = u * (ht_(0, 0) * uu + ht_(0, 1) * uv + ht_(0, 2) * vv) + ht_(0, 3) * vvv;
+    const T q1 = u * (ht_(1, 0) * uu + ht_(1, 1) * uv + ht_(1, 2) * vv) + ht_(1, 3) * vvv;
+    if constexpr (weight_is_one()) {
+      return {{p0, p1}, {q0, q1}};
+    } else {
+      const auto w = Tau::quadratic_weight(hg_[0] * uu + hg_[1] * uv + hg_[2] * vv);
+      return {{p0, p1}, {w * q0, w * q1}};
+    }
   }
   template <class>
   friend class HamelForm;
   MatT<T, 2, 3> b_;
   MatT<T, 2, 4> t_;
   VecT<T, 3> g_;
+  MatT<T, 2, 3> hb_;  // h b, h^2 t, h^2 g
+  MatT<T, 2, 4> ht_;
+  VecT<T, 3> hg_;
 };
 
 }  // namespace hamel

@@ -20,8 +20,9 @@ class LeftInvariant : public GroupOperations<Tau, T> {
   using Group = Group_;
   static constexpr bool left_invariant = true;
   /// Steps state their Jacobians in closed form; on larger groups differences spare a minute of
-  /// compilation.
-  static constexpr bool has_jacobians = Group::dim <= 3;
+  /// compilation, but where the Hamel form has it (hamel_form.hpp).
+  static constexpr bool has_jacobians =
+      Group::dim <= 3 || (M == 2 && requires { requires Tau::quadratic_weight_is_one; });
   static constexpr int n = Group::dim, m = M, k = n - M;
   using typename GroupOperations<Tau, T>::Element;
   /// The same problem over other numbers.

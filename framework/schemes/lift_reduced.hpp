@@ -2,6 +2,8 @@
 // exists. Part of lift.hpp.
 #pragma once
 
+#include <limits>
+
 #include <hamel/framework/schemes/hamel_form.hpp>
 #include <hamel/framework/schemes/lift.hpp>
 
@@ -51,7 +53,8 @@ class Lift::Reduced {
   static constexpr int size() { return P::m; }
   void begin(const Node& node, double h) {
     from_ = &node;
-    h_ = h;
+    if (h != h_) [[unlikely]]
+      set_step(h);
   }
   void guess(Unknown& y) const { y = from_->x; }
   /// (|mu_bar| + |I xi/h|)^2, both of one length in the Hamel frame.
@@ -61,7 +64,7 @@ class Lift::Reduced {
   [[gnu::always_inline]] void residual(const Unknown& y, Unknown& f) const {
     if constexpr (Form::exists()) {
       if (contracted()) [[likely]] {
-        f = form_.start_momentum(y, h_) - from_->x;
+        f = form_.start_momentum(y) - from_->x;
         return;
       }
     }
@@ -74,7 +77,7 @@ class Lift::Reduced {
       requires(HasJacobians<P>&& linearised) {
     residual(y, f);
     if constexpr (Form::has_derivative()) {
-      if (contracted()) return form_.derivative(y, h_, j);
+      if (contracted()) return form_.derivative(y, j);
     }
     if constexpr (std::is_same_v<T, double>) full_derivative(y, j);
   }
@@ -89,7 +92,7 @@ class Lift::Reduced {
   [[gnu::always_inline]] void finish_state(const Unknown& y, Node& next) const {
     if constexpr (Form::exists()) {
       if (contracted()) [[likely]] {
-        next.x = form_.end_momentum(y, h_);
+        next.x = form_.end_momentum(y);
         return;
       }
     }
@@ -124,11 +127,12 @@ class Lift::Reduced {
       return G::compose(half, half);
     }
   }
-  Vector xi(const Unknown& y) const {
-    Vector v;
-    problem_.velocity(y, v);
-    return h_ * v;
+  void set_step(double h) {
+    h_ = h;
+    step_frame_ = h * problem_.frame();
+    if constexpr (Form::exists()) form_.scale(h);
   }
+  Vector xi(const Unknown& y) const { return step_frame_.lazyProduct(y); }
   Vector momentum(const Unknown& y) const {
     Vector p;
     problem_.momentum({}, y, p);
@@ -188,7 +192,8 @@ class Lift::Reduced {
   friend class Reduced;
 
   P problem_;
-  double s_, h_ = 0;
+  typename P::Frame step_frame_;  // h E
+  double s_, h_ = std::numeric_limits<double>::quiet_NaN();
   bool one_sided_, mirrored_, contracted_ = false;
   const Node* from_ = nullptr;
   [[no_unique_address]] UsedForm form_;

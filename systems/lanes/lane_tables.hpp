@@ -11,6 +11,7 @@
 #include <hamel/framework/schemes/rkmk4.hpp>
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/heisenberg.hpp>
+#include <hamel/groups/product_retraction.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so3.hpp>
 
@@ -25,8 +26,10 @@ struct Makers {
 };
 template <class G, int M>
 using MakersOn = Makers<LeftInvariant<G, M, Cayley<G>>>;
-/// suslov, chaplygin_sleigh, heisenberg_particle, and all left-invariant systems like them.
-using Table = std::tuple<MakersOn<SO3, 2>, MakersOn<SE2, 2>, MakersOn<Heisenberg, 2>>;
+/// suslov, chaplygin_sleigh, heisenberg_particle, rolling_disk, differential_drive, and all
+/// left-invariant systems like them.
+using Table = std::tuple<MakersOn<SO3, 2>, MakersOn<SE2, 2>, MakersOn<Heisenberg, 2>,
+                         MakersOn<Product<SE2, SO2>, 2>, MakersOn<Product<SE2, SO2, SO2>, 2>>;
 
 Table table_sse2();
 Table table_avx2();

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <hamel/hamel.hpp>
+#include <hamel/systems/differential_drive.hpp>
 #include <hamel/systems/heisenberg_particle.hpp>
+#include <hamel/systems/rolling_disk.hpp>
 
 namespace {
 
@@ -24,6 +26,10 @@ std::vector<KernelSetup> setups_of(int count, const std::function<void(S&, int)>
     setup.from = 1;
     setup.velocity = {1 - 0.05 * i, 0.5 + 0.1 * i, 0};
     setup.configuration = {0.1, 0.2 * i, -0.3};
+    for (int k = 3; k < S::Group::dim; ++k) {  // wheels
+      setup.velocity.push_back(20 * k);
+      setup.configuration.push_back(4 * i);
+    }
     if constexpr (std::is_same_v<typename S::Group, hamel::SO3>)
       setup.configuration = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     out.push_back(setup);
@@ -85,6 +91,8 @@ void vary_oblique(hamel::Suslov& body, int i) {
   body.normal = {0.3, -0.2 - 0.01 * i, 0.9};
 }
 void vary_sleigh(hamel::ChaplyginSleigh& sleigh, int i) { sleigh.offset = 0.2 + 0.05 * i; }
+void vary_disk(hamel::RollingDisk& disk, int i) { disk.radius = 0.3 + 0.05 * i; }
+void vary_drive(hamel::DifferentialDrive& drive, int i) { drive.offset = 0.1 + 0.02 * i; }
 void vary_particle(hamel::HeisenbergParticle& particle, int i) { particle.mass = 1 + i; }
 
 TEST(Lanes, SuslovHasTheBitsOfTheScalarKernel) {
@@ -100,6 +108,15 @@ TEST(Lanes, ASleighThatTurnsBackwardsHasThem) {
   for (const double h : {0.05, -0.05})
     expect_the_bits_of_the_scalar_kernel<hamel::ChaplyginSleigh>("lift", vary_sleigh, 0.5, h);
   expect_the_bits_of_the_scalar_kernel<hamel::ChaplyginSleigh>("rkmk4", vary_sleigh, 0.5, 0.05);
+}
+// Wheels turn by less than a right angle in a step, and by several.
+TEST(Lanes, WheelsHaveThem) {
+  for (const double h : {0.01, 0.05, 0.3}) {
+    for (const char* scheme : {"lift", "rkmk4"}) {
+      expect_the_bits_of_the_scalar_kernel<hamel::RollingDisk>(scheme, vary_disk, 0.5, h);
+      expect_the_bits_of_the_scalar_kernel<hamel::DifferentialDrive>(scheme, vary_drive, 0.5, h);
+    }
+  }
 }
 TEST(Lanes, AParticleWithoutAHamelFormHasThem) {
   for (const char* scheme : {"lift", "rkmk4"})
