@@ -57,6 +57,21 @@ class Inverse {
       lu_.compute(jacobian);
     }
   }
+  /// Broyden's update behind a correction c = J^-1 f that has left f_1 (Kelley 2003, ch. 4): the
+  /// change of J along c that makes F(x - c) what it was found to be. With c_1 = J^-1 f_1
+  ///   J^-1 <- J^-1 + c_1 (J^-T c)^T / c.(c - c_1).
+  /// No update where that is ill-conditioned, or J is kept by its LU.
+  template <class Vector>
+  void update(const Vector& c, const Vector& f_1) {
+    if (is_large(c.size())) return;
+    constexpr int most = size == Eigen::Dynamic ? 16 : size;
+    using Small = Eigen::Matrix<double, size, 1, 0, most, 1>;
+    const Small c_1 = inverse_.lazyProduct(f_1);
+    const double square = c.squaredNorm(), along = square - c.dot(c_1);
+    if (!(along > 0.3 * square)) return;
+    const Small row = inverse_.transpose().lazyProduct(c);
+    inverse_ += Small(c_1 / along).lazyProduct(row.transpose());
+  }
   template <class Vector>
   void solve(const Vector& f, Vector& out) const {
     if constexpr (may_be_large) {
@@ -123,10 +138,12 @@ struct Newton {
     }
   };
 
-  /// The target: two digits below the tolerance, at most to the round-off of a residual. A
-  /// kept Jacobian leaves an error of one sign, which must not add up over the steps.
-  static constexpr double aim(double tolerance) {
-    return std::max(0.01 * tolerance, 8 * std::numeric_limits<double>::epsilon());
+  /// The target for n unknowns: two digits below the tolerance, at most to the round-off of a
+  /// residual, which grows with their number. A kept Jacobian leaves an error of one sign, which
+  /// must not add up over the steps.
+  static constexpr double aim(double tolerance, Eigen::Index n = 1) {
+    constexpr double eps = std::numeric_limits<double>::epsilon();
+    return std::max({0.01 * tolerance, 8 * eps, 0.5 * static_cast<double>(n) * eps});
   }
 
   /// step: schemes/scheme.hpp. x: guess in, best point out.
@@ -143,8 +160,8 @@ struct Newton {
       memory.factors.solve(memory.f, memory.correction);
       if constexpr (HasFrame<Step>) step.expand(memory.correction);
       memory.trial = x - memory.correction;
-      step.residual(memory.trial, memory.f);
-      const double size = memory.f.squaredNorm(), target = aim(tolerance);
+      step.residual(memory.trial, memory.trial_f);
+      const double size = memory.trial_f.squaredNorm(), target = aim(tolerance, x.size());
       if (size <= target * target * scale) [[likely]] {
         x = memory.trial;
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
@@ -152,6 +169,8 @@ struct Newton {
       tried.evaluations = 2;
       memory.valid = !HasJacobian<Step> && worth_keeping(false, before, size, memory.floor * scale);
       if (memory.valid) {
+        if (before > kRoundOff * scale) learn(memory);
+        memory.f = memory.trial_f;
         x = memory.trial;
         tried.iterations = 1;
       }
@@ -178,6 +197,12 @@ struct Newton {
     if (exact) return after <= 0.01 * before;
     return after <= 0.25 * before || after <= floor;
   }
+  // J is changed by what the correction of f by it has left, trial_f.
+  template <class Unknown>
+  [[gnu::noinline, gnu::cold]] static void learn(Memory<Unknown>& memory) {
+    memory.factors.solve(memory.f, memory.correction);
+    memory.factors.update(memory.correction, memory.trial_f);
+  }
   // Does a solve without a J begin with 1? Until that has cost as much as a J of differences.
   template <class Unknown>
   static bool begins_with_one(const Memory<Unknown>& memory, Eigen::Index n) {
@@ -193,7 +218,8 @@ struct Newton {
     // is kept longer.
     const bool exact = step.exact();
     const double accepted = tolerance * tolerance * scale, round_off = kRoundOff * scale;
-    const double target = std::min(aim(tolerance), tolerance), aimed = target * target * scale;
+    const double target = std::min(aim(tolerance, x.size()), tolerance),
+                 aimed = target * target * scale;
 
     auto& [jacobian, factors, f, correction, trial, trial_f, differences, valid, floor, spent] =
         memory;
@@ -249,6 +275,8 @@ struct Newton {
       memory.valid = worth_keeping(exact, size, trial_size, floor * scale) &&
                      !(factors.is_one() && report.iterations >= max_iterations / 2);
       fresh = false;
+      if (memory.valid && !exact && trial_size > aimed && size > round_off && 2 * length == 1)
+        learn(memory);
       x = trial;
       f = trial_f;
       size = trial_size;
