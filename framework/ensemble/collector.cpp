@@ -48,8 +48,8 @@ std::string line_of(const Piece& piece) {
   Json failures = Json::array();
   for (const MemberFailure& f : piece.failures)
     failures.push_back({f.member, hex_of({f.time}), f.reason});
-  return Json{{"first", piece.first}, {"rows", hex_of(piece.rows)}, {"failures", failures}}.dump(
-      -1, ' ', false, Json::error_handler_t::replace);
+  return fmt::format(R"({{"first":{},"rows":"{}","failures":{}}})", piece.first, hex_of(piece.rows),
+                     failures.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 Piece piece_of(const std::string& line) {

@@ -98,6 +98,8 @@ class KeptFormulas {
   bool wants_peaks() const { return wants_peaks_; }
   /// Iterations and residuals of steps?
   bool wants_solver() const { return wants_solver_; }
+  /// Constraint residuals or the group's defect?
+  bool wants_defects() const { return wants_defects_; }
   bool wants_reactions() const { return wants_reactions_; }
   /// Work, or the energy error where work is done: every node is to be seen.
   bool wants_balance() const { return wants_balance_; }
@@ -146,7 +148,7 @@ class KeptFormulas {
   std::vector<double> times_, arguments_;
   std::vector<std::string> events_, quantities_;
   size_t kept_ = 0, classes_ = 0;
-  bool wants_start_ = false, wants_peaks_ = false, wants_solver_ = false;
+  bool wants_start_ = false, wants_peaks_ = false, wants_solver_ = false, wants_defects_ = false;
   bool wants_reactions_ = false, wants_balance_ = false;
   StateExtras extras_;
   double energy_start_ = 0;

@@ -160,6 +160,8 @@ class KeptFormulas::Parser {
     };
     out_.wants_start_ = out_.wants_start_ || speaks_of(kEnergyError);  // against that of the start
     out_.wants_solver_ = out_.wants_solver_ || speaks_of(kIterations) || speaks_of(kResidual);
+    out_.wants_defects_ = out_.wants_defects_ || speaks_of(kConstraint) || speaks_of(kHolonomic) ||
+                          speaks_of(kGroupDefect);
     const auto it = std::ranges::find(names, text);
     physics(text);
     if (it != names.end() && !text.empty()) {

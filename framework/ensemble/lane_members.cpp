@@ -61,7 +61,7 @@ template <class Visit>
 void LaneMembers::each_running(const Visit& visit) {
   for (size_t i = 0; i < lanes_.size(); ++i) {
     if (!lanes_[i]->runs || kernel_->failed(static_cast<int>(i))) continue;
-    kernel_->measure(static_cast<int>(i), state_);
+    kernel_->measure(static_cast<int>(i), state_, !plan_.kept->wants_defects());
     visit(*lanes_[i]);
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -45,21 +46,30 @@ const TableColumn& Table::column(const std::string& name) const {
 
 namespace {
 
+// A number needs no quotes.
+void append_field(const TableColumn& column, size_t row, std::string& out) {
+  const auto* numbers = std::get_if<std::vector<double>>(&column.values);
+  if (numbers == nullptr) out += csv_field(column.text(row));
+  else if (std::isfinite((*numbers)[row]))
+    fmt::format_to(std::back_inserter(out), "{}", (*numbers)[row]);
+}
+
 // The title and the rows, line by line; each line has its end.
 template <class Put>
 void lines_of(const Table& table, const std::string& numbered, Put&& put) {
-  const auto line = [&](const std::string& first, auto field) {
-    std::string out = first;
+  std::string out;
+  const auto line = [&](const std::string& first, const auto& append) {
+    out = first;
     for (size_t j = 0; j < table.columns.size(); ++j) {
       if (j > 0 || !numbered.empty()) out += ',';
-      out += csv_field(field(table.columns[j]));
+      append(table.columns[j]);
     }
     put(out += '\n');
   };
-  line(csv_field(numbered), [](const TableColumn& column) { return column.name; });
+  line(csv_field(numbered), [&](const TableColumn& column) { out += csv_field(column.name); });
   for (size_t i = 0; i < table.rows(); ++i)
     line(numbered.empty() ? "" : std::to_string(i),
-         [i](const TableColumn& column) { return column.text(i); });
+         [&](const TableColumn& column) { append_field(column, i, out); });
 }
 
 }  // namespace

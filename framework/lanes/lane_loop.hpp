@@ -48,7 +48,7 @@ class LaneLoop final : public LaneKernel, private LaneRescue<P> {
     steps_ += count;
   }
   bool failed(int lane) const override { return batch_->failed(lane); }
-  void measure(int lane, Snapshot& out) const override {
+  void measure(int lane, Snapshot& out, bool state_alone) const override {
     const Body& body = *bodies_[static_cast<std::size_t>(lane)];
     Node now(body.problem), previous(body.problem);
     batch_->get(lane, now, previous);
@@ -59,6 +59,7 @@ class LaneLoop final : public LaneKernel, private LaneRescue<P> {
     out.time = body.setup.from + static_cast<double>(steps_) * body.setup.step;
     out.time_offset = (1 - body.setup.s) * h;
     state(body.problem, now.g, xi, out);
+    if (state_alone) return;
     hamel::measure(body.problem, {previous.g, previous.t, now.g, now.t, h}, body.setup.s, xi, out);
   }
   void restart(std::span<const KernelSetup> setups) override {

@@ -302,7 +302,7 @@ void project_start(const SystemModel& system, PlannedStart& planned) {
   const Eigen::VectorXd mu = by_velocity ? Eigen::VectorXd(inertia * datum) : datum;
   const Eigen::VectorXd mu_bar = frame.transpose() * mu;
   Eigen::VectorXd velocity = frame * mu_bar;
-  if (drift.size() > 0) {  // E y + xi_b with A xi_b = b and E^T I xi_b = 0
+  if (!drift.isZero(0)) {  // E y + xi_b with A xi_b = b and E^T I xi_b = 0
     const Eigen::VectorXd some =
         constraints.transpose() *
         dense::solve_symmetric(constraints * constraints.transpose(), drift);
