@@ -8,7 +8,8 @@ namespace hamel {
 void add_disk_and_rattleback(Registry& registry) {
   add_compiled<FallingDisk>(registry);
   add_compiled<Rattleback>(registry);
-  add_typed_kernels<Rattleback, Exp<SE3>, Balance>(registry);
+  add_typed_kernels<FallingDisk, Exp<SE3>, Lift>(registry);
+  add_typed_kernels<Rattleback, Exp<SE3>, Lift, Balance>(registry);
 }
 
 }  // namespace hamel
