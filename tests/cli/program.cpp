@@ -81,6 +81,10 @@ Outcome CommandLine::run(const std::vector<std::string>& arguments, const std::s
   Outcome result{WIFEXITED(status) ? WEXITSTATUS(status) : 128, contents(out), contents(err)};
   std::filesystem::remove(out);
   std::filesystem::remove(err);
+#ifdef HAMEL_PAGE_IS_MADE
+  EXPECT_THAT(result.err, testing::Not(testing::HasSubstr("without the page")))
+      << "the build was configured with the page (HAMEL_REPORT_PAGE, node, npm)";
+#endif
   return result;
 }
 

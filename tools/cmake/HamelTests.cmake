@@ -26,6 +26,11 @@ target_sources(hamel_page INTERFACE
 target_include_directories(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel)
 target_link_libraries(hamel_page INTERFACE fmt::fmt nlohmann_json::nlohmann_json)
 
+# Is the program configured with its report page?
+if(TARGET hamel_program AND HAMEL_NODE AND HAMEL_NPM AND NOT HAMEL_REPORT_PAGE STREQUAL "OFF")
+  set(hamel_page_is_made ON)
+endif()
+
 # Common to every test, example and benchmark: build/tests/<name>, the libraries.
 function(hamel_test_executable target name)
   cmake_path(GET name PARENT_PATH folder)
@@ -57,6 +62,9 @@ if(HAMEL_BUILD_TESTS)
   # tests/cli/program.hpp, for tests that run the program: these see no header of the library, and are neither
   # optimised nor sanitized, since all that they test is in the program.
   add_library(hamel_test_program STATIC cli/program.cpp)
+  if(hamel_page_is_made)  # tests of pages skip where the program says that it has none
+    set_source_files_properties(cli/program.cpp PROPERTIES COMPILE_DEFINITIONS HAMEL_PAGE_IS_MADE)
+  endif()
   target_link_libraries(hamel_test_program PUBLIC GTest::gmock nlohmann_json::nlohmann_json)
   if(HAMEL_SANITIZE)
     target_compile_definitions(hamel_test_program PUBLIC HAMEL_PROGRAM_IS_SANITIZED)
