@@ -31,6 +31,7 @@ namespace hamel {
 
 struct Segway {
   using Group = Product<SE2, SO2, SO2, SO2>;
+  using Element = Group::Element<double>;
   double mass = 60;              // kg
   double height = 0.9;           // m, b
   Vec<3> moments = {8, 7, 2};    // kg m^2, about the forward, the axle and the upward axis
@@ -86,12 +87,23 @@ struct Segway {
     i(1, 5) = i(5, 1) = first * pitch.c;
     return i;
   }
+  /// The metric and the potential depend on the pitch alone.
+  Vec<6> inertia_differential(const Element& g, const Vec<6>& xi) const {
+    const auto& pitch = g.part<3>();
+    const double first = mass * height, turning = moments[0] + first * height - moments[2];
+    const double slope = turning * pitch.s * pitch.c * xi[0] * xi[0] +
+                         first * (pitch.c * xi[2] * xi[0] - pitch.s * xi[1] * xi[5]);
+    return {0, 0, 0, 0, 0, slope};
+  }
   Mat<3, 6> constraints() const {
     return Mat<3, 6>{{0, 0, 1, 0, 0, 0},
                      {half_track, 1, 0, -wheel_radius, 0, 0},
                      {-half_track, 1, 0, 0, -wheel_radius, 0}};
   }
   auto potential(const auto& g) const { return (mass * gravity * height) * g.template part<3>().c; }
+  Vec<6> potential_differential(const Element& g) const {
+    return {0, 0, 0, 0, 0, -mass * gravity * height * g.part<3>().s};
+  }
   /// Rolling at (omega, v) with the body at this pitch, turning at pitch_rate.
   Start rolling(double pitch, double omega, double v, double pitch_rate = 0) const {
     return {.configuration = {0, 0, 0, 0, 0, pitch},
