@@ -27,7 +27,12 @@ TEST(LaneMembers, HaveTheBytesOfMembersOneByOne) {
   sleigh.run.scheme = "rkmk4";
   sleigh.vary = {{"offset", Law::uniform, {0.1, 0.4}}, {"start.omega", Law::normal, {0, 2}}};
   sleigh.keep = {{"", "end.theta"}, {"", "max.x"}, {"", "end.constraint"}};
-  for (EnsembleConfig config : {started, varied, failing, sleigh}) {
+  EnsembleConfig disk = sleigh;
+  disk.run.system = "rolling_disk";
+  disk.run.scheme = "lift";
+  disk.vary = {{"radius", Law::uniform, {0.2, 0.6}}};
+  disk.keep = {{"", "end.energy"}, {"", "end.x_1"}, {"", "max.constraint"}};
+  for (EnsembleConfig config : {started, varied, failing, sleigh, disk}) {
     std::vector<std::string> mistakes;
     ASSERT_NE(ensemble::Plan(registry(), config, mistakes).lanes, nullptr);  // they are used
     const Ensemble ensemble(registry(), config);
