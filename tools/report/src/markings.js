@@ -6,8 +6,11 @@ import { extent } from './series.js';
 const [UNDER, OVER] = [3, 5];  // decades around the floor: the axis of a quantity that stays at round-off
 const NEAR = 3;                // decades over the floor is still round-off
 
-const line = (at, text, style = {}) => ({ ...at, symbol: 'none', lineStyle: { color: 'var(--soft)', type: [5, 4], width: 1, ...style },
-  label: { ...TEXT, fontSize: 11, formatter: text, position: 'insideEndTop', show: Boolean(text) } });
+export const DECADES = 2;      // so many on a logarithmic axis y: it ends at powers of ten
+const LABEL = [0.22, 0.1];     // parts of the axes that the words at a line take
+
+const line = (at, text, style = {}, position = 'insideEndTop') => ({ ...at, symbol: 'none', lineStyle: { color: 'var(--soft)', type: [5, 4], width: 1, ...style },
+  label: { ...TEXT, fontSize: 11, backgroundColor: 'var(--paper)', formatter: text, position, show: Boolean(text) } });
 
 /** The block -> {series, range: of the y axis, where it is fixed}. */
 export function markings(block, shown, data) {
@@ -15,18 +18,37 @@ export function markings(block, shown, data) {
   let range = null;
   if (block.floor > 0 && data.y.log) {
     const floor = Math.log10(block.floor);
-    lines.push(line({ yAxis: floor }, 'round-off'));
-    const [, most] = extent(shown.flatMap((curve) => curve.points.map((p) => p[1])));
+    const [least, most] = extent(shown.flatMap((curve) => curve.points.map((p) => p[1])));
     if (!(most > floor + NEAR)) {
       const low = Number.isFinite(most) ? Math.min(floor - UNDER, most - 1) : floor - UNDER;  // also what stays far under it is seen
       range = [Math.floor(low), Math.ceil(floor + OVER)];
     }
+    const [low, high] = range ?? [most - least >= DECADES ? Math.floor(least) : least - 0.1, most];
+    const height = LABEL[1] * (high - low), position = clearOf(shown, floor, height);
+    lines.push(line({ yAxis: floor }, 'round-off', {}, position));
+    if (floor >= low && position.endsWith('Bottom') && floor - height < low) range = [Math.floor(floor - height), Math.ceil(high)];  // room for it
   }
   const bands = (block.bands ?? []).map(({ from, to, text }) => [{ xAxis: from, name: text }, { xAxis: to }]);
   const areas = bands.length ? [{ id: 'bands', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markArea: { silent: true, data: bands,
     itemStyle: { color: 'var(--grid)', opacity: 0.6 }, label: { ...TEXT, fontSize: 11, position: 'insideTop' } } }] : [];
-  const series = lines.length ? [{ id: 'marks', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markLine: { silent: true, symbol: 'none', data: lines } }] : [];
+  const series = lines.length ? [{ id: 'marks', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markLine: { silent: true, symbol: 'none', z: 6, data: lines } }] : [];
   return { series: [...areas, ...series, ...triangles(block.slopes, shown, data)], range };
+}
+
+/** Where words at a level stand clear of the curves: above or below it, at the right or the left end; for nowhere below at the right. */
+function clearOf(shown, level, height) {
+  const [left, right] = extent(shown.flatMap((curve) => curve.points.map((p) => p[0])));
+  const wide = LABEL[0] * (right - left);
+  const free = (from, to, low, high) => shown.every(({ points }) => {
+    const first = points.findIndex((p) => p[0] >= from), behind = points.filter((p) => p[0] <= to).length;
+    const [least, most] = extent(points.slice(Math.max(0, first - 1), behind + 1).map((p) => p[1]));
+    return first < 0 || !(least < high && most > low);
+  });
+  const ends = [['End', right - wide, right], ['Start', left, left + wide]];
+  const sides = [['Top', level, level + height], ['Bottom', level - height, level]];
+  for (const [side, low, high] of sides)
+    for (const [end, from, to] of ends) if (free(from, to, low, high)) return `inside${end}${side}`;
+  return 'insideEndBottom';
 }
 
 /** A triangle of each slope, under the curves, over the middle third of the x axis. */

@@ -7,7 +7,7 @@ import { makeFilters } from './filters.js';
 import { formatNumber, formatShort, logTicks, MISSING, niceTicks } from './format.js';
 import { readByKeys } from './keys.js';
 import { makeLegend, MANY } from './legend.js';
-import { markings } from './markings.js';
+import { DECADES, markings } from './markings.js';
 import { choosable } from './choosing.js';
 import { columnsToCsv } from './save.js';
 import { covered, extent, readSeries } from './series.js';
@@ -19,7 +19,6 @@ const LEGEND_ROW = 24;
 const [LONG, MOST_READ] = [2000, 14];  // longer curves are drawn by their least and greatest values, so many are read out
 const [SAVED, FLATTER, LOWEST] = [720, 12 / 7, 190];  // a figure that is saved: pixels across, width over height, its least height
 const SWATCH = 46;                     // pixels in the legend before a name
-const DECADES = 2;                     // so many on a logarithmic axis y: it ends at powers of ten
 
 export const plot = (block) => chartFigure(block, readSeries(block, true), false);
 export const path = (block) => chartFigure(block, readSeries(block, false), true);
