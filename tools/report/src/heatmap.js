@@ -35,11 +35,11 @@ export function heatmap(block) {
     drawn.picture(width, tall(width), 0, {}));
   const csv = () => columnsToCsv([{ name: block.y || 'row', values: map.rows }, ...map.columns.map((name, c) =>
     ({ name, values: map.values.map((row, r) => map.classes?.[row[c]]?.name ?? row[c] ?? map.marks[r]?.[c] ?? '') }))]);
-  const element = figure(block, [holder, map.hidden ? remark(`${map.hidden} cell${map.hidden === 1 ? '' : 's'} at or below zero left white.`) : null,
+  const element = figure(block, [holder, map.hidden ? remark(`${map.hidden} cell${map.hidden === 1 ? '' : 's'} at or below zero left empty.`) : null,
     map.classes ? h('div', { class: 'legend' }, map.classes.map(({ name, colour, count }) => h('span', { class: 'entry fixed' }, swatch({ colour, dash: [] }, { cell: true }),
       h('span', { class: 'words' }, h('span', { class: 'name' }, name), h('span', { class: 'tags' }, `${count} cell${count === 1 ? '' : 's'}`))))) : null,
     map.only !== null && !map.classes ? remark(`Every value is ${scaleText(map, map.only)} ${block.unit ?? ''}.`) : null,
-    map.values.flat().includes(null) ? remark('A hatched cell has no value.') : null, block.note ? remark(block.note) : null], { svg: () => picture(SAVED), csv });
+    map.values.flat().includes(null) ? remark(`A hatched cell has no value${reasons(map)}.`) : null, block.note ? remark(block.note) : null], { svg: () => picture(SAVED), csv });
   if (map.columns.length > WIDE) element.classList.add('wide');
   if (map.paired) element.classList.add('paired');
   const draw = () => {
@@ -61,6 +61,12 @@ export function heatmap(block) {
     drawn.chart.on('finished', follow);
   };
   return { element, draw, picture };
+}
+
+/** ": excluded, failed", the marks of cells without a value; "" for none, or too many. */
+function reasons({ values, marks }) {
+  const all = [...new Set(values.flatMap((line, r) => line.flatMap((value, c) => (value === null && marks[r]?.[c] ? [marks[r][c]] : []))))];
+  return all.length && all.length < 4 ? `: ${all.join(', ')}` : '';
 }
 
 /** Rows of a legend of classes in so many pixels. */
@@ -96,7 +102,7 @@ function readMap(block) {
 }
 
 function layout(map, width) {
-  const left = (map.label ? 34 : 14) + Math.ceil(Math.min(widest(map.rows), width * 0.34));
+  const left = (map.label ? 34 : 14) + Math.ceil(Math.min(widest(map.rows), width * 0.42));
   const cell = (width - left - 12) / map.columns.length;
   const turned = widest(map.columns) + 6 > cell && map.columns.length > 1 && !(cell < 20);
   const under = turned ? Math.min(90, widest(map.columns)) + 30 : 42;
@@ -116,7 +122,7 @@ function option(map, block, { left, cell, row, turned, under, bar }) {
     const known = map.at(value) !== null;
     return { value: [...place, known ? map.at(value) : map.range[0]], visualMap: known && !map.classes, itemStyle: { borderColor: 'var(--paper)', borderWidth: row > 12 ? 1 : 0,
       ...(known ? colourOf(value) : { color: typeof value === 'number' ? 'var(--paper)' : HATCH }) }, ...(known && map.classes ? { emphasis: { itemStyle: colourOf(value) } } : {}),
-      label: { show: mark !== '', formatter: mark, color: known && !map.classes ? inkOn(sequential(part(value))) : 'var(--ink)', fontSize: 11, width: cell - 4, overflow: 'truncate',
+      label: { show: mark !== '' && (known || widthOf(mark, 11) + 6 <= cell), formatter: mark, color: known && !map.classes ? inkOn(sequential(part(value))) : 'var(--ink)', fontSize: 11, width: cell - 4, overflow: 'truncate',
         backgroundColor: known && !map.classes ? 'transparent' : 'var(--paper)', padding: [1, 3] } };
   });
   const name = (label, text) => `${label ? `${label}: ` : ''}${text}`;
