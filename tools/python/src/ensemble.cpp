@@ -63,6 +63,14 @@ void bind_ensemble(nb::module_& m) {
       .def(
           "to_pandas", [](nb::handle self) { return helper("_frames", "table_to_pandas")(self); },
           nb::sig("def to_pandas(self) -> pandas.DataFrame"), "A row for each member.")
+      .def(
+          "_repr_html_",
+          [](nb::handle self) { return helper("_figures", "html_of_ensemble")(self); },
+          nb::sig("def _repr_html_(self) -> str"))
+      .def(
+          "figures",
+          [](nb::handle self) { return helper("_figures", "figures_of_ensemble")(self); },
+          nb::sig("def figures(self) -> dict[str, _Figure]"), "A figure for each kept number.")
       .def("__repr__", [](const EnsembleResult& r) {
         return "<hamel.EnsembleResult of " + std::to_string(r.table.rows()) + " members" +
                (r.complete ? "" : ", stopped") + ">";

@@ -258,6 +258,11 @@ void bind_result(nb::module_& m) {
           "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of")(self); },
           nb::sig("def _repr_html_(self) -> str"))
       .def(
+          "figures", [](nb::handle self) { return helper("_figures", "figures_of")(self); },
+          nb::sig("def figures(self) -> dict[str, _Figure]"),
+          "The figures of the report page, by the names of hamel report --figure; a notebook shows "
+          "each.")
+      .def(
           "animation",
           [](nb::handle self, int height) {
             return helper("_animation", "Animation")(self, height);

@@ -145,6 +145,13 @@ void bind_sweep(nb::module_& m) {
       .def_ro("end", &SteadySweep::end)
       .def_ro("start", &SteadySweep::start, "of a branch that crosses another one")
       .def_ro("branches", &SteadySweep::branches, "the others that were met and followed")
+      .def(
+          "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of_sweep")(self); },
+          nb::sig("def _repr_html_(self) -> str"))
+      .def(
+          "figures", [](nb::handle self) { return helper("_figures", "figures_of_sweep")(self); },
+          nb::sig("def figures(self) -> dict[str, _Figure]"),
+          "Growth rates and frequencies along the parameter.")
       .def("__repr__", [](const SteadySweep& s) {
         return "<hamel.SteadySweep of " + std::to_string(s.values.size()) + " values, " +
                std::to_string(s.crossings.size()) + " crossings>";

@@ -121,6 +121,10 @@ void bind_study(nb::module_& m) {
       .def(
           "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of_study")(self); },
           nb::sig("def _repr_html_(self) -> str"))
+      .def(
+          "figures", [](nb::handle self) { return helper("_figures", "figures_of_study")(self); },
+          nb::sig("def figures(self) -> dict[str, _Figure]"),
+          "The error over the step or the tolerance, where it is varied.")
       .def("__repr__", [](const StudyResult& r) {
         return "<hamel.StudyResult of " + std::to_string(r.cells.size()) + " cells" +
                (r.complete ? "" : ", stopped") + ">";

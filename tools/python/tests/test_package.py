@@ -3,8 +3,10 @@
 import gc
 import json
 import pickle
+import re
 import runpy
 import sys
+import xml.etree.ElementTree
 
 import numpy as np
 import pytest
@@ -129,12 +131,55 @@ def test_configurations_pickle_and_run():
 
 def test_a_result_shows_itself():
     text = hamel.run("suslov", until=1, **SUSLOV)._repr_html_()
-    assert text.count("<polyline") == 3 and "prefers-color-scheme: dark" in text
+    assert text.split("<details>")[0].count("<polyline") == 3
+    assert "prefers-color-scheme: dark" in text
     assert "suslov" in text and "<script" not in text and "http" not in text
     failed = hamel.run("chaplygin_sleigh", velocity=[0.05, -1, 0], step=1.5, retraction="exp")
     assert "failed in step" in failed._repr_html_()
-    assert hamel.run("suslov", from_=1, until=0, step=-0.01)._repr_html_().count("<polyline") == 3
+    back = hamel.run("suslov", from_=1, until=0, step=-0.01)._repr_html_()
+    assert back.split("<details>")[0].count("<polyline") == 3
     assert "<td>" in hamel.study(system="suslov", step=[0.1], until=1, repeats=1)._repr_html_()
+
+
+def test_the_figures_of_a_run_are_those_of_the_page(cli, tmp_path):
+    """All that `hamel report --figure` names, but the motion (animation()) and figures in space."""
+    for system in ("suslov", "rattleback", "falling_disk"):
+        cli("run", system, "--until", 1, "--step", 0.01, "--quiet", "-o", "run.h5")
+        said = cli("report", "run.h5", "--figure", "none", status=2).stderr
+        names = said.split("expected one of ")[1].strip().split(", ")
+        figures = hamel.run(system, until=1, step=0.01).figures()
+        assert sorted(figures) == sorted(set(names) - {"motion", "axes"})
+    assert figures["path"].svg.count("<polyline") == 1
+    figures["path"].write(tmp_path / "path.svg")
+    xml.etree.ElementTree.parse(tmp_path / "path.svg")
+    assert hamel.run("suslov", until=0.01, step=0.01, output_times=[0.01]).figures() == {}
+
+
+def test_figures_of_studies_branches_and_ensembles():
+    study = hamel.study(
+        system="suslov", scheme=["lift", "rkmk4"], step=[0.1, 0.05], until=1, repeats=1
+    )
+    error = study.figures()["error"]
+    assert error.svg.count("<polyline") == 2 and ">rkmk4<" in error.svg
+    assert error.svg in study._repr_html_()
+    # Two decades of a logarithmic axis are as long as twice one: the fourth order falls faster.
+    lines = [
+        [[float(x) for x in pair.split(",")] for pair in points.split()]
+        for points in re.findall(r'points="([^"]*)"', error.svg)
+    ]
+    slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in lines]
+    assert slopes[1] / slopes[0] == pytest.approx(4 / 2, rel=0.05)
+    branch = hamel.steady("bicycle", vary=("speed", 1, 8, 15))
+    points = sum(len(motion.eigenvalues) for motion in branch.motions)
+    assert branch.figures()["growth"].svg.count("<circle") == points
+    assert "hopf" in branch._repr_html_()
+    text = 'system = "suslov"\nuntil = 1\nmembers = 40\nkeep = ["end.omega1"]\n[vary]\n'
+    one = hamel.ensemble(text + "start.omega1 = { normal = [1, 0.1] }\n")
+    assert one.figures()["end.omega1"].svg.count("<circle") == 40
+    more = "start.omega1 = { normal = [1, 0.1] }\ninertia1 = { uniform = [1, 2] }"
+    two = hamel.ensemble(text + more)
+    assert two.figures()["end.omega1"].title == "Members by end.omega1"
+    assert "40, of which 0 failed" in two._repr_html_()
 
 
 def test_a_result_moves(tmp_path):
