@@ -162,14 +162,19 @@ struct Newton {
       memory.trial = x - memory.correction;
       step.residual(memory.trial, memory.trial_f);
       const double size = memory.trial_f.squaredNorm(), target = aim(tolerance, x.size());
-      if (size <= target * target * scale) [[likely]] {
+      const double aimed = target * target * scale;
+      if (size <= aimed) [[likely]] {
+        if constexpr (!HasJacobian<Step>) {
+          if (worth_learning(before, size, aimed, scale)) [[unlikely]]
+            learn(memory);
+        }
         x = memory.trial;
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
       }
       tried.evaluations = 2;
       memory.valid = !HasJacobian<Step> && worth_keeping(false, before, size, memory.floor * scale);
       if (memory.valid) {
-        if (before > kRoundOff * scale) learn(memory);
+        if (worth_learning(before, size, aimed, scale)) learn(memory);
         memory.f = memory.trial_f;
         x = memory.trial;
         tried.iterations = 1;
@@ -196,6 +201,11 @@ struct Newton {
   static bool worth_keeping(bool exact, double before, double after, double floor) {
     if (exact) return after <= 0.01 * before;
     return after <= 0.25 * before || after <= floor;
+  }
+  // Has the correction of a residual that is no round-off left more than a sixteenth of the aim?
+  // What is left has one sign, and would add up over the steps while J becomes older.
+  static bool worth_learning(double before, double after, double aimed, double scale) {
+    return before > kRoundOff * scale && 256 * after > aimed;
   }
   // J is changed by what the correction of f by it has left, trial_f.
   template <class Unknown>
@@ -275,7 +285,8 @@ struct Newton {
       memory.valid = worth_keeping(exact, size, trial_size, floor * scale) &&
                      !(factors.is_one() && report.iterations >= max_iterations / 2);
       fresh = false;
-      if (memory.valid && !exact && trial_size > aimed && size > round_off && 2 * length == 1)
+      if (memory.valid && !exact && 2 * length == 1 &&
+          worth_learning(size, trial_size, aimed, scale))
         learn(memory);
       x = trial;
       f = trial_f;
