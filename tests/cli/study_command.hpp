@@ -4,6 +4,8 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,20 @@ class StudyCommand : public CommandLine {
     for (const std::string& line : lines(contents(file(folder + "/cells.csv"))))
       out.push_back(line.substr(0, line.rfind(',', line.rfind(',') - 1)));
     EXPECT_FALSE(out.empty());
+    return out;
+  }
+  /// The texts of a column of cells.csv.
+  std::vector<std::string> column(const std::string& folder, const std::string& name) const {
+    const auto fields = [](const std::string& row) {
+      std::vector<std::string> out;
+      std::istringstream in(row);
+      for (std::string field; std::getline(in, field, ',');) out.push_back(field);
+      return out;
+    };
+    std::vector<std::string> out, rows = lines(contents(file(folder + "/cells.csv")));
+    const std::vector<std::string> names = fields(rows.at(0));
+    const auto place = static_cast<size_t>(std::ranges::find(names, name) - names.begin());
+    for (size_t i = 1; i < rows.size(); ++i) out.push_back(fields(rows[i]).at(place));
     return out;
   }
   size_t count(const std::vector<std::string>& rows, const std::string& piece) const {
