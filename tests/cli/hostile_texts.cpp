@@ -177,6 +177,16 @@ TEST_F(HostileTexts, RecordsOfAnotherType) {
   refused("/system", 7, "system: expected a text, got 7");
   refused("/step", {{"a", 1}}, "step: '{\"a\":1}' is not a number");
   refused("/inputs", {{"a", {{"t", {0, 1}}}}}, "inputs.a.value is missing");
+  for (const auto& [number, why] : {std::pair{"-1.0e-400", "the number -1.0e-400 is too small"},
+                                    {"1e400", "number overflow parsing '1e400'"}}) {
+    std::string text = good.dump();
+    const size_t place = text.find("\"velocity\":[", text.find("\"final\"")) + 12;
+    text.insert(place, number + std::string(","));
+    write("bad.json", text);
+    const Outcome o = run({"run", "--continue", "bad.json", "--quiet"});
+    EXPECT_EQ(o.status, 2) << number;
+    EXPECT_THAT(o.err, HasSubstr(why)) << number;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // measured.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -116,7 +117,40 @@ class Entry {
   std::string origin_, place_;
 };
 
+// Json::parse takes 1e-400 for 0: sees each number as it stands in the text.
+class Underflow : public nlohmann::json_sax<Json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(std::int64_t) override { return true; }
+  bool number_unsigned(std::uint64_t) override { return true; }
+  bool number_float(double value, const std::string& text) override {
+    if (value != 0 || text.substr(0, text.find_first_of("eE")).find_first_of("123456789") == npos)
+      return true;
+    number = text;
+    return false;
+  }
+  bool string(std::string&) override { return true; }
+  bool binary(Json::binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(std::string&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
+    return false;  // said by Json::parse
+  }
+
+  std::string number;  // the first that no double holds
+
+ private:
+  static constexpr size_t npos = std::string::npos;
+};
+
 Json parsed(const std::string& record, const std::string& origin) {
+  Underflow underflow;
+  if (!Json::sax_parse(record, &underflow) && !underflow.number.empty())
+    throw ConfigError({fmt::format("{}: the number {} is too small", origin, underflow.number)});
   try {
     return Json::parse(record);
   } catch (const Json::exception& error) {
