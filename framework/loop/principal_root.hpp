@@ -2,7 +2,8 @@
 //
 // Far from the identity the equation of a step can have roots that have nothing to do with the
 // motion, inside the domain of tau too. The principal root is where the solution y of F(y; lambda
-// h) = 0 arrives that begins at lambda = 0. Following the path costs some thirty solves.
+// h) = 0 arrives that begins at lambda = 0. Following the path costs some thirty solves, at most
+// kMostOnPath.
 #pragma once
 
 #include <algorithm>
@@ -53,9 +54,10 @@ class PrincipalRoot {
   static bool near(const SolveReport& report) {
     return report.ok() || (report.reason == Reason::stagnated && report.residual <= 1e-5);
   }
+  static constexpr int kMostOnPath = 200;
   // To end_: the solution for lambda h at lambda = 1, by steps that move it by 3 percent at most;
-  // NaN where the path ends before. It starts where there is one root, which is not always next to
-  // the scheme's guess.
+  // NaN where the path ends before or takes over kMostOnPath solves. It starts where there is one
+  // root, which is not always next to the scheme's guess.
   void follow(const StepOnPath<Unknown>& step, double h, double size) {
     // A tenth of what two solutions of one root may differ by.
     constexpr double tolerance = 1e-9;
@@ -70,7 +72,8 @@ class PrincipalRoot {
       if (report.reason != Reason::stagnated || at > 0.05) end_.setConstant(lost);
       if (!end_.allFinite()) break;
     }
-    for (double length = 0.1; at < 1 && end_.allFinite();) {
+    double length = 0.1;
+    for (int solves = 1; at < 1 && end_.allFinite(); ++solves) {
       const double next = std::min(at + length, 1.0);
       step.begin(next * h);
       trial_ = end_;
@@ -81,7 +84,7 @@ class PrincipalRoot {
         length *= 1.5;
       } else {
         length /= 2;
-        if (length < 1e-4) end_.setConstant(lost);
+        if (length < 1e-4 || solves >= kMostOnPath) end_.setConstant(lost);
       }
     }
   }
