@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -27,6 +27,10 @@ StudyView::StudyView(const StudyResult& result) : result_(result) {
     if (result.cells[i].runs() && result.metrics[i].done) run_.push_back(i);
   for (const std::string& axis : study_axes())
     if (values(axis).size() > 1) varying_.push_back(axis);
+  std::set<std::string> chosen, of_one_size;
+  for (const size_t i : run_)
+    (cell(i).config().chooses_steps() ? chosen : of_one_size).insert(cell(i).axes.at("scheme"));
+  std::ranges::set_intersection(chosen, of_one_size, std::inserter(both_ways_, both_ways_.end()));
 }
 
 double StudyView::seconds(size_t i) const {
@@ -84,7 +88,10 @@ std::string StudyView::words(const std::vector<std::string>& axes,
 std::string StudyView::words(size_t i, const std::vector<std::string>& axes) const {
   std::vector<std::string> all;
   for (const std::string& axis : axes) all.push_back(cell(i).axes.at(axis));
-  return words(axes, all);
+  const bool ambiguous = cell(i).config().chooses_steps() &&
+                         both_ways_.contains(cell(i).axes.at("scheme")) &&
+                         std::ranges::find(axes, "rtol") == axes.end();
+  return words(axes, all) + (ambiguous ? ", chosen steps" : "");
 }
 
 std::string StudyView::name(size_t i) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,8 @@ class StudyView {
   std::vector<std::string> varying_without(const std::vector<std::string>& axes) const;
 
   /// "lift, s = 0.5, cayley": the values of a cell on these axes. Axes not used are left out;
-  /// where that leaves nothing, "solver unused".
+  /// where that leaves nothing, "solver unused". ", chosen steps" where the study takes a scheme
+  /// with steps of one size too and the axes do not tell.
   std::string words(size_t i, const std::vector<std::string>& axes) const;
   std::string words(const std::vector<std::string>& axes,
                     const std::vector<std::string>& values) const;
@@ -59,6 +61,7 @@ class StudyView {
   const StudyResult& result_;
   std::vector<size_t> run_;
   std::vector<std::string> varying_;
+  std::set<std::string> both_ways_;  // schemes with steps of one size and with chosen ones
 };
 
 /// Text of tables for a value that a scheme makes no use of.

@@ -19,6 +19,7 @@ const [BAR, TOP] = [30, 8];
 const ROOM = 22;       // pixels of a row of the legend of classes in a file
 const [LONGEST, GAP] = [180, 10];  // pixels: the scale, and what is between it and its words
 const [ROW, LEAST] = [26, 3.5];  // pixels: of a named row, of one of many numbers
+const LINE = 15;       // pixels from a name to the next, at least
 const SAVED = 720;
 const HATCH = { type: 'pattern', repeat: 'repeat', imageWidth: 7, imageHeight: 7, image: `data:image/svg+xml,${encodeURIComponent(
   '<svg xmlns="http://www.w3.org/2000/svg" width="7" height="7"><path d="M-1 8L8 -1M-1 1L1 -1M6 8L8 6" stroke="#8d96a0" stroke-width="1"/></svg>')}` };
@@ -127,10 +128,11 @@ function option(map, block, { left, cell, row, turned, under, bar }) {
   });
   const name = (label, text) => `${label ? `${label}: ` : ''}${text}`;
   const names = { type: 'category', splitLine: { show: false } };
+  const apart = (room, size) => ({ interval: Math.max(1, Math.ceil(room / size)) - 1 });  // so many cells without a name
   return {
     grid: { left, right: 12, top: TOP, bottom: under + (map.scaled ? BAR : 0), outerBoundsMode: 'none' },
-    xAxis: axisOptions(block.x || '', under - 16, { ...names, data: map.columns, axisLabel: { rotate: turned ? 90 : 0, width: turned ? 88 : undefined, overflow: 'truncate' }, axisTick: { show: false } }),
-    yAxis: axisOptions(block.y || '', left - 14, { ...names, data: map.rows, inverse: true, axisLabel: { width: left - (map.label ? 32 : 12), overflow: 'truncate' }, axisTick: { show: false } }),
+    xAxis: axisOptions(block.x || '', under - 16, { ...names, data: map.columns, axisLabel: { ...apart(turned ? LINE : Math.min(widest(map.columns) + GAP, Math.max(cell, 90)), cell), rotate: turned ? 90 : 0, width: turned ? 88 : undefined, overflow: 'truncate' }, axisTick: { show: false } }),
+    yAxis: axisOptions(block.y || '', left - 14, { ...names, data: map.rows, inverse: true, axisLabel: { ...apart(LINE, row), width: left - (map.label ? 32 : 12), overflow: 'truncate' }, axisTick: { show: false } }),
     series: [{ type: 'heatmap', data: list, emphasis: { itemStyle: { borderColor: 'var(--ink)', borderWidth: 2 } } },
       // (for the legend of a file)
       ...(map.classes ?? []).map((one) => ({ type: 'line', name: one.name, data: [], symbol: 'rect', silent: true, tooltip: { show: false }, lineStyle: { opacity: 0 }, itemStyle: { color: one.colour } }))],

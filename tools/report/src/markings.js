@@ -8,11 +8,12 @@ const NEAR = 3;                // decades over the floor is still round-off
 
 export const DECADES = 2;      // so many on a logarithmic axis y: it ends at powers of ten
 const LABEL = [0.22, 0.1];     // parts of the axes that the words at a line take
+const WIDE = 0.45;             // of the place of a triangle: behind it are its words
 
 const line = (at, text, style = {}, position = 'insideEndTop') => ({ ...at, symbol: 'none', lineStyle: { color: 'var(--soft)', type: [5, 4], width: 1, ...style },
   label: { ...TEXT, fontSize: 11, backgroundColor: 'var(--paper)', formatter: text, position, show: Boolean(text) } });
 
-/** The block -> {series, range: of the y axis, where it is fixed}. */
+/** The block -> {series, range: of the y axis, where it is fixed, least: what it reaches down to}. */
 export function markings(block, shown, data) {
   const lines = (block.marks ?? []).map(({ x, text }) => line({ xAxis: x }, text));
   let range = null;
@@ -32,7 +33,8 @@ export function markings(block, shown, data) {
   const areas = bands.length ? [{ id: 'bands', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markArea: { silent: true, data: bands,
     itemStyle: { color: 'var(--grid)', opacity: 0.6 }, label: { ...TEXT, fontSize: 11, position: 'insideTop' } } }] : [];
   const series = lines.length ? [{ id: 'marks', name: '', type: 'line', data: [], silent: true, tooltip: { show: false }, markLine: { silent: true, symbol: 'none', z: 6, data: lines } }] : [];
-  return { series: [...areas, ...series, ...triangles(block.slopes, shown, data)], range };
+  const slopes = triangles(block.slopes, shown, data);
+  return { series: [...areas, ...series, ...slopes.series], range, least: slopes.least };
 }
 
 /** Where words at a level stand clear of the curves: above or below it, at the right or the left end; for nowhere below at the right. */
@@ -51,17 +53,28 @@ function clearOf(shown, level, height) {
   return 'insideEndBottom';
 }
 
-/** A triangle of each slope, under the curves, over the middle third of the x axis. */
+/** A triangle of each slope, side by side, each under the curves there. least: where the lowest ends. */
 function triangles(slopes, shown, { x, y }) {
-  if (!slopes?.length || !x.log || !y.log) return [];
-  const points = shown.flatMap((curve) => curve.points.filter((p) => p[0] !== null && p[1] !== null));
-  const [left, right] = extent(points.map((p) => p[0]));
-  if (!(right > left)) return [];
-  const [from, to] = [0.55, 0.8].map((part) => left + part * (right - left));
-  return slopes.map((slope, i) => {
-    const low = Math.min(...points.filter((p) => p[0] >= from - 0.01).map((p) => p[1])) - 0.6 * (i + 1);
-    const [middle, top] = [0.5, 1].map((part) => low + part * slope * (to - from));
-    return { id: `slope ${slope}`, name: '', type: 'line', data: [[to, middle], [to, top], [from, low], [to, low], [to, middle]], silent: true, showSymbol: false,
-      tooltip: { show: false }, lineStyle: { color: 'var(--soft)', width: 1 }, endLabel: { ...TEXT, show: true, fontSize: 11, formatter: `slope ${slope}`, distance: 4 } };
+  const nothing = { series: [], least: Infinity };
+  if (!slopes?.length || !x.log || !y.log) return nothing;
+  const [left, right] = extent(shown.flatMap((curve) => curve.points.map((p) => p[0])));
+  const [bottom, top] = extent(shown.flatMap((curve) => curve.points.map((p) => p[1])));
+  if (!(right > left)) return nothing;
+  const wide = (right - left) / slopes.length;
+  const corners = slopes.map((slope, i) => {
+    const from = left + (i + 0.05) * wide, to = from + WIDE * wide;
+    const low = lowest(shown, from, from + wide) - LABEL[1] * Math.max(top - bottom, 1) - slope * (to - from);
+    return { slope, from, to, low, high: low + slope * (to - from) };
   });
+  const series = corners.map(({ slope, from, to, low, high }) => ({ id: `slope ${slope}`, name: '', type: 'line', silent: true, showSymbol: false,
+    data: [[to, (low + high) / 2], [to, high], [from, low], [to, low], [to, (low + high) / 2]], tooltip: { show: false }, lineStyle: { color: 'var(--soft)', width: 1 },
+    endLabel: { ...TEXT, show: true, fontSize: 11, formatter: `slope ${slope}`, distance: 4 } }));
+  return { series, least: Math.min(...corners.map(({ low }) => low)) };
 }
+
+/** Of the curves and the lines between their points, from one x to another. */
+const lowest = (shown, from, to) => Math.min(...shown.flatMap(({ points }) => {
+  const all = points.filter((p) => p[0] !== null && p[1] !== null);
+  const first = all.findIndex((p) => p[0] >= from), behind = all.filter((p) => p[0] <= to).length;
+  return all.slice(Math.max(0, first < 0 ? all.length - 1 : first - 1), behind + 1).map((p) => p[1]);
+}));

@@ -14,7 +14,7 @@ import { covered, extent, readSeries } from './series.js';
 import { makeZoom, ZOOMS } from './zoom.js';
 
 const MARGIN = { left: 74, right: 18, top: 12, bottom: 46 };
-const BESIDE = 36;  // pixels left of the numbers of the y axis: its name
+const [BESIDE, BELOW] = [36, 11];  // pixels left of the numbers of the y axis: its name; from the x axis to its numbers, clear of those of y
 const LEGEND_ROW = 24;
 const [LONG, MOST_READ] = [2000, 14];  // longer curves are drawn by their least and greatest values, so many are read out
 const [SAVED, FLATTER, LOWEST] = [720, 12 / 7, 190];  // a figure that is saved: pixels across, width over height, its least height
@@ -108,13 +108,13 @@ function option(block, data, equal, width, height, seen) {
   const shown = data.curves.map((curve, i) => ({ ...curve, id: String(i) })).filter((curve) => curve.show && curve.points.length > 0);
   const marked = equal ? null : markings(block, shown, data);
   const margin = { ...MARGIN };
-  const ranges = equal ? equalRanges(shown, width, height) : { x: rangeOf(shown, 0, data.x), y: marked.range ?? rangeOf(shown, 1, data.y) };
+  const ranges = equal ? equalRanges(shown, width, height) : { x: rangeOf(shown, 0, data.x), y: downTo(marked.least, marked.range ?? rangeOf(shown, 1, data.y)) };
   const y = ticksOf(data.y, seen.y ?? ranges.y, height / 50);
   const labels = equal ? MARGIN.left - BESIDE : Math.ceil(widest(y.at.map(y.read)));  // (equal scales need the margin beforehand)
   margin.left = labels + BESIDE;
   return {
     grid: { ...margin, outerBoundsMode: 'none' },
-    xAxis: oneAxis(data.x, ranges.x, 28, ticksOf(data.x, seen.x ?? ranges.x, Math.max(4, width / 90))), yAxis: oneAxis(data.y, ranges.y, labels + 14, y),
+    xAxis: oneAxis(data.x, ranges.x, 30, ticksOf(data.x, seen.x ?? ranges.x, Math.max(4, width / 90)), BELOW), yAxis: oneAxis(data.y, ranges.y, labels + 14, y),
     series: [...shown.filter((curve) => curve.lows.length).flatMap(band), ...shown.map((curve) => oneSeries(curve, !equal)), ...(marked?.series ?? [])],
     tooltip: { ...TOOLTIP, trigger: 'axis', axisPointer: { type: equal ? 'cross' : 'line', label: { show: equal, backgroundColor: 'var(--ink)', color: 'var(--paper)',
       formatter: ({ value, axisDimension }) => formatNumber(data[axisDimension].from(value)) }, lineStyle: { color: 'var(--soft)' }, crossStyle: { color: 'var(--soft)' } },
@@ -147,6 +147,8 @@ function rangeOf(shown, k, axis) {
   return [min - air, max + air];
 }
 
+const downTo = (least, [min, max]) => [least < min ? Math.floor(least) : min, max];
+
 /** One unit of length is as long on both axes. */
 function equalRanges(shown, width, height) {
   const size = [width - MARGIN.left - MARGIN.right, height - MARGIN.top - MARGIN.bottom];
@@ -159,9 +161,9 @@ function equalRanges(shown, width, height) {
 /** Ticks in a range of an axis, about `count` -> {at, read(coordinate)}. */
 const ticksOf = (axis, [min, max], count) => (axis.log ? logTicks : niceTicks)(min, max, count);
 
-function oneAxis(axis, [min, max], gap, { at, read }) {
+function oneAxis(axis, [min, max], gap, { at, read }, margin = 8) {
   const custom = { customValues: at };
-  return axisOptions(axis.label, gap, { type: 'value', min, max, axisLabel: { ...custom, formatter: read },
+  return axisOptions(axis.label, gap, { type: 'value', min, max, axisLabel: { ...custom, formatter: read, margin },
     axisTick: { ...custom, lineStyle: { color: 'var(--rule)' } }, splitLine: { ...custom, lineStyle: { color: 'var(--grid)' } } });
 }
 

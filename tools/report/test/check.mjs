@@ -11,7 +11,7 @@ import { fill } from './fill.mjs';
 import { sample } from './sample_data.mjs';
 import { classMap, crowd, matrix, memberDots, members, wideMap } from './sample_members.mjs';
 import { body } from './sample_motion.mjs';
-import { convergence, errorMap, longTable } from './sample_study.mjs';
+import { convergence, errorMap, longTable, tallMap } from './sample_study.mjs';
 import { units } from './units.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -82,6 +82,8 @@ const cases = [
   ['rows upside down', () => bent(errorMap, 'heatmap.js', 'if (numbers && block.y_values[ny - 1] > block.y_values[0]) order', 'order'), 1, /larger is darker|is hatched|mark is read out/],
   ['empty cells left white', () => bent(unmarked, 'heatmap.js', ": HATCH }", ": 'var(--paper)' }"), 1, /is hatched and says so/],
   ['a scale that does not fit', () => bent({ ...errorMap, unit: 'largest |E − E0| / |E0| of the run, of all its recorded states' }, 'heatmap.js', 'const long = Math.max(0, Math.min(LONGEST, width - 2 * GAP - words))', 'const long = LONGEST'), 1, /no words are cut at 390 px/],
+  ['a name for every row', () => bent(tallMap, 'heatmap.js', 'apart(LINE, row)', '{ interval: 0 }'), 1, /no words of a figure overlap at 390 px/],
+  ['triangles of slopes in one place', () => bent(convergence, 'markings.js', 'left + (i + 0.05) * wide', 'left + 0.05 * wide'), 1, /no words of a figure overlap at 390 px/],
   ['a broken option', () => bent({ kind: 'text', paragraphs: ['`--check` estimates it '.repeat(40)] }, 'dom.js', "'short' : null", 'null : null'), 1, /no option is broken at 390 px/],
   ['a dead arrow key', () => bent(errorMap, 'keys.js', 'ArrowDown: columns', 'ArrowDown: 0'), 1, /heat map .*(darker|read out)/],
   ['filters that hide nothing', () => bent(convergence, 'filters.js', '|| tag(tags, name) === select.value', '|| true'), 1, /the first value is chosen at the start: 40 series, not 4/],

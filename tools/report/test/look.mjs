@@ -128,6 +128,12 @@ async function checkWidth(page, width, check) {
     }).map((text) => `${svg.closest('figure')?.querySelector('.title')?.textContent}: ${text.textContent}`);
   }));
   check(`no words are cut at ${width} px`, cut.length === 0, cut.slice(0, 3).join('; '));
+  const over = await page.evaluate(() => [...document.querySelectorAll('.chart svg')].flatMap((svg) => {
+    const words = [...svg.querySelectorAll('text')].map((text) => ({ text: text.textContent, box: text.getBoundingClientRect() })).filter(({ text, box }) => text.trim() && box.width > 0);
+    const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 2 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2;
+    return words.flatMap((one, i) => words.slice(i + 1).filter(({ box }) => meet(one.box, box)).map(({ text }) => `${svg.closest('figure')?.querySelector('.title')?.textContent}: ${one.text} and ${text}`));
+  }));
+  check(`no words of a figure overlap at ${width} px`, over.length === 0, `${over.length}: ${over.slice(0, 3).join('; ')}`);
   const broken = await page.evaluate(() => [...document.querySelectorAll('main code')]
     .filter((code) => code.textContent.length < 30 && code.getClientRects().length > 1).map((code) => code.textContent));
   check(`no option is broken at ${width} px`, broken.length === 0, broken.slice(0, 3).join('; '));

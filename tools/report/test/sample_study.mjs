@@ -18,6 +18,12 @@ const orderMap = {
   values: range(30, (k) => range(40, (i) => ((i - 30) ** 2 + (k - 22) ** 2 < 20 ? null : Math.sin(i / 9) * Math.cos(k / 7) - 0.2))),
 };
 
+export const tallMap = {
+  kind: 'heatmap', title: 'Reversals over spin and skew', x: 'skew [rad]', y: 'start.omega3 [rad/s]',
+  x_values: range(40, (i) => 0.05 + 0.0141 * i), y_values: range(40, (k) => -3 + 0.0641 * k),
+  values: range(40, (k) => range(40, (i) => (i * k) % 4)),
+};
+
 const zeros = {
   kind: 'heatmap', title: 'Zeros on a logarithmic scale', x: 's', y: 'retraction', log: true, unit: 'drift',
   x_values: [0, 0.5, 1], y_values: ['cayley', 'exp'], values: [[0, 1e-15, 3e-13], [2e-16, 0, 5e-12]], marks: [['exact', '', ''], ['', 'exact', '']],
@@ -30,7 +36,7 @@ const constant = {
 
 const steps = [0.1, 0.05, 0.025, 0.0125, 0.00625];
 export const convergence = {
-  kind: 'plot', title: 'Order of convergence, 40 curves', x: 'step h [s]', y: 'error at t = 1 s', log_x: true, log_y: true,
+  kind: 'plot', title: 'Order of convergence, 40 curves', x: 'step h [s]', y: 'error at t = 1 s', log_x: true, log_y: true, slopes: [1, 2, 4],
   filters: [{ name: 'system', values: systems }, { name: 'kind', values: ['ours', 'baseline'] }],
   series: systems.flatMap((system, k) => schemes.map((name, i) => {
     const order = i === 7 ? 4 : i === 2 ? 1 : 2;
@@ -53,4 +59,4 @@ export const longTable = (n, columns) => ({
   note: 'Made up.',
 });
 
-export const study = { title: 'Study', blocks: [errorMap, orderMap, zeros, constant, convergence, marked, longTable(400, 9)] };
+export const study = { title: 'Study', blocks: [errorMap, orderMap, tallMap, zeros, constant, convergence, marked, longTable(400, 9)] };
