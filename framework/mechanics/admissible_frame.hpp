@@ -19,6 +19,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/mechanics/run_time_frame.hpp>
+#include <hamel/framework/mechanics/small_factors.hpp>
 
 namespace hamel {
 
@@ -247,15 +248,7 @@ class AdmissibleFrame : public InertiaUnits<N> {
         reduced_inertia_(i, j) = dot(&frame_(0, i), image_.data(), n());
       }
     }
-    for (int j = 0; j < m(); ++j) {
-      const double inverse = 1 / std::sqrt(reduced_inertia_(j, j));
-      reduced_inertia_(j, j) = inverse;
-      for (int i = j + 1; i < m(); ++i) reduced_inertia_(i, j) *= inverse;
-      for (int l = j + 1; l < m(); ++l) {
-        const double factor = reduced_inertia_(l, j);
-        for (int i = l; i < m(); ++i) reduced_inertia_(i, l) -= factor * reduced_inertia_(i, j);
-      }
-    }
+    factor_cholesky(reduced_inertia_);
   }
   // y = E^T mu.
   void reduce(const Vector& mu) {
@@ -264,14 +257,8 @@ class AdmissibleFrame : public InertiaUnits<N> {
   // y <- (E^T I E)^-1 y.
   void solve_reduced() {
     if (diagonal_) return;
-    for (int j = 0; j < m(); ++j) {
-      y_[j] *= reduced_inertia_(j, j);
-      for (int i = j + 1; i < m(); ++i) y_[i] -= reduced_inertia_(i, j) * y_[j];
-    }
-    for (int j = m() - 1; j >= 0; --j) {
-      for (int i = j + 1; i < m(); ++i) y_[j] -= reduced_inertia_(i, j) * y_[i];
-      y_[j] *= reduced_inertia_(j, j);
-    }
+    solve_lower(reduced_inertia_, y_.data());
+    solve_upper(reduced_inertia_, y_.data());
   }
 
   typename Z::Columns reflections_;

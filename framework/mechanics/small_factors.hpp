@@ -1,6 +1,8 @@
-// L D L^T of a small symmetric matrix of fixed size, without roots and with one division a row.
+// Factors of a small symmetric matrix of fixed size: L D L^T, without roots and with one division a
+// row, and G G^T (Cholesky), whose halves are solved one by one.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include <Eigen/Core>
@@ -38,6 +40,45 @@ void solve_small(const Eigen::Matrix<double, K, K>& s, Eigen::Matrix<double, K, 
 #pragma GCC unroll 4
     for (int l = i + 1; l < K; ++l) sum += s(l, i) * c[l];
     c[i] -= s(i, i) * sum;
+  }
+}
+
+/// The lower triangle of S = G G^T is replaced by G, the inverses of its diagonal on it.
+template <int M>
+void factor_cholesky(Eigen::Matrix<double, M, M>& s) {
+#pragma GCC unroll 4
+  for (int j = 0; j < M; ++j) {
+    const double inverse = 1 / std::sqrt(s(j, j));
+    s(j, j) = inverse;
+#pragma GCC unroll 4
+    for (int i = j + 1; i < M; ++i) s(i, j) *= inverse;
+#pragma GCC unroll 4
+    for (int l = j + 1; l < M; ++l) {
+#pragma GCC unroll 4
+      for (int i = l; i < M; ++i) s(i, l) -= s(l, j) * s(i, j);
+    }
+  }
+}
+
+/// y <- G^-1 y, S as factor_cholesky left it.
+template <int M>
+void solve_lower(const Eigen::Matrix<double, M, M>& s, double* y) {
+#pragma GCC unroll 4
+  for (int j = 0; j < M; ++j) {
+#pragma GCC unroll 4
+    for (int i = 0; i < j; ++i) y[j] -= s(j, i) * y[i];
+    y[j] *= s(j, j);
+  }
+}
+
+/// y <- G^-T y.
+template <int M>
+void solve_upper(const Eigen::Matrix<double, M, M>& s, double* y) {
+#pragma GCC unroll 4
+  for (int j = M - 1; j >= 0; --j) {
+#pragma GCC unroll 4
+    for (int i = j + 1; i < M; ++i) y[j] -= s(i, j) * y[i];
+    y[j] *= s(j, j);
   }
 }
 

@@ -14,6 +14,7 @@
 #include <Eigen/LU>
 
 #include <hamel/framework/mechanics/admissible_frame.hpp>
+#include <hamel/framework/mechanics/small_factors.hpp>
 
 namespace hamel {
 
@@ -61,18 +62,12 @@ class StatedFrame : public InertiaUnits<N> {
     const Reduced y = reduce(r);
     f.template head<K>() = c.cwiseProduct(row_weights_);
     f.template tail<m>() = y;
-    solve_lower(f.data() + K);
+    solve_lower(factor_, f.data() + K);
   }
   /// (c_i / |D^-1/2 a_i|, G^-1 E^T I dxi) -> dxi, in place.
   void expand(double* z) const {
     Eigen::Map<Vector> out(z);
     combine(out.template head<K>().cwiseProduct(row_norms_), out.template tail<m>(), out);
-  }
-  /// The velocity with A xi = c, E^T I xi = E^T mu. xi may be mu.
-  void velocity(const Vector& mu, const Multipliers& c, Vector& xi) const {
-    Reduced y = reduce(mu);
-    solve_lower(y.data());
-    combine(c, y, xi);
   }
   /// The admissible velocity of mu, refined once: the round-off of the factor is nearly the same in
   /// every step, and adds up (a disk turned back after 7 s returns 60 times as near).
@@ -105,43 +100,16 @@ class StatedFrame : public InertiaUnits<N> {
       factor_ = inertia.template topLeftCorner<m, m>() + coupling.transpose().lazyProduct(frame_) +
                 frame_.transpose().lazyProduct(image_);
     }
-#pragma GCC unroll 4
-    for (int j = 0; j < m; ++j) {
-      const double inverse = 1 / std::sqrt(factor_(j, j));
-      factor_(j, j) = inverse;
-#pragma GCC unroll 4
-      for (int i = j + 1; i < m; ++i) factor_(i, j) *= inverse;
-#pragma GCC unroll 4
-      for (int l = j + 1; l < m; ++l) {
-#pragma GCC unroll 4
-        for (int i = l; i < m; ++i) factor_(i, l) -= factor_(l, j) * factor_(i, j);
-      }
-    }
+    factor_cholesky(factor_);
   }
   // E^T mu.
   Reduced reduce(const Vector& mu) const {
     return mu.template head<m>() + frame_.transpose().lazyProduct(mu.template tail<K>());
   }
-  // y <- G^-1 y, y <- G^-T y.
-  void solve_lower(double* y) const {
-#pragma GCC unroll 4
-    for (int j = 0; j < m; ++j) {
-#pragma GCC unroll 4
-      for (int i = 0; i < j; ++i) y[j] -= factor_(j, i) * y[i];
-      y[j] *= factor_(j, j);
-    }
-  }
-  void solve_upper(Reduced& y) const {
-#pragma GCC unroll 4
-    for (int j = m - 1; j >= 0; --j) {
-#pragma GCC unroll 4
-      for (int i = j + 1; i < m; ++i) y[j] -= factor_(i, j) * y[i];
-      y[j] *= factor_(j, j);
-    }
-  }
+  // y <- M^-1 y.
   void solve(Reduced& y) const {
-    solve_lower(y.data());
-    solve_upper(y);
+    solve_lower(factor_, y.data());
+    solve_upper(factor_, y.data());
   }
   // The velocity with A xi = c, G^-1 E^T I xi = z.
   template <class Out>
@@ -151,10 +119,10 @@ class StatedFrame : public InertiaUnits<N> {
     if ((c.array() != 0).any()) {
       w = a.template rightCols<K>().inverse() * c;
       Reduced pull = image_.transpose().lazyProduct(w);
-      solve_lower(pull.data());
+      solve_lower(factor_, pull.data());
       u -= pull;
     }
-    solve_upper(u);
+    solve_upper(factor_, u.data());
     w += frame_.lazyProduct(u);
     xi << u, w;
   }

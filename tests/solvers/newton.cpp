@@ -115,6 +115,27 @@ TEST(Newton, BacksOutOfAnUndefinedRegion) {
   EXPECT_NEAR(x[0], 1, 1e-13);
 }
 
+/// Broyden's update: the new J takes c to the change of F that it made, and what is orthogonal to c
+/// to what it was; a correction that made nothing of F leaves J as it was.
+TEST(Newton, AKeptJacobianLearns) {
+  const Mat<3, 3> j{{2, 0.3, -0.4}, {0.1, 1.5, 0.2}, {-0.3, 0.5, 3}};
+  const Vec<3> f(1, -2, 0.5), left(0.1, 0.2, -0.15);
+  Inverse<Mat<3, 3>> kept;
+  kept.compute(j);
+  Vec<3> c, found;
+  kept.solve(f, c);
+  kept.update(c, left);
+  kept.solve(Vec<3>(f - left), found);
+  EXPECT_LT((found - c).norm(), 1e-14);
+  const Vec<3> across = c.cross(Vec<3>(1, 2, 3));
+  kept.solve(Vec<3>(j * across), found);
+  EXPECT_LT((found - across).norm(), 1e-13);
+  const Mat<3, 3> before = kept.matrix();
+  kept.solve(f, c);
+  kept.update(c, f);
+  EXPECT_EQ(kept.matrix(), before);
+}
+
 TEST(Newton, RestIsAccepted) {
   const Made<2> step = {[](const Vec<2>& x) { return x; },
                         [](const Vec<2>&) { return Mat<2, 2>(Mat<2, 2>::Identity()); }, 0};
