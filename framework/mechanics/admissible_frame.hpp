@@ -257,8 +257,8 @@ class AdmissibleFrame : public InertiaUnits<N> {
   // y <- (E^T I E)^-1 y.
   void solve_reduced() {
     if (diagonal_) return;
-    solve_lower(reduced_inertia_, y_.data());
-    solve_upper(reduced_inertia_, y_.data());
+    solve_lower(reduced_inertia_, y_);
+    solve_upper(reduced_inertia_, y_);
   }
 
   typename Z::Columns reflections_;

@@ -59,10 +59,10 @@ class StatedFrame : public InertiaUnits<N> {
 
   /// (*), into f, which may be r.
   void assemble(const Vector& r, const Multipliers& c, Vector& f) const {
-    const Reduced y = reduce(r);
+    Reduced y = reduce(r);
+    solve_lower(factor_, y);
     f.template head<K>() = c.cwiseProduct(row_weights_);
     f.template tail<m>() = y;
-    solve_lower(factor_, f.data() + K);
   }
   /// (c_i / |D^-1/2 a_i|, G^-1 E^T I dxi) -> dxi, in place.
   void expand(double* z) const {
@@ -108,8 +108,8 @@ class StatedFrame : public InertiaUnits<N> {
   }
   // y <- M^-1 y.
   void solve(Reduced& y) const {
-    solve_lower(factor_, y.data());
-    solve_upper(factor_, y.data());
+    solve_lower(factor_, y);
+    solve_upper(factor_, y);
   }
   // The velocity with A xi = c, G^-1 E^T I xi = z.
   template <class Out>
@@ -119,10 +119,10 @@ class StatedFrame : public InertiaUnits<N> {
     if ((c.array() != 0).any()) {
       w = a.template rightCols<K>().inverse() * c;
       Reduced pull = image_.transpose().lazyProduct(w);
-      solve_lower(factor_, pull.data());
+      solve_lower(factor_, pull);
       u -= pull;
     }
-    solve_upper(factor_, u.data());
+    solve_upper(factor_, u);
     w += frame_.lazyProduct(u);
     xi << u, w;
   }
