@@ -129,6 +129,9 @@ class Sections {
     if (std::abs(request_.direction) > 1)
       throw ConfigError(
           {fmt::format("direction: got {}, expected 1, -1 or 0", request_.direction)});
+    if (request_.longest && !(*request_.longest > 0))
+      throw ConfigError(
+          {fmt::format("until: got {}, expected seconds above 0", *request_.longest)});
     starts_ = request_.starts;
     if (starts_.empty()) starts_.push_back(simulation_.config().start);
     for (size_t i = 0; i < starts_.size(); ++i) {

@@ -147,9 +147,12 @@ void print(const SectionOptions& options, const Section& section) {
 
 }  // namespace
 
+// What a section makes no use of; until is how long it waits.
+static const std::vector<std::string> kOfRows = {"every",   "output_step", "output_times", "events",
+                                                 "stop_at", "check",       "no_exact",     "until"};
+
 void SectionLine::define(CLI::App& app) {
-  line_.define_run(app, {"every", "output_step", "output_times", "events", "stop_at", "check",
-                         "no_exact", "until", "step_max"});
+  line_.define_run(app, {kOfRows.begin(), kOfRows.end()});
   app.add_option("--event", options_.request.event,
                  "the event that is crossed: a name (hamel describe SYSTEM) or a formula, as for "
                  "--events of hamel run")
@@ -173,8 +176,8 @@ void SectionLine::define(CLI::App& app) {
                 {"--config", "--set", "--input", "--configuration", "--velocity", "--momentum",
                  "--speed", "--from", "--until"});
   group_options(app, "Method",
-                {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--solver",
-                 "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
+                {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max",
+                 "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
   group_options(app, "Output", {"--output", "--report", "--axes", "--json", "--quiet"});
   app.footer(
       "Without a scheme, a step and a tolerance: dop853 at rtol 1e-10.\n"
@@ -187,6 +190,18 @@ void SectionLine::define(CLI::App& app) {
 
 SectionOptions SectionLine::resolve(const CLI::App& app) {
   options_.config = line_.resolve(app).config;
+  if (const Config usual; !line_.config_file.empty()) {
+    std::vector<std::string> mistakes;
+    for (const std::string& name : kOfRows) {
+      if (name != "until" && options_.config.text(name) != usual.text(name))
+        mistakes.push_back(fmt::format(
+            "{}: {}: got {}, expected none: a section has no rows and ends with its points",
+            line_.config_file, name, options_.config.text(name)));
+    }
+    if (!mistakes.empty()) throw ConfigError(mistakes);
+    if (!options_.request.longest && options_.config.until != usual.until)
+      options_.request.longest = std::abs(options_.config.until - options_.config.from);
+  }
   return options_;
 }
 
@@ -199,6 +214,9 @@ int section(const SectionOptions& given) {
   const bool hdf5 = options.output.ends_with(".h5");
   if (!options.output.empty() && !hdf5 && !options.output.ends_with(".csv"))
     throw ConfigError({fmt::format("--output: got '{}', expected .csv or .h5", options.output)});
+  if (!options.output.empty()) {
+    if (const std::string why = unwritable(options.output); !why.empty()) throw ConfigError({why});
+  }
   Simulation simulation(registry(), options.config.system);
   simulation.config(options.config);
   if (!options.starts.empty())
