@@ -26,7 +26,11 @@ Status TimeLoop::take_steps(long count) {
     SolveReport report = chosen ? chosen_step() : fixed_step();
     if (!report.ok()) [[unlikely]] {
       if (chosen && !errors_) report = rescued(report);
-      if (!report.ok()) return failure(report);
+      if (!report.ok()) {  // no step, but what it cost counts
+        stats_.iterations += report.iterations;
+        stats_.evaluations += report.evaluations;
+        return failure(report);
+      }
     }
     tally(report);
     time_ = t_;

@@ -266,6 +266,29 @@ TEST_F(Record, WhatIsNotFiniteIsNotOk) {
   EXPECT_TRUE(turned["diagnostics"]["constraint_max"].is_number());
 }
 
+/// What a step that failed has cost is counted; of no steps there is no mean.
+TEST_F(Record, ARunWithoutAStep) {
+  const Json r = record({"falling_disk", "--rtol", "1e-30", "--check"}, 1);
+  EXPECT_EQ(r["steps"], 0);
+  EXPECT_GT(r["solver_stats"]["evaluations"], r["solver_stats"]["rejected"]);
+  EXPECT_TRUE(r["solver_stats"]["iterations_mean"].is_null());
+  EXPECT_TRUE(r["solver_stats"]["evaluations_mean"].is_null());
+  EXPECT_TRUE(r["timing"]["nanoseconds_per_step"].is_null());
+  const Outcome o = run({"run", "falling_disk", "--rtol", "1e-30", "--check"});
+  EXPECT_THAT(o.out, HasSubstr("estimated error        not determined: the run has failed"));
+  EXPECT_THAT(o.out, testing::Not(HasSubstr("ns each")));
+  const Outcome lift = run({"run", "falling_disk", "--step", "0.3", "--until", "3", "--check"});
+  EXPECT_THAT(lift.out, HasSubstr("take a smaller step\n"));
+}
+
+/// The events of an earlier run are not left beside the rows of another.
+TEST_F(Record, EventsAreThoseOfTheRun) {
+  run({"run", "rolling_disk", "--until", "1", "--events", "1_x>0.3", "-o", "a.csv", "--quiet"});
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.csv", "a.events.csv"));
+  run({"run", "suslov", "--until", "1", "-o", "a.csv", "--quiet"});
+  EXPECT_THAT(files(), testing::ElementsAre("a.csv"));
+}
+
 TEST_F(Record, ReportPage) {
   const Outcome o = run({"run", "suslov", "--until", "1", "--report", "page.html", "--quiet"});
   if (o.status == 2 && o.err.find("without the page") != std::string::npos) {

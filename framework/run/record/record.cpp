@@ -83,7 +83,7 @@ Json record_of(const Result& r) {
                       {"configuration", json_of(e.coordinates)},
                       {"velocity", json_of(e.velocity)}});
   }
-  const double steps = static_cast<double>(std::max(r.steps, 1L));
+  const double steps = r.steps > 0 ? static_cast<double>(r.steps) : std::nan("");
   Json diagnostics;
   Measurements::fields([&](const Quantity& quantity, const char* suffix, auto member) {
     diagnostics[std::string(quantity.name) + suffix] = json_of(r.*member);
@@ -120,11 +120,11 @@ Json record_of(const Result& r) {
         {"energy", json_of(r.last.energy)}}},
       {"diagnostics", diagnostics},
       {"solver_stats",
-       {{"iterations_mean", static_cast<double>(r.stats.iterations) / steps},
+       {{"iterations_mean", json_of(static_cast<double>(r.stats.iterations) / steps)},
         {"iterations_max", r.stats.iterations_max},
         {"rejected", r.stats.rejected},
         {"evaluations", r.stats.evaluations},
-        {"evaluations_mean", static_cast<double>(r.stats.evaluations) / steps},
+        {"evaluations_mean", json_of(static_cast<double>(r.stats.evaluations) / steps)},
         {"residual_max", json_of(r.stats.residual_max)}}},
       {"events", events},
       {"fallbacks", {{"count", r.stats.fallbacks}, {"first", fallbacks(r.stats)}}},

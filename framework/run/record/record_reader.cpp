@@ -238,8 +238,9 @@ void read_record(const std::string& record, const std::string& origin, Result& o
                           event["velocity"].as<std::vector<double>>()});
   }
   const Entry stats = all["solver_stats"];
-  out.stats.iterations = std::lround(stats["iterations_mean"].as<double>() *
-                                     static_cast<double>(std::max(out.steps, 1L)));
+  if (out.steps > 0)  // (there is no mean of no steps)
+    out.stats.iterations =
+        std::lround(stats["iterations_mean"].as<double>() * static_cast<double>(out.steps));
   stats["iterations_max"].get(out.stats.iterations_max);
   stats["rejected"].get(out.stats.rejected);
   stats["evaluations"].get(out.stats.evaluations);

@@ -92,7 +92,7 @@ static std::string final_velocity(const Result& result) {
 std::string Result::report() const {
   std::string out = fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(),
                                 steps_in_words());
-  const double count = static_cast<double>(std::max(steps, 1L));
+  const auto count = static_cast<double>(steps);
   const auto line = [&](const std::string& name, const std::string& value) {
     out += fmt::format("  {:<22} {}\n", name, value);
   };
@@ -110,9 +110,11 @@ std::string Result::report() const {
   for (const std::string& note : notes) line("note", note);
   line("final velocity", final_velocity(*this));
   if (std::find(unused.begin(), unused.end(), "solver") == unused.end()) {
-    line("solver", fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
-                               static_cast<double>(stats.iterations) / count, stats.iterations_max,
-                               stats.residual_max));
+    line("solver", steps == 0
+                       ? fmt::format("{} iterations", stats.iterations)
+                       : fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
+                                     static_cast<double>(stats.iterations) / count,
+                                     stats.iterations_max, stats.residual_max));
   } else {
     line("evaluations", fmt::format("{} of the equations of motion", stats.evaluations));
   }
@@ -143,15 +145,16 @@ std::string Result::report() const {
          fmt::format("configuration {:.2e} at the end, velocity {:.2e} at most", exact_error_final,
                      exact_velocity_error_max));
   }
-  if (config.check && status.ok) {
-    line("estimated error", estimated_error_in_words(*this));
+  if (config.check) {
+    line("estimated error",
+         status.ok ? estimated_error_in_words(*this) : "not determined: the run has failed");
   }
   if (std::isfinite(seconds)) {
     const double in_steps = seconds - recording_seconds;
     line("time",
-         fmt::format("{:.3f} s in steps, {:.0f} ns each; recording {:.3f} s, comparison "
-                     "{:.3f} s",
-                     in_steps, in_steps * 1e9 / count, recording_seconds, comparing_seconds));
+         fmt::format("{:.3f} s in steps{}; recording {:.3f} s, comparison {:.3f} s", in_steps,
+                     steps > 0 ? fmt::format(", {:.0f} ns each", in_steps * 1e9 / count) : "",
+                     recording_seconds, comparing_seconds));
   }
   return out;
 }

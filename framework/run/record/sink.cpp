@@ -142,7 +142,10 @@ class CsvSink final : public Sink {
     for (std::string line; std::getline(lines, line);)
       fmt::format_to(std::back_inserter(text_), "# {}\n", line);
     put();
-    if (const std::string path = path_of_events(path_); !events_.set.empty() && !path.empty()) {
+    if (const std::string path = path_of_events(path_); path.empty()) {
+    } else if (events_.set.empty()) {
+      std::remove(path.c_str());  // those of an earlier run
+    } else {
       Bytes events(path);
       events.write(csv_of(event_rows(std::move(events_), result.events)));
       events.finish();

@@ -12,11 +12,12 @@ namespace {
 
 void add_notes(Result& result, long impacts) {
   constexpr double far = 0.3;
+  const char* or_check = result.config.check ? "" : ", or check";
   if (result.rotation_per_step_max > far && !result.config.chooses_steps()) {
     result.notes.push_back(fmt::format(
         "a step turns by up to {:.2g} rad: more than {} rarely follows the motion, whatever "
-        "the diagnostics say; take a smaller step, or check",
-        result.rotation_per_step_max, far));
+        "the diagnostics say; take a smaller step{}",
+        result.rotation_per_step_max, far, or_check));
   }
   if (impacts > 0) {
     result.notes.push_back(fmt::format(
@@ -28,8 +29,8 @@ void add_notes(Result& result, long impacts) {
   if (!std::isfinite(result.work) && result.energy_error_max > percent) {
     result.notes.push_back(
         fmt::format("the energy changes by {:.2g} of its size though nothing does work: take a "
-                    "smaller step, or check",
-                    result.energy_error_max));
+                    "smaller step{}",
+                    result.energy_error_max, or_check));
   }
 }
 
