@@ -91,7 +91,7 @@ class EnsembleReader {
   void seed(const toml::node& node) {
     long value = 0;
     read_.value(node, "seed", value);
-    if (value < 0) read_.wrong(node, "seed", "a whole number of at least 0");
+    if (value < 0) read_.wrong_value(node, "seed", "a whole number of at least 0");
     config_.seed = static_cast<uint64_t>(value);
   }
 
@@ -240,19 +240,19 @@ class EnsembleReader {
           else read_.unknown_key(value, std::string(name.str()), {"bins", "range"});
         }
         if (inner->contains("range") && (ends.size() != 2 || !(ends[0] < ends[1])))
-          read_.wrong(entry, key + ".range", "[from, until], from below until");
+          read_.wrong_value(entry, key + ".range", "[from, until], from below until");
         else if (ends.size() == 2) out.from = ends[0], out.until = ends[1];
       } else {
         read_.value(entry, key, out.bins);
       }
-      if (out.bins < 1 || out.bins > 100'000) read_.wrong(entry, key, "1 to 100000 bins");
+      if (out.bins < 1 || out.bins > 100'000) read_.wrong_value(entry, key, "1 to 100000 bins");
     }
   }
 
   void quantiles(const toml::node& node) {
     read_.value(node, "quantiles", config_.quantiles);
     if (!std::ranges::all_of(config_.quantiles, [](double p) { return p >= 0 && p <= 1; }))
-      read_.wrong(node, "quantiles", "numbers in [0, 1]");
+      read_.wrong_value(node, "quantiles", "numbers in [0, 1]");
   }
 
   TomlReader read_;

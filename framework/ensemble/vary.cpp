@@ -23,22 +23,25 @@ std::string flaw_of(const Variation& v) {
   const std::vector<double>& x = v.numbers;
   if (!std::ranges::all_of(x, [](double y) { return std::isfinite(y); }))
     return fmt::format("got {}, expected finite numbers", hamel::join(x));
+  const auto wrong = [&](const char* law, const char* expected) {
+    return fmt::format("{}: got [{}], expected {}", law, hamel::join(x), expected);
+  };
   switch (v.law) {
     case Law::values: return x.empty() ? "a list without values has no members" : "";
     case Law::uniform:
       return x.size() == 2 && x[0] < x[1] ? ""
-                                          : "uniform: expected [least, most], least below most";
+                                          : wrong("uniform", "[least, most], least below most");
     case Law::log_uniform:
       return x.size() == 2 && 0 < x[0] && x[0] < x[1]
                  ? ""
-                 : "log_uniform: expected [least, most], 0 < least < most";
+                 : wrong("log_uniform", "[least, most], 0 < least < most");
     case Law::normal:
-      return x.size() == 2 && x[1] > 0 ? "" : "normal: expected [mean, sigma], sigma above 0";
+      return x.size() == 2 && x[1] > 0 ? "" : wrong("normal", "[mean, sigma], sigma above 0");
     case Law::tau_normal:
       return !x.empty() && std::ranges::all_of(x, [](double s) { return s >= 0; })
                  ? ""
-                 : "tau_normal: expected a deviation of at least 0, or one for each component";
-    case Law::energy: return x.size() == 1 ? "" : "energy: expected one number, in J";
+                 : wrong("tau_normal", "a deviation of at least 0, or one for each component");
+    case Law::energy: return x.size() == 1 ? "" : wrong("energy", "one number, in J");
     case Law::haar: break;
   }
   return "";

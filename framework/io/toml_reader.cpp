@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <sstream>
 #include <system_error>
 
 #include <hamel/framework/io/text_file.hpp>
@@ -104,6 +105,18 @@ toml::table TomlReader::parse(const std::string& text) const {
   } catch (const toml::parse_error& error) {
     throw ConfigError({fmt::format("{}: {}", place(error.source().begin), error.description())});
   }
+}
+
+void TomlReader::wrong_value(const toml::node& node, const std::string& key,
+                             const std::string& expected) {
+  if (node.is_table()) return wrong(node, key, expected);
+  std::ostringstream text;
+  text << toml::toml_formatter(node);
+  std::string got;  // on one line
+  for (const char c : text.str())
+    if (c != '\n' && (c != ' ' || !got.ends_with(' '))) got += c;
+  mistakes.push_back(
+      fmt::format("{}: {}: got {}, expected {}", place(node), key, shortened(got), expected));
 }
 
 std::string toml_string(const std::string& text) {

@@ -59,6 +59,8 @@ class TomlReader {
   void wrong(const toml::node& node, const std::string& key, const std::string& expected) {
     mistakes.push_back(fmt::format("{}: {}: expected {}", place(node), key, expected));
   }
+  /// The same with the value of the node: "key: got 5, expected a string".
+  void wrong_value(const toml::node& node, const std::string& key, const std::string& expected);
   void unknown_key(const toml::node& node, const std::string& key,
                    const std::vector<std::string>& known) {
     unknown(node, "key", key, known);
@@ -82,7 +84,7 @@ class TomlReader {
   void scalar(const toml::node& node, const std::string& key, T& out, const char* expected,
               bool fits = true) {
     if (const auto value = node.value<T>(); value && fits) out = *value;
-    else wrong(node, key, expected);
+    else wrong_value(node, key, expected);
   }
   template <class T>
   void entries(const toml::node& node, const std::string& key, std::vector<T>& out,
@@ -91,12 +93,12 @@ class TomlReader {
     if (const toml::array* array = node.as_array()) {
       for (const toml::node& entry : *array) {
         if (const auto value = entry.value<T>()) out.push_back(*value);
-        else wrong(entry, key, "a list of " + kind);
+        else wrong_value(entry, key, "a list of " + kind);
       }
     } else if (const auto value = node.value<T>()) {
       out.push_back(*value);
     } else {
-      wrong(node, key, expected);
+      wrong_value(node, key, expected);
     }
   }
 

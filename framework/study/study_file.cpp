@@ -6,6 +6,7 @@
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/names/toml_config.hpp>
 #include <hamel/framework/run/names/toml_inputs.hpp>
 #include <hamel/framework/study/parts.hpp>
 
@@ -58,9 +59,9 @@ class StudyReader {
                        origin_)});
     }
     if (system != nullptr && system->is_string()) {
-      throw ConfigError({fmt::format(
-          "{0}: this file is the configuration of a run (hamel run --config {0}), no study",
-          origin_)});
+      const char* kind = is_ensemble(table) ? "an ensemble (hamel ensemble"
+                                            : "the configuration of a run (hamel run --config";
+      throw ConfigError({fmt::format("{0}: this file is {1} {0}), no study", origin_, kind)});
     }
   }
 

@@ -114,6 +114,95 @@ TEST_F(BadInput, Outputs) {
   fails({"-o", "folder.csv"}, "is a directory");
 }
 
+/// As of a variable of the shell that is not set.
+TEST_F(BadInput, EmptyValues) {
+  for (const char* option : {"--report", "--config", "--continue", "--scheme", "--stop-at", "-o"})
+    EXPECT_THAT(run({"run", "suslov", "--until", "0.1", option, ""}).err,
+                HasSubstr("got '', expected a value"))
+        << option;
+  EXPECT_EQ(run({"steady", "bicycle", "--vary", ""}).status, 2);
+  EXPECT_TRUE(files().empty());
+}
+
+/// Before anything is computed; 10^9 points would take days.
+TEST_F(BadInput, OutputsOfASection) {
+  std::filesystem::create_directory(file("folder.csv"));
+  for (const char* path : {"no/such/folder/p.csv", "folder.csv", "p.txt"}) {
+    const Outcome o = run({"section", "suslov_in_potential", "--event", "xi1=0", "--count",
+                           "1000000000", "-o", path});
+    EXPECT_EQ(o.status, 2) << path;
+    EXPECT_THAT(o.err, HasSubstr(path));
+  }
+  EXPECT_THAT(
+      run({"section", "chaplygin_sleigh", "--event", "cusp", "--count", "1", "--until", "0"}).err,
+      HasSubstr("until: got 0, expected seconds above 0"));
+}
+
+/// A configuration of a run: until is how long a section waits, what is of rows has no place.
+TEST_F(BadInput, ConfigurationsOfASection) {
+  const std::vector<std::string> line = {"section", "--config", "a.toml", "--event",
+                                         "cusp",    "--count",  "1"};
+  std::ofstream(file("a.toml")) << "system = \"chaplygin_sleigh\"\nuntil = 0.2\n";
+  EXPECT_THAT(run(line).out, HasSubstr("0.2 s have passed"));
+  std::ofstream(file("a.toml")) << "system = \"chaplygin_sleigh\"\nevery = 3\nstop_at = \"t=1\"\n";
+  const Outcome o = run(line);
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("a.toml: every: got 3, expected none"));
+  EXPECT_THAT(o.err, HasSubstr("a.toml: stop_at: got t=1, expected none"));
+}
+
+/// What the line says of the rows replaces all that the file says of them.
+TEST_F(BadInput, RowsOfTheLineWin) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+      {"output_step = 0.1", {"--output-times", "0.5,0.7"}},
+      {"output_times = [0.5, 0.7]", {"--output-step", "0.1"}},
+      {"every = 2", {"--output-step", "0.1"}},
+      {"output_step = 0.1", {"--every", "2"}}};
+  for (const auto& [text, more] : cases) {
+    std::ofstream(file("a.toml")) << "system = \"suslov\"\nuntil = 1\n" << text << "\n";
+    std::vector<std::string> line = {"run", "--config", "a.toml", "--quiet"};
+    line.insert(line.end(), more.begin(), more.end());
+    EXPECT_EQ(run(line).status, 0) << text << " " << more[0];
+  }
+}
+
+/// A configuration says what a line says; the line wins.
+TEST_F(BadInput, AConfigurationIsAWholeLine) {
+  std::ofstream(file("a.toml"))
+      << "system = \"suslov\"\nuntil = 1\noutput = [\"a.csv\", \"a.h5\"]\n"
+      << "quiet = true\n";
+  const Outcome o = run({"run", "--config", "a.toml"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(o.out, "");
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.csv", "a.h5", "a.toml"));
+  EXPECT_EQ(run({"run", "--config", "a.toml", "-o", "b.csv"}).status, 0);
+  EXPECT_THAT(files(), testing::UnorderedElementsAre("a.csv", "a.h5", "a.toml", "b.csv"));
+  std::ofstream(file("a.toml")) << "system = \"suslov\"\njson = 3\nreport = \"x.txt\"\n";
+  EXPECT_THAT(run({"run", "--config", "a.toml"}).err, HasSubstr("a.toml:2:8: json: got 3"));
+  std::ofstream(file("a.toml")) << "system = \"suslov\"\nreport = \"x.txt\"\nroot = \"free\"\n";
+  EXPECT_THAT(run({"run", "--config", "a.toml"}).err, HasSubstr("--root: for a robot, FILE.urdf"));
+}
+
+TEST_F(BadInput, FilesOfOtherKinds) {
+  std::ofstream(file("e.toml")) << "system = \"suslov\"\nmembers = 2\nkeep = [\"end.omega1\"]\n"
+                                << "[vary]\n\"start.omega1\" = { uniform = [2, 1] }\n";
+  for (const std::vector<std::string>& line : {std::vector<std::string>{"run", "e.toml"},
+                                               {"run", "--config", "e.toml"},
+                                               {"study", "e.toml"}}) {
+    const Outcome o = run(line);
+    EXPECT_EQ(o.status, 2);
+    EXPECT_THAT(o.err, HasSubstr("e.toml: this file is an ensemble (hamel ensemble e.toml)"));
+  }
+  EXPECT_THAT(run({"ensemble", "e.toml"}).err,
+              HasSubstr("uniform: got [2,1], expected [least, most], least below most"));
+  std::ofstream(file("a.toml")) << "system = \"suslov\"\nuntil = \"abc\"\n";
+  EXPECT_THAT(run({"run", "--config", "a.toml"}).err,
+              HasSubstr("a.toml:2:9: until: got 'abc', expected a number"));
+  std::ofstream(file("u.csv")) << "t,value\n";
+  EXPECT_THAT(run({"run", "segway", "--input", "right_torque=u.csv"}).err,
+              HasSubstr("the table is empty, expected rows of a time and a value"));
+}
+
 TEST_F(BadInput, ReproduceIntoAFile) {
   std::ofstream(file("taken")) << "precious";
   const Outcome o = run({"reproduce", "-o", "taken/figures", "--quiet"});

@@ -140,8 +140,8 @@ TEST_F(DataSystem, MistakesAreNamed) {
                 .status,
             0);
   refused(se2 + "potential = '" + std::string(2001, '(') + "'", "2001 characters, more than 2000");
-  refused("name = 3\ngroup = \"se2\"\ninertia = [1, 2, 3]", ":1:8: name: expected a string");
-  refused("group = 3\ninertia = [1, 2, 3]", ":1:9: group: expected a string");
+  refused("name = 3\ngroup = \"se2\"\ninertia = [1, 2, 3]", ":1:8: name: got 3, expected a string");
+  refused("group = 3\ninertia = [1, 2, 3]", ":1:9: group: got 3, expected a string");
   refused("summary = \"a skate\"\ngroup = \"se2\"\ninertia = [1, 2, 3]",
           ":1:11: unknown key 'summary'");
   refused("group = \"se2\"\ninertia = [1, 2, 3]\nevents = 1", ":3:10: events: expected a table");

@@ -109,7 +109,8 @@ s = 0.25
         "small.toml:3:19: unknown scheme 'blance'", "did you mean 'balance'",
         "small.toml:3:29: unknown scheme ''", "small.toml:4:15: unknown retraction 'cayly'",
         "small.toml:5:9: s: got 2", "small.toml:6:9: step: 0.3 does not divide until = 2",
-        "small.toml:7:14: tolerance: expected a number", "small.toml:8:9: unknown key 'wrong'",
+        "small.toml:7:14: tolerance: got 'small', expected a number",
+        "small.toml:8:9: unknown key 'wrong'",
         "small.toml:11:19: unknown parameter of suslov 'inertai'",
         "small.toml:14:8: unknown system 'suslof'", "exclude: say why",
         "small.toml:16:5: exclude: unknown s '0.25'"}) {

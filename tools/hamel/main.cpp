@@ -94,6 +94,18 @@ std::string mistake_of(const CLI::App& app, const CLI::ParseError& error) {
   return unknown_name("option", word, options);
 }
 
+// An option whose value is empty, as that of a variable of the shell which is not set; "" for none.
+std::string empty_option(const CLI::App& app) {
+  for (const CLI::App* line : app.get_subcommands()) {
+    for (const CLI::Option* option : line->get_options()) {
+      const std::vector<std::string>& given = option->results();
+      if (!option->get_positional() && std::ranges::find(given, "") != given.end())
+        return fmt::format("{}: got '', expected a value", option->get_name());
+    }
+  }
+  return "";
+}
+
 int program(int argc, char** argv) {
   begin_screen();
   CLI::App app("Geometric integrators for nonholonomic systems on Lie groups.", "hamel");
@@ -135,6 +147,10 @@ int program(int argc, char** argv) {
       say("{}", text.str());
       return 0;
     }));
+  }
+  if (const std::string mistake = empty_option(app); !mistake.empty()) {
+    complain("hamel: {}\n", mistake);
+    return kBadInput;
   }
   return finish(carry_out(action));
 }

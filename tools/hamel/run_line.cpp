@@ -6,6 +6,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/run/names/config_file.hpp>
 #include <hamel/framework/run/record/result.hpp>
 
 #include "help.hpp"
@@ -120,7 +121,7 @@ void RunLine::define(CLI::App& app) {
 RunOptions RunLine::resolve(const CLI::App& app) {
   Config& config = options.config;
   std::vector<std::string> mistakes;
-  if (!config_file.empty()) config = read_config(config_file);
+  if (!config_file.empty()) read_file_of(app);
   if (!record_file.empty()) go_on(config);
   if (!system.empty() && system != config.system) {
     config.system = system;
@@ -135,6 +136,15 @@ RunOptions RunLine::resolve(const CLI::App& app) {
     config.speed.reset();
   }
   if (app.count("--speed") > 0) config.start = {};
+  const auto given = [&](const char* flag) {
+    const CLI::Option* option = app.get_option_no_throw(flag);
+    return option != nullptr && option->count() > 0;
+  };
+  if (given("--every") || given("--output-step") || given("--output-times")) {  // one of them
+    config.every = Config().every;
+    config.output_step.reset();
+    config.output_times.clear();
+  }
   const auto collect = [&](const std::function<void()>& read) {
     try {
       read();
@@ -148,6 +158,29 @@ RunOptions RunLine::resolve(const CLI::App& app) {
   collect([&] { read_inputs(inputs, config.inputs); });
   if (!mistakes.empty()) throw ConfigError(mistakes);
   return options;
+}
+
+void RunLine::read_file_of(const CLI::App& app) {
+  if (app.get_option_no_throw("--continue") ==
+      nullptr) {  // not hamel run: its own options are others
+    options.config = read_config(config_file);
+    return;
+  }
+  CommandOptions others;
+  for (const char* name : {"output", "report", "json", "quiet", "wheel", "root"}) others[name];
+  options.config = read_config_file(config_file, others);
+  const auto take = [&](const std::string& name, auto& to) {
+    const std::vector<std::string>& given = others[name];
+    if (given.empty() || app.count("--" + name) > 0) return;
+    if constexpr (requires { to = given; }) to = given;
+    else read_text(fmt::format("{}: {}", config_file, name), given.back(), to);
+  };
+  take("output", options.outputs);
+  take("report", options.report);
+  take("json", options.json);
+  take("quiet", options.quiet);
+  take("wheel", robot.wheels);
+  take("root", robot.root);
 }
 
 void RunLine::go_on(Config& config) {

@@ -61,6 +61,8 @@ struct RunLine {
   RunOptions resolve(const CLI::App& app);
 
  private:
+  // --config: the options of a run, and of hamel run those that the line does not give.
+  void read_file_of(const CLI::App& app);
   // After the run of a record; or, of a file whose run is unfinished, with that run.
   void go_on(Config& config);
 };

@@ -9,6 +9,7 @@
 #include <hamel/framework/run/data/data_formulas.hpp>
 #include <hamel/framework/run/data/toml_events.hpp>
 #include <hamel/framework/run/data/toml_parameters.hpp>
+#include <hamel/framework/run/names/toml_config.hpp>
 
 namespace hamel {
 namespace {
@@ -67,11 +68,11 @@ class File {
   void refuse_other_kinds() const {
     const Node* other = table_.get("system");
     if (other == nullptr) return;
-    throw ConfigError({fmt::format(
-        "{}: this file is {}, no system by data", origin_,
-        other->is_array()
-            ? fmt::format("a study (hamel study {})", origin_)
-            : fmt::format("the configuration of a run (hamel run --config {})", origin_))});
+    const char* kind = other->is_array()     ? "a study (hamel study"
+                       : is_ensemble(table_) ? "an ensemble (hamel ensemble"
+                                             : "the configuration of a run (hamel run --config";
+    throw ConfigError(
+        {fmt::format("{0}: this file is {1} {0}), no system by data", origin_, kind)});
   }
 
   // All else depends on the group.

@@ -9,6 +9,7 @@
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
 #include <hamel/framework/io/visible.hpp>
+#include <hamel/framework/run/names/config_file.hpp>
 #include <hamel/framework/run/names/toml_config.hpp>
 #include <hamel/framework/run/names/toml_inputs.hpp>
 
@@ -181,20 +182,40 @@ bool read_config_key(TomlReader& read, const std::string& key, const toml::node&
   return found;
 }
 
-Config Config::from_toml(const std::string& text, const std::string& origin) {
+namespace {
+
+// options: may be null.
+Config config_of(const std::string& text, const std::string& origin, CommandOptions* options) {
   TomlReader read(origin);
   const toml::table table = read.parse(text);
   if (const toml::node* node = table.get("system"); node != nullptr && node->is_array())
     throw ConfigError({fmt::format("{0}: this file is a study (hamel study {0})", origin)});
+  if (is_ensemble(table))
+    throw ConfigError({fmt::format("{0}: this file is an ensemble (hamel ensemble {0})", origin)});
   if (table.contains("group") && table.contains("inertia"))
     throw ConfigError({fmt::format("{0}: this file is a system by data (hamel run {0})", origin)});
+  std::vector<std::string> known = config_keys();
+  if (options != nullptr)
+    for (const auto& [name, values] : *options) known.push_back(name);
   Config config;
   for (const auto& [name, node] : table) {
     const std::string key(name.str());
-    if (!read_config_key(read, key, node, config)) read.unknown_key(node, key, config_keys());
+    if (options != nullptr && options->contains(key)) {
+      std::vector<std::string>& values = (*options)[key];
+      if (node.is_boolean()) values = {text_of(*node.value<bool>())};
+      else read.value(node, key, values);
+    } else if (!read_config_key(read, key, node, config)) {
+      read.unknown_key(node, key, known);
+    }
   }
   if (!read.mistakes.empty()) throw ConfigError(read.mistakes);
   return config;
+}
+
+}  // namespace
+
+Config Config::from_toml(const std::string& text, const std::string& origin) {
+  return config_of(text, origin, nullptr);
 }
 
 std::string Config::to_toml() const {
@@ -327,6 +348,9 @@ std::vector<std::string> Config::mistakes() const {
 
 Config read_config(const std::string& path) {
   return Config::from_toml(read_text_file("config", path), path);
+}
+Config read_config_file(const std::string& path, CommandOptions& options) {
+  return config_of(read_text_file("config", path), path, &options);
 }
 
 }  // namespace hamel

@@ -46,7 +46,9 @@ std::string refusal(const std::string& what, const InputField& field, double val
 std::string refusal(const std::string& what, const InputField& field, const InputTable& table,
                     const RunSpan& span) {
   const size_t count = table.times.size();
-  if (count == 0 || table.values.size() != count) {
+  if (count == 0 && table.values.empty())
+    return fmt::format("{}: the table is empty, expected rows of a time and a value", what);
+  if (table.values.size() != count) {
     return fmt::format("{}: a table of {} times and {} values, expected as many of both", what,
                        count, table.values.size());
   }

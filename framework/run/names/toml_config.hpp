@@ -16,4 +16,9 @@ std::vector<std::string> config_keys();
 bool read_config_key(TomlReader& read, const std::string& key, const toml::node& node,
                      Config& config);
 
+/// Is it the file of an ensemble?
+inline bool is_ensemble(const toml::table& file) {
+  return file.contains("vary") || file.contains("keep");
+}
+
 }  // namespace hamel

@@ -170,10 +170,12 @@ std::string message(const std::string& toml) {
 TEST(Config, MistakesNameLineAndColumn) {
   EXPECT_THAT(message("system = \"suslov\"\nstep = = 3\n"), HasSubstr("run.toml:2:8"));
   EXPECT_THAT(message("system = \"suslov\"\nstep = \"fast\"\n"),
-              HasSubstr("run.toml:2:8: step: expected a number"));
-  EXPECT_THAT(message("every = 1.5\n"), HasSubstr("run.toml:1:9: every: expected a whole number"));
+              HasSubstr("run.toml:2:8: step: got 'fast', expected a number"));
+  EXPECT_THAT(message("every = 1.5\n"),
+              HasSubstr("run.toml:1:9: every: got 1.5, expected a whole number"));
   EXPECT_THAT(message("velocity = [1, \"x\", 3]\n"), HasSubstr("run.toml:1:16: velocity"));
-  EXPECT_THAT(message("scheme = 3\n"), HasSubstr("run.toml:1:10: scheme: expected a string"));
+  EXPECT_THAT(message("scheme = 3\n"),
+              HasSubstr("run.toml:1:10: scheme: got 3, expected a string"));
   EXPECT_THAT(message("set = 3\n"), HasSubstr("run.toml:1:7: set: expected a table"));
   EXPECT_THAT(message("[set]\ninertia = [1, [2], 3]\n"), HasSubstr("run.toml:2:15: set.inertia"));
   EXPECT_THAT(message("\n\nretracton = \"exp\"\n"),
@@ -184,8 +186,8 @@ TEST(Config, AllMistakesOfAFileAtOnce) {
   const std::string all =
       message("stpe = 0.1\nscheme = 3\nuntil = \"late\"\n[set]\nmass = \"heavy\"\n");
   EXPECT_THAT(all, HasSubstr("did you mean 'step'?"));
-  EXPECT_THAT(all, HasSubstr("scheme: expected a string"));
-  EXPECT_THAT(all, HasSubstr("until: expected a number"));
+  EXPECT_THAT(all, HasSubstr("scheme: got 3, expected a string"));
+  EXPECT_THAT(all, HasSubstr("until: got 'late', expected a number"));
   EXPECT_THAT(all, HasSubstr("set.mass"));
 }
 

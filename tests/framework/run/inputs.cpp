@@ -214,7 +214,7 @@ TEST(InputsOfARun, AreCheckedBeforeAnythingRuns) {
               HasSubstr("the table covers t = 0 to 1.9, expected the whole run, 0 to 2"));
   EXPECT_THAT(refused(InputTable{{0.1, 2}, {0, 0}}), HasSubstr("covers t = 0.1 to 2"));
   EXPECT_THAT(refused(InputTable{{0, 2}, {0}}), HasSubstr("2 times and 1 values"));
-  EXPECT_THAT(refused(InputTable{}), HasSubstr("0 times and 0 values"));
+  EXPECT_THAT(refused(InputTable{}), HasSubstr("the table is empty"));
   EXPECT_THAT(refused(InputFile{"no_such_file.csv"}), HasSubstr("no_such_file.csv"));
   EXPECT_EQ(refused(InputTable{{-1, 3}, {0, 0}}), "accepted");
 }
@@ -235,8 +235,8 @@ TEST(InputsOfARun, FilesAreReadWithTheirPlace) {
   EXPECT_THAT(read("t,value\n0,1,2\n"), HasSubstr(path + ":2"));
   EXPECT_THAT(read("t,value\n0,1\n2,nan\n"), HasSubstr("row 2: got nan"));
   EXPECT_THAT(read("t,value\n0,1\n-1,1\n"), HasSubstr("row 2: the time -1 comes after 0"));
-  EXPECT_THAT(read("t,value\n"), HasSubstr("0 times"));
-  EXPECT_THAT(read(""), HasSubstr("0 times"));
+  EXPECT_THAT(read("t,value\n"), HasSubstr("the table is empty"));
+  EXPECT_THAT(read(""), HasSubstr("the table is empty"));
   std::remove(path.c_str());
 }
 

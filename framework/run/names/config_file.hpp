@@ -1,0 +1,19 @@
+// The file of --config: the options of a run, and those of the command that carries it out.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/run/names/config.hpp>
+
+namespace hamel {
+
+/// Options of a command that are none of a run, by name ("output"), as texts; a flag is "true".
+using CommandOptions = std::map<std::string, std::vector<std::string>>;
+
+/// The configuration in a file. options: the names that it may have beside those of Config; they
+/// receive what it says of them. Throws ConfigError with all mistakes, each with its place.
+HAMEL_API Config read_config_file(const std::string& path, CommandOptions& options);
+
+}  // namespace hamel
