@@ -151,7 +151,7 @@ TEST_F(BadInput, ConfigurationsOfASection) {
   EXPECT_THAT(o.err, HasSubstr("a.toml: stop_at: got t=1, expected none"));
 }
 
-/// What the line says of the rows replaces all that the file says of them.
+/// Output times on the command line replace those of the file.
 TEST_F(BadInput, RowsOfTheLineWin) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
       {"output_step = 0.1", {"--output-times", "0.5,0.7"}},

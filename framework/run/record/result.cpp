@@ -71,6 +71,7 @@ std::string Result::steps_in_words() const {
 }
 
 static std::string estimated_error_in_words(const Result& result) {
+  if (!result.status.ok) return "not determined: the run has failed";
   if (std::isnan(result.estimated_error))
     return fmt::format("unknown by {}", finer_runs(result.config));
   if (std::isnan(result.observed_order)) {
@@ -89,10 +90,25 @@ static std::string final_velocity(const Result& result) {
                            std::fmax(0, result.exact_velocity_error_max));
 }
 
+// Of no steps there is no mean.
+static std::string solver_in_words(const SolverStats& stats, long steps) {
+  if (steps == 0) return fmt::format("{} iterations", stats.iterations);
+  return fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
+                     static_cast<double>(stats.iterations) / static_cast<double>(steps),
+                     stats.iterations_max, stats.residual_max);
+}
+
+static std::string times_in_words(const Result& result) {
+  const double in_steps = result.seconds - result.recording_seconds;
+  const auto steps = static_cast<double>(result.steps);
+  return fmt::format("{:.3f} s in steps{}; recording {:.3f} s, comparison {:.3f} s", in_steps,
+                     steps > 0 ? fmt::format(", {:.0f} ns each", in_steps * 1e9 / steps) : "",
+                     result.recording_seconds, result.comparing_seconds);
+}
+
 std::string Result::report() const {
   std::string out = fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(),
                                 steps_in_words());
-  const auto count = static_cast<double>(steps);
   const auto line = [&](const std::string& name, const std::string& value) {
     out += fmt::format("  {:<22} {}\n", name, value);
   };
@@ -110,11 +126,7 @@ std::string Result::report() const {
   for (const std::string& note : notes) line("note", note);
   line("final velocity", final_velocity(*this));
   if (std::find(unused.begin(), unused.end(), "solver") == unused.end()) {
-    line("solver", steps == 0
-                       ? fmt::format("{} iterations", stats.iterations)
-                       : fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",
-                                     static_cast<double>(stats.iterations) / count,
-                                     stats.iterations_max, stats.residual_max));
+    line("solver", solver_in_words(stats, steps));
   } else {
     line("evaluations", fmt::format("{} of the equations of motion", stats.evaluations));
   }
@@ -145,17 +157,8 @@ std::string Result::report() const {
          fmt::format("configuration {:.2e} at the end, velocity {:.2e} at most", exact_error_final,
                      exact_velocity_error_max));
   }
-  if (config.check) {
-    line("estimated error",
-         status.ok ? estimated_error_in_words(*this) : "not determined: the run has failed");
-  }
-  if (std::isfinite(seconds)) {
-    const double in_steps = seconds - recording_seconds;
-    line("time",
-         fmt::format("{:.3f} s in steps{}; recording {:.3f} s, comparison {:.3f} s", in_steps,
-                     steps > 0 ? fmt::format(", {:.0f} ns each", in_steps * 1e9 / count) : "",
-                     recording_seconds, comparing_seconds));
-  }
+  if (config.check) line("estimated error", estimated_error_in_words(*this));
+  if (std::isfinite(seconds)) line("time", times_in_words(*this));
   return out;
 }
 
