@@ -24,7 +24,7 @@
 namespace hamel {
 
 /// Common base of the Cayley maps. Each has solve_even_transposed(xi, c, m) = (1 + c even)^-T m,
-/// where dR_xi^-1 = 1 + odd + even in xi (M13).
+/// where dR_xi^-1 = 1 + odd + even in xi (M13), and end_momenta(xi, p, even, odd) of (M50).
 template <class G>
 struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {
   static constexpr bool symmetric = true;
@@ -82,6 +82,12 @@ struct CayleyLiteral<SO2> : RetractionDefaults<CayleyLiteral<SO2>, SO2> {
   }
   static Vec<1> solve_even_transposed(const Vec<1>& xi, double c, const Vec<1>& m) {
     return Vec<1>(m[0] / (1 + 0.25 * c * xi[0] * xi[0]));
+  }
+  template <class T>
+  static void end_momenta(const VecT<T, 1>& xi, const VecT<T, 1>& p, VecT<T, 1>& even,
+                          VecT<T, 1>& odd) {
+    even[0] = (1.0 + 0.0625 * xi[0] * xi[0]) * p[0];
+    odd[0] = T(0.0);
   }
 };
 
@@ -142,6 +148,14 @@ struct Cayley<SO3> : CayleyDefaults<SO3> {
     return {p[0] + h[1] * p[2] - h[2] * p[1] + d * h[0],
             p[1] + h[2] * p[0] - h[0] * p[2] + d * h[1],
             p[2] + h[0] * p[1] - h[1] * p[0] + d * h[2]};
+  }
+  /// even = p + 2 a (a.p) - |a|^2 p, odd = 2 a x p, a = omega/4.
+  template <class T>
+  static void end_momenta(const VecT<T, 3>& xi, const VecT<T, 3>& p, VecT<T, 3>& even,
+                          VecT<T, 3>& odd) {
+    const VecT<T, 3> a = 0.25 * xi, twice = 2.0 * a;
+    even = a.dot(p) * twice + (1.0 - a.dot(a)) * p;
+    odd = twice.cross(p);
   }
   template <class T>
   static VecT<T, 3> solve_even_transposed(const VecT<T, 3>& xi, double c, const VecT<T, 3>& m) {
@@ -212,6 +226,15 @@ struct Cayley<SE2> : CayleyDefaults<SE2> {
     const T w = 0.5 * xi[0], v1 = 0.5 * xi[1], v2 = 0.5 * xi[2];
     const T q1 = p[1] - w * p[2], q2 = p[2] + w * p[1];
     return {p[0] + w * w * p[0] + v1 * q2 - v2 * q1, q1, q2};
+  }
+  /// w and v are quarters of omega and v.
+  template <class T>
+  static void end_momenta(const VecT<T, 3>& xi, const VecT<T, 3>& p, VecT<T, 3>& even,
+                          VecT<T, 3>& odd) {
+    const T w = 0.25 * xi[0], v1 = 0.25 * xi[1], v2 = 0.25 * xi[2], twice = 2.0 * w;
+    const T less = 1.0 - w * w;
+    even = {p[0] + w * w * p[0] + twice * (v1 * p[1] + v2 * p[2]), less * p[1], less * p[2]};
+    odd = {2.0 * (v1 * p[2] - v2 * p[1]), -twice * p[2], twice * p[1]};
   }
   template <class T>
   static VecT<T, 3> solve_even_transposed(const VecT<T, 3>& xi, double c, const VecT<T, 3>& m) {
@@ -300,6 +323,20 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     out.template head<3>() = m + w.cross(m) + w * (w.dot(m) + v.dot(f)) - w.dot(v) * f + v.cross(f);
     out.template tail<3>() = f + w.cross(f);
     return out;
+  }
+  /// a and b are quarters of omega and v, p = (m, f), F = a x f, M = a x m + b x f:
+  /// even = (m + a x M + b x F + (a.b) (a x F - f) + a (a.m + b.f), f + a x F), odd = 2 (M, F).
+  template <class T>
+  static void end_momenta(const VecT<T, 6>& xi, const VecT<T, 6>& p, VecT<T, 6>& even,
+                          VecT<T, 6>& odd) {
+    const VecT<T, 3> a = 0.25 * xi.template head<3>(), b = 0.25 * xi.template tail<3>(),
+                     m = p.template head<3>(), f = p.template tail<3>();
+    const VecT<T, 3> force = a.cross(f), moment = a.cross(m) + b.cross(f), again = a.cross(force);
+    even.template head<3>() =
+        m + a.cross(moment) + b.cross(force) + a.dot(b) * (again - f) + (a.dot(m) + b.dot(f)) * a;
+    even.template tail<3>() = f + again;
+    odd.template head<3>() = 2.0 * moment;
+    odd.template tail<3>() = 2.0 * force;
   }
   /// The transpose of the even part is [[omega omega^T, omega v^T - (omega.v) I], [0, 0]]/4.
   template <class T>

@@ -48,6 +48,12 @@ struct IdentityRetraction : RetractionDefaults<Derived, G> {
                                                                const VecT<T, N>&) {
     return MatT<T, N, N>::Zero();
   }
+  template <class T>
+  static void end_momenta(const VecT<T, N>&, const VecT<T, N>& p, VecT<T, N>& even,
+                          VecT<T, N>& odd) {
+    even = p;
+    odd.setZero();
+  }
 };
 
 /// theta, the unwrapped angle: angles add, so that any retraction of SO(2) is this one
@@ -99,6 +105,12 @@ struct AddedAngle : RetractionDefaults<Derived, SO2> {
   static MatT<T, 1, 1> dtau_right_inverse_transpose_derivative(const VecT<T, 1>&,
                                                                const VecT<T, 1>&) {
     return MatT<T, 1, 1>::Zero();
+  }
+  template <class T>
+  static void end_momenta(const VecT<T, 1>&, const VecT<T, 1>& p, VecT<T, 1>& even,
+                          VecT<T, 1>& odd) {
+    even = p;
+    odd.setZero();
   }
 };
 

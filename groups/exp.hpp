@@ -107,6 +107,14 @@ struct Exp<SE2> : ExpDefaults<SE2> {
     return {p[0] + xi[1] * (b * p[1] + 0.5 * p[2]) + xi[2] * (b * p[2] - 0.5 * p[1]),
             gamma * p[1] - half * p[2], half * p[1] + gamma * p[2]};
   }
+  /// The parts of that without and with J.
+  template <class T>
+  static void end_momenta(const VecT<T, 3>& xi, const VecT<T, 3>& p, VecT<T, 3>& even,
+                          VecT<T, 3>& odd) {
+    const T b = xi[0] * cotc(T(xi[0] * xi[0])), gamma = 1.0 - xi[0] * b, half = 0.5 * xi[0];
+    even = {p[0] + b * (xi[1] * p[1] + xi[2] * p[2]), gamma * p[1], gamma * p[2]};
+    odd = {0.5 * (xi[1] * p[2] - xi[2] * p[1]), -half * p[2], half * p[1]};
+  }
   template <class T>
   static MatT<T, 3, 3> dtau_right_inverse_transpose_derivative(const VecT<T, 3>& xi,
                                                                const VecT<T, 3>& p) {

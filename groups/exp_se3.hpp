@@ -34,6 +34,24 @@ struct Exp<SE3> : ExpDefaults<SE3> {
     return left_inverse(omega, v, x, cotc(x), cotc_derivative(x), eta);
   }
   using ExpDefaults<SE3>::dtau_left_inverse;
+  /// (P m + dP f, P f), p = (m, f).
+  template <class T>
+  static VecT<T, 6> dtau_right_inverse_transpose(const VecT<T, 6>& xi, const VecT<T, 6>& p) {
+    VecT<T, 6> even, odd;
+    end_momenta(xi, p, even, odd);
+    return even + odd;
+  }
+  /// The parts of that, without and with W/2 and V/2.
+  template <class T>
+  static void end_momenta(const VecT<T, 6>& xi, const VecT<T, 6>& p, VecT<T, 6>& even,
+                          VecT<T, 6>& odd) {
+    const VecT<T, 3> omega = xi.template head<3>(), v = xi.template tail<3>(),
+                     m = p.template head<3>(), f = p.template tail<3>(), w = 0.5 * omega;
+    const T x = omega.dot(omega);
+    const auto [turn, move] = even_part(omega, v, x, cotc(x), cotc_derivative(x), f, m);
+    even << move, turn;
+    odd << w.cross(m) + 0.5 * v.cross(f), w.cross(f);
+  }
   template <class T>
   static VecT<T, 6> tau_inverse(const SE3Element<T>& g) {
     const VecT<T, 3> t = gibbs_vector(g.rotation, "se3 exp^-1");
@@ -92,15 +110,25 @@ struct Exp<SE3> : ExpDefaults<SE3> {
     const VecT<T, 3> wv = omega.cross(v);
     return {rotation_polynomial(omega, a, b), v + b * wv + c * omega.cross(wv)};
   }
-  // With cotc and its derivative: W^2 a = omega (omega.a) - x a, and its derivative along v.
+  // With cotc and its derivative dc: (a + c W^2 a, b + c W^2 b + d(c W^2) a), W^2 a =
+  // omega (omega.a) - x a, and d its derivative along v.
+  template <class T>
+  struct EvenPart {
+    VecT<T, 3> turn, move;
+  };
+  template <class T>
+  static EvenPart<T> even_part(const VecT<T, 3>& omega, const VecT<T, 3>& v, const T& x, const T& c,
+                               const T& dc, const VecT<T, 3>& a, const VecT<T, 3>& b) {
+    const T wa = omega.dot(a), wv = omega.dot(v), wb = omega.dot(b) + v.dot(a), d = 2.0 * dc * wv;
+    const T near = 1.0 - c * x, far = 2.0 * c * wv + d * x;
+    return {c * wa * omega + near * a,
+            (c * wb + d * wa) * omega + (c * wa) * v + near * b - far * a};
+  }
   template <class T>
   static VecT<T, 6> left_inverse(const VecT<T, 3>& omega, const VecT<T, 3>& v, const T& x,
                                  const T& c, const T& dc, const VecT<T, 6>& eta) {
-    const VecT<T, 3> a = eta.template head<3>(), b = eta.template tail<3>();
-    const T wa = omega.dot(a), wv = omega.dot(v), wb = omega.dot(b) + v.dot(a), d = 2.0 * dc * wv;
-    const T near = 1.0 - c * x, far = 2.0 * c * wv + d * x;
-    const VecT<T, 3> w = 0.5 * omega, turn = c * wa * omega + near * a,
-                     move = (c * wb + d * wa) * omega + (c * wa) * v + near * b - far * a;
+    const VecT<T, 3> a = eta.template head<3>(), b = eta.template tail<3>(), w = 0.5 * omega;
+    const auto [turn, move] = even_part(omega, v, x, c, dc, a, b);
     VecT<T, 6> out;
     out << turn + w.cross(a), move + w.cross(b) + 0.5 * v.cross(a);
     return out;

@@ -59,6 +59,15 @@ struct Exp<SO3> : ExpDefaults<SO3> {
     const T x = xi.dot(xi);
     return inverse_transpose(xi, x, cotc(x), p);
   }
+  /// even = p + cotc omega x (omega x p), odd = omega x p/2.
+  template <class T>
+  static void end_momenta(const VecT<T, 3>& xi, const VecT<T, 3>& p, VecT<T, 3>& even,
+                          VecT<T, 3>& odd) {
+    const T x = xi.dot(xi), c = cotc(x), a = c * xi.dot(p), b = 1.0 - c * x;
+    const VecT<T, 3> h = 0.5 * xi;
+    even = b * p + a * xi;
+    odd = h.cross(p);
+  }
   /// eta + omega x eta/2 + cotc omega x (omega x eta): dL is the transpose of dR.
   template <class T>
   static VecT<T, 3> dtau_left_inverse(const VecT<T, 3>& xi, const VecT<T, 3>& eta) {

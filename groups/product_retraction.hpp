@@ -155,6 +155,18 @@ struct ProductRetraction : OneFactorOf<Rs...>::type {
     return q;
   }
   template <class T>
+  static void end_momenta(const VecT<T, dim>& xi, const VecT<T, dim>& p, VecT<T, dim>& even,
+                          VecT<T, dim>& odd) requires(has_end_momenta<Rs>&&...) {
+    Group::for_each_factor([&](auto i) {
+      constexpr int size = Part<i>::Group::dim, at = Group::offsets[i];
+      VecT<T, size> own_even, own_odd;
+      Part<i>::end_momenta(Group::template segment<i>(xi), Group::template segment<i>(p), own_even,
+                           own_odd);
+      even.template segment<size>(at) = own_even;
+      odd.template segment<size>(at) = own_odd;
+    });
+  }
+  template <class T>
   static VecT<T, dim> dtau_left_inverse_transpose(const VecT<T, dim>& xi, const VecT<T, dim>& p) {
     VecT<T, dim> q;
     Group::for_each_factor([&](auto i) {

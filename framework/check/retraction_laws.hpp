@@ -56,7 +56,7 @@ LawReport check_retraction(unsigned long long seed = 1) {
   const TypedGeometry<R> geometry;
   LawReport report = check_retraction(group_info<typename R::Group>(), geometry, seed);
   const M one = M::Identity();
-  check::Largest inverses, stage, halves, newton, tangent;
+  check::Largest inverses, stage, halves, ends, newton, tangent;
   for (const check::Point& point : check::points(geometry, seed)) {
     const V xi = Eigen::Map<const V>(point.xi.data()), p = Eigen::Map<const V>(point.p.data());
     const M dR = R::dtau_right(xi), dL = R::dtau_left(xi);
@@ -83,6 +83,18 @@ LawReport check_retraction(unsigned long long seed = 1) {
       const auto at_once = R::Group::coordinates(R::tau_of_halves(xi));
       for (size_t i = 0; i < twice.size(); ++i) halves(std::abs(twice[i] - at_once[i]));
     }
+    if constexpr (has_end_momenta<R>) {
+      V even, odd;
+      R::end_momenta(xi, p, even, odd);
+      const V half = 0.5 * xi, back = -half;
+      const V q = mixed_momentum<R>(0.5, xi, p, V::Zero());
+      const V base = R::dtau_right_inverse_transpose(back, q);
+      const V starts = R::Group::Ad_transpose(R::tau(back), base);
+      const V end = R::Group::Ad_transpose(R::tau(half), base);
+      const double size = (1 + xi.squaredNorm()) * p.norm();
+      ends((even + odd - starts).norm() / size);
+      ends((even - odd - end).norm() / size);
+    }
     if (point.length > 0.7 * point.edge) continue;
     const M slope = R::dtau_right_inverse_transpose_derivative(xi, p);
     M differences;
@@ -106,6 +118,8 @@ LawReport check_retraction(unsigned long long seed = 1) {
   report.push_back({"tau and dL^-1 eta of a stage are those alone", stage.value, check::algebraic});
   if constexpr (requires(const V& xi) { R::tau_of_halves(xi); })
     report.push_back({"tau(xi/2)^2 at once", halves.value, check::algebraic});
+  if constexpr (has_end_momenta<R>)
+    report.push_back({"momenta at the ends of a step", ends.value, check::algebraic});
   report.push_back(
       {"Newton derivative d[dR^-T p] against differences", newton.value, check::differentiated});
   return report;

@@ -122,7 +122,7 @@ void TomlReader::wrong_value(const toml::node& node, const std::string& key,
 std::string toml_string(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    if (static_cast<unsigned char>(c) < 0x20) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
       out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
       continue;
     }

@@ -78,6 +78,11 @@ struct GroupOperations {
                              Vector& q) {
     q = hamel::mixed_momentum<Tau, T>(s, xi, p, nu);
   }
+  /// (M50): mu0 = even + odd, mu1 = even - odd, of a step xi about its middle without forces.
+  static void end_momenta(const Vector& xi, const Vector& p, Vector& even,
+                          Vector& odd) requires has_end_momenta<Tau> {
+    Tau::end_momenta(xi, p, even, odd);
+  }
   static bool in_domain(const Vector& xi) { return Tau::in_domain(xi); }
   /// xi with tau_s(xi) = delta; false where there is none.
   static bool recover_step(const Element& delta, double s, Vector& xi) {

@@ -47,6 +47,13 @@ VecT<T, Tau::Group::dim> mixed_momentum(double s,
   }
   return m;
 }
+/// Has Tau the momenta of (M50) in closed form? Those at the ends of a step xi about its middle, s
+/// = 1/2, with nu = 0:
+///   mu0 = dR_{xi/2}^-T q = even + odd,   mu1 = the same with -xi = even - odd.
+template <class Tau>
+concept has_end_momenta = requires(const Vec<Tau::Group::dim>& xi, Vec<Tau::Group::dim>& part) {
+  Tau::end_momenta(xi, xi, part, part);
+};
 /// m0.
 template <class Tau, class T = double>
 VecT<T, Tau::Group::dim> base_momentum(double s,

@@ -83,6 +83,9 @@ class Kernel {
   /// values are no element.
   virtual void restart(double t, std::span<const double> coordinates,
                        std::span<const double> velocity, double step) = 0;
+  /// A new kernel for the same problem, set up with its constants: setup differs from this one's in
+  /// the start and in step alone. Null where there are none worth keeping.
+  virtual std::unique_ptr<Kernel> another(const KernelSetup& /*setup*/) const { return nullptr; }
   /// Drops what is remembered of forces: after a change of something that they depend on.
   virtual void clear_history() = 0;
   /// The state at a time within the last step, by the scheme's own dense output; false where it has

@@ -27,9 +27,13 @@ class Loop final : public TimeLoop {
   static_assert(SchemeStep<Step>, "the scheme's Step does not satisfy hamel::SchemeStep");
 
   [[gnu::cold]] explicit Loop(const KernelSetup& setup)
+      : Loop(setup, Whole(setup.geometry, setup.mechanics),
+             [&setup](const Whole& whole) { return step_of(whole, setup); }) {}
+  template <class MakeStep>
+  [[gnu::cold]] Loop(const KernelSetup& setup, const Whole& whole, const MakeStep& make_step)
       : TimeLoop(setup),
-        whole_(setup.geometry, setup.mechanics),
-        step_(step_of(whole_, setup)),
+        whole_(whole),
+        step_(make_step(whole_)),
         problem_(problem_of(whole_)),
         nodes_(problem_),
         kept_{{nodes_.now(), nodes_.previous(), last_h_},
@@ -70,6 +74,15 @@ class Loop final : public TimeLoop {
       return true;
     }
     return false;
+  }
+  [[gnu::cold]] std::unique_ptr<Kernel> another(const KernelSetup& setup) const override {
+    if constexpr (std::is_same_v<P, Whole> && P::left_invariant) {
+      auto out = std::make_unique<Loop>(setup, whole_, [this](const Whole&) { return step_; });
+      out->forget_forces();
+      return out;
+    } else {
+      return nullptr;
+    }
   }
   [[gnu::cold]] void clear_history() override {
     for (Memory& memory : memories_) memory.clear_history();
@@ -125,15 +138,17 @@ class Loop final : public TimeLoop {
   }
 
   // Small products of fixed sizes, inlined: half the time of a step.
-  SolveReport substep(int place, double h) override {
-    if constexpr (requires { requires Step::inlined; }) return inlined_substep(place, h);
-    else return plain_substep(place, h);
+  void substep(int place, double h, SolveReport& report) override {
+    if constexpr (requires { requires Step::inlined; }) inlined_substep(place, h, report);
+    else plain_substep(place, h, report);
   }
-  HAMEL_FLATTEN SolveReport inlined_substep(int place, double h) { return plain_substep(place, h); }
-  SolveReport plain_substep(int place, double h) {
+  HAMEL_FLATTEN void inlined_substep(int place, double h, SolveReport& report) {
+    plain_substep(place, h, report);
+  }
+  void plain_substep(int place, double h, SolveReport& report) {
     Memory& memory = memories_[static_cast<size_t>(place)];
     step_.begin(nodes_.now(), h);
-    SolveReport report = unknown_.solve(step_, nodes_.now(), h, memory);
+    report = unknown_.solve(step_, nodes_.now(), h, memory);
     if (report.ok()) {
       if (!unknown_.finish(step_, nodes_.next())) report.reason = why_not_finished();
       else if (!std::isfinite(nodes_.next().x.sum()))
@@ -146,12 +161,11 @@ class Loop final : public TimeLoop {
       }
     }
     if (!report.ok()) [[unlikely]]
-      return report;
+      return;
     last_h_ = h;
     unknown_.keep(memory);
     nodes_.turn(problem_);
     t_ = nodes_.now().t;
-    return report;
   }
 
   [[gnu::cold]] Reason why_not_finished() const {

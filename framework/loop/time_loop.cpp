@@ -20,22 +20,43 @@ TimeLoop::TimeLoop(const KernelSetup& setup)
 
 Status TimeLoop::take_steps(long count) {
   const FlushDenormals flushed;
+  const bool chosen = chooses_steps();
+  if (!chosen && setup_.inputs == nullptr && setup_.composition.size() == 1)
+    return take_plain_steps(count);
   for (long k = 0; k < count; ++k) {
-    const bool chosen = chooses_steps();
     if (chosen && t_ == limit_) return {};
     SolveReport report = chosen ? chosen_step() : fixed_step();
-    if (!report.ok()) [[unlikely]] {
-      if (chosen && !errors_) report = rescued(report);
-      if (!report.ok()) {  // no step, but what it cost counts
-        stats_.iterations += report.iterations;
-        stats_.evaluations += report.evaluations;
-        return failure(report);
-      }
-    }
+    if (chosen && !errors_ && !report.ok()) [[unlikely]]
+      report = rescued(report);
+    if (!report.ok()) [[unlikely]]
+      return lost(report);
     tally(report);
     time_ = t_;
   }
   return {};
+}
+
+// Steps of one size without inputs, of one substep: nothing to ask for.
+inline Status TimeLoop::take_plain_steps(long count) {
+  const double size = setup_.composition.front() * h_;
+  SolveReport report;
+  for (; count > 0; --count) {
+    substep(0, size, report);
+    beginning_ = Beginning::previous;
+    if (!report.ok()) [[unlikely]] {
+      report = rescued(report);
+      if (!report.ok()) return lost(report);
+    }
+    tally(report);
+  }
+  return {};
+}
+
+// No step, but what it cost counts.
+Status TimeLoop::lost(const SolveReport& report) {
+  stats_.iterations += report.iterations;
+  stats_.evaluations += report.evaluations;
+  return failure(report);
 }
 
 inline void TimeLoop::tally(const SolveReport& report) {
@@ -74,7 +95,8 @@ inline SolveReport TimeLoop::one_step() {
     enter_inputs();
   if (setup_.composition.size() > 1) [[unlikely]]
     return composed_step();
-  const SolveReport report = substep(0, setup_.composition.front() * h_);
+  SolveReport report;
+  substep(0, setup_.composition.front() * h_, report);
   beginning_ = Beginning::previous;
   return report;
 }
@@ -137,7 +159,8 @@ SolveReport TimeLoop::composed_step() {
   SolveReport total;
   int place = 0;
   for (const double coefficient : setup_.composition) {
-    const SolveReport report = substep(place++, coefficient * h_);
+    SolveReport report;
+    substep(place++, coefficient * h_, report);
     total.iterations += report.iterations;
     total.evaluations += report.evaluations;
     total.residual = std::max(total.residual, report.residual);

@@ -42,7 +42,7 @@ class TimeLoop : public Kernel {
   /// A substep of size h, with what is remembered of the earlier ones of its place in the
   /// composition. One that fails leaves the state alone. Sets t_, and error_ where errors_ are
   /// controlled.
-  virtual SolveReport substep(int place, double h) = 0;
+  virtual void substep(int place, double h, SolveReport& report) = 0;
   virtual void put_away(Kept where) = 0;
   virtual void fetch(Kept where) = 0;  // sets t_
   /// Drops what the step remembers of forces.
@@ -78,6 +78,8 @@ class TimeLoop : public Kernel {
 
  private:
   Status take_steps(long count);
+  Status take_plain_steps(long count);
+  Status lost(const SolveReport& report);
   void reverse();
   void begin_anew(double t, double step);
   SolveReport one_step();

@@ -16,6 +16,8 @@
 // half of h,
 //   E(g0)^T (mu0 - I(g0) xi_0 - h/2 F0) = 0,   mu1 + h/2 F1 in place of mu1,
 //   F_i = (f - dV)(t_i, g_i, v).
+// With a constant inertia nu = 0 then, and at s = 1/2 with a symmetric tau mu_i = even +- odd in
+// closed form (M50).
 //
 // On a left-invariant problem v = E y, nu = 0 and m unknowns remain: E^T mu0 = mu_bar_k,
 // mu_bar_{k+1} = E^T mu1. At s = 0, at s = 1 for a symmetric tau, and at every s for a
@@ -70,7 +72,8 @@ class Lift::General {
       : problem_(problem),
         s_(s),
         nodal_(force_at == ForceAt::nodes),
-        mirrored_(s == 0.5 && problem.symmetric()) {}
+        mirrored_(s == 0.5 && problem.symmetric()),
+        split_(kSplits && mirrored_ && nodal_ && problem.constant_inertia()) {}
 
   int size() const { return problem_.dim(); }
   /// The forces may have changed.
@@ -114,12 +117,16 @@ class Lift::General {
   bool finish(const Unknown& x, Node& next) const {
     if ((v_.array() != x.array()).any()) evaluate_again(x);
     if (!problem_.in_domain(step_)) return false;
-    if (mirrored_) {
-      z_ = -s_ * step_;
-      problem_.dtau_right_inverse_transpose(z_, q_, m_);
+    if (split_) {
+      mu_ = even_ - odd_;
+    } else {
+      if (mirrored_) {
+        z_ = -s_ * step_;
+        problem_.dtau_right_inverse_transpose(z_, q_, m_);
+      }
+      m_ += nu_;
+      problem_.Ad_transpose(f1_, m_, mu_);
     }
-    m_ += nu_;
-    problem_.Ad_transpose(f1_, m_, mu_);
     next.t = from_->t + h_;
     next.g = g1_;
     apply(next.t, next.g, v_);
@@ -132,6 +139,9 @@ class Lift::General {
   }
 
  private:
+  static constexpr bool kSplits = requires(const P& problem, Vector& x) {
+    problem.end_momenta(x, x, x, x);
+  };
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // evaluated so far
 
   // Out of line: finish stays half as long.
@@ -158,15 +168,7 @@ class Lift::General {
     find_momentum();
     if (!nodal_) problem_.force(t, base_, v_, nu_);
     if (!nodal_ || !problem_.constant_inertia()) nu_ *= h_;
-    problem_.mixed_momentum(s_, step_, p_, nu_, q_);
-    if (mirrored_) {
-      problem_.dtau_right_inverse_transpose(z_, q_, mu_);
-    } else if (s_ == 0) {
-      m_ = mu_ = q_;
-    } else {
-      problem_.dtau_right_inverse_transpose(z_, q_, m_);
-      problem_.Ad_transpose(f0_, m_, mu_);
-    }
+    find_start_momentum();
     mu_ -= target_;
     if (nodal_ && problem_.force_depends_on_velocity()) {
       apply(from_->t, from_->g, v_);
@@ -178,6 +180,26 @@ class Lift::General {
         problem_.holonomic(g1_, phi_);
         rows_.tail(phi_.size()) = phi_;
       }
+    }
+  }
+
+  // mu0, in mu_.
+  void find_start_momentum() const {
+    if constexpr (kSplits) {
+      if (split_) {
+        problem_.end_momenta(step_, p_, even_, odd_);
+        mu_ = even_ + odd_;
+        return;
+      }
+    }
+    problem_.mixed_momentum(s_, step_, p_, nu_, q_);
+    if (mirrored_) {
+      problem_.dtau_right_inverse_transpose(z_, q_, mu_);
+    } else if (s_ == 0) {
+      m_ = mu_ = q_;
+    } else {
+      problem_.dtau_right_inverse_transpose(z_, q_, m_);
+      problem_.Ad_transpose(f0_, m_, mu_);
     }
   }
 
@@ -216,6 +238,7 @@ class Lift::General {
   P problem_;
   double s_;
   bool nodal_, mirrored_;
+  bool split_;  // (M50): mu0 = even_ + odd_, mu1 = even_ - odd_
   const Node* from_ = nullptr;
   double h_ = 0, scale_squared_ = 0;
   Vector target_ = P::Vector::Zero(problem_.dim());
@@ -226,7 +249,7 @@ class Lift::General {
   mutable double place_time_ = kNothing;
   mutable typename P::Element f0_ = place_g_, f1_ = f0_, base_ = f0_, g1_ = f0_;
   mutable Vector v_ = target_, z_ = v_, step_ = v_, p_ = v_, nu_ = v_, q_ = v_, m_ = v_, mu_ = v_,
-                 force_ = v_;
+                 even_ = v_, odd_ = v_, force_ = v_;
   mutable typename P::Matrix inertia_{problem_.dim(), problem_.dim()};
   mutable typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};
   mutable typename P::Multipliers b_{problem_.constraint_count()}, rows_ = b_;

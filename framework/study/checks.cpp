@@ -189,6 +189,7 @@ class Checks {
     const std::string key = fmt::format("step[{}]", i);
     if (!(h > 0) || !std::isfinite(h))
       return add(key, fmt::format("step: got {}, expected a positive number", h));
+    if (!(study_.until > 0) || !std::isfinite(study_.until)) return;  // a mistake of its own
     const double count = study_.until / h;
     if (std::abs(count - std::round(count)) > 1e-9 * count || count < 0.5)
       add(key, fmt::format("step: {} does not divide until = {} into whole steps; {} does", h,

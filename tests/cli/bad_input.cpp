@@ -107,6 +107,7 @@ TEST_F(BadInput, Outputs) {
   fails({"-o", "a.xlsx"}, "unknown output format '.xlsx'");
   fails({"-o", "a"}, "unknown output format ''");
   fails({"-o", "/dev/null/a.csv"}, "cannot write");
+  fails({"-o", "/proc/a.csv"}, "/proc/a.csv");
   fails({"-o", ""}, "output");
   fails({"--report", "a.txt"}, ".html");
   fails({"--report", "no/such/folder/a.html"}, "");
@@ -149,6 +150,19 @@ TEST_F(BadInput, ConfigurationsOfASection) {
   EXPECT_EQ(o.status, 2);
   EXPECT_THAT(o.err, HasSubstr("a.toml: every: got 3, expected none"));
   EXPECT_THAT(o.err, HasSubstr("a.toml: stop_at: got t=1, expected none"));
+  // The section itself: the line wins.
+  std::ofstream(file("a.toml")) << "system = \"chaplygin_sleigh\"\nuntil = 0.2\nevent = "
+                                   "\"cusp\"\ncount = 1\ndirection = 1\njson = true\n";
+  EXPECT_THAT(run({"section", "--config", "a.toml"}).out,
+              testing::AllOf(HasSubstr("\"event\": \"cusp\""), HasSubstr("\"direction\": 1")));
+  EXPECT_THAT(run({"section", "--config", "a.toml", "--event", "theta=9"}).out,
+              HasSubstr("\"event\": \"theta=9\""));
+  std::ofstream(file("a.toml")) << "system = \"chaplygin_sleigh\"\ncount = [1, 2]\n";
+  EXPECT_THAT(run({"section", "--config", "a.toml"}).err,
+              HasSubstr("a.toml: count: got a list, expected one value"));
+  EXPECT_THAT(run({"section", "suslov"}).err,
+              testing::AllOf(HasSubstr("--event is required, or event in the file of --config"),
+                             HasSubstr("--count is required")));
 }
 
 /// Output times on the command line replace those of the file.

@@ -117,6 +117,9 @@ s = 0.25
     EXPECT_THAT(o.err, HasSubstr(piece));
   }
   EXPECT_FALSE(std::filesystem::exists(file("out")));
+  study("until = 0\nstep = 0.1\n[[system]]\nname = \"suslov\"\n");
+  EXPECT_THAT(run({"study", "small.toml"}).err,
+              testing::AllOf(HasSubstr("until: got 0"), testing::Not(HasSubstr("divide"))));
   EXPECT_THAT(run({"study", "nowhere.toml"}).err, HasSubstr("cannot read 'nowhere.toml'"));
 }
 

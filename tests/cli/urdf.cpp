@@ -154,6 +154,9 @@ TEST_F(Urdf, RefusesWithNames) {
   refuses({drive, "--root", "planer"},
           "unknown root 'planer': expected one of planar, free, fixed; did you mean 'planar'?");
   refuses({drive + "?whel=left_wheel"}, "unknown option of");
+  refuses({robot(kWheel, "<joint name=\"ax\x7fle\" type=\"continuous\">" +
+                             kJoint.substr(kJoint.find('>') + 1))},
+          "joint 'ax\\u007fle': expected a name without");
   refuses({drive + "?wheel"}, "is not name=value");
   refuses({"suslov", "--wheel", "left"},
           "--wheel: for a robot, FILE.urdf; got the system 'suslov'");

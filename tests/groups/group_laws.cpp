@@ -31,7 +31,7 @@ TEST(GroupLaws, HoldByType) {
 
 TEST(GroupLaws, HoldByName) {
   std::vector<std::string> names = registry().groups();
-  names.insert(names.end(), {"so3*r2", "se2*so2^3", "heisenberg*se3"});
+  names.insert(names.end(), {"so3*r2", "se2*so2^3", "heisenberg*se3", "r6", "so3*r4"});
   for (const std::string& name : names) {
     for (const unsigned seed : {1u, 2u, 3u}) {
       for (const LawResult& law : check_group(registry(), name, seed)) {

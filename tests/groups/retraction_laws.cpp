@@ -29,7 +29,7 @@ TEST(RetractionLaws, HoldByType) {
 
 TEST(RetractionLaws, HoldByName) {
   std::vector<std::string> groups = registry().groups();
-  groups.insert(groups.end(), {"so3*r2", "se2*so2^3", "heisenberg*se3"});
+  groups.insert(groups.end(), {"so3*r2", "se2*so2^3", "heisenberg*se3", "r6", "so3*r4"});
   for (const std::string& group : groups) {
     for (const std::string& retraction : registry().retractions_or_common(group)) {
       for (const LawResult& law : check_retraction(registry(), group, retraction)) {

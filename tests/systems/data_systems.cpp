@@ -250,7 +250,7 @@ drift = ["sin(3*t)*R11", "x_3*theta"]
 /// C(g)^T of every group against differences of its coordinates.
 TEST(DataSystems, RatesOfCoordinates) {
   for (const std::string name :
-       {"so2", "so3", "se2", "se3", "r3", "heisenberg", "se3*so3*se2^2*r2"}) {
+       {"so2", "so3", "se2", "se3", "r3", "r6", "heisenberg", "se3*so3*se2^2*r2", "se2*r4"}) {
     const auto group = registry().group_or_product(name);
     const auto geometry = registry().geometry(name, "exp");
     const int n = geometry->dim(), columns = geometry->columns();

@@ -57,9 +57,10 @@ Action define_describe(CLI::App& app) {
   app.add_flag("--analyse", line->options.analyse,
                "a system: frame, structure constants, growth of brackets, what is kept");
   line->robot.define(app);
-  app.add_flag("--toml", line->options.toml,
-               "print the file of a mechanism, of a robot in URDF too, for further changes");
-  app.add_flag("--json", line->options.json, "as JSON");
+  CLI::Option* as_toml =
+      app.add_flag("--toml", line->options.toml,
+                   "print the file of a mechanism, of a robot in URDF too, for further changes");
+  app.add_flag("--json", line->options.json, "as JSON")->excludes(as_toml);
   app.footer(
       "Examples:\n  hamel describe suslov\n  hamel describe 'se2*so2'\n  hamel describe cayley "
       "--json\n  hamel describe --analyse chaplygin_sleigh --set offset=0\n"

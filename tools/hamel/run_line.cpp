@@ -6,7 +6,6 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
-#include <hamel/framework/run/names/config_file.hpp>
 #include <hamel/framework/run/record/result.hpp>
 
 #include "help.hpp"
@@ -76,6 +75,7 @@ void RunLine::define_run(CLI::App& app, const std::set<std::string>& without) {
 
 void RunLine::define(CLI::App& app) {
   define_run(app, {});
+  for (const char* name : {"output", "report", "json", "quiet", "wheel", "root"}) own[name];
   app.add_option(
          "--continue", record_file,
          "resume where the run of this record (-o x.json, x.h5) ended, as it was run, for as long "
@@ -121,7 +121,15 @@ void RunLine::define(CLI::App& app) {
 RunOptions RunLine::resolve(const CLI::App& app) {
   Config& config = options.config;
   std::vector<std::string> mistakes;
-  if (!config_file.empty()) read_file_of(app);
+  if (!config_file.empty()) {
+    config = read_config_file(config_file, own);
+    take(app, "output", options.outputs);
+    take(app, "report", options.report);
+    take(app, "json", options.json);
+    take(app, "quiet", options.quiet);
+    take(app, "wheel", robot.wheels);
+    take(app, "root", robot.root);
+  }
   if (!record_file.empty()) go_on(config);
   if (!system.empty() && system != config.system) {
     config.system = system;
@@ -158,29 +166,6 @@ RunOptions RunLine::resolve(const CLI::App& app) {
   collect([&] { read_inputs(inputs, config.inputs); });
   if (!mistakes.empty()) throw ConfigError(mistakes);
   return options;
-}
-
-void RunLine::read_file_of(const CLI::App& app) {
-  if (app.get_option_no_throw("--continue") ==
-      nullptr) {  // not hamel run: its own options are others
-    options.config = read_config(config_file);
-    return;
-  }
-  CommandOptions others;
-  for (const char* name : {"output", "report", "json", "quiet", "wheel", "root"}) others[name];
-  options.config = read_config_file(config_file, others);
-  const auto take = [&](const std::string& name, auto& to) {
-    const std::vector<std::string>& given = others[name];
-    if (given.empty() || app.count("--" + name) > 0) return;
-    if constexpr (requires { to = given; }) to = given;
-    else read_text(fmt::format("{}: {}", config_file, name), given.back(), to);
-  };
-  take("output", options.outputs);
-  take("report", options.report);
-  take("json", options.json);
-  take("quiet", options.quiet);
-  take("wheel", robot.wheels);
-  take("root", robot.root);
 }
 
 void RunLine::go_on(Config& config) {

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <hamel/framework/run/names/config_file.hpp>
+
 #include "commands.hpp"
 #include "number_option.hpp"
 #include "robot_line.hpp"
@@ -27,6 +29,18 @@ struct RunLine {
   std::vector<std::string> sets, inputs;
   std::vector<std::function<void(Config&)>> overrides;  // of what is given, in its order
   RunOptions options;
+  CommandOptions own;  // what --config may have beside a run's options, and what it has of them
+
+  /// An option of the command's own as the file has it, unless the line gives it.
+  template <class Value>
+  void take(const CLI::App& app, const std::string& name, Value& to) const {
+    const auto entry = own.find(name);
+    if (entry == own.end() || entry->second.empty() || app.count("--" + name) > 0) return;
+    const std::string option = fmt::format("{}: {}", config_file, name);
+    if constexpr (std::is_same_v<Value, std::vector<std::string>>) to = entry->second;
+    else if (entry->second.size() == 1) read_text(option, entry->second.front(), to);
+    else throw ConfigError({fmt::format("{}: got a list, expected one value", option)});
+  }
 
   // The flag of an option, and what it does to a run when it is given.
   template <class Value>
@@ -61,8 +75,6 @@ struct RunLine {
   RunOptions resolve(const CLI::App& app);
 
  private:
-  // --config: the options of a run, and of hamel run those that the line does not give.
-  void read_file_of(const CLI::App& app);
   // After the run of a record; or, of a file whose run is unfinished, with that run.
   void go_on(Config& config);
 };

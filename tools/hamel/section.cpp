@@ -153,13 +153,15 @@ static const std::vector<std::string> kOfRows = {"every",   "output_step", "outp
 
 void SectionLine::define(CLI::App& app) {
   line_.define_run(app, {kOfRows.begin(), kOfRows.end()});
+  for (const char* name : {"event", "direction", "count", "starts", "energy", "report", "axes",
+                           "output", "json", "quiet", "wheel", "root"})
+    line_.own[name];
   app.add_option("--event", options_.request.event,
                  "the event that is crossed: a name (hamel describe SYSTEM) or a formula, as for "
-                 "--events of hamel run")
-      ->required();
+                 "--events of hamel run");
   app.add_option("--direction", options_.request.direction,
                  "1: crossings where its function grows, -1: where it falls [0: both]");
-  number_option(app, "--count", options_.request.count, "points of each start")->required();
+  number_option(app, "--count", options_.request.count, "points of each start");
   app.add_option("--starts", options_.starts,
                  "a CSV file of starts: the columns of the element and xi1, xi2, ... or their "
                  "names, as -o writes them");
@@ -188,8 +190,32 @@ void SectionLine::define(CLI::App& app) {
       "  hamel section rattleback --event reversed --direction 1 --count 10 --json");
 }
 
+// What the file has of the section itself, unless the line gives it.
+void SectionLine::take_from_file(const CLI::App& app) {
+  SectionRequest& request = options_.request;
+  long direction = request.direction;
+  line_.take(app, "event", request.event);
+  line_.take(app, "direction", direction);
+  request.direction = static_cast<int>(std::clamp(direction, -2L, 2L));
+  line_.take(app, "count", request.count);
+  line_.take(app, "energy", request.energy);
+  line_.take(app, "starts", options_.starts);
+  line_.take(app, "output", options_.output);
+  line_.take(app, "report", options_.report);
+  line_.take(app, "axes", options_.axes);
+  line_.take(app, "json", options_.json);
+  line_.take(app, "quiet", options_.quiet);
+}
+
 SectionOptions SectionLine::resolve(const CLI::App& app) {
   options_.config = line_.resolve(app).config;
+  take_from_file(app);
+  std::vector<std::string> missing;
+  for (const char* name : {"event", "count"}) {
+    if (app.count(fmt::format("--{}", name)) == 0 && line_.own[name].empty())
+      missing.push_back(fmt::format("--{0} is required, or {0} in the file of --config", name));
+  }
+  if (!missing.empty()) throw ConfigError(missing);
   if (const Config usual; !line_.config_file.empty()) {
     std::vector<std::string> mistakes;
     for (const std::string& name : kOfRows) {

@@ -26,6 +26,7 @@ class SectionLine {
   SectionOptions resolve(const CLI::App& app);
 
  private:
+  void take_from_file(const CLI::App& app);
   RunLine line_;
   SectionOptions options_;
 };

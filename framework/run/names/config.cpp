@@ -203,6 +203,7 @@ Config config_of(const std::string& text, const std::string& origin, CommandOpti
     if (options != nullptr && options->contains(key)) {
       std::vector<std::string>& values = (*options)[key];
       if (node.is_boolean()) values = {text_of(*node.value<bool>())};
+      else if (node.is_number()) values = {text_of(*node.value<double>())};
       else read.value(node, key, values);
     } else if (!read_config_key(read, key, node, config)) {
       read.unknown_key(node, key, known);

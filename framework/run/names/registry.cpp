@@ -167,14 +167,59 @@ std::vector<std::string> factors_of(const std::string& name) {
   return out;
 }
 
+const std::string kLine = "r1";
+
+// n of the name "rn", "r12"; kMaxDimension + 1 where it is larger; 0 of other names.
+int translations_in(const std::string& name) {
+  if (name.size() < 2 || name[0] != 'r' || name[1] == '0') return 0;
+  if (name.find_first_not_of("0123456789", 1) != std::string::npos) return 0;
+  int n = kMaxDimension + 1;
+  std::from_chars(name.data() + 1, name.data() + name.size(), n);
+  return std::min(n, kMaxDimension + 1);
+}
+
+// R^n as n lines: a group of its own, with the columns x1, x2, ... and one homogeneous matrix.
+GroupInfo translations(int n, const GroupInfo& line) {
+  GroupInfo info =
+      product_info(fmt::format("r{}", n), std::vector<GroupInfo>(static_cast<size_t>(n), line));
+  GroupFactor whole = {.name = info.name, .dim = n, .columns = n, .is_shape = true};
+  info.columns.clear();
+  for (int i = 1; i <= n; ++i) {
+    info.columns.push_back(fmt::format("x{}", i));
+    whole.components.push_back({info.columns.back() + "'", "m/s"});
+    whole.units.emplace_back("m");
+  }
+  whole.coordinate_rates = detail::copy_rates;
+  whole.add_pulled_back = detail::add_slopes;
+  info.factors = {whole};
+  info.summary = line.summary;
+  info.formula = line.formula;
+  info.source = line.source;
+  info.matrices = [n](std::span<const double> x) {
+    Eigen::MatrixXd m = Eigen::MatrixXd::Identity(n + 1, n + 1);
+    m.topRightCorner(n, 1) = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
+    return std::vector<PlainMatrix>{PlainMatrix(m)};
+  };
+  return info;
+}
+
+// A registered group, or translations by their dimension.
+std::optional<GroupInfo> simple_group(const Registry& registry, const std::string& name) {
+  if (const GroupInfo* info = registry.group(name)) return *info;
+  const GroupInfo* line = registry.group(kLine);
+  const int n = translations_in(name);
+  if (line == nullptr || n == 0) return {};
+  return translations(n, *line);
+}
+
 }  // namespace
 
 std::optional<GroupInfo> Registry::group_or_product(const std::string& name) const {
-  if (const GroupInfo* info = group(name)) return *info;
+  if (auto info = simple_group(*this, name); info && info->dim <= kMaxDimension) return info;
   std::vector<GroupInfo> factors;
   for (const std::string& word : factors_of(name)) {
-    const GroupInfo* info = group(word);
-    if (info == nullptr) return {};
+    const auto info = simple_group(*this, word);
+    if (!info) return {};
     factors.push_back(*info);
   }
   const int dim = std::accumulate(factors.begin(), factors.end(), 0,
@@ -185,7 +230,7 @@ std::optional<GroupInfo> Registry::group_or_product(const std::string& name) con
 
 std::string Registry::missing_group(const std::string& name) const {
   const std::vector<std::string> factors = factors_of(name);
-  const auto known = [&](const std::string& word) { return group(word) != nullptr; };
+  const auto known = [&](const std::string& word) { return simple_group(*this, word).has_value(); };
   if (factors.empty() || !std::all_of(factors.begin(), factors.end(), known))
     return unknown_name("group", name, groups());
   return fmt::format("group '{}': its dimension is above {}", shortened(name), kMaxDimension);
@@ -202,10 +247,12 @@ std::shared_ptr<const Geometry> Registry::geometry(const std::string& group,
   }
   std::vector<std::shared_ptr<const Geometry>> parts;
   for (const std::string& word : factors) {
-    const RetractionInfo* info = this->retraction(word, retraction);
-    if (info == nullptr) info = this->retraction(word, elsewhere);
+    const int lines = this->group(word) == nullptr ? translations_in(word) : 0;
+    const std::string& simple = lines > 0 ? kLine : word;
+    const RetractionInfo* info = this->retraction(simple, retraction);
+    if (info == nullptr) info = this->retraction(simple, elsewhere);
     if (info == nullptr) return nullptr;
-    parts.push_back(info->geometry);
+    parts.insert(parts.end(), static_cast<size_t>(std::max(lines, 1)), info->geometry);
   }
   if (parts.empty()) return nullptr;
   return std::make_shared<ProductGeometry>(parts);

@@ -69,9 +69,11 @@ Status Driver::covered(double t) const {
   return refuse(t, "the table of an input does not cover t = {:.10g}");
 }
 
-// Made when it is first needed: a member of an ensemble that runs in lanes needs none.
+// Behind a restart begun when it is first needed: a member of an ensemble that runs in lanes needs
+// none.
 RestartedKernel& Driver::kernel() const {
-  if (kernel_ == nullptr) kernel_ = std::make_unique<RestartedKernel>(plan_.kernel, plan_.setup);
+  if (restarted_) kernel_->start_again(plan_.setup);
+  restarted_ = false;
   return *kernel_;
 }
 
@@ -246,7 +248,7 @@ void Driver::restart(const Start& start) {
   config.start = planned.start;
   plan_.setup.configuration = planned.start.configuration;
   plan_.setup.velocity = planned.start.velocity;
-  kernel_.reset();
+  restarted_ = true;
   dense_.reset();
   over_ = false;
   result_.status = {};

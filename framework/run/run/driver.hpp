@@ -111,7 +111,8 @@ class Driver {
   RunPlan plan_;
   RunRequest request_;
   bool recording_, watching_ = false, every_node_ = false;
-  mutable std::unique_ptr<RestartedKernel> kernel_;  // of plan_; null behind a restart
+  mutable std::unique_ptr<RestartedKernel> kernel_;  // of plan_
+  mutable bool restarted_ = false;                   // and the kernel does not know it yet
   std::optional<StartMatrices> matrices_;  // of a restart, where they are the same everywhere
   std::unique_ptr<DenseOutput> dense_;     // made when it is first needed
   std::unique_ptr<RunRecorder> recorder_;  // null where nothing is recorded

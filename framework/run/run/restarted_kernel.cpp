@@ -30,11 +30,25 @@ void RestartedKernel::begin_anew() {
   make();
 }
 
+void RestartedKernel::start_again(const KernelSetup& setup) {
+  setup_ = setup;
+  replace();
+  limit_ = std::copysign(std::numeric_limits<double>::infinity(), setup_.step);
+  origin_ = setup_.from;
+  origin_steps_ = steps_ = whole_ = 0;
+  past_ = {};
+}
+
 void RestartedKernel::make() {
   setup_.first_chosen = false;
   if (setup_.inputs != nullptr) setup_.inputs->enter(setup_.from, setup_.step);
-  kernel_ = factory_(setup_);
+  replace();
   kernel_->set_end_time(limit_);
+}
+
+void RestartedKernel::replace() {
+  auto another = kernel_->another(setup_);
+  kernel_ = another != nullptr ? std::move(another) : factory_(setup_);
 }
 
 Status RestartedKernel::advance(long count) {

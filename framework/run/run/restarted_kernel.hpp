@@ -15,6 +15,8 @@ class RestartedKernel final : public Kernel {
  public:
   RestartedKernel(KernelFactory factory, KernelSetup setup);
   void begin_anew();
+  /// As one made of this setup, which differs from its own in the start alone.
+  void start_again(const KernelSetup& setup);
   /// Right after begin_anew(), or in its place.
   template <class Archive>
   void serialize(Archive& archive) {
@@ -42,6 +44,7 @@ class RestartedKernel final : public Kernel {
 
  private:
   void make();
+  void replace();
 
   KernelFactory factory_;
   KernelSetup setup_;

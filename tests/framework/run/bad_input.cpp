@@ -137,6 +137,9 @@ TEST(BadInput, AnInadmissibleStartIsProjectedWithANote) {
   EXPECT_THAT(r.notes,
               testing::Contains(HasSubstr("velocity was projected onto d: dropped omega3 = 0.25")));
   EXPECT_NEAR(r.config.start.velocity[2], 0, 1e-16);
+  // Round-off has none.
+  EXPECT_THAT(simulate("n_trailer").set("trailers", 60).step(0.01).until(0.02).run().notes,
+              testing::IsEmpty());
 }
 
 // ---- systems of a user --------------------------------------------------------------------------

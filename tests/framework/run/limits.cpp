@@ -101,8 +101,9 @@ TEST(Limits, DataSystemsAreRefusedWithAReason) {
 TEST(Limits, DimensionOfProducts) {
   const std::string thousand = "so2^1000", many = thousand + repeated("*so2^1000", 100'000);
   EXPECT_TRUE(registry().group_or_product(thousand).has_value());
-  for (const std::string& name : {many, thousand + "*so2", std::string("se3^167"),
-                                  std::string("so3*so2^999999999999999999")}) {
+  for (const std::string& name :
+       {many, thousand + "*so2", std::string("se3^167"), std::string("so3*so2^999999999999999999"),
+        std::string("r1001"), std::string("r99999999999999999999"), std::string("so3*r998")}) {
     EXPECT_FALSE(registry().group_or_product(name).has_value());
     EXPECT_THAT(registry().missing_group(name), AllOf(HasSubstr("its dimension is above 1000"),
                                                       testing::SizeIs(testing::Lt(200u))));

@@ -81,6 +81,29 @@ TEST(Registry, RecognisesFilesByName) {
   for (const char* other : {"suslov", "robot.urdf.gz", "urdf"}) EXPECT_FALSE(names_file(other));
 }
 
+/// r1, r2, r3 are compiled; the others are made of lines, and move as products of these.
+TEST(Registry, HasTranslationsOfAnyDimension) {
+  const auto info = registry().group_or_product("r5");
+  ASSERT_TRUE(info.has_value());
+  EXPECT_THAT(info->columns, testing::ElementsAre("x1", "x2", "x3", "x4", "x5"));
+  EXPECT_EQ(info->factors.size(), 1u);
+  EXPECT_EQ(info->matrices(std::vector<double>{1, 2, 3, 4, 5}).front()(3, 5), 4);
+  for (const std::string name : {"r", "r0", "r01", "r-1", "r5x", "R5", "r 5"})
+    EXPECT_FALSE(registry().group_or_product(name).has_value()) << name;
+  const auto end = [](const std::string& group) {
+    const std::string text = "group = '" + group + R"('
+inertia = [1, 2, 3, 4, 5]
+coordinates = ["a", "b", "c", "d", "e"]
+rates = ["u", "v", "w", "p", "q"]
+potential = "a^2 + (b - a)^2 + c*d + e^4"
+constraints = [[1, 0, "b", 0, 1]]
+velocity = [0.1, 0.2, 0, 0.3, -0.1]
+)";
+    return simulate_text(text, "springs.toml").step(0.01).until(1).run().last.coordinates;
+  };
+  EXPECT_EQ(end("r5"), end("r2*r3"));
+}
+
 TEST(ByName, ListsAndDescribes) {
   EXPECT_THAT(systems(), testing::IsSupersetOf({"suslov", "bicycle", "n_trailer"}));
   EXPECT_THAT(schemes(), testing::IsSupersetOf({"lift", "dop853"}));
