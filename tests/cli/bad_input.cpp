@@ -107,7 +107,6 @@ TEST_F(BadInput, Outputs) {
   fails({"-o", "a.xlsx"}, "unknown output format '.xlsx'");
   fails({"-o", "a"}, "unknown output format ''");
   fails({"-o", "/dev/null/a.csv"}, "cannot write");
-  fails({"-o", "/proc/a.csv"}, "/proc/a.csv");
   fails({"-o", ""}, "output");
   fails({"--report", "a.txt"}, ".html");
   fails({"--report", "no/such/folder/a.html"}, "");
@@ -157,9 +156,9 @@ TEST_F(BadInput, ConfigurationsOfASection) {
               testing::AllOf(HasSubstr("\"event\": \"cusp\""), HasSubstr("\"direction\": 1")));
   EXPECT_THAT(run({"section", "--config", "a.toml", "--event", "theta=9"}).out,
               HasSubstr("\"event\": \"theta=9\""));
-  std::ofstream(file("a.toml")) << "system = \"chaplygin_sleigh\"\ncount = [1, 2]\n";
+  std::ofstream(file("a.toml")) << "system = \"chaplygin_sleigh\"\ncount = [\"1\", \"2\"]\n";
   EXPECT_THAT(run({"section", "--config", "a.toml"}).err,
-              HasSubstr("a.toml: count: got a list, expected one value"));
+              HasSubstr("a.toml:2:9: count: got a list, expected one value"));
   EXPECT_THAT(run({"section", "suslov"}).err,
               testing::AllOf(HasSubstr("--event is required, or event in the file of --config"),
                              HasSubstr("--count is required")));
@@ -192,7 +191,8 @@ TEST_F(BadInput, AConfigurationIsAWholeLine) {
   EXPECT_EQ(run({"run", "--config", "a.toml", "-o", "b.csv"}).status, 0);
   EXPECT_THAT(files(), testing::UnorderedElementsAre("a.csv", "a.h5", "a.toml", "b.csv"));
   std::ofstream(file("a.toml")) << "system = \"suslov\"\njson = 3\nreport = \"x.txt\"\n";
-  EXPECT_THAT(run({"run", "--config", "a.toml"}).err, HasSubstr("a.toml:2:8: json: got 3"));
+  EXPECT_THAT(run({"run", "--config", "a.toml"}).err,
+              HasSubstr("a.toml:2:8: json: got '3', expected true or false"));
   std::ofstream(file("a.toml")) << "system = \"suslov\"\nreport = \"x.txt\"\nroot = \"free\"\n";
   EXPECT_THAT(run({"run", "--config", "a.toml"}).err, HasSubstr("--root: for a robot, FILE.urdf"));
 }

@@ -35,10 +35,12 @@ struct RunLine {
   template <class Value>
   void take(const CLI::App& app, const std::string& name, Value& to) const {
     const auto entry = own.find(name);
-    if (entry == own.end() || entry->second.empty() || app.count("--" + name) > 0) return;
-    const std::string option = fmt::format("{}: {}", config_file, name);
-    if constexpr (std::is_same_v<Value, std::vector<std::string>>) to = entry->second;
-    else if (entry->second.size() == 1) read_text(option, entry->second.front(), to);
+    if (entry == own.end() || app.count("--" + name) > 0) return;
+    const auto& [values, place] = entry->second;
+    if (values.empty()) return;
+    const std::string option = fmt::format("{}: {}", place, name);
+    if constexpr (std::is_same_v<Value, std::vector<std::string>>) to = values;
+    else if (values.size() == 1) read_text(option, values.front(), to);
     else throw ConfigError({fmt::format("{}: got a list, expected one value", option)});
   }
 

@@ -212,7 +212,7 @@ SectionOptions SectionLine::resolve(const CLI::App& app) {
   take_from_file(app);
   std::vector<std::string> missing;
   for (const char* name : {"event", "count"}) {
-    if (app.count(fmt::format("--{}", name)) == 0 && line_.own[name].empty())
+    if (app.count(fmt::format("--{}", name)) == 0 && line_.own[name].values.empty())
       missing.push_back(fmt::format("--{0} is required, or {0} in the file of --config", name));
   }
   if (!missing.empty()) throw ConfigError(missing);

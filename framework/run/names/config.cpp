@@ -196,15 +196,16 @@ Config config_of(const std::string& text, const std::string& origin, CommandOpti
     throw ConfigError({fmt::format("{0}: this file is a system by data (hamel run {0})", origin)});
   std::vector<std::string> known = config_keys();
   if (options != nullptr)
-    for (const auto& [name, values] : *options) known.push_back(name);
+    for (const auto& [name, option] : *options) known.push_back(name);
   Config config;
   for (const auto& [name, node] : table) {
     const std::string key(name.str());
     if (options != nullptr && options->contains(key)) {
-      std::vector<std::string>& values = (*options)[key];
-      if (node.is_boolean()) values = {text_of(*node.value<bool>())};
-      else if (node.is_number()) values = {text_of(*node.value<double>())};
-      else read.value(node, key, values);
+      CommandOption& option = (*options)[key];
+      option.place = read.place(node);
+      if (node.is_boolean()) option.values = {text_of(*node.value<bool>())};
+      else if (node.is_number()) option.values = {text_of(*node.value<double>())};
+      else read.value(node, key, option.values);
     } else if (!read_config_key(read, key, node, config)) {
       read.unknown_key(node, key, known);
     }

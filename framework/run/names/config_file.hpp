@@ -9,8 +9,13 @@
 
 namespace hamel {
 
-/// Options of a command that are none of a run, by name ("output"), as texts; a flag is "true".
-using CommandOptions = std::map<std::string, std::vector<std::string>>;
+/// What a file has of an option of a command: texts (a flag is "true"), and file, line, column.
+struct CommandOption {
+  std::vector<std::string> values = {};
+  std::string place = {};
+};
+/// Options of a command that are none of a run, by name ("output").
+using CommandOptions = std::map<std::string, CommandOption>;
 
 /// The configuration in a file. options: the names that it may have beside those of Config; they
 /// receive what it says of them. Throws ConfigError with all mistakes, each with its place.
