@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <hamel/framework/mechanics/few_factors.hpp>
 #include <hamel/framework/mechanics/short_vectors.hpp>
 
 namespace hamel {
@@ -12,6 +13,12 @@ using short_vectors::add, short_vectors::dot, short_vectors::pairs_of, short_vec
     short_vectors::with_pairs, short_vectors::kFewPairs;
 
 namespace {
+
+// f(n), n an integral_constant, where the few velocities and rows are: else along the branches.
+template <class F>
+bool with_few(int n, int k, F&& f) {
+  return k <= few_factors::kFewRows && few_factors::with_count<few_factors::kFewVelocities>(n, f);
+}
 
 template <class Span>
 struct Parts {
@@ -52,7 +59,7 @@ void eliminate(const Parts<Span>& parts, int i) {
 BranchedFactors::BranchedFactors(int n, int k)
     : n_(n),
       k_(k),
-      lower_(static_cast<size_t>(n) * static_cast<size_t>(n)),
+      lower_(static_cast<size_t>(n) * static_cast<size_t>(n) + 1),
       inverse_(static_cast<size_t>(n)),
       runs_(static_cast<size_t>(n) * static_cast<size_t>(n + 1)),
       run_count_(static_cast<size_t>(n)),
@@ -66,9 +73,13 @@ BranchedFactors::BranchedFactors(int n, int k)
 bool BranchedFactors::find_root(const double* inertia) {
   const int n = n_;
   double *const lower = lower_.data(), *const inverses = inverse_.data();
+  bool definite = true;
+  if (with_few(n, k_, [&](auto count) {
+        definite = few_factors::find_root<decltype(count)::value>(inertia, lower, inverses);
+      }))
+    return definite;
   int* const counts = run_count_.data();
   for (int i = 0; i < n; ++i) scale(1, inertia + i * n, lower + i * n, i + 1);
-  bool definite = true;
   for (int i = n - 1; i >= 0; --i) {
     double* const here = lower + i * n;
     int* const runs = runs_.data() + i * (n + 1);
@@ -101,6 +112,14 @@ bool BranchedFactors::find_root(const double* inertia) {
 // L^T Y = A^T, all columns at once, and Y^T Y on the way.
 void BranchedFactors::find_rows(const double* a) {
   const int n = n_, k = k_, width = 2 * pairs_of(k);
+  if (n <= few_factors::kFewVelocities &&
+      few_factors::with_count<few_factors::kFewRows>(k, [&](auto count) {
+        constexpr int K = decltype(count)::value;
+        few_factors::find_rows<(K + 1) / 2>(n, K, a, lower_.data(), inverse_.data(), y_.data());
+        few_factors::find_gram<K>(n, y_.data(), gram_.data());
+        few_factors::factor_gram<K>(gram_.data());
+      }))
+    return;
   for (int i = 0; i < n; ++i) {
     double* const here = y_.data() + i * width;
     for (int j = 0; j < k; ++j) here[j] = a[i * k + j];
@@ -158,6 +177,10 @@ void BranchedFactors::apply_inertia(const double* inertia, const double* xi, dou
 void BranchedFactors::solve_transposed(double* x) const {
   const int n = n_;
   const double *const lower = lower_.data(), *const inverses = inverse_.data();
+  if (with_few(n, k_, [&](auto count) {
+        few_factors::solve_transposed<decltype(count)::value>(lower, inverses, x);
+      }))
+    return;
   const int* const counts = run_count_.data();
   for (int i = n - 1; i >= 0; --i) {
     const double value = x[i] *= inverses[i];
@@ -171,6 +194,9 @@ void BranchedFactors::solve_transposed(double* x) const {
 void BranchedFactors::solve(double* x) const {
   const int n = n_;
   const double *const lower = lower_.data(), *const inverses = inverse_.data();
+  if (with_few(n, k_,
+               [&](auto count) { few_factors::solve<decltype(count)::value>(lower, inverses, x); }))
+    return;
   const int* const counts = run_count_.data();
   for (int i = 0; i < n; ++i) {
     double sum = x[i];
@@ -214,6 +240,9 @@ void BranchedFactors::add_reaction(const double* lambda, double* out) const {
 void BranchedFactors::solve_gram(double* c) const {
   const int k = k_, width = 2 * pairs_of(k);
   const double* const gram = gram_.data();
+  if (few_factors::with_count<few_factors::kFewRows>(
+          k, [&](auto count) { few_factors::solve_gram<decltype(count)::value>(gram, c); }))
+    return;
   for (int i = 0; i < k; ++i) {
     double sum = c[i];
     for (int l = 0; l < i; ++l) sum -= gram[i * width + l] * c[l];
