@@ -9,15 +9,19 @@
 
 namespace hamel {
 
-using short_vectors::add, short_vectors::dot, short_vectors::pairs_of, short_vectors::scale,
-    short_vectors::with_pairs, short_vectors::kFewPairs;
+using few_factors::kFewRows, few_factors::with_count;
+using short_vectors::add, short_vectors::add_products, short_vectors::combine_rows,
+    short_vectors::dot, short_vectors::pairs_of, short_vectors::scale, short_vectors::with_pairs,
+    short_vectors::kFewPairs;
+
+static_assert(kFewRows <= 2 * kFewPairs);
 
 namespace {
 
 // f(n), n an integral_constant, where the few velocities and rows are: else along the branches.
 template <class F>
 bool with_few(int n, int k, F&& f) {
-  return k <= few_factors::kFewRows && few_factors::with_count<few_factors::kFewVelocities>(n, f);
+  return k <= kFewRows && with_count<few_factors::kFewVelocities>(n, f);
 }
 
 template <class Span>
@@ -112,14 +116,20 @@ bool BranchedFactors::find_root(const double* inertia) {
 // L^T Y = A^T, all columns at once, and Y^T Y on the way.
 void BranchedFactors::find_rows(const double* a) {
   const int n = n_, k = k_, width = 2 * pairs_of(k);
-  if (n <= few_factors::kFewVelocities &&
-      few_factors::with_count<few_factors::kFewRows>(k, [&](auto count) {
-        constexpr int K = decltype(count)::value;
-        few_factors::find_rows<(K + 1) / 2>(n, K, a, lower_.data(), inverse_.data(), y_.data());
-        few_factors::find_gram<K>(n, y_.data(), gram_.data());
-        few_factors::factor_gram<K>(gram_.data());
-      }))
+  if (with_few(n, k, [&](auto velocities) {
+        with_pairs(pairs_of(k), [&](auto pairs) {
+          constexpr int N = decltype(velocities)::value, P = decltype(pairs)::value;
+          if constexpr (P > 0)  // k <= kFewRows
+            few_factors::find_rows<N, P>(k, a, lower_.data(), inverse_.data(), y_.data());
+        });
+      })) {
+    with_count<kFewRows>(k, [&](auto rows) {
+      constexpr int K = decltype(rows)::value;
+      few_factors::find_gram<K>(n, y_.data(), gram_.data());
+      few_factors::factor_gram<K>(gram_.data());
+    });
     return;
+  }
   for (int i = 0; i < n; ++i) {
     double* const here = y_.data() + i * width;
     for (int j = 0; j < k; ++j) here[j] = a[i * k + j];
@@ -211,13 +221,17 @@ void BranchedFactors::solve(double* x) const {
 void BranchedFactors::subtract_rows(const double* c, const double* v, double* out) const {
   with_pairs(pairs_of(k_), [&](auto pairs) {
     constexpr int P = decltype(pairs)::value;
-    const int n = n_, k = k_, width = P > 0 ? 2 * P : 2 * pairs_of(k);
+    const int n = n_, k = k_, width = 2 * pairs_of(k);
     const double* const y = y_.data();
     double* const sums = sums_.data();
-    std::fill_n(sums, width, 0.0);
-    for (int i = 0; i < n; ++i) {
-      const Span span = P > 0 ? Span{0, 2 * P} : spans_[static_cast<size_t>(i)];
-      add(v[i], y + i * width + span.begin, sums + span.begin, span.end - span.begin);
+    if constexpr (P > 0) {
+      combine_rows<P>(v, 1, y, P, n, sums);
+    } else {
+      std::fill_n(sums, width, 0.0);
+      for (int i = 0; i < n; ++i) {
+        const Span span = spans_[static_cast<size_t>(i)];
+        add(v[i], y + i * width + span.begin, sums + span.begin, span.end - span.begin);
+      }
     }
     for (int j = 0; j < k; ++j) out[j] = c[j] - sums[j];
   });
@@ -226,13 +240,17 @@ void BranchedFactors::subtract_rows(const double* c, const double* v, double* ou
 void BranchedFactors::add_reaction(const double* lambda, double* out) const {
   with_pairs(pairs_of(k_), [&](auto pairs) {
     constexpr int P = decltype(pairs)::value;
-    const int n = n_, k = k_, width = P > 0 ? 2 * P : 2 * pairs_of(k);
+    const int n = n_, k = k_, width = 2 * pairs_of(k);
     const double* const y = y_.data();
     double* const padded = sums_.data();
     for (int j = 0; j < width; ++j) padded[j] = j < k ? lambda[j] : 0;
-    for (int i = 0; i < n; ++i) {
-      const Span span = P > 0 ? Span{0, 2 * P} : spans_[static_cast<size_t>(i)];
-      out[i] += dot(y + i * width + span.begin, padded + span.begin, span.end - span.begin);
+    if constexpr (P > 0) {
+      add_products<P>(y, padded, n, out);
+    } else {
+      for (int i = 0; i < n; ++i) {
+        const Span span = spans_[static_cast<size_t>(i)];
+        out[i] += dot(y + i * width + span.begin, padded + span.begin, span.end - span.begin);
+      }
     }
   });
 }
@@ -240,7 +258,7 @@ void BranchedFactors::add_reaction(const double* lambda, double* out) const {
 void BranchedFactors::solve_gram(double* c) const {
   const int k = k_, width = 2 * pairs_of(k);
   const double* const gram = gram_.data();
-  if (few_factors::with_count<few_factors::kFewRows>(
+  if (with_count<kFewRows>(
           k, [&](auto count) { few_factors::solve_gram<decltype(count)::value>(gram, c); }))
     return;
   for (int i = 0; i < k; ++i) {

@@ -64,20 +64,22 @@ HAMEL_FLATTEN bool find_root(const double* inertia, double* lower, double* inver
   return definite;
 }
 
-/// Y by rows of P pairs.
-template <int P>
-HAMEL_FLATTEN void find_rows(int n, int k, const double* a, const double* lower,
-                             const double* inverses, double* y) {
-  for (int i = n - 1; i >= 0; --i) {
+/// Y by rows of P pairs, k numbers each.
+template <int N, int P>
+HAMEL_FLATTEN void find_rows(int k, const double* a, const double* lower, const double* inverses,
+                             double* y) {
+  unrolled<N>([&](auto up) {
+    constexpr int i = N - 1 - decltype(up)::value;
     Pair row[P];
     load<P>(a + i * k, k, row);
-    for (int j = n - 1; j > i; --j) {
-      const Pair factors = {lower[j * n + i], lower[j * n + i]};
+    unrolled<N - 1 - i>([&](auto down) {
+      constexpr int j = N - 1 - decltype(down)::value;
+      const Pair factors = {lower[j * N + i], lower[j * N + i]};
       for (int p = 0; p < P; ++p) row[p] -= factors * pair_at(y + 2 * (j * P + p));
-    }
+    });
     const Pair scale = {inverses[i], inverses[i]};
     for (int p = 0; p < P; ++p) store(scale * row[p], y + 2 * (i * P + p));
-  }
+  });
 }
 
 /// The lower triangle of Y^T Y, K rows of P pairs.

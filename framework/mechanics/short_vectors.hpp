@@ -83,6 +83,17 @@ void combine_rows(const double* x, std::ptrdiff_t apart, const double* rows, std
     }
   }
 }
+/// to_i += row i . x.
+template <int P>
+void add_products(const double* rows, const double* x, std::ptrdiff_t count, double* to) {
+  Pair right[P];
+  for (int p = 0; p < P; ++p) right[p] = pair_at(x + 2 * p);
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Pair sum = pair_at(rows + 2 * i * P) * right[0];
+    for (int p = 1; p < P; ++p) sum += pair_at(rows + 2 * (i * P + p)) * right[p];
+    to[i] += sum[0] + sum[1];
+  }
+}
 /// row i += factor x_i times y; the x_i may be among the rows where y is 0.
 template <int P>
 void add_to_rows(double factor, const double* x, std::ptrdiff_t apart, const double* y,

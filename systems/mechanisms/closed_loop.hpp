@@ -10,6 +10,8 @@
 namespace hamel::mechanisms {
 
 struct Loop {
+  static constexpr size_t most_rows = 5;
+
   std::string name;
   int a = kGround, b = kGround;
   Vec3 at = Vec3::Zero(), axis = Vec3::Zero();  // axis 0: a ball joint

@@ -63,12 +63,18 @@ class ContactOf final : public ContactModel {
     constexpr bool with_rates = std::is_same_v<T, Dual>;
     const ContactView<T> view(contact, tree);
     const auto touch = kind_.touch(view);
+    const Vec3 q = value(touch.point);
+    Vec3 velocity, change;  // of the body at q: v + omega x q, and its rate
+    if constexpr (with_rates) {
+      const Twist twist = tree.twist(contact.link);
+      velocity = velocity_at(twist, q);
+      change =
+          velocity_at(tree.acceleration(contact.link), q) + upper(twist).cross(rate(touch.point));
+    }
     const auto set = [&](const VecT<T, 3>& u) {
-      const VecT<T, 6> wrench = force_at(touch.point, u);
       out->link = contact.link;
-      out->wrench = value(wrench);
-      if constexpr (with_rates)
-        out->rate = -power_rate(wrench, tree.twist(contact.link), tree.acceleration(contact.link));
+      out->wrench = force_at(q, value(u));
+      if constexpr (with_rates) out->rate = -(rate(u).dot(velocity) + value(u).dot(change));
     };
     for (const VecT<T, 3>& u : touch.directions) {
       set(u);

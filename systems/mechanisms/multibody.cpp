@@ -95,13 +95,13 @@ bool Multibody::momentum(const double* g, ConstVector xi, Vector out, Vector ine
 namespace {
 
 // Onto row `to`, which is 0.
-void write(const Row& row, const Tree& tree, Mechanics::Matrix a, int to) {
+void write(const Row& row, const Tree& tree, Mechanics::Matrix& a, int to) {
   if (row.dof >= 0) {
     a(to, row.dof) = 1;
     return;
   }
   tree.add_wrench(row.link, row.wrench, a.row(to));
-  if (row.other != kGround) tree.add_wrench(row.other, row.other_wrench, a.row(to), -1);
+  if (row.other != kGround) tree.add_wrench(row.other, -row.other_wrench, a.row(to));
 }
 
 }  // namespace

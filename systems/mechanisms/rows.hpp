@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <hamel/systems/mechanisms/closed_loop.hpp>
@@ -49,7 +50,7 @@ struct ConstraintRows {
   void each(const Tree& tree, double t, Wants&& wants, F&& f) const {
     size_t i = 0;
     const auto evaluate_all = [&](const auto& part) {
-      Row rows[5];
+      Row rows[std::remove_cvref_t<decltype(part)>::most_rows];
       evaluate(part, tree, with_rates, rows);
       for (size_t k = 0; k < part.row_count(); ++k)
         if (wants(i + k)) f(i + k, rows[k]);
@@ -90,7 +91,7 @@ struct ConstraintRows {
       if (wants(i - 1)) f(i - 1, contact.fixed ? contact.height : touch(contact, tree)[2]);
     }
     for (const Loop& loop : loops) {
-      Row rows[5];
+      Row rows[Loop::most_rows];
       evaluate(loop, tree, false, rows);
       for (size_t k = 0; k < loop.row_count(); ++k, ++i)
         if (wants(i)) f(i, rows[k].phi);

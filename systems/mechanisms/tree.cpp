@@ -114,6 +114,7 @@ Tree::Tree(const std::vector<Link>& links) {
     size_ += static_cast<int>(drawn.size());
     drawn_.insert(drawn_.end(), drawn.begin(), drawn.end());
     find_planar(node, drawn.data());
+    node.free = is_free(node);
     nodes_.push_back(std::move(node));
   }
   find_rotors();
@@ -121,6 +122,17 @@ Tree::Tree(const std::vector<Link>& links) {
   placed_.assign(drawn_.size(), std::numeric_limits<double>::quiet_NaN());
   place(drawn_.data());
   accumulate_inertia();
+}
+
+// All velocities of space or of the plane, in the axes of the world as drawn.
+bool Tree::is_free(const Node& node) {
+  const Link& link = node.link;
+  const Mat<6, 6> all = Mat<6, 6>::Identity();
+  const Joint::Directions& s = link.joint->directions();
+  return link.parent == kGround && link.on_child.rotation.isIdentity(0) &&
+         ((node.planar && node.count == 3 && s == all.middleCols<3>(2)) ||
+          (node.count == 6 && s == all && link.on_parent.rotation.isIdentity(0) &&
+           link.on_parent.position.isZero(0)));
 }
 
 // Its parent planar, its motion in the plane; of a link that is no root one number.
@@ -160,6 +172,11 @@ void Tree::find_rotors() {
 }
 
 Rigid Tree::Node::across(const double* g) const {
+  if (free && !planar) {  // P = 1, and C shifts
+    Rigid out = link.joint->motion(g);
+    out.position += out.rotation.lazyProduct(after.position);
+    return out;
+  }
   return terms.count > 0 ? terms.sum(g) : link.on_parent * link.joint->motion(g) * after;
 }
 

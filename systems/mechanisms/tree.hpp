@@ -127,12 +127,12 @@ class Tree {
   void bias(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out);
   /// out += what the weights do on xi; accumulate_inertia() first.
   void add_weight(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) const;
-  /// out += sign * what a wrench on a link does on xi; seen from its root. On the ground nothing.
+  /// out += what a wrench on a link does on xi; seen from its root. On the ground nothing.
   template <class Out>
-  void add_wrench(int link, const Wrench& wrench, Out&& out, double sign = 1) const {
+  void add_wrench(int link, const Wrench& wrench, Out&& out) const {
     for (int j = link; j != kGround; j = parent(j)) {
       const Node& node = at(j);
-      for (int i = 0; i < node.count; ++i) out[node.dof + i] += sign * node.along(i, wrench);
+      node.each_along(wrench, [&](int i, double effect) { out[node.dof + i] += effect; });
     }
   }
   /// Mass and first moment of all that a root carries, itself included, seen from it.
@@ -143,6 +143,7 @@ class Tree {
     Link link;
     int root = 0, dof = 0, element = 0, count = 0;
     bool planar = false, rotor = false, on_root = false;
+    bool free = false;  // a root whose velocities are its whole twist, at the position of C
     Mat<6, 6> directions = Mat<6, 6>::Zero();  // Ad_C S; of one velocity Ad_P S
     Rigid after;                               // C^-1
     MotionTerms terms;
@@ -164,14 +165,37 @@ class Tree {
     double along(int i, const Wrench& wrench) const {
       return planar ? in_plane(columns.col(i)).dot(in_plane(wrench)) : columns.col(i).dot(wrench);
     }
+    /// f(i, effect) for all of its velocities.
+    template <class F>
+    void each_along(const Wrench& wrench, F&& f) const {
+      const Vec3& c = link.on_child.position;
+      if (planar) {
+        const Vec3 effort = in_plane(wrench);
+        if (free) {
+          f(0, effort[0] + c[1] * effort[1] - c[0] * effort[2]);
+          f(1, effort[1]);
+          f(2, effort[2]);
+        } else {
+          for (int i = 0; i < count; ++i) f(i, in_plane(columns.col(i)).dot(effort));
+        }
+      } else if (free) {
+        const Vec3 turning = upper(wrench) + lower(wrench).cross(c);
+        for (int i = 0; i < 3; ++i) f(i, turning[i]);
+        for (int i = 3; i < 6; ++i) f(i, wrench[i]);
+      } else {
+        for (int i = 0; i < count; ++i) f(i, columns.col(i).dot(wrench));
+      }
+    }
   };
   const Node& at(int link) const { return nodes_[static_cast<size_t>(link)]; }
   Node& at(int link) { return nodes_[static_cast<size_t>(link)]; }
   Wrench force_on(const Node& node) const;
+  static bool is_free(const Node& node);
   void find_planar(Node& node, const double* drawn) const;
   void find_rotors();
-  void write(const Node* from, int count, int column, const Wrench& momentum, double* out,
+  void write(const Node* from, int column, const Wrench& momentum, double* out,
              Eigen::Index stride) const;
+  static void write_free(const Node& node, double* out, Eigen::Index stride);
 
   std::vector<Node> nodes_;
   std::vector<double> drawn_, placed_;

@@ -32,10 +32,23 @@ HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
     if (node.planar) {
       Vec3 v = Vec3::Zero();
       if (!is_root) v = in_plane(at(node.link.parent).twist);
-      for (int i = 0; i < node.count; ++i) v += xi[node.dof + i] * in_plane(node.columns.col(i));
+      if (node.free) {
+        const Vec3& c = node.link.on_child.position;
+        v = xi.segment<3>(node.dof);
+        v[1] += c[1] * v[0];
+        v[2] -= c[0] * v[0];
+      } else {
+        for (int i = 0; i < node.count; ++i) v += xi[node.dof + i] * in_plane(node.columns.col(i));
+      }
       in_plane(node.twist) = v;
     } else {
       Twist v = Twist::Zero();
+      if (node.free) {
+        const Vec3 omega = xi.segment<3>(node.dof);
+        v = stack(omega, xi.segment<3>(node.dof + 3) + node.link.on_child.position.cross(omega));
+        node.twist = v;
+        continue;
+      }
       if (!is_root) v = at(node.link.parent).twist;
       for (int i = 0; i < node.count; ++i) v += xi[node.dof + i] * node.columns.col(i);
       node.twist = v;
@@ -43,19 +56,37 @@ HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
   }
 }
 
-// A column of I(g), and the row that mirrors it: what a momentum does on the first `count`
-// velocities of a link and on those of all that carry it.
-void Tree::write(const Node* from, int count, int column, const Wrench& momentum, double* out,
-                 Eigen::Index stride) const {
-  for (;;) {
-    for (int i = 0; i < count; ++i) {
-      const int row = from->dof + i;
-      out[row + column * stride] = out[column + row * stride] = from->along(i, momentum);
-    }
+// A column of I(g), and the row that mirrors it: what a momentum does on the velocities of a link
+// and of all that carry it.
+inline void Tree::write(const Node* from, int column, const Wrench& momentum, double* out,
+                        Eigen::Index stride) const {
+  for (;; from = &at(from->link.parent)) {
+    double *const down = out + from->dof + column * stride, *const across =
+                                                                out + column + from->dof * stride;
+    from->each_along(momentum,
+                     [&](int i, double effect) { down[i] = across[i * stride] = effect; });
     if (from->link.parent == kGround) return;
-    from = &at(from->link.parent);
-    count = from->count;
   }
+}
+
+// The inertia of all that a free root carries, at the position of C.
+inline void Tree::write_free(const Node& node, double* out, Eigen::Index stride) {
+  const Inertia& all = node.carried;
+  const Vec3& c = node.link.on_child.position;
+  const Vec3 first = all.first - all.mass * c;
+  double* const block = out + node.dof * (stride + 1);
+  if (node.planar) {
+    Eigen::Map<Mat<3, 3>, 0, Eigen::OuterStride<>> flat(block, Eigen::OuterStride<>(stride));
+    const double second =
+        all.second(2, 2) - c[0] * (all.first[0] + first[0]) - c[1] * (all.first[1] + first[1]);
+    flat << second, -first[1], first[0], -first[1], all.mass, 0, first[0], 0, all.mass;
+    return;
+  }
+  Eigen::Map<Mat<6, 6>, 0, Eigen::OuterStride<>> full(block, Eigen::OuterStride<>(stride));
+  full.topLeftCorner<3, 3>() = all.second - parallel_axis(c, all.first + first);
+  full.topRightCorner<3, 3>() = cross_matrix(first);
+  full.bottomLeftCorner<3, 3>() = -cross_matrix(first);
+  full.bottomRightCorner<3, 3>() = all.mass * Mat<3, 3>::Identity();
 }
 
 HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> to) const {
@@ -68,8 +99,11 @@ HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> to) const {
   for (const Node& node : nodes_) {
     if (node.rotor) {
       out[node.dof * (stride + 1)] = node.moment;
-      const Node& parent = at(node.link.parent);
-      write(&parent, parent.count, node.dof, node.spin_here, out, stride);
+      write(&at(node.link.parent), node.dof, node.spin_here, out, stride);
+      continue;
+    }
+    if (node.free) {
+      write_free(node, out, stride);
       continue;
     }
     for (int b = 0; b < node.count; ++b) {
@@ -77,7 +111,7 @@ HAMEL_FLATTEN void Tree::inertia(Eigen::Ref<Eigen::MatrixXd> to) const {
       if (node.planar)
         in_plane(momentum) = momentum_in_plane(node.carried, in_plane(node.columns.col(b)));
       else momentum = node.carried * node.columns.col(b);
-      write(&node, b + 1, node.dof + b, momentum, out, stride);
+      write(&node, node.dof + b, momentum, out, stride);
     }
   }
 }
@@ -93,10 +127,10 @@ HAMEL_FLATTEN void Tree::momentum(Eigen::Ref<Eigen::VectorXd> out,
   for (size_t j = nodes_.size(); j-- > 0;) {
     const Node& node = nodes_[j];
     if (node.link.parent == kGround) {  // its own velocity is left-trivialised
-      for (int i = 0; i < node.count; ++i) {
-        out[node.dof + i] = node.along(i, node.momentum);
+      node.each_along(node.momentum, [&](int i, double effect) {
+        out[node.dof + i] = effect;
         inertial_force[node.dof + i] = 0;
-      }
+      });
       continue;
     }
     Node& parent = at(node.link.parent);
@@ -128,7 +162,7 @@ HAMEL_FLATTEN void Tree::add_weight(const Vec3& gravity, Eigen::Ref<Eigen::Vecto
     if (node.rotor || (node.planar && !sloping)) continue;
     const Vec3 a = at(node.root).world.rotation.transpose().lazyProduct(gravity);
     const Wrench weight = stack(node.carried.first.cross(a), node.carried.mass * a);
-    for (int i = 0; i < node.count; ++i) out[node.dof + i] += node.along(i, weight);
+    node.each_along(weight, [&](int i, double effect) { out[node.dof + i] += effect; });
   }
 }
 

@@ -51,7 +51,7 @@ HAMEL_FLATTEN void Tree::bias(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> o
   for (size_t j = nodes_.size(); j-- > 0;) {
     const Node& node = nodes_[j];
     if (!node.rotor)
-      for (int i = 0; i < node.count; ++i) out[node.dof + i] = node.along(i, node.force);
+      node.each_along(node.force, [&](int i, double effect) { out[node.dof + i] = effect; });
     if (node.link.parent == kGround) continue;
     Node& parent = at(node.link.parent);
     if (node.rotor) {  // its spin is a wrench fixed in the parent

@@ -65,16 +65,27 @@ class NodalQuadrature {
   // from `from` to times[0] more than 20 times its length? Equal steps: 4.67 times.
   static bool magnifies(const std::array<double, kNodes>& times, std::size_t nodes, double from) {
     const double half = 0.5 * (times[0] - from), middle = times[0] - half;
+    std::array<double, kNodes> weights = {};
+    for (std::size_t p = 0; p < kPoints.size(); ++p) {
+      const double x = middle + half * kPoints[p];
+      double before = kWeights[p];  // the product of x - times[j], j < i
+      std::array<double, kNodes> bases;
+      for (std::size_t i = 0; i < nodes; ++i) {
+        bases[i] = before;
+        before *= x - times[i];
+      }
+      double behind = 1;
+      for (std::size_t i = nodes; i-- > 0;) {
+        weights[i] += bases[i] * behind;
+        behind *= x - times[i];
+      }
+    }
     double sum = 0;
     for (std::size_t i = 0; i < nodes; ++i) {
-      double weight = 0;
-      for (std::size_t p = 0; p < kPoints.size(); ++p) {
-        double basis = kWeights[p];  // of Lagrange
-        for (std::size_t j = 0; j < nodes; ++j)
-          if (j != i) basis *= (middle + half * kPoints[p] - times[j]) / (times[i] - times[j]);
-        weight += basis;
-      }
-      sum += std::abs(weight) / 2;
+      double own = 1;
+      for (std::size_t j = 0; j < nodes; ++j)
+        if (j != i) own *= times[i] - times[j];
+      sum += std::abs(weights[i] / own) / 2;
     }
     return sum > 20;
   }

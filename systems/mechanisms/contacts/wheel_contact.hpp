@@ -22,8 +22,11 @@ struct WheelContact {
   template <class T>
   ContactPoint<T, 2> touch(const ContactView<T>& view) const {
     const VecT<T, 3> n = view.turned(axle), up = view.vertical - view.vertical.dot(n) * n,
-                     rolling = n.cross(view.vertical).normalized();
-    return {view.at - (radius / up.norm()) * up, {rolling, view.vertical.cross(rolling)}};
+                     ahead = n.cross(view.vertical);  // as long as up
+    using std::sqrt;
+    const T inverse = T(1.0) / sqrt(ahead.squaredNorm());
+    const VecT<T, 3> rolling = inverse * ahead;
+    return {view.at - (radius * inverse) * up, {rolling, view.vertical.cross(rolling)}};
   }
   std::vector<BodyShape> shapes(const Point& at) const {
     return {shapes::cylinder(radius, 0.1 * radius,
