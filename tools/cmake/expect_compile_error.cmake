@@ -23,6 +23,9 @@ if(WITH IN_LIST MISTAKE)
   execute_process(COMMAND ${command} -Wfatal-errors -DMISTAKE ${SOURCE}
                   RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   string(REGEX MATCH "[^\n]*error: [^\n]*" first_error "${output}")
+  # clang's words, as g++ has them
+  string(REGEX REPLACE "static_assert failed[^\"]*\"(.*)\"$" "static assertion failed: \\1" first_error "${first_error}")
+  string(REGEX REPLACE "'([^']*)' file not found" "\\1: No such file" first_error "${first_error}")
   if(status EQUAL 0)
     message(FATAL_ERROR "compiles, but must not; expected: ${expected}")
   elseif(NOT first_error MATCHES "${expected}")

@@ -64,10 +64,12 @@ class Allocations : public testing::Test {
 
 TEST_F(Allocations, AreCounted) {
   const long before = allocations;
-  auto* numbers = new std::vector<double>(100);
+  // (Volatile: clang leaves out what nobody sees.)
+  std::vector<double>* volatile numbers = new std::vector<double>(100);
   Eigen::VectorXd vector(100);
-  vector.setZero();
-  EXPECT_GE(allocations - before, 3) << numbers->size() + static_cast<size_t>(vector.size());
+  double* volatile first = vector.data();
+  *first = 0;
+  EXPECT_GE(allocations - before, 3);
   delete numbers;
 }
 

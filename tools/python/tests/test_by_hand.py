@@ -180,7 +180,7 @@ def test_threads_have_the_results_of_one():
 
 def test_one_thread_at_a_time_steps_a_run():
     run = hamel.simulate("rattleback", scheme="lift", step=1e-4).build()
-    worker = threading.Thread(target=lambda: run.step(100_000))
+    worker = threading.Thread(target=lambda: run.step(3_000_000))  # two seconds
     worker.start()
     time.sleep(0.05)
     with pytest.raises(RuntimeError, match="in use"):
