@@ -19,6 +19,23 @@
 
 namespace hamel {
 
+/// Does the step tell what the round-off of a configuration does to its rows?
+template <class Step>
+concept HasPlaces = requires(const Step& step, typename Step::Unknown& x) {
+  step.residual_of_places(x, x);
+};
+
+/// The equation of a step but for that.
+template <HasPlaces Step>
+struct ButForPlaces {
+  using Unknown = typename Step::Unknown;
+  const Step& step;
+
+  double scale_squared() const { return step.scale_squared(); }
+  void residual(const Unknown& x, Unknown& f) const { step.residual_of_places(x, f); }
+  void expand(Unknown& z) const requires HasFrame<Step> { step.expand(z); }
+};
+
 template <class Scheme, class Step, class Newton>
 class StepUnknown;
 
@@ -76,8 +93,9 @@ class StepUnknown<Scheme, Step, Newton> {
     SolveReport report = setup_.solver == nullptr
                              ? Newton::solve(step, x_, setup_.tolerance, memory.newton)
                              : solve_outside(step);
-    if (!report.ok()) [[unlikely]]
-      return report;
+    if (!report.ok()) [[unlikely]] {
+      if (!is_round_off(step, h, memory, report)) return report;
+    }
     if (!(memory.trusted && setup_.solver == nullptr && report.iterations <= kSure)) [[unlikely]] {
       if (!is_principal(step, node, h, memory)) report.reason = Reason::not_principal;
     }
@@ -89,12 +107,36 @@ class StepUnknown<Scheme, Step, Newton> {
   // longer.
   static constexpr int kSure = HasJacobian<Step> ? 1 : 2;
 
+  // The round-off of a configuration does not shrink with the momenta, relative to which F is
+  // judged: a motion that rests, or turns, would fail by it. So a step that moves nothing by more
+  // than a tenth of it is taken, and one that is solved but for what it does to the rows.
+  [[gnu::noinline, gnu::cold]] bool is_round_off(const Step& step, double h, Memory& memory,
+                                                 SolveReport& report) {
+    if (report.reason != Reason::stagnated && report.reason != Reason::max_iterations) return false;
+    bool solved = x_.squaredNorm() <= 0.01 * PrincipalRoot<Unknown, Newton>::square_of_round_off(h);
+    if constexpr (HasPlaces<Step>) {
+      if (!solved && setup_.solver == nullptr) {
+        const ButForPlaces<Step> but_for_places{step};
+        const ErasedStep<ButForPlaces<Step>> equation(but_for_places);
+        const SolveReport again = Newton::solve(static_cast<const StepEquation<Unknown>&>(equation),
+                                                x_, setup_.tolerance, memory.newton);
+        solved = again.ok();
+        report.iterations += again.iterations;
+        report.evaluations += again.evaluations;
+        if (solved) report.residual = again.residual;
+      }
+    }
+    if (solved) report.reason = Reason::round_off;
+    return solved;
+  }
   [[gnu::noinline, gnu::cold]] bool is_principal(Step& step, const Node& node, double h,
                                                  Memory& memory) {
     if (!ordered_) return true;
     if (memory.trusted && memory.extrapolation.count() > 0) {
       memory.extrapolation(guess_);
-      if ((x_ - guess_).squaredNorm() <= 1e-4 * x_.squaredNorm()) return true;
+      if ((x_ - guess_).squaredNorm() <=
+          1e-4 * x_.squaredNorm() + PrincipalRoot<Unknown, Newton>::square_of_round_off(h))
+        return true;
     }
     const ErasedStep<Step> equation(step);
     const StepOnPath<Unknown> path = {equation, [&](double size) { step.begin(node, size); },

@@ -28,14 +28,16 @@ class PrincipalRoot {
   /// sample: of the size of all unknowns.
   explicit PrincipalRoot(const Unknown& sample) : end_(sample), trial_(sample), memory_(sample) {}
 
+  /// Two solutions that move nothing by more than 1e-11 (rad, m) in the step are one: at rest all
+  /// that there is of a solution is round-off, on the path a thousand times larger. As a velocity,
+  /// squared.
+  static double square_of_round_off(double h) { return 1e-22 / (h * h); }
+
   /// Is x, a solution for h, where the path from lambda = 0 arrives? Leaves the step begun with h.
   [[gnu::noinline, gnu::cold]] bool leads_to(const Unknown& x, const StepOnPath<Unknown>& step,
                                              double h) {
-    // Two solutions that move nothing by more than 1e-11 (rad, m) in the step are one: at rest all
-    // that there is of a solution is round-off, on the path a thousand times larger.
-    const double place = 1e-11 / h;
     const double size = x.squaredNorm(),
-                 small = 1e-20 * step.equation.scale_squared() + place * place;
+                 small = 1e-20 * step.equation.scale_squared() + square_of_round_off(h);
     follow(step, h, size + small);
     step.begin(h);
     if ((x - end_).squaredNorm() <= 1e-10 * size + small) return true;
@@ -78,7 +80,11 @@ class PrincipalRoot {
       step.begin(next * h);
       trial_ = end_;
       const SolveReport report = Newton::solve(step.equation, trial_, tolerance, memory_);
-      if (near(report) && (trial_ - end_).squaredNorm() <= 1e-3 * size) {
+      // (At a small lambda the rows leave a velocity free to within the round-off of a place.)
+      const double free = 1e-4 * square_of_round_off(next * h);
+      // (Where a motion turns, its step at lambda = 1 moves next to nothing, those before it do.)
+      size = std::max(size, end_.squaredNorm());
+      if (near(report) && (trial_ - end_).squaredNorm() <= 1e-3 * size + free) {
         end_ = trial_;
         at = next;
         length *= 1.5;

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <hamel/framework/lie/trivialised.hpp>
+#include <hamel/framework/mechanics/held_rows.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
@@ -58,6 +59,13 @@ class BalanceStep {
   void expand(Unknown& z) const requires(!P::left_invariant) {
     place_.expand(z.data());
     place_.expand(z.data() + problem_.dim());
+  }
+
+  /// F but for what the round-off of a configuration does to its rows.
+  void residual_of_places(const Unknown& x, Unknown& f) const
+      requires(P::HolonomicValues::SizeAtCompileTime != 0) {
+    residual(x, f);
+    drop_round_off(place_.a, phi_, f);
   }
 
   void residual(const Unknown& x, Unknown& f) const {

@@ -26,6 +26,7 @@
 #pragma once
 
 #include <hamel/framework/lie/trivialised.hpp>
+#include <hamel/framework/mechanics/held_rows.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
@@ -112,6 +113,13 @@ class Lift::General {
   HAMEL_FLATTEN void residual(const Unknown& x, Unknown& f) const {
     evaluate(x);
     place_.assemble(mu_, rows_, f);
+  }
+
+  /// F but for what the round-off of a configuration does to its rows.
+  void residual_of_places(const Unknown& x, Unknown& f) const
+      requires(P::HolonomicValues::SizeAtCompileTime != 0) {
+    residual(x, f);
+    drop_round_off(place_.a, phi_, f);
   }
 
   bool finish(const Unknown& x, Node& next) const {

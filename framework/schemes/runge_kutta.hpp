@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <hamel/framework/lie/types.hpp>
+#include <hamel/framework/mechanics/held_rows.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 #include <hamel/framework/schemes/stage_motion.hpp>
 #include <hamel/framework/schemes/tableau.hpp>
@@ -157,8 +158,7 @@ class RungeKutta {
   // A velocity that moves nothing by more than the round-off of a place, squared in the metric: all
   // that there is of a motion at rest.
   [[gnu::noinline, gnu::cold]] double square_of_round_off() const {
-    constexpr double place = 1e-14;  // rad, m
-    move_.setConstant(place / h_);
+    move_.setConstant(kPlaceRoundOff / h_);
     const double size = motion_.rows().size(move_);
     return size * size;
   }

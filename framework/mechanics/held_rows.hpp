@@ -1,0 +1,27 @@
+// Rows of positions, phi(g) = 0, that hold to the round-off of a configuration.
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+namespace hamel {
+
+/// The round-off of a configuration, rad and m.
+inline constexpr double kPlaceRoundOff = 1e-14;
+
+/// The entries of F, the equation of a step, that are rows phi of positions, whose differentials
+/// are the last rows of A, less what the round-off of a configuration does to them. That does not
+/// shrink with the momenta, relative to which F is judged: a motion that comes to rest would else
+/// fail.
+template <class A, class Phi, class F>
+void drop_round_off(const A& a, const Phi& phi, F& f) {
+  const Eigen::Index before = a.rows() - phi.size();
+  for (Eigen::Index i = 0; i < phi.size(); ++i) {
+    const double own = kPlaceRoundOff * a.row(before + i).template lpNorm<1>(),
+                 size = std::abs(phi[i]);
+    f[before + i] *= size <= own ? 0 : 1 - own / size;
+  }
+}
+
+}  // namespace hamel
