@@ -80,11 +80,11 @@ class PrincipalRoot {
       step.begin(next * h);
       trial_ = end_;
       const SolveReport report = Newton::solve(step.equation, trial_, tolerance, memory_);
-      // (At a small lambda the rows leave a velocity free to within the round-off of a place.)
-      const double free = 1e-4 * square_of_round_off(next * h);
-      // (Where a motion turns, its step at lambda = 1 moves next to nothing, those before it do.)
-      size = std::max(size, end_.squaredNorm());
-      if (near(report) && (trial_ - end_).squaredNorm() <= 1e-3 * size + free) {
+      // Or by a thousandth of a radian or metre in a step of that size: roots lie farther apart.
+      // Where a motion turns, x is next to nothing at lambda = 1, but not on the path.
+      const double near_by = 1e-3 / (next * h);
+      const double most = std::max(1e-3 * size, near_by * near_by);
+      if (near(report) && (trial_ - end_).squaredNorm() <= most) {
         end_ = trial_;
         at = next;
         length *= 1.5;
