@@ -3,13 +3,13 @@
 //
 // A root is taken for the principal one (principal_root.hpp)
 //   - if a correction or two with the kept Jacobian gave it, or it is within a percent of the
-//   extrapolation, and the
-//     roots before it were principal;
+//     extrapolation, or of what round-off makes of it, and the roots before it were principal;
 //   - else if the path from h = 0 leads to it.
 // Otherwise it is refused, as is a root outside the domain (measured by
 // tests/solvers/large_steps.cpp).
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include <hamel/framework/loop/extrapolation.hpp>
@@ -106,28 +106,39 @@ class StepUnknown<Scheme, Step, Newton> {
   // So many corrections with a kept Jacobian do not change the root; those by differences are kept
   // longer.
   static constexpr int kSure = HasJacobian<Step> ? 1 : 2;
+  static constexpr double kNearlySolved = 1e-8;  // |F|/scale
 
-  // The round-off of a configuration does not shrink with the momenta, relative to which F is
-  // judged: a motion that rests, or turns, would fail by it. So a step that moves nothing by more
-  // than a tenth of it is taken, and one that is solved but for what it does to the rows.
+  // Has a solve stopped above the tolerance for the round-off of a configuration alone? That does
+  // not shrink with the momenta, relative to which F is judged. A step that moves nothing by more
+  // than 1e-12 (rad, m) is taken, as that of a linkage at rest; where a motion turns, the solve
+  // goes on without what the rows of positions have of it.
   [[gnu::noinline, gnu::cold]] bool is_round_off(const Step& step, double h, Memory& memory,
                                                  SolveReport& report) {
     if (report.reason != Reason::stagnated && report.reason != Reason::max_iterations) return false;
-    bool solved = x_.squaredNorm() <= 0.01 * PrincipalRoot<Unknown, Newton>::square_of_round_off(h);
+    bool solved = x_.norm() * std::abs(h) <= 1e-12;
     if constexpr (HasPlaces<Step>) {
-      if (!solved && setup_.solver == nullptr) {
-        const ButForPlaces<Step> but_for_places{step};
-        const ErasedStep<ButForPlaces<Step>> equation(but_for_places);
-        const SolveReport again = Newton::solve(static_cast<const StepEquation<Unknown>&>(equation),
-                                                x_, setup_.tolerance, memory.newton);
-        solved = again.ok();
-        report.iterations += again.iterations;
-        report.evaluations += again.evaluations;
-        if (solved) report.residual = again.residual;
-      }
+      if (!solved && setup_.solver == nullptr) solved = solve_but_for_places(step, memory, report);
     }
     if (solved) report.reason = Reason::round_off;
     return solved;
+  }
+  bool solve_but_for_places(const Step& step, Memory& memory,
+                            SolveReport& report) requires HasPlaces<Step> {
+    const double scale = std::sqrt(step.scale_squared());
+    step.residual_of_places(x_, guess_);
+    ++report.evaluations;
+    if (!(guess_.norm() <= kNearlySolved * scale)) return false;
+    const ButForPlaces<Step> but_for_places{step};
+    const ErasedStep<ButForPlaces<Step>> equation(but_for_places);
+    const SolveReport again = Newton::solve(static_cast<const StepEquation<Unknown>&>(equation), x_,
+                                            setup_.tolerance, memory.newton);
+    report.iterations += again.iterations;
+    report.evaluations += again.evaluations;
+    if (!again.ok()) return false;
+    step.residual(x_, guess_);  // of F itself
+    ++report.evaluations;
+    report.residual = guess_.norm() / scale;
+    return true;
   }
   [[gnu::noinline, gnu::cold]] bool is_principal(Step& step, const Node& node, double h,
                                                  Memory& memory) {

@@ -57,9 +57,9 @@ class PrincipalRoot {
     return report.ok() || (report.reason == Reason::stagnated && report.residual <= 1e-5);
   }
   static constexpr int kMostOnPath = 200;
-  // To end_: the solution for lambda h at lambda = 1, by steps that move it by 3 percent at most;
-  // NaN where the path ends before or takes over kMostOnPath solves. It starts where there is one
-  // root, which is not always next to the scheme's guess.
+  // To end_: the solution for lambda h at lambda = 1, by steps that move it by 3 percent at most,
+  // or the place by a thousandth; NaN where the path ends before or takes over kMostOnPath solves.
+  // It starts where there is one root, which is not always next to the scheme's guess.
   void follow(const StepOnPath<Unknown>& step, double h, double size) {
     // A tenth of what two solutions of one root may differ by.
     constexpr double tolerance = 1e-9;

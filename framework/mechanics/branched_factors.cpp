@@ -9,9 +9,10 @@
 
 namespace hamel {
 
-using few_factors::kFewRows, few_factors::with_count;
+using few_factors::kFewRows;
 using short_vectors::add, short_vectors::add_products, short_vectors::combine_rows,
-    short_vectors::dot, short_vectors::pairs_of, short_vectors::scale, short_vectors::with_pairs,
+    short_vectors::dot, short_vectors::each, short_vectors::each_down, short_vectors::pairs_of,
+    short_vectors::scale, short_vectors::with_count, short_vectors::with_pairs,
     short_vectors::kFewPairs;
 
 static_assert(kFewRows <= 2 * kFewPairs);
@@ -22,6 +23,42 @@ namespace {
 template <class F>
 bool with_few(int n, int k, F&& f) {
   return k <= kFewRows && with_count<few_factors::kFewVelocities>(n, f);
+}
+
+// f(k), an integral_constant where the rows are few.
+template <class F>
+void with_any_count(int k, F&& f) {
+  if (!with_count<kFewRows>(k, f)) f(k);
+}
+
+// S = L D L^T by rows: L below the diagonal, D^-1 on it; the columns of D L^T above serve as work
+// space.
+template <class Count>
+HAMEL_FLATTEN void factor_rows(Count k, int width, double* s) {
+  each(k, [&](auto j) {
+    double* const here = s + j * width;
+    double own = here[j];
+    each(j, [&](auto l) {
+      const double* const there = s + l * width;
+      double left = here[l];
+      each(l, [&](auto i) { left -= s[i * width + j] * there[i]; });
+      s[l * width + j] = left;
+      here[l] = left * there[l];
+      own -= left * here[l];
+    });
+    here[j] = own > 0 ? 1 / own : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+// c <- S^-1 c.
+template <class Count>
+HAMEL_FLATTEN void solve_rows(Count k, int width, const double* s, double* c) {
+  each(k, [&](auto i) {
+    double sum = c[i];
+    each(i, [&](auto l) { sum -= s[i * width + l] * c[l]; });
+    c[i] = sum;
+  });
+  each(k, [&](auto i) { c[i] *= s[i * width + i]; });
+  each_down(k, [&](auto i) { each(i, [&](auto l) { c[l] -= s[i * width + l] * c[i]; }); });
 }
 
 template <class Span>
@@ -126,8 +163,8 @@ void BranchedFactors::find_rows(const double* a) {
     with_count<kFewRows>(k, [&](auto rows) {
       constexpr int K = decltype(rows)::value;
       few_factors::find_gram<K>(n, y_.data(), gram_.data());
-      few_factors::factor_gram<K>(gram_.data());
     });
+    factor_gram(width);
     return;
   }
   for (int i = 0; i < n; ++i) {
@@ -162,20 +199,7 @@ BranchedFactors::Span BranchedFactors::span_of(const double* row, int k) {
 }
 
 void BranchedFactors::factor_gram(int width) {
-  double* const gram = gram_.data();
-  for (int j = 0; j < k_; ++j) {
-    double* const here = gram + j * width;
-    double own = here[j];
-    for (int l = 0; l < j; ++l) {  // L D, then L
-      const double* const there = gram + l * width;
-      double left = here[l];
-      for (int i = 0; i < l; ++i) left -= here[i] * there[i];
-      here[l] = left;
-      own -= left * left * there[l];
-    }
-    for (int l = 0; l < j; ++l) here[l] *= gram[l * width + l];
-    here[j] = own > 0 ? 1 / own : std::numeric_limits<double>::quiet_NaN();
-  }
+  with_any_count(k_, [&](auto k) { factor_rows(k, width, gram_.data()); });
 }
 
 void BranchedFactors::apply_inertia(const double* inertia, const double* xi, double* mu) const {
@@ -242,11 +266,11 @@ void BranchedFactors::add_reaction(const double* lambda, double* out) const {
     constexpr int P = decltype(pairs)::value;
     const int n = n_, k = k_, width = 2 * pairs_of(k);
     const double* const y = y_.data();
-    double* const padded = sums_.data();
-    for (int j = 0; j < width; ++j) padded[j] = j < k ? lambda[j] : 0;
     if constexpr (P > 0) {
-      add_products<P>(y, padded, n, out);
+      add_products<P>(y, lambda, k, n, out);
     } else {
+      double* const padded = sums_.data();
+      for (int j = 0; j < width; ++j) padded[j] = j < k ? lambda[j] : 0;
       for (int i = 0; i < n; ++i) {
         const Span span = spans_[static_cast<size_t>(i)];
         out[i] += dot(y + i * width + span.begin, padded + span.begin, span.end - span.begin);
@@ -256,21 +280,7 @@ void BranchedFactors::add_reaction(const double* lambda, double* out) const {
 }
 
 void BranchedFactors::solve_gram(double* c) const {
-  const int k = k_, width = 2 * pairs_of(k);
-  const double* const gram = gram_.data();
-  if (with_count<kFewRows>(
-          k, [&](auto count) { few_factors::solve_gram<decltype(count)::value>(gram, c); }))
-    return;
-  for (int i = 0; i < k; ++i) {
-    double sum = c[i];
-    for (int l = 0; l < i; ++l) sum -= gram[i * width + l] * c[l];
-    c[i] = sum;
-  }
-  for (int i = k - 1; i >= 0; --i) {
-    double sum = c[i] * gram[i * width + i];
-    for (int l = i + 1; l < k; ++l) sum -= gram[l * width + i] * c[l];
-    c[i] = sum;
-  }
+  with_any_count(k_, [&](auto k) { solve_rows(k, 2 * pairs_of(k_), gram_.data(), c); });
 }
 
 }  // namespace hamel

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 namespace hamel::short_vectors {
 
@@ -21,6 +22,13 @@ inline void store(const Pair& pair, double* x) { std::memcpy(x, &pair, sizeof pa
 /// y += factors x, a pair each.
 inline void add_pair(const Pair& factors, const double* x, double* y) {
   store(pair_at(y) + factors * pair_at(x), y);
+}
+
+/// 2 P or 2 P - 1 numbers as pairs, the last padded by a 0.
+template <int P>
+void load(const double* x, int count, Pair* to) {
+  for (int p = 0; p < P - 1; ++p) to[p] = pair_at(x + 2 * p);
+  to[P - 1] = count == 2 * P ? pair_at(x + 2 * P - 2) : Pair{x[2 * P - 2], 0};
 }
 
 /// x . y.
@@ -49,6 +57,36 @@ inline void scale(double factor, const double* x, double* to, std::ptrdiff_t cou
   if (i < count) to[i] = factor * x[i];
 }
 
+/// f(count), an integral_constant; false where that is not among 1, …, most.
+template <int most, class F>
+bool with_count(int count, F&& f) {
+  return [&]<int... i>(std::integer_sequence<int, i...>) {
+    return ((count == i + 1 && (f(std::integral_constant<int, i + 1>()), true)) || ...);
+  }
+  (std::make_integer_sequence<int, most>());
+}
+/// f(0), …, f(count - 1); of an integral_constant each is one, and the loop unrolls.
+template <class Count, class F>
+void each(Count count, F&& f) {
+  if constexpr (std::is_integral_v<Count>) {
+    for (Count i = 0; i < count; ++i) f(i);
+  } else {
+    [&]<int... i>(std::integer_sequence<int, i...>) { (f(std::integral_constant<int, i>()), ...); }
+    (std::make_integer_sequence<int, Count::value>());
+  }
+}
+/// f(count - 1), …, f(0).
+template <class Count, class F>
+void each_down(Count count, F&& f) {
+  if constexpr (std::is_integral_v<Count>) {
+    for (Count i = count; i-- > 0;) f(i);
+  } else {
+    each(count, [&](auto up) {
+      f(std::integral_constant<int, Count::value - 1 - decltype(up)::value>());
+    });
+  }
+}
+
 // Matrices by rows, each of as many pairs, the last of which may be padded by a 0. P: that many
 // pairs, whose loops unroll; 0: any.
 
@@ -57,13 +95,7 @@ inline int pairs_of(int columns) { return (columns + 1) / 2; }
 /// f(P), P an integral_constant.
 template <class F>
 void with_pairs(int pairs, F&& f) {
-  switch (pairs) {
-    case 1: return f(std::integral_constant<int, 1>());
-    case 2: return f(std::integral_constant<int, 2>());
-    case 3: return f(std::integral_constant<int, 3>());
-    case 4: return f(std::integral_constant<int, 4>());
-    default: f(std::integral_constant<int, 0>());
-  }
+  if (!with_count<kFewPairs>(pairs, f)) f(std::integral_constant<int, 0>());
 }
 /// to = sum of x_i times row i; the x_i are so far apart.
 template <int P>
@@ -83,11 +115,12 @@ void combine_rows(const double* x, std::ptrdiff_t apart, const double* rows, std
     }
   }
 }
-/// to_i += row i . x.
+/// to_i += row i . x, x of so many columns.
 template <int P>
-void add_products(const double* rows, const double* x, std::ptrdiff_t count, double* to) {
+void add_products(const double* rows, const double* x, int columns, std::ptrdiff_t count,
+                  double* to) {
   Pair right[P];
-  for (int p = 0; p < P; ++p) right[p] = pair_at(x + 2 * p);
+  load<P>(x, columns, right);
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     Pair sum = pair_at(rows + 2 * i * P) * right[0];
     for (int p = 1; p < P; ++p) sum += pair_at(rows + 2 * (i * P + p)) * right[p];

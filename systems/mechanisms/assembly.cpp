@@ -63,7 +63,9 @@ std::vector<std::string> Assembly::body_names() const {
 int Assembly::link_of(const Part& part, const std::string& kind, const std::string& body) {
   const auto it = body_links_.find(body);
   if (it != body_links_.end()) return it->second;
-  unknown(part, kind, "body", body, body_names());
+  std::vector<std::string> known = body_names();
+  if (kind == "loop" || kind == "spring") known.push_back(kWorld);  // may hang on the ground
+  unknown(part, kind, "body", body, known);
   return mechanisms::kGround;
 }
 

@@ -40,7 +40,7 @@ struct Ground {
 /// phi, and d/dt (b - A xi) along the motion, xi held.
 struct Row {
   int link = kGround, other = kGround;
-  Wrench wrench = Wrench::Zero(), other_wrench = Wrench::Zero();
+  Wrench wrench = Wrench::Zero(), other_wrench;  // this one where there is another link
   int dof = -1;
   double drift = 0, phi = 0, rate = 0;
 

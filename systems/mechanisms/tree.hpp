@@ -160,12 +160,8 @@ class Tree {
     Inertia own, carried;         // with all that the link carries
 
     Rigid across(const double* g) const;  // from the parent
-    /// Effect of a wrench on velocity i; of one on a planar link only its entries in the plane
-    /// count.
-    double along(int i, const Wrench& wrench) const {
-      return planar ? in_plane(columns.col(i)).dot(in_plane(wrench)) : columns.col(i).dot(wrench);
-    }
-    /// f(i, effect) for all of its velocities.
+    /// f(i, effect) of a wrench on each of its velocities; of one on a planar link only its entries
+    /// in the plane count.
     template <class F>
     void each_along(const Wrench& wrench, F&& f) const {
       const Vec3& c = link.on_child.position;
@@ -191,6 +187,7 @@ class Tree {
   Node& at(int link) { return nodes_[static_cast<size_t>(link)]; }
   Wrench force_on(const Node& node) const;
   static bool is_free(const Node& node);
+  static void move_free(Node& node, const double* xi);
   void find_planar(Node& node, const double* drawn) const;
   void find_rotors();
   void write(const Node* from, int column, const Wrench& momentum, double* out,

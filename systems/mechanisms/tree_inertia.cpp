@@ -25,30 +25,30 @@ HAMEL_FLATTEN void Tree::accumulate_inertia() {
   }
 }
 
+// That of a root with its whole twist xi, at the position of C, in its own axes.
+inline void Tree::move_free(Node& node, const double* xi) {
+  const Vec3& c = node.link.on_child.position;
+  if (node.planar) {
+    in_plane(node.twist) = Vec3(xi[0], xi[1] + c[1] * xi[0], xi[2] - c[0] * xi[0]);
+  } else {
+    const Vec3 omega(xi[0], xi[1], xi[2]);
+    node.twist = stack(omega, Vec3(xi[3], xi[4], xi[5]) + c.cross(omega));
+  }
+}
+
 HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
   for (Node& node : nodes_) {
     const bool is_root = node.link.parent == kGround;
     node.rate = xi[node.dof];
-    if (node.planar) {
+    if (node.free) {
+      move_free(node, xi.data() + node.dof);
+    } else if (node.planar) {
       Vec3 v = Vec3::Zero();
       if (!is_root) v = in_plane(at(node.link.parent).twist);
-      if (node.free) {
-        const Vec3& c = node.link.on_child.position;
-        v = xi.segment<3>(node.dof);
-        v[1] += c[1] * v[0];
-        v[2] -= c[0] * v[0];
-      } else {
-        for (int i = 0; i < node.count; ++i) v += xi[node.dof + i] * in_plane(node.columns.col(i));
-      }
+      for (int i = 0; i < node.count; ++i) v += xi[node.dof + i] * in_plane(node.columns.col(i));
       in_plane(node.twist) = v;
     } else {
       Twist v = Twist::Zero();
-      if (node.free) {
-        const Vec3 omega = xi.segment<3>(node.dof);
-        v = stack(omega, xi.segment<3>(node.dof + 3) + node.link.on_child.position.cross(omega));
-        node.twist = v;
-        continue;
-      }
       if (!is_root) v = at(node.link.parent).twist;
       for (int i = 0; i < node.count; ++i) v += xi[node.dof + i] * node.columns.col(i);
       node.twist = v;
@@ -84,8 +84,9 @@ inline void Tree::write_free(const Node& node, double* out, Eigen::Index stride)
   }
   Eigen::Map<Mat<6, 6>, 0, Eigen::OuterStride<>> full(block, Eigen::OuterStride<>(stride));
   full.topLeftCorner<3, 3>() = all.second - parallel_axis(c, all.first + first);
-  full.topRightCorner<3, 3>() = cross_matrix(first);
-  full.bottomLeftCorner<3, 3>() = -cross_matrix(first);
+  const Mat<3, 3> across = cross_matrix(first);
+  full.topRightCorner<3, 3>() = across;
+  full.bottomLeftCorner<3, 3>() = -across;
   full.bottomRightCorner<3, 3>() = all.mass * Mat<3, 3>::Identity();
 }
 

@@ -316,7 +316,7 @@ constraints = [[0, 0, 1, 0]]
 velocity = [0.5, 1, 0, 1]
 )"),
                          "--until", "1"});
-  if (figures.empty()) GTEST_SKIP() << "the program has no page";
+  if (figures.empty()) HAMEL_SKIP_WITHOUT("page");
   using testing::ElementsAre;
   EXPECT_THAT(figures["Path in the plane"], ElementsAre("east, north"));
   EXPECT_THAT(figures["Angular velocity"], ElementsAre("spin [rad/s]"));

@@ -12,7 +12,7 @@ class EnsemblePage : public CommandLine {
  protected:
   void SetUp() override {
     CommandLine::SetUp();
-    if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+    if (page_of({"suslov"}).is_null()) HAMEL_SKIP_WITHOUT("page");
   }
   nlohmann::json page(const std::string& text, const std::string& name = "many.toml") const {
     write(name, text);

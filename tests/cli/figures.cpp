@@ -15,9 +15,9 @@ class Figures : public hamel::test::CommandLine {
   void SetUp() override {
     CommandLine::SetUp();
     const auto outcome = run({"run", "suslov", "--until", "2", "--quiet", "-o", "run.h5"});
-    if (outcome.err.find("HDF5") != std::string::npos) GTEST_SKIP() << "built without HDF5";
+    if (outcome.err.find("HDF5") != std::string::npos) HAMEL_SKIP_WITHOUT("HDF5");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+    if (page_of({"suslov"}).is_null()) HAMEL_SKIP_WITHOUT("page");
   }
   /// The bytes of a file of this figure, 8 cm wide; skips where there is no browser.
   std::string drawn(const std::string& figure, const std::string& name) const {
@@ -60,8 +60,8 @@ TEST_F(Figures, AnInterruptLeavesNothing) {
 
 TEST_F(Figures, NamesAreListed) {
   const auto outcome = run({"report", "run.h5", "--figure", "eror"});
-  if (outcome.err.find("which is not installed") != std::string::npos && !std::getenv("CI"))
-    GTEST_SKIP() << "no browser";
+  if (outcome.err.find("which is not installed") != std::string::npos)
+    HAMEL_SKIP_WITHOUT("browser");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.err,
             "hamel: unknown figure 'eror': expected one of motion, axes, angular-velocity, "
@@ -73,7 +73,7 @@ TEST_F(Figures, NamesAreListed) {
 // one page in points.
 TEST_F(Figures, AsWideAsAskedFor) {
   const std::string svg = drawn("error", "error.svg");
-  if (svg.empty() && !std::getenv("CI")) GTEST_SKIP() << "no browser";
+  if (svg.empty()) HAMEL_SKIP_WITHOUT("browser");
   EXPECT_THAT(svg, StartsWith("<svg width=\"8cm\""));
   EXPECT_THAT(svg, HasSubstr("configuration</text>"));
   EXPECT_THAT(svg, testing::Not(HasSubstr("var(")));

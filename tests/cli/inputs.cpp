@@ -48,7 +48,7 @@ TEST_F(InputsOfTheProgram, StandOnThePage) {
        {"--input", "right_torque=held.csv:hold", "--input", "left_torque=ramp.csv"})
     arguments.emplace_back(given);
   const Json page = page_of(arguments);
-  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  if (page.is_null()) HAMEL_SKIP_WITHOUT("page");
   const Json figure = figure_of(page, "Inputs");
   ASSERT_EQ(figure["series"].size(), 2) << figure;
   const Json &right = figure["series"][0], &left = figure["series"][1];

@@ -268,7 +268,7 @@ TEST_F(Describe, LargeMechanisms) {
 
 /// What takes seconds shows them, on a terminal only.
 TEST_F(Describe, AnalysisShowsItsTime) {
-  if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1)";
+  if (std::system("command -v script >/dev/null") != 0) HAMEL_SKIP_WITHOUT("script(1)");
   const std::string command = "cd " + file("") + " && script -qec \"$HAMEL_PROGRAM describe " +
                               "--analyse tricycle\" /dev/null >seen.txt </dev/null";
   ASSERT_EQ(std::system(command.c_str()), 0);

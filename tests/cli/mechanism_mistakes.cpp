@@ -68,7 +68,7 @@ TEST_F(MechanismMistakes, InContactsAndLoops) {
       {"redundant = \"dropp\"\n" + kFlat, "1:13: unknown redundant 'dropp': expected one of"},
       {kCrank + "[[loop]]\nname = \"pin\"\na = \"rod\"\nb = \"crank\"\nat = [1, 0, 1]\n" +
            "[[loop]]\nname = \"end\"\na = \"rod\"\nb = \"rodd\"\n",
-       "28:1: loop 'end': unknown body 'rodd': expected one of crank, rod"},
+       "28:1: loop 'end': unknown body 'rodd': expected one of crank, rod, ground"},
       {kFlat + "[[force]]\nname = \"f\"\nbody = \"ground\"\nalong = [5, 0, 0]\n",
        "9:1: force 'f': body: expected a body that moves, not the ground or what is welded to it"},
       {kFlat + "[[spring]]\nname = \"s\"\na = \"ground\"\nb = \"ground\"\nto = [1, 0, 0]\n",

@@ -30,7 +30,7 @@ class Pages : public hamel::test::CommandLine {
 
 // OK means right: what is wrong or not known is a note.
 TEST_F(Pages, OkMeansRight) {
-  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  if (page_of({"suslov"}).is_null()) HAMEL_SKIP_WITHOUT("page");
   EXPECT_EQ(verdict({"suslov"}).first, "ok");
   EXPECT_EQ(verdict({"rattleback", "--check"}).first, "ok");
   const auto lost = verdict({"chaplygin_sleigh", "--scheme", "unadapted", "--step", "0.05"});
@@ -50,7 +50,7 @@ TEST_F(Pages, OkMeansRight) {
 // Backwards, far from t = 0, and ended right behind a node: the times of a page are all there, and
 // rise in its motion.
 TEST_F(Pages, TimesOfTheirOwn) {
-  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  if (page_of({"suslov"}).is_null()) HAMEL_SKIP_WITHOUT("page");
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"chaplygin_sleigh", "--step", "-0.01", "--until", "-5"},
         {"chaplygin_sleigh", "--from", "1e6", "--until", "1000001"},
@@ -72,7 +72,7 @@ TEST_F(Pages, TimesOfTheirOwn) {
 
 // The estimate is described by the runs it was made of.
 TEST_F(Pages, HowTheErrorIsKnown) {
-  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  if (page_of({"suslov"}).is_null()) HAMEL_SKIP_WITHOUT("page");
   EXPECT_THAT(verdict({"rattleback", "--step", "0.01", "--until", "2", "--check"}).second,
               HasSubstr("By half and a quarter of the step"));
   EXPECT_THAT(verdict({"falling_disk", "--scheme", "dop853", "--rtol", "1e-8", "--check"}).second,
@@ -90,7 +90,7 @@ TEST_F(Pages, ContactThatIsLost) {
   const json page =
       page_of({"falling_disk", "--scheme", "dop853", "--rtol", "1e-10", "--output-step", "0.05",
                "--stop-at", "contact_lost,fallen", "--velocity", "0.5,0,0,0,0,0"});
-  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  if (page.is_null()) HAMEL_SKIP_WITHOUT("page");
   const std::string note = figure_of(page, "Reaction forces")["note"];
   EXPECT_THAT(note, HasSubstr("**ceases to push** at t = 0.556143 (`contact_lost`)"));
   EXPECT_THAT(note, Not(HasSubstr("all along")));
@@ -103,7 +103,7 @@ TEST_F(Pages, ContactThatIsLost) {
 // The rows of which the points are the largest are stated.
 TEST_F(Pages, LargestOfSoMany) {
   const json page = page_of({"suslov", "--until", "6"});  // 601 states, 240 points
-  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  if (page.is_null()) HAMEL_SKIP_WITHOUT("page");
   EXPECT_EQ(figure_of(page, "Group defect")["note"],
             "Each point is the largest of 2 or 3 recorded states.");
   const json many = page_of({"suslov", "--step", "0.0005", "--until", "60"});  // 120001 states
@@ -133,7 +133,7 @@ TEST_F(Pages, AxesOnTheSphereAreNotAliased) {
     return out;
   };
   const json page = page_of({"rattleback", "--until", "400"});
-  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  if (page.is_null()) HAMEL_SKIP_WITHOUT("page");
   const json fast = figure_of(page, "Motion of the body axes"),
              slow = figure_of(page_of({"suslov"}), "Motion of the body axes");
   EXPECT_LT(widest(fast), 0.15);
@@ -145,7 +145,7 @@ TEST_F(Pages, AxesOnTheSphereAreNotAliased) {
 // Multipliers of contacts are forces; of others nothing is known.
 TEST_F(Pages, ReactionsOfContactsAreForces) {
   const json page = page_of({"bicycle", "--until", "0.1"});
-  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  if (page.is_null()) HAMEL_SKIP_WITHOUT("page");
   EXPECT_EQ(figure_of(page, "Reaction forces: rear")["y"], "lambda [N]");
   EXPECT_EQ(figure_of(page_of({"chaplygin_sleigh"}), "Reaction forces")["y"], "lambda");
 }
@@ -153,7 +153,7 @@ TEST_F(Pages, ReactionsOfContactsAreForces) {
 // The reactions of each part have a figure; spins of wheels are not among the angles of the shape.
 TEST_F(Pages, PartsAndSpinsHaveFiguresOfTheirOwn) {
   const auto bicycle = curves({"bicycle", "--speed", "5", "--until", "0.1"});
-  if (bicycle.empty()) GTEST_SKIP() << "built without the page";
+  if (bicycle.empty()) HAMEL_SKIP_WITHOUT("page");
   EXPECT_THAT(bicycle.at("Reaction forces: front"),
               testing::ElementsAre("front.reaction1 [N]", "front.reaction2 [N]",
                                    "front.reaction3 [N], contact"));
@@ -176,7 +176,7 @@ TEST_F(Pages, PartsAndSpinsHaveFiguresOfTheirOwn) {
 TEST_F(Pages, EigenvaluesAreCurves) {
   const json page =
       page_by({"steady", "bicycle", "--vary", "speed=4:6.5:6", "--report", "page.html"});
-  if (page.is_null()) GTEST_SKIP() << "built without the page";
+  if (page.is_null()) HAMEL_SKIP_WITHOUT("page");
   const json real = figure_of(page, "Real parts of the eigenvalues"),
              imaginary = figure_of(page, "Imaginary parts of the eigenvalues");
   EXPECT_EQ(real["x"], "speed [m/s]");
@@ -200,7 +200,7 @@ TEST_F(Pages, EigenvaluesAreCurves) {
 
 // A study has no figure of one cell or of none, and no table of what was not measured.
 TEST_F(Pages, NoEmptyFiguresOfAStudy) {
-  if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+  if (page_of({"suslov"}).is_null()) HAMEL_SKIP_WITHOUT("page");
   const auto look = [&](const std::string& more) {
     write("small.toml",
           "until = 1\nrepeats = 1\nscheme = \"lift\"\n" + more +
@@ -247,9 +247,9 @@ class Comparisons : public Pages {
     std::filesystem::create_directory(file("A"));
     std::filesystem::create_directory(file("B"));
     first_ = run({"run", "chaplygin_sleigh", "--quiet", "-o", "A/run.h5"});
-    if (first_.err.find("HDF5") != std::string::npos) GTEST_SKIP() << "built without HDF5";
+    if (first_.err.find("HDF5") != std::string::npos) HAMEL_SKIP_WITHOUT("HDF5");
     ASSERT_EQ(first_.status, 0) << first_.err;
-    if (page_of({"suslov"}).is_null()) GTEST_SKIP() << "built without the page";
+    if (page_of({"suslov"}).is_null()) HAMEL_SKIP_WITHOUT("page");
   }
   json compared(const std::vector<std::string>& arguments) const {
     EXPECT_EQ(run(arguments).status, 0);

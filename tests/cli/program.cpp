@@ -32,6 +32,12 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return out;
 }
 
+bool must_have(const std::string& part) {
+  if (part != "page") return std::getenv("CI") != nullptr;
+  const char* const asked = std::getenv("HAMEL_REPORT_PAGE");
+  return asked != nullptr && std::string(asked) == "ON";
+}
+
 std::string source_file(const std::string& path) {
   const char* root = std::getenv("HAMEL_SOURCE");
   EXPECT_NE(root, nullptr) << "set HAMEL_SOURCE to the source tree (ctest does)";

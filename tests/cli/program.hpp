@@ -30,6 +30,16 @@ std::vector<std::string> lines(const std::string& text);
 
 std::vector<std::string> split(const std::string& text, char separator = ',');
 
+/// Must this be there? The page where the build asked for it (HAMEL_REPORT_PAGE=ON), all else in
+/// CI.
+bool must_have(const std::string& part);
+/// Skips a test for want of a part of the build or of the machine; fails where it must be there.
+#define HAMEL_SKIP_WITHOUT(part)                                                           \
+  do {                                                                                     \
+    if (hamel::test::must_have(part)) FAIL() << "no " << (part) << ": tools/setup --gate"; \
+    GTEST_SKIP() << "no " << (part);                                                       \
+  } while (false)
+
 /// A file of the source tree.
 std::string source_file(const std::string& path);
 

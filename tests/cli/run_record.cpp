@@ -293,7 +293,7 @@ TEST_F(Record, ReportPage) {
   const Outcome o = run({"run", "suslov", "--until", "1", "--report", "page.html", "--quiet"});
   if (o.status == 2 && o.err.find("without the page") != std::string::npos) {
     EXPECT_TRUE(files().empty());
-    GTEST_SKIP() << "this program carries no page";
+    HAMEL_SKIP_WITHOUT("page");
   }
   ASSERT_EQ(o.status, 0) << o.err;
   const std::string page = contents(file("page.html"));

@@ -185,7 +185,7 @@ TEST_F(StudyCommand, AnotherStudyNeedsAnotherFolder) {
 
 /// The HDF5 file holds the same numbers as the CSV, bit for bit, with units.
 TEST_F(StudyCommand, Hdf5HoldsWhatTheCsvHolds) {
-  if (hamel::hdf5_version().empty()) GTEST_SKIP() << "this build has no HDF5";
+  if (hamel::hdf5_version().empty()) HAMEL_SKIP_WITHOUT("HDF5");
   ASSERT_EQ(run({"study", study(kSmall), "-o", "out", "--quiet"}).status, 0);
   std::map<std::string, std::string> texts;
   const hamel::Table table = hamel::read_hdf5(file("out/cells.h5"), &texts);
@@ -248,7 +248,7 @@ TEST_F(StudyCommand, ShowsProgressOnATerminal) {
   std::string longer = kSmall;
   longer.replace(longer.find("until = 2"), 9, "until = 2500");
   const std::string name = study(longer);
-  if (std::system("command -v script >/dev/null") != 0) GTEST_SKIP() << "no script(1)";
+  if (std::system("command -v script >/dev/null") != 0) HAMEL_SKIP_WITHOUT("script(1)");
   const std::string command = "cd " + file("") + " && script -qec \"$HAMEL_PROGRAM study " + name +
                               " -o out\" /dev/null >bar.txt </dev/null";
   ASSERT_EQ(std::system(command.c_str()), 0);

@@ -1,58 +1,14 @@
 #include <hamel/framework/run/names/config.hpp>
 
-#include <algorithm>
-#include <sstream>
+#include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <hamel/framework/io/text_file.hpp>
-#include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/visible.hpp>
-#include <hamel/framework/run/names/config_file.hpp>
-#include <hamel/framework/run/names/toml_config.hpp>
-#include <hamel/framework/run/names/toml_inputs.hpp>
 
 namespace hamel {
 namespace {
-
-// A TOML key: bare where it may be.
-std::string key_of(const std::string& name) {
-  const bool bare =
-      !name.empty() &&
-      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
-          std::string::npos;
-  return bare ? name : toml_string(name);
-}
-
-// A value as TOML has it; floats need a point or an exponent.
-template <class Value>
-std::string toml_of(const Value& value) {
-  std::string out = text_of(value);
-  if constexpr (std::is_same_v<Value, std::string>) return toml_string(out);
-  if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>)
-    return out.find_first_of(".en") == std::string::npos ? out + ".0" : out;
-  else if constexpr (std::is_class_v<Value> && !std::is_same_v<Value, std::string>) {
-    std::vector<std::string> entries;
-    for (const auto& entry : value) entries.push_back(toml_of(entry));
-    return "[" + join(entries) + "]";
-  }
-  return out;
-}
-
-template <class Value>
-constexpr bool is_text(const Value&) {
-  return std::is_same_v<Value, std::string>;
-}
-
-// An input: a number, the name of a file, or {t = [...], value = [...], hold = true}.
-std::string toml_of_signal(const InputSignal& signal) {
-  if (const double* value = std::get_if<double>(&signal)) return toml_of(*value);
-  const InputTable* table = std::get_if<InputTable>(&signal);
-  if (table == nullptr) return toml_string(text_of(signal));
-  return fmt::format("{{t = {}, value = {}, hold = {}}}", toml_of(table->times),
-                     toml_of(table->values), table->hold);
-}
 
 // f(member pointer) for the option of that name.
 template <class F>
@@ -68,84 +24,7 @@ void with_option(const std::string& name, F&& f) {
   if (!found) throw ConfigError({unknown_name("option", name, known)});
 }
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> out;
-  std::istringstream in(text);
-  for (std::string word; std::getline(in, word, ',');) out.push_back(word);
-  return out;
-}
-
-// "", or what a text is instead of a number.
-const char* no_number(const std::string& text, double& out) {
-  size_t used = 0;
-  try {
-    out = std::stod(text, &used);
-  } catch (const std::out_of_range&) {
-    return "is too large or too small for a number (2.3e-308 to 1.7e308)";
-  } catch (const std::exception&) {
-    return "is not a number";
-  }
-  return used == text.size() ? "" : "is not a number";
-}
-
 }  // namespace
-
-std::string text_of(double value) { return fmt::format("{}", value); }
-std::string text_of(std::optional<double> value) { return value ? text_of(*value) : ""; }
-std::string text_of(long value) { return fmt::format("{}", value); }
-std::string text_of(bool value) { return value ? "true" : "false"; }
-std::string text_of(const std::string& value) { return value; }
-std::string text_of(const std::vector<double>& value) { return join(value); }
-std::string text_of(const std::vector<std::string>& value) {
-  return fmt::format("{}", fmt::join(value, ","));
-}
-
-void read_text(const std::string& option, const std::string& text, double& out) {
-  if (const std::string_view why = no_number(text, out); !why.empty())
-    throw ConfigError({fmt::format("{}: '{}' {}", option, text, why)});
-}
-void read_text(const std::string& option, const std::string& text, std::optional<double>& out) {
-  out.reset();
-  if (!text.empty()) read_text(option, text, out.emplace());
-}
-void read_text(const std::string& option, const std::string& text, long& out) {
-  size_t used = 0;
-  try {
-    out = std::stol(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used == 0 || used != text.size())
-    throw ConfigError({fmt::format("{}: '{}' is not a whole number", option, text)});
-}
-void read_text(const std::string& option, const std::string& text, bool& out) {
-  if (text != "true" && text != "false")
-    throw ConfigError({fmt::format("{}: got '{}', expected true or false", option, text)});
-  out = text == "true";
-}
-void read_text(const std::string&, const std::string& text, std::string& out) { out = text; }
-// Names and formulas: a comma within brackets separates arguments.
-void read_text(const std::string&, const std::string& text, std::vector<std::string>& out) {
-  out.clear();
-  int open = 0;
-  for (const std::string& word : split(text)) {
-    if (open > 0) out.back() += "," + word;
-    else out.push_back(word);
-    open += static_cast<int>(std::count(word.begin(), word.end(), '(') -
-                             std::count(word.begin(), word.end(), ')'));
-  }
-}
-void read_text(const std::string& option, const std::string& text, std::vector<double>& out) {
-  if (text.empty() || text.back() == ',') {
-    throw ConfigError(
-        {fmt::format("{}: got '{}', expected numbers separated by commas", option, text)});
-  }
-  out.clear();
-  for (const std::string& word : split(text)) {
-    if (const std::string_view why = no_number(word, out.emplace_back()); !why.empty())
-      throw ConfigError({fmt::format("{}: '{}' in '{}' {}", option, word, text, why)});
-  }
-}
 
 std::string Config::text(const std::string& option) const {
   std::string out;
@@ -155,89 +34,6 @@ std::string Config::text(const std::string& option) const {
 
 void Config::set(const std::string& option, const std::string& text) {
   with_option(option, [&](auto member) { read_text(option, text, this->*member); });
-}
-
-std::vector<std::string> config_keys() {
-  std::vector<std::string> out = {"system", "set", "inputs"};
-  const auto add = [&](const Option& option, auto) { out.emplace_back(option.name); };
-  Config::start_fields(add);
-  Config::fields(add);
-  return out;
-}
-
-bool read_config_key(TomlReader& read, const std::string& key, const toml::node& node,
-                     Config& config) {
-  bool found = key == "system" || key == "set" || key == "inputs";
-  if (key == "system") read.value(node, key, config.system);
-  if (key == "set") read.lists(node, key, config.parameters);
-  if (key == "inputs") read_inputs(read, node, config.inputs);
-  const auto take = [&](const Option& option, auto& value) {
-    if (option.name != key) return;
-    found = true;
-    read.value(node, key, value);
-  };
-  Config::start_fields(
-      [&](const Option& option, auto member) { take(option, config.start.*member); });
-  Config::fields([&](const Option& option, auto member) { take(option, config.*member); });
-  return found;
-}
-
-namespace {
-
-// options: may be null.
-Config config_of(const std::string& text, const std::string& origin, CommandOptions* options) {
-  TomlReader read(origin);
-  const toml::table table = read.parse(text);
-  if (const toml::node* node = table.get("system"); node != nullptr && node->is_array())
-    throw ConfigError({fmt::format("{0}: this file is a study (hamel study {0})", origin)});
-  if (is_ensemble(table))
-    throw ConfigError({fmt::format("{0}: this file is an ensemble (hamel ensemble {0})", origin)});
-  if (table.contains("group") && table.contains("inertia"))
-    throw ConfigError({fmt::format("{0}: this file is a system by data (hamel run {0})", origin)});
-  std::vector<std::string> known = config_keys();
-  if (options != nullptr)
-    for (const auto& [name, option] : *options) known.push_back(name);
-  Config config;
-  for (const auto& [name, node] : table) {
-    const std::string key(name.str());
-    if (options != nullptr && options->contains(key)) {
-      CommandOption& option = (*options)[key];
-      option.place = read.place(node);
-      if (node.is_boolean()) option.values = {text_of(*node.value<bool>())};
-      else if (node.is_number()) option.values = {text_of(*node.value<double>())};
-      else read.value(node, key, option.values);
-    } else if (!read_config_key(read, key, node, config)) {
-      read.unknown_key(node, key, known);
-    }
-  }
-  if (!read.mistakes.empty()) throw ConfigError(read.mistakes);
-  return config;
-}
-
-}  // namespace
-
-Config Config::from_toml(const std::string& text, const std::string& origin) {
-  return config_of(text, origin, nullptr);
-}
-
-std::string Config::to_toml() const {
-  std::string out = fmt::format("system = {}\n", toml_string(system));
-  start_fields([&](const Option& option, auto member) {
-    if (!(start.*member).empty())
-      out += fmt::format("{} = {}\n", option.name, toml_of(start.*member));
-  });
-  fields([&](const Option& option, auto member) {
-    const auto& value = this->*member;
-    if (text_of(value).empty() && (!is_text(value) || text_of(Config().*member).empty())) return;
-    out += fmt::format("{} = {}\n", option.name, toml_of(this->*member));
-  });
-  if (!parameters.empty()) out += "[set]\n";
-  for (const auto& [name, values] : parameters)
-    out += fmt::format("{} = {}\n", key_of(name), toml_of(values));
-  if (!inputs.empty()) out += "[inputs]\n";
-  for (const auto& [name, signal] : inputs)
-    out += fmt::format("{} = {}\n", key_of(name), toml_of_signal(signal));
-  return out;
 }
 
 long Config::steps() const {
@@ -346,13 +142,6 @@ std::vector<std::string> Config::mistakes() const {
   look_at_output_times(*this, out);
   look_at_span(*this, out);
   return out;
-}
-
-Config read_config(const std::string& path) {
-  return Config::from_toml(read_text_file("config", path), path);
-}
-Config read_config_file(const std::string& path, CommandOptions& options) {
-  return config_of(read_text_file("config", path), path, &options);
 }
 
 }  // namespace hamel
