@@ -32,8 +32,9 @@ Mechanism cart(bool plain) {
   m.body("fork", {.mass = 0.6, .at = {-0.5, 0.02, 0.3}, .box = {0.1, 0.06, 0.5}});
   m.body("lump", {.mass = 0.4, .at = {-0.48, 0, 0.13}, .box = {0.1, 0.03, 0.2}});
   m.body("pole", {.mass = 0.3, .at = {0.3, 0.1, 0.8}, .box = {0.05, 0.05, 0.9}});
-  if (plain) m.free("root", "deck", {});
-  else m.planar("root", "deck", {});
+  const Point corner = {0.2, -0.1, 0};
+  if (plain) m.free("root", "deck", {.at = corner});
+  else m.planar("root", "deck", {.at = corner});
   m.slider("slide", "deck", "sled", {.at = {0.3, 0.1, 0.3}, .axis = {1, 2, 0}, .stiffness = 30});
   m.hinge("elbow", "sled", "arm", {.at = {0.35, 0.25, 0.3}, .axis = {0, 0, -1}, .damping = 0.1});
   m.hinge("steer", "deck", "fork", {.at = {-0.5, 0, 0}, .stiffness = 2});
