@@ -81,7 +81,8 @@ class Inverse {
         return;
       }
     }
-    out = inverse_.lazyProduct(f);
+    if constexpr (size == Eigen::Dynamic) multiply(inverse_, f, out);
+    else out = inverse_.lazyProduct(f);
   }
 
  private:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <hamel/framework/lie/short_vectors.hpp>
+
 namespace hamel {
 namespace {
 
@@ -46,6 +48,31 @@ void solve_linear(double* a, double* b, int n, int columns) {
     eliminate(a, b, n, k, 0, columns);
   }
   for (int j = 0; j < columns; ++j) substitute_back(a, b + j * n, n);
+}
+
+namespace {
+
+// All columns at once, their sums in registers.
+template <int n>
+void multiply_each(const double* a, const double* x, double* out) {
+  using short_vectors::Pair, short_vectors::pair_at;
+  constexpr int pairs = n / 2;
+  Pair sums[pairs + 1] = {};
+  double last = 0;
+  for (int j = 0; j < n; ++j) {
+    const Pair factors = {x[j], x[j]};
+    for (int p = 0; p < pairs; ++p) sums[p] += factors * pair_at(a + j * n + 2 * p);
+    if (n % 2 == 1) last += x[j] * a[j * n + n - 1];
+  }
+  for (int p = 0; p < pairs; ++p) short_vectors::store(sums[p], out + 2 * p);
+  if (n % 2 == 1) out[n - 1] = last;
+}
+
+}  // namespace
+
+void multiply_few(const double* a, const double* x, double* out, int n) {
+  short_vectors::with_count<16>(
+      n, [&](auto count) { multiply_each<decltype(count)::value>(a, x, out); });
 }
 
 }  // namespace hamel

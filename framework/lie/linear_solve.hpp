@@ -13,6 +13,20 @@ namespace hamel {
 /// Matrix Computations, 3.4.
 void solve_linear(double* a, double* b, int n, int columns);
 
+/// out = a x of up to 16 numbers, a column-major.
+void multiply_few(const double* a, const double* x, double* out, int n);
+/// out = a x of a square a; Eigen's products of a few numbers of a size known at run time cost
+/// three times as much.
+inline void multiply(const Eigen::MatrixXd& a, const Eigen::VectorXd& x, Eigen::VectorXd& out) {
+  const auto n = static_cast<int>(a.rows());
+  if (n > 16) {
+    out.noalias() = a * x;
+  } else {
+    out.resize(n);
+    multiply_few(a.data(), x.data(), out.data(), n);
+  }
+}
+
 /// m^-1: in closed form up to 4 x 4.
 template <class T, int N>
 Eigen::Matrix<T, N, N> inverse_of(const Eigen::Matrix<T, N, N>& m) {

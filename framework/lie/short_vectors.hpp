@@ -65,6 +65,11 @@ bool with_count(int count, F&& f) {
   }
   (std::make_integer_sequence<int, most>());
 }
+/// f(count), an integral_constant where that is among 1, …, most.
+template <int most, class F>
+void with_any_count(int count, F&& f) {
+  if (!with_count<most>(count, f)) f(count);
+}
 /// f(0), …, f(count - 1); of an integral_constant each is one, and the loop unrolls.
 template <class Count, class F>
 void each(Count count, F&& f) {
@@ -97,21 +102,21 @@ template <class F>
 void with_pairs(int pairs, F&& f) {
   if (!with_count<kFewPairs>(pairs, f)) f(std::integral_constant<int, 0>());
 }
-/// to = sum of x_i times row i; the x_i are so far apart.
+/// to = sum of x_i times row i, of which the first P pairs count where P > 0.
 template <int P>
-void combine_rows(const double* x, std::ptrdiff_t apart, const double* rows, std::ptrdiff_t pairs,
-                  std::ptrdiff_t count, double* to) {
+void combine_rows(const double* x, const double* rows, std::ptrdiff_t pairs, std::ptrdiff_t count,
+                  double* to) {
   if constexpr (P > 0) {
     Pair sums[P] = {};
     for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const Pair factors = {x[i * apart], x[i * apart]};
-      for (int p = 0; p < P; ++p) sums[p] += factors * pair_at(rows + 2 * (i * P + p));
+      const Pair factors = {x[i], x[i]};
+      for (int p = 0; p < P; ++p) sums[p] += factors * pair_at(rows + 2 * (i * pairs + p));
     }
     for (int p = 0; p < P; ++p) store(sums[p], to + 2 * p);
   } else {
     for (std::ptrdiff_t j = 0; j < 2 * pairs; ++j) to[j] = 0;
     for (std::ptrdiff_t i = 0; i < count; ++i) {
-      if (x[i * apart] != 0) add(x[i * apart], rows + 2 * pairs * i, to, 2 * pairs);
+      if (x[i] != 0) add(x[i], rows + 2 * pairs * i, to, 2 * pairs);
     }
   }
 }
@@ -127,23 +132,23 @@ void add_products(const double* rows, const double* x, int columns, std::ptrdiff
     to[i] += sum[0] + sum[1];
   }
 }
-/// row i += factor x_i times y; the x_i may be among the rows where y is 0.
+/// row i += factor x_i times y, of whose pairs the first P count where P > 0.
 template <int P>
-void add_to_rows(double factor, const double* x, std::ptrdiff_t apart, const double* y,
-                 double* rows, std::ptrdiff_t pairs, std::ptrdiff_t count) {
+void add_to_rows(double factor, const double* x, const double* y, double* rows,
+                 std::ptrdiff_t pairs, std::ptrdiff_t count) {
   if constexpr (P > 0) {
     Pair scaled[P];
     for (int p = 0; p < P; ++p) scaled[p] = Pair{factor, factor} * pair_at(y + 2 * p);
     for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const Pair factors = {x[i * apart], x[i * apart]};
+      const Pair factors = {x[i], x[i]};
       for (int p = 0; p < P; ++p) {
-        double* const at = rows + 2 * (i * P + p);
+        double* const at = rows + 2 * (i * pairs + p);
         store(pair_at(at) + factors * scaled[p], at);
       }
     }
   } else {
     for (std::ptrdiff_t i = 0; i < count; ++i) {
-      if (x[i * apart] != 0) add(factor * x[i * apart], y, rows + 2 * pairs * i, 2 * pairs);
+      if (x[i] != 0) add(factor * x[i], y, rows + 2 * pairs * i, 2 * pairs);
     }
   }
 }

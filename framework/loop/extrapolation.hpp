@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstddef>
-#include <type_traits>
 
 #include <Eigen/Core>
 
@@ -19,9 +18,7 @@ class Extrapolation {
   static constexpr int most = 6;
 
   /// sample: of the size of all that follow.
-  explicit Extrapolation(const Unknown& sample) : value_(sample), work_(sample), next_(sample) {
-    differences_.fill(sample);
-  }
+  explicit Extrapolation(const Unknown& sample) : value_(sample) { differences_.fill(sample); }
   int count() const { return count_; }
   void clear_history() { count_ = 0; }
   /// D^0, D^1, ..., of which count() are known.
@@ -45,24 +42,36 @@ class Extrapolation {
   }
 
  private:
-  // In registers where the size is known, else in place.
-  using Local = std::conditional_t<Unknown::SizeAtCompileTime == Eigen::Dynamic, Unknown&, Unknown>;
+  // As a whole where the size is known, else number by number: both stay in registers.
   void put(const Unknown& latest, int count) {
-    Local sum = value_, work = work_, next = next_;
-    sum = latest;
-    work = latest;
+    if constexpr (Unknown::SizeAtCompileTime == Eigen::Dynamic) {
+      std::array<double*, most> differences;
+      for (std::size_t j = 0; j < most; ++j) differences[j] = differences_[j].data();
+      for (Eigen::Index i = 0; i < latest.size(); ++i) {
+        value_[i] =
+            put(latest[i], count, [&](std::size_t j) -> double& { return differences[j][i]; });
+      }
+    } else {
+      value_ = put(latest, count, [&](std::size_t j) -> Unknown& { return differences_[j]; });
+    }
+  }
+  // The next value of a number, or of all, with differences(j).
+  template <class Value, class Differences>
+  [[gnu::always_inline]] static Value put(const Value& latest, int count,
+                                          Differences&& differences) {
+    Value sum = latest, work = latest;
     for (int j = 0; j < count; ++j) {
-      Unknown& difference = differences_[static_cast<std::size_t>(j)];
+      Value& difference = differences(static_cast<std::size_t>(j));
       if (j > 0) sum += work;
-      next = work - difference;
+      const Value next = work - difference;
       difference = work;
       work = next;
     }
-    value_ = sum;
+    return sum;
   }
 
   std::array<Unknown, most> differences_;
-  Unknown value_, work_, next_;
+  Unknown value_;
   int count_ = 0;
 };
 

@@ -150,6 +150,7 @@ class Loop final : public TimeLoop {
     step_.begin(nodes_.now(), h);
     report = unknown_.solve(step_, nodes_.now(), h, memory);
     if (report.ok()) {
+      if constexpr (NormalisesElement<Step>) step_.normalise_when(nodes_.due());
       if (!unknown_.finish(step_, nodes_.next())) report.reason = why_not_finished();
       else if (!std::isfinite(nodes_.next().x.sum()))
         report.reason = Reason::not_finite;  // a force there
@@ -164,7 +165,7 @@ class Loop final : public TimeLoop {
       return;
     last_h_ = h;
     unknown_.keep(memory);
-    nodes_.turn(problem_);
+    nodes_.turn(problem_, NormalisesElement<Step>);
     t_ = nodes_.now().t;
   }
 

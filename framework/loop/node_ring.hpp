@@ -20,11 +20,13 @@ class NodeRing {
   Node& next() { return *next_; }
   /// now() was set to an element of the group.
   void count_anew() { products_ = 0; }
-  /// next() becomes now(). A product of elements is off the group by some eps: eight of them stay
-  /// well below 1e-14.
-  [[gnu::always_inline]] void turn(const Problem& problem) {
+  /// Is the element of next() to be normalised? A product of elements is off the group by some
+  /// eps: eight of them stay well below 1e-14.
+  bool due() const { return products_ == 7; }
+  /// next() becomes now(). normalised: where that was due it was done.
+  [[gnu::always_inline]] void turn(const Problem& problem, bool normalised = false) {
     if (++products_ == 8) {
-      problem.normalise(next_->g);
+      if (!normalised) problem.normalise(next_->g);
       products_ = 0;
     }
     Node* const free = previous_;

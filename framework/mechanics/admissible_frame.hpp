@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/mechanics/run_time_frame.hpp>
 #include <hamel/framework/mechanics/small_factors.hpp>
 
@@ -302,7 +303,7 @@ class AdmissibleFrame<Eigen::Dynamic, Eigen::Dynamic> {
   }
   void assemble(Vector& r, const Multipliers& c) { assemble(r, c, r); }
   void weigh(Vector& mu) const { frame_.weigh(mu.data()); }
-  void momentum(const Vector& xi, Vector& out) const { out.noalias() = inertia.lazyProduct(xi); }
+  void momentum(const Vector& xi, Vector& out) const { multiply(inertia, xi, out); }
   template <class State>
   double size(const State& /*x*/, const Vector& mu) const {
     return size(mu);
@@ -310,9 +311,9 @@ class AdmissibleFrame<Eigen::Dynamic, Eigen::Dynamic> {
   double size(const Vector& mu) const { return frame_.size(mu.data()); }
   void velocity(const Vector& mu, const Multipliers& c, Vector& xi) {
     xi.resize(mu.size());
-    frame_.velocity(inertia.data(), mu.data(), c.data(), xi.data());
+    frame_.velocity(mu.data(), c.data(), xi.data());
   }
-  void expand(double* z) { frame_.expand(inertia.data(), z); }
+  void expand(double* z) { frame_.expand(z); }
   void admissible(const Vector& mu, Vector& xi) { velocity(mu, b, xi); }
   void multipliers(const Vector& reaction, Multipliers& lambda) {
     frame_.multipliers(reaction.data(), lambda.data());

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <limits>
 
+#include <hamel/framework/lie/short_vectors.hpp>
 #include <hamel/framework/mechanics/few_factors.hpp>
-#include <hamel/framework/mechanics/short_vectors.hpp>
 
 namespace hamel {
 
 using few_factors::kFewRows;
 using short_vectors::add, short_vectors::add_products, short_vectors::combine_rows,
     short_vectors::dot, short_vectors::each, short_vectors::each_down, short_vectors::pairs_of,
-    short_vectors::scale, short_vectors::with_count, short_vectors::with_pairs,
-    short_vectors::kFewPairs;
+    short_vectors::scale, short_vectors::with_any_count, short_vectors::with_count,
+    short_vectors::with_pairs, short_vectors::kFewPairs;
 
 static_assert(kFewRows <= 2 * kFewPairs);
 
@@ -23,12 +23,6 @@ namespace {
 template <class F>
 bool with_few(int n, int k, F&& f) {
   return k <= kFewRows && with_count<few_factors::kFewVelocities>(n, f);
-}
-
-// f(k), an integral_constant where the rows are few.
-template <class F>
-void with_any_count(int k, F&& f) {
-  if (!with_count<kFewRows>(k, f)) f(k);
 }
 
 // S = L D L^T by rows: L below the diagonal, D^-1 on it; the columns of D L^T above serve as work
@@ -199,7 +193,7 @@ BranchedFactors::Span BranchedFactors::span_of(const double* row, int k) {
 }
 
 void BranchedFactors::factor_gram(int width) {
-  with_any_count(k_, [&](auto k) { factor_rows(k, width, gram_.data()); });
+  with_any_count<kFewRows>(k_, [&](auto k) { factor_rows(k, width, gram_.data()); });
 }
 
 void BranchedFactors::apply_inertia(const double* inertia, const double* xi, double* mu) const {
@@ -249,7 +243,7 @@ void BranchedFactors::subtract_rows(const double* c, const double* v, double* ou
     const double* const y = y_.data();
     double* const sums = sums_.data();
     if constexpr (P > 0) {
-      combine_rows<P>(v, 1, y, P, n, sums);
+      combine_rows<P>(v, y, P, n, sums);
     } else {
       std::fill_n(sums, width, 0.0);
       for (int i = 0; i < n; ++i) {
@@ -280,7 +274,7 @@ void BranchedFactors::add_reaction(const double* lambda, double* out) const {
 }
 
 void BranchedFactors::solve_gram(double* c) const {
-  with_any_count(k_, [&](auto k) { solve_rows(k, 2 * pairs_of(k_), gram_.data(), c); });
+  with_any_count<kFewRows>(k_, [&](auto k) { solve_rows(k, 2 * pairs_of(k_), gram_.data(), c); });
 }
 
 }  // namespace hamel

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include <hamel/framework/lie/short_vectors.hpp>
 #include <hamel/framework/lie/types.hpp>
-#include <hamel/framework/mechanics/short_vectors.hpp>
 
 namespace hamel::few_factors {
 

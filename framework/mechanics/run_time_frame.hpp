@@ -21,31 +21,36 @@ class RunTimeFrame {
   void assemble(const double* r, const double* c, double* f);
   void weigh(double* mu) const;
   double size(const double* mu) const;
-  void velocity(const double* inertia, const double* mu, const double* c, double* xi);
-  void expand(const double* inertia, double* z);
+  void velocity(const double* mu, const double* c, double* xi);
+  void expand(double* z);
   void multipliers(const double* reaction, double* lambda);
 
  private:
   void find_weights(const double* inertia);
   void factor_rows(const double* a, bool keep_signs);
+  template <int P>
+  void weigh_rows(const double* a);
+  template <int P>
+  void reflect_rows(int j, int first, bool keep_signs);
   void find_frame();
   void reduce_inertia(const double* inertia);
   void factor_reduced();
   void reflect(int j, double* y) const;
   void reduce(const double* mu, double* to) const;
   void solve_reduced();
-  void combine(const double* inertia, const double* c, double* xi);
+  void combine(const double* c, double* xi);
 
   int n_, k_, m_;
   bool diagonal_ = false;
   std::vector<double> weights_;                        // D^-1/2
-  std::vector<double> reflections_;                    // column j: before entry j row j of L
-  std::vector<int> ends_;                              // of the entries of a column that are not 0
+  std::vector<double> rows_;                           // D^-1/2 A^T, above its diagonal L^T
+  std::vector<double> reflections_;                    // vector j in row j, from its entry j
+  std::vector<int> ends_;                              // of the entries of a vector that are not 0
   std::vector<double> l_inverse_diagonal_;             // of L
   std::vector<double> row_weights_, factors_, signs_;  // 2/|v|^2
-  std::vector<double> frame_;                          // E
+  std::vector<double> frame_, momenta_;                // E, I E
   std::vector<double> reduced_inertia_;
-  std::vector<double> few_, work_, image_, y_, sums_;
+  std::vector<double> few_, work_, y_, sums_;
 };
 
 }  // namespace hamel

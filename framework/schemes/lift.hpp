@@ -77,6 +77,8 @@ class Lift::General {
         split_(kSplits && mirrored_ && nodal_ && problem.constant_inertia()) {}
 
   int size() const { return problem_.dim(); }
+  /// Is the element at the end to be normalised? It is before the place there is found.
+  void normalise_when(bool due) { normalises_ = due; }
   /// The forces may have changed.
   void clear_history() { place_time_ = kNothing; }
   void begin(const Node& node, double h) {
@@ -136,6 +138,7 @@ class Lift::General {
       problem_.Ad_transpose(f1_, m_, mu_);
     }
     next.t = from_->t + h_;
+    if (normalises_) problem_.normalise(g1_);
     next.g = g1_;
     apply(next.t, next.g, v_);
     if (nodal_) mu_ += (h_ / 2) * force_;
@@ -245,7 +248,7 @@ class Lift::General {
 
   P problem_;
   double s_;
-  bool nodal_, mirrored_;
+  bool nodal_, mirrored_, normalises_ = false;
   bool split_;  // (M50): mu0 = even_ + odd_, mu1 = even_ - odd_
   const Node* from_ = nullptr;
   double h_ = 0, scale_squared_ = 0;

@@ -90,6 +90,11 @@ template <class Step>
 concept HasFrame = requires(const Step& step, typename Step::Unknown& z) {
   step.expand(z);
 };
+/// Does the step itself normalise the element at its end, where that is due: before it uses it?
+template <class Step>
+concept NormalisesElement = requires(Step& step) {
+  step.normalise_when(true);
+};
 /// F and dF/dx in closed form, linearise(x, f, j)?
 template <class Step>
 concept HasJacobian = requires(const Step& step, const typename Step::Unknown& x,

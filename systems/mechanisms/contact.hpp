@@ -88,6 +88,11 @@ class ContactModel {
   /// At a tree that was placed; with rates one that moved and accelerated.
   virtual void rows(const Contact& contact, const Tree& tree, const Ground& ground, bool with_rates,
                     Row* out) const = 0;
+  /// A xi - b of its rows, at a tree that moved with xi.
+  virtual void velocities(const Contact& contact, const Tree& tree, const Ground& ground,
+                          double* out) const = 0;
+  /// phi of its last row, at a tree that was placed.
+  virtual double height(const Contact& contact, const Tree& tree) const = 0;
   /// The point of contact with the ground, in the world.
   virtual Vec3 touch(const Contact& contact, const Tree& tree) const = 0;
 

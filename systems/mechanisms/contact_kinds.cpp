@@ -51,7 +51,25 @@ class ContactOf final : public ContactModel {
     else find_rows<double>(contact, tree, ground, out);
   }
 
-  HAMEL_FLATTEN Vec3 touch(const Contact& contact, const Tree& tree) const override {
+  HAMEL_FLATTEN void velocities(const Contact& contact, const Tree& tree, const Ground& ground,
+                                double* out) const override {
+    const ContactView<double> view(contact, tree);
+    const auto touch = kind_.touch(view);
+    const Vec3 velocity = velocity_at(tree.twist(contact.link), touch.point);
+    for (const Vec3& u : touch.directions) {
+      *out = u.dot(velocity);
+      if (ground.moves()) *out -= drift(view, ground, touch.point, u);
+      ++out;
+    }
+    *out = view.vertical.dot(velocity);
+  }
+
+  HAMEL_FLATTEN double height(const Contact& contact, const Tree& tree) const override {
+    const ContactView<double> view(contact, tree);
+    return view.height(kind_.touch(view).point);
+  }
+
+  Vec3 touch(const Contact& contact, const Tree& tree) const override {
     const ContactView<double> view(contact, tree);
     return view.point_in_world(kind_.touch(view).point);
   }

@@ -138,11 +138,9 @@ bool Multibody::constraint_values(double t, const double* g, ConstVector xi, Vec
   if (constant_rows_) return true;
   Tree& at = placed(g);
   at.move(xi);
-  rows_.each(
-      at, t, [&](size_t i) { return varies_[i] != 0; },
-      [&](size_t i, const Row& row) {
-        out[slots_[i]] = (row.dof >= 0 ? xi[row.dof] : row.power(at)) - row.drift;
-      });
+  rows_.each_velocity(
+      at, t, xi.data(), [&](size_t i) { return varies_[i] != 0; },
+      [&](size_t i, double value) { out[slots_[i]] = value; });
   return true;
 }
 

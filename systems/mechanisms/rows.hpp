@@ -49,38 +49,33 @@ struct ConstraintRows {
   template <bool with_rates = false, class Wants, class F>
   void each(const Tree& tree, double t, Wants&& wants, F&& f) const {
     size_t i = 0;
-    const auto evaluate_all = [&](const auto& part) {
-      Row rows[std::remove_cvref_t<decltype(part)>::most_rows];
-      evaluate(part, tree, with_rates, rows);
-      for (size_t k = 0; k < part.row_count(); ++k)
-        if (wants(i + k)) f(i + k, rows[k]);
+    for (const Contact& contact : contacts) {
+      if (contact.fixed) each_fixed<with_rates>(contact, tree, i, wants, f);
+      else each_evaluated<with_rates>(contact, tree, i, wants, f);
+      i += contact.row_count();
+    }
+    each_of_joints<with_rates>(tree, t, i, wants, f);
+  }
+  /// f(i, A xi - b) for the rows i selected by a predicate, at a tree that moved with xi.
+  template <class Wants, class F>
+  void each_velocity(const Tree& tree, double t, const double* xi, Wants&& wants, F&& f) const {
+    const auto value = [&](size_t i, const Row& row) {
+      f(i, (row.dof >= 0 ? xi[row.dof] : row.power(tree)) - row.drift);
     };
-    const auto any = [&](size_t count) {
-      size_t k = 0;
-      while (k < count && !wants(i + k)) ++k;
-      return k < count;
-    };
+    size_t i = 0;
     for (const Contact& contact : contacts) {
       const size_t count = contact.row_count();
-      if (contact.fixed) each_fixed<with_rates>(contact, tree, i, wants, f);
-      else if (any(count)) evaluate_all(contact);
+      if (contact.fixed) {
+        each_fixed<false>(contact, tree, i, wants, value);
+      } else if (any(i, count, wants)) {
+        std::array<double, Contact::most_rows> values;
+        contact.model->velocities(contact, tree, ground, values.data());
+        for (size_t k = 0; k < count; ++k)
+          if (wants(i + k)) f(i + k, values[k]);
+      }
       i += count;
     }
-    for (const Loop& loop : loops) {
-      if (any(loop.row_count())) evaluate_all(loop);
-      i += loop.row_count();
-    }
-    for (const Prescribed& p : prescribed) {
-      if (wants(i)) {
-        Row given;
-        given.dof = p.dof;
-        given.drift = p.rate(t);
-        if constexpr (with_rates) given.rate = slope(p, t);
-        if (p.held >= 0) given.phi = beyond(p, tree);
-        f(i, given);
-      }
-      ++i;
-    }
+    each_of_joints<false>(tree, t, i, wants, value);
   }
   /// f(i, phi) for the holonomic rows i selected by a predicate.
   template <class Wants, class F>
@@ -88,7 +83,8 @@ struct ConstraintRows {
     size_t i = 0;
     for (const Contact& contact : contacts) {
       i += contact.row_count();
-      if (wants(i - 1)) f(i - 1, contact.fixed ? contact.height : touch(contact, tree)[2]);
+      if (wants(i - 1))
+        f(i - 1, contact.fixed ? contact.height : contact.model->height(contact, tree));
     }
     for (const Loop& loop : loops) {
       Row rows[Loop::most_rows];
@@ -113,6 +109,41 @@ struct ConstraintRows {
   }
 
  private:
+  // Is one of `count` rows wanted, the first of which is row `first`?
+  template <class Wants>
+  static bool any(size_t first, size_t count, Wants& wants) {
+    for (size_t i = first; i < first + count; ++i)
+      if (wants(i)) return true;
+    return false;
+  }
+  // Those of a contact or loop, of which the first is row `first`.
+  template <bool with_rates, class Part, class Wants, class F>
+  void each_evaluated(const Part& part, const Tree& tree, size_t first, Wants& wants, F& f) const {
+    if (!any(first, part.row_count(), wants)) return;
+    Row rows[Part::most_rows];
+    evaluate(part, tree, with_rates, rows);
+    for (size_t k = 0; k < part.row_count(); ++k)
+      if (wants(first + k)) f(first + k, rows[k]);
+  }
+  // Those of loops and prescribed joints, of which the first is row i.
+  template <bool with_rates, class Wants, class F>
+  void each_of_joints(const Tree& tree, double t, size_t i, Wants& wants, F& f) const {
+    for (const Loop& loop : loops) {
+      each_evaluated<with_rates>(loop, tree, i, wants, f);
+      i += loop.row_count();
+    }
+    for (const Prescribed& p : prescribed) {
+      if (wants(i)) {
+        Row given;
+        given.dof = p.dof;
+        given.drift = p.rate(t);
+        if constexpr (with_rates) given.rate = slope(p, t);
+        if (p.held >= 0) given.phi = beyond(p, tree);
+        f(i, given);
+      }
+      ++i;
+    }
+  }
   // Those of a fixed contact, of which the first is row `first`.
   template <bool with_rates, class Wants, class F>
   static void each_fixed(const Contact& contact, const Tree& tree, size_t first, Wants& wants,

@@ -120,6 +120,7 @@ Tree::Tree(const std::vector<Link>& links) {
   find_rotors();
   for (Node& node : nodes_) node.own = node.inertia;
   placed_.assign(drawn_.size(), std::numeric_limits<double>::quiet_NaN());
+  moved_.resize(static_cast<size_t>(dim_));
   place(drawn_.data());
   accumulate_inertia();
 }
@@ -191,7 +192,7 @@ Rigid Tree::from_root(int link) const {
 HAMEL_FLATTEN void Tree::place(const double* g) {
   if (placed_at(g)) return;
   std::memcpy(placed_.data(), g, placed_.size() * sizeof(double));
-  carries_ = false;
+  carries_ = moves_ = false;
   for (Node& node : nodes_) {
     const double* element = g + node.element;
     if (node.link.parent == kGround) {

@@ -195,11 +195,11 @@ class Tree {
   static void write_free(const Node& node, double* out, Eigen::Index stride);
 
   std::vector<Node> nodes_;
-  std::vector<double> drawn_, placed_;
+  std::vector<double> drawn_, placed_, moved_;  // xi of the last move there
   Rigid rest_;
   int dim_ = 0, size_ = 0;
   bool chain_ = true;  // each link carries the next one: I(g) has no entries that are always 0
-  bool carries_ = false;
+  bool carries_ = false, moves_ = false;
 };
 
 }  // namespace hamel::mechanisms

@@ -37,6 +37,10 @@ inline void Tree::move_free(Node& node, const double* xi) {
 }
 
 HAMEL_FLATTEN void Tree::move(Eigen::Ref<const Eigen::VectorXd> xi) {
+  const size_t bytes = moved_.size() * sizeof(double);
+  if (moves_ && std::memcmp(moved_.data(), xi.data(), bytes) == 0) return;
+  std::memcpy(moved_.data(), xi.data(), bytes);
+  moves_ = true;
   for (Node& node : nodes_) {
     const bool is_root = node.link.parent == kGround;
     node.rate = xi[node.dof];
