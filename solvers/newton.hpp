@@ -12,8 +12,9 @@
 // steps. Where a fresh J no longer halves a residual within the tolerance, that is its floor: no J
 // is made to go below it.
 // Many unknowns whose J is made of differences begin with J = 1, what the frame of a step makes of
-// it for h -> 0 (M39): it costs nothing, and it is given up where it does not halve |F|, or once
-// its corrections have cost as much as a J would have.
+// it for h -> 0 (M39): it costs nothing, does not grow old as the frame turns, and is given up
+// where it does not halve |F| or needs many corrections. The J that is then made is kept at least
+// until its corrections have cost as much; where it needs more than three a step, 1 is tried again.
 // Compiled into the kernels: fixed sizes, no heap, no virtual call. Source: Kelley, Solving
 // Nonlinear Equations with Newton's Method, SIAM 2003, ch. 1-2.
 #pragma once
@@ -60,10 +61,9 @@ class Inverse {
   /// Broyden's update behind a correction c = J^-1 f that has left f_1 (Kelley 2003, ch. 4): the
   /// change of J along c that makes F(x - c) what it was found to be. With c_1 = J^-1 f_1
   ///   J^-1 <- J^-1 + c_1 (J^-T c)^T / c.(c - c_1).
-  /// No update where that is ill-conditioned, or J is kept by its LU.
+  /// No update where that is ill-conditioned. Not of a large J.
   template <class Vector>
   void update(const Vector& c, const Vector& f_1) {
-    if (is_large(c.size())) return;
     constexpr int most = size == Eigen::Dynamic ? 16 : size;
     using Small = Eigen::Matrix<double, size, 1, 0, most, 1>;
     const Small c_1 = inverse_.lazyProduct(f_1);
@@ -81,8 +81,7 @@ class Inverse {
         return;
       }
     }
-    if constexpr (size == Eigen::Dynamic) multiply(inverse_, f, out);
-    else out = inverse_.lazyProduct(f);
+    multiply(inverse_, f, out);
   }
 
  private:
@@ -119,13 +118,17 @@ struct Newton {
     Unknown f, correction, trial, trial_f;
     Differences<Unknown> differences;
     bool valid = false;
-    double floor = kRoundOff;  // of |F|^2, relative: below it no J is made
-    int spent = 0;             // corrections by J = 1
+    double floor;  // of |F|^2, relative: below it no J is made
+    int wait = 0;  // so many corrections until J = 1 is tried
 
     Memory() requires(Unknown::RowsAtCompileTime >= 0) : Memory(Unknown(Unknown::Zero())) {}
     /// sample: an x. After this no solve takes memory.
     explicit Memory(const Unknown& sample)
-        : f(sample), correction(sample), trial(sample), trial_f(sample) {
+        : f(sample),
+          correction(sample),
+          trial(sample),
+          trial_f(sample),
+          floor(floor_of(sample.size())) {
       jacobian.setIdentity(sample.size(), sample.size());
       if (sample.size() > 0 && !factors.is_large(sample.size())) factors.compute(jacobian);
       differences = {sample, sample, sample};
@@ -134,8 +137,8 @@ struct Newton {
     void clear_history() {
       valid = false;
       factors.set_one();
-      floor = kRoundOff;
-      spent = 0;
+      floor = floor_of(f.size());
+      wait = 0;
     }
   };
 
@@ -173,7 +176,9 @@ struct Newton {
         return {Reason::converged, std::sqrt(size / scale), 1, 2};
       }
       tried.evaluations = 2;
-      memory.valid = !HasJacobian<Step> && worth_keeping(false, before, size, memory.floor * scale);
+      memory.valid =
+          !HasJacobian<Step> && (worth_keeping(false, before, size, memory.floor * scale) ||
+                                 (memory.factors.is_one() && size <= 4 * before));
       if (memory.valid) {
         if (worth_learning(before, size, aimed, scale)) learn(memory);
         memory.f = memory.trial_f;
@@ -208,16 +213,31 @@ struct Newton {
   static bool worth_learning(double before, double after, double aimed, double scale) {
     return before > kRoundOff * scale && 256 * after > aimed;
   }
-  // J is changed by what the correction of f by it has left, trial_f.
+  // J is changed by what the correction of f by it has left, trial_f; a large one is not: where the
+  // rows act on the momenta that learns round-off.
   template <class Unknown>
   [[gnu::noinline, gnu::cold]] static void learn(Memory<Unknown>& memory) {
+    if (memory.factors.is_large(memory.f.size())) return;
     memory.factors.solve(memory.f, memory.correction);
     memory.factors.update(memory.correction, memory.trial_f);
   }
-  // Does a solve without a J begin with 1? Until that has cost as much as a J of differences.
+  // Of |F|^2, relative: above the aim of many unknowns.
+  static constexpr double floor_of(Eigen::Index n) {
+    const double aimed = 4 * aim(0, n);
+    return std::max(kRoundOff, aimed * aimed);
+  }
+  // After a solve: is its J kept, and when is 1 tried again?
   template <class Unknown>
-  static bool begins_with_one(const Memory<Unknown>& memory, Eigen::Index n) {
-    return memory.factors.is_large(n) && memory.factors.is_one() && memory.spent <= 2 * n + 1;
+  static void judge(Memory<Unknown>& memory, bool exact, int iterations) {
+    const auto n = static_cast<int>(memory.f.size());
+    memory.valid = memory.valid && iterations <= (exact ? 1 : 2 + 2 * n / 5);
+    if (!memory.factors.is_large(n)) return;
+    if (memory.factors.is_one()) {
+      if (!memory.valid) memory.wait = 2 * n + 1;
+    } else {
+      memory.wait -= iterations;
+      memory.valid = memory.valid && (memory.wait > 0 || iterations <= 3);
+    }
   }
 
   // memory.valid: memory.f is F(x), to be corrected with the Jacobian kept.
@@ -232,9 +252,10 @@ struct Newton {
     const double target = std::min(aim(tolerance, x.size()), tolerance),
                  aimed = target * target * scale;
 
-    auto& [jacobian, factors, f, correction, trial, trial_f, differences, valid, floor, spent] =
+    auto& [jacobian, factors, f, correction, trial, trial_f, differences, valid, floor, wait] =
         memory;
-    if (!valid && !exact && begins_with_one(memory, x.size())) {
+    if (!valid && !exact && factors.is_large(x.size()) && wait <= 0) {
+      factors.set_one();
       step.residual(x, f);
       ++report.evaluations;
       valid = true;
@@ -242,11 +263,7 @@ struct Newton {
     double size = valid ? f.squaredNorm() : 0;  // |F|^2; with a Jacobian that is kept, f is F(x)
     bool fresh = false;
     const auto finish = [&](Reason reason) {
-      const auto most = exact ? 1 : 2 + static_cast<int>(2 * x.size()) / 5;
-      memory.valid = memory.valid && report.iterations <= most;
-      if (memory.factors.is_one()) {
-        memory.valid = memory.valid && begins_with_one(memory, x.size());
-      }
+      judge(memory, exact, report.iterations);
       report.reason = reason;
       report.residual = std::sqrt(size / scale);
       return report;
@@ -255,13 +272,13 @@ struct Newton {
       if (!memory.valid) {
         report.evaluations += step.linearise(x, f, jacobian, differences, /*in_frame=*/true);
         factors.compute(jacobian);
+        wait = 2 * static_cast<int>(x.size()) + 1;
         valid = true;
         fresh = true;
         size = f.squaredNorm();
       }
       if (!std::isfinite(size)) return finish(Reason::not_finite);
       ++report.iterations;
-      if (factors.is_one()) ++spent;
       factors.solve(f, correction);
       step.expand(correction);
       double length = 1, trial_size = 0;
@@ -283,7 +300,8 @@ struct Newton {
         memory.valid = false;
         continue;
       }
-      memory.valid = worth_keeping(exact, size, trial_size, floor * scale) &&
+      memory.valid = (worth_keeping(exact, size, trial_size, floor * scale) ||
+                      (factors.is_one() && (report.iterations == 1 || trial_size <= accepted))) &&
                      !(factors.is_one() && report.iterations >= max_iterations / 2);
       fresh = false;
       if (memory.valid && !exact && 2 * length == 1 &&

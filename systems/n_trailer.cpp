@@ -1,5 +1,6 @@
 #include <hamel/systems/n_trailer.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -51,7 +52,7 @@ class Train final : public Mechanics {
 
   void inertia(const double* g, Matrix out) const override {
     const Headings h(g, n_);
-    out.setZero();
+    zero(out);
     out(kOmega, kOmega) = moments_[0];
     out(kV, kV) = out(kV + 1, kV + 1) = behind_[0];
     for (int j = 1; j <= n_; ++j) {
@@ -79,7 +80,7 @@ class Train final : public Mechanics {
 
   void constraints(double /*t*/, const double* g, Matrix a, Vector b) const override {
     const Headings h(g, n_);
-    a.setZero();
+    zero(a);
     b.setZero();
     for (int i = 0; i <= n_; ++i) {
       const Plane e = h.across(i);
@@ -93,6 +94,18 @@ class Train final : public Mechanics {
     }
   }
 
+  /// The rows are e_i . u_i, u_i = u_{i-1} - L_i w_i e_i.
+  bool constraint_values(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
+    const Headings h(g, n_);
+    Plane u(xi[kV], xi[kV + 1]);
+    out[0] = h.across(0).dot(u);
+    for (int i = 1; i <= n_; ++i) {
+      u -= at(lengths_, i) * turning(xi, i) * h.across(i);
+      out[i] = h.across(i).dot(u);
+    }
+    return true;
+  }
+
   void force(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
     inertial_force(g, xi, out);
   }
@@ -100,24 +113,54 @@ class Train final : public Mechanics {
   /// dl/dalpha_j = L_j w_j n_j . P_j.
   void inertial_force(const double* g, ConstVector xi, Vector out) const override {
     const Headings h(g, n_);
-    std::array<Plane, kMost + 1> u;
-    u[0] = {xi[kV], xi[kV + 1]};
-    for (int i = 1; i <= n_; ++i) {
-      const double w = xi[kOmega] + xi[kAlpha + i];
-      u[static_cast<size_t>(i)] = u[static_cast<size_t>(i - 1)] - at(lengths_, i) * w * h.across(i);
-    }
     out.setZero();
-    Plane momentum(0, 0);
-    for (int j = n_; j > 0; --j) {
-      momentum += at(masses_, j) * u[static_cast<size_t>(j)];
-      const double w = xi[kOmega] + xi[kAlpha + j];
-      out[kAlpha + j] = at(lengths_, j) * w * h.along(j).dot(momentum);
-    }
+    each_momentum(h, xi, [&](int j, const Plane& momentum) {
+      if (j > 0) out[kAlpha + j] = at(lengths_, j) * turning(xi, j) * h.along(j).dot(momentum);
+    });
+  }
+  /// dl/dalpha_j' = J_j w_j - L_j e_j . P_j, and the momentum of the car with all of them.
+  bool momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const override {
+    const Headings h(g, n_);
+    inertial_force.setZero();
+    out[kOmega] = 0;
+    each_momentum(h, xi, [&](int j, const Plane& momentum) {
+      if (j == 0) {
+        out.segment<2>(kV) = momentum;
+        out[kOmega] += moments_[0] * xi[kOmega];
+        return;
+      }
+      const double w = turning(xi, j), length = at(lengths_, j);
+      out[kAlpha + j] = at(moments_, j) * w - length * h.across(j).dot(momentum);
+      out[kOmega] += out[kAlpha + j];
+      inertial_force[kAlpha + j] = length * w * h.along(j).dot(momentum);
+    });
+    return true;
   }
 
  private:
   static double& at(std::vector<double>& v, int i) { return v[static_cast<size_t>(i)]; }
   static double at(const std::vector<double>& v, int i) { return v[static_cast<size_t>(i)]; }
+  /// Of a matrix without gaps at once: Eigen's loop over its columns takes longer than all else.
+  static void zero(Matrix m) {
+    if (m.outerStride() == m.rows()) std::fill_n(m.data(), m.size(), 0.0);
+    else m.setZero();
+  }
+  /// w_j = omega + alpha_j', j >= 1.
+  static double turning(ConstVector xi, int j) { return xi[kOmega] + xi[kAlpha + j]; }
+  /// f(j, P_j) from the last trailer to the car, P_j = sum of m_i u_i over i >= j.
+  template <class F>
+  void each_momentum(const Headings& h, ConstVector xi, F&& f) const {
+    std::array<Plane, kMost + 1> u;
+    u[0] = {xi[kV], xi[kV + 1]};
+    for (int i = 1; i <= n_; ++i)
+      u[static_cast<size_t>(i)] =
+          u[static_cast<size_t>(i - 1)] - at(lengths_, i) * turning(xi, i) * h.across(i);
+    Plane momentum(0, 0);
+    for (int j = n_; j >= 0; --j) {
+      momentum += at(masses_, j) * u[static_cast<size_t>(j)];
+      f(j, momentum);
+    }
+  }
 
   int n_;
   std::vector<double> lengths_, masses_, moments_, behind_;  // behind_: M_j

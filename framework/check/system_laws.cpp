@@ -47,6 +47,37 @@ void inputs_of_zero(const SystemModel& model, const Geometry& geometry, const St
   report.push_back({"every input acts", idle, 0});
 }
 
+// What a system states without I and A is theirs, at its start and at four configurations near it.
+void without_matrices(const SystemModel& model, const Geometry& geometry, const Start& start,
+                      LawReport& report) {
+  const Mechanics& mechanics = *model.mechanics;
+  const Eigen::Index n = mechanics.dim(), k = mechanics.constraint_count();
+  Eigen::VectorXd g(geometry.size()), moved(g), shift(n), momentum(n), force(n), same(n), b(k),
+      rows(k);
+  Eigen::MatrixXd inertia(n, n), a(k, n);
+  geometry.from_coordinates(start.configuration, g.data());
+  const Eigen::VectorXd xi = Eigen::VectorXd::LinSpaced(n, 0.7, -1.2);
+  Largest momenta, forces, values;
+  for (int i = 0; i < 5; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) shift[j] = i * std::sin(1.0 + i + 2.0 * double(j)) / 5;
+    geometry.tau(shift.data(), moved.data());
+    geometry.compose(g.data(), moved.data(), moved.data());
+    if (mechanics.momentum(moved.data(), xi, momentum, force)) {
+      mechanics.inertia(moved.data(), inertia);
+      mechanics.inertial_force(moved.data(), xi, same);
+      momenta((momentum - inertia * xi).norm() / (inertia.norm() * xi.norm()));
+      forces((force - same).norm() / (inertia.norm() * xi.squaredNorm()));
+    }
+    if (mechanics.constraint_values(0.3, moved.data(), xi, rows)) {
+      mechanics.constraints(0.3, moved.data(), a, b);
+      values((rows - a * xi + b).norm() / (a.norm() * xi.norm()));
+    }
+  }
+  report.push_back({"the momentum is I xi", momenta.value, algebraic});
+  report.push_back({"the inertial force is the same beside it", forces.value, algebraic});
+  report.push_back({"the values of the rows are A xi - b", values.value, algebraic});
+}
+
 // The frame that a system states, at its start and at four configurations near it: A E = 0, and the
 // rates of y are those of the equations with multipliers.
 void frame(const SystemModel& model, const Geometry& geometry, const Start& start,
@@ -113,6 +144,7 @@ LawReport check_system(const SystemModel& model, double until, const Geometry* g
        check::difference(model.group.element(start.configuration), start.configuration),
        check::algebraic});
   if (model.drive && geometry != nullptr) check::inputs_of_zero(model, *geometry, start, report);
+  if (geometry != nullptr) check::without_matrices(model, *geometry, start, report);
   if (model.mechanics->framed_size() > 0 && geometry != nullptr)
     check::frame(model, *geometry, start, report);
   if (!model.exact) return report;

@@ -53,26 +53,27 @@ void solve_linear(double* a, double* b, int n, int columns) {
 namespace {
 
 // All columns at once, their sums in registers.
-template <int n>
-void multiply_each(const double* a, const double* x, double* out) {
+template <int rows>
+void multiply_each(const double* a, const double* x, double* out, int columns) {
   using short_vectors::Pair, short_vectors::pair_at;
-  constexpr int pairs = n / 2;
+  constexpr int pairs = rows / 2;
   Pair sums[pairs + 1] = {};
   double last = 0;
-  for (int j = 0; j < n; ++j) {
+  for (int j = 0; j < columns; ++j) {
+    const double* const column = a + j * rows;
     const Pair factors = {x[j], x[j]};
-    for (int p = 0; p < pairs; ++p) sums[p] += factors * pair_at(a + j * n + 2 * p);
-    if (n % 2 == 1) last += x[j] * a[j * n + n - 1];
+    for (int p = 0; p < pairs; ++p) sums[p] += factors * pair_at(column + 2 * p);
+    if (rows % 2 == 1) last += x[j] * column[rows - 1];
   }
   for (int p = 0; p < pairs; ++p) short_vectors::store(sums[p], out + 2 * p);
-  if (n % 2 == 1) out[n - 1] = last;
+  if (rows % 2 == 1) out[rows - 1] = last;
 }
 
 }  // namespace
 
-void multiply_few(const double* a, const double* x, double* out, int n) {
+void multiply_few(const double* a, const double* x, double* out, int rows, int columns) {
   short_vectors::with_count<16>(
-      n, [&](auto count) { multiply_each<decltype(count)::value>(a, x, out); });
+      rows, [&](auto count) { multiply_each<decltype(count)::value>(a, x, out, columns); });
 }
 
 }  // namespace hamel

@@ -13,17 +13,19 @@ namespace hamel {
 /// Matrix Computations, 3.4.
 void solve_linear(double* a, double* b, int n, int columns);
 
-/// out = a x of up to 16 numbers, a column-major.
-void multiply_few(const double* a, const double* x, double* out, int n);
-/// out = a x of a square a; Eigen's products of a few numbers of a size known at run time cost
-/// three times as much.
-inline void multiply(const Eigen::MatrixXd& a, const Eigen::VectorXd& x, Eigen::VectorXd& out) {
-  const auto n = static_cast<int>(a.rows());
-  if (n > 16) {
+/// out = a x with at most 16 rows, a column-major.
+void multiply_few(const double* a, const double* x, double* out, int rows, int columns);
+/// out = a x, out another vector of its size. Eigen's lazy products cost least where the sizes are
+/// fixed, and three times as much where they are known at run time.
+template <class Matrix, class Vector, class Product>
+void multiply(const Matrix& a, const Vector& x, Product& out) {
+  if constexpr (Matrix::SizeAtCompileTime != Eigen::Dynamic) {
+    out = a.lazyProduct(x);
+  } else if (a.rows() > 16) {
     out.noalias() = a * x;
   } else {
-    out.resize(n);
-    multiply_few(a.data(), x.data(), out.data(), n);
+    multiply_few(a.data(), x.data(), out.data(), static_cast<int>(a.rows()),
+                 static_cast<int>(a.cols()));
   }
 }
 

@@ -7,8 +7,9 @@
 // tau(e xi) at t, and in t at g (lie/differences.hpp). A left-invariant problem has y' in closed
 // form. With W^T W = I^-1, Y = W A^T and c = W change:
 //   Y^T Y lambda = db/dt - (dA/dt) xi - Y^T c,   xi' = W^T (c + Y lambda),
-// W and the factors of Y^T Y those of dense_factors.hpp, or of branched_factors.hpp where sizes are
-// known at run time only.
+// W and the factors of Y^T Y those of dense_factors.hpp, or of run_time_factors.hpp where sizes are
+// known at run time only; there with E of (M5) where the rows are many,
+//   A xi' = db/dt - (dA/dt) xi,   E^T I xi' = E^T change,   A^T lambda = I xi' - change.
 #pragma once
 
 #include <array>
@@ -20,8 +21,8 @@
 
 #include <hamel/framework/lie/differences.hpp>
 #include <hamel/framework/lie/types.hpp>
-#include <hamel/framework/mechanics/branched_factors.hpp>
 #include <hamel/framework/mechanics/dense_factors.hpp>
+#include <hamel/framework/mechanics/run_time_factors.hpp>
 
 namespace hamel {
 
@@ -97,6 +98,7 @@ class EquationsOfMotion {
       problem_.ad_transpose(xi, momentum_, work_);
       change_ += work_;
     }
+    if (framed()) return accelerate();
     factors_.apply_root(change_, work_);
     if (problem_.constraint_count() > 0) {
       factors_.subtract_rows(row_rate_, work_, reaction_);
@@ -116,6 +118,7 @@ class EquationsOfMotion {
   /// The smallest v in the metric I with A v = c, A and I those of the last set(); returns its
   /// size, v . I v.
   double smallest(const Multipliers& c, Vector& v) {
+    if (framed()) return smallest_in_frame(c, v);
     reaction_ = c;
     factors_.solve_gram(reaction_);
     factors_.find_reaction(reaction_, work_);
@@ -143,7 +146,11 @@ class EquationsOfMotion {
     }
   }
   const Vector& acceleration() const { return acceleration_; }
-  const Multipliers& reaction() const { return reaction_; }
+  /// Behind solve().
+  const Multipliers& reaction() {
+    if (framed()) find_reaction();
+    return reaction_;
+  }
 
  private:
   static constexpr bool has_dual_rates() {
@@ -151,6 +158,29 @@ class EquationsOfMotion {
     else return false;
   }
   static constexpr bool fixed_size = Vector::RowsAtCompileTime != Eigen::Dynamic;
+
+  bool framed() const {
+    if constexpr (fixed_size) return false;
+    else return factors_.framed();
+  }
+  void accelerate() {
+    if constexpr (!fixed_size) factors_.accelerate(change_, row_rate_, acceleration_);
+  }
+  double smallest_in_frame([[maybe_unused]] const Multipliers& c, [[maybe_unused]] Vector& v) {
+    if constexpr (!fixed_size) {
+      work_.setZero();
+      factors_.accelerate(work_, c, v);
+      factors_.apply_inertia(inertia_, v, work_);
+    }
+    return work_.dot(v);
+  }
+  void find_reaction() {
+    if constexpr (!fixed_size) {
+      factors_.apply_inertia(inertia_, acceleration_, work_);
+      work_ -= change_;
+      factors_.multipliers(work_, reaction_);
+    }
+  }
 
   // All at once, by the problem itself.
   bool evaluate_at_once([[maybe_unused]] double t, [[maybe_unused]] const Element& g,
@@ -186,7 +216,7 @@ class EquationsOfMotion {
       find_stiff_root(t, g);
     if (problem_.constraint_count() == 0 || !(inertia_changes || rows_change)) return;
     if constexpr (fixed_size) factors_.find_rows(rows_);
-    else factors_.find_rows(a_);
+    else factors_.find_rows(inertia_, a_);
   }
 
   void find_rates(double t, const Element& g, const Vector& xi) {
@@ -255,7 +285,7 @@ class EquationsOfMotion {
   };
   using Columns = typename DenseFactors<Vector, Multipliers>::Columns;
   [[no_unique_address]] std::conditional_t<fixed_size, Columns, Nothing> rows_;  // A^T
-  std::conditional_t<fixed_size, DenseFactors<Vector, Multipliers>, BranchedFactors> factors_;
+  std::conditional_t<fixed_size, DenseFactors<Vector, Multipliers>, RunTimeFactors> factors_;
   Element moved_;
 };
 

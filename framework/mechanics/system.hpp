@@ -269,6 +269,7 @@ SystemModel erase(const S& system) {
 template <class S>
 std::function<SystemModel(const Parameters&)> maker(const S& system) {
   return [system](const Parameters& given) {
+    if (given.empty()) return erase(system);
     S copy = system;
     const SystemModel as_is = erase_words(copy);
     detail::check_parameters(as_is.name, as_is.fields, given);

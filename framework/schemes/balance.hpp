@@ -11,6 +11,7 @@
 // y1: 2 m unknowns, no rows. Derivatives: (c) and (d) of lie/trivialised.hpp.
 #pragma once
 
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
 #include <hamel/framework/mechanics/held_rows.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
@@ -163,14 +164,14 @@ class BalanceStep {
     if constexpr (!P::left_invariant) {
       problem_.force(from_->t + s_ * h_, base_, v_, nu_);
       if (rows_.size() == 0) return;
-      rows_ = place_.a.lazyProduct(v_);
+      multiply(place_.a, v_, rows_);
       rows_ -= place_.b;
       if (phi_.size() > 0) {
         problem_.holonomic(g1_, phi_);
         rows_.tail(phi_.size()) = phi_;
       }
       problem_.constraints(from_->t + h_, g1_, a_, b_);
-      end_rows_ = a_.lazyProduct(w_);
+      multiply(a_, w_, end_rows_);
       end_rows_ -= b_;
     }
   }

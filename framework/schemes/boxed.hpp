@@ -7,6 +7,7 @@
 // The part that Ad^T carries out of d* is dropped, and with it order 2: the scheme has order 1.
 #pragma once
 
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
@@ -48,7 +49,7 @@ class BoxedStep {
     problem_.dtau_right_transpose(z_, full_mu_, r_);
     problem_.momentum(place_.inertia, x, mu_);
     r_ -= mu_;
-    if constexpr (!P::left_invariant) rows_ = a_.lazyProduct(v_);
+    if constexpr (!P::left_invariant) multiply(a_, v_, rows_);
     place_.assemble(r_, rows_, f);
   }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 
@@ -91,7 +92,7 @@ class DynamicProblem {
   static void velocity(const State& x, Vector& xi) { xi = x; }
   static void to_state(const Vector& xi, State& x) { x = xi; }
   static void momentum(const Matrix& inertia, const State& x, Vector& mu) {
-    mu = inertia.lazyProduct(x);
+    multiply(inertia, x, mu);
   }
 
   bool constant_inertia() const { return mechanics_->constant_inertia(); }

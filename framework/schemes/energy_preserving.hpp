@@ -8,6 +8,7 @@
 // integrators applied to nonholonomic systems, J. Nonlinear Sci. 29 (2019).
 #pragma once
 
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
@@ -63,7 +64,7 @@ class EnergyPreserving::Step {
     mean_ = x - from_->x;
     problem_.momentum(place_.inertia, mean_, mu_);
     r_ += mu_;
-    if constexpr (!P::left_invariant) rows_ = a_.lazyProduct(x);
+    if constexpr (!P::left_invariant) multiply(a_, x, rows_);
     place_.assemble(r_, rows_, f);
   }
   bool finish(const Unknown& x, Node& next) const {

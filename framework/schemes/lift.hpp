@@ -25,6 +25,7 @@
 // and Martinez 2001; Fedorov and Zenkov 2005; Kobilarov 2010.
 #pragma once
 
+#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
 #include <hamel/framework/mechanics/held_rows.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
@@ -220,7 +221,7 @@ class Lift::General {
       if (problem_.constraint_values(t, base_, v_, rows_)) return;
     }
     problem_.constraints(t, base_, a_, b_);
-    rows_ = a_.lazyProduct(v_);
+    multiply(a_, v_, rows_);
     rows_ -= b_;
   }
   // p_ = I(g) v, and nu_ = d(v^T I(g) v)/2 where that is not 0.
@@ -231,7 +232,7 @@ class Lift::General {
     }
     problem_.inertia(base_, inertia_);
     if (nodal_) problem_.inertial_force(base_, v_, nu_);
-    p_ = inertia_.lazyProduct(v_);
+    multiply(inertia_, v_, p_);
   }
 
   // force_: f - dV with the velocity v; at the base point the whole F serves as its size.

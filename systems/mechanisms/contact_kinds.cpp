@@ -56,9 +56,10 @@ class ContactOf final : public ContactModel {
     const ContactView<double> view(contact, tree);
     const auto touch = kind_.touch(view);
     const Vec3 velocity = velocity_at(tree.twist(contact.link), touch.point);
+    const bool ground_moves = ground.moves();
     for (const Vec3& u : touch.directions) {
       *out = u.dot(velocity);
-      if (ground.moves()) *out -= drift(view, ground, touch.point, u);
+      if (ground_moves) *out -= drift(view, ground, touch.point, u);
       ++out;
     }
     *out = view.vertical.dot(velocity);
@@ -94,9 +95,10 @@ class ContactOf final : public ContactModel {
       out->wrench = force_at(q, value(u));
       if constexpr (with_rates) out->rate = -(rate(u).dot(velocity) + value(u).dot(change));
     };
+    const bool ground_moves = ground.moves();
     for (const VecT<T, 3>& u : touch.directions) {
       set(u);
-      if (ground.moves()) {
+      if (ground_moves) {
         const T given = drift(view, ground, touch.point, u);
         if constexpr (with_rates) {
           out->drift = given.value;
