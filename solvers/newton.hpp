@@ -226,18 +226,21 @@ struct Newton {
     const double aimed = 4 * aim(0, n);
     return std::max(kRoundOff, aimed * aimed);
   }
-  // After a solve: is its J kept, and when is 1 tried again?
+  // After a solve: is its J kept, and when is 1 tried again? A J of differences takes 2 n + 1
+  // residuals and lasts for some twenty steps.
   template <class Unknown>
   static void judge(Memory<Unknown>& memory, bool exact, int iterations) {
     const auto n = static_cast<int>(memory.f.size());
-    memory.valid = memory.valid && iterations <= (exact ? 1 : 2 + 2 * n / 5);
-    if (!memory.factors.is_large(n)) return;
-    if (memory.factors.is_one()) {
+    const bool large = memory.factors.is_large(n);
+    if (large && memory.factors.is_one()) {
+      memory.valid = memory.valid && iterations <= 2 + n / 10;
       if (!memory.valid) memory.wait = 2 * n + 1;
-    } else {
-      memory.wait -= iterations;
-      memory.valid = memory.valid && (memory.wait > 0 || iterations <= 3);
+      return;
     }
+    memory.valid = memory.valid && iterations <= (exact ? 1 : 2 + 2 * n / 5);
+    if (!large) return;
+    memory.wait -= iterations;
+    memory.valid = memory.valid && (memory.wait > 0 || iterations <= 3);
   }
 
   // memory.valid: memory.f is F(x), to be corrected with the Jacobian kept.

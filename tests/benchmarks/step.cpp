@@ -74,7 +74,8 @@ void add_hand(const std::string& name, Step step) {
   benchmark::RegisterBenchmark(name.c_str(), step);
 }
 
-void add(const std::string& name, const Simulation& simulation) {
+void add(const std::string& name, Simulation simulation) {
+  simulation.step(0.01);  // of lift, by name too
   benchmark::RegisterBenchmark(name.c_str(),
                                [simulation](benchmark::State& s) { library(s, simulation); });
 }
@@ -109,7 +110,8 @@ int main(int argc, char** argv) {
   add("sleigh/exp/typed", simulate<Lift, Exp>(ChaplyginSleigh{}).start(kSleighStart).s(0));
   add("sleigh/exp/named", simulate("chaplygin_sleigh").start(kSleighStart).s(0).retraction("exp"));
 
-  const Simulation full = simulate("suslov").set("inertia", kFullInertia).start(kSuslovStart);
+  const Simulation full =
+      simulate("suslov").set("inertia", kFullInertia).start(kSuslovStart).step(0.01);
   add_hand("suslov/build and a step", [full](benchmark::State& s) { built(s, full); });
   add_hand("suslov/restart and a step",
            [full](benchmark::State& s) { restarted(s, full, kSuslovStart); });
