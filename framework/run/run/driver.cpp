@@ -175,12 +175,13 @@ void Driver::take_steps(long count, bool to_end) {
   auto next_progress = Clock::now() + std::chrono::milliseconds(200);
   while (!over_ && (to_end ? !reached_end() : count > 0)) {
     const long before = node_.step, whole = kernel().whole_steps();
+    const double begin = node_.time;
     result_.status = kernel().advance(steps_at_once(count, to_end));
     kernel().state(node_);
     steps_left_ -= kernel().whole_steps() - whole;
     count -= kernel().whole_steps() - whole;
     bool go_on = good(node_);
-    if (go_on && every_node_ && node_.step > before) go_on = observe_step();
+    if (go_on && every_node_ && node_.step > before) go_on = observe_step(begin);
     else if (go_on && recording_ && times_.empty() && node_.step % plan_.config.every == 0)
       go_on = record(node_);
     if (!go_on) over_ = true;

@@ -79,9 +79,9 @@ class Driver {
   DenseOutput& dense();
 
   // Observes the last step; false: the run ends here.
-  bool observe_step();
+  bool observe_step(double begin);
   bool observe_event(const Events::Found& event, bool& go_on);
-  void observe_within_step();
+  void observe_within_step(double begin);
   void observe_start();
   // Rows at the output times up to t.
   bool output(double t);

@@ -10,7 +10,7 @@
 
 namespace hamel {
 
-bool Driver::observe_step() {
+bool Driver::observe_step(double begin) {
   if (plan_.events->any()) {
     const Status status = plan_.events->look(node_, dense(), found_);
     if (!status.ok) {
@@ -24,7 +24,7 @@ bool Driver::observe_step() {
   }
   if (!recording_) return true;
   if (recorder_->wants_nodes()) {
-    observe_within_step();
+    observe_within_step(begin);
     recorder_->node(node_);
   }
   if (!times_.empty()) return output(node_.time);
@@ -69,9 +69,7 @@ bool Driver::observe_event(const Events::Found& event, bool& go_on) {
 
 // The explicit pairs take long steps with a dense output: the work is not known from their ends
 // alone.
-void Driver::observe_within_step() {
-  kernel().beginning(row_);
-  const double begin = row_.time;
+void Driver::observe_within_step(double begin) {
   for (const double part : {0.25, 0.5, 0.75}) {
     if (!kernel().interpolate(begin + part * (node_.time - begin), row_)) return;
     recorder_->node(row_);
