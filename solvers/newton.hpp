@@ -13,7 +13,8 @@
 // is made to go below it.
 // Many unknowns whose J is made of differences begin with J = 1, what the frame of a step makes of
 // it for h -> 0 (M39): it costs nothing, does not grow old as the frame turns, and is given up
-// where it does not halve |F| or needs many corrections. The J that is then made is kept at least
+// where its second correction does not halve |F| either (J = 1 + N, N^2 small: the rows act on the
+// momenta, not they on the rows) or a solve needs many. The J that is then made is kept at least
 // until its corrections have cost as much; where it needs more than three a step, 1 is tried again.
 // Compiled into the kernels: fixed sizes, no heap, no virtual call. Source: Kelley, Solving
 // Nonlinear Equations with Newton's Method, SIAM 2003, ch. 1-2.

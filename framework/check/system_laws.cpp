@@ -47,63 +47,73 @@ void inputs_of_zero(const SystemModel& model, const Geometry& geometry, const St
   report.push_back({"every input acts", idle, 0});
 }
 
-// What a system states without I and A is theirs, at its start and at four configurations near it.
+// The start, and four configurations near it.
+void place_near(const Geometry& geometry, const Start& start, int i, Eigen::VectorXd& g) {
+  Eigen::VectorXd shift(geometry.dim());
+  for (Eigen::Index j = 0; j < shift.size(); ++j)
+    shift[j] = i * std::sin(1.0 + i + 2.0 * double(j)) / 5;
+  Eigen::VectorXd moved(g);
+  geometry.from_coordinates(start.configuration, g.data());
+  geometry.tau(shift.data(), moved.data());
+  geometry.compose(g.data(), moved.data(), g.data());
+}
+
+// What a system states without I and A is theirs.
 void without_matrices(const SystemModel& model, const Geometry& geometry, const Start& start,
                       LawReport& report) {
   const Mechanics& mechanics = *model.mechanics;
   const Eigen::Index n = mechanics.dim(), k = mechanics.constraint_count();
-  Eigen::VectorXd g(geometry.size()), moved(g), shift(n), momentum(n), force(n), same(n), b(k),
-      rows(k);
+  Eigen::VectorXd g(geometry.size()), momentum(n), force(n), same(n), b(k), rows(k);
   Eigen::MatrixXd inertia(n, n), a(k, n);
-  geometry.from_coordinates(start.configuration, g.data());
   const Eigen::VectorXd xi = Eigen::VectorXd::LinSpaced(n, 0.7, -1.2);
   Largest momenta, forces, values;
+  bool states_momentum = false, states_rows = false;
   for (int i = 0; i < 5; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) shift[j] = i * std::sin(1.0 + i + 2.0 * double(j)) / 5;
-    geometry.tau(shift.data(), moved.data());
-    geometry.compose(g.data(), moved.data(), moved.data());
-    if (mechanics.momentum(moved.data(), xi, momentum, force)) {
-      mechanics.inertia(moved.data(), inertia);
-      mechanics.inertial_force(moved.data(), xi, same);
+    place_near(geometry, start, i, g);
+    if (mechanics.momentum(g.data(), xi, momentum, force)) {
+      states_momentum = true;
+      mechanics.inertia(g.data(), inertia);
+      mechanics.inertial_force(g.data(), xi, same);
       momenta((momentum - inertia * xi).norm() / (inertia.norm() * xi.norm()));
       forces((force - same).norm() / (inertia.norm() * xi.squaredNorm()));
     }
-    if (mechanics.constraint_values(0.3, moved.data(), xi, rows)) {
-      mechanics.constraints(0.3, moved.data(), a, b);
+    if (mechanics.constraint_values(0.3, g.data(), xi, rows)) {
+      states_rows = true;
+      mechanics.constraints(0.3, g.data(), a, b);
       values((rows - a * xi + b).norm() / (a.norm() * xi.norm()));
     }
   }
-  report.push_back({"the momentum is I xi", momenta.value, algebraic});
-  report.push_back({"the inertial force is the same beside it", forces.value, algebraic});
-  report.push_back({"the values of the rows are A xi - b", values.value, algebraic});
+  if (states_momentum) {
+    report.push_back({"the momentum is I xi", momenta.value, algebraic});
+    report.push_back({"the inertial force is the same beside it", forces.value, algebraic});
+  }
+  if (states_rows)
+    report.push_back({"the values of the rows are A xi - b", values.value, algebraic});
 }
 
-// The frame that a system states, at its start and at four configurations near it: A E = 0, and the
-// rates of y are those of the equations with multipliers.
+// The frame that a system states: A E = 0, and the rates of y are those of the equations with
+// multipliers.
 void frame(const SystemModel& model, const Geometry& geometry, const Start& start,
            LawReport& report) {
   const Mechanics& mechanics = *model.mechanics;
   const Eigen::Index n = mechanics.dim(), m = mechanics.framed_size();
   const DynamicProblem problem({std::shared_ptr<const void>(), &geometry}, model.mechanics);
   EquationsOfMotion<DynamicProblem> motion(problem);
-  Eigen::VectorXd g(geometry.size()), moved(g), shift(n), xi(n), rate(n);
-  geometry.from_coordinates(start.configuration, g.data());
+  Eigen::VectorXd g(geometry.size()), xi(n), rate(n);
   Largest rows, rates;
   for (int i = 0; i < 5; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) shift[j] = i * std::sin(1.0 + i + 2.0 * double(j)) / 5;
-    geometry.tau(shift.data(), moved.data());
-    geometry.compose(g.data(), moved.data(), moved.data());
+    place_near(geometry, start, i, g);
     Eigen::MatrixXd a(n - m, n);
     Eigen::VectorXd b(n - m);
-    mechanics.constraints(0, moved.data(), a, b);
+    mechanics.constraints(0, g.data(), a, b);
     for (Eigen::Index j = 0; j < m; ++j) {
-      mechanics.expand(moved.data(), Eigen::VectorXd::Unit(n, j), xi);
+      mechanics.expand(g.data(), Eigen::VectorXd::Unit(n, j), xi);
       rows((a * xi).norm() / (a.norm() * xi.norm()));
       rows(xi.head(m) == Eigen::VectorXd::Unit(m, j) ? 0 : 1);
     }
     const Eigen::VectorXd y = Eigen::VectorXd::LinSpaced(n, 0.7, -1.2);
-    mechanics.framed_motion(0, moved.data(), y, xi, rate);
-    motion.solve(0, moved, xi);
+    mechanics.framed_motion(0, g.data(), y, xi, rate);
+    motion.solve(0, g, xi);
     rates((rate - motion.acceleration()).norm() / (1 + rate.norm()));
   }
   report.push_back({"the frame spans ker A", rows.value, algebraic});

@@ -16,7 +16,7 @@ void solve_linear(double* a, double* b, int n, int columns);
 /// out = a x with at most 16 rows, a column-major.
 void multiply_few(const double* a, const double* x, double* out, int rows, int columns);
 /// out = a x, out another vector of its size. Eigen's lazy products cost least where the sizes are
-/// fixed, and three times as much where they are known at run time.
+/// fixed, and more than twice as much where they are known at run time.
 template <class Matrix, class Vector, class Product>
 void multiply(const Matrix& a, const Vector& x, Product& out) {
   if constexpr (Matrix::SizeAtCompileTime != Eigen::Dynamic) {

@@ -22,7 +22,7 @@ class RunTimeFactors : public BranchedFactors {
   using Vector = Eigen::VectorXd;
 
  public:
-  RunTimeFactors(int n, int k) : BranchedFactors(n, has_frame(n, k) ? 0 : k) {
+  RunTimeFactors(int n, int k) : BranchedFactors(has_frame(n, k) ? 0 : n, has_frame(n, k) ? 0 : k) {
     if (has_frame(n, k)) frame_.emplace(n, k);
   }
 

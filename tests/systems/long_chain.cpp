@@ -67,8 +67,8 @@ TEST(LongChain, TheAimIsReached) {
   EXPECT_LE(static_cast<double>(run.stats().evaluations) / 200, 3.5);
 }
 
-/// A residual of a train takes no Jacobian of differences (133 evaluations) in 220 steps where J =
-/// 1 contracts: 4.3 evaluations a step with it, 12 before.
+/// A train of 60 bodies makes no Jacobian of differences (125 evaluations) where J = 1 contracts:
+/// 3.0 evaluations a step; 12.2 where 1 was given up once it had cost as much.
 TEST(LongChain, ATrainByPartsNeedsNoJacobian) {
   NTrailer train;
   train.trailers = 59;
