@@ -10,7 +10,13 @@
 namespace hamel {
 namespace {
 constexpr int kLargestFactor = 16;
+
+// The numbers of a factor on which a map is 1.
+template <class Factor>
+void copy(const double* from, const Factor& factor, double* to) {
+  for (int i = factor.at; i < factor.at + factor.dim; ++i) to[i] = from[i];
 }
+}  // namespace
 
 ProductGeometry::ProductGeometry(std::vector<std::shared_ptr<const Geometry>> factors) {
   for (auto& geometry : factors) {
@@ -18,7 +24,7 @@ ProductGeometry::ProductGeometry(std::vector<std::shared_ptr<const Geometry>> fa
       throw std::invalid_argument(fmt::format("a factor of dimension {}, expected at most {}",
                                               geometry->dim(), kLargestFactor));
     }
-    factors_.push_back({geometry, dim_, size_, columns_});
+    factors_.push_back({geometry, dim_, geometry->dim(), geometry->adds(), size_, columns_});
     dim_ += geometry->dim();
     size_ += geometry->size();
     columns_ += geometry->columns();
@@ -36,6 +42,9 @@ bool ProductGeometry::one_parameter() const {
 bool ProductGeometry::commuting() const {
   return std::all_of(factors_.begin(), factors_.end(),
                      [](const Factor& f) { return f.geometry->commuting(); });
+}
+bool ProductGeometry::adds() const {
+  return std::all_of(factors_.begin(), factors_.end(), [](const Factor& f) { return f.adds; });
 }
 std::string ProductGeometry::domain() const {
   std::string out;
@@ -72,13 +81,19 @@ double ProductGeometry::rotation_angle(const double* g) const {
 }
 
 void ProductGeometry::Ad_transpose(const double* g, const double* mu, double* out) const {
-  for (const Factor& f : factors_) f.geometry->Ad_transpose(g + f.element, mu + f.at, out + f.at);
+  for (const Factor& f : factors_) {
+    if (f.adds) copy(mu, f, out);
+    else f.geometry->Ad_transpose(g + f.element, mu + f.at, out + f.at);
+  }
 }
 void ProductGeometry::ad_transpose(const double* xi, const double* mu, double* out) const {
   for (const Factor& f : factors_) f.geometry->ad_transpose(xi + f.at, mu + f.at, out + f.at);
 }
 void ProductGeometry::Ad(const double* g, const double* xi, double* out) const {
-  for (const Factor& f : factors_) f.geometry->Ad(g + f.element, xi + f.at, out + f.at);
+  for (const Factor& f : factors_) {
+    if (f.adds) copy(xi, f, out);
+    else f.geometry->Ad(g + f.element, xi + f.at, out + f.at);
+  }
 }
 void ProductGeometry::tau(const double* xi, double* out) const {
   for (const Factor& f : factors_) f.geometry->tau(xi + f.at, out + f.element);
@@ -92,7 +107,7 @@ void ProductGeometry::dtau_right(const double* xi, double* matrix) const {
   std::fill_n(matrix, dim_ * dim_, 0.0);
   double block[kLargestFactor * kLargestFactor];
   for (const Factor& f : factors_) {
-    const int n = f.geometry->dim();
+    const int n = f.dim;
     f.geometry->dtau_right(xi + f.at, block);
     double* to = matrix + f.at * (dim_ + 1);
     for (int j = 0; j < n; ++j) std::copy_n(block + j * n, n, to + j * dim_);
@@ -100,24 +115,31 @@ void ProductGeometry::dtau_right(const double* xi, double* matrix) const {
 }
 void ProductGeometry::dtau_right_transpose(const double* xi, const double* m, double* out) const {
   for (const Factor& f : factors_) {
-    f.geometry->dtau_right_transpose(xi + f.at, m + f.at, out + f.at);
+    if (f.adds) copy(m, f, out);
+    else f.geometry->dtau_right_transpose(xi + f.at, m + f.at, out + f.at);
   }
 }
 void ProductGeometry::dtau_right_inverse_transpose(const double* xi, const double* p,
                                                    double* out) const {
   for (const Factor& f : factors_) {
-    f.geometry->dtau_right_inverse_transpose(xi + f.at, p + f.at, out + f.at);
+    if (f.adds) copy(p, f, out);
+    else f.geometry->dtau_right_inverse_transpose(xi + f.at, p + f.at, out + f.at);
   }
 }
 void ProductGeometry::dtau_left_inverse(const double* xi, const double* eta, double* out) const {
   for (const Factor& f : factors_) {
-    f.geometry->dtau_left_inverse(xi + f.at, eta + f.at, out + f.at);
+    if (f.adds) copy(eta, f, out);
+    else f.geometry->dtau_left_inverse(xi + f.at, eta + f.at, out + f.at);
   }
 }
 void ProductGeometry::mixed_momentum(double s, const double* xi, const double* p, const double* nu,
                                      double* q) const {
   for (const Factor& f : factors_) {
-    f.geometry->mixed_momentum(s, xi + f.at, p + f.at, nu + f.at, q + f.at);
+    if (f.adds) {
+      for (int i = f.at; i < f.at + f.dim; ++i) q[i] = p[i] - (1 - s) * nu[i];
+    } else {
+      f.geometry->mixed_momentum(s, xi + f.at, p + f.at, nu + f.at, q + f.at);
+    }
   }
 }
 bool ProductGeometry::in_domain(const double* xi) const {

@@ -45,6 +45,8 @@ class Geometry {
   virtual bool symmetric() const = 0;
   virtual bool one_parameter() const = 0;
   virtual bool commuting() const = 0;
+  /// Is tau addition? Then Ad, dR and dL are 1, and ad is 0.
+  virtual bool adds() const { return false; }
   TauTraits traits() const { return {symmetric(), commuting()}; }
   virtual std::string domain() const = 0;
 
@@ -97,6 +99,9 @@ class TypedGeometry final : public Geometry {
   bool symmetric() const override { return Tau::symmetric; }
   bool one_parameter() const override { return Tau::one_parameter; }
   bool commuting() const override { return GroupOperations<Tau>::commuting(); }
+  bool adds() const override {
+    return requires { requires Tau::addition; };
+  }
   std::string domain() const override { return Tau::domain(); }
 
   HAMEL_FLATTEN void compose(const double* g, const double* h, double* out) const override {
@@ -174,6 +179,7 @@ class ProductGeometry final : public Geometry {
   bool symmetric() const override;
   bool one_parameter() const override;
   bool commuting() const override;
+  bool adds() const override;
   std::string domain() const override;
   void compose(const double* g, const double* h, double* out) const override;
   void inverse(const double* g, double* out) const override;
@@ -200,7 +206,9 @@ class ProductGeometry final : public Geometry {
  private:
   struct Factor {
     std::shared_ptr<const Geometry> geometry;
-    int at = 0;       // where its vectors start
+    int at = 0;  // where its vectors start
+    int dim = 0;
+    bool adds = false;
     int element = 0;  // where its element starts
     int column = 0;   // where its coordinates start
   };
