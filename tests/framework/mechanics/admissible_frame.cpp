@@ -57,7 +57,7 @@ struct GivenWithFrame : Given {
   }
 };
 
-// metric: E^T metric E = 1.
+// metric: E^T metric E = 1, where it is given.
 template <class Frame, class System>
 void expect_definition(const System& system, const Matrix& metric, std::mt19937& random) {
   const int n = system.dim(), k = system.constraint_count();
@@ -95,7 +95,11 @@ void expect_definition(const System& system, const Matrix& metric, std::mt19937&
     place.assemble(r, c, r);
     e.row(i) = r.tail(n - k).transpose();
   }
-  EXPECT_LT((e.transpose() * metric * e - Matrix::Identity(n - k, n - k)).norm(), 1e-11);
+  EXPECT_LE((system.a * e).norm(), 1e-11 * system.a.norm() * e.norm());
+  EXPECT_EQ(e.fullPivHouseholderQr().rank(), n - k);
+  if (metric.size() > 0) {
+    EXPECT_LT((e.transpose() * metric * e - Matrix::Identity(n - k, n - k)).norm(), 1e-11);
+  }
 
   // expand: A dxi and E^T I dxi have the values given.
   typename Frame::Vector z(n);
@@ -120,7 +124,7 @@ TEST(AdmissibleFrame, IsItsDefinition) {
     }
     for (const auto& [n, k] : {std::pair{1, 0}, {3, 1}, {5, 4}, {6, 3}, {6, 6}, {20, 17}}) {
       const Given system = random_system(random, n, k);
-      expect_definition<AdmissibleFrame<>>(system, system.i.diagonal().asDiagonal(), random);
+      expect_definition<AdmissibleFrame<>>(system, Matrix(), random);
     }
   }
 }
@@ -141,8 +145,8 @@ TEST(StatedFrame, IsItsDefinition) {
 TEST(AdmissibleFrame, TurnsWithoutJumpsWithinAStep) {
   std::mt19937 random(2);
   Given system = random_system(random, 4, 1, true);
-  AdmissibleFrame<> place(system);
-  Vector before, r(4);
+  AdmissibleFrame<4, 1> place(system);
+  Eigen::Vector4d before = Eigen::Vector4d::Zero(), r = before;
   int jumps = 0;
   const int parts = 2000;
   for (int i = 0; i <= parts; ++i) {
@@ -150,11 +154,54 @@ TEST(AdmissibleFrame, TurnsWithoutJumpsWithinAStep) {
     system.a << std::cos(angle), std::sin(angle), 0.3, 0;
     place.set(system, 0, nullptr);
     r = Vector::LinSpaced(4, 1, 2);
-    place.assemble(r, Vector::Zero(1));
+    place.assemble(r, AdmissibleFrame<4, 1>::Multipliers::Zero());
     if (i > 0 && (r - before).norm() > 0.2) ++jumps;
     before = r;
   }
   EXPECT_LE(jumps, 2);  // a change of sign once the entry is a tenth on the other side, and back
+}
+
+/// With sizes known at run time some velocities follow from the others: from which, is chosen anew
+/// where the rows turn so far that it has to be, but not within a step.
+TEST(AdmissibleFrame, ChoosesOtherVelocitiesAsRowsTurn) {
+  std::mt19937 random(4);
+  for (const auto& [n, k] : {std::pair{6, 3}, {9, 6}, {12, 9}}) {
+    Given system = random_system(random, n, k);
+    const Matrix rows = system.a;
+    const auto turn = [&](double angle) {
+      for (int i = 0; i + 1 < n; i += 2) {
+        system.a.col(i) = std::cos(angle) * rows.col(i) + std::sin(angle) * rows.col(i + 1);
+        system.a.col(i + 1) = std::cos(angle) * rows.col(i + 1) - std::sin(angle) * rows.col(i);
+      }
+    };
+    AdmissibleFrame<> place(system);
+    const Vector mu = Vector::LinSpaced(n, -1, 2);
+    Vector xi(n), before(n), after(n), earlier;
+    int chosen = 0;
+    const int parts = 5000;
+    for (int i = 0; i < parts; ++i) {
+      const double angle = 2 * 3.14159265358979 * i / parts;
+      turn(angle);
+      place.set(system, 0, nullptr);
+      place.admissible(mu, xi);
+      Matrix saddle = Matrix::Zero(n + k, n + k);
+      saddle << system.i, system.a.transpose(), system.a, Matrix::Zero(k, k);
+      Vector right(n + k);
+      right << mu, system.b;
+      const Vector exact = saddle.fullPivLu().solve(right).head(n);
+      EXPECT_LT((xi - exact).norm(), 1e-11 * exact.norm()) << n << " " << angle;
+
+      place.assemble(mu, Vector::Zero(k), before);
+      if (i > 0 && (before - earlier).norm() > 0.1 * before.norm()) ++chosen;
+      earlier = before;
+      turn(angle + 0.002);
+      place.set(system, 0, nullptr, /*same_frame=*/true);
+      place.assemble(mu, Vector::Zero(k), after);
+      EXPECT_LT((after - before).norm(), 0.1 * before.norm()) << n << " " << angle;
+    }
+    EXPECT_GE(chosen, 1) << n;
+    EXPECT_LE(chosen, 60) << n;
+  }
 }
 
 }  // namespace
