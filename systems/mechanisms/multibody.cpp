@@ -95,13 +95,16 @@ bool Multibody::momentum(const double* g, ConstVector xi, Vector out, Vector ine
 namespace {
 
 // Onto row `to`, which is 0.
-void write(const Row& row, const Tree& tree, Mechanics::Matrix& a, int to) {
+HAMEL_FLATTEN void write(const Row& row, const Tree& tree, Mechanics::Matrix& a, int to) {
   if (row.dof >= 0) {
     a(to, row.dof) = 1;
     return;
   }
-  tree.add_wrench(row.link, row.wrench, a.row(to));
-  if (row.other != kGround) tree.add_wrench(row.other, -row.other_wrench, a.row(to));
+  double* const out = a.data() + to;
+  const Eigen::Index stride = a.outerStride();
+  const auto add = [&](int i, double effect) { out[i * stride] += effect; };
+  tree.each_effect(row.link, row.wrench, add);
+  if (row.other != kGround) tree.each_effect(row.other, -row.other_wrench, add);
 }
 
 }  // namespace

@@ -119,6 +119,7 @@ Tree::Tree(const std::vector<Link>& links) {
   }
   find_rotors();
   for (Node& node : nodes_) node.own = node.inertia;
+  find_turned();
   placed_.assign(drawn_.size(), std::numeric_limits<double>::quiet_NaN());
   moved_.resize(static_cast<size_t>(dim_));
   place(drawn_.data());
@@ -172,6 +173,35 @@ void Tree::find_rotors() {
   }
 }
 
+void Tree::find_turned() {
+  for (Node& node : nodes_) {
+    node.turns = node.on_root && !node.planar && !node.rotor && node.terms.count == 2 &&
+                 node.link.joint->only_turns();
+    const Node& turning = node.rotor ? at(node.link.parent) : node;
+    if (!turning.turns) continue;
+    const auto place = [&](double angle) {
+      std::vector<double> element(static_cast<size_t>(turning.link.joint->geometry()->size()));
+      turning.link.joint->geometry()->tau(&angle, element.data());
+      return turning.across(element.data());
+    };
+    if (node.rotor) {
+      node.turned_spin.find([&](double angle) {
+        const Rigid x = place(angle);
+        Vec<12> out;
+        out << x.move(node.directions.col(0)), x.move_wrench(node.spin);
+        return out;
+      });
+    } else {
+      node.turned_inertia.find([&](double angle) {
+        const Inertia seen = moved(place(angle), node.inertia);
+        Vec<12> out;
+        out << seen.first, seen.second.reshaped();
+        return out;
+      });
+    }
+  }
+}
+
 Rigid Tree::Node::across(const double* g) const {
   if (free && !planar) {  // P = 1, and C shifts
     Rigid out = link.joint->motion(g);
@@ -211,6 +241,11 @@ HAMEL_FLATTEN void Tree::place(const double* g) {
     if (node.count > 1) {
       for (int i = 0; i < node.count; ++i)
         node.columns.col(i) = node.place.move(node.directions.col(i));
+    } else if (node.rotor && parent.turns) {
+      const double* turned = g + parent.element;
+      const Vec<12> seen = node.turned_spin.at(turned[0], turned[1]);
+      node.columns.col(0) = seen.head<6>();
+      node.spin_here = seen.tail<6>();
     } else if (!node.on_root) {
       if (node.planar) {
         in_plane(node.columns.col(0)) = parent.flat.move_in_plane(in_plane(node.directions.col(0)));

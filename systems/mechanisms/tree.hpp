@@ -23,6 +23,7 @@
 // as V_root = V_parent - U_parent in the last two terms, and ad*_xi is that of the joint alone.
 // The axis of a joint with one velocity is fixed in its parent: s = Ad_{X_parent} Ad_P S, constant
 // on a root. Less is left to do for
+//   links         that turn about one axis of their root in space: turned_numbers.hpp;
 //   planar links  that turn about the vertical of a root which does no more: plane.hpp;
 //   rotors        that carry nothing and whose inertia their own turning does not change (wheels):
 //                 it is their parent's, but for the momentum of their spin, and they need no place.
@@ -38,6 +39,7 @@
 
 #include <hamel/systems/mechanisms/joint.hpp>
 #include <hamel/systems/mechanisms/plane.hpp>
+#include <hamel/systems/mechanisms/turned_numbers.hpp>
 
 namespace hamel::mechanisms {
 
@@ -127,13 +129,17 @@ class Tree {
   void bias(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out);
   /// out += what the weights do on xi; accumulate_inertia() first.
   void add_weight(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) const;
-  /// out += what a wrench on a link does on xi; seen from its root. On the ground nothing.
-  template <class Out>
-  void add_wrench(int link, const Wrench& wrench, Out&& out) const {
+  /// f(i, what a wrench on a link does on xi_i); seen from its root. On the ground nothing.
+  template <class F>
+  void each_effect(int link, const Wrench& wrench, F&& f) const {
     for (int j = link; j != kGround; j = parent(j)) {
       const Node& node = at(j);
-      node.each_along(wrench, [&](int i, double effect) { out[node.dof + i] += effect; });
+      node.each_along(wrench, [&](int i, double effect) { f(node.dof + i, effect); });
     }
+  }
+  template <class Out>
+  void add_wrench(int link, const Wrench& wrench, Out&& out) const {
+    each_effect(link, wrench, [&](int i, double effect) { out[i] += effect; });
   }
   /// Mass and first moment of all that a root carries, itself included, seen from it.
   const Inertia& composite(int root) const { return at(root).carried; }
@@ -143,13 +149,16 @@ class Tree {
     Link link;
     int root = 0, dof = 0, element = 0, count = 0;
     bool planar = false, rotor = false, on_root = false;
-    bool free = false;  // a root whose velocities are its whole twist, at the position of C
+    bool free = false;   // a root whose velocities are its whole twist, at the position of C
+    bool turns = false;  // about an axis fixed in its root, in space: what it carries by harmonics
     Mat<6, 6> directions = Mat<6, 6>::Zero();  // Ad_C S; of one velocity Ad_P S
     Rigid after;                               // C^-1
     MotionTerms terms;
-    Inertia inertia;               // with that of the rotors
-    Wrench spin = Wrench::Zero();  // momentum of a rotor at unit rate, seen from its parent
-    double moment = 0, rate = 0;   // of a rotor
+    Inertia inertia;                      // with that of the rotors
+    Wrench spin = Wrench::Zero();         // momentum of a rotor at unit rate, seen from its parent
+    double moment = 0, rate = 0;          // of a rotor
+    TurnedNumbers<12, 2> turned_inertia;  // of a link that turns: first and second moments
+    TurnedNumbers<12, 1> turned_spin;     // of a rotor on one: column and spin
     // Seen from the root, at the last place:
     Mat<6, 6> columns = Mat<6, 6>::Zero();
     Rigid place, world;  // X; W of a root
@@ -190,6 +199,7 @@ class Tree {
   static void move_free(Node& node, const double* xi);
   void find_planar(Node& node, const double* drawn) const;
   void find_rotors();
+  void find_turned();
   void write(const Node* from, int column, const Wrench& momentum, double* out,
              Eigen::Index stride) const;
   static void write_free(const Node& node, double* out, Eigen::Index stride);

@@ -11,7 +11,12 @@ HAMEL_FLATTEN void Tree::accumulate_inertia() {
   for (Node& node : nodes_) {
     if (node.rotor) continue;
     if (node.link.parent != kGround) {
-      if (node.planar) move_in_plane(node.flat, node.inertia, node.own);
+      if (node.turns) {
+        const double* turned = placed_.data() + node.element;
+        const Vec<12> seen = node.turned_inertia.at(turned[0], turned[1]);
+        node.own.first = seen.head<3>();
+        node.own.second = seen.tail<9>().reshaped<Eigen::AutoOrder>(3, 3);
+      } else if (node.planar) move_in_plane(node.flat, node.inertia, node.own);
       else node.own = moved(node.place, node.inertia);
     }
     node.carried = node.own;

@@ -14,7 +14,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kUneven = 1e-9;  // kg m^2, of four wheels: they are no rotors any more
+constexpr double kUneven = 1e-9;  // kg m^2, of five wheels: they are no rotors any more
 
 Mechanism cart(bool plain) {
   Mechanism m("cart");
@@ -40,10 +40,13 @@ Mechanism cart(bool plain) {
   m.hinge("steer", "deck", "fork", {.at = {-0.5, 0, 0}, .stiffness = 2});
   m.hinge("nod", "sled", "pole", {.at = {0.3, 0.1, 0.35}, .axis = {0.2, 1, 0.1}});
   m.hinge("lump", "fork", "lump", {.at = {-0.5, 0, 0.1}, .axis = {0, 1, 0}});
+  m.body("rake", {.mass = 0.3, .at = {0.45, -0.2, 0.3}, .box = {0.1, 0.05, 0.4}});
+  m.hinge("rake", "deck", "rake", {.at = {0.4, -0.2, 0.3}, .axis = {-0.3, 0.1, 1}});
   wheel("pivot", "arm", {0.8, 0.3, 0.1}, {0, 0, 1});
   wheel("left", "deck", {0, 0.4, 0.1}, {0, -1, 0});
   wheel("gyro", "pole", {0.3, 0.1, 1.2}, {0, 1, 0});
   wheel("caster", "arm", {0.6, 0.2, 0.1}, {0, 1, 0});
+  wheel("raked", "rake", {0.5, -0.2, 0.1}, {0, 1, 0});
   m.blade("edge", "pivot", {.at = {0.8, 0.3, 0}, .along = {1, 0.3, 0}});
   m.wheel("left", "left", {.at = {0, 0.4, 0.1}, .radius = 0.1});
   m.roller("caster", "caster", {.at = {0.6, 0.2, 0.1}, .radius = 0.1, .angle = 0.4});
@@ -98,7 +101,7 @@ Evaluated look(bool plain, const VectorXd& coordinates, const VectorXd& velociti
 }
 
 TEST(Mechanisms, TakeShortcutsThatChangeNothing) {
-  const int n = 3 + 9;
+  const int n = 3 + 11;
   VectorXd coordinates(n), velocities(n);
   for (int i = 0; i < n; ++i) {
     coordinates[i] = 0.6 * std::sin(3.0 * i + 1);
