@@ -33,7 +33,7 @@ void MemberPhysics::step(const Run& run, double before, const Snapshot& state) {
   if (balance_ == nullptr) return;
   if (!run.over()) {
     for (const double part : {0.25, 0.5, 0.75}) {
-      if (!run.driver().interpolate(before + part * (state.time - before), inner_)) break;
+      if (!run.driver().bare_state_within(before + part * (state.time - before), inner_)) break;
       balance_->node(inner_);
     }
   }

@@ -63,8 +63,10 @@ class Kernel {
   virtual bool off_grid() const = 0;
   /// Measures the current state into out (its vectors are reused).
   virtual void measure(Snapshot& out) const = 0;
-  /// The state alone: step, time, coordinates, velocity, momentum, energy.
+  /// The state alone: step, time, coordinates, element, velocity, momentum, energy.
   virtual void state(Snapshot& out) const = 0;
+  /// The same; a kernel that keeps the element leaves out the coordinates.
+  virtual void bare_state(Snapshot& out) const = 0;
   virtual const SolverStats& stats() const = 0;
 
   /// The node itself, and that at the beginning of the last step: time, coordinates, and the
@@ -91,6 +93,8 @@ class Kernel {
   /// The state at a time within the last step, by the scheme's own dense output; false where it has
   /// none.
   virtual bool interpolate(double t, Snapshot& out) = 0;
+  /// The same without measurements, as bare_state().
+  virtual bool bare_state_within(double t, Snapshot& out) = 0;
 };
 
 }  // namespace hamel

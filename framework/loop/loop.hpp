@@ -55,6 +55,10 @@ class Loop final : public TimeLoop {
     typename P::Vector xi(problem_.dim());
     state(nodes_.now(), out, xi);
   }
+  [[gnu::cold]] void bare_state(Snapshot& out) const override {
+    typename P::Vector xi(problem_.dim());
+    state(nodes_.now(), out, xi, /*coordinates=*/!kHasElement<P>);
+  }
   [[gnu::cold]] void measure(Snapshot& out) const override { measure(nodes_.now(), out); }
   [[gnu::cold]] void node(Snapshot& out) const override { carried(nodes_.now(), out); }
   [[gnu::cold]] void beginning(Snapshot& out) const override {
@@ -64,16 +68,18 @@ class Loop final : public TimeLoop {
       case Beginning::rescue: return carried(kept(Kept::rescue).now, out);
     }
   }
-  [[gnu::cold]] bool interpolate([[maybe_unused]] double t,
-                                 [[maybe_unused]] Snapshot& out) override {
-    if constexpr (kEstimates) {
-      if (step_.estimated_order() == 0 || last_h_ == 0) return false;
-      if (!step_.interpolate((t - nodes_.previous().t) / last_h_, nodes_.next())) return false;
-      measure(nodes_.next(), out);
-      out.time = t;
-      return true;
-    }
-    return false;
+  [[gnu::cold]] bool interpolate(double t, Snapshot& out) override {
+    if (!find_node_within(t)) return false;
+    measure(nodes_.next(), out);
+    out.time = t;
+    return true;
+  }
+  [[gnu::cold]] bool bare_state_within(double t, Snapshot& out) override {
+    if (!find_node_within(t)) return false;
+    typename P::Vector xi(problem_.dim());
+    state(nodes_.next(), out, xi, /*coordinates=*/!kHasElement<P>);
+    out.time = t;
+    return true;
   }
   [[gnu::cold]] std::unique_ptr<Kernel> another(const KernelSetup& setup) const override {
     if constexpr (std::is_same_v<P, Whole> && P::left_invariant) {
@@ -106,12 +112,22 @@ class Loop final : public TimeLoop {
     else return Step(whole, setup.s);
   }
 
-  [[gnu::cold]] void state(const Node& node, Snapshot& out, typename P::Vector& xi) const {
+  // Into nodes_.next().
+  [[gnu::cold]] bool find_node_within([[maybe_unused]] double t) {
+    if constexpr (kEstimates) {
+      return step_.estimated_order() > 0 && last_h_ != 0 &&
+             step_.interpolate((t - nodes_.previous().t) / last_h_, nodes_.next());
+    }
+    return false;
+  }
+
+  [[gnu::cold]] void state(const Node& node, Snapshot& out, typename P::Vector& xi,
+                           bool coordinates = true) const {
     out.step = steps_;
     out.time = &node == &nodes_.now() ? time() : node.t;
     if constexpr (requires { step_.velocity(node, xi); }) step_.velocity(node, xi);
     else problem_.velocity(node.x, xi);
-    hamel::state(whole_, node.g, xi, out);
+    hamel::state(whole_, node.g, xi, out, coordinates);
   }
   [[gnu::cold]] void carried(const Node& node, Snapshot& out) const {
     typename P::Vector xi(problem_.dim());

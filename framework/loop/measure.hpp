@@ -67,15 +67,32 @@ template <class P>
   return std::sqrt(squared);
 }
 
-/// The state alone: coordinates, velocity, momentum, energy. xi: the nodal velocity.
+/// I(g) xi.
 template <class P>
-[[gnu::cold]] void state(const P& problem, const typename P::Element& g,
-                         const typename P::Vector& xi, Snapshot& out) {
-  out.coordinates.resize(static_cast<size_t>(problem.columns()));
-  problem.coordinates(g, out.coordinates.data());
+void find_momentum(const P& problem, const typename P::Element& g, const typename P::Vector& xi,
+                   typename P::Vector& out) {
+  if constexpr (requires { problem.momentum_at(g, xi, out, out); }) {
+    typename P::Vector inertial_force(problem.dim());
+    if (problem.momentum_at(g, xi, out, inertial_force)) return;
+  }
   typename P::Matrix inertia(problem.dim(), problem.dim());
   problem.inertia(g, inertia);
-  const typename P::Vector mu = inertia.lazyProduct(xi);
+  out = inertia.lazyProduct(xi);
+}
+
+/// Do snapshots have the element itself?
+template <class P>
+inline constexpr bool kHasElement = std::is_same_v<typename P::Element, Eigen::VectorXd>;
+
+/// The state alone: coordinates, element, velocity, momentum, energy. xi: the nodal velocity.
+template <class P>
+[[gnu::cold]] void state(const P& problem, const typename P::Element& g,
+                         const typename P::Vector& xi, Snapshot& out, bool coordinates = true) {
+  out.coordinates.resize(coordinates ? static_cast<size_t>(problem.columns()) : 0);
+  if (coordinates) problem.coordinates(g, out.coordinates.data());
+  if constexpr (kHasElement<P>) out.element.assign(g.data(), g.data() + g.size());
+  typename P::Vector mu(problem.dim());
+  find_momentum(problem, g, xi, mu);
   out.velocity.assign(xi.data(), xi.data() + xi.size());
   out.momentum.assign(mu.data(), mu.data() + mu.size());
   out.energy = 0.5 * mu.dot(xi) + problem.potential(g);

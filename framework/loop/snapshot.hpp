@@ -32,8 +32,10 @@ struct Snapshot {
   long step = 0;
   double time = 0;
   std::vector<double> coordinates;  // of g
-  std::vector<double> velocity;     // nodal body velocity, n
-  std::vector<double> momentum;     // nodal body momentum, n
+  // g as its Geometry lays it out (counts of turns are integers), of a kernel that keeps it so.
+  std::vector<double> element;
+  std::vector<double> velocity;  // nodal body velocity, n
+  std::vector<double> momentum;  // nodal body momentum, n
   double energy = 0;
   std::vector<double>
       constraint_rates;     // A v of the last step, v recovered from the configurations; k

@@ -182,16 +182,16 @@ class Lift::General {
     if (!nodal_ || !problem_.constant_inertia()) nu_ *= h_;
     find_start_momentum();
     mu_ -= target_;
-    if (nodal_ && problem_.force_depends_on_velocity()) {
-      apply(from_->t, from_->g, v_);
-      mu_ -= (h_ / 2) * force_;
-    }
     if (rows_.size() > 0) {
       find_rows(t);
       if (phi_.size() > 0) {  // in metres: a velocity error would show as h times itself
         problem_.holonomic(g1_, phi_);
         rows_.tail(phi_.size()) = phi_;
       }
+    }
+    if (nodal_ && problem_.force_depends_on_velocity()) {
+      apply(from_->t, from_->g, v_);
+      mu_ -= (h_ / 2) * force_;
     }
   }
 

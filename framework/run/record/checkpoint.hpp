@@ -26,9 +26,9 @@ concept PlainNumber = std::is_arithmetic_v<T>;
 /// Members that are no numbers, for either archive.
 template <class Archive>
 void serialize(Archive& archive, Snapshot& s) {
-  archive(s.step, s.time, s.coordinates, s.velocity, s.momentum, s.energy, s.constraint_rates,
-          s.constraint, s.holonomic, s.group_defect, s.rotation, s.time_offset, s.iterations,
-          s.residual);
+  archive(s.step, s.time, s.coordinates, s.element, s.velocity, s.momentum, s.energy,
+          s.constraint_rates, s.constraint, s.holonomic, s.group_defect, s.rotation, s.time_offset,
+          s.iterations, s.residual);
 }
 template <class Archive>
 void serialize(Archive& archive, Fallback& f) {

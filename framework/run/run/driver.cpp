@@ -177,7 +177,8 @@ void Driver::take_steps(long count, bool to_end) {
     const long before = node_.step, whole = kernel().whole_steps();
     const double begin = node_.time;
     result_.status = kernel().advance(steps_at_once(count, to_end));
-    kernel().state(node_);
+    if (plan_.events->any()) kernel().state(node_);
+    else kernel().bare_state(node_);
     steps_left_ -= kernel().whole_steps() - whole;
     count -= kernel().whole_steps() - whole;
     bool go_on = good(node_);

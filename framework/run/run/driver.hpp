@@ -50,7 +50,9 @@ class Driver {
   /// The mechanics as the scheme treats it.
   std::shared_ptr<const Mechanics> acting() const;
   /// The state within the last step, of the explicit pairs; false: the scheme has none.
-  bool interpolate(double t, Snapshot& out) const { return kernel().interpolate(t, out); }
+  bool bare_state_within(double t, Snapshot& out) const {
+    return kernel().bare_state_within(t, out);
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -71,7 +71,7 @@ bool Driver::observe_event(const Events::Found& event, bool& go_on) {
 // alone.
 void Driver::observe_within_step(double begin) {
   for (const double part : {0.25, 0.5, 0.75}) {
-    if (!kernel().interpolate(begin + part * (node_.time - begin), row_)) return;
+    if (!kernel().bare_state_within(begin + part * (node_.time - begin), row_)) return;
     recorder_->node(row_);
   }
 }

@@ -23,7 +23,8 @@ EnergyBalance::EnergyBalance(std::shared_ptr<const Geometry> geometry,
 }
 
 double EnergyBalance::power(const Snapshot& state) {
-  geometry_->from_coordinates(state.coordinates, g_.data());
+  if (state.element.empty()) geometry_->from_coordinates(state.coordinates, g_.data());
+  else std::copy(state.element.begin(), state.element.end(), g_.data());
   xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
                                           static_cast<Eigen::Index>(state.velocity.size()));
   double out = mechanics_->power(state.time, g_.data(), xi_);

@@ -22,6 +22,9 @@ class NodalQuadrature {
       times[k] = times_[k - 1];
       differences[k] = (differences[k - 1] - differences_[k - 1]) / (t - times[k]);
     }
+    const double step = t - times_[0];
+    even_ = std::abs(step - step_) <= 1e-6 * std::abs(step) ? even_ + 1 : 0;
+    step_ = step;
     times_ = times;
     differences_ = differences;
     used_ = std::min(++count_, kNodes);
@@ -31,7 +34,8 @@ class NodalQuadrature {
       integral_ = over(first_, t);  // again, with the polynomial through all of them
     } else {
       settled_ = true;
-      while (used_ > 2 && magnifies(times_, used_, times_[1])) --used_;
+      if (even_ + 2 < kNodes)
+        while (used_ > 2 && magnifies(times_, used_, times_[1])) --used_;
       integral_ += over(times_[1], t);
     }
     settled_ = settled_ || count_ == kNodes;
@@ -52,7 +56,7 @@ class NodalQuadrature {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(times_, differences_, count_, used_, first_, integral_, settled_);
+    archive(times_, differences_, count_, used_, even_, step_, first_, integral_, settled_);
   }
 
  private:
@@ -105,8 +109,8 @@ class NodalQuadrature {
 
   // Newest first: t_n, t_{n-1}, ..., and P[t_n], P[t_n, t_{n-1}], ...; 0 where there are none yet.
   std::array<double, kNodes> times_{}, differences_{};
-  std::size_t count_ = 0, used_ = 0;
-  double first_ = 0, integral_ = 0;
+  std::size_t count_ = 0, used_ = 0, even_ = 0;  // so many steps of one size, step_
+  double step_ = 0, first_ = 0, integral_ = 0;
   bool settled_ = false;
 };
 

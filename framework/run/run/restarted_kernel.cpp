@@ -67,8 +67,19 @@ void RestartedKernel::state(Snapshot& out) const {
   out.step += steps_;
 }
 
+void RestartedKernel::bare_state(Snapshot& out) const {
+  kernel_->bare_state(out);
+  out.step += steps_;
+}
+
 bool RestartedKernel::interpolate(double t, Snapshot& out) {
   if (!kernel_->interpolate(t, out)) return false;
+  out.step += steps_;
+  return true;
+}
+
+bool RestartedKernel::bare_state_within(double t, Snapshot& out) {
+  if (!kernel_->bare_state_within(t, out)) return false;
   out.step += steps_;
   return true;
 }

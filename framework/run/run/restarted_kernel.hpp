@@ -30,6 +30,7 @@ class RestartedKernel final : public Kernel {
   bool off_grid() const override { return kernel_->off_grid(); }
   void measure(Snapshot& out) const override;
   void state(Snapshot& out) const override;
+  void bare_state(Snapshot& out) const override;
   const SolverStats& stats() const override;
   void node(Snapshot& out) const override { kernel_->node(out); }
   void beginning(Snapshot& out) const override { kernel_->beginning(out); }
@@ -41,6 +42,7 @@ class RestartedKernel final : public Kernel {
                double step) override;
   void clear_history() override { kernel_->clear_history(); }
   bool interpolate(double t, Snapshot& out) override;
+  bool bare_state_within(double t, Snapshot& out) override;
 
  private:
   void make();
