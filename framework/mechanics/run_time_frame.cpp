@@ -155,7 +155,7 @@ bool RunTimeFrame::eliminate(double least) {
     if (!chosen_) choose(j);
     double *const row = rows_.data() + j * width, *const step = steps_.data() + j * width;
     const double pivot = row[j], own = weights_[static_cast<size_t>(order_[at])];
-    if (!(std::abs(pivot) * own * row_weights_[at] >= least * pivots_[at])) return false;
+    if (chosen_ && !(std::abs(pivot) * own * row_weights_[at] >= least * pivots_[at])) return false;
     const double inverse = 1 / pivot;
     scale(inverse, row, step, width);
     step[j] = inverse;

@@ -3,7 +3,9 @@
 // at run time.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
+#include <utility>
 
 #include <Eigen/QR>
 
@@ -182,6 +184,14 @@ TEST(AdmissibleFrame, ChoosesOtherVelocitiesAsRowsTurn) {
     for (int i = 0; i < parts; ++i) {
       const double angle = 2 * 3.14159265358979 * i / parts;
       turn(angle);
+      if (i == parts / 3) {  // a place that is none leaves no trace
+        const Matrix good = std::exchange(
+            system.a, Matrix::Constant(k, n, std::numeric_limits<double>::quiet_NaN()));
+        place.set(system, 0, nullptr, /*same_frame=*/true);
+        place.admissible(mu, xi);
+        EXPECT_FALSE(xi.allFinite());
+        system.a = good;
+      }
       place.set(system, 0, nullptr);
       place.admissible(mu, xi);
       Matrix saddle = Matrix::Zero(n + k, n + k);
