@@ -167,7 +167,8 @@ TEST(AdmissibleFrame, TurnsWithoutJumpsWithinAStep) {
 /// where the rows turn so far that it has to be, but not within a step.
 TEST(AdmissibleFrame, ChoosesOtherVelocitiesAsRowsTurn) {
   std::mt19937 random(4);
-  for (const auto& [n, k] : {std::pair{6, 3}, {9, 6}, {12, 9}}) {
+  for (const std::pair<int, int>& sizes : {std::pair{6, 3}, {9, 6}, {12, 9}}) {
+    const int n = sizes.first, k = sizes.second;
     Given system = random_system(random, n, k);
     const Matrix rows = system.a;
     const auto turn = [&](double angle) {
