@@ -132,25 +132,5 @@ void add_products(const double* rows, const double* x, int columns, std::ptrdiff
     to[i] += sum[0] + sum[1];
   }
 }
-/// row i += factor x_i times y, of whose pairs the first P count where P > 0.
-template <int P>
-void add_to_rows(double factor, const double* x, const double* y, double* rows,
-                 std::ptrdiff_t pairs, std::ptrdiff_t count) {
-  if constexpr (P > 0) {
-    Pair scaled[P];
-    for (int p = 0; p < P; ++p) scaled[p] = Pair{factor, factor} * pair_at(y + 2 * p);
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const Pair factors = {x[i], x[i]};
-      for (int p = 0; p < P; ++p) {
-        double* const at = rows + 2 * (i * pairs + p);
-        store(pair_at(at) + factors * scaled[p], at);
-      }
-    }
-  } else {
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      if (x[i] != 0) add(factor * x[i], y, rows + 2 * pairs * i, 2 * pairs);
-    }
-  }
-}
 
 }  // namespace hamel::short_vectors
