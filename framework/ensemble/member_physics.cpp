@@ -31,13 +31,10 @@ void MemberPhysics::node(const Snapshot& state) {
 
 void MemberPhysics::step(const Run& run, double before, const Snapshot& state) {
   if (balance_ == nullptr) return;
-  if (!run.over()) {
-    for (const double part : {0.25, 0.5, 0.75}) {
-      if (!run.driver().bare_state_within(before + part * (state.time - before), inner_)) break;
-      balance_->node(inner_);
-    }
-  }
-  node(state);
+  if (run.over()) return node(state);
+  balance_->step(before, state,
+                 [&run](double t, Snapshot& out) { return run.driver().motion_within(t, out); });
+  settle();
 }
 
 void MemberPhysics::give(const Snapshot& state, Use use) {

@@ -23,8 +23,7 @@ class MemberPhysics {
 
   /// A member at its start. same: the system is that of the member before.
   void begin(const Run& run, bool same);
-  /// The node that a step led to, from the time `before`; inner: states within the step, too, as
-  /// the explicit pairs have them.
+  /// A node; one that a step led to, from the time `before`.
   void node(const Snapshot& state);
   void step(const Run& run, double before, const Snapshot& state);
   /// Calls use(state, extras) as soon as the extras are known, in the order of these calls: at
@@ -49,7 +48,6 @@ class MemberPhysics {
   std::unique_ptr<EnergyBalance> balance_;
   std::deque<Waiting> waiting_;
   std::vector<BalancedState> settled_;
-  Snapshot inner_;
   Eigen::VectorXd g_, xi_;
 };
 

@@ -93,8 +93,9 @@ class Kernel {
   /// The state at a time within the last step, by the scheme's own dense output; false where it has
   /// none.
   virtual bool interpolate(double t, Snapshot& out) = 0;
-  /// The same without measurements, as bare_state().
-  virtual bool bare_state_within(double t, Snapshot& out) = 0;
+  /// Time, element (coordinates, where it is not kept) and velocity alone at such a time, not moved
+  /// onto the constraints: off them by about the error of a step, for integrals along it.
+  virtual bool motion_within(double t, Snapshot& out) = 0;
 };
 
 }  // namespace hamel

@@ -69,17 +69,25 @@ class Loop final : public TimeLoop {
     }
   }
   [[gnu::cold]] bool interpolate(double t, Snapshot& out) override {
-    if (!find_node_within(t)) return false;
-    measure(nodes_.next(), out);
-    out.time = t;
-    return true;
+    if constexpr (kEstimates) {
+      if (!has_dense_output() || !step_.interpolate(part_of_step(t), nodes_.next())) return false;
+      measure(nodes_.next(), out);
+      out.time = t;
+      return true;
+    }
+    return false;
   }
-  [[gnu::cold]] bool bare_state_within(double t, Snapshot& out) override {
-    if (!find_node_within(t)) return false;
-    typename P::Vector xi(problem_.dim());
-    state(nodes_.next(), out, xi, /*coordinates=*/!kHasElement<P>);
-    out.time = t;
-    return true;
+  [[gnu::cold]] bool motion_within(double t, Snapshot& out) override {
+    if constexpr (kEstimates) {
+      if (!has_dense_output() || !step_.interpolate_freely(part_of_step(t), nodes_.next()))
+        return false;
+      typename P::Vector xi(problem_.dim());
+      problem_.velocity(nodes_.next().x, xi);
+      hamel::motion(whole_, nodes_.next().g, xi, out, /*coordinates=*/!kHasElement<P>);
+      out.time = t;
+      return true;
+    }
+    return false;
   }
   [[gnu::cold]] std::unique_ptr<Kernel> another(const KernelSetup& setup) const override {
     if constexpr (std::is_same_v<P, Whole> && P::left_invariant) {
@@ -112,14 +120,8 @@ class Loop final : public TimeLoop {
     else return Step(whole, setup.s);
   }
 
-  // Into nodes_.next().
-  [[gnu::cold]] bool find_node_within([[maybe_unused]] double t) {
-    if constexpr (kEstimates) {
-      return step_.estimated_order() > 0 && last_h_ != 0 &&
-             step_.interpolate((t - nodes_.previous().t) / last_h_, nodes_.next());
-    }
-    return false;
-  }
+  bool has_dense_output() const { return step_.estimated_order() > 0 && last_h_ != 0; }
+  double part_of_step(double t) const { return (t - nodes_.previous().t) / last_h_; }
 
   [[gnu::cold]] void state(const Node& node, Snapshot& out, typename P::Vector& xi,
                            bool coordinates = true) const {

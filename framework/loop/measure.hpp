@@ -84,16 +84,23 @@ void find_momentum(const P& problem, const typename P::Element& g, const typenam
 template <class P>
 inline constexpr bool kHasElement = std::is_same_v<typename P::Element, Eigen::VectorXd>;
 
+/// Place and velocity alone: coordinates, element, velocity.
+template <class P>
+[[gnu::cold]] void motion(const P& problem, const typename P::Element& g,
+                          const typename P::Vector& xi, Snapshot& out, bool coordinates) {
+  out.coordinates.resize(coordinates ? static_cast<size_t>(problem.columns()) : 0);
+  if (coordinates) problem.coordinates(g, out.coordinates.data());
+  if constexpr (kHasElement<P>) out.element.assign(g.data(), g.data() + g.size());
+  out.velocity.assign(xi.data(), xi.data() + xi.size());
+}
+
 /// The state alone: coordinates, element, velocity, momentum, energy. xi: the nodal velocity.
 template <class P>
 [[gnu::cold]] void state(const P& problem, const typename P::Element& g,
                          const typename P::Vector& xi, Snapshot& out, bool coordinates = true) {
-  out.coordinates.resize(coordinates ? static_cast<size_t>(problem.columns()) : 0);
-  if (coordinates) problem.coordinates(g, out.coordinates.data());
-  if constexpr (kHasElement<P>) out.element.assign(g.data(), g.data() + g.size());
+  motion(problem, g, xi, out, coordinates);
   typename P::Vector mu(problem.dim());
   find_momentum(problem, g, xi, mu);
-  out.velocity.assign(xi.data(), xi.data() + xi.size());
   out.momentum.assign(mu.data(), mu.data() + mu.size());
   out.energy = 0.5 * mu.dot(xi) + problem.potential(g);
 }

@@ -108,6 +108,15 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
 
   /// The node at t + theta h within the step that was just finished.
   bool interpolate(double theta, Node& out) const {
+    if (!interpolate_freely(theta, out)) return false;
+    if constexpr (!P::left_invariant) {
+      if (!this->settle(out)) return false;
+      out.x = this->x_;
+    }
+    return true;
+  }
+  /// The same as the tableau gives it: off the constraints by about the error of the step.
+  bool interpolate_freely(double theta, Node& out) const {
     for (int i = last() + 1; !this->extended_ && i < this->table_.all_stages(); ++i) {
       if (!this->stage(i)) return false;
     }
@@ -121,9 +130,6 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     }
     if (!element(this->q_, out.g)) return false;
     out.t = this->from_->t + theta * this->h_;
-    if constexpr (!P::left_invariant) {
-      if (!this->settle(out)) return false;
-    }
     out.x = this->x_;
     return true;
   }

@@ -49,10 +49,8 @@ class Driver {
   long impacts_met() const { return impacts_met_; }
   /// The mechanics as the scheme treats it.
   std::shared_ptr<const Mechanics> acting() const;
-  /// The state within the last step, of the explicit pairs; false: the scheme has none.
-  bool bare_state_within(double t, Snapshot& out) const {
-    return kernel().bare_state_within(t, out);
-  }
+  /// Place and velocity within the last step (Kernel::motion_within).
+  bool motion_within(double t, Snapshot& out) const { return kernel().motion_within(t, out); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -83,7 +81,6 @@ class Driver {
   // Observes the last step; false: the run ends here.
   bool observe_step(double begin);
   bool observe_event(const Events::Found& event, bool& go_on);
-  void observe_within_step(double begin);
   void observe_start();
   // Rows at the output times up to t.
   bool output(double t);

@@ -24,8 +24,8 @@ bool Driver::observe_step(double begin) {
   }
   if (!recording_) return true;
   if (recorder_->wants_nodes()) {
-    observe_within_step(begin);
-    recorder_->node(node_);
+    recorder_->step(begin, node_,
+                    [this](double t, Snapshot& out) { return motion_within(t, out); });
   }
   if (!times_.empty()) return output(node_.time);
   return node_.step % plan_.config.every == 0 ? record(node_) : true;
@@ -65,15 +65,6 @@ bool Driver::observe_event(const Events::Found& event, bool& go_on) {
   if (recording_ && times_.empty()) record(event.state);
   go_on = false;
   return true;
-}
-
-// The explicit pairs take long steps with a dense output: the work is not known from their ends
-// alone.
-void Driver::observe_within_step(double begin) {
-  for (const double part : {0.25, 0.5, 0.75}) {
-    if (!kernel().bare_state_within(begin + part * (node_.time - begin), row_)) return;
-    recorder_->node(row_);
-  }
 }
 
 bool Driver::output(double t) {

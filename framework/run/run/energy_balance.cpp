@@ -36,15 +36,19 @@ double EnergyBalance::power(const Snapshot& state) {
   return out;
 }
 
-void EnergyBalance::node(const Snapshot& state) {
+void EnergyBalance::add_power(const Snapshot& state) {
   if (inputs_ != nullptr) {
     if (inputs_->changes() != changes_ && started_) break_off(last_);
     changes_ = inputs_->changes();
-    last_ = state;
   }
   const double now = power(state);
   if (started_ && !work_.joins(state.time)) settle();
   work_.add(state.time, now);
+}
+
+void EnergyBalance::node(const Snapshot& state) {
+  add_power(state);
+  if (inputs_ != nullptr) last_ = state;
   if (!started_) energy_start_ = state.energy;
   started_ = true;
   update_max_abs(energy_max_, state.energy);

@@ -24,6 +24,18 @@ class EnergyBalance {
 
   /// Takes each node, from the start on: its step, time, coordinates, velocity and energy.
   void node(const Snapshot& state);
+  /// The same for the end of a step from the time `begin`. The explicit pairs take long steps with
+  /// a dense output: the power is asked for within them too, since the work is not known from their
+  /// ends alone. motion_within(t, Snapshot&) -> bool, as Kernel::motion_within.
+  template <class Within>
+  void step(double begin, const Snapshot& end, const Within& motion_within) {
+    for (const double part : {0.25, 0.5, 0.75}) {
+      if (!motion_within(begin + part * (end.time - begin), within_)) break;
+      add_power(within_);
+      if (work_.settled()) settle();
+    }
+    node(end);
+  }
   /// A recorded state, between the last two nodes or one of them.
   void row(const Snapshot& state);
 
@@ -55,6 +67,7 @@ class EnergyBalance {
  private:
   // <f, xi> + lambda . b.
   double power(const Snapshot& state);
+  void add_power(const Snapshot& state);
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
@@ -69,6 +82,7 @@ class EnergyBalance {
   std::shared_ptr<const Inputs> inputs_;
   long changes_ = 0;      // of the inputs, seen
   Snapshot last_;         // node, where there are inputs
+  Snapshot within_;       // a step
   NodalQuadrature work_;  // since the quadrature began, when done_ was done
   double done_ = 0;
   bool started_ = false;

@@ -78,12 +78,6 @@ bool RestartedKernel::interpolate(double t, Snapshot& out) {
   return true;
 }
 
-bool RestartedKernel::bare_state_within(double t, Snapshot& out) {
-  if (!kernel_->bare_state_within(t, out)) return false;
-  out.step += steps_;
-  return true;
-}
-
 const SolverStats& RestartedKernel::stats() const {
   const SolverStats& now = kernel_->stats();
   all_ = past_;

@@ -42,7 +42,7 @@ class RestartedKernel final : public Kernel {
                double step) override;
   void clear_history() override { kernel_->clear_history(); }
   bool interpolate(double t, Snapshot& out) override;
-  bool bare_state_within(double t, Snapshot& out) override;
+  bool motion_within(double t, Snapshot& out) override { return kernel_->motion_within(t, out); }
 
  private:
   void make();

@@ -33,6 +33,10 @@ class RunRecorder {
   /// Does it need every node, not the recorded states only?
   bool wants_nodes() const { return balance_.active(); }
   void node(const Snapshot& state) { balance_.node(state); }
+  template <class Within>
+  void step(double begin, const Snapshot& end, const Within& motion_within) {
+    balance_.step(begin, end, motion_within);
+  }
   /// The start, from which energy, invariants and the exact motion are followed, before any row.
   void begin(const Snapshot& start);
   /// An event changed the state: what that did to the energy and the invariants is no error.
