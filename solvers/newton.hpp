@@ -66,12 +66,11 @@ class Inverse {
   template <class Vector>
   void update(const Vector& c, const Vector& f_1) {
     constexpr int most = size == Eigen::Dynamic ? 16 : size;
-    using Small = Eigen::Matrix<double, size, 1, 0, most, 1>;
-    const Small c_1 = inverse_.lazyProduct(f_1);
+    Eigen::Matrix<double, size, 1, 0, most, 1> c_1(c.size());
+    multiply(inverse_, f_1, c_1);
     const double square = c.squaredNorm(), along = square - c.dot(c_1);
     if (!(along > 0.3 * square)) return;
-    const Small row = inverse_.transpose().lazyProduct(c);
-    inverse_ += Small(c_1 / along).lazyProduct(row.transpose());
+    add_along(c.data(), c_1.data(), 1 / along, inverse_.data(), static_cast<int>(c.size()));
   }
   template <class Vector>
   void solve(const Vector& f, Vector& out) const {
@@ -153,12 +152,20 @@ struct Newton {
 
   /// step: schemes/scheme.hpp. x: guess in, best point out.
   template <class Step>
-  [[gnu::always_inline]] static inline SolveReport solve(const Step& step,
-                                                         typename Step::Unknown& x,
-                                                         double tolerance,
-                                                         Memory<typename Step::Unknown>& memory) {
+  static SolveReport solve(const Step& step, typename Step::Unknown& x, double tolerance,
+                           Memory<typename Step::Unknown>& memory) {
+    SolveReport report;
+    solve(step, x, tolerance, memory, report);
+    return report;
+  }
+  /// The same, written where it is wanted: nothing is copied.
+  template <class Step>
+  [[gnu::always_inline]] static inline void solve(const Step& step, typename Step::Unknown& x,
+                                                  double tolerance,
+                                                  Memory<typename Step::Unknown>& memory,
+                                                  SolveReport& report) {
     const double given = step.scale_squared(), scale = given > 0 ? given : 1.0;
-    SolveReport tried;
+    int corrections = 0, evaluations = 0;
     if (memory.valid) [[likely]] {  // one correction with the last Jacobian: nearly every step
       step.residual(x, memory.f);
       [[maybe_unused]] const double before = HasJacobian<Step> ? 0 : memory.f.squaredNorm();
@@ -174,9 +181,10 @@ struct Newton {
             learn(memory);
         }
         x = memory.trial;
-        return {Reason::converged, std::sqrt(size / scale), 1, 2};
+        report = {Reason::converged, std::sqrt(size / scale), 1, 2};
+        return;
       }
-      tried.evaluations = 2;
+      evaluations = 2;
       memory.valid =
           !HasJacobian<Step> && (worth_keeping(false, before, size, memory.floor * scale) ||
                                  (memory.factors.is_one() && size <= 4 * before));
@@ -184,10 +192,11 @@ struct Newton {
         if (worth_learning(before, size, aimed, scale)) learn(memory);
         memory.f = memory.trial_f;
         x = memory.trial;
-        tried.iterations = 1;
+        corrections = 1;
       }
     }
-    return iterate(ErasedStep<Step>(step), x, tolerance, scale, memory, tried);
+    report = iterate(ErasedStep<Step>(step), x, tolerance, scale, memory,
+                     {.iterations = corrections, .evaluations = evaluations});
   }
   /// The same with every call virtual.
   template <class Unknown>

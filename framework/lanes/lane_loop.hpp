@@ -111,8 +111,9 @@ class LaneLoop final : public LaneKernel, private LaneRescue<P> {
       body.step.begin(body.node, body.setup.step);
       // The batch has tried the Jacobian that it kept.
       if (HasJacobian<Step> && body.memory.trusted) body.memory.newton.valid = false;
-      if (!body.unknown.solve(body.step, body.node, body.setup.step, body.memory).ok())
-        return false;
+      SolveReport report;
+      body.unknown.solve(body.step, body.node, body.setup.step, body.memory, report);
+      if (!report.ok()) return false;
       step.x = body.unknown.x();
       step.inverse = body.memory.newton.factors.matrix();
       step.trusted = body.memory.trusted;

@@ -76,4 +76,13 @@ void multiply_few(const double* a, const double* x, double* out, int rows, int c
       rows, [&](auto count) { multiply_each<decltype(count)::value>(a, x, out, columns); });
 }
 
+void add_along(const double* along, const double* change, double factor, double* m, int n) {
+  short_vectors::with_count<16>(n, [&](auto count) {
+    for (double* column = m; column != m + n * count; column += count) {
+      const double part = factor * short_vectors::dot(column, along, count);
+      short_vectors::add(part, change, column, count);
+    }
+  });
+}
+
 }  // namespace hamel

@@ -29,6 +29,9 @@ void multiply(const Matrix& a, const Vector& x, Product& out) {
   }
 }
 
+/// m <- m + factor change (m^T along)^T, n x n with n at most 16, column-major.
+void add_along(const double* along, const double* change, double factor, double* m, int n);
+
 /// m^-1: in closed form up to 4 x 4.
 template <class T, int N>
 Eigen::Matrix<T, N, N> inverse_of(const Eigen::Matrix<T, N, N>& m) {

@@ -49,11 +49,9 @@ class StepUnknown<Scheme, Step, Newton> {
   };
   StepUnknown(const KernelSetup& /*setup*/, const Step& /*step*/, bool /*ordered*/) {}
   static Memory memory() { return {}; }
-  [[gnu::always_inline]] SolveReport solve(const Step& step, const Node& /*node*/, double /*h*/,
-                                           Memory& /*memory*/) const {
-    SolveReport report;
-    report.evaluations = step.evaluations();
-    return report;
+  [[gnu::always_inline]] void solve(const Step& step, const Node& /*node*/, double /*h*/,
+                                    Memory& /*memory*/, SolveReport& report) const {
+    report = {.evaluations = step.evaluations()};
   }
   bool finish(const Step& step, Node& next) const { return step.finish(next); }
   static void keep(Memory& /*memory*/) {}
@@ -87,19 +85,18 @@ class StepUnknown<Scheme, Step, Newton> {
   void keep(Memory& memory) const { memory.extrapolation.push(x_); }
 
   /// x of a step that has begun at a node with h.
-  [[gnu::always_inline]] SolveReport solve(Step& step, const Node& node, double h, Memory& memory) {
+  [[gnu::always_inline]] void solve(Step& step, const Node& node, double h, Memory& memory,
+                                    SolveReport& report) {
     if (memory.extrapolation.count() == 0) step.guess(x_);
     else memory.extrapolation(x_);
-    SolveReport report = setup_.solver == nullptr
-                             ? Newton::solve(step, x_, setup_.tolerance, memory.newton)
-                             : solve_outside(step);
+    if (setup_.solver == nullptr) Newton::solve(step, x_, setup_.tolerance, memory.newton, report);
+    else report = solve_outside(step);
     if (!report.ok()) [[unlikely]] {
-      if (!is_round_off(step, h, memory, report)) return report;
+      if (!is_round_off(step, h, memory, report)) return;
     }
     if (!(memory.trusted && setup_.solver == nullptr && report.iterations <= kSure)) [[unlikely]] {
       if (!is_principal(step, node, h, memory)) report.reason = Reason::not_principal;
     }
-    return report;
   }
 
  private:

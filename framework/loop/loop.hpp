@@ -166,7 +166,7 @@ class Loop final : public TimeLoop {
   void plain_substep(int place, double h, SolveReport& report) {
     Memory& memory = memories_[static_cast<size_t>(place)];
     step_.begin(nodes_.now(), h);
-    report = unknown_.solve(step_, nodes_.now(), h, memory);
+    unknown_.solve(step_, nodes_.now(), h, memory, report);
     if (report.ok()) {
       if constexpr (NormalisesElement<Step>) step_.normalise_when(nodes_.due());
       if (!unknown_.finish(step_, nodes_.next())) report.reason = why_not_finished();

@@ -83,9 +83,10 @@ class Lift::Reduced {
   }
 
   [[gnu::always_inline]] bool finish(const Unknown& y, Node& next) const {
-    if (!Tau::in_domain(xi(y))) return false;
+    const Vector step = xi(y);
+    if (!Tau::in_domain(step)) return false;
     finish_state(y, next);
-    finish_element(y, next);
+    move(step, next);
     return true;
   }
   /// Its two halves, for xi in the domain. The first shares its terms with the residual at y.
@@ -99,7 +100,11 @@ class Lift::Reduced {
     full_finish(y, xi(y), next.x);
   }
   [[gnu::always_inline]] void finish_element(const Unknown& y, Node& next) const {
-    const Vector step = xi(y);
+    move(xi(y), next);
+  }
+
+ private:
+  [[gnu::always_inline]] void move(const Vector& step, Node& next) const {
     Element increment;
     if (one_sided_) {
       increment = Tau::tau(step);
@@ -112,8 +117,6 @@ class Lift::Reduced {
     next.t = from_->t + h_;
     next.g = G::compose(from_->g, increment);
   }
-
- private:
   bool contracted() const {
     if constexpr (requires { T::width; }) return true;  // in_lanes
     else return contracted_;

@@ -19,6 +19,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -125,8 +126,10 @@ class ContactView {
  public:
   using Vector = VecT<T, 3>;
 
+  ContactView(const ContactView&) = delete;
+  ContactView& operator=(const ContactView&) = delete;
   ContactView(const Contact& contact, const Tree& tree)
-      : body_(tree.from_root(contact.carrier)), root_(tree.root_in_world(contact.link)) {
+      : body_(seen(contact.carrier, tree)), root_(tree.root_in_world(contact.link)) {
     if constexpr (has_rates) {
       against_ = tree.against_root(contact.carrier);
       root_twist_ = tree.root_twist(contact.link);
@@ -171,9 +174,15 @@ class ContactView {
     else return v;
   }
 
-  Rigid body_;         // the carrier
-  const Rigid& root_;  // in the world
-  Twist against_ = Twist::Zero(), root_twist_ = Twist::Zero();
+  const Rigid& seen(int link, const Tree& tree) {
+    const Rigid* const known = tree.known_from_root(link);
+    return known != nullptr ? *known : found_.emplace(tree.from_root(link));
+  }
+
+  std::optional<Rigid> found_;
+  const Rigid& body_;           // the carrier
+  const Rigid& root_;           // in the world
+  Twist against_, root_twist_;  // with rates
 };
 
 /// The point of contact, and the horizontal directions in which it does not slip.

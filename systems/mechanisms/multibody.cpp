@@ -74,6 +74,12 @@ Tree& Multibody::placed(const double* g) const {
   return trees_[last_];
 }
 
+Tree& Multibody::turned(const double* g) const {
+  Tree& tree = placed(g);
+  tree.turn_inertia();
+  return tree;
+}
+
 Tree& Multibody::carrying(const double* g) const {
   Tree& tree = placed(g);
   tree.accumulate_inertia();
@@ -86,7 +92,7 @@ void Multibody::inertia(const double* g, Matrix out) const {
 }
 
 bool Multibody::momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const {
-  Tree& at = carrying(g);
+  Tree& at = turned(g);
   at.move(xi);
   at.momentum(out, inertial_force);
   return true;
@@ -102,9 +108,10 @@ HAMEL_FLATTEN void write(const Row& row, const Tree& tree, Mechanics::Matrix& a,
   }
   double* const out = a.data() + to;
   const Eigen::Index stride = a.outerStride();
-  const auto add = [&](int i, double effect) { out[i * stride] += effect; };
-  tree.each_effect(row.link, row.wrench, add);
-  if (row.other != kGround) tree.each_effect(row.other, -row.other_wrench, add);
+  tree.each_effect(row.link, row.wrench, [&](int i, double effect) { out[i * stride] = effect; });
+  if (row.other == kGround) return;
+  tree.each_effect(row.other, -row.other_wrench,
+                   [&](int i, double effect) { out[i * stride] += effect; });
 }
 
 }  // namespace
@@ -239,7 +246,7 @@ void Multibody::inertial_force(const double* g, ConstVector xi, Vector out) cons
     out.setZero();
     return;
   }
-  Tree& at = carrying(g);
+  Tree& at = turned(g);
   at.move(xi);
   at.momentum(work_, out);
 }

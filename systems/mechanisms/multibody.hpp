@@ -73,7 +73,8 @@ class Multibody final : public Mechanics {
 
  private:
   Tree& placed(const double* g) const;
-  /// The tree at g with its inertias.
+  /// The tree at g with the inertias of its links; with all that these carry.
+  Tree& turned(const double* g) const;
   Tree& carrying(const double* g) const;
   /// out += f - dV.
   void add_applied_force(double t, const double* g, ConstVector xi, Vector out) const;

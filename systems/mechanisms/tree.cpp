@@ -222,7 +222,7 @@ Rigid Tree::from_root(int link) const {
 HAMEL_FLATTEN void Tree::place(const double* g) {
   if (placed_at(g)) return;
   std::memcpy(placed_.data(), g, placed_.size() * sizeof(double));
-  carries_ = moves_ = false;
+  turned_ = carries_ = moves_ = false;
   for (Node& node : nodes_) {
     const double* element = g + node.element;
     if (node.link.parent == kGround) {

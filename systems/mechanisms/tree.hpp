@@ -96,10 +96,18 @@ class Tree {
   }
   /// The element of a joint where it was placed.
   const double* placed(int link) const { return placed_.data() + element(link); }
-  /// Inertias, for inertia(), composite() and add_inertial_force(); place() first.
+  /// The inertia of each link, for momentum(); place() first.
+  void turn_inertia();
+  /// With all that it carries, for inertia(), composite() and add_weight(); place() first.
   void accumulate_inertia();
   /// Link seen from its root (the ground: from the world), and its root in the world.
   Rigid from_root(int link) const;
+  /// The same where it is known already, else null.
+  const Rigid* known_from_root(int link) const {
+    if (link == kGround) return &rest_;
+    const Node& node = at(link);
+    return node.planar || node.rotor ? nullptr : &node.place;
+  }
   const Rigid& root_in_world(int link) const {
     return link == kGround ? rest_ : at(at(link).root).world;
   }
@@ -109,27 +117,28 @@ class Tree {
 
   /// Twists of all links, seen from their roots; place() first.
   void move(Eigen::Ref<const Eigen::VectorXd> xi);
-  Twist twist(int link) const { return link == kGround ? Twist::Zero() : at(link).twist; }
-  Twist root_twist(int link) const {
-    return link == kGround ? Twist::Zero() : at(at(link).root).twist;
+  const Twist& twist(int link) const { return link == kGround ? still_ : at(link).twist; }
+  const Twist& root_twist(int link) const {
+    return link == kGround ? still_ : at(at(link).root).twist;
   }
   /// How they change while xi does not, D; move() first.
   void accelerate();
-  Twist acceleration(int link) const {
-    return link == kGround ? Twist::Zero() : at(link).acceleration;
+  const Twist& acceleration(int link) const {
+    return link == kGround ? still_ : at(link).acceleration;
   }
   /// The twist of a link against its root, U; accelerate() first.
-  Twist against_root(int link) const { return link == kGround ? Twist::Zero() : at(link).against; }
+  const Twist& against_root(int link) const { return link == kGround ? still_ : at(link).against; }
 
   void inertia(Eigen::Ref<Eigen::MatrixXd> out) const;
-  /// I xi and 1/2 d(xi^T I xi); accumulate_inertia() and move() first.
+  /// I xi and 1/2 d(xi^T I xi); turn_inertia() and move() first.
   void momentum(Eigen::Ref<Eigen::VectorXd> out, Eigen::Ref<Eigen::VectorXd> inertial_force);
   /// ad*_xi I xi + 1/2 d(xi^T I xi) - (dI/dt) xi and what the weights do on xi;
-  /// accumulate_inertia() and accelerate() first.
+  /// turn_inertia() and accelerate() first.
   void bias(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out);
   /// out += what the weights do on xi; accumulate_inertia() first.
   void add_weight(const Vec3& gravity, Eigen::Ref<Eigen::VectorXd> out) const;
-  /// f(i, what a wrench on a link does on xi_i); seen from its root. On the ground nothing.
+  /// f(i, what a wrench on a link does on xi_i), once for an i; seen from its root. On the ground
+  /// nothing.
   template <class F>
   void each_effect(int link, const Wrench& wrench, F&& f) const {
     for (int j = link; j != kGround; j = parent(j)) {
@@ -207,9 +216,11 @@ class Tree {
   std::vector<Node> nodes_;
   std::vector<double> drawn_, placed_, moved_;  // xi of the last move there
   Rigid rest_;
+  Twist still_ = Twist::Zero();
   int dim_ = 0, size_ = 0;
   bool chain_ = true;  // each link carries the next one: I(g) has no entries that are always 0
-  bool carries_ = false, moves_ = false;
+  bool turned_ = false, carries_ = false,
+       moves_ = false;  // the inertias; they, accumulated; twists
 };
 
 }  // namespace hamel::mechanisms

@@ -5,22 +5,29 @@
 
 namespace hamel::mechanisms {
 
+HAMEL_FLATTEN void Tree::turn_inertia() {
+  if (turned_) return;
+  turned_ = true;
+  for (Node& node : nodes_) {
+    if (node.rotor || node.link.parent == kGround) continue;
+    if (node.turns) {
+      const double* turned = placed_.data() + node.element;
+      const Vec<12> seen = node.turned_inertia.at(turned[0], turned[1]);
+      node.own.first = seen.head<3>();
+      node.own.second = seen.tail<9>().reshaped<Eigen::AutoOrder>(3, 3);
+    } else if (node.planar) {
+      move_in_plane(node.flat, node.inertia, node.own);
+    } else {
+      node.own = moved(node.place, node.inertia);
+    }
+  }
+}
+
 HAMEL_FLATTEN void Tree::accumulate_inertia() {
   if (carries_) return;
   carries_ = true;
-  for (Node& node : nodes_) {
-    if (node.rotor) continue;
-    if (node.link.parent != kGround) {
-      if (node.turns) {
-        const double* turned = placed_.data() + node.element;
-        const Vec<12> seen = node.turned_inertia.at(turned[0], turned[1]);
-        node.own.first = seen.head<3>();
-        node.own.second = seen.tail<9>().reshaped<Eigen::AutoOrder>(3, 3);
-      } else if (node.planar) move_in_plane(node.flat, node.inertia, node.own);
-      else node.own = moved(node.place, node.inertia);
-    }
-    node.carried = node.own;
-  }
+  turn_inertia();
+  for (Node& node : nodes_) node.carried = node.own;
   for (size_t j = nodes_.size(); j-- > 0;) {
     const Node& node = nodes_[j];
     if (node.rotor || node.link.parent == kGround) continue;

@@ -16,7 +16,8 @@ using Eigen::VectorXd;
 
 constexpr double kUneven = 1e-9;  // kg m^2, of five wheels: they are no rotors any more
 
-Mechanism cart(bool plain) {
+// turning: the ground; a ball on a wheel, beside its axle, rolls there too.
+Mechanism cart(bool plain, bool turning) {
   Mechanism m("cart");
   const double round = plain ? kUneven : 0;
   const auto wheel = [&](const std::string& name, const std::string& on, const Point& at,
@@ -53,6 +54,10 @@ Mechanism cart(bool plain) {
   m.wheel("lump", "lump", {.at = {-0.5, 0, 0.1}, .radius = 0.1});
   m.spring("cord", "left", "arm",
            {.from = {0.03, 0.4, 0.12}, .to = {0.6, 0.3, 0.3}, .stiffness = 5, .damping = 0.2});
+  if (turning) {
+    m.ground(0.7, {0.2, -0.1, 0});
+    m.ball("stud", "raked", {.at = {0.53, -0.2, 0.1}, .radius = 0.1});
+  }
   m.gravity({0.4, -0.2, -9.7});
   m.redundant("drop");
   return m;
@@ -60,13 +65,13 @@ Mechanism cart(bool plain) {
 
 struct Evaluated {
   MatrixXd inertia, a;
-  VectorXd force;
+  VectorXd force, b;
   std::vector<std::string> reactions;
 };
 
 // At coordinates (theta, x, y) of the root and of the joints that follow.
-Evaluated look(bool plain, const VectorXd& coordinates, const VectorXd& velocities) {
-  const SystemModel model = cart(plain).model();
+Evaluated look(bool plain, bool turning, const VectorXd& coordinates, const VectorXd& velocities) {
+  const SystemModel model = cart(plain, turning).model();
   const Mechanics& mechanics = *model.mechanics;
   const auto geometry = registry().geometry(model.group.name, "exp");
   const int more = plain ? 3 : 0, n = mechanics.dim(), joints = n - 3 - more;
@@ -76,13 +81,17 @@ Evaluated look(bool plain, const VectorXd& coordinates, const VectorXd& velociti
     values = {c, -s, 0, s, c, 0, 0, 0, 1, coordinates[1], coordinates[2], 0};
     values.insert(values.end(), coordinates.begin() + 3, coordinates.end());
   }
-  VectorXd g(geometry->size()), xi = VectorXd::Zero(n), b(mechanics.constraint_count());
+  VectorXd g(geometry->size()), xi = VectorXd::Zero(n);
   geometry->from_coordinates(values, g.data());
   // (w3, v1, v2) and the joints, of a free root (w1, w2, w3, v1, v2, v3).
   std::vector<int> columns = plain ? std::vector<int>{2, 3, 4} : std::vector<int>{0, 1, 2};
   for (int j = 0; j < joints; ++j) columns.push_back(3 + more + j);
   xi(columns) = velocities;
-  Evaluated said{MatrixXd(n, n), MatrixXd(mechanics.constraint_count(), n), VectorXd(n), {}};
+  Evaluated said{MatrixXd(n, n),
+                 MatrixXd(mechanics.constraint_count(), n),
+                 VectorXd(n),
+                 VectorXd(mechanics.constraint_count()),
+                 {}};
   // Elsewhere first: what is kept from there must not show.
   const VectorXd here = g, turn = VectorXd::Constant(n, 0.3);
   VectorXd step(g.size()), there(g.size());
@@ -90,7 +99,7 @@ Evaluated look(bool plain, const VectorXd& coordinates, const VectorXd& velociti
   geometry->compose(g.data(), step.data(), there.data());
   for (const VectorXd& at : {there, VectorXd(step), there, here}) {
     mechanics.inertia(at.data(), said.inertia);
-    mechanics.constraints(0, at.data(), said.a, b);
+    mechanics.constraints(0, at.data(), said.a, said.b);
     mechanics.force(0, at.data(), xi, said.force);
   }
   said.inertia = MatrixXd(said.inertia(columns, columns));
@@ -100,15 +109,15 @@ Evaluated look(bool plain, const VectorXd& coordinates, const VectorXd& velociti
   return said;
 }
 
-TEST(Mechanisms, TakeShortcutsThatChangeNothing) {
+void expect_equal(bool turning, size_t rows) {
   const int n = 3 + 11;
   VectorXd coordinates(n), velocities(n);
   for (int i = 0; i < n; ++i) {
     coordinates[i] = 0.6 * std::sin(3.0 * i + 1);
     velocities[i] = std::cos(2.0 * i);
   }
-  const Evaluated ours = look(false, coordinates, velocities),
-                  plain = look(true, coordinates, velocities);
+  const Evaluated ours = look(false, turning, coordinates, velocities),
+                  plain = look(true, turning, coordinates, velocities);
   EXPECT_LT((ours.inertia - plain.inertia).lpNorm<Eigen::Infinity>(), 4 * kUneven);
   EXPECT_LT((ours.force - plain.force).lpNorm<Eigen::Infinity>(), 20 * kUneven);
   size_t compared = 0;
@@ -116,13 +125,20 @@ TEST(Mechanisms, TakeShortcutsThatChangeNothing) {
     const auto same = std::find(plain.reactions.begin(), plain.reactions.end(), ours.reactions[i]);
     if (same == plain.reactions.end()) continue;
     ++compared;
-    EXPECT_LT(
-        (ours.a.row(static_cast<Eigen::Index>(i)) - plain.a.row(same - plain.reactions.begin()))
-            .lpNorm<Eigen::Infinity>(),
-        1e-12)
+    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Index other = same - plain.reactions.begin();
+    EXPECT_LT((ours.a.row(row) - plain.a.row(other)).lpNorm<Eigen::Infinity>(), 1e-12)
         << ours.reactions[i];
+    EXPECT_NEAR(ours.b[row], plain.b[other], 1e-12) << ours.reactions[i];
   }
-  EXPECT_EQ(compared, 1u + 2 + 1 + 2);
+  EXPECT_EQ(compared, rows);
+}
+
+TEST(Mechanisms, TakeShortcutsThatChangeNothing) { expect_equal(/*turning=*/false, 1 + 2 + 1 + 2); }
+
+// Rows that change with the place of their carrier in the root.
+TEST(Mechanisms, TakeShortcutsOnATurningGround) {
+  expect_equal(/*turning=*/true, 1 + 2 + 1 + 2 + 3);
 }
 
 }  // namespace

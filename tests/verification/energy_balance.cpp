@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <tuple>
 
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/run/nodal_quadrature.hpp>
@@ -166,6 +167,19 @@ TEST(EnergyBalance, OfRowsAtOtherTimes) {
   const Result nodes = simulate("roller_racer").step(0.002).until(1).run();
   EXPECT_NEAR(r.energy_balance_error_max, nodes.energy_balance_error_max,
               nodes.energy_balance_error_max);
+}
+
+// The explicit pairs take long steps, within which the power is asked for too, where the motion is
+// not moved onto the constraints.
+TEST(EnergyBalance, OfLongSteps) {
+  for (const Case& c : cases()) {
+    for (const auto& [scheme, rtol, most] :
+         {std::tuple{"dopri5", 1e-7, 5e-8}, {"dop853", 1e-9, 1e-8}}) {
+      const Result r = c.make().scheme(scheme).tolerance({.relative = rtol}).until(c.until).run();
+      EXPECT_LT(r.trajectory.rows(), 150U) << c.name << ", " << scheme;
+      EXPECT_LT(r.energy_balance_error_max, most) << c.name << ", " << scheme;
+    }
+  }
 }
 
 }  // namespace

@@ -109,6 +109,8 @@ TEST(Forces, AnOptionOfLiftOnly) {
   const Result lift =
       simulate("falling_disk").with(&Config::force_at, base).step(0.01).until(0.1).run();
   EXPECT_NE(lift.record().find("\"force_at\": \"base\""), std::string::npos);
+  const Result unnamed = simulate("falling_disk").scheme("balance").until(0.1).run();
+  EXPECT_THAT(unnamed.notes, testing::Not(testing::Contains(testing::HasSubstr("is not used"))));
   EXPECT_EQ(
       simulate("falling_disk").with(&Config::force_at, std::string("noods")).mistakes().size(), 1u);
 }

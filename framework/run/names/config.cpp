@@ -13,15 +13,16 @@ namespace {
 // f(member pointer) for the option of that name.
 template <class F>
 void with_option(const std::string& name, F&& f) {
-  std::vector<std::string> known;
   bool found = false;
   Config::fields([&](const Option& option, auto member) {
-    known.emplace_back(option.name);
     if (option.name != name) return;
     found = true;
     f(member);
   });
-  if (!found) throw ConfigError({unknown_name("option", name, known)});
+  if (found) return;
+  std::vector<std::string> known;
+  Config::fields([&](const Option& option, auto /*member*/) { known.emplace_back(option.name); });
+  throw ConfigError({unknown_name("option", name, known)});
 }
 
 }  // namespace
@@ -34,6 +35,13 @@ std::string Config::text(const std::string& option) const {
 
 void Config::set(const std::string& option, const std::string& text) {
   with_option(option, [&](auto member) { read_text(option, text, this->*member); });
+}
+
+bool Config::is_default(const std::string& option) const {
+  static const Config defaults;
+  bool out = false;
+  with_option(option, [&](auto member) { out = this->*member == defaults.*member; });
+  return out;
 }
 
 long Config::steps() const {

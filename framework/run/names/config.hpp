@@ -140,6 +140,8 @@ struct HAMEL_API Config {
   /// fit.
   std::string text(const std::string& option) const;
   void set(const std::string& option, const std::string& text);
+  /// Has it the value that it has where it is not given?
+  bool is_default(const std::string& option) const;
 
   /// With the scheme and the steps used where none are given: neither scheme nor step, dop853
   /// at rtol 1e-8 with rows every kUsualStep; a step of one size, or a composition of such, lift;

@@ -207,13 +207,14 @@ std::shared_ptr<const Geometry> plan_geometry(const Registry& registry, const Co
                                               const std::string& group, Mistakes& mistakes) {
   if (method.compiled) return own->retraction.geometry;
   auto out = registry.geometry(group, config.retraction);
+  if (out != nullptr) return out;
   const auto offered = registry.retractions_or_common(group);
   if (offered.empty()) {
     mistakes.add(
         fmt::format("group '{}' is not registered: call hamel::add_group<...>() once, or "
                     "use simulate<Scheme, Retraction>(system)",
                     group));
-  } else if (out == nullptr) {
+  } else {
     mistakes.add(unknown_name("retraction of " + group, config.retraction, offered));
   }
   return out;
@@ -242,7 +243,7 @@ void note_end_and_unused(const Config& config, const Method& method,
   if (config.step_max && !config.chooses_steps())
     notes.emplace_back("step_max is not used by steps of one size");
   for (const std::string& option : method.unused) {
-    if (config.text(option) != Config().text(option))
+    if (!config.is_default(option))
       notes.push_back(fmt::format("{} is not used by {}", option, method.scheme->name));
   }
 }
