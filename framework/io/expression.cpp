@@ -51,33 +51,19 @@ class Expression::Reader {
          const std::map<std::string, double>& constants)
       : out_(out),
         text_(text),
+        parser_(of_no_names()),
         values_(variables.size() + 1, 0.0),
         variable_slot_(variables.size()) {
+    parser_.EnableOptimizer(false);  // a copy does not take that over
     names_ = variables;
-    for (const auto& [name, value] : constants) names_.push_back(name);
-    std::copy_if(names_.begin(), names_.end(), std::back_inserter(unusable_),
-                 [](const std::string& name) { return !allows(name); });
-    parser_.EnableOptimizer(false);
-    parser_.DefineNameChars(kLetters);
-    parser_.AddValIdent(read_number);
-    parser_.ClearFun();
-    parser_.ClearConst();
-    parser_.ClearInfixOprt();
-    parser_.DefineInfixOprt("-", minus);
-    parser_.DefineInfixOprt("+", plus);
-    for (const Rule& rule : kFunctions) {
-      void* data = const_cast<Rule*>(&rule);
-      if (rule.arguments == 1) parser_.DefineFunUserData(rule.name, call_one, data);
-      else parser_.DefineFunUserData(rule.name, call_two, data);
-    }
-    parser_.DefineConst("pi", std::numbers::pi);
     for (const auto& [name, value] : constants) {
       if (std::find(variables.begin(), variables.end(), name) != variables.end())
         throw ExpressionError(fmt::format("two things are called '{}'", name), 0);
-      if (allows(name)) parser_.DefineConst(name, value);
+      names_.push_back(name);
+      if (occurs(name)) parser_.DefineConst(name, value);
     }
     for (size_t i = 0; i < variables.size(); ++i)
-      if (allows(variables[i])) parser_.DefineVar(variables[i], &values_[i]);
+      if (occurs(variables[i])) parser_.DefineVar(variables[i], &values_[i]);
   }
 
   void read() {
@@ -101,10 +87,39 @@ class Expression::Reader {
   }
 
  private:
+  // Made once: to define the functions costs as much as to read ten formulas.
+  static const mu::Parser& of_no_names() {
+    static const mu::Parser made = [] {
+      mu::Parser parser;
+      parser.DefineNameChars(kLetters);
+      parser.AddValIdent(read_number);
+      parser.ClearFun();
+      parser.ClearConst();
+      parser.ClearInfixOprt();
+      parser.DefineInfixOprt("-", minus);
+      parser.DefineInfixOprt("+", plus);
+      for (const Rule& rule : kFunctions) {
+        void* data = const_cast<Rule*>(&rule);
+        if (rule.arguments == 1) parser.DefineFunUserData(rule.name, call_one, data);
+        else parser.DefineFunUserData(rule.name, call_two, data);
+      }
+      parser.DefineConst("pi", std::numbers::pi);
+      return parser;
+    }();
+    return made;
+  }
+
+  // Only such a name is made known to muParser: a file has many, a formula few.
+  bool occurs(const std::string& name) const {
+    return text_.find(name) != std::string::npos && allows(name);
+  }
   [[noreturn]] void refuse(const mu::Parser::exception_type& error) const {
     const size_t at =
         std::min(text_.size(), static_cast<size_t>(std::max(0, static_cast<int>(error.GetPos()))));
-    for (const std::string& name : unusable_)
+    std::vector<std::string> unusable;  // with a blank, for example
+    std::ranges::copy_if(names_, std::back_inserter(unusable),
+                         [](const std::string& name) { return !allows(name); });
+    for (const std::string& name : unusable)
       if (const size_t there = text_.find(name); !name.empty() && there != std::string::npos)
         throw ExpressionError(cannot_stand(name), there);
     if (error.GetCode() != mu::ecUNASSIGNABLE_TOKEN) throw ExpressionError(error.GetMsg(), at);
@@ -118,7 +133,7 @@ class Expression::Reader {
     std::vector<std::string> known = names_;
     if (end < text_.size() && text_[end] == '(') known = functions();
     std::string what = unknown_name("name", text_.substr(at, end - at), known);
-    for (const std::string& name : unusable_)
+    for (const std::string& name : unusable)
       if (what.ends_with(fmt::format("did you mean '{}'?", name))) what += " " + cannot_stand(name);
     throw ExpressionError(what, at);
   }
@@ -223,7 +238,7 @@ class Expression::Reader {
   mu::Parser parser_;
   std::vector<double> values_;
   std::vector<std::optional<size_t>> variable_slot_;
-  std::vector<std::string> names_, unusable_;  // unusable_: those with a blank, for example
+  std::vector<std::string> names_;
   std::vector<size_t> stack_;
   std::vector<std::pair<size_t, size_t>> conditions_;
 };

@@ -221,7 +221,7 @@ SystemModel Assembly::model() {
   check_contacts(*system);
   stop_at_mistakes();
 
-  const std::vector<RowInfo> words = system->all_rows().info();
+  const std::vector<RowInfo>& words = system->row_info();
   const std::vector<RowLabel> said = rows_in_words(words);
   const auto starts =
       std::make_shared<Starts>(system, parts_.name_, model_.group.columns, model_.rates, said);

@@ -2,6 +2,7 @@
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 
+#include <memory>
 #include <utility>
 
 #include <hamel/framework/run/data/toml_events.hpp>
@@ -18,8 +19,8 @@ using Node = toml::node;
 
 class File {
  public:
-  File(const std::string& text, const std::string& origin)
-      : origin_(origin), read_(origin), table_(read_.toml.parse(text)) {}
+  File(std::shared_ptr<const toml::table> table, const std::string& origin)
+      : origin_(origin), read_(origin), kept_(std::move(table)), table_(*kept_) {}
 
   SystemModel model(const Parameters& given) {
     parameters(given);
@@ -112,19 +113,25 @@ class File {
 
   std::string origin_;
   FileValues read_;
-  toml::table table_;
+  std::shared_ptr<const toml::table> kept_;
+  const toml::table& table_;
   std::vector<Field> fields_;
 };
+
+std::shared_ptr<const toml::table> parse(const std::string& text, const std::string& origin) {
+  return std::make_shared<const toml::table>(TomlReader(origin).parse(text));
+}
 
 }  // namespace
 
 SystemModel mechanism_from(const std::string& text, const std::string& origin,
                            const Parameters& given) {
-  return File(text, origin).model(given);
+  return File(parse(text, origin), origin).model(given);
 }
 
 SystemInfo mechanism_info(const std::string& text, const std::string& origin) {
-  File file(text, origin);
+  const auto table = parse(text, origin);
+  File file(table, origin);
   const SystemModel model = file.outline();
   SystemInfo out;
   out.name = model.name;
@@ -135,9 +142,7 @@ SystemInfo mechanism_info(const std::string& text, const std::string& origin) {
   out.formula = file.word("formula");
   out.known = file.word("known");
   out.source = file.word("source");
-  out.make = [text, origin](const Parameters& given) {
-    return mechanism_from(text, origin, given);
-  };
+  out.make = [table, origin](const Parameters& given) { return File(table, origin).model(given); };
   return out;
 }
 

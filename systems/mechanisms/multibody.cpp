@@ -9,30 +9,30 @@ Multibody::Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
                      std::shared_ptr<const Geometry> geometry)
     : trees_{tree, tree},
       rows_(std::move(rows)),
+      row_info_(rows_.info()),
       forces_(std::move(forces)),
       geometry_(std::move(geometry)),
       coordinates_(static_cast<size_t>(geometry_->columns())),
       work_(tree.dim()) {
   rows_.find_fixed(tree);
-  std::vector<int> all(rows_.info().size());
+  std::vector<int> all(row_info_.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   keep(all);
 }
 
 void Multibody::keep(const std::vector<int>& rows) {
-  const std::vector<RowInfo> words = rows_.info();
-  slots_.assign(words.size(), -1);
+  slots_.assign(row_info_.size(), -1);
   kept_.clear();
   holonomic_ = 0;
   for (const bool holonomic : {false, true}) {
     for (const int row : rows) {
-      if (words[static_cast<size_t>(row)].holonomic != holonomic) continue;
+      if (row_info_[static_cast<size_t>(row)].holonomic != holonomic) continue;
       slots_[static_cast<size_t>(row)] = static_cast<int>(kept_.size());
       kept_.push_back(row);
       if (holonomic) ++holonomic_;
     }
   }
-  varies_.assign(words.size(), 0);
+  varies_.assign(row_info_.size(), 0);
   for (const int row : kept_) varies_[static_cast<size_t>(row)] = 1;
   fixed_rows_ = Eigen::MatrixXd::Zero(this->constraint_count(), dim());
 }
@@ -189,12 +189,11 @@ void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) 
 Vec3 Multibody::reaction(size_t contact, const double* g,
                          std::span<const double> multipliers) const {
   const std::string& part = rows_.contacts[contact].name;
-  const std::vector<RowInfo> words = rows_.info();
   const Tree& at = placed(g);
   Vec3 force = Vec3::Zero();
   rows_.each(at, 0, [&](size_t i, const Row& row) {
     const int slot = slots_[i];
-    if (words[i].part == part && slot >= 0 && row.dof < 0)
+    if (row_info_[i].part == part && slot >= 0 && row.dof < 0)
       force += multipliers[static_cast<size_t>(slot)] *
                (at.root_in_world(row.link).rotation * lower(row.wrench));
   });

@@ -59,6 +59,8 @@ class Multibody final : public Mechanics {
   double potential(const double* g) const override;
 
   const ConstraintRows& all_rows() const { return rows_; }
+  /// Of all rows, in the order of each().
+  const std::vector<RowInfo>& row_info() const { return row_info_; }
   const std::vector<int>& kept() const { return kept_; }
   const Geometry& geometry() const { return *geometry_; }
   /// The element of the drawn pose.
@@ -85,6 +87,7 @@ class Multibody final : public Mechanics {
   mutable std::array<Tree, 2> trees_;
   mutable size_t last_ = 0;  // of trees_
   ConstraintRows rows_;
+  std::vector<RowInfo> row_info_;
   Forces forces_;
   std::shared_ptr<const Geometry> geometry_;
   std::vector<int> slots_;    // of each(): the row of A, or -1

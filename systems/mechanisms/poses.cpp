@@ -30,7 +30,7 @@ std::vector<double> move(const Multibody& system, const std::vector<double>& g,
 }  // namespace
 
 RowValues::RowValues(const Multibody& system, const std::vector<double>& g, double t) {
-  const auto rows = static_cast<Eigen::Index>(system.all_rows().info().size());
+  const auto rows = static_cast<Eigen::Index>(system.row_info().size());
   a.resize(rows, system.dim());
   b.resize(rows);
   phi = VectorXd::Zero(rows);
@@ -51,7 +51,7 @@ std::vector<std::vector<double>> poses_around(const Multibody& system,
 }
 
 double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g) {
-  const std::vector<RowInfo> words = system.all_rows().info();
+  const std::vector<RowInfo>& words = system.row_info();
   for (int k = 0;; ++k) {
     RowValues looked(system, g);
     for (Eigen::Index i = 0; i < looked.a.rows(); ++i) {
@@ -86,7 +86,7 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
 // none.
 std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<double>& g,
                                     std::vector<int> rows, const std::vector<double>& times) {
-  const std::vector<RowInfo> words = system.all_rows().info();
+  const std::vector<RowInfo>& words = system.row_info();
   std::stable_partition(rows.begin(), rows.end(),
                         [&](int i) { return words[static_cast<size_t>(i)].holonomic; });
   const MatrixXd a = RowValues(system, g).a;
@@ -94,19 +94,24 @@ std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<d
   for (const double t : times) drifts.push_back(RowValues(system, g, t).b);
   const Ground& ground = system.all_rows().ground;
   const double moves = ground.velocity.norm() + std::abs(ground.rate);
-  MatrixXd basis(0, system.dim());
+  MatrixXd basis(0, system.dim());      // rows of unit length
+  std::vector<VectorXd> perpendicular;  // what each adds to those before, of unit length
   std::vector<int> taken;
   std::map<int, Repeat> out;
   for (const int i : rows) {
     const double length = a.row(i).norm();
     const VectorXd row = a.row(i).transpose() / std::max(length, 1e-300);
-    const VectorXd parts = least(basis.transpose(), row);
-    if ((row - basis.transpose() * parts).norm() > 1e-9) {
+    VectorXd rest = row;
+    for (int pass = 1; pass <= 2; ++pass)  // the second takes what round-off has left
+      for (const VectorXd& e : perpendicular) rest -= e.dot(rest) * e;
+    if (rest.norm() > 1e-9) {
+      perpendicular.push_back(rest.normalized());
       basis.conservativeResize(basis.rows() + 1, Eigen::NoChange);
       basis.bottomRows(1) = row.transpose();
       taken.push_back(i);
       continue;
     }
+    const VectorXd parts = least(basis.transpose(), row);
     Repeat& repeat = out[i];
     std::vector<double> factors;
     for (Eigen::Index j = 0; j < parts.size(); ++j) {
@@ -130,8 +135,11 @@ std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<d
 
 Redundancy find_redundancy(const Multibody& system,
                            const std::vector<std::vector<double>>& places) {
-  const std::vector<double> times = {0, -1.3, 0.7, 1.9, 5.3, 14.1, 37.7, 101.3};  // s, of no period
-  const std::vector<RowInfo> words = system.all_rows().info();
+  const bool timed = !system.all_rows().prescribed.empty();  // are there rates b(t)?
+  const std::vector<double> times =
+      timed ? std::vector<double>{0, -1.3, 0.7, 1.9, 5.3, 14.1, 37.7, 101.3}  // s, of no period
+            : std::vector<double>{0};
+  const std::vector<RowInfo>& words = system.row_info();
   // A row of phi that is zero in all poses constrains nothing: in the plane no contact changes its
   // height.
   std::vector<int> speaking;
