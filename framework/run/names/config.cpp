@@ -1,6 +1,7 @@
 #include <hamel/framework/run/names/config.hpp>
 
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -15,7 +16,7 @@ template <class F>
 void with_option(const std::string& name, F&& f) {
   bool found = false;
   Config::fields([&](const Option& option, auto member) {
-    if (option.name != name) return;
+    if (std::string_view(option.name) != name) return;
     found = true;
     f(member);
   });
