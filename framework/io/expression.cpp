@@ -87,7 +87,7 @@ class Expression::Reader {
   }
 
  private:
-  // Made once: to define the functions costs as much as to read ten formulas.
+  // Made once: to define the functions costs as much as to read seven formulas.
   static const mu::Parser& of_no_names() {
     static const mu::Parser made = [] {
       mu::Parser parser;
