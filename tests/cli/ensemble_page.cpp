@@ -60,8 +60,11 @@ skew = { normal = [0.3, 0.05] }
 )toml");
   EXPECT_EQ(figure_of(drawn, "end.omega3 over skew")["series"][0]["x"].size(), 300u);
   double members = 0;
-  const nlohmann::json counts = figure_of(drawn, "Members by end.omega3")["series"][0]["y"];
-  for (const auto& count : counts) members += count.get<double>() / 2;  // each bin has two edges
+  const nlohmann::json stairs = figure_of(drawn, "Members by end.omega3")["series"][0];
+  EXPECT_FALSE(stairs.contains("envelope")) << "no curve of many turns";
+  EXPECT_EQ(stairs["low"].size(), stairs["y"].size());
+  for (const auto& count : stairs["y"])
+    members += count.get<double>() / 2;  // each bin has two edges
   EXPECT_EQ(members, 300);
 }
 

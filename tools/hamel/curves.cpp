@@ -71,6 +71,7 @@ Series drawable(std::string name, const std::vector<double>& x, const std::vecto
   if (y.size() < 2 * kBand || turns_of(y) <= kMostTurns)
     return thinned(std::move(name), x, y, false);
   Series out{std::move(name), {}, {}};
+  out.envelope = true;
   for (size_t b = 0; b < kBand; ++b) {
     const size_t begin = b * y.size() / kBand, end = (b + 1) * y.size() / kBand;
     double low = std::nan(""), high = std::nan("");  // (NaN counts for nothing)

@@ -65,6 +65,7 @@ Json curves(const std::vector<Series>& series, bool logarithmic = false) {
     if (!s.tags.empty()) curve["tags"] = s.tags;
     if (!s.key.empty()) curve["key"] = s.key;
     if (band) curve["low"] = coordinates(s.low);
+    if (band && s.envelope) curve["envelope"] = true;
     if (!s.members.empty()) curve["members"] = s.members;
   }
   return out;

@@ -32,6 +32,7 @@ struct Series {
   std::map<std::string, std::string> tags = {};  // what the plot's filters choose by
   std::string key = "";  // series with one key have one colour on the whole page; empty: the name
   std::vector<double> low = {};    // none, or the lower edge of a band of which y is the upper one
+  bool envelope = false;           // the band is that of a curve with too many turns to be drawn
   std::vector<long> members = {};  // none, or of the points: a click shows the member
 };
 

@@ -51,8 +51,8 @@ function chartFigure(block, data, equal) {
   const holder = h('div', { class: 'chart drawing', role: 'img', tabindex: 0, 'aria-label': describe(block, data, equal) });
   const zoom = makeZoom(holder, () => drawn.redraw());
   const alone = curves.length === 1 && (!curves[0].name || curves[0].name === block.title);
-  const bands = curves.some((curve) => curve.lows.length);
-  const notes = [cover, bands ? remark('A shaded curve goes up and down more often than this figure can show: it is drawn from its least to its greatest values.') : null, data.hidden ? remark(`${data.hidden} point${data.hidden === 1 ? '' : 's'} at or below zero not drawn.`) : null,
+  const envelopes = curves.some((curve) => curve.envelope);
+  const notes = [cover, envelopes ? remark('A shaded curve goes up and down more often than this figure can show: it is drawn from its least to its greatest values.') : null, data.hidden ? remark(`${data.hidden} point${data.hidden === 1 ? '' : 's'} at or below zero not drawn.`) : null,
     block.note ? remark(block.note) : null];
   const picture = (width) => {
     const shown = curves.filter((curve) => curve.show);

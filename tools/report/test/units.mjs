@@ -57,6 +57,8 @@ export const units = [
   ['of curves that coincide each is named once', four.map((names) => names.join()).join(';') === 'w1,w3,w4'],
   ['a ball that holds another body is a shell', shells(1.4) === 'true,false' && shells(1.7) === 'false,false'],
   ['a band and a curve do not coincide', over([0, 1, 0, 1], [0, 1, 0, 1], { low: [-1, -1, -1, -1] }) === 0],
+  ['only the band of a curve of many turns is called one', [true, undefined].every((envelope) =>
+    readSeries({ series: [{ name: 'a', x, y: [1, 1, 1, 1], low: [0, 0, 0, 0], envelope }] }, true).curves[0].envelope === Boolean(envelope))],
   ['a logarithm leaves out what is not above zero', readSeries({ log_y: true, series: [{ name: 'a', x, y: [1, 0, -1, null] }] }, true).hidden === 2],
   ['ticks at round numbers with equal decimals', near(ticks.at, [-0.2, 0, 0.2, 0.4]) && ticks.read(0) === '0.0' && ticks.read(-0.2) === '−0.2'],
   ['an axis of logarithms has ticks, however far it is zoomed', Math.min(...counts) >= 3 && Math.max(...counts) <= 12],
