@@ -150,15 +150,8 @@ struct Newton {
     return std::max({0.01 * tolerance, 8 * eps, 0.5 * static_cast<double>(n) * eps});
   }
 
-  /// step: schemes/scheme.hpp. x: guess in, best point out.
-  template <class Step>
-  static SolveReport solve(const Step& step, typename Step::Unknown& x, double tolerance,
-                           Memory<typename Step::Unknown>& memory) {
-    SolveReport report;
-    solve(step, x, tolerance, memory, report);
-    return report;
-  }
-  /// The same, written where it is wanted: nothing is copied.
+  /// step: schemes/scheme.hpp. x: guess in, best point out. The report is written where it is
+  /// wanted: a copy costs a tenth of a small step.
   template <class Step>
   [[gnu::always_inline]] static inline void solve(const Step& step, typename Step::Unknown& x,
                                                   double tolerance,

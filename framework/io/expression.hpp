@@ -1,9 +1,9 @@
 // Numbers given as a formula in a file: "m*g*sin(slope)", over named variables and constants.
 //
 // The language is muParser's: + - * / ^, comparisons, && ||, a ? b : c, the functions of
-// expression.cpp, and pi. Names may have dots (steer.angle) and end in ' (theta'). muParser reads
-// the text; what it read is kept as a list of instructions, which is evaluated, and differentiated
-// exactly: by all variables backwards, along one direction forwards.
+// expression_rules.hpp, and pi. Names may have dots (steer.angle) and end in ' (theta'). muParser
+// reads the text; what it read is kept as a list of instructions, which is evaluated, and
+// differentiated exactly: by all variables backwards, along one direction forwards.
 #pragma once
 
 #include <map>

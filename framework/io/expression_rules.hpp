@@ -1,5 +1,4 @@
-// The functions and operators of a formula, each with its derivatives. Part of expression.cpp, not
-// installed.
+// The functions and operators of a formula, each with its derivatives. Not installed.
 #pragma once
 
 #include <algorithm>

@@ -212,11 +212,10 @@ Rigid Tree::Node::across(const double* g) const {
 }
 
 Rigid Tree::from_root(int link) const {
-  if (link == kGround) return rest_;
+  if (const Rigid* const known = known_from_root(link)) return *known;
   const Node& node = at(link);
   if (node.planar) return node.flat.in_space();
-  if (node.rotor) return from_root(node.link.parent) * node.across(placed_.data() + node.element);
-  return node.place;
+  return from_root(node.link.parent) * node.across(placed_.data() + node.element);  // a rotor
 }
 
 HAMEL_FLATTEN void Tree::place(const double* g) {

@@ -62,8 +62,8 @@ skew = { normal = [0.3, 0.05] }
   double members = 0;
   const nlohmann::json stairs = figure_of(drawn, "Members by end.omega3")["series"][0];
   EXPECT_FALSE(stairs.contains("envelope")) << "no curve of many turns";
-  EXPECT_EQ(stairs["low"].size(), stairs["y"].size());
-  for (const auto& count : stairs["y"])
+  EXPECT_EQ(stairs.at("low").size(), stairs.at("y").size());
+  for (const auto& count : stairs.at("y"))
     members += count.get<double>() / 2;  // each bin has two edges
   EXPECT_EQ(members, 300);
 }

@@ -29,11 +29,19 @@ struct Made {
   }
 };
 
+/// As the kernels call it.
+template <class Step>
+SolveReport solve(const Step& step, typename Step::Unknown& x, double tolerance,
+                  Newton::Memory<typename Step::Unknown>& memory) {
+  SolveReport report;
+  Newton::solve(step, x, tolerance, memory, report);
+  return report;
+}
 /// A first solve, nothing remembered.
 template <int N>
 SolveReport solve(const Made<N>& step, Vec<N>& x, double tolerance) {
   Newton::Memory<Vec<N>> memory;
-  return Newton::solve(step, x, tolerance, memory);
+  return solve(step, x, tolerance, memory);
 }
 
 Made<1> square_root(double a) {
@@ -150,7 +158,7 @@ TEST(Newton, RestIsAccepted) {
 TEST(Newton, ARememberedJacobianServesOrIsReplaced) {
   Newton::Memory<Vec<1>> memory;
   Vec<1> x(1.4142);
-  EXPECT_TRUE(Newton::solve(square_root(2), x, 1e-13, memory).ok());
+  EXPECT_TRUE(solve(square_root(2), x, 1e-13, memory).ok());
   memory.factors.compute(Mat<1, 1>(2 * x[0]));
   memory.valid = true;
   int jacobians = 0;
@@ -159,14 +167,14 @@ TEST(Newton, ARememberedJacobianServesOrIsReplaced) {
     ++jacobians;
     return Mat<1, 1>(2 * at[0]);
   };
-  EXPECT_TRUE(Newton::solve(near, x, 1e-13, memory).ok());
+  EXPECT_TRUE(solve(near, x, 1e-13, memory).ok());
   EXPECT_NEAR(x[0], std::sqrt(2.0001), 1e-13);
   EXPECT_LE(jacobians, 1);
   for (const double wrong : {-1.0, 1e-3, 1e6, std::numeric_limits<double>::quiet_NaN()}) {
     memory.factors.compute(Mat<1, 1>(wrong));
     memory.valid = true;
     Vec<1> y(1.5);
-    EXPECT_TRUE(Newton::solve(near, y, 1e-13, memory).ok()) << wrong;
+    EXPECT_TRUE(solve(near, y, 1e-13, memory).ok()) << wrong;
     EXPECT_NEAR(y[0], std::sqrt(2.0001), 1e-13) << wrong;
   }
 }
@@ -202,13 +210,13 @@ TEST(Newton, ManyUnknownsBeginWithOne) {
   for (int i = 0; i < n; ++i) step.a(i, (i + 1) % n) = 0.02;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   Newton::Memory<Eigen::VectorXd> memory(x);
-  SolveReport report = Newton::solve(step, x, 1e-13, memory);
+  SolveReport report = solve(step, x, 1e-13, memory);
   EXPECT_TRUE(report.ok());
   EXPECT_LT(report.evaluations, cost / 2);
   int spent = report.evaluations;
   for (int k = 0; k < 40; ++k) {
     x.setZero();
-    report = Newton::solve(step, x, 1e-13, memory);
+    report = solve(step, x, 1e-13, memory);
     EXPECT_TRUE(report.ok());
     spent += report.evaluations;
   }
@@ -219,7 +227,7 @@ TEST(Newton, ManyUnknownsBeginWithOne) {
   memory.clear_history();
   for (int k = 0; k < 40; ++k) {
     x.setZero();
-    report = Newton::solve(step, x, 1e-13, memory);
+    report = solve(step, x, 1e-13, memory);
     EXPECT_TRUE(report.ok());
     EXPECT_LE(report.evaluations, 7) << k;
   }
@@ -228,7 +236,7 @@ TEST(Newton, ManyUnknownsBeginWithOne) {
   step.a *= 3;
   memory.clear_history();
   x.setZero();
-  report = Newton::solve(step, x, 1e-13, memory);
+  report = solve(step, x, 1e-13, memory);
   EXPECT_TRUE(report.ok());
   EXPECT_LE(report.evaluations, cost + 6);
 }
@@ -239,14 +247,14 @@ TEST(Newton, LooksForNothingBelowTheFloor) {
   const Many step = {3 * Eigen::MatrixXd::Identity(n, n), 8e-15};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   Newton::Memory<Eigen::VectorXd> memory(x);
-  SolveReport report = Newton::solve(step, x, 1e-13, memory);
+  SolveReport report = solve(step, x, 1e-13, memory);
   EXPECT_TRUE(report.ok());
   EXPECT_GT(report.residual, 1.5e-14);  // above 64 eps
   EXPECT_LE(report.evaluations, 3 * cost);
   int spent = 0;
   for (const double from : {0.3, 0.32, 0.35, 0.31, 0.36, 0.34, 0.37, 0.33}) {
     x.setConstant(from);
-    report = Newton::solve(step, x, 1e-13, memory);
+    report = solve(step, x, 1e-13, memory);
     EXPECT_TRUE(report.ok());
     spent += report.evaluations;
   }

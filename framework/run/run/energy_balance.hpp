@@ -82,7 +82,7 @@ class EnergyBalance {
   std::shared_ptr<const Inputs> inputs_;
   long changes_ = 0;      // of the inputs, seen
   Snapshot last_;         // node, where there are inputs
-  Snapshot within_;       // a step
+  Snapshot within_;       // a step, place and velocity
   NodalQuadrature work_;  // since the quadrature began, when done_ was done
   double done_ = 0;
   bool started_ = false;
