@@ -44,6 +44,8 @@ class Gni::Step {
   Step(const P& problem, double s) : problem_(problem), free_(problem.unconstrained(), s) {}
 
   int size() const { return free_.size(); }
+  /// The forces may have changed: an input jumps at the node.
+  void clear_history() { free_.clear_history(); }
   void begin(const Node& node, double h) {
     leaving_.t = node.t;
     leaving_.g = node.g;

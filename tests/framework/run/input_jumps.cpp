@@ -53,6 +53,20 @@ TEST(InputJumps, AreNodesOfStepsOfOneSize) {
   }
 }
 
+/// A jump at a node of the grid: the step before takes the force of its side, the step behind the
+/// force of the other, also where a scheme remembers the force of the node.
+TEST(InputJumps, AtANodeHaveTwoSides) {
+  const InputTable held = {{0, 0.25, 0.5, 1}, {0.2, -0.1, 0.3, 0.3}, true};
+  const double impulse = 0.25 * 0.2 - 0.25 * 0.1 + 0.5 * 0.3;
+  for (const Method& method : kMethods) {
+    const Result r = cart(held, 0.125).scheme(method.scheme).compose(method.compose).run();
+    ASSERT_TRUE(r.status.ok) << r.status.reason;
+    EXPECT_NEAR(r.last.velocity[1], 0.5 + kGain * impulse, kSeen)
+        << method.scheme << ", " << method.compose;
+    EXPECT_EQ(r.steps, 8);
+  }
+}
+
 /// Next to a node the jump replaces it; the end of the run stays.
 TEST(InputJumps, NextToANodeStandForIt) {
   const InputTable held = {{0, 0.30001, 0.69999, 0.99999, 1}, {0.2, -0.1, 0.3, 0.1, 0.1}, true};
