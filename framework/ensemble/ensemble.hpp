@@ -128,6 +128,12 @@ struct Histogram {
   long below = 0, above = 0;
 };
 
+/// Of kept quantities in pairs; a pair with fewer than two members has NaN.
+struct Covariance {
+  std::vector<std::vector<double>> matrix = {};
+  std::vector<std::vector<long>> members = {};  // that have both values, over which it is
+};
+
 /// Over the members at a time.
 struct StatisticsAt {
   double time = 0;
@@ -147,7 +153,7 @@ struct HAMEL_API EnsembleResult {
   std::map<std::string, std::vector<double>> quantiles;
   std::map<std::string, Histogram> histograms;
   std::vector<long> class_counts;
-  std::vector<std::vector<double>> covariance;  // of the kept columns, where all have values
+  Covariance covariance;  // of the kept columns
   std::vector<StatisticsAt> statistics;
   std::vector<std::string> notes;  // lines of the journal that were damaged
   bool complete = false;

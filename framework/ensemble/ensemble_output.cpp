@@ -77,10 +77,11 @@ Json core(const EnsembleResult& result) {
                                {"counts", h.counts},
                                {"below", h.below},
                                {"above", h.above}};
-  if (!result.covariance.empty()) {
+  if (!result.covariance.matrix.empty()) {
     Json rows = Json::array();
-    for (const auto& row : result.covariance) rows.push_back(numbers(row));
-    out["covariance"] = {{"names", result.kept}, {"matrix", rows}};
+    for (const auto& row : result.covariance.matrix) rows.push_back(numbers(row));
+    out["covariance"] = {
+        {"names", result.kept}, {"matrix", rows}, {"members", result.covariance.members}};
   }
   for (const StatisticsAt& at : result.statistics) {
     Json one = {{"t", at.time}};

@@ -103,36 +103,32 @@ Histogram histogram_of(std::span<const double> values, const HistogramRequest& r
   return out;
 }
 
-std::vector<std::vector<double>> covariance_of(const std::vector<std::span<const double>>& columns,
-                                               long first) {
+Covariance covariance_of(const std::vector<std::span<const double>>& columns, long first) {
   const size_t n = columns.size();
-  std::vector<std::vector<double>> out(
-      n, std::vector<double>(n, std::numeric_limits<double>::quiet_NaN()));
-  if (n == 0) return out;
-  const size_t size = columns[0].size();
-  const auto whole = [&](size_t k) {
-    return std::ranges::none_of(columns, [&](auto& column) { return std::isnan(column[k]); });
-  };
-  // The sum of f(member) over the members that are whole.
-  const auto sum = [&](auto&& f) {
-    std::vector<double> sums;
-    each_chunk(size, first, [&](size_t at, size_t count) {
-      sums.push_back(0);
-      for (size_t k = at; k < at + count; ++k)
-        if (whole(k)) sums.back() += f(k);
-    });
-    return joined_sum(std::move(sums));
-  };
-  const double members = sum([](size_t) { return 1.0; });
-  if (members < 2) return out;
-  std::vector<double> means;
-  for (const auto& column : columns)
-    means.push_back(sum([&](size_t k) { return column[k]; }) / members);
-  for (size_t i = 0; i < n; ++i)
-    for (size_t j = 0; j <= i; ++j)
-      out[i][j] = out[j][i] =
-          sum([&](size_t k) { return (columns[i][k] - means[i]) * (columns[j][k] - means[j]); }) /
-          (members - 1);
+  Covariance out{std::vector(n, std::vector(n, std::numeric_limits<double>::quiet_NaN())),
+                 std::vector(n, std::vector<long>(n, 0))};
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = 0; j <= i; ++j) {
+      const auto &x = columns[i], &y = columns[j];
+      // The sum of f(member) over the members that have both values.
+      const auto sum = [&](auto&& f) {
+        std::vector<double> sums;
+        each_chunk(x.size(), first, [&](size_t at, size_t count) {
+          sums.push_back(0);
+          for (size_t k = at; k < at + count; ++k)
+            if (!std::isnan(x[k]) && !std::isnan(y[k])) sums.back() += f(k);
+        });
+        return joined_sum(std::move(sums));
+      };
+      const double members = sum([](size_t) { return 1.0; });
+      out.members[i][j] = out.members[j][i] = static_cast<long>(members);
+      if (members < 2) continue;
+      const double mean_x = sum([&](size_t k) { return x[k]; }) / members;
+      const double mean_y = sum([&](size_t k) { return y[k]; }) / members;
+      out.matrix[i][j] = out.matrix[j][i] =
+          sum([&](size_t k) { return (x[k] - mean_x) * (y[k] - mean_y); }) / (members - 1);
+    }
+  }
   return out;
 }
 

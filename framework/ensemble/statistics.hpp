@@ -22,8 +22,8 @@ Moments moments_of_column(std::span<const double> values, long first);
 double quantile(std::span<const double> sorted, double part);
 Histogram histogram_of(std::span<const double> values, const HistogramRequest& request,
                        const Moments& moments);
-/// Of members that have values in all columns, over n - 1.
-std::vector<std::vector<double>> covariance_of(const std::vector<std::span<const double>>& columns,
-                                               long first);
+/// Each entry over the members that have both values, and n - 1 of these: the diagonal is the
+/// square of the deviation.
+Covariance covariance_of(const std::vector<std::span<const double>>& columns, long first);
 
 }  // namespace hamel::ensemble

@@ -139,7 +139,34 @@ TEST(Ensemble, ALinearCaseAgreesWithItsClosedForm) {
   agrees(result.statistics[0].quantities[0].second, std::cos(1), std::sin(1), "x1 at 1");
   agrees(result.statistics[0].quantities[1].second, -std::sin(1), std::cos(1), "xi1 at 1");
   const double end = result.moments.at("end.x1").deviation();
-  EXPECT_NEAR(result.covariance[0][0], end * end, 1e-12);
+  EXPECT_NEAR(result.covariance.matrix[0][0], end * end, 1e-12);
+}
+
+/// A quantity that a third of the members lack takes no member from the pairs of the others.
+TEST(Ensemble, CovarianceIsOverTheMembersThatHaveBothValues) {
+  EnsembleConfig config = spring();
+  config.covariance = true;
+  config.keep.push_back({"late", "end.x1 > 0 ? end.x1 : 0/0"});
+  const EnsembleResult result = Ensemble(registry(), config).run();
+  const size_t n = result.kept.size();
+  for (size_t i = 0; i < n; ++i) {
+    const Moments& moments = result.moments.at(result.kept[i]);
+    EXPECT_EQ(result.covariance.members[i][i], moments.count) << result.kept[i];
+    EXPECT_NEAR(result.covariance.matrix[i][i], std::pow(moments.deviation(), 2), 1e-12);
+  }
+  const std::vector<double> x = column(result, "end.x1"), late = column(result, "late");
+  double count = 0, mean_x = 0, mean_late = 0, sum = 0;
+  for (size_t k = 0; k < x.size(); ++k) {
+    if (std::isnan(late[k])) continue;
+    ++count;
+    mean_x += x[k];
+    mean_late += late[k];
+  }
+  ASSERT_LT(count, 0.9 * static_cast<double>(x.size()));
+  for (size_t k = 0; k < x.size(); ++k)
+    if (!std::isnan(late[k])) sum += (x[k] - mean_x / count) * (late[k] - mean_late / count);
+  EXPECT_EQ(static_cast<double>(result.covariance.members[n - 1][0]), count);
+  EXPECT_NEAR(result.covariance.matrix[n - 1][0], sum / (count - 1), 1e-12);
 }
 
 TEST(Ensemble, HistogramsQuantilesAndClassesCount) {
