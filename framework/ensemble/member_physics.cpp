@@ -31,7 +31,6 @@ void MemberPhysics::node(const Snapshot& state) {
 
 void MemberPhysics::step(const Run& run, double before, const Snapshot& state) {
   if (balance_ == nullptr) return;
-  if (run.over()) return node(state);
   balance_->step(before, state,
                  [&run](double t, Snapshot& out) { return run.driver().motion_within(t, out); });
   settle();

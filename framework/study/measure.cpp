@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <hamel/framework/run/run/run_recorder.hpp>
+#include <hamel/framework/run/run/driver.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
@@ -44,9 +44,15 @@ class RunRecorder {
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
   }
 
-  // A node of the run, from the start on.
-  void node(const Snapshot& state) {
+  // The start of the run, and each of its steps.
+  void start(const Snapshot& state) {
     if (balance_.active()) balance_.node(state);
+    last_node_ = state.time;
+  }
+  void step(const Run& run, const Snapshot& end) {
+    balance_.step(last_node_, end,
+                  [&run](double t, Snapshot& out) { return run.driver().motion_within(t, out); });
+    last_node_ = end.time;
   }
   // Not ok where the state is no good one.
   Status row(const Snapshot& state) {
@@ -102,7 +108,7 @@ class RunRecorder {
   EnergyBalance balance_;
   StudyMetrics& out_;
   Measurements all_;
-  double energy_start_ = 0, size_ = 0;
+  double energy_start_ = 0, size_ = 0, last_node_ = 0;
   std::vector<double> times_, energy_;
 };
 
@@ -189,8 +195,8 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
   };
   RunRecorder* recorder = nullptr;
   if (balance().active()) {  // every node is seen: also those where an input jumps within a step
-    made.every(1).keep_rows(2).observe([&recorder](const Snapshot& state) {
-      if (state.step > 0) recorder->node(state);
+    made.every(1).keep_rows(2).observe([&recorder, &run](const Snapshot& state) {
+      if (state.step > 0) recorder->step(run, state);
       return true;
     });
     run = made.build();
@@ -198,7 +204,7 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
   RunRecorder meter(run.system().group, reference, balance(), out);
   recorder = &meter;
   out.ok = true;
-  meter.node(run.state());
+  meter.start(run.state());
   static_cast<void>(meter.row(run.state()));
   meter.compare(run.state(), 0);
   const Status status = config.chooses_steps() ? follow_chosen(run, meter, reference, stop)

@@ -182,5 +182,21 @@ TEST(EnergyBalance, OfLongSteps) {
   }
 }
 
+// A step that an event cuts is as long as others: the power is asked for within it, up to the
+// event.
+TEST(EnergyBalance, OfTheStepThatAnEventCuts) {
+  const auto run = [] {
+    return skate().scheme("dop853").tolerance({.relative = 1e-9}).every(1000);
+  };
+  for (int i = 1; i <= 12; ++i) {
+    const std::string place = "x=" + std::to_string(0.07 * i);
+    const Result stopped = run().stop_at({place}).until(30).run();
+    ASSERT_TRUE(stopped.stopped_by_event) << place;
+    EXPECT_LT(stopped.energy_balance_error_max, 1e-8) << place;
+    const Result ended = run().until(stopped.last.time).run();
+    EXPECT_NEAR(stopped.work, ended.work, 2e-8 * std::abs(ended.work)) << place;
+  }
+}
+
 }  // namespace
 }  // namespace hamel

@@ -80,7 +80,8 @@ class Driver {
 
   // Observes the last step; false: the run ends here.
   bool observe_step(double begin);
-  bool observe_event(const Events::Found& event, bool& go_on);
+  bool observe_event(const Events::Found& event, double begin, bool& go_on);
+  void balance_step(double begin, const Snapshot& end);
   void observe_start();
   // Rows at the output times up to t.
   bool output(double t);

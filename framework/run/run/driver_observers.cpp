@@ -20,15 +20,18 @@ bool Driver::observe_step(double begin) {
   }
   for (const Events::Found& event : found_) {
     bool go_on = true;
-    if (observe_event(event, go_on)) return go_on;
+    if (observe_event(event, begin, go_on)) return go_on;
   }
   if (!recording_) return true;
-  if (recorder_->wants_nodes()) {
-    recorder_->step(begin, node_,
-                    [this](double t, Snapshot& out) { return motion_within(t, out); });
-  }
+  balance_step(begin, node_);
   if (!times_.empty()) return output(node_.time);
   return node_.step % plan_.config.every == 0 ? record(node_) : true;
+}
+
+// A step from `begin`, whole or up to an event within it, to what follows the energy.
+void Driver::balance_step(double begin, const Snapshot& end) {
+  if (recorder_ == nullptr || !recorder_->wants_nodes()) return;
+  recorder_->step(begin, end, [this](double t, Snapshot& out) { return motion_within(t, out); });
 }
 
 void Driver::observe_start() {
@@ -46,13 +49,13 @@ void Driver::observe_start() {
 }
 
 // True where the state behind the event is not that of the step: go_on is false where the run ends
-// there.
-bool Driver::observe_event(const Events::Found& event, bool& go_on) {
+// there. begin: of the step.
+bool Driver::observe_event(const Events::Found& event, double begin, bool& go_on) {
   result_.events.push_back(
       {event.name, event.state.time, event.state.coordinates, event.state.velocity});
   const std::optional<EventState> after = event.stops ? std::nullopt : impact(event);
   if (!event.stops && !after) return false;
-  if (recorder_ != nullptr && recorder_->wants_nodes()) recorder_->node(event.state);
+  balance_step(begin, event.state);
   go_on = output(event.state.time);  // by the steps before the impact
   if (!go_on) return true;
   if (after) {
