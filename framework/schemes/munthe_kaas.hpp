@@ -69,7 +69,7 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     const double e = estimate(this->table_.e, next, rtol, atol);
     if (this->table_.e3.empty() || e == 0) return e;
     const double e3 = estimate(this->table_.e3, next, rtol, atol);
-    return e * e / std::sqrt(e * e + 0.01 * e3 * e3);
+    return e * (e / std::hypot(e, 0.1 * e3));  // no square: e may be 1e-200, at rest
   }
 
   /// A first step from a node: an Euler step and the change of the rates along it, as in dopri5.f.
@@ -78,12 +78,12 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     this->begin(node, 1);
     const auto size = [&](const Vector& eta_rate, const State& x_rate) {
       this->problem_.velocity(x_rate, error_);
-      double sum = eta_rate.squaredNorm() / ((atol + rtol) * (atol + rtol));
+      double norm = 0;  // by hypot: squares of 1e-200 or 1e200 are no numbers
       for (int i = 0; i < n; ++i) {
-        const double part = error_[i] / (atol + rtol * std::abs(after_[i]));
-        sum += part * part;
+        norm = std::hypot(norm, eta_rate[i] / (atol + rtol),
+                          error_[i] / (atol + rtol * std::abs(after_[i])));
       }
-      return std::sqrt(sum / (2 * n));
+      return norm / std::sqrt(2 * n);
     };
     this->problem_.velocity(node.x, after_);
     const Vector one = Vector::Ones(n);
