@@ -1,6 +1,7 @@
 #include <hamel/framework/lie/decompositions.hpp>
 
 #include <algorithm>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -43,10 +44,25 @@ Vector least_norm(const Matrix& a, const Vector& b, double threshold) {
   return decomposition.compute(a).solve(b);
 }
 
-Matrix kernel(const Matrix& m) { return Eigen::FullPivLU<Matrix>(m).kernel(); }
+Matrix kernel(const Matrix& m, double threshold) {
+  Eigen::FullPivLU<Matrix> decomposition(m);
+  if (threshold > 0) decomposition.setThreshold(threshold);
+  return decomposition.kernel();
+}
 Matrix inverse(const Matrix& m) { return m.inverse(); }
 Matrix solve_symmetric(const Matrix& a, const Matrix& b) { return a.ldlt().solve(b); }
 Matrix solve_lower(const Matrix& a, const Matrix& b) { return a.llt().matrixL().solve(b); }
+
+Pivots lu_pivots(const Matrix& m) {
+  if (m.size() == 0) return {};
+  const Eigen::PartialPivLU<Matrix> lu(m);
+  const Vector pivots = lu.matrixLU().diagonal();
+  const auto negative = (pivots.array() < 0).count();
+  const bool odd = (negative % 2 == 1) != (lu.permutationP().determinant() < 0);
+  const double least = pivots.cwiseAbs().minCoeff(), most = pivots.cwiseAbs().maxCoeff();
+  if (!(least > 0)) return {0, std::numeric_limits<double>::infinity()};
+  return {odd ? -1 : 1, most / least};
+}
 
 SymmetricEigen symmetric_eigen(const Matrix& m) {
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(m);

@@ -40,12 +40,21 @@ Matrix solve_pivoted(const Matrix& a, const Matrix& b);
 Vector least_norm(const Matrix& a, const Vector& b, double threshold);
 
 /// Columns that span {x : m x = 0}, by LU with full pivoting; one column of zeros where that is 0.
-Matrix kernel(const Matrix& m);
+/// threshold: as of rank().
+Matrix kernel(const Matrix& m, double threshold = 0);
 Matrix inverse(const Matrix& m);
 /// x with a x = b for a symmetric and semi-definite.
 Matrix solve_symmetric(const Matrix& a, const Matrix& b);
 /// L^-1 b for a = L L^T symmetric and positive definite.
 Matrix solve_lower(const Matrix& a, const Matrix& b);
+
+/// The sign of det m, 0 where a pivot is, and the largest over the smallest pivot of an LU
+/// decomposition.
+struct Pivots {
+  int sign = 1;
+  double ratio = 1;
+};
+Pivots lu_pivots(const Matrix& m);
 
 /// Eigenvalues and eigenvectors of a symmetric matrix, in ascending order.
 struct SymmetricEigen {

@@ -1,6 +1,8 @@
 // Start of a run, as data. Standard-library types only.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace hamel {
@@ -10,6 +12,15 @@ struct Start {
   std::vector<double> configuration = {};  // the element's CSV columns
   std::vector<double> velocity = {};       // body velocity xi, n entries
   std::vector<double> momentum = {};       // body momentum mu, n entries
+};
+
+/// A start that a system completes from fewer numbers, and what follows of them that a user may not
+/// expect.
+struct SystemStart : Start {
+  std::vector<std::string> notes = {};
+
+  SystemStart() = default;
+  SystemStart(Start start) : Start(std::move(start)) {}
 };
 
 }  // namespace hamel

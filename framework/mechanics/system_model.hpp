@@ -47,7 +47,7 @@ struct SystemModel {
   GroupInfo group;
   std::shared_ptr<const Mechanics> mechanics;
   std::vector<Field> fields;
-  Start start;
+  SystemStart start;
   /// Empty when nothing is known exactly.
   std::function<ExactFlow(const Start&)> exact;
   std::vector<Invariant> invariants;
@@ -70,16 +70,14 @@ struct SystemModel {
 
   /// A start at time t from at most as many numbers as start_parameters has names; from none: the
   /// system's own start at that time. Throws ConfigError where no such motion exists.
-  std::function<Start(std::span<const double>, double t)> start_from;
+  std::function<SystemStart(std::span<const double>, double t)> start_from;
   std::vector<std::string> start_parameters;  // "speed", in m/s
   /// Straight ahead at a speed [m/s]; empty where no straight motion is defined.
-  std::function<Start(double speed, double t)> start_at_speed;
+  std::function<SystemStart(double speed, double t)> start_at_speed;
   /// The same with the push of the file, with which a run starts, and as text: "w1 = 0.1"; empty
   /// where there is none.
-  std::function<Start(double speed, double t)> start_pushed;
+  std::function<SystemStart(double speed, double t)> start_pushed;
   std::string push;
-  /// The velocities with which the root turns, by their places; empty where there is no root.
-  std::vector<int> turning;
   /// Mistakes of a state as the start of a run. inputs: null where none drive the run.
   std::function<std::vector<std::string>(double t, const double* g, std::span<const double> xi,
                                          const std::shared_ptr<const Inputs>& inputs)>

@@ -243,7 +243,6 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
   if (runs) {
     model_.start_at_speed = at_speed(usual);
     if (!parts_.push_.empty()) model_.start_pushed = at_speed(pushed);
-    model_.turning = starts->turning();
   }
   model_.start_from = [starts, start_arguments, stated, pushed](std::span<const double> given,
                                                                 double t) {

@@ -184,7 +184,8 @@ class HAMEL_API Mechanism {
 
   /// The start: coordinates and velocities by name, and "speed", that of the first planar or free
   /// root joint ahead. Those that are not given follow from the rows: coordinates stay near the
-  /// drawn pose, velocities have the least energy.
+  /// drawn pose; joints but wheels' axles are at rest unless the rows require their motion, which a
+  /// note of the run names (start_velocity.hpp).
   void start(const std::map<std::string, double>& values);
   void start(const std::string& name, double value);
   /// A velocity by name beside the speed of a run that starts at one (`--speed`): a motion to be

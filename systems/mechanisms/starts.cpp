@@ -35,25 +35,14 @@ Starts::Starts(std::shared_ptr<const Multibody> system, std::string name,
       rates_(std::move(rates)),
       rows_(std::move(rows)) {}
 
-int Starts::root() const {
-  const Tree& tree = system_->tree(system_->drawn().data());
-  for (int link = 0; link < tree.links(); ++link)
-    if (tree.parent(link) == kGround && tree.joint(link).turns_and_slides()) return link;
-  return -1;
-}
-
-std::vector<int> Starts::turning() const {
-  const int link = root();
-  if (link < 0) return {};
-  const Tree& tree = system_->tree(system_->drawn().data());
-  std::vector<int> out = tree.joint(link).turning();
-  for (int& velocity : out) velocity += tree.first(link);
-  return out;
-}
-
+// The velocity that "speed" is: ahead of the first planar or free root joint.
 int Starts::ahead() const {
-  const std::vector<int> angular = turning();
-  return angular.empty() ? -1 : angular.back() + 1;
+  const Tree& tree = system_->tree(system_->drawn().data());
+  for (int link = 0; link < tree.links(); ++link) {
+    if (tree.parent(link) != kGround || !tree.joint(link).turns_and_slides()) continue;
+    return tree.first(link) + tree.joint(link).turning().back() + 1;
+  }
+  return -1;
 }
 
 int Starts::rate(const std::string& name) const {
@@ -149,29 +138,26 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
   return coordinates;
 }
 
-namespace {
-
-// some + free z -> those of least angular velocity.
-void keep_from_turning(const std::vector<int>& angular, VectorXd& some, MatrixXd& free) {
-  MatrixXd turns(angular.size(), free.cols());
-  VectorXd omega(angular.size());
-  for (size_t i = 0; i < angular.size(); ++i) {
-    turns.row(static_cast<Eigen::Index>(i)) = free.row(angular[i]);
-    omega[static_cast<Eigen::Index>(i)] = some[angular[i]];
+// "steer.rate = 0.2, omega = 0.1": those of some velocities that were not given and are not 0.
+std::string Starts::unasked(const std::vector<int>& some, const Values& values,
+                            const StartVelocity& found, const VectorXd& xi) const {
+  double most = 0;
+  for (Eigen::Index i = 0; i < xi.size(); ++i)
+    most = std::max(most, found.size(static_cast<int>(i), xi[i]));
+  std::string out;
+  for (const int i : some) {
+    const std::string& name = rates_[static_cast<size_t>(i)];
+    const bool given =
+        std::ranges::any_of(values, [&](const auto& entry) { return rate(entry.first) == i; });
+    const bool prescribed = std::ranges::any_of(system_->all_rows().prescribed,
+                                                [&](const Prescribed& p) { return p.dof == i; });
+    if (given || prescribed || !(found.size(i, xi[i]) > 1e-9 * most)) continue;
+    out += fmt::format("{}{} = {:.6g}", out.empty() ? "" : ", ", name, xi[i]);
   }
-  if (turns.norm() <= 1e-9 * free.norm()) return;
-  some += free * least(turns, VectorXd(-omega));
-  Eigen::FullPivLU<MatrixXd> decomposition(turns);
-  decomposition.setThreshold(1e-9);
-  free = (free * decomposition.compute(turns).kernel()).eval();
+  return out;
 }
 
-}  // namespace
-
-// Least 1/2 xi^T I xi with A xi = b and the given velocities. At a speed in the drawn pose the root
-// turns as little as these allow; where coordinates are given, a steering angle, keeping it from
-// turning would spin the joints.
-Start Starts::solve(const Values& values, double t, const Places& places) const {
+SystemStart Starts::solve(const Values& values, double t, const Places& places) const {
   std::vector<std::string> wrong;
   for (const auto& [name, value] : values) {
     const auto place = places.find(name);
@@ -179,7 +165,7 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
       wrong.push_back((place == places.end() ? "" : place->second) + text);
   }
   if (!wrong.empty()) throw ConfigError(wrong);
-  Start start;
+  SystemStart start;
   start.configuration = configuration(values, t, places);
   std::vector<double> g(system_->drawn().size());
   system_->geometry().from_coordinates(start.configuration, g.data());
@@ -188,10 +174,9 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
   for (const auto& entry : values) {
     if (const int i = rate(entry.first); i >= 0) stated.emplace_back(i, entry);
   }
-  MatrixXd inertia(n, n), a = MatrixXd::Zero(k + static_cast<int>(stated.size()), n);
+  MatrixXd a = MatrixXd::Zero(k + static_cast<int>(stated.size()), n);
   VectorXd b = VectorXd::Zero(a.rows()), b_rows(k);
   MatrixXd a_rows(k, n);
-  system_->inertia(g.data(), inertia);
   system_->constraints(t, g.data(), a_rows, b_rows);
   a.topRows(k) = a_rows;
   b.head(k) = b_rows;
@@ -213,15 +198,17 @@ Start Starts::solve(const Values& values, double t, const Places& places) const 
     refuse(rows, against, places,
            " are inconsistent; leave out a velocity: those that are not given follow");
   }
-  // some + N z, N a basis of what is free: least energy where N^T I (some + N z) = 0.
-  MatrixXd free = dense::kernel(a);
-  const bool as_drawn = std::ranges::none_of(
-      values, [&](const auto& entry) { return std::ranges::count(columns_, entry.first) > 0; });
-  if (as_drawn && values.contains("speed")) keep_from_turning(turning(), some, free);
-  const MatrixXd reduced = free.transpose() * inertia * free;
-  const VectorXd z = least(reduced, VectorXd(-(free.transpose() * (inertia * some))));
-  const VectorXd velocity = some + free * z;
+  const StartVelocity found(*system_, g);
+  const VectorXd velocity = found(a, some);
   start.velocity.assign(velocity.begin(), velocity.end());
+  if (const std::string joints = unasked(found.of_joints(), values, found, velocity);
+      !joints.empty())
+    start.notes.push_back(
+        "joints whose rates are not given move at the start, as the rows require: " + joints);
+  if (!values.contains("speed")) return start;
+  if (const std::string root = unasked(found.of_turning_roots(), values, found, velocity);
+      !root.empty())
+    start.notes.push_back("the start is not straight ahead, its root turns: " + root);
   return start;
 }
 

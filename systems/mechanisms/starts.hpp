@@ -9,6 +9,7 @@
 
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/systems/mechanisms/multibody.hpp>
+#include <hamel/systems/mechanisms/start_velocity.hpp>
 
 namespace hamel::mechanisms {
 
@@ -33,12 +34,10 @@ class Starts {
          std::vector<RowLabel> rows);
   /// Mistakes in these names; "speed" is that of the first planar or free root joint ahead.
   std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
-  /// At a time, where prescribed angles hold. Throws ConfigError where the rows forbid these
-  /// values; places: where these are in a file.
-  Start solve(const Values& values, double t, const Places& places = {}) const;
-  /// The places of the root's angular velocities, in whose direction ahead is; empty where there is
-  /// no root.
-  std::vector<int> turning() const;
+  /// At a time, where prescribed angles hold. Velocities that are not given are those of the fewest
+  /// motions (start_velocity.hpp); a note names the joints that move unasked. Throws ConfigError
+  /// where the rows forbid these values; places: where these are in a file.
+  SystemStart solve(const Values& values, double t, const Places& places = {}) const;
   /// The coordinates that are prescribed, and what they are at a time.
   Values prescribed(double t) const;
 
@@ -47,9 +46,10 @@ class Starts {
                                     const Places& places = {}) const;
 
  private:
-  int root() const;                         // the first planar or free joint; -1: there is none
   int ahead() const;                        // the velocity that "speed" is; -1: there is none
   int rate(const std::string& name) const;  // -1: no velocity
+  std::string unasked(const std::vector<int>& some, const Values& values,
+                      const StartVelocity& found, const Eigen::VectorXd& xi) const;
   /// Throws that these rows and values are inconsistent, and the text after them.
   [[noreturn]] void refuse(const std::vector<int>& rows, const Values& values, const Places& places,
                            const std::string& text) const;

@@ -21,24 +21,8 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
-// Rows may leave no motion at this speed without a turn.
-void note_turning(const SystemModel& system, double speed, const Start& straight,
-                  std::vector<std::string>& notes) {
-  const std::vector<Component> components = components_of(system);
-  std::string rates;
-  for (const int i : system.turning) {
-    const double rate = straight.velocity[static_cast<size_t>(i)];
-    if (!(std::abs(rate) > 1e-9 * (1 + std::abs(speed)))) continue;
-    rates += fmt::format("{}{} = {:.6g} rad/s", rates.empty() ? "" : ", ",
-                         components[static_cast<size_t>(i)].name, rate);
-  }
-  if (!rates.empty())
-    notes.push_back(fmt::format("the start is not straight ahead, its root turns: {}", rates));
-}
-
 // The speed, or fewer numbers than velocities, give the start that the system makes of them.
-Start fill_from_few(const SystemModel& system, const Config& config,
-                    std::vector<std::string>& notes, Mistakes& mistakes) {
+SystemStart fill_from_few(const SystemModel& system, const Config& config, Mistakes& mistakes) {
   const Start& start = config.start;
   const size_t given = start.velocity.size();
   try {
@@ -46,12 +30,11 @@ Start fill_from_few(const SystemModel& system, const Config& config,
       if (!start.configuration.empty() || given > 0 || !start.momentum.empty()) {
         mistakes.add("speed: give it alone, or configuration with velocity or momentum");
       } else if (system.start_at_speed) {
-        const Start straight = system.start_at_speed(*config.speed, config.from);
-        note_turning(system, *config.speed, straight, notes);
-        if (!system.start_pushed) return straight;
-        notes.push_back(
+        if (!system.start_pushed) return system.start_at_speed(*config.speed, config.from);
+        SystemStart pushed = system.start_pushed(*config.speed, config.from);
+        pushed.notes.push_back(
             fmt::format("the start is pushed, as the system's file has it: {}", system.push));
-        return system.start_pushed(*config.speed, config.from);
+        return pushed;
       } else {
         mistakes.add(
             fmt::format("speed: {} defines no straight motion; give velocity", system.name));
@@ -67,7 +50,7 @@ Start fill_from_few(const SystemModel& system, const Config& config,
 }
 
 // The system's own start at this time; mistakes are added.
-Start own_start(const SystemModel& system, double from, Mistakes& mistakes) {
+SystemStart own_start(const SystemModel& system, double from, Mistakes& mistakes) {
   if (from == 0 || !system.start_from) return system.start;
   try {
     return system.start_from({}, from);
@@ -160,14 +143,17 @@ void check_datum(const SystemModel& system, const char* name, const std::vector<
 // The user's start, else the system's own, else rest at the identity.
 PlannedStart plan_start(const SystemModel& system, const Config& config, Mistakes& mistakes) {
   PlannedStart out;
-  out.start = fill_from_few(system, config, out.notes, mistakes);
+  SystemStart given = fill_from_few(system, config, mistakes);
+  out.notes = std::move(given.notes);
+  out.start = std::move(given);
   Start& start = out.start;
   if (!start.velocity.empty() && !start.momentum.empty())
     mistakes.add("start: give velocity or momentum, not both");
   const bool whole =
       !start.configuration.empty() && (!start.velocity.empty() || !start.momentum.empty());
-  const Start own = whole ? Start{} : own_start(system, config.from, mistakes);
+  const SystemStart own = whole ? SystemStart{} : own_start(system, config.from, mistakes);
   if (start.velocity.empty() && start.momentum.empty()) {
+    out.notes = own.notes;
     start.velocity = own.velocity;
     start.momentum = own.momentum;
     if (start.velocity.empty() && start.momentum.empty()) {
