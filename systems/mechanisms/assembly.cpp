@@ -119,9 +119,11 @@ ConstraintRows Assembly::rows() {
     const auto rate = part.rate ? part.rate : [](double) { return 0.0; };
     for (const Prescribed& other : out.prescribed)
       if (other.name == part.name) wrong(part, "prescribed", "this joint is prescribed already");
-    if (const int link = joint_of(part, "prescribed"); link >= 0)
+    if (const int link = joint_of(part, "prescribed"); link >= 0) {
       out.prescribed.push_back({part.name, link, rate, part.angle, part.time_dependent,
                                 part.slope});  // the number of the velocity follows
+      out.prescribed.back().driven = !part.rate;
+    }
   }
   return out;
 }
@@ -241,6 +243,7 @@ SystemModel Assembly::model() {
   start(starts);
   check_motions(*system, said);
   stop_at_mistakes();
+  note_what_stands(*system, redundancy);
   draw(system);
   StartChecks checks{said, {}, {}, {}};
   for (const auto& [row, repeat] : redundancy.repeats) checks.dropped.push_back(row);

@@ -75,6 +75,9 @@ class Assembly {
   void start(const std::shared_ptr<const mechanisms::Starts>& starts);
   void check_motions(const mechanisms::Multibody& system,
                      const std::vector<mechanisms::RowLabel>& rows);
+  /// Notes on wheels that cannot roll, a root that cannot move or turn, and supports without load.
+  void note_what_stands(const mechanisms::Multibody& system,
+                        const mechanisms::Redundancy& redundancy);
   std::vector<std::string> body_names() const;
   std::vector<mechanisms::Multibody::Driver> drivers(const mechanisms::Tree& tree);
 

@@ -9,6 +9,7 @@
 #include <hamel/systems/mechanisms/assembly.hpp>
 
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/systems/mechanisms/mobility.hpp>
 
 namespace hamel {
 
@@ -272,12 +273,12 @@ void Assembly::check_motions(const Multibody& system, const std::vector<RowLabel
     a.rowwise().normalize();
     free = dense::kernel(a);
   }
-  if (free.isZero(0)) {  // a motion that what is prescribed decides alone
-    if (system.has_drift()) return;
+  if (free.isZero(0)) {
+    if (mobility_at(system, g).any) return;  // what is prescribed decides the motion alone
     const RowLabel& last = rows[static_cast<size_t>(system.kept().back())];
-    mistakes_.push_back(
-        fmt::format("{}{}: the parts leave no motion, {} independent rows in dimension {}",
-                    last.where, last.what, k, n));
+    mistakes_.push_back(fmt::format(
+        "{}the parts leave no motion at the start, {} independent rows in dimension {}: {}",
+        last.where, k, n, in_words(system.kept(), rows)));
     return;
   }
   free = dense::qr(free).q.leftCols(free.cols()).eval();
@@ -299,6 +300,51 @@ void Assembly::check_motions(const Multibody& system, const std::vector<RowLabel
         fmt::format("{} can move so that nothing that has inertia moves: give the bodies between "
                     "them masses, or let no axes coincide",
                     list));
+}
+
+void Assembly::note_what_stands(const Multibody& system, const Redundancy& redundancy) {
+  const ConstraintRows& rows = system.all_rows();
+  std::vector<double> g(system.drawn().size());
+  system.geometry().from_coordinates(model_.start.configuration, g.data());
+  const auto names = [&](auto&& which) {
+    std::string out;
+    for (size_t i = 0; i < rows.contacts.size(); ++i)
+      if (which(i))
+        out += fmt::format("{}{} '{}'", out.empty() ? "" : ", ", parts_.contacts_[i].kind,
+                           rows.contacts[i].name);
+    return out;
+  };
+  const std::vector<size_t> still = wheels_that_cannot_roll(system);
+  const std::string stuck = names([&](size_t i) { return std::ranges::count(still, i) > 0; });
+  if (!stuck.empty())
+    model_.notes.push_back(
+        fmt::format("{}: cannot roll, since no joint turns about the axle", stuck));
+
+  const std::string all = names([](size_t) { return true; });
+  const Mobility mobility = mobility_at(system, g);
+  const int root = vehicle_root(system.tree(g.data()));
+  if (!mobility.root)
+    model_.notes.push_back(fmt::format("joint '{}' cannot move: {} and what is prescribed hold it",
+                                       link_names_[static_cast<size_t>(root)], all));
+  else if (!mobility.turns && !rows.contacts.empty())
+    model_.notes.push_back(fmt::format(
+        "joint '{}' cannot turn: {} allow straight motion only; a vehicle that turns by "
+        "skidding slips, which rows without friction exclude",
+        link_names_[static_cast<size_t>(root)], all));
+
+  // The height of a dropped row is kept by the other supports, and its multiplier is theirs.
+  const std::vector<RowInfo>& words = system.row_info();
+  std::vector<std::string> unloaded;
+  for (const auto& [row, repeat] : redundancy.repeats) {
+    const RowInfo& word = words[static_cast<size_t>(row)];
+    if (word.height && !repeat.others.empty()) unloaded.push_back(word.part);
+  }
+  const std::string idle =
+      names([&](size_t i) { return std::ranges::count(unloaded, rows.contacts[i].name) > 0; });
+  if (!idle.empty())
+    model_.notes.push_back(fmt::format(
+        "{}: carries no load, since the other supports hold its height; it rolls all the same",
+        idle));
 }
 
 }  // namespace hamel

@@ -25,6 +25,7 @@ struct Prescribed {
   bool time_dependent = false;            // does the rate change?
   std::function<double(double t)> slope;  // of the rate; empty: by differences
   int held = -1;                          // the link that stays at this angle; else -1
+  bool driven = false;                    // the rate is an input
 };
 
 struct RowInfo {
