@@ -48,10 +48,12 @@ class Judge {
   RunVerdict verdict() {
     std::string text = error();
     text += fmt::format(
-        "; {} at most {:.1e}, constraint residual at most {:.1e}, group defect at most {:.1e}. {} "
-        "steps {} to t = {:.6g}.",
+        "; {} at most {:.1e}{}, group defect at most {:.1e}. {} steps {} to t = {:.6g}.",
         does_work(r_) ? "defect of the energy balance" : "energy error", r_.energy_error_max,
-        r_.constraint_max, r_.group_defect_max, r_.steps,
+        std::isnan(r_.constraint_max)
+            ? ""
+            : fmt::format(", constraint residual at most {:.1e}", r_.constraint_max),
+        r_.group_defect_max, r_.steps,
         r_.config.chooses_steps() ? "chosen by the error"
                                   : fmt::format("of h = {}", r_.config.step_or_usual()),
         r_.last.time);
@@ -103,7 +105,7 @@ class Judge {
   // An estimate does not see it: without the constraint it is the error of another motion.
   std::string constraint() {
     const double floor = zero_ / std::abs(r_.config.step_or_usual());
-    if (r_.constraint_max <= kKeptConstraint * size_.speed + 1e3 * floor) return "";
+    if (!(r_.constraint_max > kKeptConstraint * size_.speed + 1e3 * floor)) return "";
     if (!std::isfinite(r_.exact_error_max)) ok_ = false;
     return fmt::format(" **The steps leave the constraint**, by up to {:.1e}.", r_.constraint_max);
   }

@@ -138,7 +138,11 @@ std::string Result::report() const {
   fields([&](const Quantity& quantity, const char*, auto member) {
     const double value = this->*member;
     // NaN: there is no such thing here; of an energy or a constraint, something went wrong.
-    const bool always = member == &Result::energy_error_max || member == &Result::constraint_max;
+    const Mechanics& mechanics = *system->mechanics;
+    const bool residual = mechanics.constraint_count() > mechanics.holonomic_rows() ||
+                          mechanics.constraint_count() == 0;
+    const bool always =
+        member == &Result::energy_error_max || (member == &Result::constraint_max && residual);
     if (*quantity.title == 0 || (!always && std::isnan(value))) return;
     const bool balance = member == &Result::energy_error_max && std::isfinite(work);
     line(

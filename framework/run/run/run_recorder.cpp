@@ -84,6 +84,7 @@ RunRecorder::RunRecorder(const SystemModel& system, const Start& start,
         "balance, relative to the largest energy");
   }
   holonomic_ = mechanics->holonomic_rows() > 0;
+  all_holonomic_ = holonomic_ && mechanics->holonomic_rows() == mechanics->constraint_count();
   drifts_ = mechanics->has_drift();
   if (holonomic_) all_.holonomic_max = 0;
   if (geometry_ != nullptr && mechanics->constraint_count() > 0) {
@@ -305,6 +306,11 @@ void RunRecorder::add_reactions() {
 }
 
 void RunRecorder::finish(const Snapshot& last) {
+  finish_rows(last);
+  if (all_holonomic_) all_.constraint_max = Measurements::kNone;  // of no row
+}
+
+void RunRecorder::finish_rows(const Snapshot& last) {
   if (last.time != last_row_) {
     all_.take(last, energy_start_);
     if (balance_.active()) balance_.row(last);

@@ -78,6 +78,7 @@ class RunRecorder {
   void look_at_reaction_work();
   void look_at_invariants(const Snapshot& state);
   std::pair<double, double> look_at_exact(const Snapshot& state);
+  void finish_rows(const Snapshot& last);
   void settle();
   ExactFlow exact_from_start() const;
 
@@ -90,7 +91,7 @@ class RunRecorder {
   std::vector<BalancedState> settled_;
   std::vector<double> start_configuration_;
   Measurements all_;
-  bool first_ = true, holonomic_ = false;
+  bool first_ = true, holonomic_ = false, all_holonomic_ = false;
   double energy_start_ = 0, time_start_ = 0, last_row_ = 0;
   EnergyBalance balance_;
   ExactFlow exact_;
