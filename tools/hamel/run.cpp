@@ -50,7 +50,10 @@ int run(const RunOptions& options) {
     Progress progress(options.config.system, options.quiet);
     simulation.progress([&](double fraction) {
       progress(fraction);
-      if (stop) throw Unfinished("interrupted");
+      const Config& config = options.config;
+      if (stop)
+        throw Unfinished(fmt::format("interrupted at t = {:.6g}",
+                                     config.from + fraction * (config.until - config.from)));
     });
     try {
       result = simulation.run();

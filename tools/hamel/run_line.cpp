@@ -91,9 +91,10 @@ void RunLine::define(CLI::App& app) {
   group_options(app, "Motion",
                 {"--config", "--continue", "--set", "--input", "--configuration", "--velocity",
                  "--momentum", "--speed", "--from", "--until"});
-  group_options(app, "Method",
-                {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max",
-                 "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
+  group_options(
+      app, "Method",
+      {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max", "--steps-max",
+       "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
   group_options(app, "Events and checks", {"--events", "--stop-at", "--check", "--no-exact"});
   group_options(
       app, "Output",

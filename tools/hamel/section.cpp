@@ -177,9 +177,10 @@ void SectionLine::define(CLI::App& app) {
   group_options(app, "Motion",
                 {"--config", "--set", "--input", "--configuration", "--velocity", "--momentum",
                  "--speed", "--from", "--until"});
-  group_options(app, "Method",
-                {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max",
-                 "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
+  group_options(
+      app, "Method",
+      {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max", "--steps-max",
+       "--solver", "--tolerance", "--force-at", "--compose", "--force", "--on-failure"});
   group_options(app, "Output", {"--output", "--report", "--axes", "--json", "--quiet"});
   app.footer(
       "Without a scheme, a step and a tolerance: dop853 at rtol 1e-10.\n"

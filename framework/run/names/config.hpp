@@ -45,6 +45,7 @@ struct HAMEL_API Config {
   std::optional<double> step;
   std::optional<double> rtol, atol;  // given: steps chosen by the error
   std::optional<double> step_max;
+  long steps_max = 0;  // 0: no limit
   double from = 0;
   double until = 20;
   long every = 1;
@@ -99,6 +100,10 @@ struct HAMEL_API Config {
              "where steps are chosen, the largest: what is shorter may be stepped over, events too",
              false, [](double x) { return x > 0 && std::isfinite(x); }, "a number above 0"},
       &Config::step_max);
+    f(Option{"steps_max", "1",
+             "end the run, as failed, where so many steps do not suffice; 0: no limit", false,
+             [](double x) { return x >= 0; }, "0 or more"},
+      &Config::steps_max);
     f(Option{"speed", "m/s",
              "start, straight ahead at this speed, for systems that define a straight motion",
              false, [](double v) { return std::isfinite(v); }, "a finite number"},

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/run/run/small_steps.hpp>
+
 namespace hamel {
 namespace {
 
@@ -34,13 +36,18 @@ Driver::Driver(RunPlan plan, RunRequest request, Rows rows)
 
 void Driver::make_observers() {
   const Config& config = plan_.config;
-  watching_ = recording_ || plan_.events->any();
+  const auto& mechanics = plan_.setup.mechanics;
+  const bool rows_move = mechanics->has_drift() && mechanics->constraint_count() > 0;
+  rows_watch_.reset();
+  if (rows_move && !plan_.compiled && plan_.geometry != nullptr && plan_.keeps_rows)
+    rows_watch_ = std::make_unique<RowsWatch>(plan_.geometry, *plan_.system, mechanics);
+  steps_ = StepWatch(config.from, config.until - config.from);
+  watching_ = recording_ || plan_.events->any() || rows_watch_ != nullptr;
   steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
   if (!watching_) return;
   times_ = recording_ ? config.recorded_times() : std::vector<double>();
-  every_node_ = !times_.empty() || plan_.events->any();
+  every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr;
   if (!recording_) return;
-  const auto& mechanics = plan_.setup.mechanics;
   recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, plan_.geometry,
                                             mechanics, acting(), plan_.setup.inputs);
   every_node_ = every_node_ || recorder_->wants_nodes();
@@ -145,15 +152,43 @@ Status Driver::advance(long count, bool to_end) {
   return result_.status;
 }
 
+long Driver::piece_of(long count) const {
+  const Config& config = plan_.config;
+  if (config.chooses_steps()) count = std::min(count, steps_.until_next());
+  if (config.steps_max > 0)
+    count = std::min(count, std::max(1L, config.steps_max - kernel().whole_steps()));
+  return count;
+}
+
+Status Driver::steps_go_on(long steps, const Snapshot& now) {
+  const Config& config = plan_.config;
+  const auto ends = [&](const std::string& reason) {
+    return Status{false, now.step, now.time, now.residual, reason};
+  };
+  if (config.chooses_steps() && steps_.look(steps, now.time))
+    return ends(reason_of_small_steps(*plan_.system, plan_.setup, kernel()));
+  if (config.steps_max > 0 && kernel().whole_steps() >= config.steps_max)
+    return ends(fmt::format("steps_max = {} steps are taken", config.steps_max));
+  return {};
+}
+
 // So many whole steps, or to the limit.
 Status Driver::take_unseen(long count) {
   long left = count, before = -1;
   Status status;
   while (status.ok && left > 0 && std::exchange(before, left) != left) {
-    const long whole = kernel().whole_steps();
-    status = kernel().advance(left);
-    left -= kernel().whole_steps() - whole;
+    const long whole = kernel().whole_steps(), piece = piece_of(left);
+    status = kernel().advance(piece);
+    const long taken = kernel().whole_steps() - whole;
+    left -= taken;
     if (kernel().off_grid()) before = -1;
+    if (!status.ok || !(plan_.config.chooses_steps() || plan_.config.steps_max > 0)) continue;
+    if (left > 0 || steps_.until_next() <= taken) {
+      kernel().bare_state(row_);
+      status = steps_go_on(taken, row_);
+    } else {
+      steps_.count(taken);
+    }
   }
   return status;
 }
@@ -167,7 +202,7 @@ long Driver::steps_at_once(long count, bool to_end) const {
   if (every_node_) return 1;
   const long every = recording_ ? plan_.config.every : kRows;
   const long piece = plan_.setup.on_failure == OnFailure::stop ? kRows : kRescued;
-  return std::min({every - node_.step % every, most, piece});
+  return piece_of(std::min({every - node_.step % every, most, piece}));
 }
 
 void Driver::take_steps(long count, bool to_end) {
@@ -181,10 +216,16 @@ void Driver::take_steps(long count, bool to_end) {
     else kernel().bare_state(node_);
     steps_left_ -= kernel().whole_steps() - whole;
     count -= kernel().whole_steps() - whole;
+    if (!result_.status.ok && rows_watch_ != nullptr)
+      result_.status.reason += rows_watch_->remark(node_);
     bool go_on = good(node_);
     if (go_on && every_node_ && node_.step > before) go_on = observe_step(begin);
     else if (go_on && recording_ && times_.empty() && node_.step % plan_.config.every == 0)
       go_on = record(node_);
+    if (go_on && result_.status.ok && !(to_end && reached_end())) {
+      result_.status = steps_go_on(node_.step - before, node_);
+      go_on = result_.status.ok;
+    }
     if (!go_on) over_ = true;
     if (!result_.status.ok || node_.step == before) break;  // failed, or at the limit
     if (to_end && request_.progress && Clock::now() >= next_progress) {
@@ -202,6 +243,7 @@ void Driver::take_steps(long count, bool to_end) {
 void Driver::begin() {
   if (std::exchange(begun_, true)) return;
   kernel().state(node_);
+  if (rows_watch_ != nullptr) rows_watch_->begin(node_);
   if (node_.step > 0) return;
   if (recording_) {
     kernel().measure(result_.last);

@@ -14,7 +14,9 @@
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/run/run/plan.hpp>
 #include <hamel/framework/run/run/restarted_kernel.hpp>
+#include <hamel/framework/run/run/rows_watch.hpp>
 #include <hamel/framework/run/run/run_recorder.hpp>
+#include <hamel/framework/run/run/step_watch.hpp>
 
 namespace hamel {
 
@@ -70,6 +72,10 @@ class Driver {
   // Steps, so many, or to the end of the run, each of them followed by the observers.
   Status advance(long count, bool to_end = false);
   Status take_unseen(long count);
+  // Steps in so many pieces that what watches them sees each: the largest next piece.
+  long piece_of(long count) const;
+  // After a piece: not ok where the run would not end, or has taken all the steps that it may.
+  Status steps_go_on(long steps, const Snapshot& now);
   void limit_grid(long count);
   void take_steps(long count, bool to_end);
   long steps_at_once(long count, bool to_end) const;
@@ -116,6 +122,8 @@ class Driver {
   std::optional<StartMatrices> matrices_;  // of a restart, where they are the same everywhere
   std::unique_ptr<DenseOutput> dense_;     // made when it is first needed
   std::unique_ptr<RunRecorder> recorder_;  // null where nothing is recorded
+  StepWatch steps_;                        // of chosen ones
+  std::unique_ptr<RowsWatch> rows_watch_;  // where rows move and no kernel is compiled for them
   std::vector<std::unique_ptr<Sink>> sinks_;
   Result result_;
   Snapshot node_, row_;

@@ -11,6 +11,13 @@
 namespace hamel {
 
 bool Driver::observe_step(double begin) {
+  if (rows_watch_ != nullptr) {
+    if (const std::optional<std::string> reason = rows_watch_->node(node_)) {
+      result_.status = {false, node_.step, result_.last.time, node_.residual, *reason};
+      flawed_ = true;
+      return false;
+    }
+  }
   if (plan_.events->any()) {
     const Status status = plan_.events->look(node_, dense(), found_);
     if (!status.ok) {
@@ -150,6 +157,7 @@ void Driver::restart_behind(const EventState& state, const Events::Found& event)
     limit_grid(steps_left_);
   }
   kernel().state(node_);
+  if (rows_watch_ != nullptr) rows_watch_->begin(node_);
   if (recorder_ != nullptr) recorder_->impact(event.state, node_);
   plan_.events->resume(node_, event.name);
 }
@@ -198,6 +206,7 @@ void Driver::resume(const RunFile& file) {
   dense_.reset();
   kernel().state(node_);
   begun_ = true;
+  if (rows_watch_ != nullptr) rows_watch_->begin(node_);
   kept_at_ = node_.step;
   for (const std::string& piece : kept.news) {
     std::vector<EventMet> met;

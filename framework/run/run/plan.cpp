@@ -189,6 +189,7 @@ KernelFactory plan_kernel(const Registry& registry, const Config& config, const 
   } else if (geometry != nullptr) {
     const KernelFactory* compiled =
         registry.kernel(planned.model->group.name, mechanics, config.retraction, scheme.name);
+    method.erased = compiled == nullptr;
     out = compiled != nullptr ? *compiled : scheme.erased;
   }
   if (geometry == nullptr) return out;
@@ -303,6 +304,7 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   project_start(system, start);
   plan.config = resolved(config, method, system, start.start);
   plan.keeps_rows = method.scheme->adapted;
+  plan.compiled = !method.erased;
   plan.unused = method.unused;
   plan.events = std::make_unique<Events>(system, plan.geometry, config.events, config.stop_at,
                                          mistakes.all());

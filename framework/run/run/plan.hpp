@@ -43,6 +43,7 @@ std::vector<std::string> unused_options(const SchemeInfo& scheme, const Config& 
 struct Method {
   const SchemeInfo* scheme = nullptr;  // null: there is none of this name
   bool compiled = false;               // by the program, for its own types
+  bool erased = false;                 // the kernel is that of systems without types
   int composition_order = 0;           // 0: one substep
   std::vector<std::string> unused;     // options
   KernelSetup setup;
@@ -113,6 +114,7 @@ struct RunPlan {
   std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
   std::vector<std::string> notes, unused;
   bool keeps_rows = true;  // the scheme does
+  bool compiled = true;    // the kernel, for the types of the system
   std::unique_ptr<Events> events;
   KernelSetup setup;
   KernelFactory kernel;

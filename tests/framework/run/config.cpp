@@ -50,6 +50,7 @@ Config unusual() {
   c.rtol = 1e-7 / 3;
   c.atol = 1e-11;
   c.step_max = 0.7;
+  c.steps_max = 12345;
   c.speed = 1.0 / 3;
   c.output_step = 0.1 / 7;
   c.output_times = {0.1, -1.0 / 3};
@@ -84,11 +85,11 @@ TEST(Config, EveryOptionIsInTheListAndGoesByName) {
     EXPECT_EQ(copy.*member, unusual().*member) << option.name;
     EXPECT_THAT(unusual().to_toml(), HasSubstr("\n" + names.back() + " = "));
   });
-  EXPECT_THAT(names,
-              testing::ElementsAre("scheme", "retraction", "s", "solver", "force_at", "compose",
-                                   "on_failure", "tolerance", "step", "rtol", "atol", "step_max",
-                                   "speed", "from", "until", "every", "output_step", "output_times",
-                                   "events", "stop_at", "check", "force", "no_exact"));
+  EXPECT_THAT(names, testing::ElementsAre("scheme", "retraction", "s", "solver", "force_at",
+                                          "compose", "on_failure", "tolerance", "step", "rtol",
+                                          "atol", "step_max", "steps_max", "speed", "from", "until",
+                                          "every", "output_step", "output_times", "events",
+                                          "stop_at", "check", "force", "no_exact"));
   EXPECT_THROW(copy.set("tolerence", "1"), ConfigError);
   EXPECT_THROW(copy.set("every", "1.5"), ConfigError);
   EXPECT_THROW(copy.set("step", "0.1x"), ConfigError);

@@ -1,0 +1,91 @@
+#include <hamel/framework/run/run/rows_watch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/lie/decompositions.hpp>
+
+namespace hamel {
+namespace {
+constexpr double kDependent = 1e10;  // condition
+}  // namespace
+
+RowsWatch::RowsWatch(std::shared_ptr<const Geometry> geometry, const SystemModel& system,
+                     std::shared_ptr<const Mechanics> mechanics)
+    : geometry_(std::move(geometry)),
+      system_(system),
+      mechanics_(std::move(mechanics)),
+      g_(geometry_->size()),
+      b_(mechanics_->constraint_count()),
+      rows_(mechanics_->constraint_count(), mechanics_->dim()),
+      inertia_(mechanics_->dim(), mechanics_->dim()),
+      whole_(inertia_) {}
+
+void RowsWatch::set_rows(const Snapshot& state) {
+  if (state.element.empty()) geometry_->from_coordinates(state.coordinates, g_.data());
+  else std::copy(state.element.begin(), state.element.end(), g_.data());
+  mechanics_->constraints(state.time, g_.data(), rows_, b_);
+  mechanics_->inertia(g_.data(), inertia_);
+  const double none = 1e-14 * inertia_.diagonal().maxCoeff();  // of massless links
+  for (Eigen::Index i = 0; i < rows_.cols(); ++i)
+    rows_.col(i) /= std::sqrt(std::max(inertia_(i, i), none));
+  for (Eigen::Index i = 0; i < rows_.rows(); ++i)
+    if (const double size = rows_.row(i).norm(); size > 0) rows_.row(i) /= size;
+}
+
+void RowsWatch::set_frame(double t) {
+  const Eigen::Index m = rows_.cols() - rows_.rows();
+  last_time_ = t;
+  whole_.topRows(rows_.rows()) = rows_;
+  frame_ = dense::qr(rows_.transpose()).q.rightCols(m);
+  whole_.bottomRows(m) = frame_.transpose();
+  sign_ = dense::lu_pivots(whole_).sign;
+}
+
+void RowsWatch::begin(const Snapshot& state) {
+  set_rows(state);
+  set_frame(state.time);
+}
+
+std::optional<std::string> RowsWatch::node(const Snapshot& state) {
+  set_rows(state);
+  whole_.topRows(rows_.rows()) = rows_;
+  whole_.bottomRows(frame_.cols()) = frame_.transpose();
+  const dense::Pivots pivots = dense::lu_pivots(whole_);
+  if (pivots.sign != sign_ || pivots.ratio > kDependent)
+    return fmt::format("the rows become dependent between t = {:.6g} and {:.6g}: {}", last_time_,
+                       state.time, names());
+  set_frame(state.time);
+  return {};
+}
+
+double RowsWatch::condition(const Snapshot& state) {
+  set_rows(state);
+  const Eigen::VectorXd values = dense::svd(rows_).values;
+  return values.size() == 0 ? 1 : values[0] / values[values.size() - 1];
+}
+
+std::string RowsWatch::remark(const Snapshot& state) {
+  const double found = condition(state);
+  if (!(found > kNearlyDependent)) return "";
+  return fmt::format("; the rows are nearly dependent there (condition {:.1e}): {}", found, names());
+}
+
+// Those of the combination that is next to zero.
+std::string RowsWatch::names() const {
+  const dense::Svd svd = dense::svd(rows_, Eigen::ComputeThinU);
+  const Eigen::VectorXd parts = svd.u.rightCols<1>().cwiseAbs();
+  std::string out;
+  for (Eigen::Index i = 0; i < parts.size(); ++i) {
+    if (parts[i] < 0.05 * parts.maxCoeff()) continue;
+    const auto row = static_cast<size_t>(i);
+    const auto& named = system_.reactions;
+    out += fmt::format("{}{}", out.empty() ? "" : ", ",
+                       row < named.size() ? named[row] : fmt::format("row {}", row + 1));
+  }
+  return out;
+}
+
+}  // namespace hamel

@@ -1,0 +1,17 @@
+// The reason why the steps of a run have become so small that it would not end. Not installed.
+#pragma once
+
+#include <string>
+
+#include <hamel/framework/loop/kernel.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
+
+namespace hamel {
+
+/// At the state of the kernel, which takes a step: rows that are nearly dependent, by name and
+/// condition; a force that jumps, by component and formula; a tolerance below the round-off of the
+/// equations of motion, with the least that is not; else that none of these was found.
+std::string reason_of_small_steps(const SystemModel& system, const KernelSetup& setup,
+                                  Kernel& kernel);
+
+}  // namespace hamel
