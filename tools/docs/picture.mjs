@@ -14,8 +14,10 @@ const page = await browser.newPage({ viewport: { width: 1240, height: 900 }, dev
 await page.goto(pathToFileURL(resolve(report)).href);
 await page.waitForSelector('html[data-ready=true]', { state: 'attached' });
 await page.evaluate((other) => {
-  const wanted = ['Motion', other].map((title) => [...document.querySelectorAll('figure')]
-    .find((figure) => figure.querySelector('.title').textContent === title));
+  const figures = [...document.querySelectorAll('figure')];
+  const titles = figures.map((figure) => figure.querySelector('.title').textContent);
+  const wanted = ['Motion', other].map((title) => figures[titles.indexOf(title)]);
+  if (wanted.includes(undefined)) throw new Error(`no figure '${other}'; expected one of ${titles.join(', ')}`);
   const pair = document.querySelector('.figures');
   pair.replaceChildren(...wanted);
   pair.id = 'pair';
