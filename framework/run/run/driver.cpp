@@ -42,6 +42,7 @@ void Driver::make_observers() {
   if (rows_move && !plan_.compiled && plan_.geometry != nullptr && plan_.keeps_rows)
     rows_watch_ = std::make_unique<RowsWatch>(plan_.geometry, *plan_.system, mechanics);
   steps_ = StepWatch(config.from, config.until - config.from);
+  rejected_ = 0;
   watching_ = recording_ || plan_.events->any() || rows_watch_ != nullptr;
   steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
   if (!watching_) return;
@@ -154,10 +155,18 @@ Status Driver::advance(long count, bool to_end) {
 
 long Driver::piece_of(long count) const {
   const Config& config = plan_.config;
-  if (config.chooses_steps()) count = std::min(count, steps_.until_next());
+  if (config.chooses_steps()) count = std::min(count, std::max(1L, steps_.until_next()));
   if (config.steps_max > 0)
     count = std::min(count, std::max(1L, config.steps_max - kernel().whole_steps()));
   return count;
+}
+
+// True where they fill the window of the watch.
+bool Driver::count_tries(long steps) {
+  const long rejected = kernel().stats().rejected - rejected_;
+  rejected_ += rejected;
+  steps_.count(steps + rejected, rejected);
+  return steps_.until_next() <= 0;
 }
 
 Status Driver::steps_go_on(long steps, const Snapshot& now) {
@@ -165,8 +174,14 @@ Status Driver::steps_go_on(long steps, const Snapshot& now) {
   const auto ends = [&](const std::string& reason) {
     return Status{false, now.step, now.time, now.residual, reason};
   };
-  if (config.chooses_steps() && steps_.look(steps, now.time))
-    return ends(reason_of_small_steps(*plan_.system, plan_.setup, kernel()));
+  if (config.chooses_steps()) {
+    const bool due = count_tries(steps);
+    if (steps_.look(now.time))
+      return ends(reason_of_small_steps(*plan_.system, plan_.setup, kernel()));
+    if (due && steps_.rejects())
+      if (const auto reason = tolerance_below_round_off(plan_.setup, kernel()))
+        return ends(*reason);
+  }
   if (config.steps_max > 0 && kernel().whole_steps() >= config.steps_max)
     return ends(fmt::format("steps_max = {} steps are taken", config.steps_max));
   return {};
@@ -187,7 +202,7 @@ Status Driver::take_unseen(long count) {
       kernel().bare_state(row_);
       status = steps_go_on(taken, row_);
     } else {
-      steps_.count(taken);
+      count_tries(taken);
     }
   }
   return status;

@@ -76,6 +76,7 @@ class Driver {
   long piece_of(long count) const;
   // After a piece: not ok where the run would not end, or has taken all the steps that it may.
   Status steps_go_on(long steps, const Snapshot& now);
+  bool count_tries(long steps);
   void limit_grid(long count);
   void take_steps(long count, bool to_end);
   long steps_at_once(long count, bool to_end) const;
@@ -123,6 +124,7 @@ class Driver {
   std::unique_ptr<DenseOutput> dense_;     // made when it is first needed
   std::unique_ptr<RunRecorder> recorder_;  // null where nothing is recorded
   StepWatch steps_;                        // of chosen ones
+  long rejected_ = 0;                      // tries that it has counted
   std::unique_ptr<RowsWatch> rows_watch_;  // where rows move and no kernel is compiled for them
   std::vector<std::unique_ptr<Sink>> sinks_;
   Result result_;

@@ -70,7 +70,8 @@ double RowsWatch::condition(const Snapshot& state) {
 std::string RowsWatch::remark(const Snapshot& state) {
   const double found = condition(state);
   if (!(found > kNearlyDependent)) return "";
-  return fmt::format("; the rows are nearly dependent there (condition {:.1e}): {}", found, names());
+  return fmt::format("; the rows are nearly dependent there (condition {:.1e}): {}", found,
+                     names());
 }
 
 // Those of the combination that is next to zero.

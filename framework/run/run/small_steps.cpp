@@ -14,6 +14,8 @@
 namespace hamel {
 namespace {
 
+// A part of the tolerance that round-off may be of.
+constexpr double kNoise = 0.1;
 
 Eigen::VectorXd vector_of(const std::vector<double>& x) {
   return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
@@ -127,7 +129,7 @@ std::optional<std::string> below_round_off(const KernelSetup& setup, const Snaps
       noise = std::max(noise, std::abs(motion.acceleration()[i] - rate[i]) * std::abs(step) /
                                   (setup.atol + setup.rtol * std::abs(xi[i])));
   }
-  if (!(noise > 0.01)) return {};
+  if (!(noise > kNoise)) return {};
   return fmt::format(
       "rtol = {:g} is below the round-off of the equations of motion at t = {:.6g}: "
       "at least {:.0e} can be reached",
@@ -144,15 +146,22 @@ std::string reason_of_small_steps(const SystemModel& system, const KernelSetup& 
   kernel.node(now);
   const double step = now.time - before.time;
   std::optional<std::string> found;
-  try {
-    found = dependent_rows(system, setup, now);
-    if (!found) found = jumping_force(system, setup, before, now);
-    if (!found) found = below_round_off(setup, now, step);
-  } catch (const std::exception&) {  // no element, no value beyond the states
-  }
+  if (setup.geometry != nullptr) try {
+      found = dependent_rows(system, setup, now);
+      if (!found) found = jumping_force(system, setup, before, now);
+      if (!found) found = below_round_off(setup, now, step);
+    } catch (const std::exception&) {  // no element, no value beyond the states
+    }
   return fmt::format("steps of {:.1e} s do not reach the end: {}", step,
                      found.value_or(fmt::format(
                          "the motion is nearly singular at t = {:.6g}, or stiff", now.time)));
+}
+
+std::optional<std::string> tolerance_below_round_off(const KernelSetup& setup, Kernel& kernel) {
+  if (setup.geometry == nullptr) return {};
+  Snapshot now;
+  kernel.node(now);
+  return below_round_off(setup, now, kernel.next_step());
 }
 
 }  // namespace hamel

@@ -1,6 +1,7 @@
 // The reason why the steps of a run have become so small that it would not end. Not installed.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <hamel/framework/loop/kernel.hpp>
@@ -13,5 +14,9 @@ namespace hamel {
 /// equations of motion, with the least that is not; else that none of these was found.
 std::string reason_of_small_steps(const SystemModel& system, const KernelSetup& setup,
                                   Kernel& kernel);
+
+/// The same of the tolerance alone, for steps of the size that comes next; none where it is above
+/// the round-off.
+std::optional<std::string> tolerance_below_round_off(const KernelSetup& setup, Kernel& kernel);
 
 }  // namespace hamel

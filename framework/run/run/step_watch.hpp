@@ -1,6 +1,6 @@
 // A watch over chosen steps that shrink until a run would not end. Not installed.
 //
-// Steps creep where, over a thousand of them in a row, they advance by less than 1e-6 of the run
+// Steps creep where, over a thousand tries in a row, they advance by less than 1e-6 of the run
 // each, and by less than 1e-3 of what a step of the same run has advanced before: a run whose steps
 // are small from its start, since it is long or stiff, does not creep.
 #pragma once
@@ -16,12 +16,17 @@ class StepWatch {
   /// span: of the run.
   StepWatch(double t, double span) : last_(t), span_(std::abs(span)) {}
 
-  /// So many steps may be taken before the next look().
+  /// So many tries may be made before the next look().
   long until_next() const { return window_ - since_; }
-  void count(long steps) { since_ += steps; }
-  /// After more steps, at a time; true where they creep.
-  bool look(long steps, double t) {
-    since_ += steps;
+  void count(long tries, long rejected) {
+    since_ += tries;
+    rejected_ += rejected;
+  }
+  /// Was a third of the last tries rejected? Where the tolerance is below round-off no size of a
+  /// step is good for long.
+  bool rejects() const { return last_tries_ >= kFew && 3 * last_rejected_ > last_tries_; }
+  /// At a time, after the tries that were counted; true where they creep.
+  bool look(double t) {
     if (since_ < window_) return false;
     const double each = std::abs(t - last_) / static_cast<double>(since_);
     const bool small = each < 1e-6 * span_ && each < 1e-3 * largest_;
@@ -29,15 +34,17 @@ class StepWatch {
     largest_ = std::max(largest_, each);
     window_ = std::min(2 * window_, kWindow);  // a run may begin with few large steps
     last_ = t;
-    since_ = 0;
+    last_rejected_ = rejected_;
+    last_tries_ = since_;
+    since_ = rejected_ = 0;
     return small_ >= 4 * kWindow;
   }
 
  private:
-  static constexpr long kWindow = 256;
+  static constexpr long kWindow = 256, kFew = 32;
 
   double last_ = 0, span_ = 0, largest_ = 0;
-  long window_ = 1, since_ = 0, small_ = 0;
+  long window_ = 1, since_ = 0, small_ = 0, rejected_ = 0, last_rejected_ = 0, last_tries_ = 0;
 };
 
 }  // namespace hamel
