@@ -235,4 +235,17 @@ TEST_F(Files, AConfigThatDoesNotFit) {
   EXPECT_EQ(run({"run", "--config", "missing.toml"}).status, 2);
 }
 
+/// A motion that leaves what elements can hold ends as any numerical failure does: status 1, the
+/// good rows in the files, which can be continued from.
+TEST_F(Files, AnAngleBeyondTheElements) {
+  const std::string system = write("group = \"so2\"\ninertia = [1]\nvelocity = [1e7]\n");
+  const Outcome o =
+      run({"run", system, "--until", "1000", "--quiet", "-o", file("x.csv"), "-o", file("x.json")});
+  EXPECT_EQ(o.status, 1) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("expected an angle in radians below 1e9"));
+  EXPECT_GT(lines(contents(file("x.csv"))).size(), 5000u);
+  EXPECT_FALSE(std::filesystem::exists(file("x.csv.part")));
+  EXPECT_EQ(run({"run", "--continue", file("x.json"), "--quiet"}).status, 1);
+}
+
 }  // namespace

@@ -143,6 +143,7 @@ Json record_of(const Result& r) {
 }  // namespace
 
 std::string Result::record(int indent) const {
+  require_run("record");
   return record_of(*this).dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -53,6 +54,12 @@ Result::Result(Result&&) noexcept = default;
 Result& Result::operator=(const Result&) = default;
 Result& Result::operator=(Result&&) noexcept = default;
 Result::~Result() = default;
+
+void Result::require_run(const char* member) const {
+  if (system != nullptr) return;
+  throw std::logic_error(fmt::format(
+      "Result::{}: this result is of no run: it was made by default, or moved from", member));
+}
 
 std::string Result::method() const {
   const auto used = [&](const char* option) {
@@ -107,6 +114,7 @@ static std::string times_in_words(const Result& result) {
 }
 
 std::string Result::report() const {
+  require_run("report");
   std::string out = fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(),
                                 steps_in_words());
   const auto line = [&](const std::string& name, const std::string& value) {
@@ -172,6 +180,7 @@ const char* finer_runs(const Config& config) {
 }
 
 void Result::write(const std::string& path) const {
+  require_run("write");
   if (trajectory.groups().empty() && !path.ends_with(".json")) {
     throw ConfigError({fmt::format(
         "write: '{}': the rows of this run are in its files and not in memory; keep_rows() keeps "

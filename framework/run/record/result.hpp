@@ -58,6 +58,8 @@ struct EventMet {
   std::vector<double> coordinates, velocity;
 };
 
+/// Without a run, made by default or moved from, record(), report() and write() throw
+/// std::logic_error.
 struct HAMEL_API Result : Measurements {
   Result();
   Result(const Result&);
@@ -94,6 +96,9 @@ struct HAMEL_API Result : Measurements {
   /// Writes by extension, output_formats(): the rows that are in memory and the record, or (.json)
   /// the record. The file appears whole or not at all. ConfigError when it cannot be written.
   void write(const std::string& path) const;
+
+ private:
+  void require_run(const char* member) const;
 };
 
 /// The two runs by which an error is estimated (check), described.

@@ -19,17 +19,11 @@ constexpr long kRows = 4096, kSteps = 65536;
 constexpr long kRescued = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-bool asks_for_rows(const RunRequest& request) {
-  return !request.records.empty() || request.rows_kept || request.observer ||
-         request.config.output_step || !request.config.output_times.empty();
-}
-
 }  // namespace
 
-Driver::Driver(RunPlan plan, RunRequest request, Rows rows)
+Driver::Driver(RunPlan plan, RunRequest request)
     : plan_(std::move(plan)),
       request_(std::move(request)),
-      recording_(rows == Rows::always || asks_for_rows(request_)),
       kernel_(std::make_unique<RestartedKernel>(plan_.kernel, plan_.setup)) {
   make_observers();
 }
@@ -43,12 +37,12 @@ void Driver::make_observers() {
     rows_watch_ = std::make_unique<RowsWatch>(plan_.geometry, *plan_.system, mechanics);
   steps_ = StepWatch(config.from, config.until - config.from);
   rejected_ = 0;
-  watching_ = recording_ || plan_.events->any() || rows_watch_ != nullptr;
+  watching_ = plan_.recording || plan_.events->any() || rows_watch_ != nullptr;
   steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
   if (!watching_) return;
-  times_ = recording_ ? config.recorded_times() : std::vector<double>();
+  times_ = plan_.recording ? config.recorded_times() : std::vector<double>();
   every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr;
-  if (!recording_) return;
+  if (!plan_.recording) return;
   recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, plan_.geometry,
                                             mechanics, acting(), plan_.setup.inputs);
   every_node_ = every_node_ || recorder_->wants_nodes();
@@ -71,6 +65,12 @@ Status Driver::refuse(double t, const std::string& reason) const {
   return {false, now.step + 1, now.time, 0, fmt::format(fmt::runtime(reason), t)};
 }
 
+Status Driver::steppable(double t) const {
+  if (finished_) return refuse(t, "this run is finished: build another, or restart it");
+  if (!std::isfinite(t)) return refuse(t, "t = {}: expected a finite time");
+  return {};
+}
+
 // Not ok where a table of an input ends before t.
 Status Driver::covered(double t) const {
   if (plan_.setup.inputs == nullptr || plan_.setup.inputs->covers(t)) return {};
@@ -86,6 +86,7 @@ RestartedKernel& Driver::kernel() const {
 }
 
 Status Driver::step(long count) {
+  if (const Status status = steppable(0); !status.ok) return status;
   const bool chosen = plan_.config.chooses_steps();
   const double h = kernel().next_step();
   if (plan_.setup.inputs != nullptr && !chosen) {
@@ -98,6 +99,7 @@ Status Driver::step(long count) {
 }
 
 Status Driver::step_towards(double t) {
+  if (const Status status = steppable(t); !status.ok) return status;
   if (plan_.config.chooses_steps()) {
     kernel().state(row_);
     if (!((t - row_.time) * kernel().next_step() > 0)) return refuse(t, "t = {} lies behind");
@@ -107,6 +109,7 @@ Status Driver::step_towards(double t) {
 }
 
 Status Driver::advance_to(double t) {
+  if (const Status status = steppable(t); !status.ok) return status;
   if (const Status status = covered(t); !status.ok) return status;
   kernel().state(row_);
   const double steps = (t - row_.time) / kernel().next_step();
@@ -130,11 +133,17 @@ void Driver::limit_grid(long count) {
 }
 
 Status Driver::complete() {
+  if (const Status status = steppable(0); !status.ok) return status;
   if (plan_.config.chooses_steps()) kernel().set_end_time(plan_.config.until);
   else limit_grid(steps_left_);
   advance(0, true);
-  if (request_.progress && result_.status.ok) request_.progress(1);
+  if (request_.progress && result_.status.ok) report_progress(1);
   return result_.status;
+}
+
+void Driver::report_progress(double done) {
+  request_.progress(done);
+  occupancy_.require_run();
 }
 
 Status Driver::advance(long count, bool to_end) {
@@ -215,7 +224,7 @@ bool Driver::reached_end() const {
 long Driver::steps_at_once(long count, bool to_end) const {
   const long most = to_end ? steps_left_ : count;
   if (every_node_) return 1;
-  const long every = recording_ ? plan_.config.every : kRows;
+  const long every = plan_.recording ? plan_.config.every : kRows;
   const long piece = plan_.setup.on_failure == OnFailure::stop ? kRows : kRescued;
   return piece_of(std::min({every - node_.step % every, most, piece}));
 }
@@ -235,7 +244,7 @@ void Driver::take_steps(long count, bool to_end) {
       result_.status.reason += rows_watch_->remark(node_);
     bool go_on = good(node_);
     if (go_on && every_node_ && node_.step > before) go_on = observe_step(begin);
-    else if (go_on && recording_ && times_.empty() && node_.step % plan_.config.every == 0)
+    else if (go_on && plan_.recording && times_.empty() && node_.step % plan_.config.every == 0)
       go_on = record(node_);
     if (go_on && result_.status.ok && !(to_end && reached_end())) {
       result_.status = steps_go_on(node_.step - before, node_);
@@ -244,7 +253,7 @@ void Driver::take_steps(long count, bool to_end) {
     if (!go_on) over_ = true;
     if (!result_.status.ok || node_.step == before) break;  // failed, or at the limit
     if (to_end && request_.progress && Clock::now() >= next_progress) {
-      request_.progress((node_.time - from) / (until - from));
+      report_progress((node_.time - from) / (until - from));
       next_progress = Clock::now() + std::chrono::milliseconds(200);
     }
     if (!over_ && !(to_end && reached_end()) && !kernel().off_grid() &&
@@ -260,7 +269,7 @@ void Driver::begin() {
   kernel().state(node_);
   if (rows_watch_ != nullptr) rows_watch_->begin(node_);
   if (node_.step > 0) return;
-  if (recording_) {
+  if (plan_.recording) {
     kernel().measure(result_.last);
     recorder_->begin(result_.last);
     if (recorder_->wants_nodes()) recorder_->node(node_);
@@ -309,7 +318,7 @@ void Driver::restart(const Start& start) {
   plan_.setup.velocity = planned.start.velocity;
   restarted_ = true;
   dense_.reset();
-  over_ = false;
+  over_ = finished_ = false;
   result_.status = {};
   if (!watching_) return;
   plan_.events->begin(state_of(config.start, config.from), mistakes.all());

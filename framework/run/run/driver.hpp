@@ -12,6 +12,7 @@
 #include <hamel/framework/run/record/sink.hpp>
 #include <hamel/framework/run/run/dense_output.hpp>
 #include <hamel/framework/run/run/events.hpp>
+#include <hamel/framework/run/run/occupancy.hpp>
 #include <hamel/framework/run/run/plan.hpp>
 #include <hamel/framework/run/run/restarted_kernel.hpp>
 #include <hamel/framework/run/run/rows_watch.hpp>
@@ -22,11 +23,8 @@ namespace hamel {
 
 class Driver {
  public:
-  /// Policy for the rows: of a run by hand they are kept on request, of a
-  /// run to its end always.
-  enum class Rows { asked_for, always };
   /// plan: without mistakes.
-  Driver(RunPlan plan, RunRequest request, Rows rows);
+  Driver(RunPlan plan, RunRequest request);
 
   Status step(long count);
   Status step_towards(double t);
@@ -45,6 +43,9 @@ class Driver {
   /// The last row and the measurements; the run is over. Files are unfinished until close().
   Result& end();
   void close();
+  /// Both, once. State and events stay.
+  Result finish();
+  Occupancy& occupancy() { return occupancy_; }
 
   const RunPlan& plan() const { return plan_; }
   const SolverStats& stats() const { return kernel().stats(); }
@@ -81,6 +82,8 @@ class Driver {
   void take_steps(long count, bool to_end);
   long steps_at_once(long count, bool to_end) const;
   bool reached_end() const;
+  // Not ok behind finish(), and where t is not finite.
+  Status steppable(double t) const;
   Status covered(double t) const;
   Status refuse(double t, const std::string& reason) const;
   DenseOutput& dense();
@@ -95,6 +98,8 @@ class Driver {
   bool record(const Snapshot& state);
   // False, and the run has failed, where the state has a flaw; result_.last is the last good one.
   bool good(const Snapshot& state);
+  std::string flaw(const Snapshot& state);
+  void report_progress(double done);
   std::optional<EventState> impact(const Events::Found& event) const;
   void restart_behind(const EventState& state, const Events::Found& event);
 
@@ -117,7 +122,8 @@ class Driver {
 
   RunPlan plan_;
   RunRequest request_;
-  bool recording_, watching_ = false, every_node_ = false;
+  Occupancy occupancy_;
+  bool watching_ = false, every_node_ = false;
   mutable std::unique_ptr<RestartedKernel> kernel_;  // of plan_
   mutable bool restarted_ = false;                   // and the kernel does not know it yet
   std::optional<StartMatrices> matrices_;  // of a restart, where they are the same everywhere
@@ -129,12 +135,14 @@ class Driver {
   std::vector<std::unique_ptr<Sink>> sinks_;
   Result result_;
   Snapshot node_, row_;
+  std::vector<double> element_;  // of a state that is checked
   std::vector<Events::Found> found_;
   std::vector<double> times_;  // of the rows; empty: every so many steps
   size_t next_ = 0;
   long steps_left_ = 0;  // to the end, of one size
   long recorded_ = -1;
-  bool begun_ = false, over_ = false, sinks_begun_ = false, resumable_ = false, flawed_ = false;
+  bool begun_ = false, over_ = false, finished_ = false, sinks_begun_ = false, resumable_ = false,
+       flawed_ = false;
   long rows_ = 0, kept_at_ = 0;  // since the last keep(); its step
   long kept_events_ = 0;         // events that are in the files
   long impacts_met_ = 0;

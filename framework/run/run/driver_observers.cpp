@@ -1,4 +1,4 @@
-// Observers of the steps of a run: events, impacts, rows, files, checkpoints, and its end.
+// Observers of the steps of a run: events, impacts, rows, files and checkpoints.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,7 +29,7 @@ bool Driver::observe_step(double begin) {
     bool go_on = true;
     if (observe_event(event, begin, go_on)) return go_on;
   }
-  if (!recording_) return true;
+  if (!plan_.recording) return true;
   balance_step(begin, node_);
   if (!times_.empty()) return output(node_.time);
   return node_.step % plan_.config.every == 0 ? record(node_) : true;
@@ -72,7 +72,7 @@ bool Driver::observe_event(const Events::Found& event, double begin, bool& go_on
   result_.stopped_by_event = true;
   result_.status.reason = "stopped at " + event.name;
   result_.last = event.state;
-  if (recording_ && times_.empty()) record(event.state);
+  if (plan_.recording && times_.empty()) record(event.state);
   go_on = false;
   return true;
 }
@@ -118,17 +118,11 @@ bool Driver::record(const Snapshot& state) {
     for (const auto& sink : sinks_) sink->flush();
   }
   if (!good_row) return false;
-  if (!request_.observer || request_.observer(row)) return true;
+  if (!request_.observer) return true;
+  const bool go_on = request_.observer(row);
+  occupancy_.require_run();
+  if (go_on) return true;
   result_.status.reason = to_string(Reason::stopped);
-  return false;
-}
-
-bool Driver::good(const Snapshot& state) {
-  const Reason flaw = flaw_of(state);
-  if (flaw == Reason::converged) return true;
-  if (result_.status.ok)
-    result_.status = {false, state.step, result_.last.time, state.residual, to_string(flaw)};
-  flawed_ = true;
   return false;
 }
 
@@ -138,6 +132,7 @@ std::optional<EventState> Driver::impact(const Events::Found& event) const {
   if (it == request_.impacts.end()) return {};
   EventState state{event.state.time, event.state.coordinates, event.state.velocity};
   it->second(state);
+  occupancy_.require_run();
   if (state.coordinates == event.state.coordinates && state.velocity == event.state.velocity)
     return {};
   return state;
@@ -180,7 +175,7 @@ void Driver::deliver() {
 void Driver::keep() {
   rows_ = 0;
   kept_at_ = node_.step;
-  if (!recording_) return;
+  if (!plan_.recording) return;
   const Timed timed(in_rows_);
   deliver();
   if (resumable_) {
@@ -257,80 +252,6 @@ void Driver::lap() {
   seconds_.comparing += seconds(comparing_);
   entered_ = now;
   in_rows_ = comparing_ = {};
-}
-
-// ---- the end ------------------------------------------------------------------------------------
-
-Result Driver::head() const {
-  Result out;
-  out.config = plan_.config;
-  out.system = plan_.system;
-  out.inputs = plan_.setup.inputs;
-  out.unused = plan_.unused;
-  out.notes = plan_.notes;
-  return out;
-}
-
-// Without rows: start and end alone. The balance of work needs every node, and is not known.
-void Driver::measure_ends_only() {
-  if (flawed_) {
-    result_.constraint_max = result_.group_defect_max = result_.energy_error_max =
-        Measurements::kNone;
-    return;
-  }
-  RunRecorder meter(*plan_.system, plan_.config.start, plan_.geometry, plan_.setup.mechanics,
-                    acting(), plan_.setup.inputs);
-  if (meter.wants_nodes()) {
-    result_.energy_error_max = Measurements::kNone;
-    result_.notes.emplace_back(
-        "the energy balance is not known: this run kept no rows (keep_rows, record_to)");
-    return;
-  }
-  Snapshot start;
-  plan_.kernel(plan_.setup)->measure(start);
-  meter.begin(start);
-  meter.finish(result_.last);
-  static_cast<Measurements&>(result_) = meter.all();
-}
-
-Result& Driver::end() {
-  try {
-    begin();
-    if (recording_ && !over_ && times_.empty()) record(node_);
-    over_ = true;
-    if (!result_.stopped_by_event && !flawed_) {
-      kernel().measure(row_);
-      if (good(row_) || !recording_) std::swap(result_.last, row_);
-    }
-    kernel().state(node_);
-    Result shell = head();
-    result_.config = std::move(shell.config);
-    result_.system = std::move(shell.system);
-    result_.inputs = std::move(shell.inputs);
-    result_.unused = std::move(shell.unused);
-    result_.notes = std::move(shell.notes);
-    result_.seconds = watching_ || seconds_.all > 0 ? seconds_.all : Measurements::kNone;
-    result_.recording_seconds = seconds_.recording;
-    result_.comparing_seconds = seconds_.comparing;
-    result_.steps = flawed_ && recording_ ? result_.last.step : node_.step;
-    result_.stats = kernel().stats();
-    if (!recording_) {
-      measure_ends_only();
-      return result_;
-    }
-    recorder_->finish(result_.last);
-    deliver();
-    static_cast<Measurements&>(result_) = recorder_->all();
-    result_.notes.insert(result_.notes.end(), recorder_->notes().begin(), recorder_->notes().end());
-  } catch (...) {
-    rows_to_files_after_failure();
-    throw;
-  }
-  return result_;
-}
-
-void Driver::close() {
-  for (const auto& sink : sinks_) sink->finish(result_);
 }
 
 }  // namespace hamel

@@ -78,12 +78,12 @@ void estimate_error(const Registry& registry, const RunRequest& request, const O
     const std::string which = fmt::format("check: the run with 1/{:g} of the {}", parts,
                                           config.chooses_steps() ? "tolerance" : "step");
     Mistakes mistakes;
-    RunPlan plan = plan_run(registry, finer, own, mistakes);
+    RunPlan plan = plan_run(registry, finer, own, Rows::always, mistakes);
     if (!mistakes.none()) {  // no reason to lose this run
       result.notes.push_back(fmt::format("{}: {}", which, mistakes.all().front()));
       return;
     }
-    const Status status = Driver(std::move(plan), finer, Driver::Rows::always).complete();
+    const Status status = Driver(std::move(plan), finer).complete();
     if (status.ok && !ends[k].empty()) continue;
     result.notes.push_back(
         fmt::format("{} failed at t = {:.6g}: {}", which, status.time, status.reason));

@@ -116,6 +116,11 @@ Outputs plan_outputs(const RunRequest& request, Mistakes& mistakes) {
   return out;
 }
 
+bool keeps_rows(const RunRequest& request, Rows rows) {
+  return rows == Rows::always || !request.records.empty() || request.rows_kept ||
+         request.observer || request.config.output_step || !request.config.output_times.empty();
+}
+
 void check_rows(const RunRequest& request, const GroupInfo& group, Mistakes& mistakes) {
   const Config config = request.config.completed();
   const double span = std::abs(config.until - config.from);

@@ -261,10 +261,10 @@ Config resolved(Config config, const Method& method, const SystemModel& system,
 }
 
 // Plans a system with massless links, whose scheme and step were left open.
-RunPlan plan_by_lift(const Registry& registry, RunRequest request, const OwnSystem* own,
+RunPlan plan_by_lift(const Registry& registry, RunRequest request, const OwnSystem* own, Rows rows,
                      Mistakes& mistakes) {
   request.config.scheme = "lift";
-  RunPlan plan = plan_run(registry, request, own, mistakes);
+  RunPlan plan = plan_run(registry, request, own, rows, mistakes);
   plan.notes.push_back(fmt::format(
       "neither scheme nor step given, and the system has massless links: lift, h = {:g}{}",
       plan.config.step_or_usual(),
@@ -275,10 +275,11 @@ RunPlan plan_by_lift(const Registry& registry, RunRequest request, const OwnSyst
 }  // namespace
 
 RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnSystem* own,
-                 Mistakes& mistakes) {
+                 Rows rows, Mistakes& mistakes) {
   const bool left_to_us = request.config.leaves_method();
   const Config config = request.config.completed();
   RunPlan plan;
+  plan.recording = keeps_rows(request, rows);
   mistakes.add(config.mistakes());
   plan.outputs = plan_outputs(request, mistakes);
   Method method = plan_method(registry, config, own, mistakes);
@@ -291,10 +292,10 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   if (planned->inputs != nullptr && plan.geometry != nullptr && mistakes.none())
     check_jumps_of_rates(system, *planned->inputs, *plan.geometry, config, start, mistakes);
   plan.kernel = plan_kernel(registry, config, own, *planned, plan.geometry, method, mistakes);
-  check_rows(request, system.group, mistakes);
+  if (plan.recording) check_rows(request, system.group, mistakes);
   if (method.scheme != nullptr && !method.scheme->steps_admissible && mistakes.none() &&
       !is_definite(start.inertia)) {
-    if (left_to_us) return plan_by_lift(registry, request, own, mistakes);
+    if (left_to_us) return plan_by_lift(registry, request, own, rows, mistakes);
     mistakes.add(fmt::format(
         "scheme: {} needs a definite inertia; with massless links lift and balance are offered",
         method.scheme->name));

@@ -98,6 +98,9 @@ struct Outputs {
   std::string request, files;
 };
 Outputs plan_outputs(const RunRequest& request, Mistakes& mistakes);
+/// Policy for the rows: of a run by hand they are kept on request, of a run to its end always.
+enum class Rows { asked_for, always };
+bool keeps_rows(const RunRequest& request, Rows rows);
 /// More rows than memory or disk have room for.
 void check_rows(const RunRequest& request, const GroupInfo& group, Mistakes& mistakes);
 
@@ -115,6 +118,7 @@ struct RunPlan {
   std::vector<std::string> notes, unused;
   bool keeps_rows = true;  // the scheme does
   bool compiled = true;    // the kernel, for the types of the system
+  bool recording = false;  // rows of the trajectory are kept
   std::unique_ptr<Events> events;
   KernelSetup setup;
   KernelFactory kernel;
@@ -122,6 +126,6 @@ struct RunPlan {
 };
 /// Complete where there are no mistakes.
 RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnSystem* own,
-                 Mistakes& mistakes);
+                 Rows rows, Mistakes& mistakes);
 
 }  // namespace hamel

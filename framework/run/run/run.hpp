@@ -10,6 +10,11 @@
 // Events, impacts, rows, files and measurements follow the steps, whoever takes them. A run by hand
 // keeps rows on request of the builder: record_to(), keep_rows(), observe() or output();
 // without any, and without events, a step costs the step alone.
+//
+// A run belongs to one thread at a time, and its own functions (observer, impact, progress) may
+// read it, but neither step, restart, turn, finish, move nor destroy it; whoever uses one that was
+// moved from, or breaks these rules where it can be seen, gets std::logic_error by name
+// (occupancy.hpp).
 #pragma once
 
 #include <memory>
@@ -32,11 +37,12 @@ class HAMEL_API Run {
   ~Run();
 
   /// One step (or count of them); the status of the first that failed. Behind an event that ends
-  /// the run, or an observer that returned false, it does nothing: ok, with the reason.
+  /// the run, or an observer that returned false, it does nothing: ok, with the reason. Behind
+  /// finish() it fails with this as the reason; so do the others that step.
   Status step(long count = 1);
   /// One step; a chosen one ends at t at the latest.
   Status step_towards(double t);
-  /// Steps to time t: chosen ones end there, others at the node nearest to it.
+  /// Steps to time t, which is finite: chosen ones end there, others at the node nearest to it.
   Status advance_to(double t);
   /// Steps to the end time, or to what ends the run before.
   Status complete();
@@ -70,12 +76,12 @@ class HAMEL_API Run {
   const std::shared_ptr<Inputs>& inputs() const;
 
   /// Ends the run: the last row, the files, the measurements over the rows (without rows those of
-  /// start and end). After it the run takes no more steps. Throws Unfinished where a file cannot be
-  /// completed.
+  /// start and end). After it the run takes no more steps, and state() and events() stay. Throws
+  /// Unfinished where a file cannot be completed, std::logic_error the second time.
   Result finish();
 
   /// The insides, for the library's own rooms (driver.hpp is not installed).
-  const Driver& driver() const { return *driver_; }
+  const Driver& driver() const;
 
  private:
   std::unique_ptr<Driver> driver_;

@@ -91,27 +91,27 @@ Simulation& Simulation::record_to(std::string path) {
 
 std::vector<std::string> Simulation::mistakes() const {
   Mistakes mistakes;
-  plan_run(*registry_, request_, own_.get(), mistakes);
+  plan_run(*registry_, request_, own_.get(), Rows::always, mistakes);
   return mistakes.all();
 }
 
 Run Simulation::build() const {
   Mistakes mistakes;
-  RunPlan plan = plan_run(*registry_, request_, own_.get(), mistakes);
+  RunPlan plan = plan_run(*registry_, request_, own_.get(), Rows::asked_for, mistakes);
   mistakes.refuse();
-  return Run(std::make_unique<Driver>(std::move(plan), request_, Driver::Rows::asked_for));
+  return Run(std::make_unique<Driver>(std::move(plan), request_));
 }
 
 Result Simulation::run() const {
   Mistakes mistakes;
-  RunPlan plan = plan_run(*registry_, request_, own_.get(), mistakes);
+  RunPlan plan = plan_run(*registry_, request_, own_.get(), Rows::always, mistakes);
   mistakes.refuse();
   RunRequest request = request_;
   if (request_.progress && request_.config.check)
     request.progress = [this](double done) {
       request_.progress(done / check_work(request_.config.completed(), 3));
     };
-  Driver driver(std::move(plan), std::move(request), Driver::Rows::always);
+  Driver driver(std::move(plan), std::move(request));
   if (!request_.resumed.empty()) driver.resume(RunFile(request_.resumed));
   driver.complete();
   Result& result = driver.end();
