@@ -8,7 +8,7 @@ _hamel() {
     if [[ $word == = ]]; then
       ((i < COMP_CWORD)) || words+=("")
     else
-      words+=("$word")
+      words+=("${word//\\/}")  # as typed: without the backslashes of a name that was completed
     fi
   done
   COMPREPLY=()
@@ -18,6 +18,7 @@ _hamel() {
       mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "${words[-1]}")
     else
       [[ $name != *= ]] || compopt -o nospace 2>/dev/null
+      printf -v name %q "$name"  # readline inserts it as it is, and bash would run $(...) in it
       COMPREPLY+=("$name")
     fi
   done < <("$helper" "${COMP_WORDS[0]}" "${words[@]}")
