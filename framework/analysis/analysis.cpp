@@ -97,19 +97,19 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
   config.rtol = kMotionTolerance;
   config.until = 1;
   config.output_step = 0.05;
-  const int dim = simulation.config(config).build().system().group.dim;
+  const Run run = simulation.config(config).build();
+  const int dim = run.system().group.dim;
   if (dim > kMostAnalysed)
     throw ConfigError({fmt::format("{}: its dimension {} is above {}, the most that is analysed",
                                    system, dim, kMostAnalysed)});
-  const Result run = simulation.run();
   Analysis out;
-  out.notes = simulation.build().notes();
-  const auto geometry = registry.geometry(run.system->group.name, "exp");
-  std::shared_ptr<const Mechanics> mechanics = run.system->mechanics;
+  out.notes = run.notes();
+  const auto geometry = registry.geometry(run.system().group.name, "exp");
+  std::shared_ptr<const Mechanics> mechanics = run.system().mechanics;
   out.left_invariant = mechanics->left_invariant();
   const Eigen::Index n = mechanics->dim(), k = mechanics->constraint_count();
   Vector g(geometry->size()), b(k);
-  geometry->from_coordinates(run.config.start.configuration, g.data());
+  geometry->from_coordinates(run.config().start.configuration, g.data());
   Matrix inertia(n, n), a(k, n);
   mechanics->inertia(g.data(), inertia);
   mechanics->constraints(0, g.data(), a, b);
@@ -122,7 +122,7 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
 
   out.growth = growth_of(*geometry, *mechanics, g.data(),
                          what == AnalysisOf::verdict ? kFewFields : kMostFields,
-                         natural_units(components_of(*run.system), *mechanics, g.data()));
+                         natural_units(components_of(run.system()), *mechanics, g.data()));
   if (what == AnalysisOf::verdict) return out;
   Frame fields(*geometry, *mechanics, g, out.frame);
   out.structure.assign(static_cast<size_t>(out.m), Matrix::Zero(out.m, out.m));
@@ -135,7 +135,7 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
       }
     }
   }
-  out.conserved = find_conserved(registry, run, out.frame, *geometry);
+  out.conserved = find_conserved(registry, run.config(), out.frame, *geometry, out.notes);
   return out;
 }
 

@@ -7,7 +7,7 @@
 // many brackets span the tangent space (Chow). growth.hpp has it, the drift of affine rows and the
 // tolerances. Conserved quantities are found numerically, not proved: combinations of energy, body
 // velocities and spatial momenta Ad*_{g^-1} mu that change by 1e-9 of their terms at most along
-// eight motions of 1 and 20 s.
+// eight motions of 1 and 20 s, each of which ends after 10,000 steps (a note says so).
 #pragma once
 
 #include <optional>
@@ -44,8 +44,8 @@ struct Analysis {
   std::vector<std::string> notes;  // how the start was projected
 };
 
-/// verdict: by brackets of up to 3 fields, and without what is conserved: ten times faster, and not
-/// always decided.
+/// verdict: by brackets of up to 3 fields, and without what is conserved: no motion is followed,
+/// and it is not always decided.
 enum class AnalysisOf { all, verdict };
 
 /// Throws ConfigError as Simulation::run does, and above dimension 100.

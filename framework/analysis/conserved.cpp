@@ -25,12 +25,17 @@ constexpr double kIdentity = 1e-10;       // of a term's unit: zero
 constexpr double kShort = 1, kLong = 20;  // s
 constexpr int kMotions = 4;               // of either length
 constexpr int kRows = 40;                 // of each
+constexpr long kMostSteps = 10'000;       // of each
 
 class Search {
  public:
-  Search(const Registry& registry, const Result& first, const Matrix& frame,
+  Search(const Registry& registry, const Config& start, const Matrix& frame,
          const Geometry& geometry)
-      : registry_(registry), first_(first), frame_(frame), geometry_(geometry), n_(frame.rows()) {
+      : registry_(registry),
+        first_(followed(start)),
+        frame_(frame),
+        geometry_(geometry),
+        n_(frame.rows()) {
     names_ = {"E"};
     for (const Component& component : components_of(*first_.system))
       names_.push_back(component.name);
@@ -54,9 +59,21 @@ class Search {
     rest();
     return std::move(out_);
   }
+  /// Motions that were cut after kMostSteps.
+  int cut() const { return cut_; }
 
  private:
   Eigen::Index width() const { return static_cast<Eigen::Index>(names_.size()); }
+
+  // A run to its end, or as far as so many steps lead.
+  Result followed(const Config& config) {
+    Run run = Simulation(registry_, config.system).config(config).build();
+    long steps = 0;
+    while (run.time() < config.until && run.step_towards(config.until) && ++steps < kMostSteps) {
+    }
+    if (steps == kMostSteps) ++cut_;
+    return run.finish();
+  }
 
   // A motion, from the time of its place on; of one that fails the first half, far from where it
   // did.
@@ -67,8 +84,7 @@ class Search {
     config.output_step = length / kRows;
     config.start.configuration = at;
     if (motion > 0) perturb(config.start.velocity);
-    const std::string system = config.system;
-    const Result run = Simulation(registry_, system).config(config).run();
+    const Result run = followed(config);
     const size_t columns = run.system->group.columns.size();
     const size_t rows = run.status.ok ? run.trajectory.rows() : run.trajectory.rows() / 2;
     if (rows < 2) return;
@@ -228,8 +244,9 @@ class Search {
     return out;
   }
 
+  int cut_ = 0;
   const Registry& registry_;
-  const Result& first_;
+  const Result first_;
   const Matrix& frame_;
   const Geometry& geometry_;
   Eigen::Index n_;
@@ -245,9 +262,17 @@ class Search {
 
 }  // namespace
 
-std::vector<Analysis::Conserved> find_conserved(const Registry& registry, const Result& first,
-                                                const Matrix& frame, const Geometry& geometry) {
-  return Search(registry, first, frame, geometry).all();
+std::vector<Analysis::Conserved> find_conserved(const Registry& registry, const Config& start,
+                                                const Matrix& frame, const Geometry& geometry,
+                                                std::vector<std::string>& notes) {
+  Search search(registry, start, frame, geometry);
+  std::vector<Analysis::Conserved> out = search.all();
+  if (search.cut() > 0)
+    notes.push_back(fmt::format(
+        "{} of the motions along which the conserved quantities were sought ended after "
+        "{} steps",
+        search.cut(), kMostSteps));
+  return out;
 }
 
 }  // namespace hamel

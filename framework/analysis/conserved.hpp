@@ -6,10 +6,11 @@
 
 namespace hamel {
 
-/// From the configuration of a first run: motions with other velocities, from its end too, and
-/// longer ones.
-std::vector<Analysis::Conserved> find_conserved(const Registry& registry, const Result& first,
+/// From the start of a run: motions with other velocities, from its end too, and longer ones. A
+/// note counts those that were not followed to their end.
+std::vector<Analysis::Conserved> find_conserved(const Registry& registry, const Config& start,
                                                 const Eigen::MatrixXd& frame,
-                                                const Geometry& geometry);
+                                                const Geometry& geometry,
+                                                std::vector<std::string>& notes);
 
 }  // namespace hamel

@@ -5,7 +5,6 @@
 #include <hamel/framework/analysis/analysis.hpp>
 #include <hamel/systems/by_name.hpp>
 
-#include "analyse.hpp"
 #include "commands.hpp"
 #include "screen.hpp"
 
@@ -32,9 +31,8 @@ void print_rows(const Eigen::MatrixXd& m) {
   }
 }
 
-}  // namespace
-
-std::string verdict(const Analysis& a, const char* undecided) {
+// Is it nonholonomic? In a sentence.
+std::string verdict(const Analysis& a) {
   if (a.rows == 0) return "no constraint";
   if (a.holonomic_rows == a.rows) return "holonomic: every row is the differential of a function";
   std::string growth;
@@ -51,7 +49,7 @@ std::string verdict(const Analysis& a, const char* undecided) {
         possible, left, growth, nearby,
         a.growth.near_zero   ? "others are too small to distinguish from zero"
         : a.growth.round_off ? "stopped: deeper ones drown in round-off"
-                             : undecided);
+                             : "stopped there");
   }
   if (*a.integrable()) {
     return fmt::format(
@@ -70,6 +68,8 @@ std::string verdict(const Analysis& a, const char* undecided) {
       "combinations, can be integrated",
       drift, reached, possible, left, growth, possible - reached);
 }
+
+}  // namespace
 
 int analyse(const DescribeOptions& options) {
   const Analysis a = [&] {

@@ -12,7 +12,6 @@
 #include <hamel/systems/by_name.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
 
-#include "analyse.hpp"
 #include "commands.hpp"
 #include "screen.hpp"
 
@@ -63,19 +62,9 @@ Json parameters_of(const std::vector<Field>& fields) {
   return parameters;
 }
 
-// Whether a mechanism is truly nonholonomic; of a large one that is not looked at.
-std::string verdict_of(const std::string& name, const Parameters& given) {
-  try {
-    return verdict(hamel::analyse(registry(), name, given, AnalysisOf::verdict),
-                   "--analyse looks at more");
-  } catch (const ConfigError& error) {
-    return fmt::format("not looked at: {}", error.what());
-  }
-}
-
-// Adds parts, freedoms and rows of a mechanism by name, and whether it is truly nonholonomic.
-void add_parts(Json& out, const std::string& name, const SystemModel& model,
-               const Parameters& given) {
+// Adds parts, freedoms and rows of a mechanism by name. (Whether it is nonholonomic takes an
+// analysis: --analyse.)
+void add_parts(Json& out, const SystemModel& model) {
   const Mechanics& mechanics = *model.mechanics;
   out["parts"] = model.parts;
   out["rates"] = model.rates;
@@ -83,7 +72,6 @@ void add_parts(Json& out, const std::string& name, const SystemModel& model,
   out["dimension"] = mechanics.dim();
   out["holonomic_rows"] = mechanics.holonomic_rows();
   out["directions"] = mechanics.dim() - mechanics.constraint_count();
-  out["verdict"] = verdict_of(name, given);
   out["start_parameters"] = model.start_parameters;
   if (!model.notes.empty()) out["notes"] = model.notes;
 }
@@ -112,7 +100,7 @@ Json describe_system(const SystemInfo& info, const Parameters& given) {
               {"events", events(model)},
               {"known", info.known},
               {"source", info.source}};
-  if (!model.parts.empty()) add_parts(out, info.name, model, given);
+  if (!model.parts.empty()) add_parts(out, model);
   return out;
 }
 
@@ -147,7 +135,7 @@ Json describe_file(const std::string& path, const Parameters& given) {
               {"start", start_of(model)},
               {"events", events(model)}};
   if (!model.parts.empty()) {
-    add_parts(out, path, model, given);
+    add_parts(out, model);
     return out;
   }
   out["rates"] = model.rates;
@@ -307,9 +295,12 @@ void print(const Json& json) {
 
 namespace {
 
-// A mechanism as its file.
+// A mechanism as its file, which the program reads.
 std::string toml_of(const std::string& name) {
-  if (names_file(name)) return converted(registry(), name, read_system_file(name)).toml;
+  if (names_file(name)) {
+    (void)data_system_maker(registry(), name)({});
+    return converted(registry(), name, read_system_file(name)).toml;
+  }
   std::vector<std::string> known;
   for (const auto& [mechanism, text] : mechanisms::library()) {
     if (mechanism == name) return text;
