@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -55,8 +56,9 @@ void Assembly::stop_at_mistakes() const {
 
 std::vector<std::string> Assembly::body_names() const {
   std::vector<std::string> out;
+  std::set<std::string> there;
   for (const auto& body : parts_.bodies_)
-    if (!body.name.empty() && std::ranges::count(out, body.name) == 0) out.push_back(body.name);
+    if (!body.name.empty() && there.insert(body.name).second) out.push_back(body.name);
   return out;
 }
 

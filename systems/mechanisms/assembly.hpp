@@ -39,6 +39,7 @@ class Assembly {
   }
   void check_body(const Mechanism::BodyPart& body);
   mechanisms::Inertia inertia_of(const Mechanism::BodyPart& body);
+  double extent() const;
   void link_bodies();
   void link(const Mechanism::JointPart& part);
   void add_link(int parent, const std::shared_ptr<const mechanisms::Joint>& joint,
@@ -85,6 +86,8 @@ class Assembly {
 
   const Mechanism& parts_;
   std::vector<std::string> mistakes_;
+  std::map<std::string, const Mechanism::BodyPart*> bodies_;  // by name
+  double extent_ = 0;                                         // m
   SystemModel model_;
   std::vector<mechanisms::Link> links_;
   std::vector<std::string> link_names_;  // of their joints

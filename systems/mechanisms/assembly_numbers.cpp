@@ -127,6 +127,15 @@ void Assembly::check_dimension() {
   if (n > kMaxDimension)
     mistakes_.push_back(
         fmt::format("{}: dimension {}, expected at most {}", parts_.name_, n, kMaxDimension));
+  if (n == 0 && mistakes_.empty()) {
+    std::vector<std::string> moving;
+    for (const JointKind& kind : joint_kinds())
+      if (kind.joints > 0) moving.push_back(kind.name);
+    mistakes_.push_back(fmt::format(
+        "{}: nothing moves: every body is welded to the ground, expected a joint of a kind that "
+        "moves ({})",
+        parts_.name_, join(moving)));
+  }
   stop_at_mistakes();
 }
 

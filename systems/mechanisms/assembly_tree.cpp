@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,30 +40,52 @@ Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
     const Vec3 squares = edges.cwiseAbs2();
     central = (body.mass / 12 * (Vec3::Constant(squares.sum()) - squares)).asDiagonal();
   }
+  // Round-off of a moment: of the largest of the body, and of m L^2 of a body whose moments are all
+  // that, L the extent of the mechanism.
   const Vec3 moments = dense::symmetric_eigenvalues(central);
-  const double size = moments.cwiseAbs().maxCoeff();
-  if (!(moments[0] >= -1e-12 * size)) {
+  const double size = moments.cwiseAbs().maxCoeff() + body.mass * extent_ * extent_;
+  const double round_off = 1e-12 * size;
+  if (!(moments[0] >= -round_off)) {
     wrong(
         body, "body",
         fmt::format("inertia: a moment of {} about some axis, expected none below 0", moments[0]));
-  } else if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1])) {
+  } else if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1]) + round_off) {
     model_.notes.push_back(fmt::format(
         "{}body '{}': no rigid body has the principal moments {}, since {} > {} + {}", body.where,
         body.name, join(std::vector<double>(moments.begin(), moments.end())), moments[2],
         moments[1], moments[0]));
   }
+  if (moments[0] < 0) {  // to none below 0
+    const dense::SymmetricEigen principal = dense::symmetric_eigen(central);
+    const Eigen::VectorXd clipped = principal.values.cwiseMax(0);
+    central = principal.vectors * clipped.asDiagonal() * principal.vectors.transpose();
+  }
   return inertia_at(body.mass, vec(body.at), central);
+}
+
+// Distance of the farthest mass centre or joint from the first joint, as drawn.
+double Assembly::extent() const {
+  double out = 0;
+  const auto look_at = [&](const Point& at) {
+    if (!parts_.joints_.empty())
+      out = std::max(out, (vec(at) - vec(parts_.joints_.front().at)).norm());
+  };
+  for (const auto& body : parts_.bodies_) look_at(body.at);
+  for (const auto& joint : parts_.joints_) look_at(joint.at);
+  return out;
 }
 
 // A link for each joint, two for a universal one, none for a weld; parents first.
 void Assembly::link_bodies() {
+  extent_ = extent();
+  for (const auto& body : parts_.bodies_) bodies_.emplace(body.name, &body);
   const std::vector<std::string> names = body_names();
   std::map<std::string, const Mechanism::JointPart*> hangs_on;
   std::vector<const Mechanism::JointPart*> waiting;
   for (const auto& joint : parts_.joints_) {
     bool known = true;
     const auto check = [&](const std::string& what, const std::string& body) {
-      if (body == kWorld || std::find(names.begin(), names.end(), body) != names.end()) return;
+      if (body == kWorld || (!body.empty() && bodies_.contains(body))) return;
       unknown(joint, "joint", what, body, names);
       known = false;
     };
@@ -90,17 +113,14 @@ void Assembly::link_bodies() {
   }
   stop_at_mistakes();
   body_links_[kWorld] = mechanisms::kGround;
-  for (bool found = true; found && !waiting.empty();) {
-    found = false;
-    for (auto it = waiting.begin(); it != waiting.end();) {
-      if (body_links_.contains((*it)->parent)) {
-        link(**it);
-        it = waiting.erase(it);
-        found = true;
-      } else {
-        ++it;
-      }
+  for (size_t before = 0; before != waiting.size();) {
+    before = waiting.size();
+    std::vector<const Mechanism::JointPart*> later;
+    for (const auto* joint : waiting) {
+      if (body_links_.contains(joint->parent)) link(*joint);
+      else later.push_back(joint);
     }
+    waiting = std::move(later);
   }
   std::string circle;
   for (const auto* joint : waiting)
@@ -138,10 +158,8 @@ void Assembly::link(const Mechanism::JointPart& part) {
     here = static_cast<int>(links_.size()) - 1;
   }
   body_links_[part.child] = here;
-  for (const auto& body : parts_.bodies_) {
-    if (body.name == part.child && here != mechanisms::kGround)
-      links_[static_cast<size_t>(here)].inertia += inertia_of(body);
-  }
+  if (here != mechanisms::kGround)
+    links_[static_cast<size_t>(here)].inertia += inertia_of(*bodies_.at(part.child));
 }
 
 // The frame of a joint has its third axis along `axis`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,6 +34,9 @@ class Writer {
     if (!mistakes_.empty()) throw ConfigError(mistakes_);
     raise();
     write_bodies();
+    if (bodies_.empty())
+      throw ConfigError(
+          {path_ + ": nothing moves: its link 'world' is the ground, and it has no other"});
     write_joints();
     FileFormat::Converted out;
     out.toml = fmt::format("# Of {}, written by hamel.\nname = {}\nredundant = \"drop\"\n",
@@ -113,6 +117,7 @@ class Writer {
     for (int i = 0; i < count(); ++i) bodies_of_[static_cast<size_t>(i)] = i;
     for (int i = count() - 1; i > 0; --i) {  // the first body that is welded to a frame
       const int parent = link(i).parent, body = bodies_of_[static_cast<size_t>(i)];
+      if (parent == 0 && root_ == "world") continue;  // which is the ground
       if (!link(i).joint.moves() && is_frame(link(parent)) && !is_frame(link(body)))
         bodies_of_[static_cast<size_t>(parent)] = body;
     }
@@ -124,6 +129,22 @@ class Writer {
     const int body = bodies_of_[static_cast<size_t>(i)];
     const bool ground = body == 0 && root_ == "world";
     return toml_string(ground ? "ground" : links_[static_cast<size_t>(body)].name);
+  }
+  // A name that no body has yet: this one, or with bars behind it.
+  std::string unused(std::string name) {
+    while (!taken_.insert(name).second) name += "_";
+    return name;
+  }
+  // "ground" is what rests in the world, and a link of this name is a body as others are.
+  void name_bodies() {
+    taken_.insert("ground");
+    for (const RobotLink& l : links_)
+      if (l.name != "ground") taken_.insert(l.name);
+    for (RobotLink& l : links_) {
+      if (l.name != "ground") continue;
+      l.name = unused(l.name);
+      renamed_.push_back(l.name);
+    }
   }
 
   // A box along the axes of the pose, a cylinder or a sphere as a body has it; "" for others.
@@ -150,6 +171,7 @@ class Writer {
 
   void write_bodies() {
     find_bodies();
+    name_bodies();
     for (int i = 0; i < count(); ++i) {
       if (bodies_of_[static_cast<size_t>(i)] != i || (i == 0 && root_ == "world")) continue;
       const RobotLink& l = link(i);
@@ -175,7 +197,7 @@ class Writer {
       }
       bodies_.push_back(body);
       for (size_t k = 0; k < others.size(); ++k) {
-        const std::string name = toml_string(fmt::format("{} shape {}", l.name, k + 1));
+        const std::string name = toml_string(unused(fmt::format("{} shape {}", l.name, k + 1)));
         bodies_.push_back(fmt::format("name = {}, {}", name, others[k]));
         welds_.push_back(fmt::format("name = {0}, kind = \"weld\", parent = {1}, child = {0}", name,
                                      toml_string(l.name)));
@@ -252,6 +274,7 @@ class Writer {
     }
     note("limits of position and velocity are not kept", limited);
     note("friction is left out, damping is kept", friction);
+    note("a link 'ground' goes by another name, as the ground has this one", renamed_);
     note(fmt::format("no motor, at most {} inputs", kMostInputs), unmotored_);
     note("angles within 0.002 rad of a right angle are taken as that", robot_.rounded);
     note("meshes are not drawn", undrawn_);
@@ -267,8 +290,9 @@ class Writer {
   Vec3 root_at_ = Vec3::Zero();
   std::vector<RobotWheel> wheels_;
   std::vector<int> bodies_of_;
-  std::vector<std::string> bodies_, joints_, welds_, motors_, undrawn_, turned_, unmotored_,
-      mistakes_;
+  std::set<std::string> taken_;
+  std::vector<std::string> renamed_, bodies_, joints_, welds_, motors_, undrawn_, turned_,
+      unmotored_, mistakes_;
 };
 
 }  // namespace

@@ -12,40 +12,14 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/io/visible.hpp>
+#include <hamel/systems/mechanisms/urdf_text.hpp>
 
 namespace hamel::mechanisms {
 namespace {
 
-constexpr size_t kMostLinks = 5000;
-constexpr int kMaxDepth = 64;         // of elements; TinyXML works by recursion
 constexpr double kRightAngle = 2e-3;  // rad: 1.57 and 3.14 mean right angles
 constexpr double kSameAngle = 1e-9;   // rad, without notice
 constexpr double kQuarter = std::numbers::pi / 2;
-
-// How deep the elements are nested; comments are skipped.
-int depth_of(const std::string& text) {
-  int depth = 0, most = 0;
-  for (size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
-    if (text.compare(at, 4, "<!--") == 0) {
-      at = text.find("-->", at);
-      if (at == std::string::npos) break;
-      continue;
-    }
-    const char next = at + 1 < text.size() ? text[at + 1] : '>';
-    if (next == '!' || next == '?') continue;
-    const size_t end = text.find('>', at);
-    if (next == '/') --depth;
-    else if (end == std::string::npos || text[end - 1] != '/') most = std::max(most, ++depth);
-  }
-  return most;
-}
-
-size_t count_of(const std::string& text, const std::string& word) {
-  size_t out = 0;
-  for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++out;
-  return out;
-}
 
 // The errors of urdfdom, which reports them through console_bridge.
 class Messages : public console_bridge::OutputHandler {
@@ -56,21 +30,8 @@ class Messages : public console_bridge::OutputHandler {
   std::vector<std::string> errors;
 };
 
-void require_utf8(std::string_view text, const std::string& path) {
-  for (int line = 1; !text.empty(); ++line) {
-    const std::string_view own = text.substr(0, text.find('\n'));
-    if (!is_utf8(own)) throw ConfigError({fmt::format("{}:{}: is no UTF-8", path, line)});
-    text.remove_prefix(std::min(own.size() + 1, text.size()));
-  }
-}
-
 urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& path) {
-  require_utf8(text, path);
-  if (const int depth = depth_of(text); depth > kMaxDepth)
-    throw ConfigError(
-        {fmt::format("{}: elements nested {} deep, more than {}", path, depth, kMaxDepth)});
-  if (const size_t links = count_of(text, "<link"); links > kMostLinks)
-    throw ConfigError({fmt::format("{}: {} links, more than {}", path, links, kMostLinks)});
+  check_urdf_text(text, path);
   static std::mutex one_at_a_time;  // the handler is the process's
   const std::lock_guard lock(one_at_a_time);
   Messages messages;

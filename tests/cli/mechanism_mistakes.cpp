@@ -226,4 +226,35 @@ TEST_F(MechanismMistakes, InFormulasOfJointsWithAnyName) {
         "21:9: rate: "}});
 }
 
+/// Bodies that are all welded to the ground: every command that takes a system has one message.
+TEST_F(MechanismMistakes, NothingMoves) {
+  const std::string welded =
+      write("welded.toml",
+            "[[body]]\nname = \"a\"\nmass = 1\n[[joint]]\nkind = \"weld\"\nchild = \"a\"\n");
+  const std::string link =
+      "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
+      "izz=\"1\"/></inertial>";
+  const std::string robot =
+      write("robot.urdf", "<robot name=\"r\"><link name=\"a\">" + link + "</link></robot>");
+  const std::string world = write("world.urdf", "<robot name=\"r\"><link name=\"world\"/></robot>");
+  for (const std::string& system : {welded, robot + "?root=fixed", world}) {
+    write("study.toml", "system = [{ name = \"" + system + "\" }]\nstep = [0.1]\nuntil = 1\n");
+    write("ensemble.toml",
+          "system = \"" + system + "\"\nmembers = 2\nuntil = 1\nkeep = " + "[\"end.energy\"]\n");
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"run", system},
+             {"describe", system},
+             {"describe", "--toml", system},
+             {"describe", "--analyse", system},
+             {"steady", system},
+             {"section", system, "--event", "x=0", "--count", "2"},
+             {"study", file("study.toml"), "-o", file("study")},
+             {"ensemble", file("ensemble.toml"), "-o", file("ensemble")}}) {
+      const Outcome o = run(words);
+      EXPECT_EQ(o.status, 2) << words[0] << " " << system << o.out;
+      EXPECT_THAT(o.err, HasSubstr("nothing moves")) << words[0] << " " << system;
+    }
+  }
+}
+
 }  // namespace

@@ -174,12 +174,12 @@ TEST_F(Urdf, RefusesWithNames) {
           R"(<joint name="axle" type="screw"><parent link="base"/><child link="left"/></joint>)")},
       "has no known type [screw]");
   refuses({write("robot.urdf", "<robot name=\"r\"><link name=\"base\"></robot>")},
-          "robot.urdf: not a robot as URDF has it");
+          "robot.urdf:1: not a robot as URDF has it: </robot>, expected </link>");
   refuses({write("robot.urdf", "")}, "robot.urdf: not a robot as URDF has it");
-  refuses({write("robot.urdf", std::string(100, '<') + "a")}, "robot.urdf: ");
+  refuses({write("robot.urdf", std::string(100, '<') + "a")}, "robot.urdf:1: not a robot");
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
-  refuses({write("robot.urdf", deep)}, "nested 100000 deep");
+  refuses({write("robot.urdf", deep)}, "elements nested more than 64 deep");
   refuses({write("robot.urdf", "<robot name=\"r\">\n<link name=\"b\xe9\"/></robot>")},
           "robot.urdf:2: is no UTF-8");
   refuses({file("none.urdf")}, "there is no such file");
