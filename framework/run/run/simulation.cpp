@@ -95,6 +95,14 @@ std::vector<std::string> Simulation::mistakes() const {
   return mistakes.all();
 }
 
+std::shared_ptr<const SystemModel> Simulation::system() const {
+  Mistakes mistakes;
+  const std::optional<PlannedSystem> planned =
+      plan_system(*registry_, request_.config.completed(), own_.get(), mistakes);
+  mistakes.refuse();
+  return planned->model;
+}
+
 Run Simulation::build() const {
   Mistakes mistakes;
   RunPlan plan = plan_run(*registry_, request_, own_.get(), Rows::asked_for, mistakes);

@@ -168,6 +168,8 @@ class HAMEL_API Simulation {
   const Config& config() const { return request_.config; }
   /// Everything that is wrong; empty when run() can start.
   std::vector<std::string> mistakes() const;
+  /// The system, its parameters set, without a run of it. Throws ConfigError as run() does.
+  std::shared_ptr<const SystemModel> system() const;
   /// A run to be stepped by hand. Throws ConfigError with all mistakes.
   Run build() const;
   /// Steps to the end: a loop over Run. Throws ConfigError with all mistakes, before the first

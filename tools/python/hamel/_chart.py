@@ -13,6 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from hamel._hamel import ConfigError
+
 _LIGHT = (
     "--ink: #222; --faint: #888; --grid: #e3e3e3; --c0: #0b62a4; --c1: #c4541a; --c2: #2b7f3b; "
     "--c3: #7a3e9d; --c4: #9a7500; --c5: #a3123d;"
@@ -63,7 +65,15 @@ class Figure:
         self.svg = svg
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes the figure as an SVG file, in the light colours."""
+        """Writes the figure as an SVG file, x.svg, in the light colours."""
+        if pathlib.Path(path).suffix.lower() != ".svg":
+            text = (
+                f"write: got {os.fspath(path)!r}, expected a name that ends with .svg; the program "
+                "draws .pdf and .png: hamel report FILE.h5 --figure NAME -o FILE.pdf"
+            )
+            mistake = ConfigError(text)
+            mistake.mistakes = [text]
+            raise mistake
         style = f".hamel {{ {_LIGHT} }} text {{ fill: var(--ink); font: 11px sans-serif; }}"
         head, tail = self.svg.split(">", 1)
         text = f'{head} class="hamel" xmlns="http://www.w3.org/2000/svg"><style>{style}</style>'

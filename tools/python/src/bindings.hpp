@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@
 
 #include <hamel/simulate.hpp>
 #include <hamel/systems/by_text.hpp>
+
+#include "functions.hpp"
 
 namespace hamel::python {
 
@@ -42,9 +45,10 @@ nb::object array(std::vector<double> values);
 nb::object matrix(std::vector<double> values, size_t columns);
 nb::object complex_array(const std::vector<std::complex<double>>& values);
 
-/// A Python object that C++ may copy and drop in any thread, the interpreter free.
-using Kept = std::shared_ptr<const nb::object>;
-Kept kept(nb::object object);
+/// A text of Python in UTF-8; ConfigError that names it where it has lone surrogates.
+std::string utf8(const std::string& name, nb::handle text);
+/// The name of a keyword.
+inline std::string key_of(nb::handle key) { return utf8("keyword", key); }
 
 /// The function `name` of the Python module hamel.`module`, imported when it is called.
 nb::object helper(const char* module, const char* name);
@@ -61,8 +65,15 @@ struct Builder {
   Simulation simulation;
   std::string source = {};     // TOML; "" for a name or a file
   bool by_parts = false;       // a Mechanism
-  bool has_functions = false;  // of Python
-  nb::object progress = {};
+  Functions functions = {};    // all that follow, and those of a Mechanism
+  bool has_functions = false;  // beside progress
+  std::optional<Function> observer = {}, progress = {};
+};
+
+/// A Mechanism of Python, with the functions that its signals call.
+struct ByParts : Mechanism {
+  using Mechanism::Mechanism;
+  Functions functions;
 };
 
 /// Of a registered name, a file, a TOML text (which has a line break), a Mechanism, a Config or a
@@ -73,7 +84,7 @@ Builder builder_of(nb::handle system, const nb::kwargs& options);
 void apply(Builder& builder, const nb::kwargs& options);
 /// Their names and meanings, a line each.
 std::string options_of_a_run();
-/// The simulation with its progress, which Ctrl-C ends.
+/// The simulation with its observer and its progress, which Ctrl-C ends.
 Simulation watched(const Builder& builder);
 /// Runs with the interpreter free; Ctrl-C and exceptions of callbacks end it.
 Result run(const Builder& builder);
@@ -101,8 +112,10 @@ class StoredResult {
   Result result;
   std::string source;          // as in Builder
   std::string record, report;  // of one that was pickled, whose result.system is null
+  Functions functions;         // of its system
 
-  StoredResult(Result of, std::string text) : result(std::move(of)), source(std::move(text)) {}
+  StoredResult(Result of, std::string text, Functions called = {})
+      : result(std::move(of)), source(std::move(text)), functions(std::move(called)) {}
   /// Columns, vectors and velocities by name; a column has the number 0. Found when first asked
   /// for.
   const Places& places() const;
@@ -115,7 +128,7 @@ class StoredResult {
   mutable Places places_;
 };
 
-nb::object result_of(Result result, std::string source);
+nb::object result_of(Result result, std::string source, const Functions& functions);
 /// At most `most` poses of the bodies that are drawn, and their shapes.
 nb::dict motion(StoredResult& stored, size_t most);
 nb::dict pack(const StoredResult& stored);
@@ -131,7 +144,7 @@ constexpr Point kOrigin = {0, 0, 0};
 void bind_builder(nb::module_& m, nb::class_<Builder>& builder);
 void bind_config(nb::module_& m);
 void bind_ensemble(nb::module_& m);
-void bind_forces(nb::class_<Mechanism>& mechanism);
+void bind_forces(nb::class_<ByParts>& mechanism);
 void bind_mechanism(nb::module_& m);
 void bind_names(nb::module_& m);
 void bind_result(nb::module_& m);

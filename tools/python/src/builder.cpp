@@ -12,11 +12,11 @@ struct PythonEvent {
   std::vector<double> coordinates, velocity;
 };
 
-Impact impact_of(const Kept& function) {
+Impact impact_of(const Function& function) {
   return [function](EventState& state) {
-    const nb::gil_scoped_acquire gil;
+    const Entered python;
     nb::object event = nb::cast(PythonEvent{state.time, state.coordinates, state.velocity});
-    (*function)(event);
+    function(event);
     const auto& changed = nb::cast<const PythonEvent&>(event);
     state.coordinates = changed.coordinates;
     state.velocity = changed.velocity;
@@ -82,11 +82,7 @@ void bind_functions(nb::class_<Builder>& builder) {
           "observe",
           [](Builder& self, nb::callable function) -> Builder& {
             self.has_functions = true;
-            self.simulation.observe([function = kept(function)](const Snapshot& state) {
-              const nb::gil_scoped_acquire gil;
-              const nb::object go_on = (*function)(NamedState{state, nullptr});
-              return go_on.is_none() || PyObject_IsTrue(go_on.ptr()) != 0;
-            });
+            self.observer = self.functions.add(function);
             return self;
           },
           "observer"_a, nb::rv_policy::reference,
@@ -97,7 +93,7 @@ void bind_functions(nb::class_<Builder>& builder) {
           "on_event",
           [](Builder& self, const std::string& name, nb::callable function) -> Builder& {
             self.has_functions = true;
-            self.simulation.on_event(name, impact_of(kept(function)));
+            self.simulation.on_event(name, impact_of(self.functions.add(function)));
             return self;
           },
           "name"_a, "impact"_a, nb::rv_policy::reference,
@@ -112,7 +108,7 @@ void bind_functions(nb::class_<Builder>& builder) {
               if (!nb::cast<bool>(report)) return self;
               report = helper("_progress", "bar")();
             }
-            self.progress = report;
+            self.progress = self.functions.add(report);
             return self;
           },
           "report"_a = true, nb::rv_policy::reference,

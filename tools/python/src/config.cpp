@@ -121,7 +121,7 @@ void apply(Builder& builder, const nb::kwargs& options) {
   std::vector<std::string> mistakes;
   std::vector<std::pair<std::string, nb::handle>> functions;
   for (const auto& [key, value] : options) {
-    const std::string name = nb::cast<std::string>(key);
+    const std::string name = key_of(key);
     const auto option = setters().find(name);
     try {
       if (option != setters().end()) option->second(config, name, value);
@@ -152,6 +152,13 @@ void apply(Builder& builder, const nb::kwargs& options) {
   }
 }
 
+static InputTable table_of(std::vector<double> times, std::vector<double> values, bool hold) {
+  if (times.empty() || times.size() != values.size())
+    throw ConfigError({"InputTable: got " + std::to_string(times.size()) + " times and " +
+                       std::to_string(values.size()) + " values, expected a value for each time"});
+  return {std::move(times), std::move(values), hold};
+}
+
 void bind_config(nb::module_& m) {
   nb::class_<InputTable>(m, "InputTable",
                          "Values of an input over time: linear between its times [s], or held "
@@ -159,7 +166,8 @@ void bind_config(nb::module_& m) {
       .def(
           "__init__",
           [](InputTable* self, nb::handle times, nb::handle values, bool hold) {
-            new (self) InputTable{numbers("times", times), numbers("values", values), hold};
+            new (self)
+                InputTable(table_of(numbers("times", times), numbers("values", values), hold));
           },
           "times"_a, "values"_a, "hold"_a = false,
           nb::sig(
@@ -173,7 +181,8 @@ void bind_config(nb::module_& m) {
       .def("__setstate__",
            [](InputTable& t,
               const std::tuple<std::vector<double>, std::vector<double>, bool>& state) {
-             new (&t) InputTable{std::get<0>(state), std::get<1>(state), std::get<2>(state)};
+             new (&t)
+                 InputTable(table_of(std::get<0>(state), std::get<1>(state), std::get<2>(state)));
            });
 
   nb::class_<Config> config(

@@ -8,15 +8,48 @@
 namespace hamel::python {
 namespace {
 
-// A function of C as numba.cfunc compiles it, "float64(float64, CPointer(float64),
-// CPointer(float64), CPointer(float64))", of t, coordinates, velocity and inputs: called without
-// the interpreter.
+// A function of C, "float64(float64, CPointer(float64), CPointer(float64), CPointer(float64))" of
+// t, coordinates, velocity and inputs, or "float64(float64)": called without the interpreter.
 using Compiled = double (*)(double, const double*, const double*, const double*);
 using CompiledOfTime = double (*)(double);
 
-// The address of a compiled function: an attribute of what numba.cfunc returns.
-std::uintptr_t address_of(nb::handle function) {
-  return nb::hasattr(function, "address") ? nb::cast<std::uintptr_t>(function.attr("address")) : 0;
+// The class `name` of a module that is loaded; invalid where it is not.
+nb::object loaded(const char* module, const char* name) {
+  const nb::object found =
+      nb::module_::import_("sys").attr("modules").attr("get")(module, nb::none());
+  return found.is_none() ? nb::object() : nb::getattr(found, name, nb::none());
+}
+bool is_a(nb::handle value, const nb::object& type) {
+  return type.is_valid() && !type.is_none() && PyObject_IsInstance(value.ptr(), type.ptr()) == 1;
+}
+
+// The address of a compiled function of so many pointers behind t: of what numba.cfunc returns, or
+// of a function of ctypes, with the types above. An attribute `address` alone is a number that
+// anything may have. 0 for others.
+std::uintptr_t address_of(const std::string& name, nb::handle value, size_t pointers) {
+  std::string expected = "float64(float64";
+  for (size_t i = 0; i < pointers; ++i) expected += ", CPointer(float64)";
+  expected += ")";
+  if (is_a(value, loaded("numba.core.ccallback", "CFunc"))) {
+    std::string signature = "(float64";
+    for (size_t i = 0; i < pointers; ++i) signature += ", float64*";
+    const std::string got = utf8(name, nb::str(value.attr("_sig")));
+    if (got == signature + ") -> float64") return nb::cast<std::uintptr_t>(value.attr("address"));
+    throw ConfigError({name + ": a numba.cfunc of " + got + ", expected " + expected});
+  }
+  if (!is_a(value, loaded("_ctypes", "CFuncPtr"))) return 0;
+  const nb::module_ ctypes = nb::module_::import_("ctypes");
+  const nb::object real = ctypes.attr("c_double"), pointer = ctypes.attr("POINTER")(real);
+  const nb::object none = nb::none(), types = value.attr("argtypes");
+  bool fits = value.attr("restype").is(real) && !types.is_none() && nb::len(types) == 1 + pointers;
+  for (size_t i = 0; fits && i < 1 + pointers; ++i) {
+    const nb::object type = types[i];
+    fits = i == 0 ? type.is(real) : type.is(pointer) || type.is(ctypes.attr("c_void_p"));
+  }
+  if (!fits)
+    throw ConfigError({name + ": a function of ctypes of other types, expected " + expected});
+  return nb::cast<std::uintptr_t>(
+      ctypes.attr("cast")(value, ctypes.attr("c_void_p")).attr("value"));
 }
 
 std::vector<double> copied(std::span<const double> values) {
@@ -24,32 +57,38 @@ std::vector<double> copied(std::span<const double> values) {
 }
 
 // A number, a compiled function, or one of Python: f(t, coordinates, velocity, inputs).
-Signal signal(nb::handle value) {
-  if (const std::uintptr_t address = address_of(value); address != 0) {
+Signal signal(const std::string& name, nb::handle value, Functions& functions) {
+  if (const std::uintptr_t address = address_of(name, value, 3); address != 0) {
     const auto compiled = reinterpret_cast<Compiled>(address);
-    return [compiled, alive = kept(nb::borrow(value))](const SignalInput& in) {
+    return [compiled, alive = functions.add(value)](const SignalInput& in) {
+      (void)alive.object();
       return compiled(in.t, in.coordinates.data(), in.velocity.data(), in.inputs.data());
     };
   }
   if (PyCallable_Check(value.ptr()) == 0) {
-    const double constant = number("signal", value);
+    const double constant = number(name, value);
     return [constant](const SignalInput&) { return constant; };
   }
-  return [function = kept(nb::borrow(value))](const SignalInput& in) {
-    const nb::gil_scoped_acquire gil;
-    return nb::cast<double>(
-        (*function)(in.t, copied(in.coordinates), copied(in.velocity), copied(in.inputs)));
+  return [name, function = functions.add(value)](const SignalInput& in) {
+    const Entered python;
+    return number(name,
+                  function(in.t, copied(in.coordinates), copied(in.velocity), copied(in.inputs)));
   };
 }
 
-std::function<double(double)> of_time(nb::handle value) {
+std::function<double(double)> of_time(const std::string& name, nb::handle value,
+                                      Functions& functions) {
   if (value.is_none()) return {};
-  if (const std::uintptr_t address = address_of(value); address != 0)
+  if (const std::uintptr_t address = address_of(name, value, 0); address != 0) {
     return [compiled = reinterpret_cast<CompiledOfTime>(address),
-            alive = kept(nb::borrow(value))](double t) { return compiled(t); };
-  return [function = kept(nb::borrow(value))](double t) {
-    const nb::gil_scoped_acquire gil;
-    return nb::cast<double>((*function)(t));
+            alive = functions.add(value)](double t) {
+      (void)alive.object();
+      return compiled(t);
+    };
+  }
+  return [name, function = functions.add(value)](double t) {
+    const Entered python;
+    return number(name, function(t));
   };
 }
 
@@ -62,16 +101,19 @@ Range range(std::optional<double> least, std::optional<double> most) {
 
 }  // namespace
 
-void bind_forces(nb::class_<Mechanism>& mechanism) {
+void bind_forces(nb::class_<ByParts>& mechanism) {
   mechanism
       .def(
           "prescribe",
-          [](Mechanism& self, const std::string& joint, nb::handle rate, nb::handle angle,
+          [](ByParts& self, const std::string& joint, nb::handle rate, nb::handle angle,
              nb::handle slope, std::optional<double> least, std::optional<double> most) {
             if (rate.is_none()) self.prescribe(joint, range(least, most));
-            else if (PyCallable_Check(rate.ptr()) != 0 || address_of(rate) != 0)
-              self.prescribe(joint, of_time(rate), of_time(angle), of_time(slope));
-            else self.prescribe(joint, number("rate", rate), of_time(angle));
+            else if (PyCallable_Check(rate.ptr()) != 0)
+              self.prescribe(joint, of_time("rate", rate, self.functions),
+                             of_time("angle", angle, self.functions),
+                             of_time("slope", slope, self.functions));
+            else
+              self.prescribe(joint, number("rate", rate), of_time("angle", angle, self.functions));
           },
           "joint"_a, "rate"_a = nb::none(), nb::kw_only(), "angle"_a = nb::none(),
           "slope"_a = nb::none(), "least"_a = nb::none(), "most"_a = nb::none(),
@@ -83,15 +125,18 @@ void bind_forces(nb::class_<Mechanism>& mechanism) {
           "of the run, 'steer.rate', between least and most.")
       .def(
           "ground",
-          [](Mechanism& self, double rate, const Point& velocity) { self.ground(rate, velocity); },
+          [](ByParts& self, double rate, const Point& velocity) { self.ground(rate, velocity); },
           "rate"_a, "velocity"_a = kOrigin,
           "The ground turns about the origin [rad/s] and moves [m/s].")
-      .def("redundant", &Mechanism::redundant, "policy"_a,
-           "'refuse', or 'drop': what becomes of rows that repeat others.")
-      .def("gravity", &Mechanism::gravity, "acceleration"_a, "[m/s^2], three numbers")
+      .def(
+          "redundant", [](ByParts& self, const std::string& policy) { self.redundant(policy); },
+          "policy"_a, "'refuse', or 'drop': what becomes of rows that repeat others.")
+      .def(
+          "gravity", [](ByParts& self, const Point& acceleration) { self.gravity(acceleration); },
+          "acceleration"_a, "[m/s^2], three numbers")
       .def(
           "spring",
-          [](Mechanism& self, const std::string& name, const std::string& a, const std::string& b,
+          [](ByParts& self, const std::string& name, const std::string& a, const std::string& b,
              const Point& from, const Point& to, double stiffness, std::optional<double> rest,
              double damping) {
             self.spring(name, a, b, {from, to, stiffness, rest, damping});
@@ -101,10 +146,10 @@ void bind_forces(nb::class_<Mechanism>& mechanism) {
           "Between two points [m] as drawn; stiffness [N/m], rest [m] (left out: as drawn).")
       .def(
           "motor",
-          [](Mechanism& self, const std::string& joint, nb::handle effort, bool time_dependent,
+          [](ByParts& self, const std::string& joint, nb::handle effort, bool time_dependent,
              std::optional<double> least, std::optional<double> most) {
             if (effort.is_none()) self.motor(joint, range(least, most));
-            else self.motor(joint, signal(effort), time_dependent);
+            else self.motor(joint, signal("effort", effort, self.functions), time_dependent);
           },
           "joint"_a, "effort"_a = nb::none(), nb::kw_only(), "time_dependent"_a = true,
           "least"_a = nb::none(), "most"_a = nb::none(),
@@ -115,14 +160,16 @@ void bind_forces(nb::class_<Mechanism>& mechanism) {
           "of Python or of numba.cfunc, or (without one) an input of the run, 'steer.torque'.")
       .def(
           "force",
-          [](Mechanism& self, const std::string& name, const std::string& body, nb::sequence along,
+          [](ByParts& self, const std::string& name, const std::string& body, nb::sequence along,
              const Point& at, bool of_body, bool time_dependent) {
             if (nb::len(along) != 3)
               throw ConfigError({"force '" + name + "': along has " +
                                  std::to_string(nb::len(along)) + " entries, expected 3"});
             self.force(name, body,
                        {at,
-                        {signal(along[0]), signal(along[1]), signal(along[2])},
+                        {signal("along", along[0], self.functions),
+                         signal("along", along[1], self.functions),
+                         signal("along", along[2], self.functions)},
                         of_body,
                         time_dependent});
           },
@@ -135,7 +182,7 @@ void bind_forces(nb::class_<Mechanism>& mechanism) {
           "Three components [N], numbers or functions, of the world or of the body as drawn.")
       .def(
           "input",
-          [](Mechanism& self, const std::string& name, const std::string& unit,
+          [](ByParts& self, const std::string& name, const std::string& unit,
              const std::string& meaning, std::optional<double> least, std::optional<double> most) {
             self.input({name, unit, meaning, range(least, most)});
           },
@@ -143,14 +190,14 @@ void bind_forces(nb::class_<Mechanism>& mechanism) {
           "most"_a = nb::none(), "An input of the run that signals may use.")
       .def(
           "event",
-          [](Mechanism& self, const std::string& name, nb::callable value, int direction,
+          [](ByParts& self, const std::string& name, nb::callable value, int direction,
              const std::string& meaning) {
             self.event({name, meaning, direction,
-                        [function = kept(value)](double t, std::span<const double> coordinates,
-                                                 std::span<const double> velocity) {
-                          const nb::gil_scoped_acquire gil;
-                          return nb::cast<double>(
-                              (*function)(t, copied(coordinates), copied(velocity)));
+                        [name, function = self.functions.add(value)](
+                            double t, std::span<const double> coordinates,
+                            std::span<const double> velocity) {
+                          const Entered python;
+                          return number(name, function(t, copied(coordinates), copied(velocity)));
                         }});
           },
           "name"_a, "value"_a, nb::kw_only(), "direction"_a = 0, "meaning"_a = "",
@@ -161,18 +208,19 @@ void bind_forces(nb::class_<Mechanism>& mechanism) {
           "0 for both ways.")
       .def(
           "start",
-          [](Mechanism& self, const std::map<std::string, double>& values, const nb::kwargs& more) {
+          [](ByParts& self, const std::map<std::string, double>& values, const nb::kwargs& more) {
             std::map<std::string, double> all = values;
-            for (const auto& [key, value] : more)
-              all[nb::cast<std::string>(key)] = number(nb::cast<std::string>(key), value);
+            for (const auto& [key, value] : more) all[key_of(key)] = number(key_of(key), value);
             self.start(all);
           },
           "values"_a = std::map<std::string, double>(), "more"_a,
           nb::sig("def start(self, values: collections.abc.Mapping[str, float] = {}, **more: "
                   "float) -> None"),
           "Coordinates and velocities by name, and 'speed'; the others follow from the rows.")
-      .def("push", &Mechanism::push, "name"_a, "value"_a,
-           "A velocity beside the speed of a run that starts at one.");
+      .def(
+          "push",
+          [](ByParts& self, const std::string& name, double value) { self.push(name, value); },
+          "name"_a, "value"_a, "A velocity beside the speed of a run that starts at one.");
 }
 
 }  // namespace hamel::python

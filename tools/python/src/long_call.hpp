@@ -12,24 +12,25 @@
 namespace hamel::python {
 
 /// progress=True is a bar of tqdm.
-inline Kept progress_of(nb::object progress) {
-  if (nb::isinstance<nb::bool_>(progress))
-    progress = nb::cast<bool>(progress) ? helper("_progress", "bar")() : nb::none();
-  return kept(progress);
+inline nb::object progress_of(const nb::object& progress) {
+  if (!nb::isinstance<nb::bool_>(progress)) return progress;
+  return nb::cast<bool>(progress) ? helper("_progress", "bar")() : nb::none();
 }
 
-/// call(stop, report) with the interpreter free. Ctrl-C and exceptions of the progress set stop,
-/// and are raised when the call has returned.
+/// call(stop, report) with the interpreter free. Ctrl-C, exceptions of the progress and the end of
+/// Python set stop; the exceptions are raised when the call has returned.
 template <class Call>
-auto long_call(const Kept& progress, const Call& call) {
+auto long_call(const nb::object& progress, const Call& call) {
   std::atomic<bool> stop = false;
   std::exception_ptr raised;
   std::function<void(double)> report;
-  if (progress->is_valid() && !progress->is_none()) {
+  if (progress.is_valid() && !progress.is_none()) {
     report = [&](double fraction) {
+      if (python_ends()) stop = true;
+      if (stop) return;
       const nb::gil_scoped_acquire gil;
       try {
-        if (!stop) (*progress)(fraction);
+        progress(fraction);
       } catch (...) {
         raised = std::current_exception();
         stop = true;
@@ -38,11 +39,13 @@ auto long_call(const Kept& progress, const Call& call) {
   }
   std::future<decltype(call(stop, report))> done;
   {
-    const nb::gil_scoped_release free;
+    const Away free;
     done = std::async(std::launch::async, [&] { return call(stop, report); });
     while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+      if (python_ends()) stop = true;
+      if (stop) continue;
       const nb::gil_scoped_acquire gil;
-      if (!stop && PyErr_CheckSignals() != 0) {
+      if (PyErr_CheckSignals() != 0) {
         raised = std::make_exception_ptr(nb::python_error());
         stop = true;
       }

@@ -15,7 +15,7 @@ std::vector<double> given(const char* name, nb::handle value) {
 Parameters parameters(const nb::kwargs& values) {
   Parameters out;
   for (const auto& [key, value] : values) {
-    const auto name = nb::cast<std::string>(key);
+    const auto name = key_of(key);
     out[name] = numbers(name, value);
   }
   return out;
@@ -35,13 +35,13 @@ JointOptions joint_options(const Point& at, const Point& axis, const Point& axis
 
 constexpr Point kUp = {0, 0, 1}, kLeft = {0, 1, 0}, kAhead = {1, 0, 0};
 
-void bind_joints(nb::class_<Mechanism>& mechanism) {
+void bind_joints(nb::class_<ByParts>& mechanism) {
   using Root = void (Mechanism::*)(const std::string&, const std::string&, const JointOptions&);
   const auto root = [&](const char* name, Root member, const char* help) {
     mechanism.def(
         name,
-        [member](Mechanism& self, const std::string& joint, const std::string& child,
-                 const Point& at, const Point& axis) {
+        [member](ByParts& self, const std::string& joint, const std::string& child, const Point& at,
+                 const Point& axis) {
           (self.*member)(joint, child, joint_options(at, axis, kLeft, 0, 0, 0));
         },
         "name"_a, "child"_a, nb::kw_only(), "at"_a = kOrigin, "axis"_a = kUp, help);
@@ -53,7 +53,7 @@ void bind_joints(nb::class_<Mechanism>& mechanism) {
   const auto between = [&](const char* name, Between member, const char* help) {
     mechanism.def(
         name,
-        [member](Mechanism& self, const std::string& joint, const std::string& parent,
+        [member](ByParts& self, const std::string& joint, const std::string& parent,
                  const std::string& child, const Point& at, const Point& axis, const Point& axis2,
                  double stiffness, double rest, double damping) {
           (self.*member)(joint, parent, child,
@@ -70,10 +70,15 @@ void bind_joints(nb::class_<Mechanism>& mechanism) {
   between("ball_joint", &Mechanism::ball_joint, "Turns about a point.");
   between("universal", &Mechanism::universal,
           "Two hinges, axis on the parent and axis2 on the child, that meet at a point.");
-  mechanism.def("weld", &Mechanism::weld, "name"_a, "parent"_a, "child"_a, "The child is fixed.")
+  mechanism
+      .def(
+          "weld",
+          [](ByParts& self, const std::string& name, const std::string& parent,
+             const std::string& child) { self.weld(name, parent, child); },
+          "name"_a, "parent"_a, "child"_a, "The child is fixed.")
       .def(
           "joint",
-          [](Mechanism& self, const std::string& kind, const std::string& name,
+          [](ByParts& self, const std::string& kind, const std::string& name,
              const std::string& parent, const std::string& child, const Point& at,
              const Point& axis, const Point& axis2, double stiffness, double rest, double damping,
              const nb::kwargs& values) {
@@ -90,12 +95,12 @@ void bind_joints(nb::class_<Mechanism>& mechanism) {
           "By the name of its kind; values: what this kind has beside them.");
 }
 
-void bind_contacts(nb::class_<Mechanism>& mechanism) {
+void bind_contacts(nb::class_<ByParts>& mechanism) {
   using Rolls = void (Mechanism::*)(const std::string&, const std::string&, const WheelOptions&);
   const auto rolls = [&](const char* name, Rolls member, const char* help) {
     mechanism.def(
         name,
-        [member](Mechanism& self, const std::string& contact, const std::string& body,
+        [member](ByParts& self, const std::string& contact, const std::string& body,
                  const Point& at, const Point& axle, double radius, double angle) {
           (self.*member)(contact, body, {at, axle, radius, angle});
         },
@@ -108,7 +113,7 @@ void bind_contacts(nb::class_<Mechanism>& mechanism) {
   mechanism
       .def(
           "blade",
-          [](Mechanism& self, const std::string& name, const std::string& body, const Point& at,
+          [](ByParts& self, const std::string& name, const std::string& body, const Point& at,
              const Point& along) {
             self.blade(name, body, {at, along});
           },
@@ -116,7 +121,7 @@ void bind_contacts(nb::class_<Mechanism>& mechanism) {
           "Slides along a direction, not across it.")
       .def(
           "contact",
-          [](Mechanism& self, const std::string& kind, const std::string& name,
+          [](ByParts& self, const std::string& kind, const std::string& name,
              const std::string& body, const Point& at, const nb::kwargs& values) {
             self.contact(kind, name, body, {at, parameters(values)});
           },
@@ -126,7 +131,7 @@ void bind_contacts(nb::class_<Mechanism>& mechanism) {
           "By the name of its kind; values: its fields.")
       .def(
           "loop",
-          [](Mechanism& self, const std::string& name, const std::string& a, const std::string& b,
+          [](ByParts& self, const std::string& name, const std::string& a, const std::string& b,
              const Point& at, const Point& axis) {
             self.loop(name, a, b, {at, axis});
           },
@@ -168,16 +173,17 @@ ModelDescription described(const Simulation& simulation) {
 
 void bind_mechanism(nb::module_& m) {
   bind_text(m);
-  nb::class_<Mechanism> mechanism(
+  nb::class_<ByParts> mechanism(
       m, "Mechanism",
       "Bodies, joints, wheels, blades and balls put together; nothing is derived by hand. Points "
       "[m] and directions are those of one pose as drawn: x ahead, z up, the ground z = 0. Names "
-      "are checked when it is used, all mistakes at once. The world is 'ground'.");
+      "are checked when it is used, all mistakes at once. The world is 'ground'.",
+      nb::type_slots(Collected<ByParts>::slots));
   mechanism.def(nb::init<std::string>(), "name"_a)
-      .def_prop_ro("name", [](const Mechanism& self) { return self.name(); })
+      .def_prop_ro("name", [](const ByParts& self) { return self.name(); })
       .def(
           "body",
-          [](Mechanism& self, const std::string& name, double mass, const Point& at,
+          [](ByParts& self, const std::string& name, double mass, const Point& at,
              nb::handle inertia, const Point& box, nb::handle cylinder, double sphere,
              const Point& axis) {
             return self.body(name, {mass, at, given("inertia", inertia), box,
@@ -206,16 +212,15 @@ void bind_mechanism(nb::module_& m) {
           "from_file",
           [](nb::handle path) {
             const nb::object file = nb::module_::import_("pathlib").attr("Path")(path);
-            return SystemText{nb::cast<std::string>(file.attr("read_text")("encoding"_a = "utf-8")),
+            return SystemText{utf8("path", file.attr("read_text")("encoding"_a = "utf-8")),
                               text("path", path)};
           },
           "path"_a, nb::sig("def from_file(path: str | os.PathLike[str]) -> SystemText"),
           "A mechanism in a file.")
       .def(
-          "describe", [](const Mechanism& self) { return described(simulate(self)); },
+          "describe", [](const ByParts& self) { return described(simulate(self)); },
           nb::sig("def describe(self) -> Description"), "What is stated about the system.")
-      .def("__repr__",
-           [](const Mechanism& self) { return "<hamel.Mechanism " + self.name() + ">"; });
+      .def("__repr__", [](const ByParts& self) { return "<hamel.Mechanism " + self.name() + ">"; });
   m.attr("WORLD") = kWorld;
 }
 

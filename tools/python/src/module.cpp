@@ -35,8 +35,12 @@ void bind_errors(nb::module_& m) {
 }  // namespace
 
 NB_MODULE(_hamel, m) {
-  nb::set_leak_warnings(false);  // functions of Python in a Simulation may refer to it
+  // Locks of threads (PyGILState) are those of the main interpreter alone.
+  if (PyInterpreterState_Get() != PyInterpreterState_Main())
+    throw nb::import_error("hamel: expected the main interpreter, got a subinterpreter");
+  nb::set_leak_warnings(false);  // what a run holds at the end of Python is not freed
   m.doc() = "hamel by name; import hamel.";
+  hamel::python::bind_end();
   bind_errors(m);
   hamel::python::bind_names(m);
   hamel::python::bind_config(m);

@@ -19,7 +19,7 @@ std::vector<std::string> names_of(const std::string& kind) {
 
 ModelDescription describe(nb::handle system) {
   const bool named = nb::isinstance<nb::str>(system);
-  const std::string name = named ? nb::cast<std::string>(system) : "";
+  const std::string name = named ? utf8("system", system) : "";
   if (!named || names_file(name) || name.find('\n') != std::string::npos)
     return described(builder_of(system).simulation);
   const SystemDescription stated = describe_system(name);  // ConfigError where there is none

@@ -1,5 +1,6 @@
 // The pickle of a result: plain values, the rows as bytes; the system goes by its name or text.
 #include <cstring>
+#include <stdexcept>
 
 #include "bindings.hpp"
 
@@ -41,7 +42,11 @@ nb::tuple pack(const Snapshot& s) {
                         s.time_offset, s.iterations, s.residual);
 }
 
+// The numbers of pack(Snapshot).
+constexpr size_t kSnapshot = 14;
+
 Snapshot snapshot_of(const nb::tuple& t) {
+  if (t.size() != kSnapshot) throw std::invalid_argument("last: of another length");
   Snapshot s;
   const auto read = [&t, i = 0](auto& out) mutable {
     out = nb::cast<std::remove_reference_t<decltype(out)>>(t[static_cast<size_t>(i++)]);
@@ -109,7 +114,10 @@ nb::dict pack(const StoredResult& stored) {
   return out;
 }
 
-void unpack(StoredResult& self, const nb::dict& state) {
+namespace {
+
+// What a pickle holds, as far as types go; throws whatever does not fit.
+StoredResult read(const nb::dict& state) {
   Result result;
   result.config = get<Config>(state, "config");
   using StatusState = std::tuple<bool, long, double, double, std::string>;
@@ -146,13 +154,34 @@ void unpack(StoredResult& self, const nb::dict& state) {
     groups.push_back({name, unit, meaning, frame, columns});
   result.trajectory = Trajectory(std::move(groups));
   const nb::bytes rows = get<nb::bytes>(state, "rows");
+  const size_t row = result.trajectory.columns().size() * sizeof(double);
+  if (row == 0 ? rows.size() > 0 : rows.size() % row != 0)
+    throw std::invalid_argument("rows: not whole ones of these columns");
   std::vector<double> numbers(rows.size() / sizeof(double));
-  std::memcpy(numbers.data(), rows.data(), numbers.size() * sizeof(double));
+  if (!numbers.empty()) std::memcpy(numbers.data(), rows.data(), rows.size());
   result.trajectory.append(numbers);
   result.trajectory.stride(get<size_t>(state, "stride"));
-  new (&self) StoredResult(std::move(result), get<std::string>(state, "source"));
-  self.record = get<std::string>(state, "record");
-  self.report = get<std::string>(state, "report");
+  StoredResult out(std::move(result), get<std::string>(state, "source"));
+  out.record = get<std::string>(state, "record");
+  out.report = get<std::string>(state, "report");
+  return out;
+}
+
+}  // namespace
+
+void unpack(StoredResult& self, const nb::dict& state) {
+  const auto damaged = [](const std::string& why) {
+    return ConfigError({"a damaged pickle of a Result: " + why});
+  };
+  try {
+    new (&self) StoredResult(read(state));
+  } catch (const nb::python_error& error) {
+    throw damaged(error.what());
+  } catch (const nb::cast_error&) {
+    throw damaged("a value of another type");
+  } catch (const std::exception& error) {
+    throw damaged(error.what());
+  }
 }
 
 }  // namespace hamel::python

@@ -164,6 +164,13 @@ void StoredResult::restore_system() {
   Simulation again =
       source.empty() ? simulate(result.config.system) : simulate_text(source, result.config.system);
   const Result fresh = again.config(result.config).build().finish();
+  const size_t columns = fresh.last.coordinates.size(), n = fresh.last.velocity.size();
+  const Trajectory& rows = result.trajectory;
+  if (result.last.coordinates.size() != columns || result.last.velocity.size() != n ||
+      result.last.momentum.size() != n ||
+      (rows.rows() > 0 && rows.columns().size() < 1 + columns + n))
+    throw ConfigError({"a damaged pickle of a Result: its numbers are not those of the system '" +
+                       result.config.system + "'"});
   result.system = fresh.system;
   result.inputs = fresh.inputs;
 }
@@ -173,8 +180,8 @@ void StoredResult::write(const std::string& path) {
   result.write(path);
 }
 
-nb::object result_of(Result result, std::string source) {
-  return nb::cast(StoredResult(std::move(result), std::move(source)));
+nb::object result_of(Result result, std::string source, const Functions& functions) {
+  return nb::cast(StoredResult(std::move(result), std::move(source), functions));
 }
 
 void bind_result(nb::module_& m) {
@@ -194,7 +201,8 @@ void bind_result(nb::module_& m) {
       m, "Result",
       "What a run leaves behind: true where it ended well. result['omega1'] are the rows of a "
       "column or a vector, as a read-only view. A numerical failure is in status; the good steps "
-      "are here.");
+      "are here.",
+      nb::type_slots(Collected<StoredResult>::slots));
   bind_rows(result);
   bind_measurements(result);
   const auto member = [](auto Result::*of) {

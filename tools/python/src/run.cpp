@@ -12,14 +12,16 @@ struct ByHand {
   Run run;
   std::shared_ptr<const StateNames> names;
   std::string source;
+  Functions functions;
   bool finished = false;
   const Snapshot* current = nullptr;  // null behind a change
   std::atomic<bool> busy = false;
 
-  ByHand(Run built, std::string text)
+  ByHand(Run built, const Builder& builder)
       : run(std::move(built)),
         names(std::make_shared<const StateNames>(run.system())),
-        source(std::move(text)) {}
+        source(builder.source),
+        functions(builder.functions) {}
   // A state is measured once, however many of its numbers are asked for.
   const Snapshot& state() {
     if (current == nullptr) current = &run.state();
@@ -47,7 +49,7 @@ template <class Function>
 auto freely(ByHand& self, Function function) {
   const Alone alone(self);
   self.current = nullptr;
-  const nb::gil_scoped_release free;
+  const Away free;
   return function(self.run);
 }
 
@@ -58,10 +60,10 @@ Status steps(ByHand& self, long count) {
   constexpr long kPiece = 4096;
   Status status;
   for (long left = count; left > 0 && status.ok; left -= kPiece) {
-    const nb::gil_scoped_release free;
+    const Away free;
     status = self.run.step(std::min(left, kPiece));
     if (left > kPiece) {
-      const nb::gil_scoped_acquire gil;
+      const Entered python;
       if (PyErr_CheckSignals() != 0) nb::raise_python_error();
     }
   }
@@ -171,7 +173,8 @@ void bind_run(nb::module_& m) {
       m, "Run",
       "A run to be stepped by hand; Simulation.build() makes it. run['omega'] is a number of the "
       "current state by its name, run.names are all. A step leaves the interpreter to other "
-      "threads; one thread at a time may use a run.")
+      "threads; one thread at a time may use a run.",
+      nb::type_slots(Collected<ByHand>::slots))
       .def("step", &steps, "count"_a = 1,
            "One step, or so many; the status of the first that failed.")
       .def(
@@ -228,7 +231,7 @@ void bind_run(nb::module_& m) {
           [](ByHand& self) {
             Result result = freely(self, [](Run& run) { return run.finish(); });
             self.finished = true;
-            return result_of(std::move(result), self.source);
+            return result_of(std::move(result), self.source, self.functions);
           },
           nb::sig("def finish(self) -> Result"),
           "Ends the run: the last row, the files, the measurements; events that were met.")
@@ -293,10 +296,10 @@ void bind_run(nb::module_& m) {
 nb::object by_hand(const Builder& builder) {
   const Simulation simulation = watched(builder);
   Run built = [&] {
-    const nb::gil_scoped_release free;
+    const Away free;
     return simulation.build();
   }();
-  return nb::cast(new ByHand(std::move(built), builder.source), nb::rv_policy::take_ownership);
+  return nb::cast(new ByHand(std::move(built), builder), nb::rv_policy::take_ownership);
 }
 
 }  // namespace hamel::python

@@ -12,7 +12,7 @@ std::vector<Start> starts_of(nb::handle given, const Config& config) {
   for (const nb::handle one : given) {
     Start& start = out.emplace_back();
     for (const auto& [key, value] : dict("starts", one)) {
-      const auto name = nb::cast<std::string>(key);
+      const auto name = key_of(key);
       if (name == "configuration") start.configuration = numbers(name, value);
       else if (name == "velocity") start.velocity = numbers(name, value);
       else if (name == "momentum") start.momentum = numbers(name, value);

@@ -25,8 +25,12 @@ Builder builder_of(nb::handle system) {
     out.simulation.config(config);
     return out;
   }
-  if (nb::isinstance<Mechanism>(system))
-    return {simulate(nb::cast<const Mechanism&>(system)), "", true};
+  if (nb::isinstance<ByParts>(system)) {
+    const auto& parts = nb::cast<const ByParts&>(system);
+    Builder out{simulate(static_cast<const Mechanism&>(parts)), "", true};
+    out.functions.add(parts.functions);
+    return out;
+  }
   if (nb::isinstance<SystemText>(system)) {
     const auto& [toml, name] = nb::cast<const SystemText&>(system);
     return {simulate_text(toml, name), toml};
@@ -42,17 +46,26 @@ Builder builder_of(nb::handle system, const nb::kwargs& options) {
 
 Simulation watched(const Builder& builder) {
   Simulation simulation = builder.simulation;
-  simulation.progress([report = kept(builder.progress)](double fraction) {
-    const nb::gil_scoped_acquire gil;
+  simulation.progress([report = builder.progress](double fraction) {
+    const Entered python;
     if (PyErr_CheckSignals() != 0) nb::raise_python_error();
-    if (report->is_valid()) (*report)(fraction);
+    if (report) (*report)(fraction);
+  });
+  if (!builder.observer) return simulation;
+  const auto names = std::make_shared<const StateNames>(*simulation.system());
+  simulation.observe([observer = *builder.observer, names](const Snapshot& state) {
+    const Entered python;
+    const nb::object go_on = observer(NamedState{state, names});
+    const int answer = go_on.is_none() ? 1 : PyObject_IsTrue(go_on.ptr());
+    if (answer < 0) nb::raise_python_error();
+    return answer != 0;
   });
   return simulation;
 }
 
 Result run(const Builder& builder) {
   const Simulation simulation = watched(builder);
-  const nb::gil_scoped_release free;
+  const Away free;
   return simulation.run();
 }
 
@@ -68,7 +81,8 @@ void bind_simulation(nb::module_& m) {
       m, "Simulation",
       "The builder: from a system and a few names to a run. run() and build() check everything "
       "first and raise one ConfigError with all mistakes; after that a numerical failure is "
-      "result.status, and the good steps are kept.");
+      "result.status, and the good steps are kept.",
+      nb::type_slots(Collected<Builder>::slots));
   bind_builder(m, builder);
   builder
       .def_prop_ro(
@@ -79,7 +93,8 @@ void bind_simulation(nb::module_& m) {
           "Everything that is wrong; empty when run() can start.")
       .def("build", &by_hand, nb::sig("def build(self) -> Run"), "A run to be stepped by hand.")
       .def(
-          "run", [](const Builder& self) { return result_of(run(self), self.source); },
+          "run",
+          [](const Builder& self) { return result_of(run(self), self.source, self.functions); },
           nb::sig("def run(self) -> Result"), "Steps to the end, the interpreter free.")
       .def(
           "__getattr__",
@@ -123,7 +138,7 @@ void bind_simulation(nb::module_& m) {
       "run",
       [](nb::handle system, const nb::kwargs& options) {
         const Builder given = builder_of(system, options);
-        return result_of(run(given), given.source);
+        return result_of(run(given), given.source, given.functions);
       },
       "system"_a, "options"_a, nb::sig("def run(system: _System, **options: typing.Any) -> Result"),
       help.c_str());

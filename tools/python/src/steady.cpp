@@ -18,7 +18,7 @@ struct Vary {
 
   explicit Vary(nb::handle given) {
     if (nb::isinstance<nb::str>(given)) {
-      read(nb::cast<std::string>(given));
+      read(utf8("vary", given));
       return;
     }
     const nb::tuple parts(given);
@@ -59,13 +59,13 @@ SteadySweep sweep(nb::handle system, nb::handle vary, bool branches, const nb::k
     else out.set(along.name, value);
     return out;
   };
-  const nb::gil_scoped_release free;
+  const Away free;
   return sweep_steady(registry(), along.values, at, branches);
 }
 
 SteadyMotion steady(nb::handle system, const nb::kwargs& options) {
   const Simulation run = builder_of(system, options).simulation;
-  const nb::gil_scoped_release free;
+  const Away free;
   return steady_motion(registry(), run);
 }
 
@@ -231,7 +231,7 @@ void bind_steady(nb::module_& m) {
       "linearisation",
       [](nb::handle system, const nb::kwargs& options) {
         const Simulation run = builder_of(system, options).simulation;
-        const nb::gil_scoped_release free;
+        const Away free;
         return hamel::linearisation(registry(), run);
       },
       "system"_a, "options"_a,

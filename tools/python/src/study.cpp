@@ -5,18 +5,18 @@ namespace hamel::python {
 namespace {
 
 std::string word_of(nb::handle value) {
-  if (nb::isinstance<nb::str>(value)) return nb::cast<std::string>(value);
+  if (nb::isinstance<nb::str>(value)) return utf8("value of an axis", value);
   return text_of(number("value of an axis", value));
 }
 
 StudySystem system_of(nb::handle given) {
   if (nb::isinstance<nb::str>(given)) {
-    const auto name = nb::cast<std::string>(given);
+    const auto name = utf8("system", given);
     return {.label = name, .name = name};
   }
   StudySystem out;
   for (const auto& [key, value] : dict("system", given)) {
-    const auto name = nb::cast<std::string>(key);
+    const auto name = key_of(key);
     if (name == "label") out.label = text(name, value);
     else if (name == "system" || name == "name") out.name = text(name, value);
     else if (name == "configuration") out.start.configuration = numbers(name, value);
@@ -24,10 +24,10 @@ StudySystem system_of(nb::handle given) {
     else if (name == "momentum") out.start.momentum = numbers(name, value);
     else if (name == "parameters") {
       for (const auto& [parameter, number] : dict(name, value))
-        out.parameters[nb::cast<std::string>(parameter)] = numbers(name, number);
+        out.parameters[key_of(parameter)] = numbers(name, number);
     } else if (name == "inputs") {
       for (const auto& [input, signal] : dict(name, value))
-        out.inputs[nb::cast<std::string>(input)] = signal_of(name, signal);
+        out.inputs[key_of(input)] = signal_of(name, signal);
     } else {
       throw ConfigError({unknown_name(
           "key of a system", name,
@@ -47,7 +47,7 @@ StudyConfig config_of(nb::handle file, const nb::kwargs& options) {
                                                    : parse_study(given, "study.toml", registry());
   }
   for (const auto& [key, value] : options) {
-    const auto name = nb::cast<std::string>(key);
+    const auto name = key_of(key);
     if (name == "title") config.title = text(name, value);
     else if (name == "until") config.until = number(name, value);
     else if (name == "repeats") config.repeats = static_cast<int>(number(name, value));

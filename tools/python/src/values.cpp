@@ -5,9 +5,15 @@ namespace hamel::python {
 namespace {
 
 [[noreturn]] void wrong(const std::string& name, const char* expected, nb::handle value) {
-  const std::string got = nb::cast<std::string>(nb::repr(value));
+  const nb::object printed = nb::repr(value);  // with surrogates escaped
+  const nb::object bytes =
+      nb::steal(PyUnicode_AsEncodedString(printed.ptr(), "utf-8", "backslashreplace"));
+  if (!bytes.is_valid()) nb::raise_python_error();
+  const std::string got(PyBytes_AS_STRING(bytes.ptr()), size_t(PyBytes_GET_SIZE(bytes.ptr())));
   throw ConfigError({name + ": got " + shortened(got) + ", expected " + expected});
 }
+
+constexpr size_t kMostNumbers = 100'000'000;
 
 bool is_list(nb::handle value) {
   return nb::isinstance<nb::list>(value) || nb::isinstance<nb::tuple>(value);
@@ -30,8 +36,11 @@ std::vector<double> numbers(const std::string& name, nb::handle value) {
   if (PyFloat_Check(value.ptr()) || PyLong_Check(value.ptr())) return {number(name, value)};
   if (nb::isinstance<nb::str>(value)) wrong(name, "numbers", value);
   if (!is_list(value)) {
-    if (nb::hasattr(value, "ravel"))  // an array, row after row
-      return numbers(name, value.attr("ravel")().attr("tolist")());
+    if (nb::hasattr(value, "ravel")) {  // an array, row after row
+      const nb::object list = value.attr("ravel")().attr("tolist")();
+      if (!is_list(list)) wrong(name, "numbers", value);
+      return numbers(name, list);
+    }
     if (!nb::hasattr(value, "__iter__")) return {number(name, value)};
   }
   std::vector<double> out;
@@ -39,14 +48,22 @@ std::vector<double> numbers(const std::string& name, nb::handle value) {
     if (!is_list(entry)) out.push_back(number(name, entry));
     else
       for (const nb::handle inner : entry) out.push_back(number(name, inner));
+    if (out.size() > kMostNumbers) wrong(name, "at most 100,000,000 numbers", value);
   }
   return out;
 }
 
+std::string utf8(const std::string& name, nb::handle text) {
+  Py_ssize_t size = 0;
+  const char* const bytes = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
+  if (bytes != nullptr) return {bytes, static_cast<size_t>(size)};
+  PyErr_Clear();
+  wrong(name, "a text without lone surrogates", text);
+}
+
 std::string text(const std::string& name, nb::handle value) {
-  if (nb::isinstance<nb::str>(value)) return nb::cast<std::string>(value);
-  if (nb::hasattr(value, "__fspath__"))
-    return nb::cast<std::string>(nb::str(value.attr("__fspath__")()));
+  if (nb::isinstance<nb::str>(value)) return utf8(name, value);
+  if (nb::hasattr(value, "__fspath__")) return utf8(name, nb::str(value.attr("__fspath__")()));
   wrong(name, "a text", value);
 }
 
@@ -83,13 +100,6 @@ nb::object complex_array(const std::vector<std::complex<double>>& values) {
   auto* own = new Numbers(values);
   const nb::capsule owner(own, [](void* p) noexcept { delete static_cast<Numbers*>(p); });
   return nb::cast(nb::ndarray<nb::numpy, std::complex<double>>(own->data(), {own->size()}, owner));
-}
-
-Kept kept(nb::object object) {
-  return {new nb::object(std::move(object)), [](const nb::object* p) {
-            const nb::gil_scoped_acquire gil;
-            delete p;
-          }};
 }
 
 nb::object helper(const char* module, const char* name) {

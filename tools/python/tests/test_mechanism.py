@@ -78,15 +78,10 @@ def test_a_mechanism_by_parts_is_that_of_the_text(tmp_path):
 
 
 def test_signals_of_python_and_compiled():
-    signature = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, *[ctypes.c_void_p] * 3)
-
-    class Compiled:  # as numba.cfunc returns it
-        def __init__(self, function):
-            self.function = signature(function)
-            self.address = ctypes.cast(self.function, ctypes.c_void_p).value
+    compiled = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, *[ctypes.c_void_p] * 3)
 
     runs = []
-    for effort in (0.25, lambda t, q, v, u: 0.25, Compiled(lambda t, q, v, u: 0.25)):
+    for effort in (0.25, lambda t, q, v, u: 0.25, compiled(lambda t, q, v, u: 0.25)):
         mechanism = scooter()
         mechanism.motor("steer", effort, time_dependent=False)
         runs.append(hamel.run(mechanism, step=0.01, until=1))
