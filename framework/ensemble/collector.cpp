@@ -96,13 +96,26 @@ Collector::Collector(const Plan& plan, EnsembleResult& result)
                  std::vector<Moments>(static_cast<size_t>((result.members + kChunk - 1) / kChunk)));
 }
 
+// Its failures are of its members, and its classes have names.
+bool Collector::in_range(const Piece& piece, long count) const {
+  for (const MemberFailure& failure : piece.failures)
+    if (failure.member < piece.first || failure.member >= piece.first + count) return false;
+  if (!has_class_) return true;
+  const auto classes = static_cast<double>(plan_.config.classes.names.size());
+  for (size_t i = kept_; i < piece.rows.size(); i += width_) {
+    const double x = piece.rows[i];
+    if (std::isfinite(x) && !(x >= 0 && x < classes && x == std::floor(x))) return false;
+  }
+  return true;
+}
+
 void Collector::take(const Piece& piece) {
   const long number = piece.first / kPiece, count = piece.count(width_);
   const long at = piece.first - result_.first;
   const bool mine =
       piece.first % kPiece == 0 && number >= first_piece_ && number < first_piece_ + pieces();
   if (!mine || piece.rows.size() != static_cast<size_t>(count) * width_ ||
-      count != std::min(kPiece, result_.members - at))
+      count != std::min(kPiece, result_.members - at) || !in_range(piece, count))
     throw std::runtime_error("no piece of this ensemble");
   char& there = there_[static_cast<size_t>(number - first_piece_)];
   if (there != 0) return;

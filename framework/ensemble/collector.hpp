@@ -46,6 +46,7 @@ class Collector {
 
  private:
   void begin_chunk_statistics();
+  bool in_range(const Piece& piece, long count) const;
   void follow_chunk(const Piece& piece);
   void name_failures();
   void fill_varied();

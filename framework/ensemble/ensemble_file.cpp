@@ -60,7 +60,11 @@ class EnsembleReader {
 
   void refuse_other_kinds(const toml::table& table) const {
     const toml::node* system = table.get("system");
-    if (system != nullptr && !table.contains("vary") && !table.contains("keep"))
+    const std::vector<std::string> runs = config_keys(), all = keys();
+    const bool any_own = std::ranges::any_of(all, [&](const std::string& key) {
+      return std::ranges::find(runs, key) == runs.end() && table.contains(key);
+    });
+    if (system != nullptr && !any_own)
       throw ConfigError({fmt::format(
           "{}: this file is {}, no ensemble: it has neither [vary] nor keep", config_.origin,
           system->is_array() ? "a study (hamel study)" : "the configuration of a run")});

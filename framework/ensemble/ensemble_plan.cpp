@@ -59,6 +59,7 @@ Plan::Plan(const Registry& given, EnsembleConfig& from, std::vector<std::string>
     add_placed(config, error.mistakes(), mistakes);
   }
   check_trajectories(mistakes);
+  check_unused(mistakes);
   if (!mistakes.empty()) return;
   for (const std::string& event : kept->events())
     if (std::ranges::find(base.events, event) == base.events.end()) base.events.push_back(event);
@@ -69,6 +70,25 @@ Plan::Plan(const Registry& given, EnsembleConfig& from, std::vector<std::string>
   } catch (const ConfigError& error) {
     const std::string first = error.mistakes().front();
     if (first.starts_with("vary: ")) mistakes.push_back(placed(config, "vary", first));
+  }
+}
+
+// Parts that nothing uses are read as those that something does.
+void Plan::check_unused(std::vector<std::string>& mistakes) const {
+  if (!config.statistics_of.empty() && config.statistics_at.empty())
+    mistakes.push_back(placed(config, "statistics_of",
+                              "statistics_of: expected statistics_at too, the times of these"));
+  if (config.feedback.inputs.empty() && config.where.contains("feedback"))
+    mistakes.push_back(
+        placed(config, "feedback", "feedback: expected inputs by name, input = \"formula\""));
+  if (!kept) return;
+  for (const auto& [name, formula] : config.events) {
+    if (std::ranges::find(kept->events(), formula) != kept->events().end()) continue;
+    Config run = base;
+    run.events.push_back(formula);
+    for (const std::string& text : simulation(run).mistakes())
+      mistakes.push_back(
+          placed(config, "events." + name, fmt::format("events.{}: {}", name, text)));
   }
 }
 

@@ -49,6 +49,7 @@ class Plan {
   bool give_inputs(const SystemModel& system);
   const LaneInfo* find_lanes(const Run& run) const;
   void check_trajectories(std::vector<std::string>& mistakes) const;
+  void check_unused(std::vector<std::string>& mistakes) const;
 };
 
 }  // namespace hamel::ensemble

@@ -184,19 +184,20 @@ void KeptFormulas::check_histograms(const EnsembleConfig& config,
                                 "histograms: " + unknown_name("kept quantity", name, names)));
 }
 
-// After all formulas: times in the order of the run, and the constants behind all atoms, of which a
-// formula has seen those before it.
+// After all formulas: times in the order of the run, with their atoms.
 void KeptFormulas::settle(double sign) {
   const std::vector<double> found = times_;
-  std::ranges::sort(times_, [sign](double a, double b) { return sign * a < sign * b; });
-  for (Atom& atom : atoms_)
-    if (atom.from == From::at)
-      atom.place =
-          static_cast<size_t>(std::ranges::find(times_, found[atom.place]) - times_.begin());
-  std::vector<std::string> variables;
-  for (size_t i = 0; i < atoms_.size(); ++i) variables.push_back(Parser::variable(i));
-  for (Formula& formula : formulas_)
-    formula.expression = Expression(formula.rewritten, constants_.behind(variables));
+  const auto before = [sign](double a, double b) { return sign * a < sign * b; };
+  std::ranges::sort(times_, before);
+  at_.assign(times_.size(), {});
+  for (size_t i = 0; i < atoms_.size(); ++i) {
+    Atom& atom = atoms_[i];
+    if (atom.from == From::most || atom.from == From::least) peaks_.push_back(i);
+    if (atom.from != From::at) continue;
+    atom.place = static_cast<size_t>(std::ranges::lower_bound(times_, found[atom.place], before) -
+                                     times_.begin());
+    at_[atom.place].push_back(i);
+  }
 }
 
 void KeptFormulas::begin(long member) {
@@ -220,25 +221,27 @@ void KeptFormulas::look_at(const Snapshot& state) {
   values_.insert(values_.end(), constants_.values().begin(), constants_.values().end());
 }
 
-// The atoms that a state gives, all of one place.
-void KeptFormulas::take(From from, size_t place) {
-  for (Atom& atom : atoms_) {
-    if (atom.from != from || atom.place != place) continue;
-    atom.value = value_of(atom);
-    atom.missing = false;
-  }
+void KeptFormulas::take_atom(Atom& atom) {
+  atom.value = value_of(atom);
+  atom.missing = false;
+}
+
+// The atoms that the state at the start or the end gives.
+void KeptFormulas::take(From from) {
+  for (Atom& atom : atoms_)
+    if (atom.from == from) take_atom(atom);
 }
 
 void KeptFormulas::start(const Snapshot& state) {
   energy_start_ = state.energy;
   look_at(state);
-  take(From::start, 0);
+  take(From::start);
 }
 
 void KeptFormulas::peak(const Snapshot& state) {
   look_at(state);
-  for (Atom& atom : atoms_) {
-    if (atom.from != From::most && atom.from != From::least) continue;
+  for (const size_t i : peaks_) {
+    Atom& atom = atoms_[i];
     const double value = value_of(atom);
     const bool better = atom.from == From::most ? value > atom.value : value < atom.value;
     if (better || !std::isfinite(value)) atom.value = value;
@@ -247,12 +250,12 @@ void KeptFormulas::peak(const Snapshot& state) {
 
 void KeptFormulas::at(size_t time, const Snapshot& state) {
   look_at(state);
-  take(From::at, time);
+  for (const size_t atom : at_[time]) take_atom(atoms_[atom]);
 }
 
 void KeptFormulas::end(const Snapshot& state, const std::vector<EventMet>& met) {
   look_at(state);
-  take(From::end, 0);
+  take(From::end);
   for (const EventMet& event : met) {
     for (Atom& atom : atoms_) {
       if (atom.from != From::count && atom.from != From::time) continue;
@@ -267,12 +270,16 @@ void KeptFormulas::end(const Snapshot& state, const std::vector<EventMet>& met) 
 }
 
 std::string KeptFormulas::finish(std::span<double> out) {
-  arguments_.clear();
-  for (const Atom& atom : atoms_) arguments_.push_back(atom.value);
-  arguments_.insert(arguments_.end(), constants_.values().begin(), constants_.values().end());
   for (size_t i = 0; i < formulas_.size(); ++i) {
     const Formula& formula = formulas_[i];
-    out[i] = formula.expression(arguments_);
+    if (formula.expression) {
+      arguments_.clear();
+      for (const size_t atom : formula.atoms) arguments_.push_back(atoms_[atom].value);
+      arguments_.insert(arguments_.end(), constants_.values().begin(), constants_.values().end());
+      out[i] = (*formula.expression)(arguments_);
+    } else {
+      out[i] = atoms_[formula.atoms.front()].value;
+    }
     if (std::isfinite(out[i])) {
       const bool whole =
           out[i] == std::floor(out[i]) && out[i] >= 0 && out[i] < static_cast<double>(classes_);

@@ -118,7 +118,7 @@ class KeptFormulas {
   enum class From { start, end, most, least, at, count, time };
   struct Atom {
     From from;
-    std::string text, unit;
+    std::string unit;
     size_t place = 0;                   // of the time or the event
     size_t quantity = 0;                // of a state
     std::optional<Expression> formula;  // in its place
@@ -126,23 +126,26 @@ class KeptFormulas {
     bool missing = false;
   };
   struct Formula {
-    std::string name, rewritten;
-    Expression expression;
-    std::vector<size_t> atoms;  // used
+    std::string name;
+    std::vector<size_t> atoms;             // used
+    std::optional<Expression> expression;  // of them and the constants; none: the atom alone
   };
   class Parser;
 
   std::string flaw_of_name(const std::string& name, const Variations& variations) const;
   void check_histograms(const EnsembleConfig& config, std::vector<std::string>& mistakes) const;
   void settle(double sign);
+  void take_atom(Atom& atom);
   void look_at(const Snapshot& state);
-  void take(From from, size_t place);
+  void take(From from);
   double value_of(const Atom& atom) const;
 
   StateNames states_;
   MemberConstants constants_;
   std::vector<double> values_;  // of the state and the constants
   std::vector<Atom> atoms_;
+  std::vector<std::vector<size_t>> at_;  // atoms of each time
+  std::vector<size_t> peaks_;            // atoms: most and least
   std::vector<Formula> formulas_;
   std::vector<KeptColumn> columns_;
   std::vector<double> times_, arguments_;

@@ -29,14 +29,15 @@ class KeptFormulas::Parser {
 
   /// Adds a column. Throws std::invalid_argument that names what is wrong.
   void column(const std::string& name, const std::string& formula) {
+    used_.clear();
     const std::string rewritten = rewrite(formula);
-    std::vector<std::string> variables;
-    for (size_t i = 0; i < out_.atoms_.size(); ++i) variables.push_back(variable(i));
-    const size_t count = variables.size();
-    Formula made{name, rewritten, Expression(rewritten, out_.constants_.behind(variables)), {}};
-    for (const size_t i : made.expression.used())
-      if (i < count) made.atoms.push_back(i);
-    const bool alone = made.atoms.size() == 1 && rewritten == variable(made.atoms[0]);
+    Formula made{name, used_, {}};
+    const bool alone = used_.size() == 1 && rewritten == variable(used_[0]);
+    if (!alone) {
+      std::vector<std::string> variables;
+      for (const size_t atom : used_) variables.push_back(variable(atom));
+      made.expression.emplace(rewritten, out_.constants_.behind(variables));
+    }
     out_.columns_.push_back({name, alone ? out_.atoms_[made.atoms[0]].unit : "",
                              name == formula ? "of each member" : formula});
     out_.formulas_.push_back(std::move(made));
@@ -47,20 +48,20 @@ class KeptFormulas::Parser {
     if (!(std::min(from, until) <= t && t <= std::max(from, until)))
       throw std::invalid_argument(
           fmt::format("t = {}: expected a time of the run, {} to {}", t, from, until));
-    const auto it = std::ranges::find(out_.times_, t);
-    if (it == out_.times_.end()) out_.times_.push_back(t);
-    return static_cast<size_t>(std::ranges::find(out_.times_, t) - out_.times_.begin());
+    const auto [known, is_new] = times_.emplace(t, out_.times_.size());
+    if (is_new) out_.times_.push_back(t);
+    return known->second;
   }
   size_t atom(From from, size_t place, const std::string& quantity, const std::string& text) {
-    for (size_t i = 0; i < out_.atoms_.size(); ++i)
-      if (out_.atoms_[i].text == text) return i;
-    Atom made{from, text, "", place, 0, {}};
+    if (const auto known = atoms_.find(text); known != atoms_.end()) return known->second;
+    Atom made{from, "", place, 0, {}};
     if (from == From::time) made.unit = "s";
     else if (from == From::count) made.unit = "1";
     else state(quantity, made);
     out_.wants_start_ = out_.wants_start_ || from == From::start;
     out_.wants_peaks_ = out_.wants_peaks_ || from == From::most || from == From::least;
     out_.atoms_.push_back(std::move(made));
+    atoms_.emplace(text, out_.atoms_.size() - 1);
     return out_.atoms_.size() - 1;
   }
   static std::string variable(size_t atom) { return fmt::format("kept_atom_{}", atom); }
@@ -133,7 +134,7 @@ class KeptFormulas::Parser {
     } else if (name.empty()) {
       while (i < text.size() && of_name(text[i])) name += text[i++];
     }
-    return variable(atom(from, place, name, text.substr(begin, i - begin)));
+    return use(atom(from, place, name, text.substr(begin, i - begin)));
   }
   std::string event(const std::string& word) {
     const bool count = word.ends_with(".count"), time = word.ends_with(".time");
@@ -149,7 +150,7 @@ class KeptFormulas::Parser {
     const auto it = std::ranges::find(out_.events_, watched);
     const auto place = static_cast<size_t>(it - out_.events_.begin());
     if (it == out_.events_.end()) out_.events_.push_back(watched);
-    return variable(atom(count ? From::count : From::time, place, "", word));
+    return use(atom(count ? From::count : From::time, place, "", word));
   }
   // One number of a state, or a formula of them and the constants.
   void state(const std::string& quantity, Atom& out) {
@@ -206,7 +207,16 @@ class KeptFormulas::Parser {
     return out;
   }
 
+  // Notes that the formula being read uses an atom; its variable.
+  std::string use(size_t atom) {
+    if (std::ranges::find(used_, atom) == used_.end()) used_.push_back(atom);
+    return variable(atom);
+  }
+
   KeptFormulas& out_;
+  std::map<std::string, size_t> atoms_;  // by their texts
+  std::map<double, size_t> times_;       // as found
+  std::vector<size_t> used_;
   const EnsembleConfig& config_;
   const SystemModel& system_;
   std::vector<std::string> known_events_;

@@ -14,9 +14,7 @@ file=${1:?expected FILE.toml FOLDER} folder=${2:?expected FILE.toml FOLDER}
 hamel=${HAMEL:-hamel}
 "$hamel" ensemble "$file" -o "$folder" --quiet --threads "${SLURM_CPUS_PER_TASK:-1}" \
   --shard "${SLURM_ARRAY_TASK_ID:?not a task of an array}/${SLURM_ARRAY_TASK_COUNT:?not a task of an array}"
-# Two tasks that end together may both join: a lock lets one do so at a time, with the same bytes.
-exec 9>"$folder/merge.lock"
-flock 9
+# Two tasks that end together may both join: the program lets one do so at a time, with the same bytes.
 if ! lacks=$("$hamel" ensemble "$file" -o "$folder" --quiet --merge 2>&1); then
   echo "$lacks: the last task to end joins the parts"
 fi

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/ensemble/ensemble.hpp>
+#include <hamel/framework/run/record/shards.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
@@ -93,7 +94,11 @@ void write_trajectories(const Ensemble& ensemble, const std::string& folder) {
     if (member.config.system.empty()) continue;  // it does not start: the table has the reason
     const std::string stem = (fs::path(folder) / fmt::format("member-{}", k)).string();
     write_file(stem + ".toml", member.config.to_toml());
-    run_of(member, stem + (hdf5_version().empty() ? ".csv" : ".h5"));
+    const std::string rows = stem + (hdf5_version().empty() ? ".csv" : ".h5");
+    // Left by one that was interrupted here: this run writes them anew.
+    std::error_code error;
+    if (!locked(part_of(rows))) fs::remove(part_of(rows), error);
+    run_of(member, rows);
   }
 }
 
@@ -192,7 +197,11 @@ int ensemble(const EnsembleOptions& given) {
   Ensemble ensemble(registry(), read_ensemble(options.file, registry()));
   ensemble.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_when_asked());
   if (options.member) return one_member(options, ensemble);
-  if (options.merge) return finish(options, ensemble, ensemble.merge());
+  const auto merge = [&] {
+    const MergeLock alone(folder, stop_when_asked());
+    return finish(options, ensemble, ensemble.merge());
+  };
+  if (options.merge) return merge();
   if (!options.shard.empty()) ensemble.shard(shard_of(options.shard));
   EnsembleResult result;
   {
@@ -206,9 +215,13 @@ int ensemble(const EnsembleOptions& given) {
         result.done, result.members, folder);
     return 1;
   }
-  if (!rank) return finish(options, ensemble, result);
+  if (!rank && result.shard.count > 1) return finish(options, ensemble, result);
+  if (!rank) {
+    const MergeLock alone(folder, stop_when_asked());
+    return finish(options, ensemble, result);
+  }
   if (rank->index > 0) return 0;
-  return merge_when_there(folder, [&] { return finish(options, ensemble, ensemble.merge()); });
+  return merge_when_there(folder, merge);
 }
 
 }  // namespace hamel::tools

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/run/record/shards.hpp>
 
 #include "interrupt.hpp"
 #include "screen.hpp"
@@ -72,18 +73,24 @@ int merge_when_there(const std::string& folder, const std::function<int()>& merg
     return out;
   };
   auto pause = std::chrono::milliseconds(50);
-  auto grown = std::chrono::steady_clock::now();
+  const auto begun = std::chrono::steady_clock::now();
+  auto grown = begun;
+  bool noted = false;
   for (std::uintmax_t before = 0;;) {
     std::string lacks;
     try {
       return merge();
-    } catch (const ConfigError& incomplete) {
+    } catch (const MissingParts& incomplete) {  // all else does not change by waiting
       lacks = incomplete.what();
     }
     const auto now = std::chrono::steady_clock::now();
     if (const std::uintmax_t size = size_of_parts(); size != before) {
       before = size;
       grown = now;
+    }
+    if (!noted && now - begun > std::chrono::seconds(2)) {
+      complain("hamel: waiting for the other ranks: {}\n", lacks.substr(0, lacks.find('\n')));
+      noted = true;
     }
     if (stop_when_asked() || now - grown > patience) {
       complain("hamel: {}\nhamel: the same command computes what is missing\n", lacks);

@@ -61,6 +61,14 @@ uint64_t checksum(const std::string& text) {
 
 [[noreturn]] void refuse_journal(const std::string& why) { throw ConfigError({"output: " + why}); }
 
+// A pipe that nobody writes to, or reads, keeps its other end waiting for ever.
+void require_regular(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status there = std::filesystem::status(path, error);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+    refuse_journal(fmt::format("'{}' is no regular file", path));
+}
+
 // The size of a file without a torn last line, and whether its first line is whole.
 struct Extent {
   size_t whole = 0;
@@ -128,6 +136,7 @@ JournalFile::JournalFile(const std::string& folder, const std::string& name,
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   path_ = (std::filesystem::path(folder) / name).string();
+  require_regular(path_);
   file_.reset(std::fopen(path_.c_str(), "a"));
   if (file_ == nullptr) refuse_journal(fmt::format("cannot write '{}'", path_));
   if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0)
@@ -160,9 +169,20 @@ void JournalFile::write(const std::string& line) {
     throw Unfinished(fmt::format("output: cannot write '{}': {}", path_, std::strerror(errno)));
 }
 
+bool journal_has_begun(const std::string& folder, const std::string& name) {
+  const std::string path = (std::filesystem::path(folder) / name).string();
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return false;
+  if (!std::filesystem::is_regular_file(path, error)) return true;  // refused where it is read
+  std::ifstream in(path, std::ios::binary);
+  std::string first;
+  return std::getline(in, first) && !in.eof();
+}
+
 std::vector<std::string> read_journal(const std::string& folder, const std::string& name,
                                       const JournalSubject& subject, const TakeLine& take) {
   const std::string path = (std::filesystem::path(folder) / name).string();
+  require_regular(path);
   std::ifstream in(path, std::ios::binary);
   std::string first;
   if (!std::getline(in, first))

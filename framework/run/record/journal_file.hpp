@@ -51,6 +51,9 @@ class JournalFile {
   std::mutex mutex_;
 };
 
+/// Is its first line there, which is written at once?
+bool journal_has_begun(const std::string& folder, const std::string& name);
+
 /// The lines of a journal that another process may be writing. ConfigError where there is none, or
 /// one of something else.
 std::vector<std::string> read_journal(const std::string& folder, const std::string& name,

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
+#include <hamel/framework/io/table.hpp>
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/names/system_file.hpp>
@@ -32,6 +34,26 @@ std::string existing(const std::string& path) {
 std::string whole(const std::string& path) {
   const std::string part = part_of("");
   return path.ends_with(part) ? path.substr(0, path.size() - part.size()) : path;
+}
+
+// The rows of a run; of a table, whose file is whole, what it is.
+RowFileReader rows_of(const std::string& path) {
+  try {
+    return RowFileReader(path);
+  } catch (const ConfigError&) {
+    std::map<std::string, std::string> texts;
+    try {
+      (void)read_hdf5(path, &texts);
+    } catch (const ConfigError&) {
+    }
+    const char* of = texts.contains("ensemble") ? "an ensemble: its page is report.html beside it"
+                     : texts.contains("title")  ? "a study: its page is report.html beside it"
+                     : texts.contains("event")  ? "a section"
+                                                : nullptr;
+    if (of == nullptr) throw;
+    throw ConfigError(
+        {fmt::format("'{}': expected a run (hamel run … -o x.h5), got the table of {}", path, of)});
+  }
 }
 
 }  // namespace
@@ -79,7 +101,7 @@ void RunFileSink::finish(const Result& result) {
   finish_file(part_of(path_), path_);
 }
 
-RunFile::RunFile(const std::string& path) : path_(whole(path)), rows_(existing(path_)) {
+RunFile::RunFile(const std::string& path) : path_(whole(path)), rows_(rows_of(existing(path_))) {
   if (const std::string format = rows_.text("format"); format != kFormat && format != kFormatBefore)
     throw ConfigError({fmt::format("'{}': it holds no run (hamel run … -o x.h5)", path_)});
 }

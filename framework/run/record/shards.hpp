@@ -2,16 +2,18 @@
 // installed.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/run/record/journal_file.hpp>
 #include <hamel/framework/run/record/shard.hpp>
 
 namespace hamel {
 
-/// ConfigError where it is no part.
+/// ConfigError where it is no part, or one of more than 100,000.
 Shard checked(const Shard& part);
 /// "journal.jsonl" of the whole, "journal-3-of-16.jsonl" of a part.
 std::string journal_name(const Shard& part);
@@ -20,10 +22,30 @@ JournalSubject subject_of_part(JournalSubject whole, const Shard& part);
 /// Of so many pieces the first one of a part; of the part behind the last one, their number.
 long first_piece(const Shard& part, long pieces);
 
-/// The number of parts in a folder. ConfigError where there are none, or of two kinds.
+/// Parts that another process may still write.
+struct HAMEL_API MissingParts : ConfigError {
+  using ConfigError::ConfigError;
+};
+
+/// Writing of the results in a folder: one process at a time, others wait. stop, where it becomes
+/// true, ends the wait with Unfinished.
+class MergeLock {
+ public:
+  MergeLock(const std::string& folder, const std::atomic<bool>& stop);
+  ~MergeLock();
+  MergeLock(const MergeLock&) = delete;
+  MergeLock& operator=(const MergeLock&) = delete;
+
+ private:
+  int file_;
+};
+
+/// The number of parts in a folder, by the names of their journals. MissingParts where there are
+/// none, ConfigError where they are of two kinds.
 long shards_in(const std::string& folder);
 /// Passes the lines of all parts to take, and returns their notes. lacks(part), behind the lines of
-/// a part: "" or what it has not, "3 of 7 members". ConfigError with everything that is missing.
+/// a part: "" or what it has not, "3 of 7 members". MissingParts where nothing is wrong but what is
+/// not there yet; ConfigError with everything that is.
 std::vector<std::string> join_shards(const std::string& folder, long count,
                                      const JournalSubject& whole, const TakeLine& take,
                                      const std::function<std::string(const Shard&)>& lacks);

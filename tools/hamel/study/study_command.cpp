@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/run/record/result.hpp>
+#include <hamel/framework/run/record/shards.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
@@ -133,7 +134,11 @@ int study(const StudyOptions& given) {
   const std::optional<Rank> rank = take_part_as_rank(options);
   Study study(registry(), read_study(options.file, registry()));
   study.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_when_asked());
-  if (options.merge) return finish(options, folder, study.merge());
+  const auto merge = [&] {
+    const MergeLock alone(folder, stop_when_asked());
+    return finish(options, folder, study.merge());
+  };
+  if (options.merge) return merge();
   if (!options.shard.empty()) study.shard(shard_of(options.shard));
   announce(study, folder, options.quiet);
   StudyResult result;
@@ -155,7 +160,7 @@ int study(const StudyOptions& given) {
   }
   if (!rank) return finish(options, folder, result);
   if (rank->index > 0) return 0;
-  return merge_when_there(folder, [&] { return finish(options, folder, study.merge()); });
+  return merge_when_there(folder, merge);
 }
 
 }  // namespace hamel::tools
