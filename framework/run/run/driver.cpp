@@ -188,7 +188,7 @@ Status Driver::steps_go_on(long steps, const Snapshot& now) {
     if (steps_.look(now.time))
       return ends(reason_of_small_steps(*plan_.system, plan_.setup, kernel()));
     if (due && steps_.rejects())
-      if (const auto reason = tolerance_below_round_off(plan_.setup, kernel()))
+      if (const auto reason = reason_of_rejections(*plan_.system, plan_.setup, kernel()))
         return ends(*reason);
   }
   if (config.steps_max > 0 && kernel().whole_steps() >= config.steps_max)

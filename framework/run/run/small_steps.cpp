@@ -157,10 +157,12 @@ std::string reason_of_small_steps(const SystemModel& system, const KernelSetup& 
                          "the motion is nearly singular at t = {:.6g}, or stiff", now.time)));
 }
 
-std::optional<std::string> tolerance_below_round_off(const KernelSetup& setup, Kernel& kernel) {
+std::optional<std::string> reason_of_rejections(const SystemModel& system, const KernelSetup& setup,
+                                                Kernel& kernel) {
   if (setup.geometry == nullptr) return {};
   Snapshot now;
   kernel.node(now);
+  if (dependent_rows(system, setup, now)) return {};  // round-off is theirs: do the steps creep?
   return below_round_off(setup, now, kernel.next_step());
 }
 

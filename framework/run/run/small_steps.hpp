@@ -15,8 +15,9 @@ namespace hamel {
 std::string reason_of_small_steps(const SystemModel& system, const KernelSetup& setup,
                                   Kernel& kernel);
 
-/// The same of the tolerance alone, for steps of the size that comes next; none where it is above
-/// the round-off.
-std::optional<std::string> tolerance_below_round_off(const KernelSetup& setup, Kernel& kernel);
+/// The reason why many tries are rejected: a tolerance below round-off for steps of the size that
+/// comes next; none where it is not, or where rows are nearly dependent, which the steps show.
+std::optional<std::string> reason_of_rejections(const SystemModel& system, const KernelSetup& setup,
+                                                Kernel& kernel);
 
 }  // namespace hamel
