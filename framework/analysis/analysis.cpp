@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/analysis/central_differences.hpp>
 #include <hamel/framework/analysis/conserved.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/lie/geometry.hpp>
@@ -41,19 +42,16 @@ class Frame {
     place_.admissible(place_.inertia * e, e);  // the I-orthogonal projection onto ker A(g)
     return e;
   }
-  // dX_a(g) X_b(g), by sixth-order central differences.
+  // dX_a(g) X_b(g), in steps of the size of the velocity.
   Vector derivative(Eigen::Index a, Eigen::Index b) {
-    constexpr double weights[] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
-    const double unit = 0.01 / frame_.col(b).norm();
-    Vector out = Vector::Zero(frame_.rows()), moved(g_.size());
-    for (int k = -3; k <= 3; ++k) {
-      if (k == 0) continue;
-      const Vector step = k * unit * frame_.col(b);
+    Vector moved(g_.size());
+    const auto along = [&](double e) {
+      const Vector step = e * frame_.col(b);
       geometry_.tau(step.data(), moved.data());
       geometry_.compose(g_.data(), moved.data(), moved.data());
-      out += (k > 0 ? 1 : -1) * weights[std::abs(k) - 1] / unit * field(a, moved);
-    }
-    return out;
+      return field(a, moved);
+    };
+    return CentralDifferences(along, steps_of_scale(1 / frame_.col(b).norm())).derivative(1).value;
   }
   Vector ad(const Vector& x, const Vector& y) const {  // <mu, ad_x y> = <ad_x^T mu, y>
     Vector out(x.size()), mu = Vector::Zero(x.size()), row(x.size());

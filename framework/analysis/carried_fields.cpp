@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include <hamel/framework/analysis/central_differences.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
 
@@ -148,6 +149,19 @@ std::vector<Matrix> coefficients(Fields& fields, const Path& path, double r, int
 
 }  // namespace
 
+double own_length(Fields& fields, const Vector& from) {
+  double out = 1;
+  for (Eigen::Index i = 0; i < fields.coordinates(); ++i) {
+    const Vector along = Vector::Unit(fields.coordinates(), i);
+    const auto values = [&](double e) { return Vector(fields(from + e * along).reshaped()); };
+    const double least = 1e-12 * values(0).lpNorm<Eigen::Infinity>();  // above their round-off
+    const Extent extent = CentralDifferences(values, steps_of_scale(1)).extent();
+    for (Eigen::Index c = 0; c < extent.length.size(); ++c)
+      if (extent.change[c] > least) out = std::min(out, extent.length[c]);
+  }
+  return out;
+}
+
 std::vector<Generation> generations(Fields& fields, const Vector& from, int depth) {
   const Eigen::Index rows = fields.coordinates(), each = fields.count();
   const Eigen::Index paths = (rows + each - 1) / each + 1;
@@ -172,11 +186,13 @@ std::vector<Generation> generations(Fields& fields, const Vector& from, int dept
                                                            never, Vector::Constant(rows, never)});
   std::vector<double> best(out.size(), never);
   std::vector<Matrix> before(out.size(), Matrix(rows, each * paths)), now = before;
-  double last = 0, unit = 0.02;
-  for (const double radius : {2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.12}) {
+  const double length = own_length(fields, from);
+  double last = 0, unit = 0.02;  // of the length
+  for (const double part : {2.0, 1.4, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18, 0.12}) {
+    const double radius = part * length;
     for (Eigen::Index w = 0; w < paths; ++w) {
       const auto fitted =
-          coefficients(fields, words[static_cast<size_t>(w)], radius, degree, from, unit);
+          coefficients(fields, words[static_cast<size_t>(w)], radius, degree, from, unit * length);
       for (size_t j = 0; j < out.size(); ++j) now[j].middleCols(each * w, each) = fitted[j];
     }
     bool known = last > 0;

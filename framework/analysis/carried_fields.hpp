@@ -62,6 +62,8 @@ struct Generation {
   double size = 0, error = 0;
   Vector errors;  // the largest of each coordinate
 };
+/// The length over which the fields are smooth there, 1 at most: radii and steps are parts of it.
+double own_length(Fields& fields, const Vector& from);
 /// From a place `from`, entry j the brackets of j + 1 fields.
 std::vector<Generation> generations(Fields& fields, const Vector& from, int depth);
 

@@ -186,7 +186,8 @@ Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const dou
   } else {
     const int deepest = std::min(std::max(all, 4), most);
     Vector there(all);
-    for (int i = 0; i < all; ++i) there[i] = 0.3 * std::cos(1.0 + 2.0 * i);
+    const double length = own_length(fields, here);
+    for (int i = 0; i < all; ++i) there[i] = 0.3 * length * std::cos(1.0 + 2.0 * i);
     int looked = 0;
     for (const int depth : {std::min(3, deepest), std::min(5, deepest), deepest}) {
       if (depth == looked) break;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include <hamel/framework/analysis/analysis.hpp>
 #include <hamel/framework/mechanics/general_system.hpp>
@@ -61,6 +62,24 @@ TEST(Growth, SeesAHolonomicConstraint) {
   const Growth closed = growth(Disguised{}, {0.3, 0.2, 0.1});
   EXPECT_THAT(closed.dimensions, ElementsAre(2));
   EXPECT_TRUE(closed.decided());
+}
+
+/// z' = tanh(y/e) x': one bracket, 1/e beside it, is new at y = 0 for every width e.
+struct Narrow : Point<3> {
+  double width = 1;
+  Mat<1, 3> constraints(const Vec<3>& g) const { return {-std::tanh(g[1] / width), 0, 1}; }
+};
+TEST(Growth, NarrowRows) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 6; ++i) {
+    Narrow row;
+    row.width = std::pow(10, -6 + 8 * static_cast<double>(random()) / 4294967296.0);
+    for (const double place : {0.0, 0.3 * row.width}) {
+      const Growth found = growth(row, {0.1, place, 0.2});
+      EXPECT_THAT(found.dimensions, ElementsAre(2, 3)) << row.width;
+      EXPECT_TRUE(found.decided()) << row.width;
+    }
+  }
 }
 
 /// z' = e y x' is not integrable for any e. Brackets that small are near the errors of others; they
