@@ -14,6 +14,14 @@ Vector Flow::moved(const Vector& g, const Vector& eta) const {
   return out;
 }
 
+Vector Flow::difference(const Vector& g, const Vector& h) const {
+  Vector back(g.size()), out(dim());
+  geometry_->inverse(g.data(), back.data());
+  geometry_->compose(back.data(), h.data(), back.data());
+  if (!geometry_->tau_inverse(back.data(), out.data())) out.setZero();
+  return out;
+}
+
 Matrix Flow::ad(const Vector& xi) const {
   Matrix out(dim(), dim());
   for (int i = 0; i < dim(); ++i) {

@@ -46,6 +46,8 @@ class Flow {
   int holonomic_rows() const { return mechanics_->holonomic_rows(); }
   /// g tau(eta).
   Vector moved(const Vector& g, const Vector& eta) const;
+  /// The eta with g tau(eta) = h; 0 where h is out of reach.
+  Vector difference(const Vector& g, const Vector& h) const;
   /// a(g, xi).
   Vector acceleration(const Vector& g, const Vector& xi) const;
   /// I(g) xi.

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include <hamel/framework/analysis/matching.hpp>
 #include <hamel/framework/analysis/steady_equations.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/names/registry.hpp>
@@ -13,27 +14,6 @@
 namespace hamel {
 namespace reduced {
 namespace {
-
-using Complex = std::complex<double>;
-
-// Each value to the nearest of others that is not taken, the nearest pairs first.
-std::vector<int> matched(const std::vector<Complex>& values, const std::vector<Complex>& others) {
-  std::vector<std::tuple<double, int, int>> pairs;
-  for (size_t i = 0; i < values.size(); ++i) {
-    for (size_t j = 0; j < others.size(); ++j) {
-      pairs.emplace_back(std::abs(values[i] - others[j]), static_cast<int>(i), static_cast<int>(j));
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
-  std::vector<int> out(values.size(), -1);
-  std::vector<bool> taken(others.size(), false);
-  for (const auto& [distance, i, j] : pairs) {
-    if (out[static_cast<size_t>(i)] >= 0 || taken[static_cast<size_t>(j)]) continue;
-    out[static_cast<size_t>(i)] = j;
-    taken[static_cast<size_t>(j)] = true;
-  }
-  return out;
-}
 
 std::vector<Complex> eigenvalues_of(const Matrix& m) {
   const Eigen::VectorXcd values = dense::eigenvalues(m);
@@ -155,6 +135,7 @@ std::string name_of(Bifurcation kind) {
     case Bifurcation::hopf: return "hopf";
     case Bifurcation::hamiltonian_hopf: return "hamiltonian_hopf";
     case Bifurcation::none: return "none";
+    case Bifurcation::undecided: return "undecided";
     case Bifurcation::unknown: break;
   }
   return "unknown";

@@ -67,6 +67,7 @@ enum class Bifurcation {
   hopf,              // a pair of complex eigenvalues crosses the imaginary axis
   hamiltonian_hopf,  // two pairs on the axis collide and leave it
   none,              // real eigenvalues pass zero, and no other branch was found
+  undecided,         // errors cover the coefficients by which kinds differ
   unknown,           // a branch was lost, without a fold
 };
 /// "pitchfork", "hamiltonian_hopf".
@@ -83,13 +84,16 @@ struct SteadyCrossing {
   double round_off = 0;  // of the value
   bool pair = false;     // of complex eigenvalues; else a real one
   Bifurcation kind = Bifurcation::unknown;
+  /// Of a pitchfork: the other branch is where this one is unstable.
+  std::optional<bool> supercritical;
   std::optional<SteadyPlace> other;  // on the branch that crosses this one, beside the crossing
 };
 
-/// The end of a branch before the last value: it turns back (fold), joins another one there as one
-/// of its halves (pitchfork), or was lost. other: on the branch that continues.
+/// An end of a branch between the values: it turns back (fold), joins another one there as one of
+/// its halves (pitchfork), or was lost. other: on the branch that continues.
 struct SteadyEnd {
   double value = 0, round_off = 0;
+  bool towards_last = true;  // of the values; else towards the first
   Bifurcation kind = Bifurcation::unknown;
   std::optional<SteadyPlace> other;
 };
@@ -99,7 +103,7 @@ struct SteadySweep {
   std::vector<double> values;
   std::vector<SteadyMotion> motions;      // found = false where the branch is not
   std::vector<SteadyCrossing> crossings;  // where the number of unstable eigenvalues changes
-  std::optional<SteadyEnd> end;
+  std::vector<SteadyEnd> ends;            // two at most; a branch without one leaves the range
   std::optional<SteadyPlace> start;   // of a branch that crosses another one: where it was entered
   std::vector<SteadySweep> branches;  // the others that were met and followed, none of them twice
 };

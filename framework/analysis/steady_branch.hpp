@@ -1,14 +1,15 @@
 // A branch of steady motions along a parameter, followed by a predictor along its tangent and
 // Newton's method. For steady_sweep.cpp, steady_crossings.cpp; not installed.
 //
-// Unknowns z = (delta, nu) and q = value / scale. On the branch F(z, q) = 0, and its tangent (z',
-// q') solves F_z z' + F_q q' = 0 (least norm, the symmetries divided out); F_q by differences of
-// systems beside the value. At a given value Newton's method starts from z + z' dq. The step is
-// halved until the trapezium rule holds on it: what Newton's method corrects is dq/2 times the
-// change of the tangent, up to a quarter. A correction onto another branch has none of that. Along
-// a family of steady motions, where Newton's method has its choice, only the size of the correction
-// is held. At a fold q' = 0; past it the branch is followed by its length: Newton's method across
-// the tangent.
+// Unknowns z = (delta, nu), in the system's own units (state_units.hpp), and q = value / scale. On
+// the branch F(z, q) = 0, and its tangent (z', q') solves F_z z' + F_q q' = 0 (least norm, the
+// symmetries divided out); F_q by differences of systems beside the value. At a given value
+// Newton's method starts from z + z' dq. The step is halved until the trapezium rule holds on it:
+// what Newton's method corrects is dq/2 times the change of the tangent, up to a quarter. A
+// correction onto another branch has none of that. Along a family of steady motions, where Newton's
+// method has its choice, only the size of the correction is held. At a fold q' = 0; past it the
+// branch is followed by its length, in a metric in which z and q change equally where the fold came
+// into view: Newton's method across the tangent (steady_turn.cpp).
 #pragma once
 
 #include <functional>
@@ -23,7 +24,8 @@ namespace hamel::reduced {
 struct BranchNode {
   double value = 0;
   SteadyPoint point;
-  Vector tangent;  // (z', q'), of length 1
+  Vector tangent;         // (z', q') in the metric, of length 1
+  Eigen::Index rank = 0;  // of (F_z, F_q)
 };
 
 class Branch {
@@ -35,6 +37,7 @@ class Branch {
   std::shared_ptr<const SteadyEquations> equations(double value);
   bool held() const { return held_; }
   double scale() const { return scale_; }
+  const StateUnits& scales() const { return scales_; }
 
   /// Near the start of at(value).
   std::optional<BranchNode> start(double value);
@@ -42,28 +45,49 @@ class Branch {
   std::optional<BranchNode> advance(const BranchNode& from, double value, BranchNode& here);
   std::optional<BranchNode> advance(const BranchNode& from, double value);
   /// The point where the branch turns back, between a node that advance() could not leave and a
-  /// value, and a node behind it.
+  /// value, and nodes before and behind it; or, where it does not turn, a node past the value.
   struct Turn {
-    BranchNode at, behind;
-    double round_off;
+    bool turns;
+    BranchNode before, at, behind;
+    double round_off = 0;
+    double place_error = 0;  // of `at` along the branch, relative to the distance of the nodes
   };
   std::optional<Turn> turn(const BranchNode& from, double value);
-  /// From a node by v and what Newton's method adds across it; v of 2n + 1 numbers.
-  std::optional<BranchNode> beside(const BranchNode& from, const Vector& v);
-  /// F_q there.
-  Vector by_value(const BranchNode& at);
-  /// A node of this point: with its tangent, the least of those that are 1 along a vector.
-  BranchNode node(double value, SteadyPoint point, const Vector& sense);
+  /// The node of this point, with its tangent.
+  BranchNode node(double value, SteadyPoint point);
+  /// The eigenvalues there, with the error of the motion itself in theirs.
+  SteadyMotion motion(const BranchNode& at, int family);
 
  private:
+  // Units of z and of q in which lengths are measured.
+  struct Metric {
+    Vector z;
+    double q;
+  };
+  Metric own_metric() const { return {scales_.columns, scale_}; }
+  Metric metric_at(const BranchNode& node) const;
+  // (F_z, F_q) beside the carriers, over one row for a step, in a metric.
+  Matrix slope(double value, const SteadyPoint& point, const Metric& metric, const Vector& across);
+  BranchNode node(double value, SteadyPoint point, const Vector& sense, const Metric& metric);
+  std::optional<BranchNode> beside(const BranchNode& from, const Vector& step,
+                                   const Metric& metric);
+  std::vector<BranchNode> nodes_over(const BranchNode& here, double length, const Metric& metric);
+  struct Stationary {
+    double place, value;
+  };
+  Stationary stationary(const std::vector<BranchNode>& nodes, double guess,
+                        const Vector& places) const;
+  std::optional<Turn> turn_at(const BranchNode& here, double length, const Metric& metric);
+  // F_q there, q = value / scale.
+  Vector by_value(double value, const SteadyPoint& point);
   std::optional<BranchNode> step_to(const BranchNode& from, double value);
-  BranchNode level(const BranchNode& here, double length, double behind);
 
   const Registry& registry_;
   System at_;
   double scale_;
   bool held_ = false;
   Vector along_;  // the direction in which momentum is held, the same at all values
+  StateUnits scales_;
   std::map<double, std::shared_ptr<const SteadyEquations>> known_;
 };
 

@@ -1,50 +1,61 @@
-// Crossings: values where the number of unstable eigenvalues changes along a branch, and the
-// branches that cross it there. For steady_sweep.cpp, not installed.
+// Crossings: values where eigenvalues cross the imaginary axis along a branch. For
+// steady_sweep.cpp, not installed.
 //
-// A crossing is the zero of a smooth function of the value: of the real part that changes its sign;
-// where eigenvalues l and -l* of a system without damping collide on the axis, reached like a
-// root, of (l + l*)^2/4 or l^2, -w^2 on the other side. At a crossing of a real eigenvalue F_z has
-// one kernel vector v more than beside it, or no branch crosses it. On another branch, at z + e v +
-// ..., q is q0 + a e + b e^2: transcritical where its sign changes with that of e, else a
-// pitchfork.
+// Eigenvalues are followed by continuity, l_i(q) each with the nearest of the next node that its
+// line through the last two predicts, and nodes are added until the middle of every step is close
+// to the mean of its ends, or all three are on one side of the axis by more than they are apart
+// from it. Each curve whose real part is known to change its sign is a crossing, whatever the
+// number of unstable eigenvalues before and behind. Real parts that their errors cover decide
+// nothing: a node on the crossing is passed over, and a curve that has no known sign behind it has
+// no crossing. In systems without damping, where each l has a mate -l*, eigenvalues collide on the
+// axis and leave it: reached like a root, of (l + l*)^2/4 or l^2, -w^2 on the other side. The value
+// is the zero of the polynomial through values on both sides, at distances where the motions are
+// well conditioned (at the crossing F_z is singular), its error what closer ones change.
 #pragma once
 
 #include <vector>
 
-#include <hamel/framework/analysis/steady_branch.hpp>
+#include <hamel/framework/analysis/crossing_root.hpp>
 
 namespace hamel::reduced {
 
-/// A node with its motion.
-struct BranchMotion {
+/// A crossing with the node nearest to it.
+struct FoundCrossing {
+  SteadyCrossing crossing;
   BranchNode node;
-  SteadyMotion motion;
+  bool grows;  // behind it, along the nodes
 };
 
 class Crossings {
  public:
   Crossings(Branch& branch, int family) : branch_(branch), family_(family) {}
-  /// The crossings between two neighbours, in order.
-  std::vector<SteadyCrossing> between(const BranchMotion& left, const BranchMotion& right);
+  /// The crossings along neighbouring nodes, in their order.
+  std::vector<FoundCrossing> along(const std::vector<BranchMotion>& nodes);
+  /// The node at a value, on the branch through the nearest node that is known.
+  std::optional<BranchNode> node_at(double value);
 
  private:
-  void look(const BranchMotion& a, const BranchMotion& b);
+  // A point of the curve of one eigenvalue.
+  struct Point {
+    size_t node;   // in known_
+    size_t place;  // of the eigenvalue
+  };
+  struct Bracket {
+    Point from, to;
+    bool mirrored;
+  };
+  using Curve = std::vector<size_t>;  // the place at each node
+
   std::optional<BranchMotion> on_branch(double value);
-  double measure(const SteadyMotion& motion) const;
-  double error_at(const SteadyMotion& motion) const;
-  void locate(const BranchMotion& a, const BranchMotion& b);
-  void classify(SteadyCrossing& crossing, const BranchMotion& at);
+  void refine(const BranchMotion& a, const BranchMotion& b, int depth);
+  std::vector<Curve> curves() const;
+  void add_brackets(const Curve& curve, std::vector<Bracket>& to) const;
+  void locate(const Bracket& bracket);
 
   Branch& branch_;
   int family_;
-  std::vector<BranchMotion> known_;  // between the two, by value
-  std::vector<SteadyCrossing> out_;
-  // The one being located: the place of the eigenvalue that grows, a pair, mirrored at the axis.
-  size_t index_ = 0;
-  bool pair_ = false, mirrored_ = false;
+  std::vector<BranchMotion> known_;  // in order along the branch
+  std::vector<FoundCrossing> out_;
 };
-
-/// A motion at a value, as a place.
-SteadyPlace place_of(Branch& branch, const BranchNode& node);
 
 }  // namespace hamel::reduced

@@ -5,12 +5,15 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/analysis/state_units.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel::reduced {
 namespace {
 
+constexpr double kSettled = 1e-14;    // residual that is round-off, in own units
+constexpr double kNewtonRank = 1e-8;  // below it the slope is round-off: along families
 Vector to_vector(const std::vector<double>& v) {
   return Eigen::Map<const Vector>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
@@ -70,11 +73,23 @@ Vector SteadyEquations::field(const Vector& g, const Vector& xi) const {
   return z;
 }
 
-SteadyPoint SteadyEquations::at(Vector g, Vector xi) const {
+const StateUnits& SteadyEquations::scales() const {
+  if (scales_.columns.size() == 0) scales_ = state_units({this});
+  return scales_;
+}
+
+SteadyPoint SteadyEquations::carried(Vector g, Vector xi) const {
   const Vector z = field(g, xi);
   SteadyPoint out{.g = std::move(g), .xi = std::move(xi), .generator = {}};
   out.generator = symmetries() * least_norm(flow_.orbit(symmetries(), out.g, out.xi), z);
-  out.residual = equations(out.generator, out.g, out.xi).norm() / (1 + z.norm());
+  return out;
+}
+
+SteadyPoint SteadyEquations::at(Vector g, Vector xi) const {
+  SteadyPoint out = carried(std::move(g), std::move(xi));
+  const Vector left = equations(out.generator, out.g, out.xi);
+  const double size = 1 + out.xi.cwiseQuotient(scales().columns.tail(dim())).norm();
+  out.residual = scales().rows.head(left.size()).cwiseProduct(left).norm() / size;
   return out;
 }
 
@@ -90,6 +105,23 @@ Vector SteadyEquations::values(const SteadyPoint& at, bool held) const {
   if (!held) return out;
   out.conservativeResize(out.size() + 1);
   out[out.size() - 1] = along_.dot(at.xi - guess_xi_);
+  return out;
+}
+
+Vector SteadyEquations::displaced(const SteadyPoint& at, bool held, const Vector& step,
+                                  const Vector& carrier) const {
+  const int n = dim();
+  SteadyPoint there{.g = flow_.moved(at.g, step.head(n)),
+                    .xi = at.xi + step.tail(n),
+                    .generator = at.generator + carrier};
+  return values(there, held);
+}
+
+Matrix SteadyEquations::carriers(const SteadyPoint& at) const {
+  const Matrix orbit = this->orbit(at), all = flow_.orbit(symmetries(), at.g, at.xi);
+  Matrix out(2 * dim(), orbit.cols());
+  for (Eigen::Index i = 0; i < orbit.cols(); ++i)
+    out.col(i) = symmetries() * least_norm(all, orbit.col(i));
   return out;
 }
 
@@ -122,24 +154,52 @@ Matrix SteadyEquations::slope(const SteadyPoint& at, bool held) const {
   return out;
 }
 
+Matrix SteadyEquations::slope_across(const SteadyPoint& at, bool held) const {
+  const Vector& columns = scales().columns;
+  Matrix slope = this->slope(at, held);
+  slope = (scales().rows.head(slope.rows()).asDiagonal() * slope).eval();
+  const Matrix carriers = range_of(slope.rightCols(slope.cols() - columns.size()), 1e-9);
+  const Matrix own = slope.leftCols(columns.size()) * columns.asDiagonal();
+  return own - carriers * (carriers.transpose() * own);
+}
+
+Vector SteadyEquations::newton_step(const SteadyPoint& at, bool held) const {
+  const Vector left = values(at, held);
+  return -least_norm(slope_across(at, held), scales().rows.head(left.size()).cwiseProduct(left),
+                     kNewtonRank);
+}
+
 Vector SteadyEquations::find(SteadyPoint& at, bool held, int steps) const {
   const int n = dim();
+  const Vector& columns = scales().columns;
   Vector moved = Vector::Zero(2 * n);
   double reach = 1;
-  for (int k = 0; k < steps && at.residual > 1e-14 && reach > 1e-3; ++k) {
-    Vector step = -least_norm(slope(at, held), values(at, held)).head(2 * n);
-    const double most = 0.5 * (1 + at.xi.norm());
-    step *= reach * std::min(1.0, most / std::max(1e-300, step.norm()));
+  for (int k = 0; k < steps && at.residual > kSettled && reach > 1e-3; ++k) {
+    Vector step = newton_step(at, held);
+    const double most = 0.5 * (1 + at.xi.cwiseQuotient(columns.tail(n)).norm());
+    step = columns.cwiseProduct(step * reach * std::min(1.0, most / std::max(1e-300, step.norm())));
     const SteadyPoint next = this->at(flow_.moved(at.g, step.head(n)), at.xi + step.tail(n));
     if (next.residual < at.residual) {
+      const bool settled = at.residual < kGood && next.residual > 0.5 * at.residual;
       at = next;
       moved += step;
-      reach = std::min(1.0, 2 * reach);
+      reach = settled ? 0 : std::min(1.0, 2 * reach);
     } else {
       reach = at.residual < kGood ? 0 : reach / 2;
     }
   }
   return moved;
+}
+
+// Newton's method that approaches rest by halves has found no motion: its equations, of second
+// order in xi, are as far from zero as they were, beside xi^2.
+void SteadyEquations::measure_by_itself(SteadyPoint& at) const {
+  const Vector units = scales().columns.tail(dim());
+  const double size = at.xi.cwiseQuotient(units).norm(),
+               first = guess_xi_.cwiseQuotient(units).norm();
+  if (!(size > 0 && size < 1e-3 * first && at.residual < 1e-3 * size)) return;
+  if (newton_step(at, false).tail(dim()).norm() < 0.1 * size) return;
+  at.residual /= std::pow(size / first, 2);
 }
 
 SteadyPoint SteadyEquations::find_near_guess(bool& held) const {
@@ -155,6 +215,7 @@ SteadyPoint SteadyEquations::find_near_guess(bool& held) const {
   }
   SteadyPoint other = guess();
   find(other, false);
+  measure_by_itself(other);
   if (!(other.residual < out.residual)) return out;
   held = false;
   return other;

@@ -12,8 +12,10 @@
 
 namespace hamel::reduced {
 
-/// Residual of a steady motion.
+/// Residual of a steady motion, in own units.
 constexpr double kGood = 1e-9;
+/// Bound of the round-off of F, in own units, where Newton's method ends.
+constexpr double kNoise = 2e-14;
 /// Relative to the largest singular value: below it are directions along which steady motions lie.
 constexpr double kNull = 1e-11;
 
@@ -21,6 +23,11 @@ constexpr double kNull = 1e-11;
 struct SteadyPoint {
   Vector g, xi, generator;
   double residual = 0;
+};
+
+/// Units of a system's own: of (delta, nu), and of F; state_units.hpp.
+struct StateUnits {
+  Vector columns, rows;
 };
 
 /// The linearisation about a steady motion, without the symmetries: z = (delta, nu) = basis y, y' =
@@ -55,13 +62,27 @@ class SteadyEquations {
 
   /// The directions (delta, nu) of the symmetries there: orthonormal columns.
   Matrix orbit(const SteadyPoint& at) const;
+  /// Own units: those about the guess, or others.
+  const StateUnits& scales() const;
+  void set_scales(StateUnits scales) { scales_ = std::move(scales); }
+
   /// With the best generator there.
   SteadyPoint at(Vector g, Vector xi) const;
   SteadyPoint guess() const { return at(guess_g_, guess_xi_); }
+  /// The guess without its residual.
+  SteadyPoint carried_guess() const { return carried(guess_g_, guess_xi_); }
   /// F = (W, phi, A xi - b); and, held, the momentum along the guess less that of the guess.
   Vector values(const SteadyPoint& at, bool held) const;
+  /// F at (g tau(delta), xi + nu), for (delta, nu) = step, with another generator: changed by
+  /// `carrier`.
+  Vector displaced(const SteadyPoint& at, bool held, const Vector& step,
+                   const Vector& carrier) const;
+  /// Generators whose directions are the columns of orbit(at).
+  Matrix carriers(const SteadyPoint& at) const;
   /// dF by (delta, nu), and by the carrier: 2n columns, and one for each direction of the orbit.
   Matrix slope(const SteadyPoint& at, bool held) const;
+  /// dF by (delta, nu) in own units, with the rows along the carriers left out: whatever they are.
+  Matrix slope_across(const SteadyPoint& at, bool held) const;
   /// Newton's method with least-norm steps, halved where the residual does not fall. Returns the
   /// sum of the steps (delta, nu).
   Vector find(SteadyPoint& at, bool held, int steps = 60) const;
@@ -86,6 +107,10 @@ class SteadyEquations {
 
  private:
   const Matrix& symmetries() const;
+  SteadyPoint carried(Vector g, Vector xi) const;
+  void measure_by_itself(SteadyPoint& at) const;
+  // In own units.
+  Vector newton_step(const SteadyPoint& at, bool held) const;
   Vector field(const Vector& g, const Vector& xi) const;
   Vector equations(const Vector& generator, const Vector& g, const Vector& xi) const;
   Matrix derivative(const SteadyPoint& at, double step) const;
@@ -96,6 +121,7 @@ class SteadyEquations {
   std::vector<std::string> names_;
   mutable Matrix symmetries_;  // computed on first use
   mutable bool has_symmetries_ = false;
+  mutable StateUnits scales_;  // the same
 };
 
 }  // namespace hamel::reduced

@@ -5,6 +5,7 @@
 
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/analysis/steady_crossings.hpp>
+#include <hamel/framework/analysis/steady_kinds.hpp>
 
 namespace hamel {
 namespace {
@@ -42,36 +43,54 @@ class Sweep {
     follow(node, next - 1, -1);
   }
 
-  SteadySweep result(int family) {
-    const auto motion_at = [&](const BranchNode& node, int zeros) {
-      return branch_.equations(node.value)->motion(node.point, zeros);
-    };
-    int zeros = family;
+  SteadySweep result() {
+    int zeros = -1;
     for (const auto& node : nodes_) {
       if (!node) continue;
-      const int here = motion_at(*node, -1).family;
+      const int here = branch_.motion(*node, -1).family;
       zeros = zeros < 0 ? here : std::min(zeros, here);
     }
-    Crossings crossings(branch_, std::max(0, zeros));
-    std::optional<BranchMotion> before;
+    zeros = std::max(0, zeros);
+    Crossings crossings(branch_, zeros);
+    std::vector<BranchMotion> run;
+    const auto add = [&](const BranchNode& node) {
+      run.push_back({node, branch_.motion(node, zeros)});
+      return run.back().motion;
+    };
+    const auto close = [&] {
+      for (const FoundCrossing& found : crossings.along(run))
+        out_.crossings.push_back(classified(crossings, found, run));
+      run.clear();
+    };
     for (const auto& node : nodes_) {
-      SteadyMotion motion;
-      std::optional<BranchMotion> here;
-      if (node) {
-        motion = motion_at(*node, std::max(0, zeros));
-        here = BranchMotion{*node, motion};
+      if (node && run.empty() && first_reached_ && !out_.ends.empty()) add(*first_reached_);
+      if (!node) {
+        if (!run.empty() && last_reached_) add(*last_reached_);
+        close();
       }
-      if (before && here) {
-        for (auto& crossing : crossings.between(*before, *here)) out_.crossings.push_back(crossing);
-      }
-      out_.motions.push_back(std::move(motion));
-      before = std::move(here);
+      out_.motions.push_back(node ? add(*node) : SteadyMotion{});
     }
+    close();
     return std::move(out_);
   }
 
  private:
   long count() const { return static_cast<long>(values_.size()); }
+
+  SteadyCrossing classified(Crossings& crossings, const FoundCrossing& found,
+                            const std::vector<BranchMotion>& run) {
+    SteadyCrossing out = found.crossing;
+    if (out.pair) return out;
+    const double from = run.front().node.value, to = run.back().node.value;
+    classify(branch_,
+             {.near = found.node,
+              .first = from,
+              .last = to,
+              .unstable_above = found.grows == (to > from),
+              .on_branch = [&](double value) { return crossings.node_at(value); }},
+             out);
+    return out;
+  }
 
   void follow(const BranchNode& from, long index, long step) {
     BranchNode here = from;
@@ -80,8 +99,13 @@ class Sweep {
       BranchNode last;
       auto next = branch_.advance(here, value, last);
       if (!next) {
-        if (step > 0 || !out_.end) end(last, value);
-        return;
+        const auto turn = branch_.turn(last, value);
+        if (turn && !turn->turns) next = branch_.advance(turn->behind, value);
+        if (!next) {
+          (step > 0 ? last_reached_ : first_reached_) = last;
+          end(last, value, turn, step > 0);
+          return;
+        }
       }
       nodes_[static_cast<size_t>(index)] = next;
       here = std::move(*next);
@@ -89,37 +113,44 @@ class Sweep {
   }
 
   // Why it went no further than a node.
-  void end(const BranchNode& last, double value) {
-    SteadyEnd& out = out_.end.emplace();
+  void end(const BranchNode& last, double value, const std::optional<Branch::Turn>& turn,
+           bool towards_last) {
+    SteadyEnd out;
+    out.towards_last = towards_last;
     out.value = last.value;
     out.round_off = std::abs(value - last.value);
-    const auto turn = branch_.turn(last, value);
-    if (!turn) return;
-    out.value = turn->at.value;
-    out.round_off = turn->round_off;
-    const bool held = branch_.held();
-    const auto there = branch_.equations(out.value);
-    // At a fold F_q is not in the range of F_z; where it is, another branch passes.
-    const Matrix range = range_of(there->slope(turn->at.point, held), 1e-5);
-    const Vector by_value = branch_.by_value(turn->at);
-    const Vector left = by_value - range * (range.transpose() * by_value);
-    const bool passes = left.norm() < 1e-3 * by_value.norm() || by_value.norm() < 1e-12;
-    out.kind = passes ? Bifurcation::pitchfork : Bifurcation::fold;
-    if (!passes) {
-      out.other = place_of(branch_, turn->behind);
-      return;
+    if (turn && turn->turns) {
+      out.value = turn->at.value;
+      out.round_off = turn->round_off;
+      out.kind = kind_of_turn(branch_, *turn);
+      out.other =
+          out.kind == Bifurcation::pitchfork ? main_branch(*turn) : place_of(branch_, turn->behind);
     }
-    const Eigen::Index z = turn->at.tangent.size() - 1;
-    Vector ahead = Vector::Unit(z + 1, z);
-    ahead = branch_.node(out.value, turn->at.point, ahead).tangent;
-    const double sign = (value > out.value) == (ahead[z] > 0) ? 1 : -1;
-    if (const auto on = branch_.beside(turn->at, sign * 0.02 * ahead))
-      out.other = place_of(branch_, *on);
+    out_.ends.push_back(std::move(out));
+  }
+
+  // The branch of which this one is a half, beside its end, on the side where the half is not.
+  std::optional<SteadyPlace> main_branch(const Branch::Turn& turn) {
+    const double away = turn.at.value > turn.before.value ? 1 : -1;
+    for (double part = 0.02; part > 1e-4; part /= 3) {
+      BranchNode node = turn.at;
+      node.value += away * part * branch_.scale();
+      try {
+        const auto there = branch_.equations(node.value);
+        node.point = there->at(node.point.g, node.point.xi);
+        there->find(node.point, branch_.held(), 20);
+      } catch (const ConfigError&) {
+        continue;  // out of the parameter's range
+      }
+      if (node.point.residual < kGood) return place_of(branch_, node);
+    }
+    return std::nullopt;
   }
 
   Branch& branch_;
   const std::vector<double>& values_;
   std::vector<std::optional<BranchNode>> nodes_;
+  std::optional<BranchNode> first_reached_, last_reached_;  // beside ends
   SteadySweep out_;
 };
 
@@ -132,21 +163,37 @@ bool alike(const SteadyMotion& a, const SteadyMotion& b) {
   return true;
 }
 
-// The same motions, or their mirror images, wherever both are.
+// Two branches between the same ends.
+bool end_alike(const SteadySweep& a, const SteadySweep& b) {
+  if (a.ends.size() != b.ends.size()) return false;
+  const double scale = std::abs(a.values.back() - a.values.front());
+  for (size_t i = 0; i < a.ends.size(); ++i) {
+    const SteadyEnd &one = a.ends[i], &other = b.ends[i];
+    const double close = 1e-6 * scale + 10 * (one.round_off + other.round_off);
+    if (one.kind != other.kind || one.towards_last != other.towards_last) return false;
+    if (!(std::abs(one.value - other.value) < close)) return false;
+  }
+  return true;
+}
+
+// Motions that are equal, or mirror images, wherever both are; of branches between two values,
+// those with equal ends.
 bool alike(const SteadySweep& a, const SteadySweep& b) {
-  bool both = false;
+  bool both = false, any = false;
   for (size_t i = 0; i < a.motions.size(); ++i) {
+    any = any || a.motions[i].found || b.motions[i].found;
     if (!a.motions[i].found || !b.motions[i].found) continue;
     if (!alike(a.motions[i], b.motions[i])) return false;
     both = true;
   }
-  return both;
+  return any ? both : end_alike(a, b);
 }
 
 void add_places(std::deque<SteadyPlace>& to, const SteadySweep& sweep) {
   for (const auto& crossing : sweep.crossings)
     if (crossing.other && crossing.kind != Bifurcation::family) to.push_back(*crossing.other);
-  if (sweep.end && sweep.end->other) to.push_back(*sweep.end->other);
+  for (const auto& end : sweep.ends)
+    if (end.other) to.push_back(*end.other);
 }
 
 }  // namespace
@@ -157,7 +204,7 @@ SteadySweep sweep_steady(const Registry& registry, const std::vector<double>& va
   Branch branch(registry, at, values.front(), values.back());
   Sweep first(branch, values);
   first.from_start();
-  SteadySweep out = first.result(-1);
+  SteadySweep out = first.result();
   if (!others) return out;
   constexpr size_t most = 20;  // branches
   std::deque<SteadyPlace> places;
@@ -168,13 +215,10 @@ SteadySweep sweep_steady(const Registry& registry, const std::vector<double>& va
     Vector g(equations->geometry().size());
     equations->geometry().from_coordinates(place.element, g.data());
     const Vector xi = Eigen::Map<const Vector>(place.velocity.data(), equations->dim());
-    const Vector sense = Vector::Unit(2 * equations->dim() + 1, 2 * equations->dim());
     Sweep sweep(branch, values);
-    sweep.from_place(branch.node(place.value, equations->at(g, xi), sense));
-    SteadySweep found = sweep.result(-1);
-    bool fresh = std::any_of(found.motions.begin(), found.motions.end(),
-                             [](const SteadyMotion& motion) { return motion.found; });
-    fresh = fresh && !alike(found, out);
+    sweep.from_place(branch.node(place.value, equations->at(g, xi)));
+    SteadySweep found = sweep.result();
+    bool fresh = !alike(found, out);
     for (const SteadySweep& known : out.branches) fresh = fresh && !alike(found, known);
     if (!fresh) continue;
     add_places(places, found);

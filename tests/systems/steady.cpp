@@ -198,6 +198,15 @@ TEST(Steady, InvertedPendulum) {
   EXPECT_EQ(sweep.crossings[0].kind, Bifurcation::pitchfork);
 }
 
+// With products of inertia a Suslov body turns about no axis steadily but the one that it comes to
+// rest on: Newton's method approaches rest by halves.
+TEST(Steady, HalfWayToRestIsNoMotion) {
+  const SteadyMotion motion =
+      steady_motion(registry(), simulate("suslov").set("inertia", {10, 1, 2, 1, 12, 3, 2, 3, 14}));
+  EXPECT_FALSE(motion.found);
+  EXPECT_GT(motion.residual, 1e-3);
+}
+
 // A wheel that spins down does nothing but spin: its angle is a symmetry.
 TEST(Steady, ASpinThatDecaysIsNamed) {
   Mechanism m("wheel");

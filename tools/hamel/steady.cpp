@@ -116,19 +116,23 @@ Json json_of(const SteadySweep& sweep) {
       entry["motion"] = {{"element", motion.element}, {"velocity", motion.velocity}};
   }
   for (const SteadyCrossing& crossing : sweep.crossings) {
-    out["crossings"].push_back({{"value", round_to_known(crossing.value, crossing.round_off)},
-                                {"round_off", crossing.round_off},
-                                {"kind", crossing.pair ? "pair" : "real"},
-                                {"bifurcation", name_of(crossing.kind)},
-                                {"other", crossing.other ? json_of(*crossing.other) : Json()}});
+    out["crossings"].push_back(
+        {{"value", round_to_known(crossing.value, crossing.round_off)},
+         {"round_off", crossing.round_off},
+         {"kind", crossing.pair ? "pair" : "real"},
+         {"bifurcation", name_of(crossing.kind)},
+         {"supercritical", crossing.supercritical ? Json(*crossing.supercritical) : Json()},
+         {"other", crossing.other ? json_of(*crossing.other) : Json()}});
   }
-  out["end"] = nullptr;
-  if (const auto& end = sweep.end) {
-    out["end"] = {{"value", round_to_known(end->value, end->round_off)},
-                  {"round_off", end->round_off},
-                  {"bifurcation", name_of(end->kind)},
-                  {"other", end->other ? json_of(*end->other) : Json()}};
+  out["ends"] = Json::array();
+  for (const SteadyEnd& end : sweep.ends) {
+    out["ends"].push_back({{"value", round_to_known(end.value, end.round_off)},
+                           {"round_off", end.round_off},
+                           {"towards", end.towards_last ? "last" : "first"},
+                           {"bifurcation", name_of(end.kind)},
+                           {"other", end.other ? json_of(*end.other) : Json()}});
   }
+  out["end"] = sweep.ends.empty() ? Json() : out["ends"][0];
   return out;
 }
 
@@ -169,10 +173,7 @@ void print(const std::string& name, const SteadySweep& sweep) {
     say("  stability changes at {} = {}\n", name, crossing_text(crossing));
     if (crossing.other && crossing.kind != Bifurcation::family) print_other(name, *crossing.other);
   }
-  if (sweep.end) {
-    say("  {}\n", end_text(name, *sweep.end));
-    if (sweep.end->other) print_other(name, *sweep.end->other);
-  }
+  print_ends(name, sweep);
 }
 
 // The system of a line, its parameters and start: what a page can be made again from.

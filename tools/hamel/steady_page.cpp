@@ -15,8 +15,8 @@
 namespace hamel::tools {
 
 std::string known_text(double x, double round_off) {
-  const double rounded = round_to_known(x, round_off);
-  return fmt::format("{:.{}f}", rounded, std::min(12, known_decimals(round_off)));
+  const double known = std::max(round_off, 1e-12);
+  return fmt::format("{:.{}f}", round_to_known(x, known), known_decimals(known));
 }
 
 std::string start_text(const std::vector<double>& values) {
@@ -46,9 +46,25 @@ std::string text_of(Bifurcation kind) {
     case Bifurcation::hamiltonian_hopf:
       return "two pairs meet on the imaginary axis (Hamiltonian Hopf)";
     case Bifurcation::none: return "no other branch was found there";
+    case Bifurcation::undecided: return "the kind is not decided: its errors cover it";
     case Bifurcation::unknown: break;
   }
   return "the branch was lost";
+}
+
+std::string text_of_end(Bifurcation kind) {
+  switch (kind) {
+    case Bifurcation::pitchfork: return "it joins another one as one of its halves (pitchfork)";
+    case Bifurcation::fold: return "it turns back (fold) and continues";
+    case Bifurcation::undecided: return "it turns back or joins another one (not decided)";
+    default: return "it was lost";
+  }
+}
+
+std::string kind_text(const SteadyCrossing& crossing) {
+  const std::string out = text_of(crossing.kind);
+  if (!crossing.supercritical) return out;
+  return out + (*crossing.supercritical ? ", supercritical" : ", subcritical");
 }
 
 // The unit of what is varied; "" where it has none.
@@ -132,11 +148,12 @@ void add_crossings(Page& page, const std::string& name, const std::string& unit,
     for (const SteadyCrossing& c : one.crossings) {
       rows.push_back({branch, known_text(c.value, c.round_off),
                       c.pair ? "a pair of complex eigenvalues" : "a real eigenvalue",
-                      text_of(c.kind)});
+                      kind_text(c)});
     }
-    if (one.end)
-      rows.push_back({branch, known_text(one.end->value, one.end->round_off), "the branch ends",
-                      text_of(one.end->kind)});
+    for (const SteadyEnd& end : one.ends)
+      rows.push_back({branch, known_text(end.value, end.round_off),
+                      end.towards_last ? "the branch ends" : "the branch begins",
+                      text_of_end(end.kind)});
   };
   add("1", sweep);
   for (size_t i = 0; i < sweep.branches.size(); ++i) add(std::to_string(i + 2), sweep.branches[i]);
@@ -150,12 +167,27 @@ void add_crossings(Page& page, const std::string& name, const std::string& unit,
 std::string crossing_text(const SteadyCrossing& crossing) {
   return fmt::format("{}, {}: {}", known_text(crossing.value, crossing.round_off),
                      crossing.pair ? "a pair of complex eigenvalues" : "a real eigenvalue",
-                     text_of(crossing.kind));
+                     kind_text(crossing));
 }
 
-std::string end_text(const std::string& name, const SteadyEnd& end) {
-  return fmt::format("the branch ends at {} = {}: {}", name, known_text(end.value, end.round_off),
-                     text_of(end.kind));
+std::string end_text(const std::string& name, const SteadySweep& sweep, bool towards_last) {
+  for (const SteadyEnd& end : sweep.ends)
+    if (end.towards_last == towards_last)
+      return fmt::format("the branch {} at {} = {}: {}", towards_last ? "ends" : "begins", name,
+                         known_text(end.value, end.round_off), text_of_end(end.kind));
+  const double value = towards_last ? sweep.values.back() : sweep.values.front();
+  return fmt::format("the branch leaves the range at {} = {:.6g}", name, value);
+}
+
+void print_ends(const std::string& name, const SteadySweep& sweep) {
+  const bool any = std::any_of(sweep.motions.begin(), sweep.motions.end(),
+                               [](const SteadyMotion& motion) { return motion.found; });
+  if (!any && !sweep.start) return;
+  for (const bool towards_last : {false, true}) {
+    say("  {}\n", end_text(name, sweep, towards_last));
+    for (const SteadyEnd& end : sweep.ends)
+      if (end.towards_last == towards_last && end.other) print_other(name, *end.other);
+  }
 }
 
 void print_other(const std::string& name, const SteadyPlace& place) {

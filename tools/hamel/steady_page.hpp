@@ -19,7 +19,11 @@ std::string start_text(const std::vector<double>& values);
 std::string modes_text(const std::vector<ModePart>& parts);
 /// "4.29238253634, a pair of complex eigenvalues crosses the imaginary axis (Hopf)".
 std::string crossing_text(const SteadyCrossing& crossing);
-std::string end_text(const std::string& name, const SteadyEnd& end);
+/// "the branch ends at p = 0: it turns back (fold) and continues".
+std::string end_text(const std::string& name, const SteadySweep& sweep, bool towards_last);
+
+/// Prints both ends of a branch.
+void print_ends(const std::string& name, const SteadySweep& sweep);
 
 /// Prints where the branch begins that crosses this one.
 void print_other(const std::string& name, const SteadyPlace& place);

@@ -127,6 +127,8 @@ void bind_sweep(nb::module_& m) {
       .def_ro("pair", &SteadyCrossing::pair, "of complex eigenvalues; else a real one")
       .def_prop_ro(
           "kind", [](const SteadyCrossing& c) { return name_of(c.kind); }, "'pitchfork', 'hopf', …")
+      .def_ro("supercritical", &SteadyCrossing::supercritical,
+              "of a pitchfork: the other branch is where this one is unstable")
       .def_ro("other", &SteadyCrossing::other, "on the branch that crosses this one")
       .def("__repr__", [](const SteadyCrossing& c) {
         return "<hamel.SteadyCrossing " + name_of(c.kind) + " at " + text_of(c.value) + ">";
@@ -134,6 +136,7 @@ void bind_sweep(nb::module_& m) {
   nb::class_<SteadyEnd>(m, "SteadyEnd", "Where a branch ends before the last value.")
       .def_ro("value", &SteadyEnd::value)
       .def_ro("round_off", &SteadyEnd::round_off)
+      .def_ro("towards_last", &SteadyEnd::towards_last, "of the values; else towards the first")
       .def_prop_ro("kind", [](const SteadyEnd& e) { return name_of(e.kind); })
       .def_ro("other", &SteadyEnd::other, "on the branch that continues");
   nb::class_<SteadySweep>(m, "SteadySweep", "A branch of steady motions along a parameter.")
@@ -142,7 +145,8 @@ void bind_sweep(nb::module_& m) {
           nb::sig("def values(self) -> numpy.typing.NDArray[numpy.float64]"), "of the parameter")
       .def_ro("motions", &SteadySweep::motions, "one for each value; not found where it is not")
       .def_ro("crossings", &SteadySweep::crossings)
-      .def_ro("end", &SteadySweep::end)
+      .def_ro("ends", &SteadySweep::ends,
+              "where it ends between the values, two at most; else it leaves the range")
       .def_ro("start", &SteadySweep::start, "of a branch that crosses another one")
       .def_ro("branches", &SteadySweep::branches, "the others that were met and followed")
       .def(
