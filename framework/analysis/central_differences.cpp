@@ -15,6 +15,7 @@ constexpr std::array kSafety = {3.0, 6.0, 12.0};
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRatio = 4;       // of neighbouring steps
+constexpr double kRadius = 64;     // of convergence, of the step at which estimates fail
 constexpr int kMostSteps = 5;      // of an extrapolation
 constexpr double kEnough = 16;     // epsilon: an error that larger steps need not improve
 constexpr double kFlat = 0x1p-10;  // of a step: the size of flat parts that are well behind
@@ -88,10 +89,17 @@ CentralDifferences::Vector CentralDifferences::value_at(double x) {
 bool CentralDifferences::has_level(Index k) {
   while (!ended_ && std::ssize(levels_) <= k) {
     const double h = steps_.least * std::pow(kRatio, static_cast<double>(levels_.size()));
-    Level level{.h = h, .plus = {}, .minus = {}, .noise = {}};
+    Level level;
+    level.h = h;
     if (h <= steps_.most) {
       level.plus = value_at(h);
       level.minus = value_at(-h);
+      level.odd = (level.plus - level.minus) / (2 * h);
+      level.even = ((level.plus - here_) + (level.minus - here_)) / (h * h);
+      level.noise =
+          4 * kEpsilon *
+              level.plus.cwiseAbs().cwiseMax(level.minus.cwiseAbs()).cwiseMax(here_.cwiseAbs()) +
+          2 * steps_.grain * level.odd.cwiseAbs();
     }
     ended_ = h > steps_.most || !level.plus.allFinite() || !level.minus.allFinite();
     if (!ended_) levels_.push_back(std::move(level));
@@ -104,38 +112,24 @@ bool CentralDifferences::has_level(Index k) {
 // the last place, whose rounding would cancel.
 void CentralDifferences::measure_noise(Index k) {
   Level& level = levels_[static_cast<size_t>(k)];
-  level.noise = Vector::Zero(here_.size());
+  level.measured = Vector::Zero(here_.size());
   for (const auto& [side, apart] : {std::pair{level.h, 0.0371}, std::pair{-level.h, 0.0223}}) {
     Vector sum = 6 * (side > 0 ? level.plus : level.minus);
     for (const auto& [place, weight] :
          {std::pair{-2, 1.0}, std::pair{-1, -4.0}, std::pair{1, -4.0}, std::pair{2, 1.0}})
       sum += weight * value_at(side * (1 + apart * place));
-    if (sum.allFinite()) level.noise = level.noise.cwiseMax(sum.cwiseAbs() / 3);
+    if (sum.allFinite()) level.measured = level.measured.cwiseMax(sum.cwiseAbs() / 3);
   }
 }
 
-// Error of one value at level k: 4 epsilon, what the grain does, and what was measured: there, or
-// at both neighbours, since a single measurement may be 0 by chance.
+// Error of one value at level k: its round-off, and what was measured: there, or at both
+// neighbours, since a single measurement may be 0 by chance.
 double CentralDifferences::noise(Index k, Index c) const {
-  const Level& level = at(k);
-  const double slope = std::abs(level.plus[c] - level.minus[c]) / (2 * level.h);
-  const double out =
-      4 * kEpsilon *
-          std::max({std::abs(here_[c]), std::abs(level.plus[c]), std::abs(level.minus[c])}) +
-      2 * steps_.grain * slope;
   const auto measured = [&](Index i) {
-    if (i < 0 || i >= std::ssize(levels_)) return 0.0;
-    const Vector& noise = at(i).noise;
-    return noise.size() > 0 ? noise[c] : 0.0;
+    if (i < 0 || i >= std::ssize(levels_) || at(i).measured.size() == 0) return 0.0;
+    return at(i).measured[c];
   };
-  return std::max({out, measured(k), std::min(measured(k - 1), measured(k + 1))});
-}
-
-double CentralDifferences::quotient(int order, Index k, Index c) const {
-  const Level& level = at(k);
-  if (order == 2)
-    return ((level.plus[c] - here_[c]) + (level.minus[c] - here_[c])) / (level.h * level.h);
-  return (level.plus[c] - level.minus[c]) / (2 * level.h);
+  return std::max({at(k).noise[c], measured(k), std::min(measured(k - 1), measured(k + 1))});
 }
 
 bool CentralDifferences::changes(int order, Index k, Index c) const {
@@ -158,7 +152,7 @@ CentralDifferences::Estimate CentralDifferences::estimate(int order, Index k, In
         const double inner = at(k).h;
         weight = 6 * weights(count).slope[static_cast<size_t>(j)] / (inner * inner);
       }
-      value += weight * quotient(order, k + j, c);
+      value += weight * (order == 2 ? at(k + j).even : at(k + j).odd)[c];
       round_off += std::abs(weight) * noise(k + j, c) * (order == 2 ? 4 / (h * h) : 1 / h);
     }
     // |value - last| is the error of `last`; where such changes fall, the next one is less.
@@ -209,7 +203,7 @@ bool CentralDifferences::is_enough(Index k, const Track& track, double largest) 
          track.best.error <= enough * std::max(std::abs(track.best.value), 0.01 * largest);
 }
 
-std::vector<CentralDifferences::Track> CentralDifferences::sweep(int order) {
+std::vector<CentralDifferences::Track> CentralDifferences::sweep(int order, bool whole) {
   std::vector<Track> out(static_cast<size_t>(here_.size()));
   for (Index k = 0; has_level(k); ++k) {
     double largest = 0;
@@ -218,7 +212,7 @@ std::vector<CentralDifferences::Track> CentralDifferences::sweep(int order) {
       if (!track.stopped()) advance(order, k, c, track);
       if (std::isfinite(track.best.error)) largest = std::max(largest, std::abs(track.best.value));
     }
-    if (largest > 0 && std::all_of(out.begin(), out.end(), [&](const Track& track) {
+    if (!whole && largest > 0 && std::all_of(out.begin(), out.end(), [&](const Track& track) {
           return track.stopped() || track.flat == k || is_enough(k, track, largest);
         }))
       break;
@@ -238,7 +232,7 @@ void CentralDifferences::settle_flat(int order, Index c, Track& track) {
   const bool nothing_else = !std::isfinite(track.best.error);
   double largest = noise(track.flat, c);  // of what is seen where f begins to change
   for (Index k = track.flat + 1; k < std::min(track.flat + 4, std::ssize(levels_)); ++k)
-    if (is_measured(k)) largest = std::max(largest, at(k).noise[c]);
+    if (is_measured(k)) largest = std::max(largest, at(k).measured[c]);
   const double error = (order == 2 ? 4 : 6) * largest / std::pow(level.h, order);
   if (!nothing_else) {
     if (std::abs(track.best.value) <= track.best.error + error) return;
@@ -295,6 +289,23 @@ Derivative CentralDifferences::derivative(int order) {
     out.error[c] = kSafety[static_cast<size_t>(order - 1)] * best.error +
                    (order == 1 ? kink(c, best.inner) : 0);
     if (best.outer >= 0) out.reach[c] = at(best.outer).h;
+  }
+  return out;
+}
+
+Extent CentralDifferences::extent() {
+  const Index size = here_.size();
+  Extent out{.length = Vector::Constant(size, steps_.most), .change = Vector::Zero(size)};
+  if (!here_.allFinite()) return out;
+  std::vector<Track> tracks = sweep(1, true);
+  while (measure_where_decided(tracks)) tracks = sweep(1, true);
+  for (Index c = 0; c < size; ++c) {
+    const Index conflict = tracks[static_cast<size_t>(c)].conflict;
+    if (conflict < 0) continue;
+    const Level& level = at(conflict);
+    out.length[c] = kRadius * level.h;
+    out.change[c] =
+        std::max(std::abs(level.plus[c] - here_[c]), std::abs(level.minus[c] - here_[c]));
   }
   return out;
 }

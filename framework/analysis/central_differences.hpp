@@ -29,7 +29,7 @@ namespace hamel {
 
 /// Steps of a difference, in units of the argument.
 struct StepRange {
-  double least = 0x1p-80, most = 0x1p60;
+  double least = 0x1p-64, most = 0x1p24;
   double grain = 0;  // the resolution of the argument: smaller changes are round-off
 };
 /// Steps of an argument whose scale is known: an angle (1), a length beside the size of the system.
@@ -42,6 +42,12 @@ struct Derivative {
   Eigen::VectorXd value, error, reach;
 };
 
+/// By component the length over which f is smooth, about its radius of convergence, the largest
+/// step where it has no end; and how much f changes where it is not, to compare with its round-off.
+struct Extent {
+  Eigen::VectorXd length, change;
+};
+
 class CentralDifferences {
  public:
   using Vector = Eigen::VectorXd;
@@ -52,13 +58,16 @@ class CentralDifferences {
   /// d^order f/dx^order at 0, order 1 to 3. Values are shared by the calls. An error is infinite
   /// where f has no values beside the point.
   Derivative derivative(int order);
+  Extent extent();
   long evaluations() const { return evaluations_; }
 
  private:
   struct Level {
     double h = 0;
     Vector plus, minus;
-    Vector noise;  // empty: not measured
+    Vector odd, even;  // O and E
+    Vector noise;      // of a value: its round-off, and what the grain does
+    Vector measured;   // empty: not measured
   };
   struct Estimate {
     double value = 0, error = 0;
@@ -69,17 +78,16 @@ class CentralDifferences {
   struct Track;
 
   const Level& at(Eigen::Index k) const { return levels_[static_cast<size_t>(k)]; }
-  bool is_measured(Eigen::Index k) const { return k < 0 || at(k).noise.size() > 0; }
+  bool is_measured(Eigen::Index k) const { return k < 0 || at(k).measured.size() > 0; }
   Vector value_at(double x);
   bool has_level(Eigen::Index k);
   void measure_noise(Eigen::Index k);
   double noise(Eigen::Index k, Eigen::Index component) const;
-  double quotient(int order, Eigen::Index k, Eigen::Index component) const;
   Estimate estimate(int order, Eigen::Index k, Eigen::Index component);
   bool changes(int order, Eigen::Index k, Eigen::Index component) const;
   void advance(int order, Eigen::Index k, Eigen::Index component, Track& track);
   bool is_enough(Eigen::Index k, const Track& track, double largest) const;
-  std::vector<Track> sweep(int order);
+  std::vector<Track> sweep(int order, bool whole = false);
   void settle_flat(int order, Eigen::Index component, Track& track);
   bool measure_where_decided(const std::vector<Track>& tracks);
   double kink(Eigen::Index component, Eigen::Index last) const;

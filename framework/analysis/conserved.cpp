@@ -20,12 +20,12 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-constexpr double kKept = 1e-9;            // change of a term's unit along a motion
-constexpr double kIdentity = 1e-10;       // of a term's unit: zero
-constexpr double kShort = 1, kLong = 20;  // s
-constexpr int kMotions = 4;               // of either length
-constexpr int kRows = 40;                 // of each
-constexpr long kMostSteps = 10'000;       // of each
+constexpr double kKept = 1e-9;               // change of a term's unit along a motion
+constexpr double kIdentity = 1e-10;          // of a term's unit: zero
+constexpr double kShort = 1, kLong = 20;     // s
+constexpr int kMotions = 4;                  // of either length
+constexpr int kRows = 40;                    // of each
+constexpr long kMostStepsOfMotion = 10'000;  // of each
 
 class Search {
  public:
@@ -59,7 +59,7 @@ class Search {
     rest();
     return std::move(out_);
   }
-  /// Motions that were cut after kMostSteps.
+  /// Motions that were cut after kMostStepsOfMotion.
   int cut() const { return cut_; }
 
  private:
@@ -69,9 +69,10 @@ class Search {
   Result followed(const Config& config) {
     Run run = Simulation(registry_, config.system).config(config).build();
     long steps = 0;
-    while (run.time() < config.until && run.step_towards(config.until) && ++steps < kMostSteps) {
+    while (run.time() < config.until && run.step_towards(config.until) &&
+           ++steps < kMostStepsOfMotion) {
     }
-    if (steps == kMostSteps) ++cut_;
+    if (steps == kMostStepsOfMotion) ++cut_;
     return run.finish();
   }
 
@@ -271,7 +272,7 @@ std::vector<Analysis::Conserved> find_conserved(const Registry& registry, const 
     notes.push_back(fmt::format(
         "{} of the motions along which the conserved quantities were sought ended after "
         "{} steps",
-        search.cut(), kMostSteps));
+        search.cut(), kMostStepsOfMotion));
   return out;
 }
 
