@@ -53,15 +53,13 @@ Matrix inverse(const Matrix& m) { return m.inverse(); }
 Matrix solve_symmetric(const Matrix& a, const Matrix& b) { return a.ldlt().solve(b); }
 Matrix solve_lower(const Matrix& a, const Matrix& b) { return a.llt().matrixL().solve(b); }
 
-Pivots lu_pivots(const Matrix& m) {
-  if (m.size() == 0) return {};
-  const Eigen::PartialPivLU<Matrix> lu(m);
-  const Vector pivots = lu.matrixLU().diagonal();
-  const auto negative = (pivots.array() < 0).count();
-  const bool odd = (negative % 2 == 1) != (lu.permutationP().determinant() < 0);
+Pivots pivots_of(const Eigen::PartialPivLU<Matrix>& lu) {
+  if (lu.matrixLU().size() == 0) return {};
+  const auto pivots = lu.matrixLU().diagonal();
+  const double determinant = lu.determinant();
   const double least = pivots.cwiseAbs().minCoeff(), most = pivots.cwiseAbs().maxCoeff();
   if (!(least > 0)) return {0, std::numeric_limits<double>::infinity()};
-  return {odd ? -1 : 1, most / least};
+  return {determinant > 0 ? 1 : determinant < 0 ? -1 : 0, most / least};
 }
 
 SymmetricEigen symmetric_eigen(const Matrix& m) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 namespace hamel::dense {
 
@@ -54,7 +55,7 @@ struct Pivots {
   int sign = 1;
   double ratio = 1;
 };
-Pivots lu_pivots(const Matrix& m);
+Pivots pivots_of(const Eigen::PartialPivLU<Matrix>& lu);
 
 /// Eigenvalues and eigenvectors of a symmetric matrix, in ascending order.
 struct SymmetricEigen {

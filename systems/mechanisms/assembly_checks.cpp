@@ -276,9 +276,14 @@ void Assembly::check_motions(const Multibody& system, const std::vector<RowLabel
   if (free.isZero(0)) {
     if (mobility_at(system, g).any) return;  // what is prescribed decides the motion alone
     const RowLabel& last = rows[static_cast<size_t>(system.kept().back())];
+    std::vector<std::string> others;
+    for (const int i : system.kept()) {
+      const std::string& what = rows[static_cast<size_t>(i)].what;
+      if (what != last.what && std::ranges::count(others, what) == 0) others.push_back(what);
+    }
     mistakes_.push_back(fmt::format(
-        "{}the parts leave no motion at the start, {} independent rows in dimension {}: {}",
-        last.where, k, n, in_words(system.kept(), rows)));
+        "{}{}: the parts leave no motion, {} independent rows in dimension {}{}", last.where,
+        last.what, k, n, others.empty() ? "" : ", with those of " + join(others)));
     return;
   }
   free = dense::qr(free).q.leftCols(free.cols()).eval();

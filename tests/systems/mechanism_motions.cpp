@@ -171,7 +171,8 @@ TEST(MechanismMotions, TriangleSwingsAsAPhysicalPendulum) {
   m.ball_joint("q", "a", "b", {.at = {0, 0, -1}});
   m.loop("r", "b", kWorld, {.at = {1, 0, -1}});
   const double rate = 2, half = std::numbers::sqrt2 / 2;
-  m.start({{"p.w1", rate * half}, {"p.w3", 0}});
+  // Neither rod spins about itself: b turns about the vertical alone, so that q.w1 is -p.w1.
+  m.start({{"p.w1", rate * half}, {"p.w3", 0}, {"q.w1", -rate * half}});
   const double moment = mass * (length * length + width * width) / 12 + mass * length * length / 4;
   const double square = mass * kGravity * length / 2 / moment;  // of the small swing's rate
   const double modulus = rate / (2 * std::sqrt(square));        // sin of half the widest angle

@@ -185,7 +185,7 @@ TEST(Mobility, OfACarWhoseAxlesDoNotMeetIsRefused) {
     (void)model_of(car("0.2", "0.2"));
     ADD_FAILURE() << "a car that cannot move is accepted";
   } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("the parts leave no motion at the start"),
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("the parts leave no motion, 9 "),
                                     HasSubstr("prescribed 'sl'"), HasSubstr("wheel 'rl'")));
   }
   // The centre of turning lies on the rear axle, R from its middle: tan = 0.8 / (R -+ 0.3).

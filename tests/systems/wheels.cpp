@@ -87,9 +87,10 @@ TEST(StartsAtASpeed, DoNotTurnTheRootWhereTheRowsAllowIt) {
     const SystemModel system = model(name);
     const SystemStart start = system.start_at_speed(2, 0);
     const std::vector<Component> components = components_of(system);
-    for (size_t i = 0; i < components.size(); ++i)
-      if (components[i].unit == "rad/s" && !components[i].name.ends_with(".rate"))
-        EXPECT_NEAR(start.velocity[i], 0, 1e-12) << name << " " << components[i].name;
+    for (size_t i = 0; i < components.size(); ++i) {
+      if (components[i].unit != "rad/s" || components[i].name.ends_with(".rate")) continue;
+      EXPECT_NEAR(start.velocity[i], 0, 1e-12) << name << " " << components[i].name;
+    }
     EXPECT_TRUE(start.notes.empty()) << name << ": " << start.notes.front();
     const hamel::Run run = simulate(name).speed(2).build();
     for (const std::string& note : run.notes())
@@ -97,7 +98,7 @@ TEST(StartsAtASpeed, DoNotTurnTheRootWhereTheRowsAllowIt) {
   }
   const hamel::Run turning =
       simulate("kick_scooter").speed(2).build();  // its steering is at 0.3 rad
-  EXPECT_THAT(turning.notes(), testing::Contains(HasSubstr("its root turns: omega = 0.5965")));
+  EXPECT_THAT(turning.notes(), testing::Contains(HasSubstr("its root turns: omega = 0.8609")));
 }
 
 /// A push in the file is a motion to be seen; the steady motions are those without.

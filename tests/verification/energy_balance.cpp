@@ -188,7 +188,7 @@ TEST(EnergyBalance, OfTheStepThatAnEventCuts) {
   const auto run = [] {
     return skate().scheme("dop853").tolerance({.relative = 1e-9}).every(1000);
   };
-  for (int i = 1; i <= 12; ++i) {
+  for (int i = 1; i <= 9; ++i) {
     const std::string place = "x=" + std::to_string(0.07 * i);
     const Result stopped = run().stop_at({place}).until(30).run();
     ASSERT_TRUE(stopped.stopped_by_event) << place;

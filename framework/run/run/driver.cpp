@@ -32,12 +32,12 @@ void Driver::make_observers() {
   const Config& config = plan_.config;
   const auto& mechanics = plan_.setup.mechanics;
   const bool rows_move = mechanics->has_drift() && mechanics->constraint_count() > 0;
+  watching_ = plan_.recording || plan_.events->any();
   rows_watch_.reset();
-  if (rows_move && !plan_.compiled && plan_.geometry != nullptr && plan_.keeps_rows)
+  if (watching_ && rows_move && !plan_.compiled && plan_.geometry != nullptr && plan_.keeps_rows)
     rows_watch_ = std::make_unique<RowsWatch>(plan_.geometry, *plan_.system, mechanics);
   steps_ = StepWatch(config.from, config.until - config.from);
   rejected_ = 0;
-  watching_ = plan_.recording || plan_.events->any() || rows_watch_ != nullptr;
   steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
   if (!watching_) return;
   times_ = plan_.recording ? config.recorded_times() : std::vector<double>();

@@ -21,7 +21,11 @@ RowsWatch::RowsWatch(std::shared_ptr<const Geometry> geometry, const SystemModel
       b_(mechanics_->constraint_count()),
       rows_(mechanics_->constraint_count(), mechanics_->dim()),
       inertia_(mechanics_->dim(), mechanics_->dim()),
-      whole_(inertia_) {}
+      frame_(rows_.cols(), rows_.cols() - rows_.rows()),
+      whole_(inertia_),
+      qr_(rows_.cols(), rows_.rows()),
+      lu_(rows_.cols()),
+      work_(frame_.cols()) {}
 
 void RowsWatch::set_rows(const Snapshot& state) {
   if (state.element.empty()) geometry_->from_coordinates(state.coordinates, g_.data());
@@ -35,13 +39,21 @@ void RowsWatch::set_rows(const Snapshot& state) {
     if (const double size = rows_.row(i).norm(); size > 0) rows_.row(i) /= size;
 }
 
-void RowsWatch::set_frame(double t) {
-  const Eigen::Index m = rows_.cols() - rows_.rows();
-  last_time_ = t;
+dense::Pivots RowsWatch::pivots() {
   whole_.topRows(rows_.rows()) = rows_;
-  frame_ = dense::qr(rows_.transpose()).q.rightCols(m);
-  whole_.bottomRows(m) = frame_.transpose();
-  sign_ = dense::lu_pivots(whole_).sign;
+  whole_.bottomRows(frame_.cols()) = frame_.transpose();
+  lu_.compute(whole_);
+  return dense::pivots_of(lu_);
+}
+
+void RowsWatch::set_frame(double t) {
+  last_time_ = t;
+  columns_ = rows_.transpose();
+  qr_.compute(columns_);
+  frame_.setZero();
+  frame_.bottomRows(frame_.cols()).setIdentity();
+  qr_.householderQ().applyThisOnTheLeft(frame_, work_);
+  sign_ = pivots().sign;
 }
 
 void RowsWatch::begin(const Snapshot& state) {
@@ -51,10 +63,8 @@ void RowsWatch::begin(const Snapshot& state) {
 
 std::optional<std::string> RowsWatch::node(const Snapshot& state) {
   set_rows(state);
-  whole_.topRows(rows_.rows()) = rows_;
-  whole_.bottomRows(frame_.cols()) = frame_.transpose();
-  const dense::Pivots pivots = dense::lu_pivots(whole_);
-  if (pivots.sign != sign_ || pivots.ratio > kDependent)
+  const dense::Pivots found = pivots();
+  if (found.sign != sign_ || found.ratio > kDependent)
     return fmt::format("the rows become dependent between t = {:.6g} and {:.6g}: {}", last_time_,
                        state.time, names());
   set_frame(state.time);

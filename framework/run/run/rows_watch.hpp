@@ -13,7 +13,10 @@
 #include <string>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
+#include <Eigen/QR>
 
+#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/loop/snapshot.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
@@ -43,12 +46,17 @@ class RowsWatch {
  private:
   void set_rows(const Snapshot& state);
   void set_frame(double t);
+  // Of [A; E^T], without memory taken.
+  dense::Pivots pivots();
 
   std::shared_ptr<const Geometry> geometry_;
   const SystemModel& system_;
   std::shared_ptr<const Mechanics> mechanics_;
   Eigen::VectorXd g_, b_;
-  Eigen::MatrixXd rows_, inertia_, frame_, whole_;  // whole_: [A; E^T]
+  Eigen::MatrixXd rows_, columns_, inertia_, frame_, whole_;  // A, A^T, I, E, [A; E^T]
+  Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  Eigen::RowVectorXd work_;
   double last_time_ = 0;
   int sign_ = 1;  // of the determinant at the last node
 };

@@ -73,7 +73,7 @@ struct Shape {
   long double d[4] = {};
 
   Shape(int k, double x) : kind(k), at(x) {
-    const long double u = x;
+    const auto u = static_cast<long double>(x);
     if (k == 0) set(std::cos(u), -std::sin(u), -std::cos(u));
     if (k == 1) {
       const long double t = std::tanh(u), q = 1 - t * t;
@@ -130,12 +130,15 @@ TEST(CentralDifferences, RandomWidths) {
         steps_of_any_scale(2.3e-16 * std::abs(x)));
     for (int order = 1; order <= 3; ++order) {
       const Derivative d = differences.derivative(order);
-      const long double size = a / std::pow(static_cast<long double>(wide), order) +
-                               b / std::pow(static_cast<long double>(narrow), order),
+      const auto first = static_cast<long double>(a), second = static_cast<long double>(b);
+      const long double size = first / std::pow(static_cast<long double>(wide), order) +
+                               second / std::pow(static_cast<long double>(narrow), order),
                         value =
-                            a * one.d[order] / std::pow(static_cast<long double>(wide), order) +
-                            b * other.d[order] / std::pow(static_cast<long double>(narrow), order);
-      const double apart = static_cast<double>(std::abs(value - d.value[0]));
+                            first * one.d[order] / std::pow(static_cast<long double>(wide), order) +
+                            second * other.d[order] /
+                                std::pow(static_cast<long double>(narrow), order);
+      const double apart =
+          static_cast<double>(std::abs(value - static_cast<long double>(d.value[0])));
       outside[order] += apart > d.error[0];
       EXPECT_LE(apart, 3 * d.error[0]) << i << " order " << order;
       const double known[] = {0, 1e-6, 1e-3, 1e-1};

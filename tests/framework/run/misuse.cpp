@@ -67,14 +67,16 @@ std::vector<Simulation> calling(const std::function<void()>& act) {
 
 TEST(Misuse, ByItsOwnFunctions) {
   std::optional<hamel::Run> run;
-  for (const auto& [name, act] : changes()) {
+  for (const auto& [name, change] : changes()) {
+    const auto& act = change;  // a lambda of clang 14 captures no structured binding
     for (const Simulation& made : calling([&run, &act] { act(run); })) {
       run.emplace(made.build());
       EXPECT_THAT(misuse([&] { (void)run->complete(); }),
                   HasSubstr("Run::" + std::string(name) + ": called by one of its own functions"));
     }
   }
-  for (const auto& [name, act] : readings()) {
+  for (const auto& [name, reading] : readings()) {
+    const auto& act = reading;
     for (const Simulation& made : calling([&run, &act] { act(run); })) {
       run.emplace(made.build());
       EXPECT_TRUE(run->complete()) << name;
