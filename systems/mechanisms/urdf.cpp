@@ -267,6 +267,9 @@ class Writer {
       for (const std::string& name : names) quoted.push_back(toml_string(name));
       if (!names.empty()) out.push_back(fmt::format("{}: {}", what, fmt::join(quoted, ", ")));
     };
+    if (wheels_.empty() && root_ == "planar")
+      note("no --wheel is given: nothing rolls on the ground, and the root slides on it freely",
+           {links_.front().name});
     std::vector<std::string> limited, friction;
     for (const RobotLink& l : links_) {
       if (l.joint.limited) limited.push_back(l.joint.name);

@@ -123,6 +123,15 @@ TEST_F(Urdf, HangsOnTheGroundAsRootSpecifies) {
   EXPECT_THAT(run({"describe", ball, "--wheel", "left", "--toml"}).out, HasSubstr("ball = ["));
 }
 
+/// A robot of which no wheel is named slides like a puck, which a note says.
+TEST_F(Urdf, WithoutAWheelSlidesAndSaysSo) {
+  const std::string without = answer({"run", robot(), "--until", "0.1"})["notes"].dump(),
+                    with = answer({"run", robot(), "--wheel", "left", "--until", "0.1"})["notes"]
+                               .dump();
+  EXPECT_THAT(without, HasSubstr("no --wheel is given"));
+  EXPECT_THAT(with, testing::Not(HasSubstr("no --wheel is given")));
+}
+
 /// What a mechanism does not have is in a note of the run.
 TEST_F(Urdf, NotesWhatItLeavesOut) {
   const json record = answer(
