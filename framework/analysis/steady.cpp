@@ -43,16 +43,25 @@ std::vector<double> measured_round_off(const ReducedLinearisation& linear, doubl
   return out;
 }
 
-std::vector<ModePart> parts_of(const Eigen::VectorXcd& mode,
-                               const std::vector<std::string>& names) {
+// The velocities that take part in a mode (delta, nu), largest first, then the coordinates of the
+// shape that do, all beside the largest velocity.
+std::vector<ModePart> parts_of(const Eigen::VectorXcd& mode, const ModeNames& names) {
+  const auto n = static_cast<Eigen::Index>(names.velocities.size());
+  const double largest = mode.tail(n).cwiseAbs().maxCoeff(),
+               size = largest > 0 ? largest : mode.cwiseAbs().maxCoeff();
   std::vector<ModePart> out;
-  const double size = mode.cwiseAbs().maxCoeff();
-  for (Eigen::Index i = 0; i < mode.size(); ++i) {
-    const double part = std::abs(mode[i]) / size;
-    if (part > 0.05) out.push_back({names[static_cast<size_t>(i)], part});
-  }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const auto& a, const auto& b) { return a.size > b.size; });
+  const auto add = [&](const std::vector<std::string>& of, Eigen::Index from) {
+    const auto before = std::ssize(out);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::string& name = of[static_cast<size_t>(i)];
+      const double part = std::abs(mode[from + i]) / size;
+      if (part > 0.05 && !name.empty()) out.push_back({name, part});
+    }
+    std::stable_sort(out.begin() + before, out.end(),
+                     [](const auto& a, const auto& b) { return a.size > b.size; });
+  };
+  add(names.velocities, n);
+  add(names.coordinates, 0);
   return out;
 }
 
@@ -66,7 +75,6 @@ SteadyMotion SteadyEquations::motion(const SteadyPoint& at, int family) const {
   out.element.resize(static_cast<size_t>(geometry_->columns()));
   geometry_->coordinates(at.g.data(), out.element.data());
   if (!out.found) return out;
-  const int n = dim();
   const ReducedLinearisation linear = linearise(at);
   const dense::Eigensystem solver = dense::eigen(linear.flow);
   const std::vector<Complex> values(solver.values.begin(), solver.values.end());
@@ -96,13 +104,8 @@ SteadyMotion SteadyEquations::motion(const SteadyPoint& at, int family) const {
   for (const size_t i : order) {
     out.eigenvalues.push_back(values[i]);
     out.round_off.push_back(round_off[i]);
-    const Eigen::VectorXcd both =
-        linear.basis.cast<Complex>() * solver.vectors.col(static_cast<Eigen::Index>(i));
-    // A mode along the symmetries, which are divided out (a spin that decays), is given by its
-    // velocities.
-    const bool moves = both.head(n).norm() > 1e-9 * both.norm();
-    const Eigen::VectorXcd mode = moves ? both.head(n) : both.tail(n);
-    out.modes.push_back(parts_of(mode, names_));
+    out.modes.push_back(parts_of(
+        linear.basis.cast<Complex>() * solver.vectors.col(static_cast<Eigen::Index>(i)), names_));
   }
   return out;
 }

@@ -29,7 +29,8 @@ namespace hamel {
 
 class Registry;
 
-/// How much a velocity takes part in a mode, 1 the largest.
+/// How much a velocity, or a coordinate of the shape, takes part in a mode, beside its largest
+/// velocity.
 struct ModePart {
   std::string name;
   double size;

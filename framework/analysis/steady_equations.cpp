@@ -45,16 +45,29 @@ Start guess_of(const Simulation& run, const Run& built) {
   return unpushed.build().config().start;
 }
 
+ModeNames::ModeNames(const SystemModel& model) {
+  const std::vector<Component> components = components_of(model);
+  coordinates.resize(components.size());
+  for (const Component& component : components) velocities.push_back(component.name);
+  const std::vector<ShapeCoordinate> shapes = shape_of(model.group, components);
+  for (size_t k = 0; k < shapes.size(); ++k) {
+    coordinates[static_cast<size_t>(shapes[k].component)] =
+        model.shape.size() == shapes.size()
+            ? model.shape[k]
+            : model.group.columns[static_cast<size_t>(shapes[k].column)];
+  }
+}
+
 SteadyEquations::SteadyEquations(const Registry& registry, const SystemModel& model,
                                  const Start& guess)
     : geometry_(geometry_of(registry, model)),
       flow_(geometry_, model.mechanics),
       guess_g_(geometry_->size()),
-      guess_xi_(to_vector(guess.velocity)) {
+      guess_xi_(to_vector(guess.velocity)),
+      names_(model) {
   geometry_->from_coordinates(
       guess.configuration.empty() ? model.group.identity : guess.configuration, guess_g_.data());
   along_ = flow_.momentum(guess_g_, guess_xi_).normalized();
-  for (const Component& component : components_of(model)) names_.push_back(component.name);
 }
 
 const Matrix& SteadyEquations::symmetries() const {

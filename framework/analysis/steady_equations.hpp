@@ -45,6 +45,12 @@ Vector least_norm(const Matrix& a, const Vector& b, double least = 1e-10);
 /// The start of a run as a guess: at a speed without the push that a system's file has.
 Start guess_of(const Simulation& run, const Run& built);
 
+/// Names of the velocities, and of the displacements that are coordinates of the shape; else "".
+struct ModeNames {
+  std::vector<std::string> velocities, coordinates;
+  explicit ModeNames(const SystemModel& model);
+};
+
 class SteadyEquations {
  public:
   /// Throws ConfigError when the system depends on time.
@@ -53,7 +59,6 @@ class SteadyEquations {
   int dim() const { return flow_.dim(); }
   const Flow& flow() const { return flow_; }
   const Geometry& geometry() const { return *geometry_; }
-  const std::vector<std::string>& names() const { return names_; }
 
   /// The direction in which momentum may be held: that of the guess, or another.
   const Vector& along() const { return along_; }
@@ -118,7 +123,7 @@ class SteadyEquations {
   std::shared_ptr<const Geometry> geometry_;
   Flow flow_;
   Vector guess_g_, guess_xi_, along_;
-  std::vector<std::string> names_;
+  ModeNames names_;
   mutable Matrix symmetries_;  // computed on first use
   mutable bool has_symmetries_ = false;
   mutable StateUnits scales_;  // the same

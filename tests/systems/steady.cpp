@@ -296,5 +296,19 @@ TEST(Bicycle, NonlinearMotionGrowsAndDecaysAtThePublishedRates) {
   }
 }
 
+/// Parts of a mode are velocities under their own names: the capsize of a bicycle yaws and rolls.
+/// The unstable mode of a cart on a swivel caster turns the wheels against each other.
+TEST(Steady, PartsOfAModeAreVelocities) {
+  const SteadyMotion motion = steady_motion(registry(), simulate("bicycle").speed(5));
+  const std::vector<ModePart>& capsize = motion.modes[0];
+  ASSERT_GE(capsize.size(), 3u);
+  EXPECT_EQ(capsize[0].name, "w3");
+  EXPECT_NEAR(capsize[0].size, 1, 1e-12);
+  EXPECT_EQ(capsize[1].name, "w1");
+  EXPECT_NEAR(capsize[1].size, 0.163, 1e-3);
+  EXPECT_EQ(capsize[2].name, "steer.rate");
+  EXPECT_NEAR(capsize[2].size, 0.070, 1e-3);
+}
+
 }  // namespace
 }  // namespace hamel
