@@ -113,6 +113,11 @@ static std::string times_in_words(const Result& result) {
                      result.recording_seconds, result.comparing_seconds);
 }
 
+static bool all_holonomic(const Mechanics& mechanics) {
+  const int rows = mechanics.constraint_count();
+  return rows > 0 && rows == mechanics.holonomic_rows();
+}
+
 std::string Result::report() const {
   require_run("report");
   std::string out = fmt::format("{} on {}: {}, {}\n", system->name, system->group.name, method(),
@@ -146,11 +151,8 @@ std::string Result::report() const {
   fields([&](const Quantity& quantity, const char*, auto member) {
     const double value = this->*member;
     // NaN: there is no such thing here; of an energy or a constraint, something went wrong.
-    const Mechanics& mechanics = *system->mechanics;
-    const bool residual = mechanics.constraint_count() > mechanics.holonomic_rows() ||
-                          mechanics.constraint_count() == 0;
-    const bool always =
-        member == &Result::energy_error_max || (member == &Result::constraint_max && residual);
+    const bool always = member == &Result::energy_error_max ||
+                        (member == &Result::constraint_max && !all_holonomic(*system->mechanics));
     if (*quantity.title == 0 || (!always && std::isnan(value))) return;
     const bool balance = member == &Result::energy_error_max && std::isfinite(work);
     line(

@@ -229,6 +229,20 @@ long Driver::steps_at_once(long count, bool to_end) const {
   return piece_of(std::min({every - node_.step % every, most, piece}));
 }
 
+// Observes the steps since step `before`, of which the last one began at `begin`; false: the run
+// ends here.
+bool Driver::observe_steps(long before, double begin, bool at_end) {
+  if (!result_.status.ok && rows_watch_ != nullptr)
+    result_.status.reason += rows_watch_->remark(node_);
+  bool go_on = good(node_);
+  if (go_on && every_node_ && node_.step > before) go_on = observe_step(begin);
+  else if (go_on && plan_.recording && times_.empty() && node_.step % plan_.config.every == 0)
+    go_on = record(node_);
+  if (!go_on || !result_.status.ok || at_end) return go_on;
+  result_.status = steps_go_on(node_.step - before, node_);
+  return result_.status.ok;
+}
+
 void Driver::take_steps(long count, bool to_end) {
   const double from = plan_.config.from, until = plan_.config.until;
   auto next_progress = Clock::now() + std::chrono::milliseconds(200);
@@ -240,17 +254,7 @@ void Driver::take_steps(long count, bool to_end) {
     else kernel().bare_state(node_);
     steps_left_ -= kernel().whole_steps() - whole;
     count -= kernel().whole_steps() - whole;
-    if (!result_.status.ok && rows_watch_ != nullptr)
-      result_.status.reason += rows_watch_->remark(node_);
-    bool go_on = good(node_);
-    if (go_on && every_node_ && node_.step > before) go_on = observe_step(begin);
-    else if (go_on && plan_.recording && times_.empty() && node_.step % plan_.config.every == 0)
-      go_on = record(node_);
-    if (go_on && result_.status.ok && !(to_end && reached_end())) {
-      result_.status = steps_go_on(node_.step - before, node_);
-      go_on = result_.status.ok;
-    }
-    if (!go_on) over_ = true;
+    if (!observe_steps(before, begin, to_end && reached_end())) over_ = true;
     if (!result_.status.ok || node_.step == before) break;  // failed, or at the limit
     if (to_end && request_.progress && Clock::now() >= next_progress) {
       report_progress((node_.time - from) / (until - from));

@@ -90,6 +90,7 @@ class Driver {
 
   // Observes the last step; false: the run ends here.
   bool observe_step(double begin);
+  bool observe_steps(long before, double begin, bool at_end);
   bool observe_event(const Events::Found& event, double begin, bool& go_on);
   void balance_step(double begin, const Snapshot& end);
   void observe_start();
