@@ -42,6 +42,12 @@ std::vector<double> numbers_of(const std::string& hex) {
   return out;
 }
 
+// Conversion of 1e300 would be undefined.
+long member_of(const Json& json) {
+  if (!json.is_number_integer()) throw std::runtime_error("no whole number");
+  return json.get<long>();
+}
+
 }  // namespace
 
 std::string line_of(const Piece& piece) {
@@ -54,11 +60,11 @@ std::string line_of(const Piece& piece) {
 
 Piece piece_of(const std::string& line) {
   const Json json = Json::parse(line);
-  Piece out{json.at("first").get<long>(), numbers_of(json.at("rows").get<std::string>()), {}};
+  Piece out{member_of(json.at("first")), numbers_of(json.at("rows").get<std::string>()), {}};
   for (const Json& f : json.at("failures")) {
     const std::vector<double> time = numbers_of(f.at(1).get<std::string>());
     if (time.size() != 1) throw std::runtime_error("a failure without its time");
-    out.failures.push_back({f.at(0).get<long>(), time[0], f.at(2).get<std::string>()});
+    out.failures.push_back({member_of(f.at(0)), time[0], f.at(2).get<std::string>()});
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <hamel/framework/ensemble/ensemble_plan.hpp>
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
+#include <hamel/framework/io/whole_number.hpp>
 #include <hamel/framework/run/names/toml_config.hpp>
 
 namespace hamel {
@@ -103,8 +104,7 @@ class EnsembleReader {
     std::vector<double> given;
     read_.value(node, "trajectories", given);
     for (const double member : given) {
-      const auto whole = static_cast<long>(member);
-      if (member == static_cast<double>(whole)) config_.trajectories.push_back(whole);
+      if (const auto whole = whole_number(member)) config_.trajectories.push_back(*whole);
       else read_.wrong(node, "trajectories", "the numbers of members, from 0");
     }
   }
@@ -156,13 +156,12 @@ class EnsembleReader {
     const size_t before = read_.mistakes.size();
     read_.value(node, key, given);
     if (read_.mistakes.size() > before) return;
-    constexpr double most = 1e7;
-    if (given.size() != 3 || !(given[2] >= 1) || !(given[2] <= most) ||
-        given[2] != static_cast<double>(static_cast<long>(given[2])))
+    constexpr long most = 10'000'000;
+    const auto count = given.size() == 3 ? whole_number(given[2]).value_or(0) : 0;
+    if (count < 1 || count > most)
       return read_.wrong(node, key,
                          "[from, to, count], a count of at least 1: no range is without "
                          "members");
-    const auto count = static_cast<long>(given[2]);
     for (long i = 0; i < count; ++i)
       out.push_back(i + 1 == count && count > 1
                         ? given[1]

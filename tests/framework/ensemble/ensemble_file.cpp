@@ -103,6 +103,7 @@ TEST(EnsembleFile, MistakesHaveTheirPlace) {
        "rattleback"},
       {head + keep + "trajectories = [3]", "many.toml:4:16: trajectories: got 3, expected 0 to 2"},
       {head + keep + "trajectories = [0.5]", "expected the numbers of members, from 0"},
+      {head + keep + "trajectories = [1e300]", "expected the numbers of members, from 0"},
       {"system = 'segway'\nmembers = 3\nkeep = ['end.t']\nstep = 0.01\ntrajectories = [1]\n"
        "[feedback]\nperiod = 0.01\nleft_torque = 'v1'",
        "trajectories: a run has no inputs by formulas"},

@@ -1,9 +1,10 @@
 // A run as plain data, hamel.Config, and the options of hamel.run: both follow from Config::fields.
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <functional>
 #include <map>
+
+#include <hamel/framework/io/whole_number.hpp>
 
 #include "bindings.hpp"
 
@@ -19,8 +20,8 @@ void read(const std::string&, nb::handle value, bool& out) {
 }
 void read(const std::string& name, nb::handle value, long& out) {
   const double given = number(name, value);
-  if (given != std::floor(given)) read_text(name, text_of(given), out);  // throws
-  out = static_cast<long>(given);
+  if (const auto whole = whole_number(given)) out = *whole;
+  else read_text(name, text_of(given), out);  // throws
 }
 void read(const std::string& name, nb::handle value, std::optional<double>& out) {
   out.reset();

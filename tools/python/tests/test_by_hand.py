@@ -103,6 +103,8 @@ def test_options_that_are_none():
         hamel.run("suslov", sheme="lift")
     with pytest.raises(hamel.ConfigError, match="every: got 1.5|every: '1.5'"):
         hamel.run("suslov", every=1.5)
+    with pytest.raises(hamel.ConfigError, match="every: "):
+        hamel.run("suslov", every=1e300)
     for wrong, text in (
         ({"step": []}, r"step: got \[\], expected a number"),
         ({"until": None}, "until: got None, expected a number"),
