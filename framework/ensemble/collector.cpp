@@ -44,7 +44,7 @@ std::vector<double> numbers_of(const std::string& hex) {
 
 // Conversion of 1e300 would be undefined.
 long member_of(const Json& json) {
-  if (!json.is_number_integer()) throw std::runtime_error("no whole number");
+  if (!json.is_number_integer()) throw std::runtime_error("no piece of this ensemble");
   return json.get<long>();
 }
 
