@@ -22,6 +22,9 @@ constexpr double kFlat = 0x1p-10;  // of a step: the size of flat parts that are
 constexpr int kRun = 5;            // levels that must agree
 constexpr double kFalls = 16;      // the least ratio of changes that fall
 constexpr double kLeastRatio = 0.06;
+constexpr double kDoubt = 2;  // times the round-off, which few values measure
+// Resolutions of the argument in the least step: with few of them rounding repeats itself.
+constexpr double kQuanta = 4096;
 constexpr double kRisen = 1000;  // times the least error: f is no longer smooth over such steps
 
 // Weights by which values at u_j = 16^j, j < count, give the polynomial through them at 0, or its
@@ -59,10 +62,30 @@ double power_of_two(double x) { return std::ldexp(1.0, std::ilogb(x)); }
 }  // namespace
 
 StepRange steps_of_scale(double scale, double grain) {
-  return {.least = 0x1p-40 * scale, .most = 2 * scale, .grain = std::max(grain, kEpsilon * scale)};
+  return {.least = 0x1p-40 * scale,
+          .most = 2 * scale,
+          .grain = std::max(grain, kEpsilon * scale),
+          .noise = {}};
 }
 
-StepRange steps_of_any_scale(double grain) { return {.grain = grain}; }
+StepRange steps_of_any_scale(double grain) { return {.grain = grain, .noise = {}}; }
+
+// Fourth differences of neighbours: 70 sigma^2 is their variance.
+Eigen::VectorXd noise_of(const std::function<Eigen::VectorXd(double)>& f, double step) {
+  constexpr int count = 12;
+  Eigen::MatrixXd values;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::VectorXd value = f(step * (i + 0.0371 * i * i));  // rounding repeats itself else
+    if (i == 0) values.resize(value.size(), count);
+    values.col(i) = value;
+  }
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(values.rows());
+  for (int i = 2; i + 2 < count; ++i)
+    sum += (values.col(i - 2) - 4 * values.col(i - 1) + 6 * values.col(i) - 4 * values.col(i + 1) +
+            values.col(i + 2))
+               .cwiseAbs2();
+  return 4 * (sum / (70.0 * (count - 4))).cwiseSqrt();
+}
 
 // The state of one component in a sweep over the steps.
 struct CentralDifferences::Track {
@@ -77,7 +100,7 @@ struct CentralDifferences::Track {
 
 CentralDifferences::CentralDifferences(Curve f, const StepRange& steps)
     : f_(std::move(f)), steps_(steps), here_(value_at(0)) {
-  steps_.least = power_of_two(std::max(steps.least, 64 * steps.grain));
+  steps_.least = power_of_two(std::max(steps.least, kQuanta * steps.grain));
 }
 
 CentralDifferences::Vector CentralDifferences::value_at(double x) {
@@ -129,7 +152,8 @@ double CentralDifferences::noise(Index k, Index c) const {
     if (i < 0 || i >= std::ssize(levels_) || at(i).measured.size() == 0) return 0.0;
     return at(i).measured[c];
   };
-  return std::max({at(k).noise[c], measured(k), std::min(measured(k - 1), measured(k + 1))});
+  const double known = steps_.noise.size() > 0 ? steps_.noise[c] : 0;
+  return std::max({at(k).noise[c], known, measured(k), std::min(measured(k - 1), measured(k + 1))});
 }
 
 bool CentralDifferences::changes(int order, Index k, Index c) const {
@@ -163,6 +187,7 @@ CentralDifferences::Estimate CentralDifferences::estimate(int order, Index k, In
     if (count > least && error < out.error) {
       out.value = value;
       out.error = error;
+      out.round_off = round_off;
       out.outer = k + count - 1;
       out.rough = count > least + 1 && !falls && change > 2 * round_off;
     }
@@ -180,8 +205,11 @@ void CentralDifferences::advance(int order, Index k, Index c, Track& track) {
   }
   const Estimate now = estimate(order, k, c);
   if (!std::isfinite(now.error)) return;
-  const double low = now.value - now.error, high = now.value + now.error;
-  if (low > track.high || high < track.low || now.rough || now.error > kRisen * track.best.error) {
+  const double low = now.value - now.error - kDoubt * now.round_off,
+               high = now.value + now.error + kDoubt * now.round_off;
+  // Errors that rise before anything is known are those of a function that begins with a power.
+  const bool risen = track.run >= kRun && now.error > kRisen * track.best.error;
+  if (low > track.high || high < track.low || now.rough || risen) {
     if (track.run >= kRun || !is_measured(k) || !is_measured(track.low_level) ||
         !is_measured(track.high_level)) {
       track.conflict = k;
@@ -228,11 +256,13 @@ std::vector<CentralDifferences::Track> CentralDifferences::sweep(int order, bool
 // Where f does not change over small steps: its derivative is 0, if this is not round-off of f.
 void CentralDifferences::settle_flat(int order, Index c, Track& track) {
   if (track.flat < 0) return;
+  while (track.flat + 1 < std::ssize(levels_) && !changes(order, track.flat + 1, c)) ++track.flat;
   const Level& level = at(track.flat);
   const bool nothing_else = !std::isfinite(track.best.error);
-  double largest = noise(track.flat, c);  // of what is seen where f begins to change
+  const bool begins = track.flat + 1 < std::ssize(levels_);
+  double largest = begins ? noise(track.flat, c) : level.noise[c];  // where f begins to change
   for (Index k = track.flat + 1; k < std::min(track.flat + 4, std::ssize(levels_)); ++k)
-    if (is_measured(k)) largest = std::max(largest, at(k).measured[c]);
+    if (at(k).measured.size() > 0) largest = std::max(largest, at(k).measured[c]);
   const double error = (order == 2 ? 4 : 6) * largest / std::pow(level.h, order);
   if (!nothing_else) {
     if (std::abs(track.best.value) <= track.best.error + error) return;
@@ -244,6 +274,7 @@ void CentralDifferences::settle_flat(int order, Index c, Track& track) {
 // Measures the noise where it decides; false: all of it is known.
 bool CentralDifferences::measure_where_decided(const std::vector<Track>& tracks) {
   bool out = false;
+  if (steps_.noise.size() > 0) return out;
   const auto measure = [&](Index level) {
     if (level < 0) return;
     const Index end = std::min(level + 2, std::ssize(levels_));

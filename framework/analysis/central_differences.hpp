@@ -30,7 +30,8 @@ namespace hamel {
 /// Steps of a difference, in units of the argument.
 struct StepRange {
   double least = 0x1p-64, most = 0x1p24;
-  double grain = 0;  // the resolution of the argument: smaller changes are round-off
+  double grain = 0;       // the resolution of the argument: smaller changes are round-off
+  Eigen::VectorXd noise;  // of the values, where it is known; else it is measured where it decides
 };
 /// Steps of an argument whose scale is known: an angle (1), a length beside the size of the system.
 StepRange steps_of_scale(double scale, double grain = 0);
@@ -47,6 +48,9 @@ struct Derivative {
 struct Extent {
   Eigen::VectorXd length, change;
 };
+
+/// Four deviations of the round-off of values along a curve that is smooth over 2^20 steps.
+Eigen::VectorXd noise_of(const std::function<Eigen::VectorXd(double)>& f, double step);
 
 class CentralDifferences {
  public:
@@ -70,7 +74,7 @@ class CentralDifferences {
     Vector measured;   // empty: not measured
   };
   struct Estimate {
-    double value = 0, error = 0;
+    double value = 0, error = 0, round_off = 0;
     Eigen::Index inner = -1;  // the level of its smallest step
     Eigen::Index outer = -1;
     bool rough = false;  // it does not converge, and not for round-off
@@ -78,7 +82,9 @@ class CentralDifferences {
   struct Track;
 
   const Level& at(Eigen::Index k) const { return levels_[static_cast<size_t>(k)]; }
-  bool is_measured(Eigen::Index k) const { return k < 0 || at(k).measured.size() > 0; }
+  bool is_measured(Eigen::Index k) const {
+    return k < 0 || steps_.noise.size() > 0 || at(k).measured.size() > 0;
+  }
   Vector value_at(double x);
   bool has_level(Eigen::Index k);
   void measure_noise(Eigen::Index k);

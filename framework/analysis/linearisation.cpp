@@ -52,16 +52,40 @@ Vector columns_of(const SteadyEquations& equations, const SteadyPoint& at, const
   out.tail(n) = at.xi + z.tail(n);
   return out;
 }
-Matrix column_slopes(const SteadyEquations& equations, const SteadyPoint& at,
-                     const Matrix& directions) {
-  const Vector here = columns_of(equations, at, Vector::Zero(directions.rows()));
-  Matrix out = Matrix::Zero(here.size(), directions.cols());
+// Slopes along directions of displacements and velocities, with their errors.
+struct Slopes {
+  Matrix value, error;
+};
+Slopes column_slopes(const SteadyEquations& equations, const SteadyPoint& at,
+                     const Matrix& directions, const Vector& sizes) {
+  const Flow& flow = equations.flow();
+  const int n = equations.dim();
+  Slopes out{.value = Matrix(equations.geometry().columns() + n, directions.cols()), .error = {}};
+  out.error = out.value;
   for (Eigen::Index j = 0; j < directions.cols(); ++j) {
-    differentiate(kStep, [&](double e, double weight) {
-      out.col(j) += weight * columns_of(equations, at, e * directions.col(j));
-    });
+    // Of the size of a unit: columns are functions of the element, smooth at the scale of angles.
+    const Vector direction = directions.col(j);
+    const double size = direction.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>();
+    const double scale = size > 0 ? 1 / size : 1;
+    double grain = 0;
+    const Vector shift = direction.head(n);
+    const double part = shift.cwiseQuotient(sizes.head(n)).lpNorm<Eigen::Infinity>();
+    if (part > 0) grain = flow.steps(at.g, shift * (size / part)).grain;
+    const Derivative d =
+        CentralDifferences([&](double e) { return columns_of(equations, at, e * direction); },
+                           steps_of_scale(scale, grain))
+            .derivative(1);
+    out.value.col(j) = d.value;
+    out.error.col(j) = d.error;
   }
   return out;
+}
+
+// True of a row with a slope beyond its error, and beyond a part of the largest one of all rows.
+bool is_beyond(const Slopes& slopes, Eigen::Index row, double part) {
+  if (slopes.value.cols() == 0) return false;
+  const double least = part * slopes.value.lpNorm<Eigen::Infinity>();
+  return ((slopes.value.row(row).cwiseAbs() - slopes.error.row(row)).array() > least).any();
 }
 
 // Names of the 2n numbers, a coordinate that is the integral of a component by its own, and of the
@@ -94,30 +118,38 @@ Names names_of(const SystemModel& model) {
 
 // B in the coordinates of the basis: what a unit of each input adds to the acceleration. Inputs of
 // rates are left out.
-Matrix input_slopes(const SteadyEquations& equations,
+Slopes input_slopes(const SteadyEquations& equations,
                     const std::shared_ptr<const Geometry>& geometry, const SystemModel& model,
-                    const SteadyPoint& at, const Matrix& basis, Linearisation& out) {
+                    const SteadyPoint& at, const Matrix& dual, Linearisation& out) {
   const int n = equations.dim();
-  Matrix slopes(basis.cols(), 0);
+  Slopes slopes{.value = Matrix(dual.rows(), 0), .error = Matrix(dual.rows(), 0)};
   if (!model.drive) return slopes;
   const std::vector<InputTable> zeros(model.inputs.size(), InputTable{{}, {0}, false});
   const auto inputs = std::make_shared<Inputs>(model.inputs, zeros);
-  const Flow driven(geometry, model.drive(inputs));
+  const Flow driven(geometry, model.drive(inputs), equations.flow().scales());
+  const Vector extents = driven.extents(at.g);
   for (size_t i = 0; i < model.inputs.size(); ++i) {
-    Vector force = Vector::Zero(2 * n), slip = Vector::Zero(driven.constraint_count());
-    differentiate(kStep, [&](double u, double weight) {
-      inputs->set(i, u);
-      force.tail(n) += weight * driven.acceleration(at.g, at.xi);
-      slip += weight * driven.slip(at.g, at.xi);
-    });
+    const int k = driven.constraint_count();
+    CentralDifferences differences(
+        [&](double u) {
+          inputs->set(i, u);
+          Vector value(n + k);
+          value << driven.acceleration(at.g, at.xi, extents), driven.slip(at.g, at.xi);
+          return value;
+        },
+        steps_of_any_scale());
+    const Derivative d = differences.derivative(1);
     inputs->set(i, 0);
-    if (slip.size() > 0 && slip.lpNorm<Eigen::Infinity>() > 1e-9) {
+    const bool slips = ((d.value.tail(k).cwiseAbs() - d.error.tail(k)).array() > 0).any();
+    if (slips) {
       out.unused.push_back(model.inputs[i].name);
       continue;
     }
     out.inputs.push_back(model.inputs[i].name);
-    slopes.conservativeResize(Eigen::NoChange, slopes.cols() + 1);
-    slopes.rightCols<1>() = basis.transpose() * force;
+    for (Matrix* m : {&slopes.value, &slopes.error})
+      m->conservativeResize(Eigen::NoChange, m->cols() + 1);
+    slopes.value.rightCols<1>() = dual.rightCols(n) * d.value.head(n);
+    slopes.error.rightCols<1>() = dual.rightCols(n).cwiseAbs() * d.error.head(n);
   }
   return slopes;
 }
@@ -140,8 +172,8 @@ Linearisation linearisation(const Registry& registry, const Simulation& run) {
   const ReducedLinearisation linear = equations.linearise(at);
   // The 2n numbers that distinguish the states best.
   const Names names = names_of(model);
-  const Matrix preferred = linear.basis.transpose() * names.preference.asDiagonal();
-  std::vector<int> chosen = dense::pivots(preferred);
+  const Matrix own = linear.sizes.cwiseInverse().asDiagonal() * linear.basis;
+  std::vector<int> chosen = dense::pivots(own.transpose() * names.preference.asDiagonal());
   chosen.resize(static_cast<size_t>(linear.basis.cols()));
   std::sort(chosen.begin(), chosen.end());
   Matrix to_states(linear.basis.cols(), linear.basis.cols());
@@ -150,14 +182,18 @@ Linearisation linearisation(const Registry& registry, const Simulation& run) {
     out.states.push_back(names.numbers[static_cast<size_t>(chosen[i])]);
   }
   const Matrix from_states = dense::inverse(to_states), embedding = linear.basis * from_states;
+  const Matrix size_to = to_states.cwiseAbs(), size_from = from_states.cwiseAbs();
   out.a = numbers_of(to_states * linear.flow * from_states);
+  out.a_error = numbers_of(size_to * linear.error * size_from);
   out.embedding = numbers_of(embedding);
-  out.b = numbers_of(to_states * input_slopes(equations, registry.geometry(model.group.name, "exp"),
-                                              model, at, linear.basis, out));
+  const Slopes inputs = input_slopes(equations, registry.geometry(model.group.name, "exp"), model,
+                                     at, linear.dual, out);
+  out.b = numbers_of(to_states * inputs.value);
+  out.b_error = numbers_of(size_to * inputs.error);
 
   // Columns that no symmetry changes, here and where the states are others.
   const Eigen::Index columns = static_cast<Eigen::Index>(model.group.columns.size());
-  Vector changes = Vector::Zero(columns + equations.dim());
+  std::vector<bool> changes(static_cast<size_t>(columns + equations.dim()), false);
   for (int sample = 0; sample < 3; ++sample) {
     Vector x(linear.basis.cols());
     for (Eigen::Index i = 0; i < x.size(); ++i)
@@ -165,19 +201,24 @@ Linearisation linearisation(const Registry& registry, const Simulation& run) {
     const Vector z = linear.basis * x;
     const int n = equations.dim();
     const SteadyPoint there = {equations.flow().moved(at.g, z.head(n)), at.xi + z.tail(n), {}, 0};
-    changes += column_slopes(equations, there, equations.orbit(there)).cwiseAbs().rowwise().sum();
+    const Slopes moved = column_slopes(equations, there, equations.orbit(there), linear.sizes);
+    for (size_t i = 0; i < changes.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      changes[i] = changes[i] || is_beyond(moved, row, 1e-8);
+    }
   }
-  const Matrix slopes = column_slopes(equations, at, embedding);
+  const Slopes slopes = column_slopes(equations, at, embedding, linear.sizes);
   const Vector values = columns_of(equations, at, Vector::Zero(2 * equations.dim()));
   std::vector<Eigen::Index> kept;
-  for (Eigen::Index i = 0; i < changes.size(); ++i) {
-    if (changes[i] > 1e-8 || slopes.row(i).norm() < 1e-12) continue;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (changes[static_cast<size_t>(i)] || !is_beyond(slopes, i, 1e-12)) continue;
     kept.push_back(i);
     out.quantity_columns.push_back(static_cast<int>(i));
     out.values.push_back(values[i]);
     out.quantities.push_back(names.columns[static_cast<size_t>(i)]);
   }
-  out.c = numbers_of(slopes(kept, Eigen::all));
+  out.c = numbers_of(slopes.value(kept, Eigen::all));
+  out.c_error = numbers_of(slopes.error(kept, Eigen::all));
   return out;
 }
 

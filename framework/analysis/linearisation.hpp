@@ -36,9 +36,10 @@ struct DiscretePair {
 struct HAMEL_API Linearisation {
   SteadyMotion motion;
   std::vector<std::string> states, inputs, quantities;
-  NumberMatrix a, b, c;        // x' = a x + b u, y = values + c x
-  std::vector<double> values;  // the quantities of the steady motion
-  NumberMatrix embedding;      // 2n rows: (delta, nu) of x
+  NumberMatrix a, b, c;                    // x' = a x + b u, y = values + c x
+  NumberMatrix a_error, b_error, c_error;  // of each entry
+  std::vector<double> values;              // the quantities of the steady motion
+  NumberMatrix embedding;                  // 2n rows: (delta, nu) of x
   std::vector<std::string>
       unused;  // inputs that drive rates, not efforts: they change what x may be
   std::vector<int> quantity_columns;  // of each quantity: a coordinate, or n behind them a velocity

@@ -2,10 +2,92 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel::reduced {
+
+Vector own_scales(const std::vector<Component>& components, const Mechanics& mechanics,
+                  const Vector& g) {
+  const Eigen::Index n = mechanics.dim();
+  Matrix inertia(n, n);
+  mechanics.inertia(g.data(), inertia);
+  double mass = 0, moment = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::string& unit = components[static_cast<size_t>(i)].unit;
+    if (unit == "m/s") mass += inertia(i, i);
+    if (unit == "rad/s") moment += inertia(i, i);
+  }
+  Vector out = Vector::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::string& unit = components[static_cast<size_t>(i)].unit;
+    if (unit == "rad/s") out[i] = 1;
+    if (unit == "m/s" && mass > 0 && moment > 0) out[i] = std::sqrt(moment / mass);
+  }
+  return out;
+}
+
+// The resolution of a displacement: epsilon of the numbers of g that it changes.
+StepRange Flow::steps(const Vector& g, const Vector& eta) const {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  double scale = 0;  // the largest displacement of a component without one counts as unknown
+  bool known = true;
+  for (Eigen::Index i = 0; i < eta.size(); ++i) {
+    if (eta[i] == 0) continue;
+    known = known && scales_[i] > 0;
+    if (known) scale = std::max(scale, std::abs(eta[i]) / scales_[i]);
+  }
+  const double step =
+      known ? 0x1p-10 / scale : 0x1p-10 * std::max(1e-300, g.lpNorm<1>()) / eta.norm();
+  const Vector rate = (moved(g, step * eta) - g) / step;
+  const double most = rate.lpNorm<Eigen::Infinity>();
+  double grain = 0;
+  for (Eigen::Index i = 0; i < g.size(); ++i)
+    if (std::abs(rate[i]) >= most / 4 && most > 0)
+      grain = std::max(grain, epsilon * std::abs(g[i]) / most);
+  return known ? steps_of_scale(1 / scale, grain) : steps_of_any_scale(grain);
+}
+
+StepRange Flow::velocity_steps(const Vector& xi, int component) const {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  double size = std::abs(xi[component]);
+  if (scales_[component] > 0) {
+    for (Eigen::Index i = 0; i < xi.size(); ++i)
+      if (scales_[i] > 0) size = std::max(size, std::abs(xi[i]) / scales_[i] * scales_[component]);
+  }
+  return steps_of_any_scale(epsilon * size);
+}
+
+Vector Flow::extents(const Vector& g) const {
+  const int n = dim(), k = constraint_count();
+  Vector out = Vector::Constant(n, 1), momentum(n), rows(k);
+  if (mechanics_->constant_inertia() && mechanics_->constant_constraints()) return out;
+  Matrix inertia(n, n), a(k, n);
+  Vector b(k);
+  if (mechanics_->rates(0, g.data(), out, rows, momentum) ||
+      mechanics_->motion(0, g.data(), out, inertia, a, b, rows, momentum))
+    return out;  // exact: none is needed
+  Vector all(n * n + k * n + k);
+  for (int i = 0; i < n; ++i) {
+    const Vector along = Vector::Unit(n, i);
+    const auto values = [&](double e) {
+      const Vector there = moved(g, e * along);
+      mechanics_->inertia(there.data(), inertia);
+      if (k > 0) mechanics_->constraints(0, there.data(), a, b);
+      all << inertia.reshaped(), a.reshaped(), b;
+      return all;
+    };
+    const Vector value = values(0);
+    CentralDifferences differences(values, steps(g, along));
+    const Extent extent = differences.extent();
+    out[i] = steps(g, along).most;
+    const double least = 1e-12 * value.lpNorm<Eigen::Infinity>();  // above the round-off of values
+    for (Eigen::Index c = 0; c < value.size(); ++c)
+      if (extent.change[c] > least) out[i] = std::min(out[i], extent.length[c]);
+  }
+  return out;
+}
 
 Vector Flow::moved(const Vector& g, const Vector& eta) const {
   Vector out(g.size());
@@ -45,30 +127,52 @@ Matrix Flow::Ad_inverse(const Vector& g) const {
   return out;
 }
 
-Vector Flow::acceleration(const Vector& g, const Vector& xi) const {
+// (dI/dt) xi and db/dt - (dA/dt) xi along the motion.
+void Flow::find_rates(const Vector& g, const Vector& xi, const Vector& extents, Vector& momentum,
+                      Vector& rows) const {
   const int n = dim(), k = constraint_count();
-  Matrix inertia(n, n), a(k, n), inertia_rate = Matrix::Zero(n, n), a_rate = Matrix::Zero(k, n);
-  Vector b(k), b_rate = Vector::Zero(k), force(n), turned(n);
-  differentiate(kStep / std::max(1.0, xi.norm()), [&](double shift, double weight) {
+  momentum = Vector::Zero(n);
+  rows = Vector::Zero(k);
+  if (mechanics_->constant_inertia() && mechanics_->constant_constraints()) return;
+  if (mechanics_->rates(0, g.data(), xi, rows, momentum)) return;
+  momentum.setZero();
+  rows.setZero();
+  const double speed = xi.cwiseQuotient(extents).lpNorm<Eigen::Infinity>();  // 1/s
+  if (!(speed > 0)) return;
+  Matrix inertia(n, n), a(k, n);
+  Vector b(k);
+  differentiate(1 / speed, [&](double shift, double weight) {
     const Vector there = moved(g, shift * xi);
     mechanics_->inertia(there.data(), inertia);
-    inertia_rate += weight * inertia;
+    momentum += weight * (inertia * xi);
     if (k == 0) return;
     mechanics_->constraints(0, there.data(), a, b);
-    a_rate += weight * a;
-    b_rate += weight * b;
+    rows += weight * (b - a * xi);
   });
-  mechanics_->inertia(g.data(), inertia);
-  if (k > 0) mechanics_->constraints(0, g.data(), a, b);
-  mechanics_->force(0, g.data(), xi, force);
-  const Vector mu = inertia * xi;
-  geometry_->ad_transpose(xi.data(), mu.data(), turned.data());
+}
+
+Vector Flow::acceleration(const Vector& g, const Vector& xi, const Vector& extents) const {
+  const int n = dim(), k = constraint_count();
+  Matrix inertia(n, n), a(k, n);
+  Vector b(k), row_rate(k), change(n);
+  if (mechanics_->constant_inertia()) mechanics_->inertia(g.data(), inertia);
+  if (k > 0 && mechanics_->constant_constraints()) mechanics_->constraints(0, g.data(), a, b);
+  if (!mechanics_->motion(0, g.data(), xi, inertia, a, b, row_rate, change)) {
+    Vector turned(n), momentum_rate;
+    find_rates(g, xi, extents, momentum_rate, row_rate);
+    mechanics_->inertia(g.data(), inertia);
+    if (k > 0) mechanics_->constraints(0, g.data(), a, b);
+    mechanics_->force(0, g.data(), xi, change);
+    const Vector mu = inertia * xi;
+    geometry_->ad_transpose(xi.data(), mu.data(), turned.data());
+    change += turned - momentum_rate;
+  }
   Matrix whole = Matrix::Zero(n + k, n + k);
   whole.topLeftCorner(n, n) = inertia;
   whole.topRightCorner(n, k) = -a.transpose();
   whole.bottomLeftCorner(k, n) = a;
   Vector right(n + k);
-  right << force + turned - inertia_rate * xi, b_rate - a_rate * xi;
+  right << change, row_rate;
   return Vector(whole.partialPivLu().solve(right)).head(n);
 }
 
@@ -111,52 +215,84 @@ Vector Flow::kept(const Vector& g, const Vector& xi, const Vector& eta, double e
   mechanics_->holonomic(g.data(), phi);
   if (k > 0) {  // the span of the rows, and b, whatever the rows: an orthogonal projector
     mechanics_->constraints(0, g.data(), a, b);
-    const Matrix here = a * carry;
+    const Matrix here = a * carry * units_.asDiagonal();
     const Matrix square = dense::inverse(here * here.transpose());
     onto = here.transpose() * square * here;
     drift = here.transpose() * square * b;
   }
-  const Matrix inertia_back = carry.transpose() * inertia * carry;
-  const Vector force_back = carry.transpose() * force;
+  const Matrix own = carry * units_.asDiagonal();  // to own units
+  const Matrix inertia_back = own.transpose() * inertia * own;
+  const Vector force_back = own.transpose() * force;
   Vector out(2 * n * n + 2 * n + holonomic_rows());
   out << inertia_back.reshaped(), onto.reshaped(), force_back, drift, phi;
   return out;
 }
 
-Matrix Flow::symmetries(const Vector& g) const {
+// Inertia, span of the rows, force, drift, phi, each beside its largest value; a force also beside
+// a part of the kinetic energy, which is what its round-off is, phi beside its own slopes.
+void Flow::scale_blocks(const Vector& value, const Vector& velocity, Matrix& change) const {
+  const int n = dim();
+  const auto inertia = value.head(n * n);
+  const double rate = velocity.cwiseQuotient(units_).squaredNorm();
+  const auto scale = [&](Eigen::Index from, Eigen::Index count, double size) {
+    if (count > 0 && size > 0) change.middleRows(from, count) /= size;
+  };
+  const auto largest = [&](Eigen::Index from, Eigen::Index count) {
+    return count > 0 ? value.segment(from, count).lpNorm<Eigen::Infinity>() : 0.0;
+  };
+  const Eigen::Index force = 2 * n * n, drift = force + n, phi = drift + n;
+  scale(0, n * n, largest(0, n * n));
+  scale(n * n, n * n, largest(n * n, n * n));
+  scale(force, n, std::max(largest(force, n), 1e-4 * inertia.lpNorm<Eigen::Infinity>() * rate));
+  scale(drift, n, largest(drift, n));
+  if (holonomic_rows() > 0)
+    scale(phi, holonomic_rows(), change.bottomRows(holonomic_rows()).lpNorm<Eigen::Infinity>());
+}
+
+Matrix Flow::symmetries(const Vector& g, const Vector& xi, const Vector& reach) const {
   const int n = dim();
   Matrix changes(0, 2 * n), orbits(0, 2 * n);
-  double scale = 0;  // of what is kept
-  for (int sample = 1; sample <= 3; ++sample) {
-    Vector shift(n), xi(n);
+  Vector sizes;  // of the columns: what moves g by the reach at the first place
+  // Places at random within the reach of the equations, and nearer.
+  for (int sample = 1; sample <= 5; ++sample) {
+    const double part = sample <= 3 ? 1 : 0x1p-4;
+    Vector shift(n), velocity(n);
     for (int i = 0; i < n; ++i) {
-      shift[i] = 0.3 * std::sin(12.9898 * (i + 1) + 78.233 * sample);
-      xi[i] = std::sin(39.346 * (i + 1) + 11.135 * sample);
+      shift[i] = 0.3 * part * reach[i] * std::sin(12.9898 * (i + 1) + 78.233 * sample);
+      velocity[i] = xi[i] + part * reach[n + i] * std::sin(39.346 * (i + 1) + 11.135 * sample);
     }
     const Vector here = moved(g, shift);
     const Matrix back = Ad_inverse(here);
-    Matrix change;
+    const Vector value = kept(here, velocity, Vector::Zero(n), 0);
+    Matrix change(value.size(), 2 * n);
+    Vector speeds(2 * n);
     for (int j = 0; j < 2 * n; ++j) {
       const Vector eta = j < n ? Vector::Zero(n) : Vector(Vector::Unit(n, j - n));
       const Vector delta = j < n ? Vector(back.col(j)) : eta;
-      const double unit = kStep / std::max(1.0, delta.norm());
-      Vector slope;
-      differentiate(unit, [&](double e, double weight) {
-        const Vector value = weight * kept(moved(here, e * delta), xi, eta, e);
-        if (slope.size() == 0) slope = value;
-        else slope += value;
+      const double speed = delta.cwiseQuotient(part * reach.head(n)).lpNorm<Eigen::Infinity>();
+      speeds[j] = speed;
+      Vector slope = Vector::Zero(value.size());
+      differentiate(1 / speed, [&](double e, double weight) {
+        slope += weight * kept(moved(here, e * delta), velocity, eta, e);
       });
-      if (change.size() == 0) change.resize(slope.size(), 2 * n);
       change.col(j) = slope;
     }
+    if (sizes.size() == 0) sizes = speeds.cwiseInverse();
+    change = change * sizes.asDiagonal();
+    scale_blocks(value, velocity, change);
     changes.conservativeResize(changes.rows() + change.rows(), Eigen::NoChange);
     changes.bottomRows(change.rows()) = change;
     orbits.conservativeResize(orbits.rows() + 2 * n, Eigen::NoChange);
-    orbits.bottomRows(2 * n) = orbit(Matrix::Identity(2 * n, 2 * n), here, xi);
-    scale = std::max(scale, kept(here, xi, Vector::Zero(n), 0).lpNorm<Eigen::Infinity>());
+    Matrix moves = orbit(Matrix(sizes.asDiagonal()), here, velocity);
+    const Vector own = velocity.cwiseQuotient(units_);
+    moves.topRows(n) = units_.cwiseInverse().asDiagonal() * moves.topRows(n);
+    moves.bottomRows(n) =
+        (units_ * std::max(1e-300, own.norm())).cwiseInverse().asDiagonal() * moves.bottomRows(n);
+    orbits.bottomRows(2 * n) = moves;
   }
-  const Matrix all = kernel_of(changes, 1e-9, scale);
-  return all * range_of((orbits * all).transpose(), 1e-9, 1);
+  Matrix all = kernel_of(changes, 1e-9, 1);
+  all = (all * range_of((orbits * all).transpose(), 1e-9, 1)).eval();
+  return sizes.asDiagonal() * all;
 }
 
 Matrix Flow::orbit(const Matrix& symmetries, const Vector& g, const Vector& xi) const {
@@ -164,6 +300,18 @@ Matrix Flow::orbit(const Matrix& symmetries, const Vector& g, const Vector& xi) 
   Matrix out(2 * n, symmetries.cols());
   out.topRows(n) = Ad_inverse(g) * symmetries.topRows(n) + symmetries.bottomRows(n);
   out.bottomRows(n) = ad(xi) * symmetries.bottomRows(n);  // -ad_eta xi = ad_xi eta
+  return out;
+}
+
+Vector Flow::carrier(const Vector& generator, const Vector& g, const Vector& xi) const {
+  const int n = dim();
+  const Vector zeta = generator.head(n), eta = generator.tail(n);
+  Vector inverse(g.size()), moved(n), out(2 * n);
+  geometry_->inverse(g.data(), inverse.data());
+  geometry_->Ad(inverse.data(), zeta.data(), moved.data());
+  out.head(n) = moved + eta;
+  if (eta.isZero(0)) out.tail(n).setZero();
+  else out.tail(n) = ad(xi) * eta;
   return out;
 }
 

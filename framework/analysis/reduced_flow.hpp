@@ -8,8 +8,8 @@
 //   X_(zeta, eta)(g, xi) = (Ad_g^-1 zeta + eta, -ad_eta xi),
 // and is a symmetry where inertia, ker A, drift, force and phi go with it. The left factor is the
 // symmetry of the space around (a level ground), the right one that of the body (a disk and its
-// axis). Derivatives are central differences of order 10, 11 points 0.01 apart: round-off 1e-13,
-// truncation h^10/2772 of the eleventh derivative.
+// axis). Derivatives are those of central_differences.hpp: along angles, and lengths of a system
+// that has a radius of gyration, in steps of that scale, along others in steps of any.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,9 @@
 
 #include <Eigen/Core>
 
+#include <hamel/framework/analysis/central_differences.hpp>
 #include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 
 namespace hamel::reduced {
@@ -25,31 +27,58 @@ namespace hamel::reduced {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-constexpr double kStep = 0.01;
+/// Sizes of displacements that do not depend on the units chosen: 1 for angles, the radius of
+/// gyration at g for lengths; 0 for components that have none.
+Vector own_scales(const std::vector<Component>& components, const Mechanics& mechanics,
+                  const Vector& g);
 
-/// sum of weight * f(shift) is f'(0): calls add(shift, weight).
+/// sum of weight * f(shift) is f'(0), by order 10 in steps of h/64, f smooth over h: for iterations
+/// that need no error. Calls add(shift, weight).
 template <class Add>
-void differentiate(double step, Add&& add) {
+void differentiate(double h, Add&& add) {
   constexpr double weights[] = {5.0 / 6, -5.0 / 21, 5.0 / 84, -5.0 / 504, 1.0 / 1260};
   for (int k = 1; k <= 5; ++k) {
-    for (const double side : {step, -step}) add(k * side, weights[k - 1] / side);
+    for (const double step : {h / 64, -h / 64}) add(k * step, weights[k - 1] / step);
   }
 }
 
 class Flow {
  public:
-  Flow(std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics)
-      : geometry_(std::move(geometry)), mechanics_(std::move(mechanics)) {}
+  /// scales: own_scales() of the system.
+  Flow(std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
+       Vector scales)
+      : geometry_(std::move(geometry)),
+        mechanics_(std::move(mechanics)),
+        scales_(std::move(scales)),
+        units_(scales_.unaryExpr([](double scale) { return scale > 0 ? scale : 1; })) {}
 
   int dim() const { return mechanics_->dim(); }
   int constraint_count() const { return mechanics_->constraint_count(); }
   int holonomic_rows() const { return mechanics_->holonomic_rows(); }
+  const Vector& scales() const { return scales_; }
+  /// The same with other lengths for the components that have none, 1 where none is set.
+  const Vector& units() const { return units_; }
+  void set_units(Vector units) { units_ = std::move(units); }
+  /// Free of rows, and of forces beside a potential.
+  bool is_conservative() const {
+    return constraint_count() == 0 && !mechanics_->has_force() && !mechanics_->has_drift();
+  }
+  /// a(g, xi) = a(g, -xi) by the kind of its forces: time may run backwards.
+  bool is_reversible() const {
+    return !mechanics_->has_drift() &&
+           (!mechanics_->has_force() || !mechanics_->force_depends_on_velocity());
+  }
+  /// By displacement, the length over which inertia and rows are smooth at g.
+  Vector extents(const Vector& g) const;
+  /// Steps of differences along a displacement at g, and along a component of the velocity.
+  StepRange steps(const Vector& g, const Vector& eta) const;
+  StepRange velocity_steps(const Vector& xi, int component) const;
   /// g tau(eta).
   Vector moved(const Vector& g, const Vector& eta) const;
   /// The eta with g tau(eta) = h; 0 where h is out of reach.
   Vector difference(const Vector& g, const Vector& h) const;
-  /// a(g, xi).
-  Vector acceleration(const Vector& g, const Vector& xi) const;
+  /// a(g, xi). extents: of g, or of a place nearby.
+  Vector acceleration(const Vector& g, const Vector& xi, const Vector& extents) const;
   /// I(g) xi.
   Vector momentum(const Vector& g, const Vector& xi) const;
   /// phi(g), and A xi - b.
@@ -59,18 +88,26 @@ class Flow {
   Matrix ad(const Vector& xi) const;
   Matrix Ad_inverse(const Vector& g) const;
 
-  /// A basis of the symmetries that move something, columns (zeta, eta), found at some places near
-  /// g. Symmetries that move nothing, as (zeta, -zeta) of a commutative factor, are left out.
-  Matrix symmetries(const Vector& g) const;
+  /// A basis of the symmetries that move something, columns (zeta, eta), found at places beside g
+  /// within the reach of the equations there (n displacements, then n velocities). Symmetries that
+  /// move nothing, as (zeta, -zeta) of a commutative factor, are left out.
+  Matrix symmetries(const Vector& g, const Vector& xi, const Vector& reach) const;
   /// The columns X_s(g, xi) of these symmetries.
   Matrix orbit(const Matrix& symmetries, const Vector& g, const Vector& xi) const;
+  /// X_s(g, xi) of one of them.
+  Vector carrier(const Vector& generator, const Vector& g, const Vector& xi) const;
 
  private:
+  void find_rates(const Vector& g, const Vector& xi, const Vector& extents, Vector& momentum,
+                  Vector& rows) const;
+  // Rows of changes divided by the sizes of their blocks of kept().
+  void scale_blocks(const Vector& value, const Vector& velocity, Matrix& change) const;
   // The quantities a symmetry keeps, at (g exp(e eta), Ad xi), seen from before the move.
   Vector kept(const Vector& g, const Vector& xi, const Vector& eta, double e) const;
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
+  Vector scales_, units_;
 };
 
 /// Orthonormal bases of the range and of the kernel. Singular values below `least` of the largest

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace hamel::reduced {
 namespace {
@@ -20,30 +19,31 @@ Vector balanced(const Matrix& m) {
   return out;
 }
 
-// l and 1/T; sizes: |dF| by (delta, nu).
-void set_lengths(const Matrix& sizes, Vector& lengths, double& rate) {
-  const Eigen::Index n = sizes.cols() / 2;
-  const Matrix place = sizes.block(n, 0, n, n), velocity = sizes.block(n, n, n, n);
-  lengths = Vector::Ones(n);
-  rate = 0;
-  for (int k = 0; k < 5; ++k) {
-    const auto size = [&](const Matrix& m) {
-      return (lengths.cwiseInverse().asDiagonal() * m * lengths.asDiagonal()).norm();
-    };
-    rate = std::max(std::sqrt(size(place)), size(velocity));
-    if (!(rate > 0)) rate = 1;
-    lengths = balanced(place + rate * velocity);
+// The distance at which values stop to be linear in a step, along two directions of columns.
+double reach_of(const Vector& columns, const Vector& rows,
+                const std::function<Vector(const Vector&)>& displaced) {
+  double out = 0;
+  for (int sample = 1; sample <= 2; ++sample) {
+    Vector direction(columns.size());
+    for (Eigen::Index i = 0; i < direction.size(); ++i)
+      direction[i] = std::sin(12.9898 * static_cast<double>(i + 1) + 78.233 * sample);
+    direction = columns.cwiseProduct(direction.normalized());
+    const auto one = linear_reach(
+        [&](double e) -> Vector { return rows.cwiseProduct(displaced(e * direction)); });
+    if (one) out = out > 0 ? std::min(out, *one) : *one;
   }
+  return out;
 }
 
-// The distance along a direction at which F differs from its linear part by a third of it; nothing
-// where it never does.
-std::optional<double> linear_reach(const SteadyEquations& system, const SteadyPoint& at,
-                                   const Vector& rows, const Vector& direction) {
-  const Vector still = Vector::Zero(2 * system.dim());
-  const auto values = [&](double e) -> Vector {
-    return rows.cwiseProduct(system.displaced(at, true, e * direction, still));
-  };
+// The same, or the size of a velocity of a linear system, or 1.
+double reach_or_size(double reach, const Vector& xi, const Vector& columns) {
+  const double size = xi.cwiseQuotient(columns.tail(xi.size())).norm();
+  return reach > 0 ? reach : size > 0 ? size : 1;
+}
+
+}  // namespace
+
+std::optional<double> linear_reach(const std::function<Vector(double)>& values) {
   const Vector here = values(0);
   bool linear = false;
   for (double h = 1e-10; h < 1e10; h *= 4) {
@@ -57,7 +57,29 @@ std::optional<double> linear_reach(const SteadyEquations& system, const SteadyPo
   return std::nullopt;
 }
 
-}  // namespace
+BalancedUnits balanced_units(const Matrix& by_place, const Matrix& by_velocity) {
+  BalancedUnits out{.lengths = Vector::Ones(by_place.rows()), .rate = 0};
+  for (int k = 0; k < 5; ++k) {
+    const auto size = [&](const Matrix& m) {
+      return (out.lengths.cwiseInverse().asDiagonal() * m * out.lengths.asDiagonal()).norm();
+    };
+    out.rate = std::max(std::sqrt(size(by_place)), size(by_velocity));
+    if (!(out.rate > 0)) out.rate = 1;
+    out.lengths = balanced(by_place + out.rate * by_velocity);
+  }
+  return out;
+}
+
+Vector own_lengths(const Matrix& slope, const Vector& xi,
+                   const std::function<Vector(const Vector&)>& acceleration) {
+  const Eigen::Index n = xi.size();
+  const Matrix sizes = slope.cwiseAbs();
+  const auto [lengths, rate] = balanced_units(sizes.leftCols(n), sizes.rightCols(n));
+  Vector columns(2 * n);
+  columns << lengths, rate * lengths;
+  const double reach = reach_of(columns, (rate * rate * lengths).cwiseInverse(), acceleration);
+  return reach_or_size(reach, xi, columns) * lengths;
+}
 
 StateUnits state_units(const std::vector<const SteadyEquations*>& systems) {
   StateUnits out;
@@ -70,9 +92,7 @@ StateUnits state_units(const std::vector<const SteadyEquations*>& systems) {
   }
   const double least = 1e-9 * sizes.maxCoeff();  // round-off
   sizes = (sizes.array() < least).select(0, sizes);
-  Vector lengths;
-  double rate = 0;
-  set_lengths(sizes, lengths, rate);
+  const auto [lengths, rate] = balanced_units(sizes.block(n, 0, n, n), sizes.block(n, n, n, n));
   out.columns.resize(2 * n);
   out.columns << lengths, rate * lengths;
   out.rows.resize(sizes.rows());
@@ -82,21 +102,15 @@ StateUnits state_units(const std::vector<const SteadyEquations*>& systems) {
     out.rows[i] = norm > 0 ? 1 / norm : 1;
   }
   double reach = 0;
+  const Vector still = Vector::Zero(2 * n);
   for (const SteadyEquations* system : systems) {
     const SteadyPoint at = system->carried_guess();
-    for (int sample = 1; sample <= 2; ++sample) {
-      Vector direction(2 * n);
-      for (int i = 0; i < 2 * n; ++i) direction[i] = std::sin(12.9898 * (i + 1) + 78.233 * sample);
-      const auto one =
-          linear_reach(*system, at, out.rows, out.columns.cwiseProduct(direction.normalized()));
-      if (one) reach = reach > 0 ? std::min(reach, *one) : *one;
-    }
+    const double one = reach_of(out.columns, out.rows, [&](const Vector& step) {
+      return system->displaced(at, true, step, still);
+    });
+    if (one > 0) reach = reach > 0 ? std::min(reach, one) : one;
   }
-  if (!(reach > 0)) {
-    const SteadyPoint guess = systems.front()->carried_guess();
-    reach = guess.xi.cwiseQuotient(out.columns.tail(n)).norm();
-    if (!(reach > 0)) reach = 1;
-  }
+  reach = reach_or_size(reach, systems.front()->carried_guess().xi, out.columns);
   out.columns *= reach;
   out.rows /= reach;
   return out;

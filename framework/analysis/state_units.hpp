@@ -10,11 +10,29 @@
 // that of its guess. In these units a step, a residual and a singular value are numbers.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include <hamel/framework/analysis/steady_equations.hpp>
 
 namespace hamel::reduced {
+
+/// The distance at which values along a curve differ from their linear part by a third of it;
+/// nothing where they never do, or are nowhere linear.
+std::optional<double> linear_reach(const std::function<Vector(double)>& values);
+
+/// l_i up to their common factor, and 1/T; of |a_delta| and |a_nu|.
+struct BalancedUnits {
+  Vector lengths;
+  double rate;
+};
+BalancedUnits balanced_units(const Matrix& by_place, const Matrix& by_velocity);
+
+/// l_i of accelerations at a place: their slope by (delta, nu), and their values at a displaced
+/// one.
+Vector own_lengths(const Matrix& slope, const Vector& xi,
+                   const std::function<Vector(const Vector&)>& acceleration);
 
 /// About the guesses of some systems: 2n columns; rows of F with the momentum held.
 StateUnits state_units(const std::vector<const SteadyEquations*>& systems);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -15,32 +16,100 @@ namespace hamel {
 namespace reduced {
 namespace {
 
-std::vector<Complex> eigenvalues_of(const Matrix& m) {
-  const Eigen::VectorXcd values = dense::eigenvalues(m);
-  return {values.begin(), values.end()};
+// Powers of two d with M = d^-1 flow d of rows and columns of one size (Parlett and Reinsch 1969).
+Vector balance_of(const Matrix& flow) {
+  Vector d = Vector::Ones(flow.rows());
+  Matrix m = flow.cwiseAbs();
+  m.diagonal().setZero();
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Eigen::Index i = 0; i < m.rows(); ++i) {
+      const double row = m.row(i).sum(), column = m.col(i).sum();
+      if (!(row > 0 && column > 0)) continue;
+      const double f = std::ldexp(1.0, std::ilogb(std::sqrt(row / column)));
+      if (!(column * f + row / f < 0.95 * (row + column))) continue;
+      d[i] *= f;
+      m.col(i) *= f;
+      m.row(i) /= f;
+      changed = true;
+    }
+  }
+  return d;
 }
 
-// How far each eigenvalue moves when the linearisation changes by its own errors: three times the
-// most. Eigenvalues of a Jordan block move like a root of them, whatever their condition. noise:
-// of the entries, at least round-off.
-std::vector<double> measured_round_off(const ReducedLinearisation& linear, double noise,
-                                       const std::vector<Complex>& values) {
+// Eigenvalues with what they may be off, and eigenvectors as columns.
+struct Spectrum {
+  std::vector<Complex> values;
+  std::vector<double> errors;
+  Eigen::MatrixXcd vectors;
+};
+
+// |w_i| E |v_i|, w_i v_i = 1, to first order in the errors E of the entries, with left and right
+// eigenvectors (Golub, Van Loan, Matrix Computations, 7.2.2). Eigenvalues of a Jordan block move
+// like a root of E, (2 |M| + |E|)^(1 - 1/n) |E|^(1/n) at most (Elsner 1985), and by three times
+// what random changes of that size do at least.
+Spectrum spectrum_of(const Matrix& flow, const Matrix& error) {
+  const Vector d = balance_of(flow);
+  const Matrix to_own = d.cwiseInverse().asDiagonal();
+  const Matrix m = to_own * flow * d.asDiagonal();
+  if (m.rows() == 0) return {};
+  const auto count = static_cast<double>(m.rows());
+  const double most = m.cwiseAbs().maxCoeff();
+  // The solver's own error: of the size of the matrix.
+  const Matrix e = (to_own * error * d.asDiagonal()).array() +
+                   count * std::numeric_limits<double>::epsilon() * most;
+  const dense::Eigensystem system = dense::eigen(m);
+  Spectrum out{.values = {system.values.begin(), system.values.end()}, .errors = {}, .vectors = {}};
+  if (!e.allFinite()) {  // no derivative there
+    out.errors.assign(out.values.size(), std::numeric_limits<double>::infinity());
+    out.vectors = d.cast<Complex>().asDiagonal() * system.vectors;
+    return out;
+  }
+  const double change = e.norm(), size = 2 * m.norm() + change,
+               elsner = std::pow(size, 1 - 1 / count) * std::pow(change, 1 / count);
+  const Eigen::MatrixXcd left = dense::left_eigenvectors(system);
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    const Vector w = left.col(i).cwiseAbs(), v = system.vectors.col(i).cwiseAbs();
+    const double moves = w.dot(e * v);
+    out.errors.push_back(moves < elsner ? moves : elsner);
+  }
   constexpr double safety = 3;
-  std::vector<double> out(values.size(), safety * noise);
-  const auto compare = [&](const Matrix& changed) {
-    const std::vector<Complex> moved = eigenvalues_of(changed);
-    const std::vector<int> to = matched(values, moved);
-    for (size_t i = 0; i < values.size(); ++i)
-      out[i] = std::max(out[i], safety * std::abs(values[i] - moved[static_cast<size_t>(to[i])]));
-  };
   std::mt19937 random(1);
   for (int k = 0; k < 3; ++k) {
-    Matrix changed = linear.flow;
-    for (double& entry : changed.reshaped()) entry += random() % 2 == 0 ? noise : -noise;
-    compare(changed);
+    Matrix changed = m;
+    for (Eigen::Index i = 0; i < m.size(); ++i)
+      changed.reshaped()[i] += random() % 2 == 0 ? e.reshaped()[i] : -e.reshaped()[i];
+    const Eigen::VectorXcd values = dense::eigenvalues(changed);
+    const std::vector<Complex> moved(values.begin(), values.end());
+    const std::vector<int> to = matched(out.values, moved);
+    for (size_t i = 0; i < out.values.size(); ++i) {
+      const double apart = std::abs(out.values[i] - moved[static_cast<size_t>(to[i])]);
+      if (apart > out.errors[i]) out.errors[i] = safety * apart;
+    }
   }
-  for (const Matrix& again : linear.again) compare(again);
+  out.vectors = d.cast<Complex>().asDiagonal() * system.vectors;
   return out;
+}
+
+// At rest and with a(g, xi) = a(g, -xi) the squares are eigenvalues of a real matrix: those whose
+// imaginary part is within its error are real, if no other square is so near that both may be
+// conjugates. A negative one is a pair on the axis, a positive one has no imaginary part.
+void place_on_axis(Spectrum& spectrum, bool real_squares, std::vector<bool>& on_axis) {
+  const size_t count = spectrum.values.size();
+  const std::vector<Complex> values = spectrum.values;
+  for (size_t i = 0; i < count; ++i) {
+    const Complex square = values[i] * values[i];
+    const double error = (2 * std::abs(values[i]) + spectrum.errors[i]) * spectrum.errors[i];
+    if (std::abs(square.imag()) > error || std::abs(square.real()) <= error) continue;
+    size_t near = 0;  // itself and its mate among them
+    for (size_t j = 0; j < count; ++j) {
+      const double other = (2 * std::abs(values[j]) + spectrum.errors[j]) * spectrum.errors[j];
+      near += std::abs(values[j] * values[j] - square) <= error + other;
+    }
+    if (near > 2 && !real_squares) continue;
+    on_axis[i] = square.real() < 0;
+    spectrum.values[i] = on_axis[i] ? Complex(0, values[i].imag()) : Complex(values[i].real(), 0);
+  }
 }
 
 // The velocities that take part in a mode (delta, nu), largest first, then the coordinates of the
@@ -75,20 +144,20 @@ SteadyMotion SteadyEquations::motion(const SteadyPoint& at, int family) const {
   out.element.resize(static_cast<size_t>(geometry_->columns()));
   geometry_->coordinates(at.g.data(), out.element.data());
   if (!out.found) return out;
+  const int n = dim();
   const ReducedLinearisation linear = linearise(at);
-  const dense::Eigensystem solver = dense::eigen(linear.flow);
-  const std::vector<Complex> values(solver.values.begin(), solver.values.end());
-  const double most = linear.flow.size() > 0 ? linear.flow.cwiseAbs().maxCoeff() : 0;
-  const std::vector<double> round_off =
-      measured_round_off(linear, (1e-15 + at.residual) * std::max(1.0, most), values);
+  Spectrum spectrum = spectrum_of(linear.flow, linear.error);
+  std::vector<bool> on_axis(spectrum.values.size(), false);
+  const bool rests = at.xi.cwiseQuotient(linear.sizes.tail(n)).lpNorm<Eigen::Infinity>() < 1e-12;
+  if (rests && flow_.is_reversible()) place_on_axis(spectrum, flow_.is_conservative(), on_axis);
+  const std::vector<Complex>& values = spectrum.values;
   std::vector<size_t> order(values.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::sort(order.begin(), order.end(),
             [&](auto i, auto j) { return std::abs(values[i]) < std::abs(values[j]); });
   if (family < 0) {
-    const double size = order.empty() ? 0 : std::abs(values[order.back()]);
     const auto is_zero = [&](size_t i) {
-      return std::abs(values[i]) < std::max(1e-7 * std::max(1.0, size), round_off[i]);
+      return std::abs(values[i]) < std::max(1e-12 * linear.rate, spectrum.errors[i]);
     };
     out.family =
         static_cast<int>(std::find_if_not(order.begin(), order.end(), is_zero) - order.begin());
@@ -103,9 +172,11 @@ SteadyMotion SteadyEquations::motion(const SteadyPoint& at, int family) const {
   out.neutral = static_cast<int>(linear.orbit.cols()) + out.family;
   for (const size_t i : order) {
     out.eigenvalues.push_back(values[i]);
-    out.round_off.push_back(round_off[i]);
-    out.modes.push_back(parts_of(
-        linear.basis.cast<Complex>() * solver.vectors.col(static_cast<Eigen::Index>(i)), names_));
+    out.round_off.push_back(spectrum.errors[i]);
+    out.on_axis.push_back(on_axis[i]);
+    const Eigen::VectorXcd mode =
+        linear.basis.cast<Complex>() * spectrum.vectors.col(static_cast<Eigen::Index>(i));
+    out.modes.push_back(parts_of(mode, names_));
   }
   return out;
 }
@@ -127,6 +198,20 @@ int SteadyMotion::growing() const {
   int count = 0;
   for (size_t i = 0; i < eigenvalues.size(); ++i) count += eigenvalues[i].real() > round_off[i];
   return count;
+}
+
+std::optional<int> SteadyMotion::decided_growing() const {
+  if (!found) return std::nullopt;
+  for (size_t i = 0; i < eigenvalues.size(); ++i)
+    if (!on_axis[i] && !(std::abs(eigenvalues[i].real()) > round_off[i])) return std::nullopt;
+  return growing();
+}
+
+double SteadyMotion::largest_growth() const {
+  double out = 0;
+  for (size_t i = 0; i < eigenvalues.size(); ++i)
+    if (!on_axis[i]) out = std::max(out, eigenvalues[i].real() + round_off[i]);
+  return out;
 }
 
 std::string name_of(Bifurcation kind) {

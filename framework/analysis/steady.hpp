@@ -42,14 +42,20 @@ struct HAMEL_API SteadyMotion {
   double residual = 0;                    // of Z = X_s, phi and A xi = b
   std::vector<std::complex<double>>
       eigenvalues;  // 1/s, by real part, largest first; without the neutral ones
-  /// Errors, measured: how far each moves when the linearisation changes by its own error. A pair
-  /// that coincides with another is ill-conditioned.
+  /// Errors: how far each moves when the linearisation changes by its own error. A pair that
+  /// coincides with another is ill-conditioned.
   std::vector<double> round_off;
+  /// True of an eigenvalue whose real part is exactly 0: at rest, where time may run backwards.
+  std::vector<bool> on_axis;
   std::vector<std::vector<ModePart>> modes;  // what moves in each
   int neutral = 0;                           // directions of symmetry, and zeros of the family
   int family = 0;                            // of them, zeros of the family
-  /// How many eigenvalues have a positive real part, beyond their round-off.
+  /// How many eigenvalues have a positive real part, beyond their errors.
   int growing() const;
+  /// The same, where no error covers a sign; empty: not decided.
+  std::optional<int> decided_growing() const;
+  /// No mode grows faster, in 1/s.
+  double largest_growth() const;
 };
 
 /// The steady motion near a start, its rates named by components_of(model). Throws ConfigError when

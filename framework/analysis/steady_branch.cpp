@@ -34,9 +34,11 @@ std::shared_ptr<const SteadyEquations> Branch::equations(double value) {
     if (known_.size() >= most) known_.clear();
     const Simulation run = at_(value);
     const Run built = run.build();
-    auto made = std::make_shared<SteadyEquations>(registry_, built.system(), guess_of(run, built));
+    auto made = std::make_shared<SteadyEquations>(registry_, built.system(), guess_of(run, built),
+                                                  neighbour_.get());
     if (along_.size() > 0) made->hold_along(along_);
     if (scales_.columns.size() > 0) made->set_scales(scales_);
+    neighbour_ = made;
     found = known_.emplace(value, std::move(made)).first;
   }
   return found->second;

@@ -89,6 +89,7 @@ class Branch {
   Vector along_;  // the direction in which momentum is held, the same at all values
   StateUnits scales_;
   std::map<double, std::shared_ptr<const SteadyEquations>> known_;
+  std::shared_ptr<const SteadyEquations> neighbour_;  // the last one made
 };
 
 }  // namespace hamel::reduced

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -26,6 +27,13 @@ std::shared_ptr<const Geometry> geometry_of(const Registry& registry, const Syst
     throw ConfigError(
         {fmt::format("{}: group '{}' has no retraction exp", model.name, model.group.name)});
   return geometry;
+}
+
+Vector element_of(const Geometry& geometry, const SystemModel& model, const Start& start) {
+  Vector out(geometry.size());
+  geometry.from_coordinates(
+      start.configuration.empty() ? model.group.identity : start.configuration, out.data());
+  return out;
 }
 
 }  // namespace
@@ -59,19 +67,20 @@ ModeNames::ModeNames(const SystemModel& model) {
 }
 
 SteadyEquations::SteadyEquations(const Registry& registry, const SystemModel& model,
-                                 const Start& guess)
+                                 const Start& guess, const SteadyEquations* neighbour)
     : geometry_(geometry_of(registry, model)),
-      flow_(geometry_, model.mechanics),
-      guess_g_(geometry_->size()),
+      guess_g_(element_of(*geometry_, model, guess)),
+      flow_(geometry_, model.mechanics,
+            own_scales(components_of(model), *model.mechanics, guess_g_)),
       guess_xi_(to_vector(guess.velocity)),
       names_(model) {
-  geometry_->from_coordinates(
-      guess.configuration.empty() ? model.group.identity : guess.configuration, guess_g_.data());
   along_ = flow_.momentum(guess_g_, guess_xi_).normalized();
+  flow_.set_units(neighbour != nullptr ? neighbour->flow_.units() : units());
+  reach_ = neighbour != nullptr ? neighbour->reach_ : own_reach();
 }
 
 const Matrix& SteadyEquations::symmetries() const {
-  if (!has_symmetries_) symmetries_ = flow_.symmetries(guess_g_);
+  if (!has_symmetries_) symmetries_ = flow_.symmetries(guess_g_, guess_xi_, reach_.steps);
   has_symmetries_ = true;
   return symmetries_;
 }
@@ -80,9 +89,9 @@ Matrix SteadyEquations::orbit(const SteadyPoint& at) const {
   return range_of(flow_.orbit(symmetries(), at.g, at.xi), 1e-9, 1);
 }
 
-Vector SteadyEquations::field(const Vector& g, const Vector& xi) const {
+Vector SteadyEquations::field(const Vector& g, const Vector& xi, const Reach& reach) const {
   Vector z(2 * dim());
-  z << xi, flow_.acceleration(g, xi);
+  z << xi, flow_.acceleration(g, xi, reach.extents);
   return z;
 }
 
@@ -92,7 +101,7 @@ const StateUnits& SteadyEquations::scales() const {
 }
 
 SteadyPoint SteadyEquations::carried(Vector g, Vector xi) const {
-  const Vector z = field(g, xi);
+  const Vector z = field(g, xi, reach_);
   SteadyPoint out{.g = std::move(g), .xi = std::move(xi), .generator = {}};
   out.generator = symmetries() * least_norm(flow_.orbit(symmetries(), out.g, out.xi), z);
   return out;
@@ -100,21 +109,22 @@ SteadyPoint SteadyEquations::carried(Vector g, Vector xi) const {
 
 SteadyPoint SteadyEquations::at(Vector g, Vector xi) const {
   SteadyPoint out = carried(std::move(g), std::move(xi));
-  const Vector left = equations(out.generator, out.g, out.xi);
+  const Vector left = equations(out.generator, out.g, out.xi, reach_);
   const double size = 1 + out.xi.cwiseQuotient(scales().columns.tail(dim())).norm();
   out.residual = scales().rows.head(left.size()).cwiseProduct(left).norm() / size;
   return out;
 }
 
-Vector SteadyEquations::equations(const Vector& generator, const Vector& g,
-                                  const Vector& xi) const {
+Vector SteadyEquations::equations(const Vector& generator, const Vector& g, const Vector& xi,
+                                  const Reach& reach) const {
   Vector out(2 * dim() + flow_.holonomic_rows() + flow_.constraint_count());
-  out << field(g, xi) - flow_.orbit(generator, g, xi), flow_.holonomic(g), flow_.slip(g, xi);
+  out << field(g, xi, reach) - flow_.carrier(generator, g, xi), flow_.holonomic(g),
+      flow_.slip(g, xi);
   return out;
 }
 
 Vector SteadyEquations::values(const SteadyPoint& at, bool held) const {
-  Vector out = equations(at.generator, at.g, at.xi);
+  Vector out = equations(at.generator, at.g, at.xi, reach_);
   if (!held) return out;
   out.conservativeResize(out.size() + 1);
   out[out.size() - 1] = along_.dot(at.xi - guess_xi_);
@@ -138,25 +148,23 @@ Matrix SteadyEquations::carriers(const SteadyPoint& at) const {
   return out;
 }
 
-Matrix SteadyEquations::derivative(const SteadyPoint& at, double unit) const {
+Matrix SteadyEquations::derivative(const SteadyPoint& at) const {
   const int n = dim();
   Matrix out = Matrix::Zero(2 * n + flow_.holonomic_rows() + flow_.constraint_count(), 2 * n);
   for (int j = 0; j < 2 * n; ++j) {
     const Vector along = Vector::Unit(n, j % n);
     const bool velocity = j >= n;
-    // Accelerations are quadratic in xi, so that the step may grow with it.
-    const double step = velocity ? unit * std::max(1.0, at.xi.norm()) : unit;
-    differentiate(step, [&](double e, double weight) {
-      out.col(j) +=
-          weight * (velocity ? equations(at.generator, at.g, at.xi + e * along)
-                             : equations(at.generator, flow_.moved(at.g, e * along), at.xi));
+    differentiate(reach_.steps[j], [&](double e, double weight) {
+      out.col(j) += weight * (velocity ? equations(at.generator, at.g, at.xi + e * along, reach_)
+                                       : equations(at.generator, flow_.moved(at.g, e * along),
+                                                   at.xi, reach_));
     });
   }
   return out;
 }
 
 Matrix SteadyEquations::slope(const SteadyPoint& at, bool held) const {
-  const Matrix of_state = derivative(at, kStep);
+  const Matrix of_state = derivative(at);
   const Matrix orbit = this->orbit(at);
   Matrix out = Matrix::Zero(of_state.rows() + (held ? 1 : 0), of_state.cols() + orbit.cols());
   out.topLeftCorner(of_state.rows(), of_state.cols()) = of_state;
@@ -250,21 +258,6 @@ Matrix SteadyEquations::beside(const SteadyPoint& at, const Singular& singular,
   const Matrix orbit = this->orbit(at);
   const Matrix null = singular.right.leftCols(count);
   return range_of(null - orbit * (orbit.transpose() * null), 1e-6, 1);
-}
-
-ReducedLinearisation SteadyEquations::linearise(const SteadyPoint& at) const {
-  const int n = dim();
-  ReducedLinearisation out;
-  out.orbit = orbit(at);
-  const Matrix whole = derivative(at, kStep);  // of W, phi, A xi - b
-  Matrix bounds(flow_.holonomic_rows() + flow_.constraint_count() + out.orbit.cols(), 2 * n);
-  bounds << whole.bottomRows(flow_.holonomic_rows() + flow_.constraint_count()),
-      out.orbit.transpose();
-  out.basis = kernel_of(bounds, 1e-11);
-  out.flow = out.basis.transpose() * whole.topRows(2 * n) * out.basis;
-  for (const double unit : {0.8 * kStep, 1.25 * kStep})
-    out.again.push_back(out.basis.transpose() * derivative(at, unit).topRows(2 * n) * out.basis);
-  return out;
 }
 
 }  // namespace hamel::reduced

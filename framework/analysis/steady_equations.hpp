@@ -30,13 +30,14 @@ struct StateUnits {
   Vector columns, rows;
 };
 
-/// The linearisation about a steady motion, without the symmetries: z = (delta, nu) = basis y, y' =
-/// flow y.
+/// The linearisation about a steady motion, without the symmetries: z = (delta, nu) = basis y, y =
+/// dual z, y' = flow y.
 struct ReducedLinearisation {
-  Matrix basis, flow;  // orthonormal columns
-  Matrix orbit;        // the directions divided out
-  std::vector<Matrix>
-      again;  // flow by differences of other sizes: it is known as well as these agree
+  Matrix basis, dual, flow;  // dual basis = 1; columns are orthonormal in units of `sizes`
+  Matrix error;              // of the entries of flow
+  Matrix orbit;              // the directions divided out
+  double rate = 1;           // 1/s, of the fastest change
+  Vector sizes;              // of the 2n numbers: lengths and rates of the system itself
 };
 
 /// Least-norm solution of a x = b: what is `least` of the largest column, or of 1, is zero.
@@ -51,10 +52,19 @@ struct ModeNames {
   explicit ModeNames(const SystemModel& model);
 };
 
+/// Steps in which the equations are differentiated near a point.
+struct Reach {
+  Vector extents;   // of the inertia and the rows, by displacement
+  Vector steps;     // of the 2n numbers: what the equations are smooth over
+  double rate = 1;  // 1/s, of the fastest change
+};
+
 class SteadyEquations {
  public:
-  /// Throws ConfigError when the system depends on time.
-  SteadyEquations(const Registry& registry, const SystemModel& model, const Start& guess);
+  /// Throws ConfigError when the system depends on time. neighbour: along a parameter; its reach is
+  /// taken, which saves finding it.
+  SteadyEquations(const Registry& registry, const SystemModel& model, const Start& guess,
+                  const SteadyEquations* neighbour = nullptr);
 
   int dim() const { return flow_.dim(); }
   const Flow& flow() const { return flow_; }
@@ -106,8 +116,7 @@ class SteadyEquations {
   Matrix beside(const SteadyPoint& at, const Singular& singular, Eigen::Index count) const;
 
   ReducedLinearisation linearise(const SteadyPoint& at) const;
-  /// family: how many zeros of the family there are; -1: those that are zero to 1e-7 or their
-  /// round-off.
+  /// family: how many zeros of the family there are; -1: those that are zero to their errors.
   SteadyMotion motion(const SteadyPoint& at, int family) const;
 
  private:
@@ -116,14 +125,22 @@ class SteadyEquations {
   void measure_by_itself(SteadyPoint& at) const;
   // In own units.
   Vector newton_step(const SteadyPoint& at, bool held) const;
-  Vector field(const Vector& g, const Vector& xi) const;
-  Vector equations(const Vector& generator, const Vector& g, const Vector& xi) const;
-  Matrix derivative(const SteadyPoint& at, double step) const;
+  Vector field(const Vector& g, const Vector& xi, const Reach& reach) const;
+  Vector equations(const Vector& generator, const Vector& g, const Vector& xi,
+                   const Reach& reach) const;
+  Vector units() const;
+  Reach own_reach() const;
+  CentralDifferences differences(const SteadyPoint& at, int number, const Reach& reach,
+                                 const Vector& noise) const;
+  Vector noise_at(const SteadyPoint& at, const Reach& reach) const;
+  Matrix derivative(const SteadyPoint& at) const;
 
   std::shared_ptr<const Geometry> geometry_;
+  Vector guess_g_;
   Flow flow_;
-  Vector guess_g_, guess_xi_, along_;
+  Vector guess_xi_, along_;
   ModeNames names_;
+  Reach reach_;                // of the guess
   mutable Matrix symmetries_;  // computed on first use
   mutable bool has_symmetries_ = false;
   mutable StateUnits scales_;  // the same

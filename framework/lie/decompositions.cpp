@@ -77,5 +77,8 @@ Eigensystem eigen(const Matrix& m) {
 Eigen::VectorXcd eigenvalues(const Matrix& m) {
   return Eigen::EigenSolver<Matrix>(m, false).eigenvalues();
 }
+Eigen::MatrixXcd left_eigenvectors(const Eigensystem& right) {
+  return right.vectors.partialPivLu().inverse().adjoint();
+}
 
 }  // namespace hamel::dense

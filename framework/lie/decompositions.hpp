@@ -72,5 +72,8 @@ struct Eigensystem {
 };
 Eigensystem eigen(const Matrix& m);
 Eigen::VectorXcd eigenvalues(const Matrix& m);
+/// Left eigenvectors of the same matrix, w^H m = value w^H and w^H v = 1, as columns; not finite
+/// where m has a Jordan block.
+Eigen::MatrixXcd left_eigenvectors(const Eigensystem& right);
 
 }  // namespace hamel::dense

@@ -282,68 +282,6 @@ TEST_F(Steady, HamiltonianHopf) {
   EXPECT_THAT(o.out, HasSubstr("stability changes at p = 0.0900000000"));
 }
 
-/// A fourfold -1 and a fourfold 0 in one block of four: the digits that are printed are right, and
-/// none that is wrong is.
-TEST_F(Steady, DigitsThatAreKnown) {
-  const std::string critical = particle(
-      "group = \"r2\"\ninertia = [1, 1]\n"
-      "force = [\"-2*x1' - x1 + x2\", \"-2*x2' - x2\"]\nconfiguration = [0, 0]\n"
-      "velocity = [0, 0]\n");
-  const json s = json::parse(run({"steady", critical, "--json"}).out);
-  ASSERT_EQ(s["eigenvalues"].size(), 4u);
-  for (size_t i = 0; i < 4; ++i) {
-    EXPECT_GT(s["round_off"][i], 1e-6);
-    EXPECT_NEAR(s["eigenvalues"][i][0], -1, s["round_off"][i]);
-    EXPECT_NEAR(s["eigenvalues"][i][1], 0, s["round_off"][i]);
-  }
-  EXPECT_THAT(run({"steady", critical}).out, Not(HasSubstr("0.99999")));
-  const std::string drifting = particle(
-      "group = \"r2\"\ninertia = [1, 1]\n"
-      "force = [\"p*x2 - 1e-3*x1^3\", \"-x2^3\"]\nconfiguration = [0, 0]\nvelocity = [0, 0]\n");
-  const json zero = json::parse(run({"steady", drifting, "--json"}).out);
-  EXPECT_TRUE(zero["eigenvalues"].empty()) << zero["eigenvalues"];
-  EXPECT_EQ(zero["neutral"], 4);
-}
-
-/// A, B, C by names, and the pair for a sample time; for small h it is 1 + A h and B h.
-/// The velocity has names, without digits that are round-off; the start can be given again.
-TEST_F(Steady, AStartToCopy) {
-  const Outcome o = run({"steady", "falling_disk", "--speed", "3"});
-  ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_THAT(o.out, HasSubstr("  velocity      omega1 = 0, omega2 = 0, omega3 = 6, v1 = -3, "
-                               "v2 = 0, v3 = 0\n"));
-  const std::string start = "--configuration 1,0,0,0,0,-1,0,1,0,0,0,0.5 --velocity 0,0,6,-3,0,0";
-  EXPECT_THAT(o.out, HasSubstr("  as a start    " + start + "\n"));
-  const Outcome again = run({"steady", "falling_disk", "--configuration",
-                             "1,0,0,0,0,-1,0,1,0,0,0,0.5", "--velocity", "0,0,6,-3,0,0"});
-  EXPECT_THAT(again.out, HasSubstr(start));
-}
-
-TEST_F(Steady, LinearisationForControl) {
-  const json s = answer({"steady", "segway", "--speed", "1", "--sample-time", "1e-6"});
-  const json& linear = s["linearisation"];
-  const size_t n = linear["states"].size();
-  EXPECT_THAT(linear["states"].get<std::vector<std::string>>(), testing::Contains("pitch"));
-  EXPECT_EQ(linear["inputs"], json({"right_torque", "left_torque"}));
-  ASSERT_EQ(linear["A"].size(), n);
-  ASSERT_EQ(linear["B"].size(), n);
-  EXPECT_EQ(linear["C"].size(), linear["quantities"].size());
-  const json& pair = linear["discrete"];
-  EXPECT_EQ(pair["sample_time"], 1e-6);
-  for (size_t i = 0; i < n; ++i) {
-    for (size_t j = 0; j < n; ++j) {
-      const double a = linear["A"][i][j], sampled = pair["A"][i][j];
-      EXPECT_NEAR(sampled, (i == j ? 1 : 0) + 1e-6 * a, 1e-9);
-    }
-    for (size_t j = 0; j < 2; ++j) {
-      const double b = linear["B"][i][j], sampled = pair["B"][i][j];
-      EXPECT_NEAR(sampled, 1e-6 * b, 1e-9);
-    }
-  }
-  EXPECT_THAT(run({"steady", "segway", "--sample-time", "-1", "--json"}).err,
-              HasSubstr("--sample-time"));
-}
-
 TEST_F(Steady, BranchesNeedAParameter) {
   EXPECT_THAT(run({"steady", "bicycle", "--speed", "5", "--branches"}).err,
               HasSubstr("give --vary"));

@@ -76,6 +76,22 @@ Json eigenvalues_of(const SteadyMotion& motion) {
   return out;
 }
 
+// Null where an error covers the verdict.
+Json growing_of(const SteadyMotion& motion) {
+  const std::optional<int> growing = motion.decided_growing();
+  return growing ? Json(*growing) : Json();
+}
+
+// Of each eigenvalue what moves, velocities first.
+Json modes_of(const SteadyMotion& motion) {
+  Json out = Json::array();
+  for (const std::vector<ModePart>& mode : motion.modes) {
+    Json& parts = out.emplace_back(Json::object());
+    for (const ModePart& part : mode) parts[part.name] = part.size;
+  }
+  return out;
+}
+
 Json json_of(const SteadyPlace& place) {
   return {{"value", place.value}, {"element", place.element}, {"velocity", place.velocity}};
 }
@@ -91,10 +107,18 @@ Json json_of(const NumberMatrix& m) {
 }
 
 Json json_of(const Linearisation& linear, const std::optional<double>& sample_time) {
-  Json out = {{"states", linear.states},         {"inputs", linear.inputs},
-              {"quantities", linear.quantities}, {"A", json_of(linear.a)},
-              {"B", json_of(linear.b)},          {"C", json_of(linear.c)},
-              {"values", linear.values},         {"embedding", json_of(linear.embedding)},
+  Json out = {{"states", linear.states},
+              {"inputs", linear.inputs},
+              {"quantities", linear.quantities},
+              {"A", json_of(linear.a)},
+              {"B", json_of(linear.b)},
+              {"C", json_of(linear.c)},
+              {"errors",
+               {{"A", json_of(linear.a_error)},
+                {"B", json_of(linear.b_error)},
+                {"C", json_of(linear.c_error)}}},
+              {"values", linear.values},
+              {"embedding", json_of(linear.embedding)},
               {"unused_inputs", linear.unused}};
   if (sample_time) {
     const DiscretePair pair = linear.sampled(*sample_time);
@@ -111,7 +135,9 @@ Json json_of(const SteadySweep& sweep) {
     Json& entry = out["vary"].emplace_back(Json{{"value", sweep.values[i]},
                                                 {"found", motion.found},
                                                 {"eigenvalues", eigenvalues_of(motion)},
-                                                {"round_off", motion.round_off}});
+                                                {"eigenvalue_errors", motion.round_off},
+                                                {"round_off", motion.round_off},
+                                                {"growing", growing_of(motion)}});
     if (motion.found)
       entry["motion"] = {{"element", motion.element}, {"velocity", motion.velocity}};
   }
@@ -143,8 +169,7 @@ void print(const SystemModel& system, const SteadyMotion& motion) {
       start_text(motion.velocity));
   say("  neutral       {}, of them {} along the family of steady motions\n", motion.neutral,
       motion.family);
-  const int growing = motion.growing();
-  say("  {}\n", growing > 0 ? fmt::format("unstable: {} growing", growing) : "no growing mode");
+  say("  {}\n", stability_text(motion));
   say("  eigenvalues [1/s], and what moves\n");
   for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
     const auto x = motion.eigenvalues[i];
@@ -166,7 +191,9 @@ void print(const std::string& name, const SteadySweep& sweep) {
       continue;
     }
     const bool any = !motion.eigenvalues.empty();
-    say("  {:>12.6g}  {:>7}  {}\n", sweep.values[i], motion.growing(),
+    const std::optional<int> growing = motion.decided_growing();
+    say("  {:>12.6g}  {:>7}  {}\n", sweep.values[i],
+        growing ? std::to_string(*growing) : fmt::format("{} ?", motion.growing()),
         any ? known_text(motion.eigenvalues[0].real(), motion.round_off[0]) : "0");
   }
   for (const SteadyCrossing& crossing : sweep.crossings) {
@@ -190,11 +217,8 @@ std::string command_line(const SteadyOptions& options) {
   return out + (options.branches ? " --branches" : "");
 }
 
-}  // namespace
-
-int steady(const SteadyOptions& options) {
-  std::optional<Vary> vary;
-  if (!options.vary.empty()) vary.emplace(options.vary);
+// What cannot be, before anything runs.
+void refuse_mistakes(const SteadyOptions& options, bool vary) {
   if (options.branches && !vary)
     throw ConfigError({"--branches: branches meet along a parameter; give --vary"});
   if (options.sample_time && (!options.json || vary))
@@ -208,6 +232,41 @@ int steady(const SteadyOptions& options) {
     if (const auto mistakes = page_mistakes(options.report); !mistakes.empty())
       throw ConfigError(mistakes);
   }
+}
+
+// sweep: none without --vary.
+Json answer(const SteadyOptions& options, const Simulation& first, const SystemModel& system,
+            const SteadyMotion& motion, const SteadySweep* sweep) {
+  Json out = {{"system", options.config.system},
+              {"parameters", Json::object()},
+              {"motion", {{"element", motion.element}, {"velocity", motion.velocity}}},
+              {"residual", motion.residual},
+              {"eigenvalues", eigenvalues_of(motion)},
+              {"eigenvalue_errors", motion.round_off},
+              {"round_off", motion.round_off},
+              {"growing", growing_of(motion)},
+              {"modes", modes_of(motion)},
+              {"neutral", motion.neutral}};
+  for (const Field& field : system.fields) out["parameters"][field.name] = field.value;
+  if (motion.found && sweep == nullptr)
+    out["linearisation"] = json_of(linearisation(registry(), first), options.sample_time);
+  if (sweep != nullptr) {
+    out.update(json_of(*sweep));
+    if (options.branches) out["branches"] = Json::array();
+    for (const SteadySweep& branch : sweep->branches) {
+      Json& entry = out["branches"].emplace_back(json_of(branch));
+      entry["start"] = json_of(*branch.start);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+int steady(const SteadyOptions& options) {
+  std::optional<Vary> vary;
+  if (!options.vary.empty()) vary.emplace(options.vary);
+  refuse_mistakes(options, vary.has_value());
   const Simulation first = at(options, vary ? vary->name : "", vary ? vary->values[0] : 0);
   const Run built = first.build();
   const SystemModel& system = built.system();
@@ -225,25 +284,7 @@ int steady(const SteadyOptions& options) {
   const bool any = std::any_of(sweep.motions.begin(), sweep.motions.end(),
                                [](const SteadyMotion& one) { return one.found; });
   if (options.json) {
-    Json out = {{"system", options.config.system},
-                {"parameters", Json::object()},
-                {"motion", {{"element", motion.element}, {"velocity", motion.velocity}}},
-                {"residual", motion.residual},
-                {"eigenvalues", eigenvalues_of(motion)},
-                {"round_off", motion.round_off},
-                {"neutral", motion.neutral}};
-    for (const Field& field : system.fields) out["parameters"][field.name] = field.value;
-    if (motion.found && !vary)
-      out["linearisation"] = json_of(linearisation(registry(), first), options.sample_time);
-    if (vary) {
-      out.update(json_of(sweep));
-      if (options.branches) out["branches"] = Json::array();
-      for (const SteadySweep& branch : sweep.branches) {
-        Json& entry = out["branches"].emplace_back(json_of(branch));
-        entry["start"] = json_of(*branch.start);
-      }
-    }
-    say_json(out);
+    say_json(answer(options, first, system, motion, vary ? &sweep : nullptr));
   } else {
     if (motion.found) print(system, motion);
     else if (!vary) say("{}: no steady motion was found near this start\n", system.name);

@@ -19,6 +19,15 @@ std::string known_text(double x, double round_off) {
   return fmt::format("{:.{}f}", round_to_known(x, known), known_decimals(known));
 }
 
+std::string stability_text(const SteadyMotion& motion) {
+  const int growing = motion.growing();
+  if (motion.decided_growing())
+    return growing > 0 ? fmt::format("unstable: {} growing", growing) : "no growing mode";
+  const std::string bound = fmt::format("{:.1e}", motion.largest_growth());
+  if (growing == 0) return fmt::format("not decided: no mode grows faster than {} 1/s", bound);
+  return fmt::format("unstable: {} growing, the sign of others is not decided", growing);
+}
+
 std::string start_text(const std::vector<double>& values) {
   double largest = 0;
   for (const double x : values) largest = std::max(largest, std::abs(x));
@@ -124,7 +133,7 @@ std::vector<Band> stable_bands(const SteadySweep& sweep) {
   bool open = false;
   for (size_t i = 0; i < sweep.values.size(); ++i) {
     const SteadyMotion& motion = sweep.motions[i];
-    const bool stable = motion.found && motion.growing() == 0;
+    const bool stable = motion.decided_growing() == 0;
     const bool before = i > 0 && sweep.motions[i - 1].found;
     if (stable && !open) {
       out.push_back(

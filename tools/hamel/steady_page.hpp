@@ -15,6 +15,8 @@ namespace hamel::tools {
 std::string known_text(double x, double round_off);
 /// Numbers of a start as an option has them, without the round-off of the largest.
 std::string start_text(const std::vector<double>& values);
+/// How many modes grow, or that the errors of the eigenvalues cover it.
+std::string stability_text(const SteadyMotion& motion);
 /// "steer.rate 1.00, w1 0.31".
 std::string modes_text(const std::vector<ModePart>& parts);
 /// "4.29238253634, a pair of complex eigenvalues crosses the imaginary axis (Hopf)".

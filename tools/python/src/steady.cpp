@@ -89,7 +89,7 @@ void bind_motion(nb::module_& m) {
       .def_prop_ro(
           "round_off", [](const SteadyMotion& s) { return array(s.round_off); },
           nb::sig("def round_off(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "of each eigenvalue, measured")
+          "error of each eigenvalue")
       .def_prop_ro(
           "modes",
           [](const SteadyMotion& s) {
@@ -100,14 +100,16 @@ void bind_motion(nb::module_& m) {
             }
             return out;
           },
-          "of each eigenvalue how much every velocity takes part, 1 the largest")
+          "of each eigenvalue how much every velocity takes part, 1 the largest, and the "
+          "coordinates of "
+          "the shape beside it")
       .def_ro("neutral", &SteadyMotion::neutral, "directions of symmetry, and zeros of the family")
       .def_ro("family", &SteadyMotion::family)
-      .def_prop_ro("growing", &SteadyMotion::growing,
-                   "how many eigenvalues have a positive real part, beyond their round-off")
+      .def_prop_ro("growing", &SteadyMotion::decided_growing,
+                   "how many eigenvalues have a positive real part; None where the errors cover it")
       .def_prop_ro(
-          "stable", [](const SteadyMotion& s) { return s.found && s.growing() == 0; },
-          "whether no eigenvalue grows")
+          "stable", [](const SteadyMotion& s) { return s.decided_growing() == 0; },
+          "whether no eigenvalue grows, beyond doubt")
       .def("__repr__", [](const SteadyMotion& s) {
         if (!s.found) return std::string("<hamel.SteadyMotion: none found>");
         return "<hamel.SteadyMotion at velocity [" + join(s.velocity) + "], " +
@@ -181,6 +183,15 @@ void bind_linearisation(nb::module_& m) {
           "C", [](const Linearisation& l) { return array_of(l.c); },
           nb::sig("def C(self) -> numpy.typing.NDArray[numpy.float64]"),
           "shape (quantities, states)")
+      .def_prop_ro(
+          "A_error", [](const Linearisation& l) { return array_of(l.a_error); },
+          nb::sig("def A_error(self) -> numpy.typing.NDArray[numpy.float64]"), "of each entry of A")
+      .def_prop_ro(
+          "B_error", [](const Linearisation& l) { return array_of(l.b_error); },
+          nb::sig("def B_error(self) -> numpy.typing.NDArray[numpy.float64]"), "of each entry of B")
+      .def_prop_ro(
+          "C_error", [](const Linearisation& l) { return array_of(l.c_error); },
+          nb::sig("def C_error(self) -> numpy.typing.NDArray[numpy.float64]"), "of each entry of C")
       .def_prop_ro(
           "values", [](const Linearisation& l) { return array(l.values); },
           nb::sig("def values(self) -> numpy.typing.NDArray[numpy.float64]"),

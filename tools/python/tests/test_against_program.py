@@ -96,12 +96,14 @@ def test_steady_motion(cli_json):
     ours = hamel.steady("bicycle", speed=5)
     assert ours and ours.stable and ours.growing == 0
     np.testing.assert_array_equal(ours.velocity, theirs["motion"]["velocity"])
-    np.testing.assert_array_equal(ours.round_off, theirs["round_off"])
+    np.testing.assert_array_equal(ours.round_off, theirs["eigenvalue_errors"])
     rounded = np.array([complex(*pair) for pair in theirs["eigenvalues"]])  # to the known digits
     assert np.all(np.abs(ours.eigenvalues - rounded) <= 10 * ours.round_off + 1e-15)
     linear = hamel.linearisation("bicycle", speed=5)
     for name in "ABC":
-        np.testing.assert_array_equal(getattr(linear, name), theirs["linearisation"][name])
+        written = theirs["linearisation"]
+        np.testing.assert_array_equal(getattr(linear, name), written[name])
+        np.testing.assert_array_equal(getattr(linear, name + "_error"), written["errors"][name])
     assert linear.states == theirs["linearisation"]["states"]
 
 
