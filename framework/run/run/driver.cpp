@@ -185,10 +185,11 @@ Status Driver::steps_go_on(long steps, const Snapshot& now) {
   };
   if (config.chooses_steps()) {
     const bool due = count_tries(steps);
-    if (steps_.look(now.time))
-      return ends(reason_of_small_steps(*plan_.system, plan_.setup, kernel()));
-    if (due && steps_.rejects())
-      if (const auto reason = reason_of_rejections(*plan_.system, plan_.setup, kernel()))
+    const bool creep = steps_.look(now.time);
+    const double usual = steps_.shrunk_from();
+    if (creep) return ends(reason_of_small_steps(*plan_.system, plan_.setup, kernel(), usual));
+    if (due && (steps_.rejects() || usual > 0))
+      if (const auto reason = reason_of_round_off(*plan_.system, plan_.setup, kernel(), usual))
         return ends(*reason);
   }
   if (config.steps_max > 0 && kernel().whole_steps() >= config.steps_max)

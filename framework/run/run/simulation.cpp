@@ -1,5 +1,6 @@
 #include <hamel/framework/run/run/simulation.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -26,7 +27,16 @@ void add_notes(Result& result, long impacts) {
         impacts, impacts > 1 ? "s" : "", result.last.time));
   }
   constexpr double percent = 0.01;
-  if (!std::isfinite(result.work) && result.energy_error_max > percent) {
+  // Of an energy that is 0 at the start, or nearly, the change is compared with the kinetic energy.
+  const Snapshot& last = result.last;
+  double kinetic = 0;
+  for (size_t i = 0; i < std::min(last.velocity.size(), last.momentum.size()); ++i)
+    kinetic += 0.5 * last.velocity[i] * last.momentum[i];
+  const bool small = std::any_of(
+      result.invariants.begin(), result.invariants.end(), [&](const InvariantDrift& kept) {
+        return kept.name == "energy" && std::abs(kept.start) + kept.drift_max < percent * kinetic;
+      });
+  if (!std::isfinite(result.work) && result.energy_error_max > percent && !small) {
     result.notes.push_back(
         fmt::format("the energy changes by {:.2g} of its size though nothing does work: take a "
                     "smaller step{}",

@@ -14,8 +14,9 @@
 namespace hamel {
 namespace {
 
-// A part of the tolerance that round-off may be of.
-constexpr double kNoise = 0.1;
+// Parts of the tolerance that round-off may be of: where steps are rejected, and where they have
+// shrunk to what it leaves of them, as a truncation error of the size of the tolerance has less.
+constexpr double kNoise = 0.1, kNoiseOfSmall = 3e-3;
 
 Eigen::VectorXd vector_of(const std::vector<double>& x) {
   return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
@@ -105,9 +106,10 @@ std::optional<std::string> jumping_force(const SystemModel& system, const Kernel
       components_of(system)[i].name, jump, now.time, formula);
 }
 
-// The error estimate of a step cannot be below what round-off in the place makes of xi'.
+// The error estimate of a step cannot be below what round-off in the place makes of xi'. usual: the
+// size of earlier steps, to which these have shrunk; 0: they have not.
 std::optional<std::string> below_round_off(const KernelSetup& setup, const Snapshot& now,
-                                           double step) {
+                                           double step, double usual = 0) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   EquationsOfMotion<DynamicProblem> motion(DynamicProblem(setup.geometry, setup.mechanics));
   Eigen::VectorXd g(setup.geometry->size()), turned(g.size());
@@ -129,17 +131,18 @@ std::optional<std::string> below_round_off(const KernelSetup& setup, const Snaps
       noise = std::max(noise, std::abs(motion.acceleration()[i] - rate[i]) * std::abs(step) /
                                   (setup.atol + setup.rtol * std::abs(xi[i])));
   }
-  if (!(noise > kNoise)) return {};
+  if (!(noise > (usual > 0 ? kNoiseOfSmall : kNoise))) return {};
+  const double reached = usual > 0 ? noise * usual / std::abs(step) : 100 * noise;
   return fmt::format(
       "rtol = {:g} is below the round-off of the equations of motion at t = {:.6g}: "
       "at least {:.0e} can be reached",
-      setup.rtol, now.time, 100 * noise * setup.rtol);
+      setup.rtol, now.time, reached * setup.rtol);
 }
 
 }  // namespace
 
 std::string reason_of_small_steps(const SystemModel& system, const KernelSetup& setup,
-                                  Kernel& kernel) {
+                                  Kernel& kernel, double usual) {
   Snapshot before, now;
   kernel.node(before);
   static_cast<void>(kernel.advance(1));
@@ -149,7 +152,7 @@ std::string reason_of_small_steps(const SystemModel& system, const KernelSetup& 
   if (setup.geometry != nullptr) try {
       found = dependent_rows(system, setup, now);
       if (!found) found = jumping_force(system, setup, before, now);
-      if (!found) found = below_round_off(setup, now, step);
+      if (!found) found = below_round_off(setup, now, step, usual);
     } catch (const std::exception&) {  // no element, no value beyond the states
     }
   return fmt::format("steps of {:.1e} s do not reach the end: {}", step,
@@ -157,13 +160,13 @@ std::string reason_of_small_steps(const SystemModel& system, const KernelSetup& 
                          "the motion is nearly singular at t = {:.6g}, or stiff", now.time)));
 }
 
-std::optional<std::string> reason_of_rejections(const SystemModel& system, const KernelSetup& setup,
-                                                Kernel& kernel) {
+std::optional<std::string> reason_of_round_off(const SystemModel& system, const KernelSetup& setup,
+                                               Kernel& kernel, double usual) {
   if (setup.geometry == nullptr) return {};
   Snapshot now;
   kernel.node(now);
   if (dependent_rows(system, setup, now)) return {};  // round-off is theirs: do the steps creep?
-  return below_round_off(setup, now, kernel.next_step());
+  return below_round_off(setup, now, kernel.next_step(), usual);
 }
 
 }  // namespace hamel
