@@ -162,6 +162,33 @@ double own_length(Fields& fields, const Vector& from) {
   return out;
 }
 
+Generation orbit(Fields& fields, const Vector& from) {
+  const Eigen::Index rows = fields.coordinates(), each = fields.count();
+  const Eigen::Index paths = 2 * ((rows + each - 1) / each) + 2;
+  std::mt19937 random(5);
+  const auto uniform = [&random] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
+  const double length = own_length(fields, from);
+  Generation out{Matrix(rows, each * paths), 0, 0, {}};
+  Matrix coarse = out.brackets;
+  for (Eigen::Index w = 0; w < paths; ++w) {
+    Path path, halves;
+    for (int i = 0; i < 4; ++i) {
+      Vector u(each);
+      for (double& entry : u) entry = uniform();
+      const double piece = 0.25 * (0.5 + 0.5 * std::abs(uniform()));
+      path.push_back({u.normalized(), piece});
+      for (int half = 0; half < 2; ++half) halves.push_back({u.normalized(), piece / 2});
+    }
+    coarse.middleCols(each * w, each) = carried(fields, path, length, from, 0.02 * length);
+    out.brackets.middleCols(each * w, each) = carried(fields, halves, length, from, 0.012 * length);
+  }
+  const Matrix difference = out.brackets - coarse;
+  out.size = out.brackets.norm();
+  out.error = difference.norm();
+  out.errors = difference.cwiseAbs().rowwise().maxCoeff();
+  return out;
+}
+
 std::vector<Generation> generations(Fields& fields, const Vector& from, int depth) {
   const Eigen::Index rows = fields.coordinates(), each = fields.count();
   const Eigen::Index paths = (rows + each - 1) / each + 1;

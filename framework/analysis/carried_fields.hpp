@@ -64,6 +64,9 @@ struct Generation {
 };
 /// The length over which the fields are smooth there, 1 at most: radii and steps are parts of it.
 double own_length(Fields& fields, const Vector& from);
+/// The fields carried back along random paths, which span the directions of the orbit through
+/// `from`: those of all brackets, if the fields are analytic (Sussmann 1973, Nagano 1966).
+Generation orbit(Fields& fields, const Vector& from);
 /// From a place `from`, entry j the brackets of j + 1 fields.
 std::vector<Generation> generations(Fields& fields, const Vector& from, int depth);
 

@@ -35,9 +35,9 @@ bool is_small_only(const Generation& generation, const Matrix& span) {
   return ((left - kSure * bound).array() > 0).any();
 }
 
-// possible: the directions that holonomic rows leave.
+// possible: the directions that holonomic rows leave. least: what is smaller is no new direction.
 Reach reach_of(const std::vector<Generation>& generations, Eigen::Index fields,
-               Eigen::Index possible) {
+               Eigen::Index possible, double least = kNew) {
   const Eigen::Index rows = generations.front().brackets.rows();
   Matrix span(rows, 0);
   double tilt = 0;  // of the span, by the errors of what is in it
@@ -51,7 +51,7 @@ Reach reach_of(const std::vector<Generation>& generations, Eigen::Index fields,
     Eigen::Index fresh = 0;
     const Vector& sizes = svd.values;
     const Eigen::Index most = std::min(sizes.size(), possible - span.cols());
-    while (fresh < most && sizes[fresh] > 10 * error + kNew * size) ++fresh;
+    while (fresh < most && sizes[fresh] > 10 * error + least * size) ++fresh;
     // A generation at round-off decides nothing, unless no direction is left.
     if (span.cols() + fresh < possible && !(10 * error < kDecided * size)) {
       out.round_off = true;
@@ -200,6 +200,12 @@ Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const dou
         nearby = closed_at(generic, possible);
       }
       if (reach.dimensions.back() == nearby) break;
+    }
+    // What nested brackets leave to round-off, paths decide.
+    if (nearby < 0 && !out.near_zero && !reach.near_zero) {
+      const Reach whole = reach_of({orbit(fields, here)}, fields.count(), possible, 0);
+      out.near_zero = whole.near_zero;
+      if (!whole.round_off) nearby = whole.dimensions.back();
     }
   }
   out.looked_at = static_cast<int>(reach.dimensions.size());

@@ -42,6 +42,14 @@ TEST(Growth, GoesOnWhereABracketVanishes) {
   EXPECT_TRUE(singular.decided() && regular.decided());
 }
 
+/// A car whose rear wheels turn apart as it turns round: 6 of 7 directions, the sixth 1e-7 of the
+/// first, and one integral. Brackets of five fields are at round-off; paths decide.
+TEST(Growth, PathsDecideWhatBracketsDoNot) {
+  const Analysis analysis = analyse(registry(), "car", {});
+  EXPECT_THAT(analysis.growth.dimensions, ElementsAre(2, 3, 5, 6));
+  EXPECT_TRUE(analysis.growth.decided());
+}
+
 /// z' = y^8 x': nine fields at y = 0, one more than is looked at.
 struct Flat : Point<3> {
   Mat<1, 3> constraints(const Vec<3>& g) const { return {-std::pow(g[1], 8), 0, 1}; }
