@@ -24,8 +24,12 @@ namespace hamel {
 
 template <class T>
 struct SE2Element {
+  // Aligned as a number is, so that no byte of an element is unused: elements are compared, and
+  // written to files, as bytes (Packing).
+  using Translation = Eigen::Matrix<T, 2, 1, Eigen::DontAlign>;
+
   SO2Element<T> rotation;
-  VecT<T, 2> translation = VecT<T, 2>::Zero();
+  Translation translation = Translation::Zero();
 
   bool operator==(const SE2Element&) const = default;
 
