@@ -21,6 +21,11 @@ bool definite(const Eigen::VectorXd& values) {
 
 }  // namespace
 
+Eigen::VectorXd velocity_units(const Eigen::MatrixXd& inertia) {
+  const Eigen::VectorXd own = inertia.diagonal();
+  return own.cwiseMax(1e-14 * own.maxCoeff()).cwiseSqrt().cwiseInverse();
+}
+
 bool is_definite(const Eigen::MatrixXd& symmetric) {
   return definite(dense::symmetric_eigenvalues(symmetric));
 }

@@ -23,6 +23,10 @@ inline Eigen::MatrixXd hamel_frame(const Eigen::MatrixXd& inertia,
   return frame;
 }
 
+/// Units of velocities that do not depend on those chosen: 1/sqrt(I_ii), the rate at which each has
+/// an energy of 1/2 alone; of massless links that of 1e-14 of the largest.
+Eigen::VectorXd velocity_units(const Eigen::MatrixXd& inertia);
+
 /// Are all eigenvalues positive, above 1e-14 of the largest?
 bool is_definite(const Eigen::MatrixXd& symmetric);
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/systems/mechanisms/poses.hpp>
 
 namespace hamel::mechanisms {
@@ -25,14 +26,12 @@ bool moves_by_itself(const Prescribed& p) {
 MatrixXd free_velocities(const Multibody& system, const std::vector<double>& g) {
   MatrixXd inertia(system.dim(), system.dim());
   system.inertia(g.data(), inertia);
-  const VectorXd inertias = inertia.diagonal();
-  const double none = 1e-14 * inertias.maxCoeff();
   MatrixXd a = RowValues(system, g).a;
   const std::vector<Prescribed>& prescribed = system.all_rows().prescribed;
   const Eigen::Index others = a.rows() - static_cast<Eigen::Index>(prescribed.size());
   for (size_t i = 0; i < prescribed.size(); ++i)
     if (moves_by_itself(prescribed[i])) a.row(others + static_cast<Eigen::Index>(i)).setZero();
-  for (Eigen::Index i = 0; i < a.cols(); ++i) a.col(i) /= std::sqrt(std::max(inertias[i], none));
+  a = (a * velocity_units(inertia).asDiagonal()).eval();
   const double most = a.rows() == 0 ? 0 : a.rowwise().norm().maxCoeff();
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     const double size = a.row(i).norm();  // in the plane a height is round-off alone

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/systems/mechanisms/poses.hpp>
 
 namespace hamel::mechanisms {
@@ -42,9 +43,7 @@ void keep_least(const std::vector<int>& which, VectorXd& y, MatrixXd& free) {
 StartVelocity::StartVelocity(const Multibody& system, const std::vector<double>& g)
     : inertia_(system.dim(), system.dim()) {
   system.inertia(g.data(), inertia_);
-  const VectorXd inertias = inertia_.diagonal();
-  const double none = 1e-14 * inertias.maxCoeff();  // of massless links
-  units_ = inertias.unaryExpr([&](double i) { return 1 / std::sqrt(i > none ? i : none); });
+  units_ = velocity_units(inertia_);
 
   const Tree& tree = system.tree(g.data());
   const auto links = static_cast<size_t>(tree.links());

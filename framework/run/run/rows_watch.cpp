@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/mechanics/frame.hpp>
 
 namespace hamel {
 namespace {
@@ -32,9 +33,7 @@ void RowsWatch::set_rows(const Snapshot& state) {
   else std::copy(state.element.begin(), state.element.end(), g_.data());
   mechanics_->constraints(state.time, g_.data(), rows_, b_);
   mechanics_->inertia(g_.data(), inertia_);
-  const double none = 1e-14 * inertia_.diagonal().maxCoeff();  // of massless links
-  for (Eigen::Index i = 0; i < rows_.cols(); ++i)
-    rows_.col(i) /= std::sqrt(std::max(inertia_(i, i), none));
+  rows_ = (rows_ * velocity_units(inertia_).asDiagonal()).eval();
   for (Eigen::Index i = 0; i < rows_.rows(); ++i)
     if (const double size = rows_.row(i).norm(); size > 0) rows_.row(i) /= size;
 }
