@@ -58,7 +58,7 @@ struct Heisenberg : GroupDefaults<Heisenberg, 3> {
 
   static std::vector<std::string> units() { return {"m", "m", "m"}; }
   static std::vector<Component> components() {
-    return {{"x'", "m/s"}, {"y'", "m/s"}, {"z'", "m/s"}};
+    return {{"x1'", "m/s", "x'"}, {"x2'", "m/s", "y'"}, {"xi3", "m/s", "z'"}};
   }
   /// z' = xi3 + (x xi2 - y xi1)/2.
   static void coordinate_rates(std::span<const double> x, std::span<const double> xi,

@@ -2,7 +2,7 @@
 //
 // Element: the tuple of the factors' elements (part<I>()).
 // Algebra: the factors' coordinates one after another; Ad, ad, dR, dL are block diagonal.
-// Columns carry the number of the factor: 1_theta, 1_x, 1_y, 2_theta.
+// Columns carry the number of the factor where another has the same: 1_theta, x, y, 2_theta.
 // A product offers every retraction that all its factors offer (product_retraction.hpp);
 // cayley_literal where one has it, beside cayley on the others.
 #pragma once
@@ -197,13 +197,13 @@ struct Product {
   }
 
   static std::vector<std::string> columns() {
-    std::vector<std::string> names;
-    for_each_factor([&](auto i) {
-      for (const std::string& column : Factor<i>::columns()) {
-        names.push_back(std::to_string(i + 1) + "_" + column);
-      }
-    });
-    return names;
+    std::vector<std::vector<std::string>> names;
+    add_columns(names);
+    return number_repeated(names);
+  }
+  /// The columns of each factor, of a product among them those of its own.
+  static void add_columns(std::vector<std::vector<std::string>>& names) {
+    (add_columns_of<Gs>(names), ...);
   }
   template <class T>
   static auto coordinates(const ProductElement<T, Gs...>& g) {
@@ -244,6 +244,11 @@ struct Product {
     return own;
   }
   // Functions, since clang 14 takes a requires-expression in a generic lambda for false.
+  template <class Group>
+  static void add_columns_of(std::vector<std::vector<std::string>>& names) {
+    if constexpr (requires { Group::add_columns(names); }) Group::add_columns(names);
+    else names.push_back(Group::columns());
+  }
   template <class Group, class Part>
   static double part_rotation([[maybe_unused]] const Part& g) {
     if constexpr (requires { Group::rotation_angle(g); }) return Group::rotation_angle(g);

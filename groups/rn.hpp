@@ -63,14 +63,12 @@ struct Rn : GroupDefaults<Rn<N>, N> {
   }
 
   static std::vector<std::string> units() { return std::vector<std::string>(N, "m"); }
-  /// x', y', z', or x1', x2', ...
+  /// x1', x2', ...; x', y', z' are read too where N <= 3.
   static std::vector<Component> components() {
     std::vector<Component> out;
-    for (int i = 0; i < N; ++i) {
-      const std::string axis =
-          N <= 3 ? std::string(1, static_cast<char>('x' + i)) : "x" + std::to_string(i + 1);
-      out.push_back({axis + "'", "m/s"});
-    }
+    for (int i = 0; i < N; ++i)
+      out.push_back({"x" + std::to_string(i + 1) + "'", "m/s",
+                     N <= 3 ? std::string{static_cast<char>('x' + i), '\''} : ""});
     return out;
   }
   static constexpr bool is_shape = true;

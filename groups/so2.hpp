@@ -185,7 +185,7 @@ struct SO2 {
 
   static std::vector<std::string> columns() { return {"theta"}; }
   static std::vector<std::string> units() { return {"rad"}; }
-  static std::vector<Component> components() { return {{"angle'", "rad/s"}}; }
+  static std::vector<Component> components() { return {{"theta'", "rad/s", "angle'"}}; }
   static constexpr bool is_shape = true;
   template <class T>
   static Coordinates<T, 1> coordinates(const SO2Element<T>& g) {

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/groups/dexp.hpp>
@@ -38,6 +39,7 @@ struct BallOnTurntable {
            "vertical, moving energy";
   }
   static std::string source() { return "Earnshaw 1844; Weltner 1979; Fasso and Sansonetto 2016"; }
+  static std::vector<std::string> shape() { return {"x", "y"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "total mass", positive);

@@ -47,22 +47,22 @@ Simulation simulate_text(const std::string& text, const std::string& origin) {
 }
 
 ModelDescription describe_model(const SystemModel& model) {
-  const GroupInfo group =
-      model.group.dim == 0 ? *registry().group_or_product(model.group.name) : model.group;
-  ModelDescription out;
-  out.name = model.name;
-  out.group = group.name;
-  out.parameters = model.fields;
-  out.inputs = model.inputs;
-  out.parts = model.parts;
-  out.coordinates = group.columns;
-  out.coordinate_units = units_of_element(group);
   SystemModel complete = model;
-  complete.group = group;
+  registry().complete(complete);
+  ModelDescription out;
+  out.name = complete.name;
+  out.group = complete.group.name;
+  out.parameters = complete.fields;
+  out.inputs = complete.inputs;
+  out.parts = complete.parts;
+  out.coordinates = complete.group.columns;
+  out.coordinate_units = units_of_element(complete.group);
   for (const Component& c : components_of(complete)) {
     out.velocities.push_back(c.name);
     out.velocity_units.push_back(c.unit);
   }
+  for (const OtherName& other : complete.other_names)
+    out.other_names.emplace_back(other.name, other.place);
   for (const Event& event : events_of(complete, nullptr)) out.events.push_back(event.name);
   return out;
 }

@@ -2,7 +2,9 @@
 // keep their systems elsewhere than in files, such as tools/python. Standard-library types only.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hamel/framework/io/export.hpp>
@@ -18,6 +20,8 @@ HAMEL_API Simulation simulate_text(const std::string& text, const std::string& o
 /// formula, known and source are those of a registered system: empty here.
 struct ModelDescription : SystemDescription {
   std::vector<std::string> coordinate_units, velocity_units;
+  /// Further names that are read, 4_theta, xi4, and their places: coordinates, then velocities.
+  std::vector<std::pair<std::string, std::size_t>> other_names;
   std::vector<std::string> parts;  // the bodies of a mechanism
 };
 HAMEL_API ModelDescription describe_model(const SystemModel& model);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/systems/ball_on_plane.hpp>
@@ -32,6 +33,7 @@ struct ChaplyginBall {
     return "invariants: energy, the momentum about the contact, fixed in space";
   }
   static std::string source() { return "Chaplygin 1903; Duistermaat 2004"; }
+  static std::vector<std::string> shape() { return {"x", "y"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "total mass", positive);

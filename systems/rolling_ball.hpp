@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/systems/ball_on_plane.hpp>
@@ -29,6 +30,7 @@ struct RollingBall {
   }
   static std::string known() { return "everything: omega is constant, the centre runs straight"; }
   static std::string source() { return "Neimark and Fufaev 1972"; }
+  static std::vector<std::string> shape() { return {"x", "y"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "total mass", positive);

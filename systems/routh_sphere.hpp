@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/systems/ball_on_plane.hpp>
@@ -44,6 +45,7 @@ struct RouthSphere {
     return "invariants: energy; Jellett's and Routh's where asymmetry is 0 (integrable)";
   }
   static std::string source() { return "Routh 1884, art. 243; Cushman 1998"; }
+  static std::vector<std::string> shape() { return {"x", "y"}; }
 
   void fields(auto& f) {
     f("mass", mass, "kg", "total mass", positive);

@@ -101,7 +101,7 @@ Names names_of(const SystemModel& model) {
   Names out{
       .numbers = {}, .columns = model.group.columns, .preference = Vector::Constant(2 * n, 30)};
   for (const Component& component : components) out.numbers.push_back("delta." + component.name);
-  const std::vector<ShapeCoordinate> shapes = shape_of(model.group, components);
+  const std::vector<ShapeCoordinate> shapes = shape_of(model.group);
   for (size_t k = 0; k < shapes.size(); ++k) {
     std::string& column = out.columns[static_cast<size_t>(shapes[k].column)];
     if (model.shape.size() == shapes.size()) column = model.shape[k];

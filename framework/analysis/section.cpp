@@ -11,6 +11,7 @@
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/event_formula.hpp>
 #include <hamel/framework/run/run/events.hpp>
@@ -22,13 +23,6 @@ namespace {
 constexpr long kMostQuiet = 1'000'000;  // steps without a crossing
 constexpr double kUsualTolerance = 1e-10;
 constexpr double kForEver = 1e9;  // steps, or seconds
-
-// The names of the columns of points behind start, n and t.
-std::vector<std::string> columns_of(const SystemModel& system) {
-  std::vector<std::string> out = system.group.columns;
-  for (int i = 1; i <= system.group.dim; ++i) out.push_back(fmt::format("xi{}", i));
-  return out;
-}
 
 // The function of the event, to tell in which direction it was crossed.
 std::optional<Event> event_named(const SystemModel& system, const std::string& name,
@@ -50,11 +44,12 @@ class Points {
     for (size_t k = 0; k < units.size(); ++k)
       table.columns.push_back(
           {system.group.columns[k], units[k], "column of the element", std::vector<double>()});
-    int i = 0;
-    for (const Component& component : components) {
+    for (const Component& component : components)
       table.columns.push_back(
-          {fmt::format("xi{}", ++i), component.unit, component.name, std::vector<double>()});
-    }
+          {component.name, component.unit, "nodal body velocity", std::vector<double>()});
+    const QuantityNames names(system);
+    for (const OtherName& other : system.other_names)
+      table.other_names.emplace(other.name, names.all()[other.place]);
     table.columns.push_back({"energy", "J", "at the crossing", std::vector<double>()});
   }
   void add(long long start, long long n, double t, const std::vector<double>& coordinates,
@@ -220,10 +215,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 class StartsReader {
  public:
   StartsReader(const std::string& path, const SystemModel& system)
-      : path_(path),
-        columns_(columns_of(system)),
-        components_(components_of(system)),
-        width_(system.group.columns.size()) {}
+      : path_(path), known_(system), width_(system.group.columns.size()) {}
   std::vector<Start> read(const std::string& text) {
     std::istringstream in(text);
     std::vector<Start> out;
@@ -242,27 +234,17 @@ class StartsReader {
   [[noreturn]] void refuse(const std::string& what) const {
     throw ConfigError({fmt::format("{}:{}: {}", path_, number_, what)});
   }
-  // The column of this name, also of a velocity by its name; that many where there is none.
-  size_t column(const std::string& name) const {
-    const auto at = std::find(columns_.begin(), columns_.end(), name);
-    if (at != columns_.end()) return static_cast<size_t>(at - columns_.begin());
-    const auto component = std::find_if(components_.begin(), components_.end(),
-                                        [&](const Component& c) { return c.name == name; });
-    return component == components_.end()
-               ? columns_.size()
-               : width_ + static_cast<size_t>(component - components_.begin());
-  }
   void head(const std::vector<std::string>& names) {
     names_ = names;
-    std::vector<bool> there(columns_.size());
+    std::vector<bool> there(known_.all().size());
     for (const std::string& name : names) {
-      to_.push_back(column(name));
-      if (to_.back() == columns_.size()) continue;  // left out
+      to_.push_back(known_.find(name).value_or(there.size()));
+      if (to_.back() == there.size()) continue;  // left out
       there[to_.back()] = true;
       placed_ = placed_ || to_.back() < width_;
     }
-    for (size_t i = placed_ ? 0 : width_; i < columns_.size(); ++i)
-      if (!there[i]) refuse(fmt::format("there is no column '{}'", columns_[i]));
+    for (size_t i = placed_ ? 0 : width_; i < there.size(); ++i)
+      if (!there[i]) refuse(fmt::format("there is no column '{}'", known_.all()[i]));
   }
   double value(size_t i, const std::string& cell) const {
     double out = 0;
@@ -275,9 +257,9 @@ class StartsReader {
   Start start(const std::vector<std::string>& cells) const {
     if (cells.size() != to_.size())
       refuse(fmt::format("got {} cells, expected {}", cells.size(), to_.size()));
-    std::vector<double> values(columns_.size());
+    std::vector<double> values(known_.all().size());
     for (size_t i = 0; i < cells.size(); ++i)
-      if (to_[i] < columns_.size()) values[to_[i]] = value(i, cells[i]);
+      if (to_[i] < values.size()) values[to_[i]] = value(i, cells[i]);
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(width_);
     Start out;
     if (placed_) out.configuration.assign(values.begin(), middle);
@@ -286,8 +268,7 @@ class StartsReader {
   }
 
   std::string path_;
-  std::vector<std::string> columns_;
-  std::vector<Component> components_;
+  QuantityNames known_;
   size_t width_;  // columns of the element
   long number_ = 0;
   std::vector<std::string> names_;

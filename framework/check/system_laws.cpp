@@ -200,7 +200,7 @@ LawReport check_system(const Registry& registry, const std::string& name, double
   if (info == nullptr)
     throw ConfigError({unknown_name("system", name, registry.systems_and_files())});
   SystemModel model = info->make({});
-  if (model.group.dim == 0) model.group = *registry.group_or_product(model.group.name);
+  registry.complete(model);
   const std::string retraction = registry.retractions_or_common(model.group.name).front();
   const auto geometry = registry.geometry(model.group.name, retraction);
   LawReport report = check_system(model, until, geometry.get());

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/run/data/event_formula.hpp>
+#include <hamel/framework/io/errors.hpp>
 
 namespace hamel::ensemble {
 
@@ -25,10 +25,9 @@ FeedbackFormulas::FeedbackFormulas(const EnsembleConfig& config, const SystemMod
     if (std::ranges::any_of(config.vary, [&, &name = input](auto& v) { return v.name == name; }))
       wrong("it is varied too");
     try {
-      formulas_.emplace_back(input,
-                             Expression(with_usable_names(text, system.group.columns), variables));
+      formulas_.emplace_back(input, Expression(states_.state().in_formula(text), variables));
     } catch (const ExpressionError& error) {
-      wrong(fmt::format("'{}': {}", text, error.what()));
+      wrong(fmt::format("'{}': {}", text, states_.state().in_words(error.what())));
     }
   }
   const double period = config.feedback.period, steps = period / config.run.step_or_usual();

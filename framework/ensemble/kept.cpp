@@ -26,20 +26,13 @@ void measured(F&& f) {
 
 }  // namespace
 
-StateNames::StateNames(const SystemModel& system, bool measures) {
-  const std::vector<std::string> variables = state_variables(system);
+StateNames::StateNames(const SystemModel& system, bool measures) : state_(system) {
   const std::vector<Component> components = components_of(system);
   std::vector<std::string> units = units_of_element(system.group);
   units.resize(system.group.columns.size());
   units.insert(units.begin(), "s");
-  for (int twice = 0; twice < 2; ++twice)
-    for (const Component& c : components) units.push_back(c.unit);
-  for (size_t i = 0; i < variables.size(); ++i) add(variables[i], units[i]);
-  for (const NamedColumn& shape : named_columns(system)) {
-    if (std::ranges::find(names_, shape.name) != names_.end()) continue;
-    add(shape.name, shape.unit);
-    shapes_.push_back(shape);
-  }
+  for (const Component& c : components) units.push_back(c.unit);
+  for (size_t i = 0; i < units.size(); ++i) add(state_.variables()[i], units[i]);
   for (size_t i = 0; i < components.size(); ++i)
     add(fmt::format("mu{}", i + 1), unit_of_momentum(components[i]));
   add(kEnergy.name, kEnergy.unit);
@@ -69,9 +62,7 @@ void StateNames::values(const Snapshot& state, const StateExtras& extras, double
                         std::vector<double>& out) const {
   out.assign(1, state.time);
   out.insert(out.end(), state.coordinates.begin(), state.coordinates.end());
-  for (int twice = 0; twice < 2; ++twice)
-    out.insert(out.end(), state.velocity.begin(), state.velocity.end());
-  for (const NamedColumn& shape : shapes_) out.push_back(state.coordinates[shape.column]);
+  out.insert(out.end(), state.velocity.begin(), state.velocity.end());
   out.insert(out.end(), state.momentum.begin(), state.momentum.end());
   out.push_back(state.energy);
   out.push_back(extras.balanced ? extras.energy_error : energy_error(state.energy, energy_start));
@@ -129,7 +120,9 @@ KeptFormulas::KeptFormulas(const EnsembleConfig& config, const SystemModel& syst
     try {
       parser.column(name, text);
     } catch (const std::invalid_argument& error) {
-      mistakes.push_back(placed(config, key, fmt::format("{}: '{}': {}", key, text, error.what())));
+      mistakes.push_back(
+          placed(config, key,
+                 fmt::format("{}: '{}': {}", key, text, states_.state().in_words(error.what()))));
     }
   };
   for (size_t i = 0; i < config.keep.size(); ++i) {
@@ -150,11 +143,7 @@ KeptFormulas::KeptFormulas(const EnsembleConfig& config, const SystemModel& syst
     classes_ = config.classes.names.size();
   }
   quantities_ = config.statistics_of;
-  const size_t all = system.group.columns.size() + static_cast<size_t>(system.group.dim);
-  if (!config.statistics_at.empty() && quantities_.empty())
-    std::copy_if(states_.names().begin() + 1,
-                 states_.names().begin() + 1 + static_cast<std::ptrdiff_t>(all),
-                 std::back_inserter(quantities_), [](const auto& name) { return !name.empty(); });
+  if (!config.statistics_at.empty() && quantities_.empty()) quantities_ = states_.state().all();
   for (const double t : config.statistics_at) {
     for (const std::string& quantity : quantities_) {
       const std::string text = fmt::format("at({}).{}", t, quantity);

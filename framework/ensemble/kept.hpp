@@ -12,6 +12,7 @@
 #include <hamel/framework/ensemble/vary.hpp>
 #include <hamel/framework/io/expression.hpp>
 #include <hamel/framework/loop/snapshot.hpp>
+#include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/record/result.hpp>
 
@@ -24,13 +25,15 @@ struct StateExtras {
   double work = 0, energy_error = 0;
 };
 
-/// The numbers of a state by name: t, the coordinates, the velocities by name and number, the
-/// momenta, and what is measured.
+/// The numbers of a state by name: t, the coordinates, the velocities, the momenta, and what is
+/// measured.
 class StateNames {
  public:
   /// measures: with the energy error, work and reactions, for which values() needs the extras.
   StateNames(const SystemModel& system, bool measures);
+  /// As formulas have them.
   const std::vector<std::string>& names() const { return names_; }
+  const QuantityNames& state() const { return state_; }
   const std::string& unit(size_t i) const { return units_[i]; }
   /// In the order of the names, and of nothing else.
   void values(const Snapshot& state, const StateExtras& extras, double energy_start,
@@ -42,10 +45,10 @@ class StateNames {
 
  private:
   void add(const std::string& name, const std::string& unit);
+  QuantityNames state_;
   std::vector<std::string> names_, units_;  // "": the name of another one
   std::vector<std::string> reactions_;
   bool works_ = false;
-  std::vector<NamedColumn> shapes_;
 };
 
 /// The numbers of a member that do not change on the way: parameters, inputs, what is varied, its

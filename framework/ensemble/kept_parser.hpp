@@ -154,7 +154,7 @@ class KeptFormulas::Parser {
   }
   // One number of a state, or a formula of them and the constants.
   void state(const std::string& quantity, Atom& out) {
-    const std::string text = with_usable_names(quantity, system_.group.columns);
+    const std::string text = out_.states_.state().in_formula(quantity);
     const std::vector<std::string>& names = out_.states_.names();
     const auto speaks_of = [&](const Quantity& q) {
       return text.find(q.name) != std::string::npos;

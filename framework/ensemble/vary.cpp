@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/run/data/event_formula.hpp>
 
 namespace hamel::ensemble {
 namespace {
@@ -51,14 +50,18 @@ std::string flaw_of(const Variation& v) {
 class Resolver {
  public:
   explicit Resolver(const SystemModel& system)
-      : system_(system), columns_(named_columns(system)), components_(components_of(system)) {
+      : system_(system),
+        names_(system),
+        units_(units_of_element(system.group)),
+        components_(components_of(system)) {
+    units_.resize(system.group.columns.size());
     for (const Field& field : system.fields)
       for (size_t i = 0; i < field.value.size(); ++i)
         known_.push_back(field.value.size() == 1 ? field.name
                                                  : fmt::format("{}{}", field.name, i + 1));
     for (const InputField& input : system.inputs) known_.push_back(input.name);
     for (const Component& c : components_) known_.push_back("start." + c.name);
-    for (const NamedColumn& c : columns_) known_.push_back("start." + c.name);
+    for (const std::string& column : system.group.columns) known_.push_back("start." + column);
     known_.insert(known_.end(), {"start.configuration", "start.velocity"});
     if (system.start_at_speed) known_.emplace_back("speed");
   }
@@ -98,22 +101,20 @@ class Resolver {
     return v.law == Law::energy ? "" : "start.velocity: expected { energy = E }";
   }
   std::string start(const std::string& name, Target& out) const {
-    const std::string word = with_usable_names(name.substr(6), system_.group.columns);
-    for (size_t i = 0; i < components_.size(); ++i) {
-      if (word != components_[i].name && word != fmt::format("xi{}", i + 1)) continue;
+    const auto place = names_.find(name.substr(6));
+    if (!place) return unknown_name("name to vary", name, known_);
+    const size_t columns = system_.group.columns.size();
+    if (*place >= columns) {
+      const size_t i = *place - columns;
       out = {Kind::velocity, "", i, components_[i].unit, "requested at the start"};
       return "";
     }
-    for (const NamedColumn& c : columns_) {
-      if (word != c.name) continue;
-      for (const size_t first : rotations_of(system_.group))
-        if (c.column >= first && c.column < first + 9)
-          return fmt::format("{}: an entry of a rotation is not free; vary start.configuration",
-                             name);
-      out = {Kind::coordinate, "", c.column, c.unit, "requested at the start"};
-      return "";
-    }
-    return unknown_name("name to vary", name, known_);
+    for (const size_t first : rotations_of(system_.group))
+      if (*place >= first && *place < first + 9)
+        return fmt::format("{}: an entry of a rotation is not free; vary start.configuration",
+                           name);
+    out = {Kind::coordinate, "", *place, units_[*place], "requested at the start"};
+    return "";
   }
   std::string field(const std::string& name, Target& out) const {
     for (const Field& f : system_.fields) {
@@ -132,7 +133,8 @@ class Resolver {
   }
 
   const SystemModel& system_;
-  std::vector<NamedColumn> columns_;
+  QuantityNames names_;
+  std::vector<std::string> units_;
   std::vector<Component> components_;
   std::vector<std::string> known_;
 };
@@ -167,20 +169,6 @@ std::string conflict(const std::vector<Target>& targets, size_t i) {
 std::string placed(const EnsembleConfig& config, const std::string& key, const std::string& text) {
   const auto it = config.where.find(key);
   return it == config.where.end() ? text : fmt::format("{}: {}", it->second, text);
-}
-
-std::vector<NamedColumn> named_columns(const SystemModel& system) {
-  const std::vector<std::string> variables = state_variables(system);
-  const std::vector<std::string> units = units_of_element(system.group);
-  std::vector<NamedColumn> out;
-  for (size_t i = 0; i < system.group.columns.size(); ++i)
-    out.push_back({variables[i + 1], i < units.size() ? units[i] : "", i});
-  for (const ShapeCoordinate& shape : shape_of(system.group, components_of(system))) {
-    const bool there =
-        std::ranges::any_of(out, [&](const NamedColumn& c) { return c.name == shape.name; });
-    if (!there) out.push_back({shape.name, shape.unit, static_cast<size_t>(shape.column)});
-  }
-  return out;
 }
 
 std::vector<size_t> rotations_of(const GroupInfo& group) {

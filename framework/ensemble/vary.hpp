@@ -54,13 +54,6 @@ class Variations {
   uint64_t seed_;
 };
 
-/// The columns of an element that its names reach: "x", "theta", of mechanisms "hitch.angle".
-struct NamedColumn {
-  std::string name, unit;
-  size_t column;
-};
-std::vector<NamedColumn> named_columns(const SystemModel& system);
-
 /// Where the rotation of a so3 or se3 lies in the columns; its first column, or none.
 std::vector<size_t> rotations_of(const GroupInfo& group);
 

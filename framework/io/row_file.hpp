@@ -18,6 +18,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hamel {
@@ -26,6 +27,8 @@ namespace hamel {
 struct ColumnGroup {
   std::string name, unit, meaning, frame;
   std::vector<std::string> columns;
+  /// Further names that are read, and the indices of their columns. Not in the file.
+  std::vector<std::pair<std::string, std::size_t>> other_names = {};
 };
 
 /// A small number of rows with names: written whole with the end of a file, as one data set of a

@@ -41,6 +41,8 @@ const TableColumn& Table::column(const std::string& name) const {
     if (c.name == name) return c;
     known.push_back(c.name);
   }
+  if (const auto other = other_names.find(name); other != other_names.end())
+    return column(other->second);
   throw ConfigError({unknown_name("column", name, known)});
 }
 

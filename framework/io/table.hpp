@@ -27,6 +27,8 @@ struct HAMEL_API TableColumn {
 
 struct HAMEL_API Table {
   std::vector<TableColumn> columns;
+  /// Further names that column() reads, and their columns'. Not in files.
+  std::map<std::string, std::string> other_names = {};
 
   size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
   /// The column; ConfigError naming the nearest when there is none.

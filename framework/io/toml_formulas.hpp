@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -27,6 +29,11 @@ class TomlFormulas {
   /// Names allowed in every formula from now on.
   void set(const std::string& name, double value) { constants_[name] = value; }
   const Constants& constants() const { return constants_; }
+
+  /// Texts of formulas are read as this function returns them.
+  void read_by(std::function<std::string(const std::string&)> reader) {
+    reader_ = std::move(reader);
+  }
 
   /// A finite number, or a formula of the constants.
   double number(const Node& node, const std::string& key) {
@@ -62,7 +69,7 @@ class TomlFormulas {
       throw ConfigError(
           {fmt::format("{}: more than {} formulas", toml_.place(node), kMostFormulas)});
     try {
-      return Expression(text, variables, constants_);
+      return Expression(reader_ ? reader_(text) : text, variables, constants_);
     } catch (const ExpressionError& error) {
       toml::source_position at = node.source().begin;
       if (node.source().end.line == at.line)  // behind the quote
@@ -75,6 +82,7 @@ class TomlFormulas {
  private:
   TomlReader& toml_;
   Constants constants_;
+  std::function<std::string(const std::string&)> reader_;
   int count_ = 0;
 };
 

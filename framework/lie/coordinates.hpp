@@ -23,9 +23,14 @@ struct Coordinates : std::array<T, N> {
 
 /// A component of the body velocity. The rate of a coordinate ends in ': "pitch'".
 struct Component {
-  std::string name;  // "omega"
-  std::string unit;  // "rad/s"
+  std::string name;        // "omega"
+  std::string unit;        // "rad/s"
+  std::string other = "";  // a further name that is read
 };
+
+/// The names of each factor one after another, with the number of the factor in front of a name
+/// that another factor has too: theta x y and theta -> 1_theta x y 2_theta.
+std::vector<std::string> number_repeated(const std::vector<std::vector<std::string>>& factors);
 
 /// How many coordinates an element of G has.
 template <class G>

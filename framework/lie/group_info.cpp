@@ -1,9 +1,12 @@
 #include <hamel/framework/lie/group_info.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 extern "C" const int HAMEL_BUILT_WITH = 1;
 
@@ -18,6 +21,7 @@ void check_factor(const GroupFactor& factor) {
     }
   };
   check("components", factor.components.size(), factor.dim);
+  check("columns", factor.names.size(), factor.columns);
   check("units", factor.units.size(), factor.columns);
   if (factor.is_shape) check("is_shape: columns", static_cast<size_t>(factor.columns), factor.dim);
 }
@@ -32,19 +36,41 @@ void add_slopes(std::span<const double>, std::span<const double> slope, std::spa
 
 }  // namespace detail
 
+std::vector<std::string> number_repeated(const std::vector<std::vector<std::string>>& factors) {
+  std::map<std::string, int> count;
+  for (const std::vector<std::string>& names : factors)
+    for (const std::string& name : names) ++count[name];
+  std::vector<std::string> out;
+  for (size_t i = 0; i < factors.size(); ++i)
+    for (const std::string& name : factors[i])
+      out.push_back(count[name] > 1 ? fmt::format("{}_{}", i + 1, name) : name);
+  return out;
+}
+
+std::vector<double> element_of(const GroupInfo& group, std::span<const double> values) {
+  if (values.size() != group.columns.size())
+    throw std::invalid_argument(fmt::format("{}: {} values, expected {} ({})", group.name,
+                                            values.size(), group.columns.size(),
+                                            fmt::join(group.columns, ", ")));
+  for (size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw std::invalid_argument(fmt::format("{}: {} = {}, expected a finite number", group.name,
+                                              group.columns[i], to_text(values[i])));
+  return group.element(values);
+}
+
 GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors) {
   GroupInfo info;
   info.name = name;
   info.summary = "product of its factors, put together at run time";
-  for (size_t i = 0; i < factors.size(); ++i) {
-    info.dim += factors[i].dim;
-    for (const std::string& column : factors[i].columns) {
-      info.columns.push_back(fmt::format("{}_{}", i + 1, column));
-    }
-    info.identity.insert(info.identity.end(), factors[i].identity.begin(),
-                         factors[i].identity.end());
-    info.factors.insert(info.factors.end(), factors[i].factors.begin(), factors[i].factors.end());
+  for (const GroupInfo& factor : factors) {
+    info.dim += factor.dim;
+    info.identity.insert(info.identity.end(), factor.identity.begin(), factor.identity.end());
+    info.factors.insert(info.factors.end(), factor.factors.begin(), factor.factors.end());
   }
+  std::vector<std::vector<std::string>> names;
+  for (const GroupFactor& factor : info.factors) names.push_back(factor.names);
+  info.columns = number_repeated(names);
   info.element = [name, factors, count = info.columns.size()](std::span<const double> values) {
     if (values.size() != count) {
       throw std::invalid_argument(

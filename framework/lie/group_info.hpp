@@ -34,6 +34,7 @@ using MapAt = void (*)(std::span<const double> x, std::span<const double> v, std
 struct GroupFactor {
   std::string name;  // "se2"
   int dim = 0, columns = 0;
+  std::vector<std::string> names = {};     // of the columns
   std::vector<Component> components = {};  // of the body velocity; empty: not stated
   std::vector<std::string> units = {};     // of the columns; empty: not stated
   bool is_shape = false;                   // its coordinates are the integrals of its components
@@ -56,7 +57,11 @@ struct GroupInfo {
   std::vector<GroupFactor> factors;
 };
 
-/// The product of groups, factor after factor; columns carry the number of the factor.
+/// group.element of these values; std::invalid_argument with the group's columns where they are not
+/// as many, or not finite.
+std::vector<double> element_of(const GroupInfo& group, std::span<const double> values);
+
+/// The product of groups, factor after factor.
 GroupInfo product_info(const std::string& name, std::vector<GroupInfo> factors);
 
 namespace detail {
@@ -91,7 +96,7 @@ constexpr bool states_rates() {
 template <class G>
 GroupFactor factor_of() {
   using Given = std::span<const double>;
-  GroupFactor out{G::name(), G::dim, static_cast<int>(coordinate_count<G>)};
+  GroupFactor out{G::name(), G::dim, static_cast<int>(coordinate_count<G>), G::columns()};
   if constexpr (requires { G::components(); }) out.components = G::components();
   if constexpr (requires { G::units(); }) out.units = G::units();
   if constexpr (requires { G::is_shape; }) out.is_shape = G::is_shape;

@@ -43,6 +43,7 @@
 #include <hamel/framework/mechanics/fields.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/start.hpp>
 #include <hamel/framework/mechanics/system_members.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
@@ -222,6 +223,7 @@ SystemModel erase(const S& system) {
                   "contacts of this system cannot be called: expected a const member contacts()");
   }
   model.shape = detail::shape_names(system);
+  name_quantities(model);
   Scene<G> scene(model.drawing);
   detail::tell_drawing(system, scene);
   return model;

@@ -17,15 +17,13 @@ std::string constraints_in_words(const SystemModel& model) {
 }
 
 std::vector<Component> components_of(const SystemModel& model) {
-  std::vector<Component> out = components_of(model.group);
-  for (size_t i = 0; i < model.rates.size(); ++i) out[i].name = model.rates[i];
-  if (model.shape.empty()) return out;
-  const std::vector<ShapeCoordinate> shape = shape_of(model.group, out);
-  if (shape.size() != model.shape.size())
-    throw ConfigError({fmt::format("shape of {}: expected {} names, got {}", model.name,
-                                   shape.size(), model.shape.size())});
-  for (size_t i = 0; i < shape.size(); ++i)
-    out[static_cast<size_t>(shape[i].component)].name = model.shape[i] + "'";
+  std::vector<Component> out;
+  size_t i = 0;
+  for (const GroupFactor& factor : model.group.factors) {
+    for (size_t k = 0; k < static_cast<size_t>(factor.dim); ++k)
+      out.push_back(
+          {model.rates.at(i++), factor.components.empty() ? "" : factor.components[k].unit});
+  }
   return out;
 }
 

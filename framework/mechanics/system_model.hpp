@@ -41,6 +41,13 @@ struct DrawnForce {
       value;
 };
 
+/// A further name by which a coordinate or velocity is read; place counts the coordinates, then the
+/// velocities.
+struct OtherName {
+  std::string name;
+  std::size_t place;
+};
+
 /// A system with its parameters set and its type erased.
 struct SystemModel {
   std::string name;
@@ -53,18 +60,21 @@ struct SystemModel {
   std::vector<Invariant> invariants;
   std::vector<Event> events;
   std::vector<int> contacts;  // the rows whose multiplier is a normal reaction
-  std::vector<std::string>
-      shape;  // names of the coordinates of so2 and rn; empty: those of the group
+  // Stated names: of the coordinates of so2 and rn, and of all coordinates; empty: those of the
+  // group. name_quantities() completes group.columns, rates and other_names (quantity_names.hpp).
+  std::vector<std::string> shape, coordinates;
+  std::vector<std::string> rates;  // of the velocities
+  std::vector<OtherName> other_names;
+  bool has_names = false;
   Drawing drawing;
   std::vector<InputField> inputs;
   /// The mechanics that these inputs drive; empty where there are none. All other members hold with
   /// inputs too.
   std::function<std::shared_ptr<const Mechanics>(std::shared_ptr<const Inputs>)> drive;
 
-  std::vector<std::string> rates;      // names of the velocities; empty: those of the group
-  std::vector<std::string> reactions;  // names of the multipliers
-  std::vector<std::string> parts;      // the bodies of a mechanism
-  std::vector<std::string> notes;      // shown with every run
+  std::vector<std::string> reactions;                         // names of the multipliers
+  std::vector<std::string> parts;                             // the bodies of a mechanism
+  std::vector<std::string> notes;                             // shown with every run
   std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
   std::vector<DrawnForce> forces;
 
@@ -97,8 +107,7 @@ struct SystemInfo {
 /// "no constraint", "1 constraint row", "3 constraint rows, 1 holonomic".
 std::string constraints_in_words(const SystemModel& model);
 
-/// The components of xi by the names that the system states, else by those of its group
-/// (components.hpp).
+/// The components of xi by name (quantity_names.hpp), with their units.
 std::vector<Component> components_of(const SystemModel& model);
 
 /// The unit of the multiplier of a row: "N" of contacts, whose rows are forces of size 1; "" where

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/run/run/driver.hpp>
 #include <hamel/framework/study/parts.hpp>
 
@@ -116,8 +117,7 @@ class RunRecorder {
 
 std::vector<bool> angle_columns(const GroupInfo& group) {
   std::vector<bool> out;
-  for (const std::string& column : group.columns)
-    out.push_back(column == "theta" || column.ends_with("_theta"));
+  for (const std::string& unit : units_of_element(group)) out.push_back(unit == "rad");
   return out;
 }
 

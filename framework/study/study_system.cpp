@@ -43,9 +43,7 @@ Simulation simulation(const Registry& registry, const StudySystem& system, const
 
 SystemModel model(const Registry& registry, const StudySystem& system) {
   SystemModel out = maker(registry, system)(system.parameters);
-  if (out.group.dim == 0) {  // a product by name alone
-    if (const auto group = registry.group_or_product(out.group.name)) out.group = *group;
-  }
+  registry.complete(out);
   if (std::vector<std::string> mistakes; !system.inputs.empty() && out.drive)
     drive(out, make_inputs(out, {}, {0, 0}, mistakes));  // of what orders hold there
   return out;

@@ -9,6 +9,7 @@
 #include <hamel/systems/mechanisms/assembly.hpp>
 
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/mechanics/quantity_names.hpp>
 
 namespace hamel {
 
@@ -196,13 +197,12 @@ void Assembly::name_columns() {
     const bool alone =
         joint.turns_and_slides() && roots == 1 && links_[j].parent == mechanisms::kGround;
     const std::string front = alone ? "" : link_names_[j] + ".";
-    for (const std::string& name : joint.columns()) model_.group.columns.push_back(front + name);
+    for (const std::string& name : joint.columns()) model_.coordinates.push_back(front + name);
     for (const std::string& name : joint.rates()) model_.rates.push_back(front + name);
   }
   write();
-  GroupInfo info = product_info(group, factors);
-  info.columns = std::move(model_.group.columns);
-  model_.group = std::move(info);
+  model_.group = product_info(group, factors);
+  name_quantities(model_);
 }
 
 // Motors and prescribed joints without a signal, then inputs by name.

@@ -1,3 +1,4 @@
+#include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
@@ -62,6 +63,9 @@ class File {
     const SystemModel outline = m.outline();
     read_.set_names(outline.group.columns, outline.rates, outline.inputs);
     check_formula_names();
+    QuantityNames names(outline);
+    for (const auto& [constant, value] : read_.formulas.constants()) names.forget(constant);
+    read_.formulas.read_by([names](const std::string& text) { return names.in_formula(text); });
     parts.contacts();
     parts.chains();
     parts.forces();

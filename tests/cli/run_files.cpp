@@ -32,11 +32,13 @@ Table read_csv(const std::string& text) {
 const std::vector<std::string> measured = {"energy",       "energy_error", "constraint",
                                            "group_defect", "iterations",   "residual"};
 
-/// t, the element, xi, the measurements, in the order of tools/README.md; later columns come after.
-void expect_columns(const Table& table, const std::vector<std::string>& element, int n) {
+/// t, the element, the velocity, the measurements, in the order of tools/README.md; later columns
+/// come after.
+void expect_columns(const Table& table, const std::vector<std::string>& element,
+                    const std::vector<std::string>& velocity) {
   std::vector<std::string> expected = {"t"};
   expected.insert(expected.end(), element.begin(), element.end());
-  for (int i = 1; i <= n; ++i) expected.push_back("xi" + std::to_string(i));
+  expected.insert(expected.end(), velocity.begin(), velocity.end());
   expected.insert(expected.end(), measured.begin(), measured.end());
   ASSERT_GE(table.columns.size(), expected.size());
   EXPECT_EQ(std::vector<std::string>(table.columns.begin(),
@@ -50,12 +52,14 @@ TEST_F(Files, CsvColumnsOfEverySystem) {
     return read_csv(contents(file("a.csv")));
   };
   expect_columns(table("suslov"), {"R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"},
-                 3);
-  expect_columns(table("chaplygin_sleigh"), {"theta", "x", "y"}, 3);
-  expect_columns(table("rolling_disk"), {"1_theta", "1_x", "1_y", "2_theta"}, 4);
+                 {"omega1", "omega2", "omega3"});
+  expect_columns(table("chaplygin_sleigh"), {"theta", "x", "y"}, {"omega", "v1", "v2"});
+  expect_columns(table("rolling_disk"), {"theta", "x", "y", "roll"},
+                 {"omega", "v1", "v2", "roll'"});
   // A mechanism's by its parts, as in tools/README.md.
   const auto bicycle = table("bicycle").columns;
-  for (const char* name : {"steer.angle", "holonomic", "rear.reaction1", "rear.reaction3"}) {
+  for (const char* name :
+       {"steer.angle", "steer.rate", "holonomic", "rear.reaction1", "rear.reaction3"}) {
     EXPECT_THAT(bicycle, testing::Contains(name));
   }
 }
@@ -75,7 +79,7 @@ TEST_F(Files, EventsAreATable) {
                                                      "c.events.csv"));
   const auto table = lines(contents(file("a.events.csv")));
   ASSERT_EQ(table.size(), 3u);
-  EXPECT_EQ(table[0], "name,t,theta,x,y,xi1,xi2,xi3");
+  EXPECT_EQ(table[0], "name,t,theta,x,y,omega,v1,v2");
   EXPECT_EQ(contents(file("c.events.csv")), table[0] + "\n");
   const auto met = nlohmann::json::parse(contents(file("a.json")))["events"];
   ASSERT_EQ(met.size(), 2u);

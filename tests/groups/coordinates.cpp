@@ -36,7 +36,7 @@ TEST(Coordinates, WrongLength) {
   EXPECT_TRUE(contains(refusal<SO2>({}), "so2: 0 values, expected 1"));
   EXPECT_TRUE(contains(refusal<Rn<2>>({1, 2, 3}), "r2: 3 values, expected 2 (x1, x2)"));
   EXPECT_TRUE(
-      contains(refusal<Product<SE2, SO2>>({1, 2, 3}), "expected 4 (1_theta, 1_x, 1_y, 2_theta)"));
+      contains(refusal<Product<SE2, SO2>>({1, 2, 3}), "expected 4 (1_theta, x, y, 2_theta)"));
 }
 TEST(Coordinates, NotFinite) {
   EXPECT_TRUE(contains(refusal<SE2>({1, nan, 0}), "se2: x = "));

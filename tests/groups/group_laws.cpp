@@ -101,7 +101,7 @@ TEST(Groups, HaveTheNamesOfTheRegistry) {
   EXPECT_EQ(Rn<2>::name(), "r2");
   EXPECT_EQ((Product<SE2, SO2, Rn<1>>::name()), "se2*so2*r1");
   EXPECT_EQ((Product<SE2, SO2>::columns()),
-            (std::vector<std::string>{"1_theta", "1_x", "1_y", "2_theta"}));
+            (std::vector<std::string>{"1_theta", "x", "y", "2_theta"}));
 }
 
 /// The laws must be able to fail: each group has one mistake.

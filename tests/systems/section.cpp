@@ -82,8 +82,8 @@ TEST(Section, StartsOfOneEnergy) {
 // The integrals of Routh's sphere hold at every point of its section.
 TEST(Section, KeepsWhatTheMotionKeeps) {
   Simulation simulation = simulate("routh_sphere").tolerance({.relative = 1e-11});
-  const Section section = hamel::section(
-      simulation, {.event = "R33_1=0.9", .direction = 0, .count = 40, .longest = 500});
+  const Section section =
+      hamel::section(simulation, {.event = "R33=0.9", .direction = 0, .count = 40, .longest = 500});
   EXPECT_LT(section.orbits.front().energy_change, 1e-7);
   for (const double r33 : numbers(section, "1_R33")) EXPECT_NEAR(r33, 0.9, 1e-9);
 }

@@ -28,10 +28,7 @@ std::string words_of(const Range& range) {
 Json start_of(const SystemModel& model) {
   Json out;
   out["configuration"] = model.start.configuration;
-  if (model.start.configuration.empty()) {
-    const auto group = registry().group_or_product(model.group.name);
-    out["configuration"] = group ? group->identity : model.group.identity;
-  }
+  if (model.start.configuration.empty()) out["configuration"] = model.group.identity;
   if (!model.start.velocity.empty()) out["velocity"] = model.start.velocity;
   if (!model.start.momentum.empty()) out["momentum"] = model.start.momentum;
   return out;
@@ -67,7 +64,6 @@ Json parameters_of(const std::vector<Field>& fields) {
 void add_parts(Json& out, const SystemModel& model) {
   const Mechanics& mechanics = *model.mechanics;
   out["parts"] = model.parts;
-  out["rates"] = model.rates;
   out["reactions"] = model.reactions;
   out["dimension"] = mechanics.dim();
   out["holonomic_rows"] = mechanics.holonomic_rows();
@@ -88,11 +84,14 @@ Json inputs_of(const std::vector<InputField>& fields) {
 }
 
 Json describe_system(const SystemInfo& info, const Parameters& given) {
-  const SystemModel model = info.make(given);
+  SystemModel model = info.make(given);
+  registry().complete(model);
   Json out = {{"kind", "system"},
               {"name", info.name},
               {"summary", info.summary},
               {"group", info.group.name},
+              {"columns", model.group.columns},
+              {"rates", model.rates},
               {"formula", info.formula},
               {"parameters", parameters_of(info.fields)},
               {"inputs", inputs_of(info.inputs)},
@@ -126,6 +125,7 @@ Json describe_file(const std::string& path, const Parameters& given) {
               {"file", path},
               {"group", model.group.name},
               {"columns", model.group.columns},
+              {"rates", model.rates},
               {"constraints", constraints_in_words(model)},
               {"left_invariant", mechanics.left_invariant()},
               {"forces", mechanics.has_force()},
@@ -138,7 +138,6 @@ Json describe_file(const std::string& path, const Parameters& given) {
     add_parts(out, model);
     return out;
   }
-  out["rates"] = model.rates;
   out["formulas"] = Json::object();
   for (const auto& [entry, text] : model.formulas) out["formulas"][entry] = text;
   out["invariants"] = Json::array();

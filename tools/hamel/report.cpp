@@ -45,7 +45,7 @@ ReadRun read_run(const std::string& path) {
   r.config.inputs = config.inputs;  // by their names
   r.inputs = run.inputs();
   read_record(out.record, path, r);
-  r.trajectory = read_rows(file, kRowsOfPage);
+  r.trajectory = read_rows(file, kRowsOfPage, r.system.get());
   return out;
 }
 
@@ -115,9 +115,8 @@ void add_motions(Page& page, const std::vector<ReadRun>& runs) {
   for (const ReadRun& run : runs) {
     const Result& r = run.result;
     const std::vector<Component> names = components_of(*r.system);
-    for (size_t i = 0; i < names.size(); ++i)
-      velocities.add(names[i].name, names[i].unit,
-                     curve(r, run.name, fmt::format("xi{}", i + 1), false));
+    for (const Component& c : names)
+      velocities.add(c.name, c.unit, curve(r, run.name, c.name, false));
     const std::vector<std::string>&columns = r.system->group.columns,
           units = units_of_element(r.system->group);
     for (size_t i = 0; i < columns.size(); ++i)

@@ -203,30 +203,26 @@ void add_energy_balance(Page& page, const Result& r, const std::vector<Mark>& ma
 }  // namespace
 
 void add_physics(Page& page, const Result& r, const std::vector<Mark>& marks) {
-  const std::vector<std::string>& columns = r.system->group.columns;
   const std::vector<Component> names = components_of(*r.system);
   ByUnit velocity, spin, momentum, shape, spun;
   const Spins spins(r);
-  const std::vector<ShapeCoordinate> coordinates = shape_of(r.system->group, names);
+  const std::vector<ShapeCoordinate> coordinates = shape_of(r.system->group);
   const auto spinning = [&](size_t i) {
     return std::any_of(coordinates.begin(), coordinates.end(), [&](const ShapeCoordinate& s) {
       return s.component == static_cast<int>(i) && spins.has(s);
     });
   };
   for (size_t i = 0; i < names.size(); ++i) {
-    const auto& [name, unit] = names[i];
-    (spinning(i) ? spin : velocity)
-        .add(unit, component(r, with_unit(name, unit), fmt::format("xi{}", i + 1), name));
+    const std::string &name = names[i].name, &unit = names[i].unit;
+    (spinning(i) ? spin : velocity).add(unit, component(r, with_unit(name, unit), name, name));
     const std::string dual = unit == "rad/s" ? "N m s" : unit == "m/s" ? "N s" : "";
     momentum.add(dual,
                  component(r, with_unit("mu of " + name, dual), fmt::format("mu{}", i + 1), name));
   }
   for (const ShapeCoordinate& s : coordinates) {
-    const std::string &column = columns[static_cast<size_t>(s.column)],
-                      &rate = names[static_cast<size_t>(s.component)].name;
+    const std::string& rate = names[static_cast<size_t>(s.component)].name;
     (spins.has(s) ? spun : shape)
-        .add(s.unit,
-             component(r, with_unit(rate.ends_with('\'') ? s.name : column, s.unit), column, rate));
+        .add(s.unit, component(r, with_unit(s.name, s.unit), s.name, rate));
   }
   velocity.plot(page, {{"rad/s", "Angular velocity"}, {"m/s", "Velocity"}}, "Body velocity xi",
                 marks);

@@ -19,7 +19,7 @@ struct Sizes {
 Sizes sizes_of(const Result& r) {
   Sizes out;
   if (r.trajectory.rows() == 0) return out;
-  const size_t columns = r.system->group.columns.size(), xi = r.trajectory.index("xi1");
+  const size_t columns = r.system->group.columns.size(), xi = 1 + columns;
   const auto start = r.trajectory.row(0).subspan(1, columns);
   for (size_t i = 0; i < r.trajectory.rows(); ++i) {
     const auto row = r.trajectory.row(i);

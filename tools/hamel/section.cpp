@@ -68,7 +68,7 @@ Page page_of(const SectionOptions& options, const Section& section) {
     }
     std::erase_if(series, [](const Series& one) { return one.x.empty(); });
     const auto label = [](const TableColumn& column) {
-      return with_unit(column.name.starts_with("xi") ? column.meaning : column.name, column.unit);
+      return with_unit(column.name, column.unit);
     };
     page.plot("Section", {.x = label(*axes[0]), .y = label(*axes[1]), .name = "section"}, series,
               "One colour for each start. Points on a closed curve belong to a quasi-periodic "
@@ -163,8 +163,8 @@ void SectionLine::define(CLI::App& app) {
                  "1: crossings where its function grows, -1: where it falls [0: both]");
   number_option(app, "--count", options_.request.count, "points of each start");
   app.add_option("--starts", options_.starts,
-                 "a CSV file of starts: the columns of the element and xi1, xi2, ... or their "
-                 "names, as -o writes them");
+                 "a CSV file of starts: the columns of the element and of the velocity, as -o "
+                 "writes them");
   number_option(app, "--energy", options_.request.energy,
                 "every start gets this energy, in J, by a factor of its velocity");
   number_option(app, "--until", options_.request.longest, "give a start up after so many seconds");
@@ -186,8 +186,9 @@ void SectionLine::define(CLI::App& app) {
       "Without a scheme, a step and a tolerance: dop853 at rtol 1e-10.\n"
       "Exit status: 0 done, 1 points are missing (those found are written), 2 bad input.\n"
       "Examples:\n"
-      "  hamel section suslov_in_potential --set inertia=2,0,0,3,0,4 --event 'xi1=0' --count 400\n"
-      "  hamel section routh_sphere --event '1_R33=0.5' --count 200 -o sphere.csv\n"
+      "  hamel section suslov_in_potential --set inertia=2,0,0,3,0,4 --event 'omega1=0' --count "
+      "400\n"
+      "  hamel section routh_sphere --event 'R33=0.5' --count 200 -o sphere.csv\n"
       "  hamel section rattleback --event reversed --direction 1 --count 10 --json");
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/run/data/data_drawing.hpp>
 #include <hamel/framework/run/data/data_formulas.hpp>
 #include <hamel/framework/run/data/toml_events.hpp>
@@ -101,54 +102,44 @@ class File {
 
   // The names of coordinates, rates and inputs, each its own.
   void name_all() {
-    const std::vector<Component> components = components_of(model_.group);
-    const auto shape = shape_of(model_.group, components);
-    for (const std::string& column : model_.group.columns) {
-      const size_t digits = column.find_first_not_of("0123456789");
-      const bool numbered = digits > 0 && digits != std::string::npos && column[digits] == '_';
-      names_.coordinates.push_back(
-          numbered ? column.substr(digits + 1) + "_" + column.substr(0, digits) : column);
-    }
-    if (names("coordinates", names_.coordinates)) model_.group.columns = names_.coordinates;
-    for (const Component& component : components) names_.rates.push_back(component.name);
-    for (const ShapeCoordinate& s : shape)
-      names_.rates[static_cast<size_t>(s.component)] =
-          names_.coordinates[static_cast<size_t>(s.column)] + "'";
-    const Names usual = names_.rates;
-    for (size_t i = 0; i < usual.size(); ++i) {  // se2*se3 has two v1
-      if (std::count(usual.begin(), usual.end(), usual[i]) > 1)
-        names_.rates[i] = fmt::format("xi{}", i + 1);
-    }
-    names("rates", names_.rates);
+    names("coordinates", model_.group.columns.size(), model_.coordinates);
+    names("rates", static_cast<size_t>(model_.group.dim), model_.rates);
+    name_quantities(model_);
+    QuantityNames names(model_);
+    const auto middle =
+        names.variables().begin() + 1 + static_cast<std::ptrdiff_t>(model_.group.columns.size());
+    names_.coordinates.assign(names.variables().begin() + 1, middle);
+    names_.rates.assign(middle, names.variables().end());
     for (const InputField& input : model_.inputs) names_.inputs.push_back(input.name);
     Names all{"t"};
     all = all + names_.coordinates + names_.rates + names_.inputs;
-    for (const auto& [name, value] : formulas_.constants()) all.push_back(name);
+    for (const auto& [name, value] : formulas_.constants()) {
+      all.push_back(name);
+      if (names.find(name) && !name.starts_with("xi")) all.push_back(name);
+      names.forget(name);
+    }
+    formulas_.read_by([names](const std::string& text) { return names.in_formula(text); });
     std::sort(all.begin(), all.end());
     const auto twice = std::adjacent_find(all.begin(), all.end());
     if (twice != all.end())
       read_.mistakes.push_back(fmt::format("{}: two things are called '{}'", origin_, *twice));
     stop_at_mistakes();
-    model_.rates = names_.rates;
   }
-  // The names that the file gives in place of these.
-  bool names(const std::string& key, Names& out) {
+  // The names that the file gives, so many.
+  void names(const std::string& key, size_t count, Names& out) {
     const Node* node = table_.get(key);
-    if (node == nullptr) return false;
+    if (node == nullptr) return;
     Names given;
     const size_t before = read_.mistakes.size();
     read_.value(*node, key, given);
-    if (read_.mistakes.size() > before) return false;
-    if (given.size() != out.size()) {
-      read_.wrong(*node, key, fmt::format("{} names, got {}", out.size(), given.size()));
-      return false;
-    }
+    if (read_.mistakes.size() > before) return;
+    if (given.size() != count)
+      return read_.wrong(*node, key, fmt::format("{} names, got {}", count, given.size()));
     for (const std::string& name : given) {
       if (!Expression::allows(name))
         read_.wrong(*node, key, fmt::format("names allowed in a formula, got '{}'", name));
     }
     out = given;
-    return true;
   }
 
   void check_keys() {

@@ -1,10 +1,11 @@
 #include <hamel/framework/run/data/event_formula.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 
 #include <fmt/format.h>
+
+#include <hamel/framework/mechanics/quantity_names.hpp>
 
 namespace hamel {
 namespace {
@@ -29,13 +30,6 @@ size_t sign_of(const std::string& text) {
   return std::string::npos;
 }
 
-// A column of a product as a formula may have it: "1_x" -> "x_1".
-std::string usable(const std::string& column) {
-  const size_t digits = column.find_first_not_of("0123456789");
-  const bool numbered = digits > 0 && digits != std::string::npos && column[digits] == '_';
-  return numbered ? column.substr(digits + 1) + "_" + column.substr(0, digits) : column;
-}
-
 // A variable hides a parameter of its name.
 std::map<std::string, double> constants_of(const SystemModel& system,
                                            const std::vector<std::string>& variables) {
@@ -53,33 +47,6 @@ std::map<std::string, double> constants_of(const SystemModel& system,
 
 }  // namespace
 
-std::string with_usable_names(std::string text, const std::vector<std::string>& columns) {
-  const auto of_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.'; };
-  for (const std::string& column : columns) {
-    const std::string name = usable(column);
-    if (name == column) continue;
-    for (size_t at = 0; (at = text.find(column, at)) != std::string::npos; at += name.size()) {
-      const size_t behind = at + column.size();
-      if ((at == 0 || !of_name(text[at - 1])) && (behind == text.size() || !of_name(text[behind])))
-        text.replace(at, column.size(), name);
-    }
-  }
-  return text;
-}
-
-std::vector<std::string> state_variables(const SystemModel& system) {
-  std::vector<std::string> out = {"t"};
-  for (const std::string& column : system.group.columns) out.push_back(usable(column));
-  const std::vector<Component> components = components_of(system);
-  for (const Component& component : components) out.push_back(component.name);
-  for (size_t i = 0; i < components.size(); ++i) out.push_back(fmt::format("xi{}", i + 1));
-  for (size_t i = 0; i < out.size(); ++i)
-    if (std::find(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(i), out[i]) !=
-        out.begin() + static_cast<std::ptrdiff_t>(i))
-      out[i].clear();
-  return out;
-}
-
 std::optional<Event> event_of_formula(const SystemModel& system, const std::string& text,
                                       std::vector<std::string>& mistakes) {
   const size_t at = sign_of(text);
@@ -88,13 +55,13 @@ std::optional<Event> event_of_formula(const SystemModel& system, const std::stri
   Event out{text, "both sides are equal", 0, {}};
   if (text[at] == '>') out.meaning = "the left side becomes larger", out.direction = 1;
   if (text[at] == '<') out.meaning = "the left side becomes smaller", out.direction = -1;
-  const std::vector<std::string> variables = state_variables(system);
+  const QuantityNames names(system);
   try {
-    out.value = value_of_state(Expression(with_usable_names(formula, system.group.columns),
-                                          variables, constants_of(system, variables)));
+    out.value = value_of_state(Expression(names.in_formula(formula), names.variables(),
+                                          constants_of(system, names.variables())));
     return out;
   } catch (const ExpressionError& error) {
-    mistakes.push_back(fmt::format("events: '{}': {}", text, error.what()));
+    mistakes.push_back(fmt::format("events: '{}': {}", text, names.in_words(error.what())));
     return {};
   }
 }

@@ -15,27 +15,20 @@
 
 namespace hamel {
 
-/// The value of a formula over t, the coordinates, the velocity, and the velocity once more, in
-/// this order.
+/// The value of a formula over t, the coordinates and the velocity, in this order.
 inline auto value_of_state(Expression formula) {
   return [formula = std::move(formula), values = std::vector<double>()](
              double t, std::span<const double> g, std::span<const double> xi) mutable {
     values.assign(1, t);
     values.insert(values.end(), g.begin(), g.end());
-    for (int twice = 0; twice < 2; ++twice) values.insert(values.end(), xi.begin(), xi.end());
+    values.insert(values.end(), xi.begin(), xi.end());
     return formula(values);
   };
 }
 
-/// t, the coordinates, the velocities by their names and by their numbers, in this order; a name of
-/// two things is empty.
-std::vector<std::string> state_variables(const SystemModel& system);
-/// The text with the columns of a product in the form that a formula may have: "1_x" -> "x_1".
-std::string with_usable_names(std::string text, const std::vector<std::string>& columns);
-
-/// The event of a text with =, < or > between two formulas of t, the system's columns, its
-/// velocities by name or number (omega, xi1), and its parameters (those of several numbers with the
-/// number behind: inertia1). None where the text has no such sign, or where something is wrong with
+/// The event of a text with =, < or > between two formulas of t, the system's coordinates and
+/// velocities (quantity_names.hpp), and its parameters (those of several numbers with the number
+/// behind: inertia1). None where the text has no such sign, or where something is wrong with
 /// it, which goes to mistakes.
 std::optional<Event> event_of_formula(const SystemModel& system, const std::string& text,
                                       std::vector<std::string>& mistakes);

@@ -189,6 +189,7 @@ GroupInfo translations(int n, const GroupInfo& line) {
     whole.components.push_back({info.columns.back() + "'", "m/s"});
     whole.units.emplace_back("m");
   }
+  whole.names = info.columns;
   whole.coordinate_rates = detail::copy_rates;
   whole.add_pulled_back = detail::add_slopes;
   info.factors = {whole};
@@ -226,6 +227,16 @@ std::optional<GroupInfo> Registry::group_or_product(const std::string& name) con
                                   [](int sum, const GroupInfo& info) { return sum + info.dim; });
   if (factors.empty() || dim > kMaxDimension) return {};
   return product_info(name, factors);
+}
+
+bool Registry::complete(SystemModel& model) const {
+  if (model.group.dim == 0) {
+    const auto group = group_or_product(model.group.name);
+    if (!group) return false;
+    model.group = *group;
+  }
+  name_quantities(model);
+  return true;
 }
 
 std::string Registry::missing_group(const std::string& name) const {

@@ -152,6 +152,9 @@ class Registry {
   // Products written "se2*so2^3" that nobody registered are put together from their factors.
   /// Nothing when a factor is unknown, or the dimension above kMaxDimension.
   std::optional<GroupInfo> group_or_product(const std::string& name) const;
+  /// Gives a model that has its group by name alone this group and its names; false where there is
+  /// no such group.
+  bool complete(SystemModel& model) const;
   /// The reason why there is no group or product of this name.
   std::string missing_group(const std::string& name) const;
   /// Null when a factor has no such retraction.

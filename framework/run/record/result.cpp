@@ -30,15 +30,25 @@ void Trajectory::thin() {
   values_.resize(count * width);
 }
 
-size_t Trajectory::index(const std::string& column) const {
+std::optional<size_t> Trajectory::find(const std::string& column) const {
   const auto it = std::find(columns_.begin(), columns_.end(), column);
-  if (it == columns_.end()) throw ConfigError({unknown_name("column", column, columns_)});
-  return static_cast<size_t>(it - columns_.begin());
+  if (it != columns_.end()) return static_cast<size_t>(it - columns_.begin());
+  size_t first = 0;
+  for (const ColumnGroup& group : groups_) {
+    for (const auto& [name, place] : group.other_names)
+      if (name == column) return first + place;
+    first += group.columns.size();
+  }
+  return {};
 }
 
-bool Trajectory::has(const std::string& column) const {
-  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+size_t Trajectory::index(const std::string& column) const {
+  const std::optional<size_t> place = find(column);
+  if (!place) throw ConfigError({unknown_name("column", column, columns_)});
+  return *place;
 }
+
+bool Trajectory::has(const std::string& column) const { return find(column).has_value(); }
 
 std::vector<double> Trajectory::column(const std::string& name) const {
   const size_t j = index(name);

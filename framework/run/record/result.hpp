@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,7 +34,8 @@ class HAMEL_API Trajectory {
   }
   double at(size_t i, size_t j) const { return values_[i * columns_.size() + j]; }
   double& at(size_t i, size_t j) { return values_[i * columns_.size() + j]; }
-  /// The index of a column; ConfigError naming the nearest when there is none.
+  /// The index of a column, also by another name that is read (4_theta, xi4); ConfigError naming
+  /// the nearest when there is none.
   size_t index(const std::string& column) const;
   std::vector<double> column(const std::string& name) const;
   bool has(const std::string& column) const;
@@ -45,6 +47,8 @@ class HAMEL_API Trajectory {
   void stride(size_t stride) { stride_ = stride; }
 
  private:
+  std::optional<size_t> find(const std::string& column) const;
+
   std::vector<ColumnGroup> groups_;
   std::vector<std::string> columns_;
   std::vector<double> values_;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include <hamel/framework/io/version.hpp>
 #include <hamel/framework/run/names/system_file.hpp>
 #include <hamel/framework/run/record/checkpoint.hpp>
+#include <hamel/framework/run/record/named_columns.hpp>
 
 namespace hamel {
 namespace {
@@ -135,11 +137,13 @@ std::string RunFile::file(const std::string& path) const {
   throw ConfigError({fmt::format("'{}': it does not hold the text of '{}'", path_, path)});
 }
 
-Trajectory read_rows(const RunFile& file, std::size_t most) {
+Trajectory read_rows(const RunFile& file, std::size_t most, const SystemModel* system) {
   constexpr std::size_t piece = 4096;
   Trajectory out;
   const std::unique_ptr<Sink> rows = make_memory_sink(out, most);
-  rows->begin({file.table().groups(), "", "", ""});
+  std::vector<ColumnGroup> groups = file.table().groups();
+  if (system != nullptr) rename_columns(groups, *system);
+  rows->begin({std::move(groups), "", "", ""});
   std::vector<double> values;
   const std::size_t count = file.table().rows();
   std::uint64_t sum = kNoRows;

@@ -70,9 +70,9 @@ class RunFile {
   RowFileReader rows_;
 };
 
-/// The rows of a finished file, thinned to at most so many. ConfigError where they are not those
-/// that were written.
-Trajectory read_rows(const RunFile& file, std::size_t most);
+/// The rows of a finished file, thinned to at most so many, by the names of its system where it is
+/// given. ConfigError where they are not those that were written.
+Trajectory read_rows(const RunFile& file, std::size_t most, const SystemModel* system = nullptr);
 
 /// The contents of a record, into a Result that has its system and config. ConfigError, with the
 /// place, where it is none.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <boost/math/tools/toms748_solve.hpp>
 
+#include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/event_formula.hpp>
 
@@ -45,15 +46,14 @@ class NormalReaction {
 std::optional<Event> plane(const SystemModel& system, const std::string& text) {
   const size_t equal = text.find('=');
   if (equal == std::string::npos) return {};
-  const std::vector<std::string>& columns = system.group.columns;
-  const auto it = std::find(columns.begin(), columns.end(), text.substr(0, equal));
+  const auto place = QuantityNames(system).find(text.substr(0, equal));
   const char* const last = text.data() + text.size();
   double value = 0;
   const auto [end, error] = std::from_chars(text.data() + equal + 1, last, value);
-  if (it == columns.end() || error != std::errc() || end != last) return {};
-  const auto i = static_cast<size_t>(it - columns.begin());
+  if (!place || *place >= system.group.columns.size() || error != std::errc() || end != last)
+    return {};
   return Event{text, "this column crosses this value", 0,
-               [i, value](double, std::span<const double> g, std::span<const double>) {
+               [i = *place, value](double, std::span<const double> g, std::span<const double>) {
                  return g[i] - value;
                }};
 }

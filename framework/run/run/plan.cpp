@@ -152,19 +152,14 @@ std::optional<PlannedSystem> plan_system(const Registry& registry, const Config&
       drive(system, out.inputs);
     }
   }
-  const std::vector<std::string>& notes = system.notes;
-  out.notes.insert(out.notes.end(), notes.begin(), notes.end());
-  if (system.group.dim == 0) {  // a product by name alone
-    const std::string name = system.group.name;
-    if (auto group = registry.group_or_product(name)) system.group = *group;
-    else mistakes.add(registry.missing_group(name));
-  }
-  if (system.group.dim == 0) return {};
   try {
-    components_of(system);  // a wrong shape() is refused before anything runs
+    if (!registry.complete(system)) mistakes.add(registry.missing_group(system.group.name));
   } catch (const ConfigError& error) {
     mistakes.add(error.mistakes());
   }
+  const std::vector<std::string>& notes = system.notes;
+  out.notes.insert(out.notes.end(), notes.begin(), notes.end());
+  if (!system.has_names) return {};
   return out;
 }
 

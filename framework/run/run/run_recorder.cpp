@@ -8,6 +8,7 @@
 
 #include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
+#include <hamel/framework/run/record/named_columns.hpp>
 
 namespace hamel {
 namespace {
@@ -31,27 +32,13 @@ ColumnGroup numbered(const char* name, std::size_t count) {
   return out;
 }
 
-ColumnGroup element_columns(const GroupInfo& group) {
-  return {"configuration", fmt::format("{}", fmt::join(units_of_element(group), ",")),
-          "the element g of " + group.name, "g takes the body's frame to the frame in space",
-          group.columns};
-}
-
-// Columns of the velocity, or of the momentum dual to it.
-ColumnGroup body_columns(const char* name, const SystemModel& system, bool dual) {
-  ColumnGroup out = numbered(name, static_cast<std::size_t>(system.group.dim));
-  std::string names;
-  for (const Component& c : components_of(system)) {
-    const std::string unit = dual ? unit_of_momentum(c) : c.unit;
-    if (!names.empty()) {
-      out.unit += ",";
-      names += ",";
-    }
-    out.unit += unit;
-    names += c.name;
-  }
-  out.meaning = (dual ? "nodal body momentum, of " : "nodal body velocity: ") + names;
-  out.frame = "the body's: left trivialisation, angular part first";
+ColumnGroup momentum_columns(const SystemModel& system) {
+  ColumnGroup out = numbered("mu", static_cast<std::size_t>(system.group.dim));
+  std::vector<std::string> units;
+  for (const Component& c : components_of(system)) units.push_back(unit_of_momentum(c));
+  out.unit = fmt::format("{}", fmt::join(units, ","));
+  out.meaning = fmt::format("nodal body momentum, of {}", fmt::join(system.rates, ","));
+  out.frame = velocity_columns(system).frame;
   return out;
 }
 
@@ -136,8 +123,8 @@ void RunRecorder::take(const Snapshot& state) {
   last_row_ = state.time;
   const double error = all_.take(state, energy_start_);
   add(kTime, state.time);
-  add([&] { return element_columns(system_.group); }, state.coordinates);
-  add([&] { return body_columns("xi", system_, false); }, state.velocity);
+  add([&] { return element_columns(system_); }, state.coordinates);
+  add([&] { return velocity_columns(system_); }, state.velocity);
   add(kEnergy, state.energy);
   add(kEnergyError, error);
   add(kConstraint, state.constraint);
@@ -145,7 +132,7 @@ void RunRecorder::take(const Snapshot& state) {
   add(kIterations, static_cast<double>(state.iterations));
   add(kResidual, state.residual);
   if (holonomic_) add(kHolonomic, state.holonomic);
-  add([&] { return body_columns("mu", system_, true); }, state.momentum);
+  add([&] { return momentum_columns(system_); }, state.momentum);
 }
 
 void RunRecorder::compare(const Snapshot& state) {

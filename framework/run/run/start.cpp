@@ -81,7 +81,7 @@ std::vector<double> admissible(const SystemModel& system,
     refuse(fmt::format("velocity: got {} values, expected {}", state.velocity.size(), n));
   if (!finite(state.velocity)) refuse("velocity: " + join(state.velocity) + " is not finite");
   try {
-    (void)system.group.element(state.coordinates);
+    (void)element_of(system.group, state.coordinates);
   } catch (const std::invalid_argument& error) {
     refuse(error.what());
   }
@@ -164,7 +164,7 @@ PlannedStart plan_start(const SystemModel& system, const Config& config, Mistake
   if (start.configuration.empty()) start.configuration = own.configuration;
   if (start.configuration.empty()) start.configuration = system.group.identity;
   try {
-    start.configuration = system.group.element(start.configuration);
+    start.configuration = element_of(system.group, start.configuration);
   } catch (const std::invalid_argument& error) {
     mistakes.add(fmt::format("configuration: {}", error.what()));
     start.configuration = system.group.identity;

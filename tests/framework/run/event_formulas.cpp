@@ -80,8 +80,8 @@ TEST(EventFormulas, TheNearestNameHasWhatWasGiven) {
     }
     return "";
   };
-  EXPECT_EQ(offered("x1"), "x1_2");
-  EXPECT_EQ(offered("R33"), "R33_1");
+  EXPECT_EQ(offered("x1"), "x");
+  EXPECT_EQ(offered("R_33"), "R33");
   EXPECT_EQ(offered("omega"), "omega1");
   EXPECT_EQ(offered("omga1"), "omega1");
   EXPECT_EQ(offered("Q"), "");  // t has no letter of it

@@ -8,7 +8,7 @@ import hamel
 
 
 def feedback(run: hamel.Run, speed: float, rate: float) -> None:
-    total = 217 * run["4_theta"] + 41 * run["pitch'"] + 7 * (run["v1"] - speed)
+    total = 217 * run["pitch"] + 41 * run["pitch'"] + 7 * (run["v1"] - speed)
     difference = 10 * (rate - run["omega"])
     run.input("right_torque", (total + difference) / 2)
     run.input("left_torque", (total - difference) / 2)
@@ -25,8 +25,8 @@ for k in range(round(END / PERIOD)):
     feedback(segway, speed=0.5 if slow else 1.0, rate=-0.5 if slow else 0.5)
     if not (status := segway.advance_to((k + 1) * PERIOD)):
         raise SystemExit(status.reason)
-    largest = max(largest, abs(segway["4_theta"]))
-    path.append((segway["1_x"], segway["1_y"]))
+    largest = max(largest, abs(segway["pitch"]))
+    path.append((segway["x"], segway["y"]))
 times_real = END / (time.perf_counter() - begin)
 print(
     f"balanced: pitch at most {largest:.3f} rad; runs at {segway['v1']:.3f} m/s and turns at "

@@ -18,9 +18,6 @@ def to_pandas(result: Result) -> pandas.DataFrame:
     frame = pandas.DataFrame(
         {name: result[name] for name in columns}, index=pandas.Index(result.t, name="t")
     )
-    for name, velocity in zip(result.groups.get("xi", []), result.names, strict=False):
-        if velocity not in frame:
-            frame[velocity] = result[name]
     units = result.units
     frame.attrs["units"] = {name: units[name] for name in frame.columns}
     frame.attrs["system"] = result.config.system

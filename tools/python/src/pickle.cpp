@@ -7,6 +7,7 @@
 namespace hamel::python {
 namespace {
 
+using OtherNames = std::vector<std::pair<std::string, size_t>>;
 using GroupState =
     std::tuple<std::string, std::string, std::string, std::string, std::vector<std::string>>;
 
@@ -108,6 +109,9 @@ nb::dict pack(const StoredResult& stored) {
   for (const ColumnGroup& g : result.trajectory.groups())
     groups.emplace_back(g.name, g.unit, g.meaning, g.frame, g.columns);
   out["columns"] = groups;
+  std::vector<OtherNames> other_names;
+  for (const ColumnGroup& g : result.trajectory.groups()) other_names.push_back(g.other_names);
+  out["other_names"] = other_names;
   out["stride"] = result.trajectory.stride();
   const auto values = result.trajectory.values();
   out["rows"] = nb::bytes(values.data(), values.size_bytes());
@@ -152,6 +156,12 @@ StoredResult read(const nb::dict& state) {
   for (const auto& [name, unit, meaning, frame, columns] :
        get<std::vector<GroupState>>(state, "columns"))
     groups.push_back({name, unit, meaning, frame, columns});
+  if (state.contains("other_names")) {
+    const auto other_names = get<std::vector<OtherNames>>(state, "other_names");
+    for (size_t i = 0; i < std::min(groups.size(), other_names.size()); ++i)
+      for (const auto& [name, place] : other_names[i])
+        if (place < groups[i].columns.size()) groups[i].other_names.emplace_back(name, place);
+  }
   result.trajectory = Trajectory(std::move(groups));
   const nb::bytes rows = get<nb::bytes>(state, "rows");
   const size_t row = result.trajectory.columns().size() * sizeof(double);

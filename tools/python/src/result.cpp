@@ -6,19 +6,6 @@
 namespace hamel::python {
 namespace {
 
-// "nodal body velocity: omega1,omega2,omega3", as the columns of a run have it: the names.
-std::vector<std::string> names_in(const std::string& meaning) {
-  std::vector<std::string> out;
-  size_t at = meaning.find(": ");
-  if (at == std::string::npos) return out;
-  for (at += 2; at < meaning.size();) {
-    const size_t end = std::min(meaning.find(',', at), meaning.size());
-    out.push_back(meaning.substr(at, end - at));
-    at = end + 1;
-  }
-  return out;
-}
-
 std::vector<std::string> split(const std::string& words) {
   std::vector<std::string> out(1);
   for (const char c : words) {
@@ -60,12 +47,9 @@ std::map<std::string, std::string> units_of(const StoredResult& stored) {
   std::map<std::string, std::string> out;
   for (const ColumnGroup& group : stored.result.trajectory.groups()) {
     const auto units = split(group.unit);
-    const auto names = names_in(group.meaning);
-    for (size_t i = 0; i < group.columns.size(); ++i) {
-      const std::string& unit = i < units.size() ? units[i] : units.front();
-      out[group.columns[i]] = unit;
-      if (group.name == "xi" && i < names.size()) out[names[i]] = unit;
-    }
+    const auto unit = [&](size_t i) { return i < units.size() ? units[i] : units.front(); };
+    for (size_t i = 0; i < group.columns.size(); ++i) out[group.columns[i]] = unit(i);
+    for (const auto& [name, i] : group.other_names) out.emplace(name, unit(i));
   }
   return out;
 }
@@ -88,7 +72,7 @@ void bind_rows(nb::class_<StoredResult>& result) {
   result
       .def("__getitem__", &item, "name"_a,
            nb::sig("def __getitem__(self, name: str) -> numpy.typing.NDArray[numpy.float64]"),
-           "The rows of a column ('R11', 'xi1', 'energy', or by name, 'omega1'), shape (rows,), "
+           "The rows of a column ('R11', 'omega1', 'energy'), shape (rows,), "
            "or of a vector ('configuration', 'xi', 'mu', 'lambda'), shape (rows, n): a read-only "
            "view, nothing is copied.")
       .def("__contains__",
@@ -128,10 +112,10 @@ void bind_rows(nb::class_<StoredResult>& result) {
           "names",
           [](const StoredResult& s) {
             for (const ColumnGroup& g : s.result.trajectory.groups())
-              if (g.name == "xi") return names_in(g.meaning);
+              if (g.name == "xi") return g.columns;
             return std::vector<std::string>();
           },
-          "of the velocities xi1, xi2, …, in their order")
+          "The columns of the velocities xi1, xi2, …, in their order.")
       .def_prop_ro("units", &units_of, "The unit of each column, '1' or '' of plain numbers.");
 }
 
@@ -146,11 +130,15 @@ const StoredResult::Places& StoredResult::places() const {
       places_.emplace(name, std::pair(first + i, size_t{0}));
     };
     for (size_t i = 0; i < n; ++i) add(group.columns[i], i);
-    const auto names = group.name == "xi" ? names_in(group.meaning) : std::vector<std::string>();
-    for (size_t i = 0; i < std::min(n, names.size()); ++i) add(names[i], i);
     if (n != 1 || group.columns.front() != group.name)
       places_.emplace(group.name, std::pair(first, n));
     first += n;
+  }
+  first = 0;
+  for (const ColumnGroup& group : result.trajectory.groups()) {  // behind the names of columns
+    for (const auto& [name, i] : group.other_names)
+      places_.emplace(name, std::pair(first + i, size_t{0}));
+    first += group.columns.size();
   }
   return places_;
 }

@@ -139,16 +139,18 @@ void bind_state(nb::module_& m) {
 }  // namespace
 
 StateNames::StateNames(const SystemModel& system) : model(describe_model(system)) {
-  const auto add = [&](const std::string& name, Part part, size_t index) {
-    places.emplace(name, std::pair(part, index));
+  const size_t columns = model.coordinates.size();
+  const auto add = [&](const std::string& name, size_t place) {
+    const bool coordinate = place < columns;
+    places.emplace(name, std::pair(coordinate ? Part::coordinate : Part::velocity,
+                                   coordinate ? place : place - columns));
   };
-  for (size_t i = 0; i < model.coordinates.size(); ++i)
-    add(model.coordinates[i], Part::coordinate, i);
+  for (size_t i = 0; i < columns; ++i) add(model.coordinates[i], i);
   for (size_t i = 0; i < model.velocities.size(); ++i) {
-    add(model.velocities[i], Part::velocity, i);
-    add("xi" + std::to_string(i + 1), Part::velocity, i);
-    add("mu" + std::to_string(i + 1), Part::momentum, i);
+    add(model.velocities[i], columns + i);
+    places.emplace("mu" + std::to_string(i + 1), std::pair(Part::momentum, i));
   }
+  for (const auto& [name, place] : model.other_names) add(name, place);
 }
 
 double StateNames::value(const Snapshot& state, const std::string& name) const {

@@ -61,7 +61,7 @@ void bind_section(nb::module_& m) {
           "name"_a,
           nb::sig("def __getitem__(self, name: str) -> numpy.typing.NDArray[numpy.float64] | "
                   "list[int] | list[str]"),
-          "A column, shape (points,): start, n, t, those of the element, xi1 …, energy.")
+          "A column, shape (points,): start, n, t, those of the element and the velocity, energy.")
       .def_prop_ro("columns", [](const Section& s) { return columns_of(s.points); })
       .def_prop_ro("units", [](const Section& s) { return units_of(s.points); })
       .def_ro("orbits", &Section::orbits)

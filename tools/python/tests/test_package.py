@@ -48,6 +48,7 @@ def test_frames():
     frame = result.to_pandas()
     assert isinstance(frame, pandas.DataFrame) and frame.index.name == "t"
     np.testing.assert_array_equal(frame["omega1"], result["xi1"])
+    assert "xi1" not in frame
     assert frame.attrs["units"]["omega1"] == "rad/s"
     data = result.to_xarray()
     assert isinstance(data, xarray.Dataset) and data["xi"].dims == ("t", "xi_column")
