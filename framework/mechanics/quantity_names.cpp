@@ -161,20 +161,23 @@ class Namer {
     for (size_t i = 0; i < velocities.size(); ++i) add(fmt::format("xi{}", i + 1), count + i);
     for (size_t k = 0; k < count; ++k) add(name_in_formula(coordinates[k]), k);
     for (size_t i = 0; i < velocities.size(); ++i) add(name_in_formula(velocities[i]), count + i);
-    if (model_.coordinates.empty() && factors_.size() > 1) add_numbered();
+    if (model_.coordinates.empty() && factors_.size() > 1) add_numbered(count);
     if (model_.rates.empty()) add_components(count);
     for (const auto& [column, component] : shape_) {
       const auto k = static_cast<size_t>(column);
       add_free(coordinates[k] + "'", count + static_cast<size_t>(component));
     }
   }
-  // 4_theta and theta_4, whatever the system calls it.
-  void add_numbered() {
-    size_t place = 0;
+  // 4_theta and theta_4, whatever the system calls it, and its rate theta_4'.
+  void add_numbered(size_t coordinates) {
+    size_t place = 0, shape = 0;
     for (size_t f = 1; f <= factors_.size(); ++f) {
       for (const std::string& own : factors_[f - 1].names) {
         add(fmt::format("{}_{}", f, own), place);
         add(fmt::format("{}_{}", own, f), place++);
+        if (factors_[f - 1].is_shape)
+          add(fmt::format("{}_{}'", own, f),
+              coordinates + static_cast<size_t>(shape_[shape++].second));
       }
     }
   }

@@ -111,7 +111,8 @@ TEST(QuantityNames, OfEarlierReleases) {
   };
   for (const char* name : {"4_theta", "theta_4", "angle_4"})
     EXPECT_EQ(place("segway", name), "pitch");
-  for (const char* name : {"angle_4'", "xi6", "pitch'"}) EXPECT_EQ(place("segway", name), "pitch'");
+  for (const char* name : {"angle_4'", "theta_4'", "xi6", "pitch'"})
+    EXPECT_EQ(place("segway", name), "pitch'");
   for (const char* name : {"1_x", "x_1"}) EXPECT_EQ(place("segway", name), "x");
   for (const char* name : {"2_x1", "x1_2", "x"}) EXPECT_EQ(place("rolling_ball", name), "x");
   EXPECT_EQ(place("rolling_ball", "1_R33"), "R33");

@@ -104,6 +104,7 @@ class File {
   void name_all() {
     names("coordinates", model_.group.columns.size(), model_.coordinates);
     names("rates", static_cast<size_t>(model_.group.dim), model_.rates);
+    const Names coordinates = model_.coordinates, rates = model_.rates;
     name_quantities(model_);
     QuantityNames names(model_);
     const auto middle =
@@ -112,7 +113,14 @@ class File {
     names_.rates.assign(middle, names.variables().end());
     for (const InputField& input : model_.inputs) names_.inputs.push_back(input.name);
     Names all{"t"};
-    all = all + names_.coordinates + names_.rates + names_.inputs;
+    all = all + (coordinates.empty() ? names_.coordinates : coordinates) +
+          (rates.empty() ? names_.rates : rates) + names_.inputs;
+    for (const GroupFactor& factor : model_.group.factors) {
+      for (const Component& component : factor.components)  // a coordinate called omega
+        if (rates.empty() && !factor.is_shape &&
+            std::find(coordinates.begin(), coordinates.end(), component.name) != coordinates.end())
+          all.push_back(component.name);
+    }
     for (const auto& [name, value] : formulas_.constants()) {
       all.push_back(name);
       if (names.find(name) && !name.starts_with("xi")) all.push_back(name);

@@ -3,8 +3,7 @@
 //   name = "kick scooter"              # left out: the file's
 //   group = "se2*so2"                  # any product of registered groups
 //   coordinates = ["theta", "x", "y", "steer"]
-//                                      # left out: the group's columns, 2_theta of a product as
-//                                      # theta_2
+//                                      # left out: the group's columns
 //   rates = ["omega", "v1", "v2", "steer'"]
 //                                      # left out: these, which follow from group and coordinates
 //   inertia = ["I", "m", "m", 0.02]    # n principal entries, or n rows of n: I(g)

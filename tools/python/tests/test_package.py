@@ -228,3 +228,19 @@ def test_import_loads_no_numpy():
     """NumPy is imported with the first array, since it takes longer than the rest."""
     code = "import sys, hamel; print('numpy' in sys.modules, 'pandas' in sys.modules)"
     assert run_python(code).stdout.split() == ["False", "False"]
+
+
+def test_names_of_earlier_releases():
+    result = hamel.run("segway", step=0.01, until=0.1)
+    assert result.columns[1:8] == ["theta", "x", "y", "right", "left", "pitch", "omega"]
+    assert result.names[-1] == "pitch'"
+    again = pickle.loads(pickle.dumps(result))
+    run = hamel.simulate("segway", step=0.01, until=0.1).build()
+    for name, others in {"pitch": ("4_theta", "theta_4"), "pitch'": ("xi6", "angle_4'")}.items():
+        for other in others:
+            np.testing.assert_array_equal(result[other], result[name])
+            np.testing.assert_array_equal(again[other], result[name])
+            assert result.last[other] == result.last[name] and run[other] == run[name]
+            assert other in result and result.units[other] == result.units[name]
+    points = hamel.section("routh_sphere", "1_R33=0.9", 2)
+    np.testing.assert_array_equal(points["xi1"], points["omega1"])
