@@ -101,12 +101,9 @@ Names names_of(const SystemModel& model) {
   Names out{
       .numbers = {}, .columns = model.group.columns, .preference = Vector::Constant(2 * n, 30)};
   for (const Component& component : components) out.numbers.push_back("delta." + component.name);
-  const std::vector<ShapeCoordinate> shapes = shape_of(model.group);
-  for (size_t k = 0; k < shapes.size(); ++k) {
-    std::string& column = out.columns[static_cast<size_t>(shapes[k].column)];
-    if (model.shape.size() == shapes.size()) column = model.shape[k];
-    out.numbers[static_cast<size_t>(shapes[k].component)] = column;
-    out.preference[shapes[k].component] = 100;
+  for (const ShapeCoordinate& shape : shape_of(model.group)) {
+    out.numbers[static_cast<size_t>(shape.component)] = shape.name;
+    out.preference[shape.component] = 100;
   }
   for (const Component& component : components) {
     out.numbers.push_back(component.name);

@@ -57,13 +57,8 @@ ModeNames::ModeNames(const SystemModel& model) {
   const std::vector<Component> components = components_of(model);
   coordinates.resize(components.size());
   for (const Component& component : components) velocities.push_back(component.name);
-  const std::vector<ShapeCoordinate> shapes = shape_of(model.group);
-  for (size_t k = 0; k < shapes.size(); ++k) {
-    coordinates[static_cast<size_t>(shapes[k].component)] =
-        model.shape.size() == shapes.size()
-            ? model.shape[k]
-            : model.group.columns[static_cast<size_t>(shapes[k].column)];
-  }
+  for (const ShapeCoordinate& shape : shape_of(model.group))
+    coordinates[static_cast<size_t>(shape.component)] = shape.name;
 }
 
 SteadyEquations::SteadyEquations(const Registry& registry, const SystemModel& model,
