@@ -45,9 +45,14 @@ TEST(Growth, GoesOnWhereABracketVanishes) {
 /// A car whose rear wheels turn apart as it turns round: 6 of 7 directions, the sixth 1e-7 of the
 /// first, and one integral. Brackets of five fields are at round-off; paths decide.
 TEST(Growth, PathsDecideWhatBracketsDoNot) {
-  const Analysis analysis = analyse(registry(), "car", {});
-  EXPECT_THAT(analysis.growth.dimensions, ElementsAre(2, 3, 5, 6));
-  EXPECT_TRUE(analysis.growth.decided());
+  const SystemModel car = simulate("car").build().system();
+  const auto geometry = registry().geometry(car.group.name, "exp");
+  Eigen::VectorXd g(geometry->size());
+  geometry->from_coordinates(car.start.configuration, g.data());
+  const Growth found = growth_of(*geometry, *car.mechanics, g.data(), 5,
+                                 natural_units(components_of(car), *car.mechanics, g.data()));
+  EXPECT_THAT(found.dimensions, ElementsAre(2, 3, 5, 6));
+  EXPECT_TRUE(found.decided());
 }
 
 /// z' = y^8 x': nine fields at y = 0, one more than is looked at.
