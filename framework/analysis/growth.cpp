@@ -143,6 +143,38 @@ bool has_drift(const Geometry& geometry, const Mechanics& mechanics, const Vecto
   return false;
 }
 
+// Of fields that change from place to place. nearby: what brackets span beside `here`, if that is
+// decided; near_zero: as of Growth.
+Reach reach_by_paths(Fields& fields, int possible, int most, int& nearby, bool& near_zero) {
+  const auto all = static_cast<int>(fields.coordinates());
+  const Vector here = Vector::Zero(all);
+  Reach reach;
+  const int deepest = std::min(std::max(all, 4), most);
+  Vector there(all);
+  const double length = own_length(fields, here);
+  for (int i = 0; i < all; ++i) there[i] = 0.3 * length * std::cos(1.0 + 2.0 * i);
+  int looked = 0;
+  for (const int depth : {std::min(3, deepest), std::min(5, deepest), deepest}) {
+    if (depth == looked) break;
+    looked = depth;
+    reach = reach_of(generations(fields, here, depth), fields.count(), possible);
+    if (reach.dimensions.back() == possible) nearby = possible;
+    else if (nearby < 0 && (depth == deepest || closed_at(reach, possible) >= 0)) {
+      const Reach generic = reach_of(generations(fields, there, depth), fields.count(), possible);
+      near_zero = generic.near_zero;
+      nearby = closed_at(generic, possible);
+    }
+    if (reach.dimensions.back() == nearby) break;
+  }
+  // What nested brackets leave to round-off, paths decide.
+  if (nearby < 0 && !near_zero && !reach.near_zero) {
+    const Reach whole = reach_of({orbit(fields, here)}, fields.count(), possible, 0);
+    near_zero = whole.near_zero;
+    if (!whole.round_off) nearby = whole.dimensions.back();
+  }
+  return reach;
+}
+
 }  // namespace
 
 std::vector<double> natural_units(const std::vector<Component>& components,
@@ -184,29 +216,7 @@ Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const dou
     reach = constant_reach(geometry, units, fields(here));
     nearby = reach.dimensions.back();
   } else {
-    const int deepest = std::min(std::max(all, 4), most);
-    Vector there(all);
-    const double length = own_length(fields, here);
-    for (int i = 0; i < all; ++i) there[i] = 0.3 * length * std::cos(1.0 + 2.0 * i);
-    int looked = 0;
-    for (const int depth : {std::min(3, deepest), std::min(5, deepest), deepest}) {
-      if (depth == looked) break;
-      looked = depth;
-      reach = reach_of(generations(fields, here, depth), fields.count(), possible);
-      if (reach.dimensions.back() == possible) nearby = possible;
-      else if (nearby < 0 && (depth == deepest || closed_at(reach, possible) >= 0)) {
-        const Reach generic = reach_of(generations(fields, there, depth), fields.count(), possible);
-        out.near_zero = generic.near_zero;
-        nearby = closed_at(generic, possible);
-      }
-      if (reach.dimensions.back() == nearby) break;
-    }
-    // What nested brackets leave to round-off, paths decide.
-    if (nearby < 0 && !out.near_zero && !reach.near_zero) {
-      const Reach whole = reach_of({orbit(fields, here)}, fields.count(), possible, 0);
-      out.near_zero = whole.near_zero;
-      if (!whole.round_off) nearby = whole.dimensions.back();
-    }
+    reach = reach_by_paths(fields, possible, most, nearby, out.near_zero);
   }
   out.looked_at = static_cast<int>(reach.dimensions.size());
   out.round_off = reach.round_off;
