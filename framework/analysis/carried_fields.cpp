@@ -78,6 +78,21 @@ struct Piece {
 };
 using Path = std::vector<Piece>;
 
+// Of length 1.
+Path random_path(std::mt19937& random, Eigen::Index controls, int pieces) {
+  const auto uniform = [&random] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
+  Path out;
+  double length = 0;
+  for (int i = 0; i < pieces; ++i) {
+    Vector u(controls);
+    for (double& entry : u) entry = uniform();
+    out.push_back({u.normalized(), 0.25 + std::abs(uniform())});
+    length += out.back().length;
+  }
+  for (Piece& piece : out) piece.length /= length;
+  return out;
+}
+
 // One step of order 8: midpoint rules of 2, 4, 6, 8 substeps, extrapolated (Hairer, Norsett,
 // Wanner, II.9).
 Vector flow(Fields& fields, const Vector& controls, double length, const Vector& start) {
@@ -166,19 +181,14 @@ Generation orbit(Fields& fields, const Vector& from) {
   const Eigen::Index rows = fields.coordinates(), each = fields.count();
   const Eigen::Index paths = 2 * ((rows + each - 1) / each) + 2;
   std::mt19937 random(5);
-  const auto uniform = [&random] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
   const double length = own_length(fields, from);
   Generation out{Matrix(rows, each * paths), 0, 0, {}};
   Matrix coarse = out.brackets;
   for (Eigen::Index w = 0; w < paths; ++w) {
-    Path path, halves;
-    for (int i = 0; i < 4; ++i) {
-      Vector u(each);
-      for (double& entry : u) entry = uniform();
-      const double piece = 0.25 * (0.5 + 0.5 * std::abs(uniform()));
-      path.push_back({u.normalized(), piece});
-      for (int half = 0; half < 2; ++half) halves.push_back({u.normalized(), piece / 2});
-    }
+    const Path path = random_path(random, each, 4);
+    Path halves;
+    for (const Piece& piece : path)
+      halves.insert(halves.end(), 2, {piece.controls, piece.length / 2});
     coarse.middleCols(each * w, each) = carried(fields, path, length, from, 0.02 * length);
     out.brackets.middleCols(each * w, each) = carried(fields, halves, length, from, 0.012 * length);
   }
@@ -193,20 +203,9 @@ std::vector<Generation> generations(Fields& fields, const Vector& from, int dept
   const Eigen::Index rows = fields.coordinates(), each = fields.count();
   const Eigen::Index paths = (rows + each - 1) / each + 1;
   std::mt19937 random(1);
-  const auto uniform = [&random] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
   std::vector<Path> words;
-  for (Eigen::Index w = 0; w < paths; ++w) {
-    Path path;
-    double length = 0;
-    for (int i = 0; i < std::max(2, depth - 1); ++i) {
-      Vector u(each);
-      for (double& entry : u) entry = uniform();
-      path.push_back({u.normalized(), 0.25 + std::abs(uniform())});
-      length += path.back().length;
-    }
-    for (Piece& piece : path) piece.length /= length;
-    words.push_back(path);
-  }
+  for (Eigen::Index w = 0; w < paths; ++w)
+    words.push_back(random_path(random, each, std::max(2, depth - 1)));
   const int degree = depth > 3 ? 16 : 10;
   constexpr double never = std::numeric_limits<double>::infinity();
   std::vector<Generation> out(static_cast<size_t>(depth), {Matrix::Zero(rows, each * paths), 0,

@@ -62,13 +62,10 @@ double power_of_two(double x) { return std::ldexp(1.0, std::ilogb(x)); }
 }  // namespace
 
 StepRange steps_of_scale(double scale, double grain) {
-  return {.least = 0x1p-40 * scale,
-          .most = 2 * scale,
-          .grain = std::max(grain, kEpsilon * scale),
-          .noise = {}};
+  return {.least = 0x1p-40 * scale, .most = 2 * scale, .grain = std::max(grain, kEpsilon * scale)};
 }
 
-StepRange steps_of_any_scale(double grain) { return {.grain = grain, .noise = {}}; }
+StepRange steps_of_any_scale(double grain) { return {.grain = grain}; }
 
 // Fourth differences of neighbours: 70 sigma^2 is their variance.
 Eigen::VectorXd noise_of(const std::function<Eigen::VectorXd(double)>& f, double step) {

@@ -30,8 +30,8 @@ namespace hamel {
 /// Steps of a difference, in units of the argument.
 struct StepRange {
   double least = 0x1p-64, most = 0x1p24;
-  double grain = 0;       // the resolution of the argument: smaller changes are round-off
-  Eigen::VectorXd noise;  // of the values, where it is known; else it is measured where it decides
+  double grain = 0;            // the resolution of the argument: smaller changes are round-off
+  Eigen::VectorXd noise = {};  // of the values, if known; else it is measured where it decides
 };
 /// Steps of an argument whose scale is known: an angle (1), a length beside the size of the system.
 StepRange steps_of_scale(double scale, double grain = 0);

@@ -177,25 +177,6 @@ Reach reach_by_paths(Fields& fields, int possible, int most, int& nearby, bool& 
 
 }  // namespace
 
-std::vector<double> natural_units(const std::vector<Component>& components,
-                                  const Mechanics& mechanics, const double* g) {
-  const Eigen::Index n = mechanics.dim();
-  Matrix inertia(n, n);
-  mechanics.inertia(g, inertia);
-  double mass = 0, moment = 0;  // sums over the lengths, the angles
-  std::vector<double> out(static_cast<size_t>(n), 1);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const std::string& unit = components[static_cast<size_t>(i)].unit;
-    if (unit == "m/s") mass += inertia(i, i);
-    else if (unit == "rad/s") moment += inertia(i, i);
-    else return out;
-  }
-  if (!(mass > 0 && moment > 0)) return out;
-  for (size_t i = 0; i < out.size(); ++i)
-    if (components[i].unit == "m/s") out[i] = std::sqrt(moment / mass);
-  return out;
-}
-
 Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* at, int most,
                  const std::vector<double>& given) {
   Vector units = Vector::Ones(geometry.dim());

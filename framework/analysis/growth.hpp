@@ -20,8 +20,8 @@
 
 #include <vector>
 
+#include <hamel/framework/analysis/natural_units.hpp>
 #include <hamel/framework/lie/geometry.hpp>
-#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 
 namespace hamel {
@@ -46,11 +46,5 @@ constexpr int kMostFields = 8, kFewFields = 3;
 /// `most` of them at most. units: of the n components, in which all are measured; empty: 1.
 Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const double* g,
                  int most = kMostFields, const std::vector<double>& units = {});
-
-/// Units of the components: 1 for angles, for lengths the radius of gyration of the system at g, so
-/// that nothing depends on the unit of lengths; 1 for all where there are only angles, only
-/// lengths, or others.
-std::vector<double> natural_units(const std::vector<Component>& components,
-                                  const Mechanics& mechanics, const double* g);
 
 }  // namespace hamel

@@ -8,26 +8,6 @@
 
 namespace hamel::reduced {
 
-Vector own_scales(const std::vector<Component>& components, const Mechanics& mechanics,
-                  const Vector& g) {
-  const Eigen::Index n = mechanics.dim();
-  Matrix inertia(n, n);
-  mechanics.inertia(g.data(), inertia);
-  double mass = 0, moment = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const std::string& unit = components[static_cast<size_t>(i)].unit;
-    if (unit == "m/s") mass += inertia(i, i);
-    if (unit == "rad/s") moment += inertia(i, i);
-  }
-  Vector out = Vector::Zero(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const std::string& unit = components[static_cast<size_t>(i)].unit;
-    if (unit == "rad/s") out[i] = 1;
-    if (unit == "m/s" && mass > 0 && moment > 0) out[i] = std::sqrt(moment / mass);
-  }
-  return out;
-}
-
 // The resolution of a displacement: epsilon of the numbers of g that it changes.
 StepRange Flow::steps(const Vector& g, const Vector& eta) const {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();

@@ -19,18 +19,12 @@
 
 #include <hamel/framework/analysis/central_differences.hpp>
 #include <hamel/framework/lie/geometry.hpp>
-#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 
 namespace hamel::reduced {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
-
-/// Sizes of displacements that do not depend on the units chosen: 1 for angles, the radius of
-/// gyration at g for lengths; 0 for components that have none.
-Vector own_scales(const std::vector<Component>& components, const Mechanics& mechanics,
-                  const Vector& g);
 
 /// sum of weight * f(shift) is f'(0), by order 10 in steps of h/64, f smooth over h: for iterations
 /// that need no error. Calls add(shift, weight).
@@ -44,7 +38,7 @@ void differentiate(double h, Add&& add) {
 
 class Flow {
  public:
-  /// scales: own_scales() of the system.
+  /// scales: own_scales() of the system (natural_units.hpp).
   Flow(std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
        Vector scales)
       : geometry_(std::move(geometry)),

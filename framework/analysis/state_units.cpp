@@ -6,19 +6,6 @@
 namespace hamel::reduced {
 namespace {
 
-// The factors l with equal norms of row i and column i of |m|_ij l_j/l_i, without the diagonal.
-Vector balanced(const Matrix& m) {
-  Vector out = Vector::Ones(m.rows());
-  for (int k = 0; k < 50; ++k) {
-    for (Eigen::Index i = 0; i < m.rows(); ++i) {
-      const double row = m.row(i).dot(out.transpose()) - m(i, i) * out[i],
-                   column = m.col(i).dot(out.cwiseInverse()) - m(i, i) / out[i];
-      if (row > 0 && column > 0) out[i] = std::sqrt(row / column);
-    }
-  }
-  return out;
-}
-
 // The distance at which values stop to be linear in a step, along two directions of columns.
 double reach_of(const Vector& columns, const Vector& rows,
                 const std::function<Vector(const Vector&)>& displaced) {
@@ -42,6 +29,18 @@ double reach_or_size(double reach, const Vector& xi, const Vector& columns) {
 }
 
 }  // namespace
+
+Vector balanced(const Matrix& m) {
+  Vector out = Vector::Ones(m.rows());
+  for (int k = 0; k < 50; ++k) {
+    for (Eigen::Index i = 0; i < m.rows(); ++i) {
+      const double row = m.row(i).dot(out.transpose()) - m(i, i) * out[i],
+                   column = m.col(i).dot(out.cwiseInverse()) - m(i, i) / out[i];
+      if (row > 0 && column > 0) out[i] = std::sqrt(row / column);
+    }
+  }
+  return out;
+}
 
 std::optional<double> linear_reach(const std::function<Vector(double)>& values) {
   const Vector here = values(0);

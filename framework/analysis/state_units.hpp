@@ -18,6 +18,10 @@
 
 namespace hamel::reduced {
 
+/// The factors l with equal sums of row i and column i of m_ij l_j/l_i, without the diagonal; m >=
+/// 0.
+Vector balanced(const Matrix& m);
+
 /// The distance at which values along a curve differ from their linear part by a third of it;
 /// nothing where they never do, or are nowhere linear.
 std::optional<double> linear_reach(const std::function<Vector(double)>& values);

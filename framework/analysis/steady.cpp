@@ -8,6 +8,7 @@
 #include <random>
 
 #include <hamel/framework/analysis/matching.hpp>
+#include <hamel/framework/analysis/state_units.hpp>
 #include <hamel/framework/analysis/steady_equations.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/names/registry.hpp>
@@ -15,27 +16,6 @@
 namespace hamel {
 namespace reduced {
 namespace {
-
-// Powers of two d with M = d^-1 flow d of rows and columns of one size (Parlett and Reinsch 1969).
-Vector balance_of(const Matrix& flow) {
-  Vector d = Vector::Ones(flow.rows());
-  Matrix m = flow.cwiseAbs();
-  m.diagonal().setZero();
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (Eigen::Index i = 0; i < m.rows(); ++i) {
-      const double row = m.row(i).sum(), column = m.col(i).sum();
-      if (!(row > 0 && column > 0)) continue;
-      const double f = std::ldexp(1.0, std::ilogb(std::sqrt(row / column)));
-      if (!(column * f + row / f < 0.95 * (row + column))) continue;
-      d[i] *= f;
-      m.col(i) *= f;
-      m.row(i) /= f;
-      changed = true;
-    }
-  }
-  return d;
-}
 
 // Eigenvalues with what they may be off, and eigenvectors as columns.
 struct Spectrum {
@@ -49,7 +29,9 @@ struct Spectrum {
 // like a root of E, (2 |M| + |E|)^(1 - 1/n) |E|^(1/n) at most (Elsner 1985), and by three times
 // what random changes of that size do at least.
 Spectrum spectrum_of(const Matrix& flow, const Matrix& error) {
-  const Vector d = balance_of(flow);
+  const Vector d = balanced(flow.cwiseAbs()).unaryExpr([](double x) {
+    return std::ldexp(1.0, std::ilogb(x));  // without round-off
+  });
   const Matrix to_own = d.cwiseInverse().asDiagonal();
   const Matrix m = to_own * flow * d.asDiagonal();
   if (m.rows() == 0) return {};

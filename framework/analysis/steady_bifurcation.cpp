@@ -230,10 +230,9 @@ void BifurcationEquation::expand_by_value() {
       return Vector::Constant(w_.size(), std::numeric_limits<double>::quiet_NaN());
     }
   };
-  CentralDifferences along(values_at, {.least = 0x1p-16 * scale,
-                                       .most = 0.3 * scale,
-                                       .grain = 4e-16 * std::abs(at_.value),
-                                       .noise = {}});
+  CentralDifferences along(
+      values_at,
+      {.least = 0x1p-16 * scale, .most = 0.3 * scale, .grain = 4e-16 * std::abs(at_.value)});
   const Derivative by_value = along.derivative(1);
   by_value_ = {w_.dot(by_value.value), w_.cwiseAbs().dot(by_value.error)};
   const KernelVector with_value = vector_of(solve(-by_value.value));

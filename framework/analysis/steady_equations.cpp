@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/analysis/natural_units.hpp>
 #include <hamel/framework/analysis/state_units.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/names/registry.hpp>
@@ -66,12 +67,18 @@ SteadyEquations::SteadyEquations(const Registry& registry, const SystemModel& mo
     : geometry_(geometry_of(registry, model)),
       guess_g_(element_of(*geometry_, model, guess)),
       flow_(geometry_, model.mechanics,
-            own_scales(components_of(model), *model.mechanics, guess_g_)),
+            to_vector(own_scales(components_of(model), *model.mechanics, guess_g_.data()))),
       guess_xi_(to_vector(guess.velocity)),
       names_(model) {
   along_ = flow_.momentum(guess_g_, guess_xi_).normalized();
-  flow_.set_units(neighbour != nullptr ? neighbour->flow_.units() : units());
-  reach_ = neighbour != nullptr ? neighbour->reach_ : own_reach();
+  if (neighbour != nullptr) {
+    flow_.set_units(neighbour->flow_.units());
+    reach_ = neighbour->reach_;
+    return;
+  }
+  reach_.extents = flow_.extents(guess_g_);
+  flow_.set_units(units());
+  find_reach();
 }
 
 const Matrix& SteadyEquations::symmetries() const {

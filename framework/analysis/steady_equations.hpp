@@ -129,7 +129,7 @@ class SteadyEquations {
   Vector equations(const Vector& generator, const Vector& g, const Vector& xi,
                    const Reach& reach) const;
   Vector units() const;
-  Reach own_reach() const;
+  void find_reach();
   CentralDifferences differences(const SteadyPoint& at, int number, const Reach& reach,
                                  const Vector& noise) const;
   Vector noise_at(const SteadyPoint& at, const Reach& reach) const;

@@ -27,10 +27,9 @@ Vector SteadyEquations::units() const {
   const int n = dim();
   Vector out = flow_.units();
   if ((flow_.scales().array() > 0).all()) return out;
-  const Vector extents = flow_.extents(guess_g_);
   const auto acceleration = [&](const Vector& step) {
     return flow_.acceleration(flow_.moved(guess_g_, step.head(n)), guess_xi_ + step.tail(n),
-                              extents);
+                              reach_.extents);
   };
   Matrix slope(n, 2 * n);
   for (int j = 0; j < 2 * n; ++j) {
@@ -78,10 +77,11 @@ Vector SteadyEquations::noise_at(const SteadyPoint& at, const Reach& reach) cons
 
 // The field, phi and A xi - b along each of the 2n numbers: what they are smooth over, and how fast
 // they change. Without an end of smoothness: the scale of the number, or 1.
-Reach SteadyEquations::own_reach() const {
+void SteadyEquations::find_reach() {
   const int n = dim();
   const Vector &g = guess_g_, &xi = guess_xi_, &units = flow_.units();
-  Reach out{.extents = flow_.extents(g), .steps = Vector::Zero(2 * n)};
+  Reach& out = reach_;
+  out.steps = Vector::Zero(2 * n);
   out.rate = xi.cwiseQuotient(units).lpNorm<Eigen::Infinity>();
   const SteadyPoint point{.g = g, .xi = xi, .generator = Vector::Zero(2 * n)};
   std::vector<Extent> extents;
@@ -106,7 +106,6 @@ Reach SteadyEquations::own_reach() const {
       if (extent.change[c] > 1e-12 * most) length = std::min(length, extent.length[c]);
     step = std::min(step, length);
   }
-  return out;
 }
 
 // In units of the system's own sizes, so that ranks do not depend on those of the user: lengths and

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/quantities.hpp>
 
 namespace hamel {
@@ -49,13 +50,8 @@ class Namer {
         factors_(model.group.factors),
         columns_(measured_columns(model)),
         constants_(constants_of(model)) {
-    int column = 0, component = 0;
-    for (const GroupFactor& factor : factors_) {
-      for (int i = 0; factor.is_shape && i < factor.dim; ++i)
-        shape_.emplace_back(column + i, component + i);
-      column += factor.columns;
-      component += factor.dim;
-    }
+    for (const ShapeCoordinate& shape : shape_of(model.group))
+      shape_.emplace_back(shape.column, shape.component);
     const Names& stated = model.shape;
     if (!stated.empty() && stated.size() != shape_.size())
       throw ConfigError({fmt::format("shape of {}: expected {} names, got {}", model.name,
