@@ -29,7 +29,10 @@ struct Spectrum {
 // like a root of E, (2 |M| + |E|)^(1 - 1/n) |E|^(1/n) at most (Elsner 1985), and by three times
 // what random changes of that size do at least.
 Spectrum spectrum_of(const Matrix& flow, const Matrix& error) {
-  const Vector d = balanced(flow.cwiseAbs()).unaryExpr([](double x) {
+  // An entry that is none is no size: vectors would be scaled by round-off (Watkins, A case where
+  // balancing is harmful, ETNA 23, 2006).
+  const Matrix sizes = (flow.array().abs() > error.array()).select(flow.cwiseAbs(), 0);
+  const Vector d = balanced(sizes).unaryExpr([](double x) {
     return std::ldexp(1.0, std::ilogb(x));  // without round-off
   });
   const Matrix to_own = d.cwiseInverse().asDiagonal();

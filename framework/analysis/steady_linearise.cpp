@@ -150,7 +150,8 @@ ReducedLinearisation SteadyEquations::linearise(const SteadyPoint& at) const {
   const Matrix size = basis.cwiseAbs(), flow_size = flow.cwiseAbs();
   Matrix bounds_error = round_off * bounds.cwiseAbs();
   bounds_error.topRows(bound) += error.bottomRows(bound);
-  const Matrix turned = pseudo_inverse(bounds).cwiseAbs() * bounds_error * size;
+  Matrix turned = pseudo_inverse(bounds).cwiseAbs() * bounds_error * size;
+  if (bounds.rows() > 0) turned.array() += round_off;  // of the decomposition, in every entry
   out.error =
       size.transpose() * (error.topRows(2 * n) + (round_off + at.residual) * flow_size) * size +
       size.transpose() * flow_size * turned + turned.transpose() * flow_size * size;
