@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/quantity_names.hpp>
 
 namespace hamel::ensemble {
 namespace {
