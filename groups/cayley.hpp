@@ -55,6 +55,12 @@ struct CayleyLiteral<SO2> : RetractionDefaults<CayleyLiteral<SO2>, SO2> {
   static VecT<T, 1> tau_inverse(const SO2Element<T>& g) {
     return VecT<T, 1>(2.0 * half_angle_tangent(g.c, g.s, "so2 cayley_literal^-1"));
   }
+  static double angle_squared(const Vec<1>& xi) { return xi[0] * xi[0]; }
+  /// As on the other groups (cayley_so3.hpp).
+  static Vec<1> recover_step(const SO2Element<double>& delta, double s) {
+    const Vec<1> y = tau_inverse(delta);
+    return CayleyDefaults<SO2>::step_scale(y[0] * y[0], s) * y;
+  }
   template <class T>
   static MatT<T, 1, 1> dtau_right(const VecT<T, 1>& xi) {
     return MatT<T, 1, 1>(1.0 / (1.0 + 0.25 * xi[0] * xi[0]));

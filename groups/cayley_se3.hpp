@@ -24,6 +24,15 @@ struct Cayley<SE3> : CayleyDefaults<SE3> {
     xi.template tail<3>() = g.translation - t.cross(g.translation);
     return xi;
   }
+  /// omega = k w, v = k u + c k^2 (w.u) w of y = (w, u): xi^^2 moves what is normal to omega alone.
+  static Vec<6> recover_step(const SE3Element<double>& delta, double s) {
+    const Vec<6> y = tau_inverse(delta);
+    const Vec<3> w = y.head<3>(), u = y.tail<3>();
+    const double k = step_scale(w.dot(w), s);
+    Vec<6> xi;
+    xi << k * w, k * u + (0.25 * s * (1 - s) * k * k * w.dot(u)) * w;
+    return xi;
+  }
   /// [[P, 0], [v^ P/2, Q]]: P = dR on SO(3), Q = (I - omega^/2)^-1 = I + a (omega^/2 +
   /// (omega^)^2/4).
   template <class T>

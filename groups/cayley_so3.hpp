@@ -1,6 +1,7 @@
 // Cayley on SO(3), and what the Cayley maps share: the formulas are in groups/cayley.hpp.
 #pragma once
 
+#include <cmath>
 #include <hamel/framework/lie/retraction_defaults.hpp>
 #include <hamel/groups/retractions.hpp>
 #include <hamel/groups/rotation.hpp>
@@ -20,6 +21,17 @@ struct CayleyDefaults : RetractionDefaults<Cayley<G>, G> {
   static std::string source() {
     return "Kobilarov, Marsden 2011; Hairer, Lubich, Wanner, Geometric Numerical Integration, "
            "IV.8.3";
+  }
+  /// xi with tau_s(xi) = delta. Functions of one matrix commute, tau_s(xi) = tau(s xi) tau((1-s)
+  /// xi) = tau(y) with y^ = xi^ (1 + c xi^^2)^-1, c = s (1-s)/4. Where xi^^3 = -|omega|^2 xi^ this
+  /// is a quadratic equation for |omega|: xi = k y, k = 1 - c |omega|^2.
+  static Vec<G::dim> recover_step(const typename G::template Element<double>& delta, double s) {
+    const Vec<G::dim> y = Cayley<G>::tau_inverse(delta);
+    return step_scale(Cayley<G>::angle_squared(y), s) * y;
+  }
+  /// k = 2/(1 + sqrt(1 + 4 c |omega of y|^2)).
+  static double step_scale(double square, double s) {
+    return 2 / (1 + std::sqrt(1 + s * (1 - s) * square));
   }
 };
 

@@ -102,6 +102,16 @@ struct ProductRetraction : OneFactorOf<Rs...>::type {
     });
     return xi;
   }
+  /// Factor by factor (framework/lie/recover_step.hpp).
+  static Vec<dim> recover_step(const ProductElement<double, typename Rs::Group...>& delta,
+                               double s) {
+    Vec<dim> xi;
+    Group::for_each_factor([&](auto i) {
+      xi.template segment<Part<i>::Group::dim>(Group::offsets[i]) =
+          hamel::recover_step<Part<i>>(delta.template part<i>(), s);
+    });
+    return xi;
+  }
   template <class T>
   static MatT<T, dim, dim> dtau_right(const VecT<T, dim>& xi) {
     return Group::template block_diagonal<T>(

@@ -50,6 +50,13 @@ struct Algebra {
                ? xi
                : Vector(Vector::Constant(n, std::numeric_limits<double>::quiet_NaN()));
   }
+  /// NaN where there is none.
+  Vector recover_step(const Vector& delta, double s) const {
+    Vector xi(n);
+    return geometry.recover_step(delta.data(), s, xi.data())
+               ? xi
+               : Vector(Vector::Constant(n, std::numeric_limits<double>::quiet_NaN()));
+  }
   Vector coordinates(const Vector& g) const {
     Vector q(geometry.columns());
     geometry.coordinates(g.data(), q.data());

@@ -51,8 +51,8 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
   const Matrix one = Matrix::Identity(n, n);
   const Vector zero = Vector::Zero(n), e = on.from_coordinates(info.identity);
   const check::NumericalDerivative numerical(geometry);
-  Largest origin, tangent, right, left, adjoint, inverses, base, round_trip, domain, nan, symmetry,
-      one_parameter, commuting;
+  Largest origin, tangent, right, left, adjoint, inverses, base, round_trip, recovered, domain, nan,
+      symmetry, one_parameter, commuting;
 
   origin(on.distance(on.tau(zero), e));
   origin(on.tau_inverse(e).norm());
@@ -98,6 +98,10 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
                        .norm());
     right((numerical.right(xi) - dR).norm() / condition);
     left((numerical.left(xi) * dL_inverse - one).norm() / condition);
+    for (const double s : {0.0, 0.3, 0.5, 1.0}) {
+      const Vector step = on.compose(on.inverse(on.tau(-s * xi)), on.tau((1 - s) * xi));
+      recovered((on.recover_step(step, s) - xi).norm() / (resolved * condition));
+    }
     if (length < 0.1 * edge) continue;
     symmetry(on.distance(on.compose(on.tau(-xi), g), e));
     const Vector part = on.tau(0.3 * xi);
@@ -118,6 +122,7 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
       {"dR^T dR^-T = id", inverses.value, algebraic},
       {"s dR_z0^T m0 + (1-s) dR_z1^T (m0 + nu) = p for mixed_momentum", base.value, algebraic},
       {"tau^-1(tau(xi)) = xi from |xi| = 1e-12 to the edge", round_trip.value, algebraic},
+      {"recover_step(tau(-s xi)^-1 tau((1-s) xi), s) = xi", recovered.value, algebraic},
       {"0 and everything up to the edge is in the domain, and tau^-1 is defined there",
        domain.value, 0},
       {"NaN is not in the domain", nan.value, 0},

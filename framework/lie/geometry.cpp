@@ -5,7 +5,6 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <hamel/framework/lie/linear_solve.hpp>
 
 namespace hamel {
 namespace {
@@ -171,36 +170,9 @@ void ProductGeometry::nearest(std::span<const double> values, double* out) const
 
 ProductGeometry::~ProductGeometry() = default;
 
-bool recover_step(const Geometry& geometry, const double* delta, double s,
-                  Eigen::Ref<Eigen::VectorXd> xi) {
-  const int n = geometry.dim(), size = geometry.size();
-  if (!geometry.tau_inverse(delta, xi.data())) return false;
-  if (s == 0 || geometry.one_parameter()) return true;
-  Eigen::VectorXd f0(size), f1(size), z(n), rest(n);
-  Eigen::MatrixXd right(n, n), c(n, n);
-  double last = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 20; ++k) {
-    z = -s * xi;
-    geometry.tau(z.data(), f0.data());
-    geometry.dtau_right(z.data(), right.data());
-    c = s * right;
-    z = (1 - s) * xi;
-    geometry.tau(z.data(), f1.data());
-    geometry.dtau_right(z.data(), right.data());
-    c += (1 - s) * right;
-    // rest = tau^-1((f0^-1 f1)^-1 delta) = tau^-1(f1^-1 f0 delta), carried to the base point.
-    geometry.compose(f0.data(), delta, f0.data());
-    Eigen::VectorXd f1_inverse(size);
-    geometry.inverse(f1.data(), f1_inverse.data());
-    geometry.compose(f1_inverse.data(), f0.data(), f0.data());
-    if (!geometry.tau_inverse(f0.data(), rest.data())) return false;
-    const double norm = rest.norm();
-    if (!(norm < last)) break;
-    last = norm;
-    geometry.Ad(f1.data(), rest.data(), z.data());
-    solve_linear(c.data(), z.data(), static_cast<int>(n), 1);
-    xi += z;
-  }
+bool ProductGeometry::recover_step(const double* delta, double s, double* xi) const {
+  for (const Factor& f : factors_)
+    if (!f.geometry->recover_step(delta + f.element, s, xi + f.at)) return false;
   return true;
 }
 

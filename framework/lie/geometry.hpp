@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,24 +16,10 @@
 #include <hamel/framework/lie/concepts.hpp>
 #include <hamel/framework/lie/coordinates.hpp>
 #include <hamel/framework/lie/group_operations.hpp>
+#include <hamel/framework/lie/packing.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
 
 namespace hamel {
-
-/// An element as doubles: its bytes. Products specialise it, factor after factor.
-template <class G>
-struct Packing {
-  using Element = typename G::template Element<double>;
-  static constexpr int size = static_cast<int>((sizeof(Element) + 7) / 8);
-  static Element load(const double* from) {
-    Element g = G::template identity<double>();
-    std::memcpy(static_cast<void*>(&g), from, sizeof(Element));
-    return g;
-  }
-  static void store(const Element& g, double* to) {
-    std::memcpy(to, static_cast<const void*>(&g), sizeof(Element));
-  }
-};
 
 /// Out-parameters may be the in-parameters.
 class Geometry {
@@ -65,6 +50,8 @@ class Geometry {
   // domain?
   virtual void tau(const double* xi, double* out) const = 0;
   virtual bool tau_inverse(const double* g, double* out) const = 0;
+  /// xi with tau_s(xi) = delta (recover_step.hpp); false where there is none.
+  virtual bool recover_step(const double* delta, double s, double* xi) const = 0;
   virtual void dtau_right(const double* xi, double* matrix) const = 0;
   virtual void dtau_right_transpose(const double* xi, const double* m, double* out) const = 0;
   virtual void dtau_right_inverse_transpose(const double* xi, const double* p,
@@ -137,6 +124,12 @@ class TypedGeometry final : public Geometry {
       return false;
     }
   }
+  bool recover_step(const double* delta, double s, double* xi) const override {
+    Vec<n> found;
+    const bool out = GroupOperations<Tau>::recover_step(Pack::load(delta), s, found);
+    put(found, xi);
+    return out;
+  }
   void dtau_right(const double* xi, double* matrix) const override {
     Eigen::Map<Mat<n, n>>{matrix} = Tau::dtau_right(vec(xi));
   }
@@ -191,6 +184,7 @@ class ProductGeometry final : public Geometry {
   void Ad(const double* g, const double* xi, double* out) const override;
   void tau(const double* xi, double* out) const override;
   bool tau_inverse(const double* g, double* out) const override;
+  bool recover_step(const double* delta, double s, double* xi) const override;
   void dtau_right(const double* xi, double* matrix) const override;
   void dtau_right_transpose(const double* xi, const double* m, double* out) const override;
   void dtau_right_inverse_transpose(const double* xi, const double* p, double* out) const override;
@@ -215,10 +209,6 @@ class ProductGeometry final : public Geometry {
   std::vector<Factor> factors_;
   int dim_ = 0, size_ = 0, columns_ = 0;
 };
-
-/// xi with tau_s(xi) = delta (recover_step.hpp, for an erased group); false where there is none.
-bool recover_step(const Geometry& geometry, const double* delta, double s,
-                  Eigen::Ref<Eigen::VectorXd> xi);
 
 /// A retraction with its group, the types erased. Specialised where a library has it compiled: made
 /// by type it costs up to 4 s of compilation.

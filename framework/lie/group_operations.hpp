@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include <hamel/framework/lie/coordinates.hpp>
+#include <hamel/framework/lie/packing.hpp>
 #include <hamel/framework/lie/recover_step.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
 
@@ -90,6 +91,9 @@ struct GroupOperations {
     return xi.allFinite();
   }
 
+  /// The doubles of an element, and it as a block of them.
+  static constexpr int element_size() { return Packing<G>::size; }
+  static void store(const Element& g, double* out) { Packing<G>::store(g, out); }
   // CSV columns.
   static constexpr int columns() { return static_cast<int>(coordinate_count<G>); }
   static void coordinates(const Element& g, double* out) {

@@ -3,7 +3,8 @@
 //
 //   tau_s(xi)          = tau(-s xi)^-1 tau((1-s) xi) = Delta,   Delta = g_k^-1 g_{k+1}
 //   tau_s^-1 d(tau_s)  = Ad_{f1^-1} (s dR_{-s xi} + (1-s) dR_{(1-s) xi}) dxi
-// By tau^-1 when tau_s = tau, else by Newton's method on the group with the rest
+// By tau^-1 when tau_s = tau; in closed form where the retraction has it (its recover_step: the
+// Cayley maps; products, factor by factor); else by Newton's method on the group with the rest
 // tau^-1(tau_s(xi)^-1 Delta). The floor of a constraint residual so recovered is about eps / h.
 #pragma once
 
@@ -21,6 +22,7 @@ Vec<Tau::Group::dim> recover_step(const typename Tau::Group::template Element<do
   using G = typename Tau::Group;
   constexpr int n = G::dim;
   try {
+    if constexpr (requires { Tau::recover_step(delta, s); }) return Tau::recover_step(delta, s);
     Vec<n> xi = Tau::tau_inverse(delta);
     if (s == 0 || Tau::one_parameter) return xi;
     double last = std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 // and all others without a compiled kernel. Vectors are allocated once, by whoever keeps them.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <utility>
@@ -78,8 +79,10 @@ class DynamicProblem {
   }
   bool in_domain(const Vector& xi) const { return geometry_->in_domain(xi.data()); }
   bool recover_step(const Element& delta, double s, Vector& xi) const {
-    return hamel::recover_step(*geometry_, delta.data(), s, xi);
+    return geometry_->recover_step(delta.data(), s, xi.data());
   }
+  int element_size() const { return geometry_->size(); }
+  static void store(const Element& g, double* out) { std::copy(g.begin(), g.end(), out); }
   int columns() const { return geometry_->columns(); }
   void coordinates(const Element& g, double* out) const { geometry_->coordinates(g.data(), out); }
   void from_coordinates(std::span<const double> values, Element& out) const {
@@ -122,6 +125,7 @@ class DynamicProblem {
   void framed_motion(double t, const Element& g, const State& x, Vector& xi, State& rate) const {
     mechanics_->framed_motion(t, g.data(), x, xi, rate);
   }
+  bool has_drift() const { return mechanics_->has_drift(); }
   bool autonomous() const { return mechanics_->autonomous(); }
   void holonomic(const Element& g, HolonomicValues& phi) const {
     mechanics_->holonomic(g.data(), phi);
