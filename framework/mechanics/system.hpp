@@ -204,29 +204,32 @@ SystemModel erase(const S& system) {
   auto add = [&model](std::string name, auto value) {
     model.invariants.push_back(
         {std::move(name), [value](std::span<const double> g, std::span<const double> xi) -> double {
-           return value(G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
-         }});
-  };
-  detail::tell_invariants(system, add);
-  auto add_event = [&model](std::string name, std::string meaning, int direction, auto value) {
-    model.events.push_back(
-        {std::move(name), std::move(meaning), direction,
-         [value](double t, std::span<const double> g, std::span<const double> xi) -> double {
-           return value(t, G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
-         }});
-  };
-  detail::tell_events(system, add_event);
-  if constexpr (requires { system.contacts(); }) {
-    model.contacts = system.contacts();
-  } else {
-    static_assert(!named::contacts<S>,
-                  "contacts of this system cannot be called: expected a const member contacts()");
+      return value(G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
+         },
+         requires { requires decltype(value)::is_energy;
   }
-  model.shape = detail::shape_names(system);
-  name_quantities(model);
-  Scene<G> scene(model.drawing);
-  detail::tell_drawing(system, scene);
-  return model;
+});
+};
+detail::tell_invariants(system, add);
+auto add_event = [&model](std::string name, std::string meaning, int direction, auto value) {
+  model.events.push_back(
+      {std::move(name), std::move(meaning), direction,
+       [value](double t, std::span<const double> g, std::span<const double> xi) -> double {
+         return value(t, G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
+       }});
+};
+detail::tell_events(system, add_event);
+if constexpr (requires { system.contacts(); }) {
+  model.contacts = system.contacts();
+} else {
+  static_assert(!named::contacts<S>,
+                "contacts of this system cannot be called: expected a const member contacts()");
+}
+model.shape = detail::shape_names(system);
+name_quantities(model);
+Scene<G> scene(model.drawing);
+detail::tell_drawing(system, scene);
+return model;
 }
 
 /// A system whose dimension is one of its parameters: it names its group ("se2*so2^5") and gives

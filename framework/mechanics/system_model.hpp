@@ -30,6 +30,7 @@ struct Invariant {
   std::string name;
   std::function<double(std::span<const double> coordinates, std::span<const double> velocity)>
       value;
+  bool energy = false;  // the energy, which every state of a run has
 };
 
 /// A force of the multipliers of some rows, drawn as an arrow in the world.

@@ -279,7 +279,7 @@ SystemModel Assembly::model() {
     return mistakes_at_start(*driven(inputs), checks, inputs.get(), t, g, xi);
   };
   if (!system->has_force() && !system->has_drift())
-    model_.invariants.push_back({"energy", energy_of(system)});
+    model_.invariants.push_back({"energy", energy_of(system), true});
   return std::move(model_);
 }
 
