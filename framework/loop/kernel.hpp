@@ -65,7 +65,7 @@ class Kernel {
   virtual void measure(Snapshot& out) const = 0;
   /// The state alone: step, time, coordinates, element, velocity, momentum, energy.
   virtual void state(Snapshot& out) const = 0;
-  /// The same; a kernel that keeps the element leaves out the coordinates.
+  /// The same without the coordinates.
   virtual void bare_state(Snapshot& out) const = 0;
   virtual const SolverStats& stats() const = 0;
 
@@ -73,6 +73,9 @@ class Kernel {
   /// velocity that is carried.
   virtual void node(Snapshot& out) const = 0;
   virtual void beginning(Snapshot& out) const = 0;
+  /// The times of both.
+  virtual double time() const = 0;
+  virtual double beginning_time() const = 0;
   /// Steps that are chosen end at t at the latest, and advance() does nothing there. One of steps
   /// of one size that ends at t is not moved to a jump of an input next to it.
   virtual void set_end_time(double t) = 0;
@@ -93,7 +96,7 @@ class Kernel {
   /// The state at a time within the last step, by the scheme's own dense output; false where it has
   /// none.
   virtual bool interpolate(double t, Snapshot& out) = 0;
-  /// Time, element (coordinates, where it is not kept) and velocity alone at such a time, not moved
+  /// Time, element and velocity alone at such a time, not moved
   /// onto the constraints: off them by about the error of a step, for integrals along it.
   virtual bool motion_within(double t, Snapshot& out) = 0;
 };

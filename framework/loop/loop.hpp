@@ -57,17 +57,12 @@ class Loop final : public TimeLoop {
   }
   [[gnu::cold]] void bare_state(Snapshot& out) const override {
     typename P::Vector xi(problem_.dim());
-    state(nodes_.now(), out, xi, /*coordinates=*/!kHasElement<P>);
+    state(nodes_.now(), out, xi, /*coordinates=*/false);
   }
   [[gnu::cold]] void measure(Snapshot& out) const override { measure(nodes_.now(), out); }
   [[gnu::cold]] void node(Snapshot& out) const override { carried(nodes_.now(), out); }
-  [[gnu::cold]] void beginning(Snapshot& out) const override {
-    switch (beginning_) {
-      case Beginning::previous: return carried(nodes_.previous(), out);
-      case Beginning::step: return carried(kept(Kept::step).now, out);
-      case Beginning::rescue: return carried(kept(Kept::rescue).now, out);
-    }
-  }
+  [[gnu::cold]] void beginning(Snapshot& out) const override { carried(first_node(), out); }
+  double beginning_time() const override { return first_node().t; }
   [[gnu::cold]] bool interpolate(double t, Snapshot& out) override {
     if constexpr (kEstimates) {
       if (!has_dense_output() || !step_.interpolate(part_of_step(t), nodes_.next())) return false;
@@ -83,7 +78,7 @@ class Loop final : public TimeLoop {
         return false;
       typename P::Vector xi(problem_.dim());
       problem_.velocity(nodes_.next().x, xi);
-      hamel::motion(whole_, nodes_.next().g, xi, out, /*coordinates=*/!kHasElement<P>);
+      hamel::motion(whole_, nodes_.next().g, xi, out, /*coordinates=*/false);
       out.time = t;
       return true;
     }
@@ -230,6 +225,14 @@ class Loop final : public TimeLoop {
     Node now, previous;
     double last_h;
   };
+  // Of the last step.
+  const Node& first_node() const {
+    switch (beginning_) {
+      case Beginning::step: return kept(Kept::step).now;
+      case Beginning::rescue: return kept(Kept::rescue).now;
+      default: return nodes_.previous();
+    }
+  }
   State& kept(Kept where) { return kept_[where == Kept::step ? 0 : 1]; }
   const State& kept(Kept where) const { return kept_[where == Kept::step ? 0 : 1]; }
   [[gnu::cold]] void put_away(Kept where) override {  // takes no memory

@@ -23,6 +23,25 @@ struct LastStep {
   double h;  // of the last substep; 0 before the first
 };
 
+/// A v and b; rates: k numbers.
+template <class P>
+void find_rates(const P& problem, double t, const typename P::Element& g,
+                const typename P::Vector& v, Eigen::Map<Eigen::VectorXd>& rates,
+                typename P::Multipliers& b) {
+  const int k = problem.constraint_count();
+  if constexpr (requires { problem.has_drift(); }) {  // without the matrix, where there is no b
+    if (problem.holonomic_rows() == 0 && !problem.has_drift() &&
+        problem.constraint_values(t, g, v, b)) {
+      rates = b;
+      b.setZero();
+      return;
+    }
+  }
+  typename P::ConstraintMatrix a(k, problem.dim());
+  problem.constraints(t, g, a, b);
+  for (int i = 0; i < k; ++i) rates[i] = a.row(i).dot(v);
+}
+
 /// A v of the last substep, v recovered from its two configurations (xi at the start); for
 /// holonomic rows the change of phi. Returns |A v - b| over the other rows.
 template <class P>
@@ -51,11 +70,9 @@ template <class P>
       t = last.time_before + s * last.h;
       v /= last.h;
     }
-    typename P::ConstraintMatrix a(k, problem.dim());
     typename P::Multipliers b(k);
-    problem.constraints(t, base, a, b);
     Eigen::Map<Eigen::VectorXd> found(rates.data(), k);
-    for (int i = 0; i < k; ++i) found[i] = a.row(i).dot(v);
+    find_rates(problem, t, base, v, found, b);
     if (moved && held > 0) {
       typename P::HolonomicValues before(held), after(held);
       problem.holonomic(last.before, before);
@@ -80,17 +97,14 @@ void find_momentum(const P& problem, const typename P::Element& g, const typenam
   out = inertia.lazyProduct(xi);
 }
 
-/// Do snapshots have the element itself?
-template <class P>
-inline constexpr bool kHasElement = std::is_same_v<typename P::Element, Eigen::VectorXd>;
-
-/// Place and velocity alone: coordinates, element, velocity.
+/// Place and velocity alone: coordinates where they are wanted, element, velocity.
 template <class P>
 [[gnu::cold]] void motion(const P& problem, const typename P::Element& g,
                           const typename P::Vector& xi, Snapshot& out, bool coordinates) {
   out.coordinates.resize(coordinates ? static_cast<size_t>(problem.columns()) : 0);
   if (coordinates) problem.coordinates(g, out.coordinates.data());
-  if constexpr (kHasElement<P>) out.element.assign(g.data(), g.data() + g.size());
+  out.element.resize(static_cast<size_t>(problem.element_size()));
+  problem.store(g, out.element.data());
   out.velocity.assign(xi.data(), xi.data() + xi.size());
 }
 

@@ -32,7 +32,7 @@ struct Snapshot {
   long step = 0;
   double time = 0;
   std::vector<double> coordinates;  // of g
-  // g as its Geometry lays it out (counts of turns are integers), of a kernel that keeps it so.
+  // g as its Geometry lays it out (counts of turns are integers); empty of a state by hand.
   std::vector<double> element;
   std::vector<double> velocity;  // nodal body velocity, n
   std::vector<double> momentum;  // nodal body momentum, n

@@ -22,6 +22,9 @@ class TimeLoop : public Kernel {
   const SolverStats& stats() const final { return stats_; }
   long whole_steps() const final { return whole_; }
   bool off_grid() const final { return off_grid_; }
+  double time() const final {
+    return chooses_steps() || off_grid_ ? time_ : from_ + static_cast<double>(whole_ - first_) * h_;
+  }
   void set_end_time(double t) final { limit_ = t; }
   double next_step() const final { return h_; }
   void turn_back() final { reverse(); }
@@ -56,9 +59,6 @@ class TimeLoop : public Kernel {
                    std::span<const double> velocity) = 0;
 
   bool chooses_steps() const { return setup_.rtol > 0 || setup_.atol > 0; }
-  double time() const {
-    return chooses_steps() || off_grid_ ? time_ : from_ + static_cast<double>(whole_ - first_) * h_;
-  }
 
   KernelSetup setup_;
   double h_;
