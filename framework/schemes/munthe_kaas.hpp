@@ -117,17 +117,14 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
   }
   /// The same as the tableau gives it: off the constraints by about the error of the step.
   bool interpolate_freely(double theta, Node& out) const {
-    for (int i = last() + 1; !this->extended_ && i < this->table_.all_stages(); ++i) {
-      if (!this->stage(i)) return false;
+    if (!this->extended_ && !extend()) return false;
+    this->q_ = theta * q_powers_.back();
+    this->x_ = theta * x_powers_.back();
+    for (size_t j = q_powers_.size() - 1; j-- > 0;) {
+      this->q_ = theta * (this->q_ + q_powers_[j]);
+      this->x_ = theta * (this->x_ + x_powers_[j]);
     }
-    this->extended_ = true;
-    this->q_.setZero();
-    this->x_ = this->from_->x;
-    for (int i = 0; i < this->table_.all_stages(); ++i) {
-      const double weight = this->h_ * this->table_.weight(i, theta);
-      this->q_ += weight * this->q_rates_[at(i)];
-      this->x_ += weight * this->x_rates_[at(i)];
-    }
+    this->x_ += this->from_->x;
     if (!element(this->q_, out.g)) return false;
     out.t = this->from_->t + theta * this->h_;
     out.x = this->x_;
@@ -135,6 +132,25 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
   }
 
  private:
+  // The further stages, and the coefficients of theta^(j+1) in (eta, x): h sum_i p_ij k_i.
+  bool extend() const {
+    const Tableau& table = this->table_;
+    for (int i = last() + 1; i < table.all_stages(); ++i)
+      if (!this->stage(i)) return false;
+    for (int j = 0; j < table.degree; ++j) {
+      Vector& q = q_powers_[at(j)];
+      State& x = x_powers_[at(j)];
+      q.setZero();
+      x.setZero();
+      for (int i = 0; i < table.all_stages(); ++i) {
+        const double weight = this->h_ * table.dense[at(i * table.degree + j)];
+        q += weight * this->q_rates_[at(i)];
+        x += weight * this->x_rates_[at(i)];
+      }
+    }
+    this->extended_ = true;
+    return true;
+  }
   double estimate(std::span<const double> weights, const Node& next, double rtol,
                   double atol) const {
     error_.setZero();
@@ -158,6 +174,8 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
   }
 
   Element g0_ = this->problem_.element();
+  mutable std::vector<Vector> q_powers_ = std::vector<Vector>(at(this->table_.degree), this->q0_);
+  mutable std::vector<State> x_powers_ = std::vector<State>(at(this->table_.degree), this->x_);
   mutable Vector error_ = Vector::Zero(this->problem_.dim()), after_ = error_;
   mutable State x_error_ = State::Zero(this->problem_.state_size());
 };

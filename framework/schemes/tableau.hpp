@@ -26,13 +26,6 @@ struct Tableau {
   double at(int i, int j) const { return a[static_cast<std::size_t>(i * (i - 1) / 2 + j)]; }
   int all_stages() const { return static_cast<int>(c.size()); }
   bool estimates() const { return !e.empty(); }
-  /// b_i(theta).
-  double weight(int i, double theta) const {
-    double sum = 0;
-    for (int j = degree; j-- > 0;)
-      sum = sum * theta + dense[static_cast<std::size_t>(i * degree + j)];
-    return theta * sum;
-  }
 };
 
 }  // namespace hamel
