@@ -8,6 +8,7 @@
 //   W = a1 + a3/12 + 1/240 [-20 a1 - a3 + C1, a2 + C2],   g(t + h) = g(t) exp(-W).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -18,7 +19,8 @@
 namespace hamel {
 
 /// velocity: t -> Vec<n>. Called with |t| increasing; step: the longest step that is at round-off,
-/// about 0.02 over the fastest rate of the motion.
+/// about 0.02 over the fastest rate of the motion. Where the velocity does not change any more, as
+/// at the end of a heteroclinic motion, steps grow to kStretch times that.
 template <class G, class Velocity>
 class Reconstruction {
  public:
@@ -31,20 +33,24 @@ class Reconstruction {
   /// Not finite where that would take more than kMost steps in all, some seconds.
   static constexpr double kMost = 5e7;
   std::pair<Element, Vec<n>> operator()(double t) {
-    const double whole = t - t_;
-    const double count = std::ceil(std::abs(whole) / step_);
-    taken_ += count;
-    if (!(taken_ <= kMost)) {
-      const Vec<n> none = Vec<n>::Constant(std::numeric_limits<double>::quiet_NaN());
-      return {G::compose(g_, Exp<G>::tau(none)), none};
+    while (t_ != t) {
+      const double whole = t - t_, count = std::ceil(std::abs(whole) / (stretch_ * step_));
+      if (!(taken_++ + count <= kMost)) {
+        const Vec<n> none = Vec<n>::Constant(std::numeric_limits<double>::quiet_NaN());
+        return {G::compose(g_, Exp<G>::tau(none)), none};
+      }
+      const bool steady = advance(t_, whole / count);
+      t_ = count == 1 ? t : t_ + whole / count;
+      stretch_ = steady ? std::min(2 * stretch_, kStretch) : 1;
     }
-    for (double k = 0; k < count; ++k) advance(t_ + whole * (k / count), whole / count);
-    t_ = t;
     return {g_, velocity_(t)};
   }
 
  private:
-  void advance(double t, double h) {
+  static constexpr double kStretch = 64;
+
+  // Is the velocity constant along it, but for round-off?
+  bool advance(double t, double h) {
     const double c = std::sqrt(15.0) / 10;
     const Vec<n> x1 = -velocity_(t + (0.5 - c) * h), x2 = -velocity_(t + 0.5 * h),
                  x3 = -velocity_(t + (0.5 + c) * h);
@@ -54,11 +60,12 @@ class Reconstruction {
     const Vec<n> c2 = -(G::ad(a1) * Vec<n>(2 * a3 + c1)) / 60;
     const Vec<n> w = a1 + a3 / 12 + G::ad(Vec<n>(-20 * a1 - a3 + c1)) * Vec<n>(a2 + c2) / 240;
     g_ = G::normalise(G::compose(g_, Exp<G>::tau(Vec<n>(-w))));
+    return a2.norm() + a3.norm() <= 1e-14 * a1.norm();
   }
 
   Element g_;
   Velocity velocity_;
-  double step_, t_ = 0, taken_ = 0;
+  double step_, stretch_ = 1, t_ = 0, taken_ = 0;
 };
 
 /// The motion with constant body velocity: g(t) = g0 exp(t xi).
