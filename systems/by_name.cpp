@@ -63,7 +63,7 @@ ModelDescription describe_model(const SystemModel& model) {
   }
   for (const OtherName& other : complete.other_names)
     out.other_names.emplace_back(other.name, other.place);
-  for (const Event& event : events_of(complete, nullptr)) out.events.push_back(event.name);
+  for (const Event& event : events_of(complete)) out.events.push_back(event.name);
   return out;
 }
 

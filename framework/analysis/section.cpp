@@ -27,7 +27,7 @@ constexpr double kForEver = 1e9;  // steps, or seconds
 // The function of the event, to tell in which direction it was crossed.
 std::optional<Event> event_named(const SystemModel& system, const std::string& name,
                                  std::vector<std::string>& mistakes) {
-  for (Event& event : events_of(system, nullptr))
+  for (Event& event : events_of(system))
     if (event.name == name) return std::move(event);
   return event_of_formula(system, name, mistakes);
 }

@@ -23,7 +23,7 @@ class KeptFormulas::Parser {
  public:
   Parser(KeptFormulas& out, const EnsembleConfig& config, const SystemModel& system)
       : out_(out), config_(config), system_(system) {
-    for (const Event& event : events_of(system, nullptr)) known_events_.push_back(event.name);
+    for (const Event& event : events_of(system)) known_events_.push_back(event.name);
     for (const auto& [name, text] : config.events) known_events_.push_back(name);
   }
 

@@ -108,7 +108,7 @@ bool MemberRunner::run(long member, std::span<double> out, MemberFailure& failur
     kept_.begin(member);
     feedback_.begin(member);
     prepare(member);
-    physics_.begin(*run_, !plan_.builds_each());
+    physics_.begin(*run_);
     if (!follow(failure)) return false;
     if (failure.reason.empty()) failure.reason = kept_.finish(out);
   } catch (const std::exception& error) {  // a start that is none, no state within a step

@@ -6,20 +6,12 @@
 
 namespace hamel::ensemble {
 
-void MemberPhysics::begin(const Run& run, bool same) {
+void MemberPhysics::begin(const Run& run) {
   if (!any()) return;
-  const RunPlan& plan = run.driver().plan();
-  const auto& mechanics = plan.setup.mechanics;
-  geometry_ = plan.geometry;
   waiting_.clear();
-  if (reactions_ && (motion_ == nullptr || !same)) {
-    motion_ =
-        std::make_unique<EquationsOfMotion<DynamicProblem>>(DynamicProblem(geometry_, mechanics));
-    g_.resize(geometry_->size());
-  }
+  if (reactions_) of_rows_ = run.driver().plan().reactions;
   if (!balanced_) return;
-  const auto acting = run.driver().acting();
-  balance_ = std::make_unique<EnergyBalance>(geometry_, acting, plan.setup.inputs);
+  balance_ = std::make_unique<EnergyBalance>(run.driver().balance());
   if (!balance_->active()) balance_.reset();
 }
 
@@ -38,7 +30,10 @@ void MemberPhysics::step(const Run& run, double before, const Snapshot& state) {
 
 void MemberPhysics::give(const Snapshot& state, Use use) {
   StateExtras extras;
-  if (motion_ != nullptr) react(state, extras.reactions);
+  if (of_rows_ != nullptr) {
+    const Eigen::VectorXd& lambda = of_rows_->at(state);
+    extras.reactions.assign(lambda.begin(), lambda.end());
+  }
   if (balance_ == nullptr) return use(state, extras);
   waiting_.push_back({state, std::move(extras), std::move(use)});
   balance_->row(state);
@@ -62,15 +57,6 @@ void MemberPhysics::settle() {
     one.extras.energy_error = known.defect / known.scale;
     one.use(one.state, one.extras);
   }
-}
-
-void MemberPhysics::react(const Snapshot& state, std::vector<double>& out) {
-  geometry_->from_coordinates(state.coordinates, g_.data());
-  xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
-                                          static_cast<Eigen::Index>(state.velocity.size()));
-  motion_->solve(state.time, g_, xi_);
-  const Eigen::VectorXd& lambda = motion_->reaction();
-  out.assign(lambda.begin(), lambda.end());
 }
 
 }  // namespace hamel::ensemble

@@ -21,8 +21,8 @@ class MemberPhysics {
   bool any() const { return reactions_ || balanced_; }
   bool wants_nodes() const { return balanced_; }
 
-  /// A member at its start. same: the system is that of the member before.
-  void begin(const Run& run, bool same);
+  /// A member at its start.
+  void begin(const Run& run);
   /// A node; one that a step led to, from the time `before`.
   void node(const Snapshot& state);
   void step(const Run& run, double before, const Snapshot& state);
@@ -39,16 +39,13 @@ class MemberPhysics {
     StateExtras extras;
     Use use;
   };
-  void react(const Snapshot& state, std::vector<double>& out);
   void settle();
 
   bool reactions_, balanced_;
-  std::shared_ptr<const Geometry> geometry_;
-  std::unique_ptr<EquationsOfMotion<DynamicProblem>> motion_;
+  std::shared_ptr<Reactions> of_rows_;
   std::unique_ptr<EnergyBalance> balance_;
   std::deque<Waiting> waiting_;
   std::vector<BalancedState> settled_;
-  Eigen::VectorXd g_, xi_;
 };
 
 }  // namespace hamel::ensemble

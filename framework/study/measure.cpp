@@ -33,10 +33,10 @@ double processor_time() {
 }
 
 // Follows a run along the reference.
-class RunRecorder {
+class CellMeter {
  public:
-  RunRecorder(const GroupInfo& group, const StudyReference& reference, EnergyBalance balance,
-              StudyMetrics& out)
+  CellMeter(const GroupInfo& group, const StudyReference& reference, EnergyBalance balance,
+            StudyMetrics& out)
       : angles_(angle_columns(group)),
         reference_(reference),
         balance_(std::move(balance)),
@@ -148,7 +148,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
   return xx > 0 && std::isfinite(xy) ? xy / xx : kNotMeasured;
 }
 
-static Status follow(Run& run, RunRecorder& meter, const StudyReference& reference,
+static Status follow(Run& run, CellMeter& meter, const StudyReference& reference,
                      const std::atomic<bool>* stop) {
   const long steps = run.config().steps();
   const long intervals = static_cast<long>(reference.times.size()) - 1;
@@ -164,7 +164,7 @@ static Status follow(Run& run, RunRecorder& meter, const StudyReference& referen
   return {};
 }
 // Steps that are chosen are not cut at the common times: there the dense output is compared.
-static Status follow_chosen(Run& run, RunRecorder& meter, const StudyReference& reference,
+static Status follow_chosen(Run& run, CellMeter& meter, const StudyReference& reference,
                             const std::atomic<bool>* stop) {
   const double until = run.config().until;
   for (size_t next = 1; next < reference.times.size() && !stopped(stop);) {
@@ -186,22 +186,17 @@ StudyMetrics measure(const Registry& registry, const StudySystem& system, const 
   const Config config = cell.config();
   Simulation made = simulation(registry, system, config);
   Run run = made.build();
-  const auto balance = [&] {
-    const std::shared_ptr<const Mechanics>& mechanics = run.system().mechanics;
-    const bool adapted = registry.scheme(config.scheme)->adapted;
-    return EnergyBalance(registry.geometry(run.system().group.name, config.retraction),
-                         adapted ? mechanics : std::make_shared<UnconstrainedMechanics>(mechanics),
-                         run.inputs());
-  };
-  RunRecorder* recorder = nullptr;
-  if (balance().active()) {  // every node is seen: also those where an input jumps within a step
+  CellMeter* recorder = nullptr;
+  if (run.driver()
+          .balance()
+          .active()) {  // every node is seen: also those where an input jumps within a step
     made.every(1).keep_rows(2).observe([&recorder, &run](const Snapshot& state) {
       if (state.step > 0) recorder->step(run, state);
       return true;
     });
     run = made.build();
   }
-  RunRecorder meter(run.system().group, reference, balance(), out);
+  CellMeter meter(run.system().group, reference, run.driver().balance(), out);
   recorder = &meter;
   out.ok = true;
   meter.start(run.state());

@@ -36,7 +36,7 @@ Json start_of(const SystemModel& model) {
 
 Json events(const SystemModel& model) {
   Json out = Json::array();
-  for (const Event& event : events_of(model, nullptr)) {
+  for (const Event& event : events_of(model)) {
     out.push_back({{"name", event.name},
                    {"direction", event.direction > 0   ? "upwards"
                                  : event.direction < 0 ? "downwards"

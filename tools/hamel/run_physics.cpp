@@ -81,7 +81,7 @@ std::vector<std::pair<std::string, std::vector<int>>> rows_by_part(const Result&
 // Does the k-th contact push? The event has the time when it ceased to; the rows only what they
 // show. Marks the first that pulls.
 std::string contact_note(const Result& r, const std::string& column, size_t k, Axes& axes) {
-  const std::string event = events_of(*r.system, nullptr)[r.system->events.size() + k].name;
+  const std::string event = events_of(*r.system)[r.system->events.size() + k].name;
   const auto met = std::find_if(r.events.begin(), r.events.end(),
                                 [&](const EventMet& e) { return e.name == event; });
   const std::string is = fmt::format("`{}` is a normal reaction: ", column);

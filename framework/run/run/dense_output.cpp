@@ -12,17 +12,17 @@ DenseOutput::DenseOutput(Kernel& kernel, KernelFactory factory, KernelSetup setu
 }
 
 Status DenseOutput::at(double t, Snapshot& out) {
-  kernel_.state(now_);
-  kernel_.beginning(begin_);
-  const double h = now_.time - begin_.time;
-  if (std::abs(t - now_.time) <= 1e-12 * std::abs(h == 0 ? kernel_.next_step() : h)) {
+  const double now = kernel_.time(), h = now - kernel_.beginning_time();
+  if (std::abs(t - now) <= 1e-12 * std::abs(h == 0 ? kernel_.next_step() : h)) {
     kernel_.measure(out);
     out.time = t;
     return {};
   }
-  const bool ahead = (t - now_.time) * kernel_.next_step() > 0;
+  const bool ahead = (t - now) * kernel_.next_step() > 0;
   if (!ahead && kernel_.interpolate(t, out)) return {};
+  kernel_.bare_state(now_);
   if (ahead) kernel_.node(begin_);
+  else kernel_.beginning(begin_);
   if (other_ == nullptr) other_ = factory_(setup_);
   other_->restart(begin_.time, begin_.coordinates, begin_.velocity, t - begin_.time);
   other_->set_end_time(t);

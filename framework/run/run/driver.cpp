@@ -36,8 +36,8 @@ void Driver::make_observers() {
   times_ = plan_.recording ? config.recorded_times() : std::vector<double>();
   every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr;
   if (!plan_.recording) return;
-  recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, plan_.geometry,
-                                            mechanics, acting(), plan_.setup.inputs);
+  recorder_ =
+      std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, balance(), plan_.reactions);
   every_node_ = every_node_ || recorder_->wants_nodes();
   for (const std::string& path : request_.records) sinks_.push_back(make_sink(path));
   if (request_.records.empty() || request_.rows_kept)
@@ -48,6 +48,10 @@ void Driver::make_observers() {
 std::shared_ptr<const Mechanics> Driver::acting() const {
   const auto& mechanics = plan_.setup.mechanics;
   return plan_.keeps_rows ? mechanics : std::make_shared<UnconstrainedMechanics>(mechanics);
+}
+
+EnergyBalance Driver::balance() const {
+  return {plan_.geometry, acting(), plan_.setup.inputs, plan_.reactions};
 }
 
 // ---- steps --------------------------------------------------------------------------------------

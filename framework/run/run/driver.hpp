@@ -52,6 +52,8 @@ class Driver {
   long impacts_met() const { return impacts_met_; }
   /// The mechanics as the scheme treats it.
   std::shared_ptr<const Mechanics> acting() const;
+  /// The balance of its energy, from its start on.
+  EnergyBalance balance() const;
   /// Place and velocity within the last step (Kernel::motion_within).
   bool motion_within(double t, Snapshot& out) const { return kernel().motion_within(t, out); }
 
@@ -113,6 +115,8 @@ class Driver {
   // The time up to now into seconds_.
   void lap();
   Result head() const;
+  // The measurements over all rows, or of start and end alone.
+  void measure_all();
   void measure_ends_only();
   // All that a resumed run needs but the events that were met.
   template <class Archive>
@@ -136,7 +140,6 @@ class Driver {
   std::vector<std::unique_ptr<Sink>> sinks_;
   Result result_;
   Snapshot node_, row_;
-  std::vector<double> element_;  // of a state that is checked
   std::vector<Events::Found> found_;
   std::vector<double> times_;  // of the rows; empty: every so many steps
   size_t next_ = 0;

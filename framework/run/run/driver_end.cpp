@@ -1,4 +1,5 @@
 // End of a run: a state that is none, the last row and the measurements over all.
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -21,9 +22,13 @@ bool Driver::good(const Snapshot& state) {
 std::string Driver::flaw(const Snapshot& state) {
   if (const Reason reason = flaw_of(state); reason != Reason::converged) return to_string(reason);
   if (plan_.geometry == nullptr || state.coordinates.empty()) return "";  // of a bare state
-  element_.resize(static_cast<size_t>(plan_.geometry->size()));
+  const auto small = [](double x) { return std::abs(x) < 1e8; };
+  if (!state.element.empty() && plan_.geometry->defect(state.element.data()) < 1e-9 &&
+      std::ranges::all_of(state.coordinates, small))
+    return "";  // without the cost of from_coordinates
+  std::vector<double> element(static_cast<size_t>(plan_.geometry->size()));
   try {
-    plan_.geometry->from_coordinates(state.coordinates, element_.data());
+    plan_.geometry->from_coordinates(state.coordinates, element.data());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -47,8 +52,7 @@ void Driver::measure_ends_only() {
         Measurements::kNone;
     return;
   }
-  RunRecorder meter(*plan_.system, plan_.config.start, plan_.geometry, plan_.setup.mechanics,
-                    acting(), plan_.setup.inputs);
+  RunRecorder meter(*plan_.system, plan_.config.start, balance(), plan_.reactions);
   if (meter.wants_nodes()) {
     result_.energy_error_max = Measurements::kNone;
     result_.notes.emplace_back(
@@ -62,8 +66,24 @@ void Driver::measure_ends_only() {
   static_cast<Measurements&>(result_) = meter.all();
 }
 
+void Driver::measure_all() {
+  const Timed timed(in_rows_);
+  if (!plan_.recording) {
+    const Timed compared(comparing_);
+    return measure_ends_only();
+  }
+  {
+    const Timed compared(comparing_);
+    recorder_->finish(result_.last);
+  }
+  deliver();
+  static_cast<Measurements&>(result_) = recorder_->all();
+  result_.notes.insert(result_.notes.end(), recorder_->notes().begin(), recorder_->notes().end());
+}
+
 Result& Driver::end() {
   try {
+    entered_ = Clock::now();
     begin();
     if (plan_.recording && !over_ && times_.empty()) record(node_);
     over_ = true;
@@ -78,19 +98,14 @@ Result& Driver::end() {
     result_.inputs = std::move(shell.inputs);
     result_.unused = std::move(shell.unused);
     result_.notes = std::move(shell.notes);
-    result_.seconds = watching_ || seconds_.all > 0 ? seconds_.all : Measurements::kNone;
-    result_.recording_seconds = seconds_.recording;
-    result_.comparing_seconds = seconds_.comparing;
     result_.steps = flawed_ && plan_.recording ? result_.last.step : node_.step;
     result_.stats = kernel().stats();
-    if (!plan_.recording) {
-      measure_ends_only();
-      return result_;
-    }
-    recorder_->finish(result_.last);
-    deliver();
-    static_cast<Measurements&>(result_) = recorder_->all();
-    result_.notes.insert(result_.notes.end(), recorder_->notes().begin(), recorder_->notes().end());
+    measure_all();
+    const bool timed = watching_ || seconds_.all > 0;
+    lap();
+    result_.seconds = timed ? seconds_.all : Measurements::kNone;
+    result_.recording_seconds = seconds_.recording;
+    result_.comparing_seconds = seconds_.comparing;
   } catch (...) {
     rows_to_files_after_failure();
     throw;

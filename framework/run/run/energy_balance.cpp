@@ -7,7 +7,8 @@ namespace hamel {
 
 EnergyBalance::EnergyBalance(std::shared_ptr<const Geometry> geometry,
                              const std::shared_ptr<const Mechanics>& mechanics,
-                             std::shared_ptr<const Inputs> inputs)
+                             std::shared_ptr<const Inputs> inputs,
+                             std::shared_ptr<Reactions> reactions)
     : geometry_(std::move(geometry)),
       mechanics_(mechanics),
       active_(geometry_ != nullptr && (mechanics->has_force() || mechanics->has_drift())),
@@ -16,22 +17,19 @@ EnergyBalance::EnergyBalance(std::shared_ptr<const Geometry> geometry,
   if (inputs_ != nullptr) changes_ = inputs_->changes();
   g_.resize(geometry_->size());
   if (!mechanics->has_drift()) return;
-  motion_ =
-      std::make_unique<EquationsOfMotion<DynamicProblem>>(DynamicProblem(geometry_, mechanics));
+  reactions_ = std::move(reactions);
   b_.resize(mechanics->constraint_count());
   a_.resize(mechanics->constraint_count(), mechanics->dim());
 }
 
 double EnergyBalance::power(const Snapshot& state) {
-  if (state.element.empty()) geometry_->from_coordinates(state.coordinates, g_.data());
-  else std::copy(state.element.begin(), state.element.end(), g_.data());
+  load_element(*geometry_, state, g_);
   xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
                                           static_cast<Eigen::Index>(state.velocity.size()));
   double out = mechanics_->power(state.time, g_.data(), xi_);
-  if (motion_ != nullptr) {
+  if (reactions_ != nullptr) {
     mechanics_->constraints(state.time, g_.data(), a_, b_);
-    motion_->solve(state.time, g_, xi_);
-    out += motion_->reaction().dot(b_);
+    out += reactions_->at(state).dot(b_);
   }
   return out;
 }

@@ -5,21 +5,20 @@
 #include <memory>
 #include <vector>
 
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/run/run/nodal_quadrature.hpp>
-#include <hamel/framework/schemes/dynamic_problem.hpp>
+#include <hamel/framework/run/run/reactions.hpp>
 
 namespace hamel {
 
 class EnergyBalance {
  public:
   /// geometry: null for a group that is not registered; then, and where the energy is kept, it is
-  /// not active. inputs: those of the run, null without.
+  /// not active. inputs: those of the run, null without. reactions: null without rows.
   EnergyBalance(std::shared_ptr<const Geometry> geometry,
                 const std::shared_ptr<const Mechanics>& mechanics,
-                std::shared_ptr<const Inputs> inputs);
+                std::shared_ptr<const Inputs> inputs, std::shared_ptr<Reactions> reactions);
   bool active() const { return active_; }
 
   /// Takes each node, from the start on: its step, time, coordinates, velocity and energy.
@@ -71,7 +70,7 @@ class EnergyBalance {
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
-  std::unique_ptr<EquationsOfMotion<DynamicProblem>> motion_;  // null without a drift
+  std::shared_ptr<Reactions> reactions_;  // null without a drift
   bool active_;
   // The work at the recorded states that wait.
   void settle();

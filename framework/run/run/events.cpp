@@ -16,32 +16,6 @@
 namespace hamel {
 namespace {
 
-// A normal reaction, from the equations of motion.
-class NormalReaction {
- public:
-  NormalReaction(const std::shared_ptr<const Geometry>& geometry,
-                 const std::shared_ptr<const Mechanics>& mechanics, int row)
-      : motion_(std::make_shared<EquationsOfMotion<DynamicProblem>>(
-            DynamicProblem(geometry, mechanics))),
-        geometry_(geometry),
-        g_(geometry->size()),
-        row_(row) {}
-  double operator()(double t, std::span<const double> coordinates,
-                    std::span<const double> velocity) {
-    geometry_->from_coordinates(coordinates, g_.data());
-    motion_->solve(t, g_,
-                   Eigen::Map<const Eigen::VectorXd>(velocity.data(),
-                                                     static_cast<Eigen::Index>(velocity.size())));
-    return motion_->reaction()[row_];
-  }
-
- private:
-  std::shared_ptr<EquationsOfMotion<DynamicProblem>> motion_;
-  std::shared_ptr<const Geometry> geometry_;
-  Eigen::VectorXd g_;
-  int row_;
-};
-
 // "2_x1=1.5": columns whose names no formula may have, too.
 std::optional<Event> plane(const SystemModel& system, const std::string& text) {
   const size_t equal = text.find('=');
@@ -92,7 +66,7 @@ void sort_and_cut(std::vector<Events::Found>& found, double sign) {
 
 }  // namespace
 
-std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Geometry> geometry) {
+std::vector<Event> events_of(const SystemModel& system) {
   std::vector<Event> out = system.events;
   for (const int row : system.contacts) {
     std::string name = "contact_lost";
@@ -102,18 +76,16 @@ std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Ge
     } else if (system.contacts.size() > 1) {
       name += std::to_string(row + 1);
     }
-    Event event{name, "the normal reaction ceases to push", -1, {}};
-    if (geometry != nullptr) event.value = NormalReaction(geometry, system.mechanics, row);
-    out.push_back(std::move(event));
+    out.push_back({name, "the normal reaction ceases to push", -1, {}});
   }
   return out;
 }
 
-Events::Events(const SystemModel& system, std::shared_ptr<const Geometry> geometry,
+Events::Events(const SystemModel& system, std::shared_ptr<Reactions> reactions,
                const std::vector<std::string>& names, const std::vector<std::string>& stops,
-               std::vector<std::string>& mistakes) {
-  const std::vector<Event> known = events_of(system, std::move(geometry));
-  contacts_.assign(known.begin() + static_cast<std::ptrdiff_t>(system.events.size()), known.end());
+               std::vector<std::string>& mistakes)
+    : contacts_(system.contacts), reactions_(std::move(reactions)) {
+  const std::vector<Event> known = events_of(system);
   const auto watch = [&](const std::string& name, bool stop) {
     for (Watched& w : watched_) {
       if (w.event.name == name) {
@@ -124,15 +96,15 @@ Events::Events(const SystemModel& system, std::shared_ptr<const Geometry> geomet
     std::vector<std::string> offered;
     for (size_t i = 0; i < known.size(); ++i) {
       offered.push_back(known[i].name);
-      if (known[i].name == name && known[i].value) {
-        watched_.push_back({known[i], stop, i >= system.events.size()});
-        return;
-      }
+      if (known[i].name != name) continue;
+      if (i < system.events.size()) return void(watched_.push_back({known[i], stop}));
+      if (reactions_ == nullptr) continue;
+      return void(watched_.push_back({known[i], stop, contacts_[i - system.events.size()]}));
     }
     const size_t before = mistakes.size();
     std::optional<Event> event = plane(system, name);
     if (!event) event = event_of_formula(system, name, mistakes);
-    if (event) watched_.push_back({std::move(*event), stop, false});
+    if (event) watched_.push_back({std::move(*event), stop});
     if (event || mistakes.size() > before) return;
     offered.emplace_back("FORMULA=FORMULA (or <, >)");
     mistakes.push_back(unknown_name("event of " + system.name, name, offered));
@@ -141,25 +113,28 @@ Events::Events(const SystemModel& system, std::shared_ptr<const Geometry> geomet
   for (const std::string& name : stops) watch(name, true);
 }
 
+double Events::value(const Watched& w, const Snapshot& state) const {
+  if (w.contact()) return reactions_->at(state)[w.row];
+  return w.event.value(state.time, state.coordinates, state.velocity);
+}
+
 void Events::begin(const Snapshot& state, std::vector<std::string>& mistakes) {
   time_ = state.time;
   for (Watched& w : watched_) {
-    w.before = w.event.value(state.time, state.coordinates, state.velocity);
+    w.before = value(w, state);
     if (!std::isfinite(w.before))
       mistakes.push_back(fmt::format("events: {} is {} at the start", w.event.name, w.before));
   }
 }
 
 std::vector<Events::Found> Events::lost_at_start(const Snapshot& state) const {
-  const auto value = [&](const Event& event) {
-    return event.value(state.time, state.coordinates, state.velocity);
-  };
   std::vector<Found> out;
-  double largest = 0;
   for (const Watched& w : watched_) {
-    if (!w.contact) continue;
-    for (const Event& contact : contacts_) largest = std::max(largest, std::abs(value(contact)));
-    if (value(w.event) < -1e-9 * largest) out.push_back({state, w.event.name, w.stops});
+    if (!w.contact()) continue;
+    double largest = 0;
+    for (const int row : contacts_)
+      largest = std::max(largest, std::abs(reactions_->at(state)[row]));
+    if (value(w, state) < -1e-9 * largest) out.push_back({state, w.event.name, w.stops});
   }
   return out;
 }
@@ -167,8 +142,7 @@ std::vector<Events::Found> Events::lost_at_start(const Snapshot& state) const {
 void Events::resume(const Snapshot& state, const std::string& met) {
   time_ = state.time;
   for (Watched& w : watched_) {
-    w.before =
-        w.event.name == met ? 0 : w.event.value(state.time, state.coordinates, state.velocity);
+    w.before = w.event.name == met ? 0 : value(w, state);
   }
 }
 
@@ -179,16 +153,15 @@ Status Events::look(const Snapshot& state, DenseOutput& dense, std::vector<Found
   const double forward = state.time >= time_ ? 1 : -1;
   for (Watched& w : watched_) {
     // Direction of the change in time, also in a run back; a contact that pulls ends either run.
-    const double direction = w.contact ? w.event.direction : forward * w.event.direction;
-    const double before = w.before,
-                 now = w.event.value(state.time, state.coordinates, state.velocity);
+    const double direction = w.contact() ? w.event.direction : forward * w.event.direction;
+    const double before = w.before, now = value(w, state);
     w.before = now != 0 ? now : -before;
     if (before == 0 || !(before * now < 0 || now == 0) || before * direction > 0) continue;
     double crossing = state.time;
     if (now != 0) {
       const auto inside = [&](double t) {
         if (const Status there = dense.at(t, at); !there.ok) status = there;
-        return w.event.value(t, at.coordinates, at.velocity);
+        return value(w, at);
       };
       crossing = crossing_time(inside, {time_, before}, {state.time, now});
     }

@@ -12,18 +12,18 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/run/run/dense_output.hpp>
-#include <hamel/framework/schemes/dynamic_problem.hpp>
+#include <hamel/framework/run/run/reactions.hpp>
 
 namespace hamel {
 
 class Events {
  public:
   /// Events of the system by name, and formulas of the state (event_formula.hpp): "x=1.5",
-  /// "x^2+y^2=radius^2", "theta>1". Adds to mistakes what is no event.
-  Events(const SystemModel& system, std::shared_ptr<const Geometry> geometry,
+  /// "x^2+y^2=radius^2", "theta>1". Adds to mistakes what is no event. reactions: of the run, null
+  /// without.
+  Events(const SystemModel& system, std::shared_ptr<Reactions> reactions,
          const std::vector<std::string>& names, const std::vector<std::string>& stops,
          std::vector<std::string>& mistakes);
   bool any() const { return !watched_.empty(); }
@@ -51,16 +51,21 @@ class Events {
  private:
   struct Watched {
     Event event;
-    bool stops, contact;
+    bool stops;
+    int row = -1;       // of a contact, whose normal reaction is the value
     double before = 0;  // its value, of the last state where it was not 0
+    bool contact() const { return row >= 0; }
   };
+  double value(const Watched& w, const Snapshot& state) const;
+
   std::vector<Watched> watched_;
-  std::vector<Event> contacts_;  // of the system, watched or not
+  std::vector<int> contacts_;             // rows of the system's, watched or not
+  std::shared_ptr<Reactions> reactions_;  // null where there are none
   double time_ = 0;
 };
 
 /// The events of a system, its own and those of its contacts: "contact_lost", where a normal
-/// reaction ceases to push.
-std::vector<Event> events_of(const SystemModel& system, std::shared_ptr<const Geometry> geometry);
+/// reaction ceases to push; these without a value.
+std::vector<Event> events_of(const SystemModel& system);
 
 }  // namespace hamel

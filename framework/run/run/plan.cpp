@@ -302,7 +302,8 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   plan.keeps_rows = method.scheme->adapted;
   plan.compiled = !method.erased;
   plan.unused = method.unused;
-  plan.events = std::make_unique<Events>(system, plan.geometry, config.events, config.stop_at,
+  plan.reactions = reactions_of(plan.geometry, system.mechanics, planned->inputs);
+  plan.events = std::make_unique<Events>(system, plan.reactions, config.events, config.stop_at,
                                          mistakes.all());
   plan.events->begin(state_of(start.start, config.from), mistakes.all());
   plan.notes = planned->notes;

@@ -34,6 +34,8 @@ class RestartedKernel final : public Kernel {
   const SolverStats& stats() const override;
   void node(Snapshot& out) const override { kernel_->node(out); }
   void beginning(Snapshot& out) const override { kernel_->beginning(out); }
+  double time() const override { return kernel_->time(); }
+  double beginning_time() const override { return kernel_->beginning_time(); }
   void set_end_time(double t) override;
   double end_time() const { return limit_; }
   double next_step() const override { return kernel_->next_step(); }

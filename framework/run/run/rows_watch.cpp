@@ -7,6 +7,7 @@
 
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/run/run/reactions.hpp>
 
 namespace hamel {
 namespace {
@@ -29,8 +30,7 @@ RowsWatch::RowsWatch(std::shared_ptr<const Geometry> geometry, const SystemModel
       work_(frame_.cols()) {}
 
 void RowsWatch::set_rows(const Snapshot& state) {
-  if (state.element.empty()) geometry_->from_coordinates(state.coordinates, g_.data());
-  else std::copy(state.element.begin(), state.element.end(), g_.data());
+  load_element(*geometry_, state, g_);
   mechanics_->constraints(state.time, g_.data(), rows_, b_);
   mechanics_->inertia(g_.data(), inertia_);
   rows_ = (rows_ * velocity_units(inertia_).asDiagonal()).eval();

@@ -42,6 +42,10 @@ ColumnGroup momentum_columns(const SystemModel& system) {
   return out;
 }
 
+double value_of(const Invariant& invariant, const Snapshot& state) {
+  return invariant.energy ? state.energy : invariant.value(state.coordinates, state.velocity);
+}
+
 }  // namespace
 
 Reason flaw_of(const Snapshot& state) {
@@ -54,17 +58,15 @@ Reason flaw_of(const Snapshot& state) {
   return std::isfinite(state.constraint) ? Reason::converged : Reason::outside_domain;
 }
 
-RunRecorder::RunRecorder(const SystemModel& system, const Start& start,
-                         std::shared_ptr<const Geometry> geometry,
-                         std::shared_ptr<const Mechanics> mechanics,
-                         const std::shared_ptr<const Mechanics>& acting,
-                         std::shared_ptr<const Inputs> inputs)
+RunRecorder::RunRecorder(const SystemModel& system, const Start& start, EnergyBalance balance,
+                         std::shared_ptr<Reactions> reactions)
     : system_(system),
       start_(start),
-      balance_(geometry, acting, std::move(inputs)),
+      balance_(std::move(balance)),
       pulls_(system.contacts.size()),
-      reactions_(by_parts(system.reactions)),
-      geometry_(std::move(geometry)) {
+      reaction_rows_(by_parts(system.reactions)),
+      of_rows_(std::move(reactions)) {
+  const auto& mechanics = system.mechanics;
   if (balance_.active()) {
     notes_.push_back(
         "forces or moving constraints do work: the energy error is the defect of the energy "
@@ -74,14 +76,11 @@ RunRecorder::RunRecorder(const SystemModel& system, const Start& start,
   all_holonomic_ = holonomic_ && mechanics->holonomic_rows() == mechanics->constraint_count();
   drifts_ = mechanics->has_drift();
   if (holonomic_) all_.holonomic_max = 0;
-  if (geometry_ != nullptr && mechanics->constraint_count() > 0) {
-    motion_ =
-        std::make_unique<EquationsOfMotion<DynamicProblem>>(DynamicProblem(geometry_, mechanics));
+  if (of_rows_ != nullptr) {
     all_.reaction_work = 0;
-    g_.resize(geometry_->size());
     lambda_.resize(mechanics->constraint_count());
-    for (size_t i = reactions_.size(); i < static_cast<size_t>(lambda_.size()); ++i)
-      reactions_.push_back(i);
+    for (size_t i = reaction_rows_.size(); i < static_cast<size_t>(lambda_.size()); ++i)
+      reaction_rows_.push_back(i);
   }
   if (system.exact)
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
@@ -103,19 +102,16 @@ void RunRecorder::begin(const Snapshot& start) {
   time_start_ = start.time;
   start_configuration_ = start.coordinates;
   for (const Invariant& invariant : system_.invariants) {
-    all_.invariants.push_back(
-        {invariant.name, invariant.value(start.coordinates, start.velocity), 0});
+    all_.invariants.push_back({invariant.name, value_of(invariant, start), 0});
   }
-  if (motion_ != nullptr) react(start, true);
+  if (of_rows_ != nullptr) react(start, true);
 }
 
 void RunRecorder::impact(const Snapshot& before, const Snapshot& after) {
   energy_start_ += after.energy - before.energy;
-  for (size_t i = 0; i < system_.invariants.size(); ++i) {
-    const auto& value = system_.invariants[i].value;
+  for (size_t i = 0; i < system_.invariants.size(); ++i)
     all_.invariants[i].start +=
-        value(after.coordinates, after.velocity) - value(before.coordinates, before.velocity);
-  }
+        value_of(system_.invariants[i], after) - value_of(system_.invariants[i], before);
   if (balance_.active()) balance_.impact(before, after);
 }
 
@@ -140,7 +136,7 @@ void RunRecorder::compare(const Snapshot& state) {
     balance_.row(state);
     add(kWork, 0);  // until it is settled
   }
-  if (motion_ != nullptr) {
+  if (of_rows_ != nullptr) {
     react(state);
     add_reactions();
   }
@@ -165,7 +161,7 @@ void RunRecorder::compare(const Snapshot& state) {
 
 void RunRecorder::look_at_invariants(const Snapshot& state) {
   for (size_t i = 0; i < system_.invariants.size(); ++i) {
-    const double value = system_.invariants[i].value(state.coordinates, state.velocity);
+    const double value = value_of(system_.invariants[i], state);
     update_max_abs(all_.invariants[i].drift_max, value - all_.invariants[i].start);
   }
 }
@@ -215,11 +211,7 @@ ExactFlow RunRecorder::exact_from_start() const {
 // The start is the first state, and may be a row as well.
 void RunRecorder::react(const Snapshot& state, bool start) {
   if (!start && state.time == time_) return;
-  geometry_->from_coordinates(state.coordinates, g_.data());
-  xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
-                                          static_cast<Eigen::Index>(state.velocity.size()));
-  motion_->solve(state.time, g_, xi_);
-  const Eigen::VectorXd& now = motion_->reaction();
+  const Eigen::VectorXd& now = of_rows_->at(state);
   const double part = start ? 0 : state.time_offset / (state.time - time_);
   double power = 0;
   for (Eigen::Index j = 0; j < now.size(); ++j) {
@@ -273,14 +265,14 @@ void RunRecorder::look_at_reaction_work() {
 
 void RunRecorder::add_reactions() {
   std::vector<double> lambda;
-  for (const size_t row : reactions_) lambda.push_back(lambda_[static_cast<Eigen::Index>(row)]);
+  for (const size_t row : reaction_rows_) lambda.push_back(lambda_[static_cast<Eigen::Index>(row)]);
   const auto describe = [&] {
     ColumnGroup out = numbered("lambda", lambda.size());
     const std::vector<std::string>& names = system_.reactions;
-    for (size_t i = 0; i < names.size(); ++i) out.columns[i] = names[reactions_[i]];
+    for (size_t i = 0; i < names.size(); ++i) out.columns[i] = names[reaction_rows_[i]];
     bool known = false;
     std::vector<std::string> units;
-    for (const size_t row : reactions_) {
+    for (const size_t row : reaction_rows_) {
       units.push_back(unit_of_reaction(system_, static_cast<int>(row)));
       known = known || !units.back().empty();
     }
@@ -301,11 +293,11 @@ void RunRecorder::finish_rows(const Snapshot& last) {
   if (last.time != last_row_) {
     all_.take(last, energy_start_);
     if (balance_.active()) balance_.row(last);
-    if (motion_ != nullptr) react(last);
+    if (of_rows_ != nullptr) react(last);
     look_at_invariants(last);
     if (system_.exact) look_at_exact(last);
   }
-  if (motion_ != nullptr) {
+  if (of_rows_ != nullptr) {
     look_at_reaction_work();
     all_.reaction_work += power_ * (time_ - power_time_);
   }

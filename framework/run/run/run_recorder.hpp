@@ -8,12 +8,11 @@
 #include <vector>
 
 #include <hamel/framework/io/row_file.hpp>
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/run/run/energy_balance.hpp>
-#include <hamel/framework/schemes/dynamic_problem.hpp>
+#include <hamel/framework/run/run/reactions.hpp>
 
 namespace hamel {
 
@@ -24,11 +23,9 @@ Reason flaw_of(const Snapshot& state);
 
 class RunRecorder {
  public:
-  /// geometry: null for a group that is not registered. acting: mechanics,
-  /// without its rows where the scheme does not keep them.
-  RunRecorder(const SystemModel& system, const Start& start,
-              std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
-              const std::shared_ptr<const Mechanics>& acting, std::shared_ptr<const Inputs> inputs);
+  /// balance: of the run, followed or not. reactions: null without rows.
+  RunRecorder(const SystemModel& system, const Start& start, EnergyBalance balance,
+              std::shared_ptr<Reactions> reactions);
 
   /// Does it need every node, not the recorded states only?
   bool wants_nodes() const { return balance_.active(); }
@@ -97,20 +94,19 @@ class RunRecorder {
   ExactFlow exact_;
   bool exact_lost_ = false;  // noted already
   std::vector<std::string> notes_;
-  std::vector<char> pulls_;        // of the contacts, noted already
-  std::vector<size_t> reactions_;  // rows, in the order of their columns
+  std::vector<char> pulls_;            // of the contacts, noted already
+  std::vector<size_t> reaction_rows_;  // in the order of their columns
   // The multipliers lambda of A xi = b, from the continuous equations at each state, and their
   // power lambda . A v in the last step before it, A v recovered from the configurations
   // (Snapshot::constraint_rates) and lambda interpolated to the same time, Snapshot::time_offset
   // before the state: round-off where b = 0, the power that a moving constraint feeds in where it
   // is not.
-  std::shared_ptr<const Geometry> geometry_;
-  std::unique_ptr<EquationsOfMotion<DynamicProblem>> motion_;  // null without rows
+  std::shared_ptr<Reactions> of_rows_;  // null without rows
   double time_ = 0, power_ = 0, power_time_ = 0;
   // Their work by every second state, up to that one.
   double second_work_ = 0, second_power_ = 0, second_time_ = 0;
   bool odd_ = false, drifts_ = false;
-  Eigen::VectorXd g_, xi_, lambda_;
+  Eigen::VectorXd lambda_;
 };
 
 }  // namespace hamel
