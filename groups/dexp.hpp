@@ -236,7 +236,7 @@ T cotc_second_derivative(const T& x) {
                         });
 }
 
-/// What tau and dtau^-1 of one vector need, evaluated together: one branch, the powers of x once.
+/// Coefficients of tau and dtau^-1 of one vector, evaluated together: one branch, powers of x once.
 template <class T>
 struct ExpCoefficients {
   T sinc, cosc, sinc3, cotc, cotc_derivative;

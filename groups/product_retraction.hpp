@@ -17,8 +17,8 @@
 
 namespace hamel {
 
-/// Where tau is addition on all factors but number I: what R, its retraction there, has for the
-/// Hamel form (framework/schemes/hamel_form.hpp).
+/// Members for the Hamel form (framework/schemes/hamel_form.hpp) of R, the retraction of factor I,
+/// where tau is addition on all other factors.
 template <class G, std::size_t I, class R>
 struct OfOneFactor {
   static constexpr bool quadratic_weight_is_one = requires { requires R::quadratic_weight_is_one; };
@@ -43,7 +43,7 @@ struct OfOneFactor {
   }
 };
 struct OfNoFactor {};
-/// Of the one factor on which tau is not addition, where there is one.
+/// OfOneFactor of the one factor on which tau is not addition, where there is one.
 template <class... Rs>
 struct OneFactorOf {
   static constexpr std::size_t index() {

@@ -1,4 +1,4 @@
-// What no step needs of SE(3), compiled once.
+// Functions of SE(3) that no step calls, compiled once.
 #include <hamel/groups/se3.hpp>
 
 namespace hamel {

@@ -27,7 +27,7 @@ template <class T>
 struct SO2Element {
   static constexpr bool in_lanes = requires { T::width; };  // a body in each (lanes/lane.hpp)
   T c{1.0}, s{0.0};
-  // As wide as a number, so that no byte of an element is unused.
+  // Integer as wide as a number, so that no byte of an element is unused.
   std::conditional_t<in_lanes, T, std::int64_t> turns = 0;
 
   bool operator==(const SO2Element&) const = default;

@@ -1,4 +1,4 @@
-// What no step needs of SO(3), compiled once.
+// Functions of SO(3) that no step calls, compiled once.
 #include <hamel/groups/so3.hpp>
 
 #include <stdexcept>

@@ -24,74 +24,11 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <type_traits>
 
-#include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/loop/step_equation.hpp>
+#include <hamel/solvers/inverse.hpp>
 
 namespace hamel {
-
-/// J^-1: in closed form up to 4 x 4, as a matrix up to 16 x 16 (it only steers, and is used many
-/// times), by LU beyond; there it is 1 until it is computed.
-template <class Jacobian>
-class Inverse {
-  static constexpr int size = Jacobian::RowsAtCompileTime;
-  static constexpr bool closed_form = size != Eigen::Dynamic && size <= 4;
-  static constexpr bool may_be_large = size == Eigen::Dynamic || size > 16;
-
- public:
-  static constexpr bool is_large(Eigen::Index n) { return may_be_large && n > 16; }
-  bool is_one() const { return one_; }
-  /// J^-1, in closed form or as a matrix.
-  const Jacobian& matrix() const { return inverse_; }
-  void set_one() { one_ = true; }
-  void compute(const Jacobian& jacobian) {
-    one_ = false;
-    if constexpr (size == 0) {
-      return;
-    } else if constexpr (closed_form) {
-      inverse_ = jacobian.inverse();
-    } else if (const int n = static_cast<int>(jacobian.rows()); n <= 16) {
-      inverse_.setIdentity(n, n);
-      work_ = jacobian;
-      solve_linear(work_.data(), inverse_.data(), n, n);
-    } else if constexpr (may_be_large) {
-      lu_.compute(jacobian);
-    }
-  }
-  /// Broyden's update behind a correction c = J^-1 f that has left f_1 (Kelley 2003, ch. 4): the
-  /// change of J along c that makes F(x - c) what it was found to be. With c_1 = J^-1 f_1
-  ///   J^-1 <- J^-1 + c_1 (J^-T c)^T / c.(c - c_1).
-  /// No update where that is ill-conditioned. Not of a large J.
-  template <class Vector>
-  void update(const Vector& c, const Vector& f_1) {
-    constexpr int most = size == Eigen::Dynamic ? 16 : size;
-    Eigen::Matrix<double, size, 1, 0, most, 1> c_1(c.size());
-    multiply(inverse_, f_1, c_1);
-    const double square = c.squaredNorm(), along = square - c.dot(c_1);
-    if (!(along > 0.3 * square)) return;
-    add_along(c.data(), c_1.data(), 1 / along, inverse_.data(), static_cast<int>(c.size()));
-  }
-  template <class Vector>
-  void solve(const Vector& f, Vector& out) const {
-    if constexpr (may_be_large) {
-      if (is_large(f.size())) {
-        if (one_) out = f;
-        else out = lu_.solve(f);
-        return;
-      }
-    }
-    multiply(inverse_, f, out);
-  }
-
- private:
-  struct Nothing {};
-  Jacobian inverse_;
-  [[no_unique_address]] std::conditional_t<closed_form, Nothing, Jacobian> work_;
-  [[no_unique_address]] std::conditional_t<may_be_large, Eigen::PartialPivLU<Jacobian>, Nothing>
-      lu_;
-  bool one_ = true;
-};
 
 struct Newton {
   static constexpr int max_iterations = 50;
@@ -133,7 +70,7 @@ struct Newton {
       if (sample.size() > 0 && !factors.is_large(sample.size())) factors.compute(jacobian);
       differences = {sample, sample, sample};
     }
-    /// As if there had been no solve.
+    /// Forgets all solves.
     void clear_history() {
       valid = false;
       factors.set_one();
@@ -191,7 +128,7 @@ struct Newton {
     report = iterate(ErasedStep<Step>(step), x, tolerance, scale, memory,
                      {.iterations = corrections, .evaluations = evaluations});
   }
-  /// The same with every call virtual.
+  /// Solves with every call virtual.
   template <class Unknown>
   static SolveReport solve(const StepEquation<Unknown>& step, Unknown& x, double tolerance,
                            Memory<Unknown>& memory) {
@@ -224,7 +161,7 @@ struct Newton {
     memory.factors.solve(memory.f, memory.correction);
     memory.factors.update(memory.correction, memory.trial_f);
   }
-  // Of |F|^2, relative: above the aim of many unknowns.
+  // Floor of |F|^2, relative: above the aim of many unknowns.
   static constexpr double floor_of(Eigen::Index n) {
     const double aimed = 4 * aim(0, n);
     return std::max(kRoundOff, aimed * aimed);
@@ -246,6 +183,61 @@ struct Newton {
     memory.valid = memory.valid && (memory.wait > 0 || iterations <= 3);
   }
 
+  // Limits of |F|^2.
+  struct Bounds {
+    double accepted, round_off, aimed;
+  };
+
+  // F and J are evaluated at x.
+  template <class Unknown>
+  [[gnu::always_inline]] static inline void linearise(const StepEquation<Unknown>& step,
+                                                      const Unknown& x, Memory<Unknown>& memory,
+                                                      int& evaluations) {
+    evaluations +=
+        step.linearise(x, memory.f, memory.jacobian, memory.differences, /*in_frame=*/true);
+    memory.factors.compute(memory.jacobian);
+    memory.wait = 2 * static_cast<int>(x.size()) + 1;
+    memory.valid = true;
+  }
+  // Evaluates F at x - length J^-1 f, into memory.trial and trial_f, and returns |F|^2 there. A
+  // fresh correction of |F|^2 = size is halved until it reduces that, or is below `enough`.
+  template <class Unknown>
+  [[gnu::always_inline]] static inline double correct(const StepEquation<Unknown>& step,
+                                                      const Unknown& x, Memory<Unknown>& memory,
+                                                      bool fresh, double size, double enough,
+                                                      double& length, int& evaluations) {
+    memory.factors.solve(memory.f, memory.correction);
+    step.expand(memory.correction);
+    double next = 1;
+    while (true) {
+      length = next;
+      memory.trial = x - length * memory.correction;
+      step.residual(memory.trial, memory.trial_f);
+      ++evaluations;
+      const double trial_size = memory.trial_f.squaredNorm();
+      next = length / 2;
+      if (!fresh || trial_size < size || !(size > enough) || !(next > 1e-3)) return trial_size;
+    }
+  }
+  // Is J kept that has taken |F|^2 from before to after? J = 1 is given more time at first, and
+  // less where a solve needs many corrections.
+  template <class Unknown>
+  [[gnu::always_inline]] static inline bool is_kept(const Memory<Unknown>& memory, bool exact,
+                                                    int iterations, double before, double after,
+                                                    const Bounds& bounds, double scale) {
+    const bool worth = worth_keeping(exact, before, after, memory.floor * scale);
+    if (!memory.factors.is_one()) return worth;
+    return iterations < max_iterations / 2 &&
+           (worth || iterations == 1 || after <= bounds.accepted);
+  }
+  // End of a solve whose residual a fresh J does not reduce, or is as small as it can be.
+  template <class Unknown>
+  static Reason why_it_stops(double size, const Bounds& bounds, const Unknown& correction) {
+    if (size <= bounds.accepted) return Reason::converged;
+    if (size <= bounds.round_off) return Reason::round_off;
+    return correction.allFinite() ? Reason::stagnated : Reason::singular;
+  }
+
   // memory.valid: memory.f is F(x), to be corrected with the Jacobian kept.
   template <class Unknown>
   [[gnu::noinline]] static SolveReport iterate(const StepEquation<Unknown>& step, Unknown& x,
@@ -254,19 +246,16 @@ struct Newton {
     // A Jacobian in closed form costs little more than a residual, one of differences 2 n + 1: it
     // is kept longer.
     const bool exact = step.exact();
-    const double accepted = tolerance * tolerance * scale, round_off = kRoundOff * scale;
-    const double target = std::min(aim(tolerance, x.size()), tolerance),
-                 aimed = target * target * scale;
+    const double target = std::min(aim(tolerance, x.size()), tolerance);
+    const Bounds bounds{tolerance * tolerance * scale, kRoundOff * scale, target * target * scale};
 
-    auto& [jacobian, factors, f, correction, trial, trial_f, differences, valid, floor, wait] =
-        memory;
-    if (!valid && !exact && factors.is_large(x.size()) && wait <= 0) {
-      factors.set_one();
-      step.residual(x, f);
+    if (!memory.valid && !exact && memory.factors.is_large(x.size()) && memory.wait <= 0) {
+      memory.factors.set_one();
+      step.residual(x, memory.f);
       ++report.evaluations;
-      valid = true;
+      memory.valid = true;
     }
-    double size = valid ? f.squaredNorm() : 0;  // |F|^2; with a Jacobian that is kept, f is F(x)
+    double size = memory.valid ? memory.f.squaredNorm() : 0;  // |F|^2
     bool fresh = false;
     const auto finish = [&](Reason reason) {
       judge(memory, exact, report.iterations);
@@ -276,49 +265,35 @@ struct Newton {
     };
     while (report.iterations < max_iterations) {
       if (!memory.valid) {
-        report.evaluations += step.linearise(x, f, jacobian, differences, /*in_frame=*/true);
-        factors.compute(jacobian);
-        wait = 2 * static_cast<int>(x.size()) + 1;
-        valid = true;
+        linearise(step, x, memory, report.evaluations);
         fresh = true;
-        size = f.squaredNorm();
+        size = memory.f.squaredNorm();
       }
       if (!std::isfinite(size)) return finish(Reason::not_finite);
       ++report.iterations;
-      factors.solve(f, correction);
-      step.expand(correction);
-      double length = 1, trial_size = 0;
-      do {
-        trial = x - length * correction;
-        step.residual(trial, trial_f);
-        ++report.evaluations;
-        trial_size = trial_f.squaredNorm();
-        length /= 2;
-      } while (fresh && !(trial_size < size) && size > std::max(round_off, accepted) &&
-               length > 1e-3);
-      if (fresh && !exact && size <= accepted && !(trial_size <= 0.25 * size)) {
-        floor = 4 * size / scale;
-      }
+      double length;
+      const double trial_size =
+          correct(step, x, memory, fresh, size, std::max(bounds.round_off, bounds.accepted), length,
+                  report.evaluations);
+      if (fresh && !exact && size <= bounds.accepted && !(trial_size <= 0.25 * size))
+        memory.floor = 4 * size / scale;
       if (!(trial_size < size)) {
-        if (size <= accepted) return finish(Reason::converged);
-        if (size <= round_off) return finish(Reason::round_off);
-        if (fresh) return finish(correction.allFinite() ? Reason::stagnated : Reason::singular);
+        if (fresh || size <= std::max(bounds.accepted, bounds.round_off))
+          return finish(why_it_stops(size, bounds, memory.correction));
         memory.valid = false;
         continue;
       }
-      memory.valid = (worth_keeping(exact, size, trial_size, floor * scale) ||
-                      (factors.is_one() && (report.iterations == 1 || trial_size <= accepted))) &&
-                     !(factors.is_one() && report.iterations >= max_iterations / 2);
+      memory.valid = is_kept(memory, exact, report.iterations, size, trial_size, bounds, scale);
       fresh = false;
-      if (memory.valid && !exact && 2 * length == 1 &&
-          worth_learning(size, trial_size, aimed, scale))
+      if (memory.valid && !exact && length == 1 &&
+          worth_learning(size, trial_size, bounds.aimed, scale))
         learn(memory);
-      x = trial;
-      f = trial_f;
+      x = memory.trial;
+      memory.f = memory.trial_f;
       size = trial_size;
-      if (size <= aimed) return finish(Reason::converged);
+      if (size <= bounds.aimed) return finish(Reason::converged);
     }
-    return finish(size <= accepted ? Reason::converged : Reason::max_iterations);
+    return finish(size <= bounds.accepted ? Reason::converged : Reason::max_iterations);
   }
 };
 

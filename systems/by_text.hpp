@@ -16,8 +16,8 @@ namespace hamel {
 /// records. Throws ConfigError with every mistake when the run is built.
 HAMEL_API Simulation simulate_text(const std::string& text, const std::string& origin);
 
-/// What is stated about the system of a run, a result or a mechanism, with its units. Summary,
-/// formula, known and source are those of a registered system: empty here.
+/// Description of the system of a run, a result or a mechanism, with its units. Summary, formula,
+/// known and source are those of a registered system: empty here.
 struct ModelDescription : SystemDescription {
   std::vector<std::string> coordinate_units, velocity_units;
   /// Further names that are read, 4_theta, xi4, and their places: coordinates, then velocities.

@@ -140,7 +140,8 @@ class Train final : public Mechanics {
  private:
   static double& at(std::vector<double>& v, int i) { return v[static_cast<size_t>(i)]; }
   static double at(const std::vector<double>& v, int i) { return v[static_cast<size_t>(i)]; }
-  /// Of a matrix without gaps at once: Eigen's loop over its columns takes longer than all else.
+  /// Clears a matrix without gaps at once: Eigen's loop over its columns takes longer than all
+  /// else.
   static void zero(Matrix m) {
     if (m.outerStride() == m.rows()) std::fill_n(m.data(), m.size(), 0.0);
     else m.setZero();

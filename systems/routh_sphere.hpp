@@ -74,8 +74,8 @@ struct RouthSphere {
     }
     return i;
   }
-  /// Of m a (x' r_1 + y' r_2) . (w2, -w1, 0), r_i the rows of R: m a (w2, -w1, 0) x (x' r_1 + y'
-  /// r_2).
+  /// Differential of m a (x' r_1 + y' r_2) . (w2, -w1, 0), r_i the rows of R: m a (w2, -w1, 0) x
+  /// (x' r_1 + y' r_2).
   Vec<5> inertia_differential(const Element& g, const Vec<5>& xi) const {
     const Mat<3, 3>& r = g.part<0>();
     const Vec<3> along = r.topRows<2>().transpose().lazyProduct(xi.tail<2>());

@@ -71,14 +71,14 @@ Matrix Fields::operator()(const Vector& x) {
 
 namespace {
 
-// One piece of a path: x' = sum u_a X_a(x) for a while.
+// Piece of a path: x' = sum u_a X_a(x) for a while.
 struct Piece {
   Vector controls;
   double length;
 };
 using Path = std::vector<Piece>;
 
-// Of length 1.
+// Path of length 1.
 Path random_path(std::mt19937& random, Eigen::Index controls, int pieces) {
   const auto uniform = [&random] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
   Path out;
@@ -93,7 +93,7 @@ Path random_path(std::mt19937& random, Eigen::Index controls, int pieces) {
   return out;
 }
 
-// One step of order 8: midpoint rules of 2, 4, 6, 8 substeps, extrapolated (Hairer, Norsett,
+// Step of order 8: midpoint rules of 2, 4, 6, 8 substeps, extrapolated (Hairer, Norsett,
 // Wanner, II.9).
 Vector flow(Fields& fields, const Vector& controls, double length, const Vector& start) {
   constexpr int rules = 4;

@@ -143,7 +143,7 @@ bool has_drift(const Geometry& geometry, const Mechanics& mechanics, const Vecto
   return false;
 }
 
-// Of fields that change from place to place. nearby: what brackets span beside `here`, if that is
+// Reach of fields that change with the place. nearby: what brackets span beside `here`, if that is
 // decided; near_zero: as of Growth.
 Reach reach_by_paths(Fields& fields, int possible, int most, int& nearby, bool& near_zero) {
   const auto all = static_cast<int>(fields.coordinates());
@@ -166,7 +166,7 @@ Reach reach_by_paths(Fields& fields, int possible, int most, int& nearby, bool& 
     }
     if (reach.dimensions.back() == nearby) break;
   }
-  // What nested brackets leave to round-off, paths decide.
+  // Paths decide what nested brackets leave to round-off.
   if (nearby < 0 && !near_zero && !reach.near_zero) {
     const Reach whole = reach_of({orbit(fields, here)}, fields.count(), possible, 0);
     near_zero = whole.near_zero;

@@ -63,7 +63,7 @@ Slopes column_slopes(const SteadyEquations& equations, const SteadyPoint& at,
   Slopes out{.value = Matrix(equations.geometry().columns() + n, directions.cols()), .error = {}};
   out.error = out.value;
   for (Eigen::Index j = 0; j < directions.cols(); ++j) {
-    // Of the size of a unit: columns are functions of the element, smooth at the scale of angles.
+    // Step as large as a unit: columns are functions of the element, smooth at the scale of angles.
     const Vector direction = directions.col(j);
     const double size = direction.cwiseQuotient(sizes).lpNorm<Eigen::Infinity>();
     const double scale = size > 0 ? 1 / size : 1;

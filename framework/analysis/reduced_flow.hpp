@@ -50,7 +50,7 @@ class Flow {
   int constraint_count() const { return mechanics_->constraint_count(); }
   int holonomic_rows() const { return mechanics_->holonomic_rows(); }
   const Vector& scales() const { return scales_; }
-  /// The same with other lengths for the components that have none, 1 where none is set.
+  /// Scales, with other lengths for the components that have none, 1 where none is set.
   const Vector& units() const { return units_; }
   void set_units(Vector units) { units_ = std::move(units); }
   /// Free of rows, and of forces beside a potential.

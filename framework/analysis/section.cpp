@@ -140,7 +140,7 @@ class Sections {
       }
     }
   }
-  // What the run of the first start has of the system.
+  // Keeps the system of the run of the first start.
   void keep(const Run& run) {
     system_ = std::make_shared<const SystemModel>(run.system());
     first_ = run.config().from;

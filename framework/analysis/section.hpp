@@ -36,7 +36,7 @@ struct SectionRequest {
   std::optional<double> longest = {};
 };
 
-/// One motion of a section.
+/// Motion of a section.
 struct SectionOrbit {
   Start start;               // as it was run
   double energy = 0;         // there, J
@@ -47,7 +47,7 @@ struct SectionOrbit {
 };
 
 struct Section {
-  /// One row for each point: start (from 1), n (from 1), t, the columns of the element, the
+  /// Rows, one for each point: start (from 1), n (from 1), t, the columns of the element, the
   /// components of xi, energy.
   Table points;
   std::vector<SectionOrbit> orbits;

@@ -62,7 +62,7 @@ struct HAMEL_API SteadyMotion {
 /// the system depends on time.
 HAMEL_API SteadyMotion steady_motion(const Registry& registry, const SystemModel& model,
                                      const Start& guess);
-/// The same near the start of a run: also `speed(5)`, of systems that define such a motion.
+/// Steady motion near the start of a run: also `speed(5)`, of systems that define such a motion.
 HAMEL_API SteadyMotion steady_motion(const Registry& registry, const Simulation& run);
 
 /// Changes of the steady motions where their stability changes, or where a branch ends.
@@ -91,7 +91,7 @@ struct SteadyCrossing {
   double round_off = 0;  // of the value
   bool pair = false;     // of complex eigenvalues; else a real one
   Bifurcation kind = Bifurcation::unknown;
-  /// Of a pitchfork: the other branch is where this one is unstable.
+  /// True of a pitchfork whose other branch is where this one is unstable.
   std::optional<bool> supercritical;
   std::optional<SteadyPlace> other;  // on the branch that crosses this one, beside the crossing
 };

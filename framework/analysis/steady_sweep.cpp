@@ -12,7 +12,7 @@ namespace {
 
 using namespace reduced;
 
-// One branch over the values: from the first on, or from a place beside a crossing, towards later
+// Branch over the values: from the first on, or from a place beside a crossing, towards later
 // or earlier values.
 class Sweep {
  public:

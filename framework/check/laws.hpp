@@ -13,7 +13,7 @@
 
 namespace hamel {
 
-/// One law: the largest violation that was seen, and the largest that round-off explains.
+/// Law with the largest violation that was seen, and the largest that round-off explains.
 struct LawResult {
   std::string law;
   double measured = 0;

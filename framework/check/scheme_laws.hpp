@@ -188,7 +188,7 @@ inline LawReport check_scheme(const Simulation& simulation, ClaimedOrder claim, 
   return report;
 }
 
-/// The same by name. Throws ConfigError when a name or a number does not fit.
+/// Checks a scheme by name. Throws ConfigError when a name or a number does not fit.
 inline LawReport check_scheme(const Registry& registry, const SchemeCase& c) {
   const Simulation simulation = simulation_of(registry, c);
   if (const auto mistakes = simulation.mistakes(); !mistakes.empty()) throw ConfigError(mistakes);
@@ -208,7 +208,7 @@ inline LawReport check_scheme(const Registry& registry, const SchemeCase& c) {
 /// measured in its name. ConfigError on an unknown name.
 LawReport check_scheme(const Registry& registry, const std::string& scheme);
 
-/// The same for a descriptor that need not be registered; needs <hamel/hamel.hpp>.
+/// Checks a descriptor that need not be registered; needs <hamel/hamel.hpp>.
 template <class Scheme>
 LawReport check_scheme(const Registry& registry) {
   Registry with = registry;

@@ -58,7 +58,7 @@ void place_near(const Geometry& geometry, const Start& start, int i, Eigen::Vect
   geometry.compose(g.data(), moved.data(), g.data());
 }
 
-// What a system states without I and A is theirs.
+// Checks that what a system states without I and A is theirs.
 void without_matrices(const SystemModel& model, const Geometry& geometry, const Start& start,
                       LawReport& report) {
   const Mechanics& mechanics = *model.mechanics;

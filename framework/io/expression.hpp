@@ -28,7 +28,7 @@ class ExpressionError : public std::invalid_argument {
   size_t position_;
 };
 
-/// One object serves one thread at a time. Evaluation takes no memory.
+/// Formula of named variables. An object serves one thread at a time. Evaluation takes no memory.
 class Expression {
  public:
   /// A formula over these variables; those with a name that is not allowed are left out.

@@ -65,7 +65,7 @@ inline void write_fixed_text(hid_t object, const std::string& name, const std::s
   write_text(object, name, text_type(std::max<std::size_t>(value.size(), 1)), value.c_str());
 }
 
-// One of either kind.
+// Reads a text of either kind.
 inline std::string read_text(hid_t object, const std::string& name) {
   const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "H5Aopen"),
       stored(H5Aget_type(attribute), H5Tclose, "H5Aget_type");

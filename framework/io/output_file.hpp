@@ -16,7 +16,7 @@ struct Unfinished : std::runtime_error {
 /// The path under which `path` is written until it is complete.
 inline std::string part_of(const std::string& path) { return path + ".part"; }
 
-/// The same for all spellings of a path ("a.h5", "./a.h5", through a link to its folder).
+/// Name of a file, the same for all spellings of a path ("a.h5", "./a.h5", a link to its folder).
 std::string place_of(const std::string& path);
 
 /// Brings `part` to the disk and gives it its name; Unfinished on failure.

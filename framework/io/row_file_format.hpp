@@ -17,7 +17,7 @@ inline std::uint64_t checksum(std::string_view bytes, std::uint64_t hash = 14695
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
   return hash;
 }
-// The same of a text with its name and its length.
+// Checksum of a text with its name and its length.
 inline std::uint64_t checksum_of_text(std::string_view name, std::string_view text,
                                       std::uint64_t hash) {
   const std::uint64_t sizes[] = {name.size(), text.size()};

@@ -40,7 +40,7 @@ void append_to(hid_t set, hid_t type, hsize_t at, hsize_t count, hsize_t width, 
   check(H5Dwrite(set, type, here, there, H5P_DEFAULT, data), "H5Dwrite");
 }
 
-// One row of a set of named rows: its name, then the numbers.
+// Type of a row of a set of named rows: its name, then the numbers.
 Handle type_of_named(const NamedRows& named) {
   const std::size_t size = std::max<std::size_t>(named.longest, 1);
   Handle type(H5Tcreate(H5T_COMPOUND, size + named.columns.size() * sizeof(double)), H5Tclose,

@@ -21,7 +21,7 @@ struct HAMEL_API TableColumn {
   Values values;
 
   size_t size() const;
-  /// One entry as text: shortest round trip, empty where a number is not finite.
+  /// Entry as text: shortest round trip, empty where a number is not finite.
   std::string text(size_t row) const;
 };
 

@@ -59,7 +59,7 @@ class TomlReader {
   void wrong(const toml::node& node, const std::string& key, const std::string& expected) {
     mistakes.push_back(fmt::format("{}: {}: expected {}", place(node), key, expected));
   }
-  /// The same with the value of the node: "key: got 5, expected a string".
+  /// Mistake with the value of the node: "key: got 5, expected a string".
   void wrong_value(const toml::node& node, const std::string& key, const std::string& expected);
   void unknown_key(const toml::node& node, const std::string& key,
                    const std::vector<std::string>& known) {

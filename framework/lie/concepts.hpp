@@ -98,7 +98,7 @@ concept Retraction = requires(const Vec<R::Group::dim>& xi, const Vec<R::Group::
   { R::dtau_right_inverse_transpose_derivative(xi, p) } -> Shape<R::Group::dim, R::Group::dim>;
   // Is xi inside the ball (or box) on which tau is a diffeomorphism with inverse tau_inverse?
   { R::in_domain(xi) } -> std::convertible_to<bool>;
-  // That domain as text, for `hamel describe` and errors: "|omega| < pi".
+  // Domain as text, for `hamel describe` and errors: "|omega| < pi".
   { R::domain() } -> std::convertible_to<std::string>;
   // One-line formula for `hamel describe`.
   { R::formula() } -> std::convertible_to<std::string>;

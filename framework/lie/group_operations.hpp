@@ -44,7 +44,7 @@ struct GroupOperations {
     if constexpr (requires { G::rotation_angle(g); }) return G::rotation_angle(g);
     else return std::numeric_limits<double>::quiet_NaN();
   }
-  /// The same numbers?
+  /// Are these the same numbers?
   static bool same(const Element& g, const Element& h) {
     if constexpr (std::equality_comparable<Element>) return g == h;
     else return G::coordinates(g) == G::coordinates(h);

@@ -53,7 +53,7 @@ using MatT = Eigen::Matrix<T, Rows, Cols>;
 template <class T, int Rows>
 using VecT = Eigen::Matrix<T, Rows, 1>;
 
-/// The same over double.
+/// Matrix over double.
 template <int Rows, int Cols>
 using Mat = MatT<double, Rows, Cols>;
 template <int Rows>

@@ -1,4 +1,4 @@
-// One instruction set's batches. Compiled once for each, with HAMEL_LANES_NAME (avx2) and
+// Batches of an instruction set. Compiled once for each, with HAMEL_LANES_NAME (avx2) and
 // HAMEL_LANES_ARCH (that of xsimd).
 #include <hamel/framework/lanes/lane_steps.hpp>
 #include <hamel/systems/lanes/lane_tables.hpp>

@@ -24,6 +24,7 @@ class Assembly {
 
  private:
   using Part = Mechanism::Part;
+  using Joints = std::vector<const Mechanism::JointPart*>;
   void wrong(const Part& part, const std::string& kind, const std::string& text);
   void unknown(const Part& part, const std::string& kind, const std::string& what,
                const std::string& name, const std::vector<std::string>& known);
@@ -40,7 +41,11 @@ class Assembly {
   void check_body(const Mechanism::BodyPart& body);
   mechanisms::Inertia inertia_of(const Mechanism::BodyPart& body);
   double extent() const;
+  bool check_joint(const Mechanism::JointPart& joint);
+  Joints joints_of_bodies();
   void link_bodies();
+  void link_from_ground(Joints waiting);
+  void check_hinge_names();
   void link(const Mechanism::JointPart& part);
   void add_link(int parent, const std::shared_ptr<const mechanisms::Joint>& joint,
                 const Mechanism::JointPart& part, const Point& axis, const std::string& suffix);
@@ -56,7 +61,7 @@ class Assembly {
   // Contacts, loops, forces and the start.
   /// The link of a body; kGround, with a mistake, where there is none of this name.
   int link_of(const Part& part, const std::string& kind, const std::string& body);
-  /// That a body moves; one that is unknown is a mistake of link_of.
+  /// Refuses a body that does not move; an unknown one is a mistake of link_of.
   void check_moves(const Part& part, const std::string& kind, const std::string& body);
   /// The link of a joint with one velocity; -1, with a mistake, where there is none of this name.
   int joint_of(const Part& part, const std::string& kind);
@@ -70,6 +75,10 @@ class Assembly {
   void look_at_redundant(const mechanisms::Redundancy& redundancy,
                          const std::vector<mechanisms::RowLabel>& rows,
                          const std::vector<mechanisms::RowInfo>& words);
+  void look_at_repeat(int row, const mechanisms::Repeat& repeat,
+                      const std::vector<mechanisms::RowLabel>& rows, bool drop);
+  void look_at_idle_loops(const mechanisms::Redundancy& redundancy,
+                          const std::vector<mechanisms::RowInfo>& words, bool drop);
   std::vector<double> start_configuration(const mechanisms::Multibody& system,
                                           const mechanisms::Starts& starts) const;
   void check_prescribed(const mechanisms::Starts& starts);
@@ -83,6 +92,9 @@ class Assembly {
   std::vector<mechanisms::Multibody::Driver> drivers(const mechanisms::Tree& tree);
 
   void draw(const std::shared_ptr<mechanisms::Multibody>& system);
+  /// Shapes of a body by its data, of its contacts and rods to its joints, from its mass centre.
+  std::vector<BodyShape> shapes_of(const Mechanism::BodyPart& body,
+                                   const std::vector<mechanisms::Contact>& contacts) const;
 
   const Mechanism& parts_;
   std::vector<std::string> mistakes_;

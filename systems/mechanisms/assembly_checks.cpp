@@ -121,41 +121,41 @@ std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) 
   return out;
 }
 
-// Refuses rows that contradict others; redundant rows too, or drops them with a note.
-void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<RowLabel>& rows,
-                                 const std::vector<RowInfo>& words) {
-  const Part& policy = parts_.redundant_;
-  const bool drop = policy.name == "drop";
-  if (!drop && policy.name != "refuse")
-    mistakes_.push_back(policy.where + unknown_name("redundant", policy.name, {"drop", "refuse"}));
-  const auto driven = [&](int row) {
-    const auto i = static_cast<size_t>(row) + parts_.rates_.size();
+// Refuses a row that contradicts others, or is driven by an input; one that repeats others too, or
+// drops it with a note.
+void Assembly::look_at_repeat(int row, const Repeat& repeat, const std::vector<RowLabel>& rows,
+                              bool drop) {
+  const auto driven = [&](int one) {
+    const auto i = static_cast<size_t>(one) + parts_.rates_.size();
     return i >= rows.size() && !parts_.rates_[i - rows.size()].rate;
   };
-  for (const auto& [row, repeat] : redundancy.repeats) {
-    const std::string list = in_words(repeat.others, rows);
-    const RowLabel& said = rows[static_cast<size_t>(row)];
-    const bool inputs = driven(row) || std::ranges::any_of(repeat.others, driven);
-    if (repeat.contradicts || inputs) {
-      mistakes_.push_back(said.where + contradiction(said, list) +
-                          (inputs ? " at most values of the inputs" : "") +
-                          (list.empty() ? "; leave it out" : "; leave one of them out"));
-      continue;
-    }
-    const std::string text =
-        list.empty()
-            ? fmt::format("{} constrains nothing: no joint moves its body that way", said.what)
-            : fmt::format("{} is implied by {}", said.what, list);
-    if (drop)
-      model_.notes.push_back(
-          "row dropped: " + text +
-          (list.empty() ? "" : fmt::format("; the reactions there include that of {}", said.what)));
-    else
-      mistakes_.push_back(fmt::format(
-          "{}redundant row: {}; {}, or redundant = \"drop\"", said.where, text,
-          list.empty() ? "leave it out" : "take a part with fewer rows (a roller for a wheel)"));
+  const std::string list = in_words(repeat.others, rows);
+  const RowLabel& said = rows[static_cast<size_t>(row)];
+  const bool inputs = driven(row) || std::ranges::any_of(repeat.others, driven);
+  if (repeat.contradicts || inputs) {
+    mistakes_.push_back(said.where + contradiction(said, list) +
+                        (inputs ? " at most values of the inputs" : "") +
+                        (list.empty() ? "; leave it out" : "; leave one of them out"));
+    return;
   }
-  // Rows of phi that are zero at all places are left out without notice, but not all of a loop.
+  const std::string text =
+      list.empty()
+          ? fmt::format("{} constrains nothing: no joint moves its body that way", said.what)
+          : fmt::format("{} is implied by {}", said.what, list);
+  if (drop)
+    model_.notes.push_back(
+        "row dropped: " + text +
+        (list.empty() ? "" : fmt::format("; the reactions there include that of {}", said.what)));
+  else
+    mistakes_.push_back(fmt::format(
+        "{}redundant row: {}; {}, or redundant = \"drop\"", said.where, text,
+        list.empty() ? "leave it out" : "take a part with fewer rows (a roller for a wheel)"));
+}
+
+// Rows of phi that are zero at all places are left out without notice, but not all of a loop:
+// refuses such a loop, or drops it with a note.
+void Assembly::look_at_idle_loops(const Redundancy& redundancy, const std::vector<RowInfo>& words,
+                                  bool drop) {
   for (const auto& loop : parts_.loops_) {
     const auto speaks = [&](size_t i) {
       const int row = static_cast<int>(i);
@@ -169,6 +169,16 @@ void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector
     if (drop) model_.notes.push_back(fmt::format("loop '{}' dropped: {}", loop.name, text));
     else wrong(loop, "loop", text + "; leave it out");
   }
+}
+
+void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<RowLabel>& rows,
+                                 const std::vector<RowInfo>& words) {
+  const Part& policy = parts_.redundant_;
+  const bool drop = policy.name == "drop";
+  if (!drop && policy.name != "refuse")
+    mistakes_.push_back(policy.where + unknown_name("redundant", policy.name, {"drop", "refuse"}));
+  for (const auto& [row, repeat] : redundancy.repeats) look_at_repeat(row, repeat, rows, drop);
+  look_at_idle_loops(redundancy, words, drop);
   stop_at_mistakes();
 }
 

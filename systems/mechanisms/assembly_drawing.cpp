@@ -10,46 +10,49 @@ namespace {
 using namespace mechanisms;
 
 Point point(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
 }  // namespace
+
+std::vector<BodyShape> Assembly::shapes_of(const Mechanism::BodyPart& body,
+                                           const std::vector<Contact>& contacts) const {
+  std::vector<BodyShape> out;
+  if (body.sphere > 0) out.push_back(shapes::sphere(body.sphere));
+  if (body.cylinder.size() == 2)
+    out.push_back(shapes::cylinder(body.cylinder[0], body.cylinder[1], {.axis = body.axis}));
+  if (!vec(body.box).isZero(0)) out.push_back(shapes::box(body.box));
+  const auto from_centre = [&](const Point& at) { return point(vec(at) - vec(body.at)); };
+  double size = 0.1;
+  for (size_t i = 0; i < parts_.contacts_.size(); ++i) {
+    const auto& contact = parts_.contacts_[i];
+    if (contact.body != body.name) continue;
+    const double drawn = body.cylinder.empty() ? body.sphere : body.cylinder[0];
+    const ContactModel& model = *contacts[i].model;
+    const double radius = model.radius();
+    size = std::max(size, radius);
+    if (radius > 0 && drawn == radius) {
+      out.front().look.color = "dark";
+      continue;
+    }
+    std::ranges::move(model.shapes(from_centre(contact.at)), std::back_inserter(out));
+  }
+  // Rods from the mass centre to its joints.
+  for (const auto& joint : parts_.joints_) {
+    if ((joint.child != body.name && joint.parent != body.name) || joint.parent == kWorld) continue;
+    if (find_joint_kind(joint.kind)->joints == 0 || (vec(joint.at) - vec(body.at)).isZero(1e-12))
+      continue;
+    out.push_back(shapes::line({{0, 0, 0}, from_centre(joint.at)}));
+  }
+  if (out.empty()) out.push_back(shapes::sphere(0.3 * size));
+  return out;
+}
 
 // Bodies are seen in the axes of the drawn pose, their mass centres as origins.
 void Assembly::draw(const std::shared_ptr<Multibody>& system) {
   Drawing& drawing = model_.drawing;
   drawing.has_floor = true;
-  const std::vector<Contact>& all = system->all_rows().contacts;
+  const std::vector<Contact>& contacts = system->all_rows().contacts;
   for (const auto& body : parts_.bodies_) {
     const int link = body_links_.at(body.name);
-    std::vector<BodyShape> shapes;
-    const auto from_centre = [&](const Point& at) { return point(vec(at) - vec(body.at)); };
-    if (body.sphere > 0) shapes.push_back(shapes::sphere(body.sphere));
-    if (body.cylinder.size() == 2) {
-      shapes.push_back(shapes::cylinder(body.cylinder[0], body.cylinder[1], {.axis = body.axis}));
-    }
-    if (!vec(body.box).isZero(0)) shapes.push_back(shapes::box(body.box));
-    double size = 0.1;
-    for (size_t i = 0; i < parts_.contacts_.size(); ++i) {
-      const auto& contact = parts_.contacts_[i];
-      if (contact.body != body.name) continue;
-      const Point at = from_centre(contact.at);
-      const double drawn = body.cylinder.empty() ? body.sphere : body.cylinder[0];
-      const ContactModel& model = *all[i].model;
-      const double radius = model.radius();
-      size = std::max(size, radius);
-      if (radius > 0 && drawn == radius) {
-        shapes.front().look.color = "dark";
-        continue;
-      }
-      std::ranges::move(model.shapes(at), std::back_inserter(shapes));
-    }
-    // Rods from the mass centre to its joints.
-    for (const auto& joint : parts_.joints_) {
-      if ((joint.child != body.name && joint.parent != body.name) || joint.parent == kWorld)
-        continue;
-      if (find_joint_kind(joint.kind)->joints == 0 || (vec(joint.at) - vec(body.at)).isZero(1e-12))
-        continue;
-      shapes.push_back(shapes::line({{0, 0, 0}, from_centre(joint.at)}));
-    }
-    if (shapes.empty()) shapes.push_back(shapes::sphere(0.3 * size));
     DrawnBody drawn{body.name,
                     [system, link, centre = vec(body.at)](std::span<const double> coordinates) {
                       std::vector<double> g(system->drawn().size());
@@ -57,7 +60,7 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
                       const Rigid place = system->tree(g.data()).in_world(link);
                       return Placement{place.apply(centre), place.rotation};
                     },
-                    std::move(shapes)};
+                    shapes_of(body, contacts)};
     if (link >= 0 && links_[static_cast<size_t>(link)].parent == mechanisms::kGround) drawn.trail();
     drawing.bodies.push_back(std::move(drawn));
   }

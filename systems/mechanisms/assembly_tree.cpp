@@ -76,27 +76,29 @@ double Assembly::extent() const {
   return out;
 }
 
-// A link for each joint, two for a universal one, none for a weld; parents first.
-void Assembly::link_bodies() {
-  extent_ = extent();
-  for (const auto& body : parts_.bodies_) bodies_.emplace(body.name, &body);
-  const std::vector<std::string> names = body_names();
+// Do the bodies and the kind of a joint exist? Else with mistakes.
+bool Assembly::check_joint(const Mechanism::JointPart& joint) {
+  bool known = true;
+  const auto check = [&](const std::string& what, const std::string& body) {
+    if (body == kWorld || (!body.empty() && bodies_.contains(body))) return;
+    unknown(joint, "joint", what, body, body_names());
+    known = false;
+  };
+  check("parent", joint.parent);
+  check("child", joint.child);
+  if (find_joint_kind(joint.kind) == nullptr) {
+    unknown(joint, "joint", "kind", joint.kind, names_of(joint_kinds()));
+    known = false;
+  }
+  return known;
+}
+
+// Joints that can hang bodies, one each; every body has one.
+Assembly::Joints Assembly::joints_of_bodies() {
   std::map<std::string, const Mechanism::JointPart*> hangs_on;
-  std::vector<const Mechanism::JointPart*> waiting;
+  Joints out;
   for (const auto& joint : parts_.joints_) {
-    bool known = true;
-    const auto check = [&](const std::string& what, const std::string& body) {
-      if (body == kWorld || (!body.empty() && bodies_.contains(body))) return;
-      unknown(joint, "joint", what, body, names);
-      known = false;
-    };
-    check("parent", joint.parent);
-    check("child", joint.child);
-    if (find_joint_kind(joint.kind) == nullptr) {
-      unknown(joint, "joint", "kind", joint.kind, names_of(joint_kinds()));
-      known = false;
-    }
-    if (!known) continue;
+    if (!check_joint(joint)) continue;
     if (joint.child == kWorld) {
       wrong(joint, "joint", "child: expected a body, the ground hangs on nothing");
     } else if (const auto [other, is_new] = hangs_on.emplace(joint.child, &joint); !is_new) {
@@ -105,33 +107,40 @@ void Assembly::link_bodies() {
                 "body '{}' hangs on joint '{}' already: a joint that closes a chain is a loop",
                 joint.child, other->second->name));
     } else {
-      waiting.push_back(&joint);
+      out.push_back(&joint);
     }
   }
   for (const auto& body : parts_.bodies_) {
     if (!hangs_on.contains(body.name) && mistakes_.empty())
       wrong(body, "body", "hangs on no joint; a root hangs on the ground by a planar or free one");
   }
-  stop_at_mistakes();
+  return out;
+}
+
+// A link for each joint, two for a universal one, none for a weld; parents first. Joints that the
+// ground does not reach are a mistake.
+void Assembly::link_from_ground(Joints waiting) {
   body_links_[kWorld] = mechanisms::kGround;
   for (size_t before = 0; before != waiting.size();) {
     before = waiting.size();
-    std::vector<const Mechanism::JointPart*> later;
+    Joints later;
     for (const auto* joint : waiting) {
       if (body_links_.contains(joint->parent)) link(*joint);
       else later.push_back(joint);
     }
     waiting = std::move(later);
   }
+  if (waiting.empty()) return;
   std::string circle;
   for (const auto* joint : waiting)
     circle += fmt::format("{}'{}'", circle.empty() ? "" : ", ", joint->name);
-  if (!circle.empty()) {
-    wrong(*waiting.front(), "joint",
-          fmt::format("{} go round in a circle that does not reach the ground; hang one of the "
-                      "bodies on it, and make one of the joints a loop",
-                      circle));
-  }
+  wrong(*waiting.front(), "joint",
+        fmt::format("{} go round in a circle that does not reach the ground; hang one of the "
+                    "bodies on it, and make one of the joints a loop",
+                    circle));
+}
+
+void Assembly::check_hinge_names() {
   std::set<std::string> taken;
   for (size_t j = 0; j < links_.size(); ++j) {
     if (!taken.insert(link_names_[j]).second)
@@ -140,6 +149,15 @@ void Assembly::link_bodies() {
                         "behind its name",
                         link_names_[j]));
   }
+}
+
+void Assembly::link_bodies() {
+  extent_ = extent();
+  for (const auto& body : parts_.bodies_) bodies_.emplace(body.name, &body);
+  Joints joints = joints_of_bodies();
+  stop_at_mistakes();
+  link_from_ground(std::move(joints));
+  check_hinge_names();
   stop_at_mistakes();
 }
 

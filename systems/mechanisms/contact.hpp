@@ -37,7 +37,7 @@ struct Ground {
   bool moves() const { return rate != 0 || !velocity.isZero(0); }
 };
 
-/// One row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and
+/// Row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and
 /// phi, and d/dt (b - A xi) along the motion, xi held.
 struct Row {
   int link = kGround, other = kGround;

@@ -58,7 +58,7 @@ inline Vec3 rate(const VecT<Dual, 3>& v) { return {v[0].rate, v[1].rate, v[2].ra
 inline Wrench value(const VecT<Dual, 6>& v) {
   return {v[0].value, v[1].value, v[2].value, v[3].value, v[4].value, v[5].value};
 }
-/// Of a formula evaluated without rates.
+/// Value of a formula evaluated without rates.
 inline const Vec3& value(const Vec3& v) { return v; }
 inline const Wrench& value(const Wrench& v) { return v; }
 

@@ -59,9 +59,9 @@ class Joint {
   }
   /// The velocities that turn the child.
   std::vector<int> turning() const;
-  /// One velocity, which turns about the axis: full turns change nothing.
+  /// Has one velocity, which turns about the axis: full turns change nothing.
   bool only_turns() const { return dim() == 1 && directions_.bottomRows(3).isZero(0); }
-  /// One velocity, which slides: its effort is a force.
+  /// Has one velocity, which slides: its effort is a force.
   bool only_slides() const { return dim() == 1 && turning().empty(); }
   /// Some velocities turn and others slide: the root of a vehicle.
   bool turns_and_slides() const {

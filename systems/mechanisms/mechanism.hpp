@@ -155,8 +155,8 @@ class HAMEL_API Mechanism {
   void prescribe(const std::string& joint, std::function<double(double t)> rate,
                  std::function<double(double t)> angle = {},
                  std::function<double(double t)> slope = {});
-  /// One that does not change, so that there are steady motions; of rate 0 with an angle the joint
-  /// is held there.
+  /// Prescribes a rate that does not change, so that there are steady motions; of rate 0 with an
+  /// angle the joint is held there.
   void prescribe(const std::string& joint, double rate, std::function<double(double t)> angle = {});
   void prescribe(const std::string& joint, const Range& range = {});
   /// The ground turns about the origin [rad/s] and moves [m/s].

@@ -1,5 +1,5 @@
-// What the rows of a mechanism leave it to move with, at the start and at poses that the rows let
-// it reach. Prescribed rates that change, and inputs, count as free: they move their joints. Not
+// Freedoms that the rows of a mechanism leave it, at the start and at poses that the rows let it
+// reach. Prescribed rates that change, and inputs, count as free: they move their joints. Not
 // installed.
 #pragma once
 

@@ -116,7 +116,7 @@ HAMEL_FLATTEN void write(const Row& row, const Tree& tree, Mechanics::Matrix& a,
 
 }  // namespace
 
-// Those that vary, of a tree that was placed; with rates one that moved and accelerated.
+// Rows that vary, of a tree that was placed; with rates one that moved and accelerated.
 template <bool with_rates>
 void Multibody::find_rows(const Tree& tree, double t, Matrix a, Vector b, double* rates) const {
   if (a.outerStride() == a.rows()) std::copy_n(fixed_rows_.data(), fixed_rows_.size(), a.data());

@@ -59,7 +59,7 @@ class Multibody final : public Mechanics {
   double potential(const double* g) const override;
 
   const ConstraintRows& all_rows() const { return rows_; }
-  /// Of all rows, in the order of each().
+  /// Meanings of all rows, in the order of each().
   const std::vector<RowInfo>& row_info() const { return row_info_; }
   const std::vector<int>& kept() const { return kept_; }
   const Geometry& geometry() const { return *geometry_; }

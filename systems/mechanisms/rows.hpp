@@ -117,7 +117,7 @@ struct ConstraintRows {
       if (wants(i)) return true;
     return false;
   }
-  // Those of a contact or loop, of which the first is row `first`.
+  // Rows of a contact or loop, of which the first is row `first`.
   template <bool with_rates, class Part, class Wants, class F>
   void each_evaluated(const Part& part, const Tree& tree, size_t first, Wants& wants, F& f) const {
     if (!any(first, part.row_count(), wants)) return;
@@ -126,7 +126,7 @@ struct ConstraintRows {
     for (size_t k = 0; k < part.row_count(); ++k)
       if (wants(first + k)) f(first + k, rows[k]);
   }
-  // Those of loops and prescribed joints, of which the first is row i.
+  // Rows of loops and prescribed joints, of which the first is row i.
   template <bool with_rates, class Wants, class F>
   void each_of_joints(const Tree& tree, double t, size_t i, Wants& wants, F& f) const {
     for (const Loop& loop : loops) {
@@ -145,7 +145,7 @@ struct ConstraintRows {
       ++i;
     }
   }
-  // Those of a fixed contact, of which the first is row `first`.
+  // Rows of a fixed contact, of which the first is row `first`.
   template <bool with_rates, class Wants, class F>
   static void each_fixed(const Contact& contact, const Tree& tree, size_t first, Wants& wants,
                          F& f) {
@@ -181,7 +181,7 @@ struct ConstraintRows {
   }
   // The coordinate of a joint that is held, from where it is held.
   static double beyond(const Prescribed& p, const Tree& tree);
-  // Of its rate, at t.
+  // Derivative of its rate, at t.
   static double slope(const Prescribed& p, double t);
 };
 

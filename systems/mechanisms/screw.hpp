@@ -102,7 +102,7 @@ inline Mat<3, 3> parallel_axis(const Vec3& x, const Vec3& y) {
 inline Inertia inertia_at(double mass, const Vec3& c, const Mat<3, 3>& central) {
   return {mass, mass * c, central + mass * parallel_axis(c, c)};
 }
-/// The same body seen from another frame.
+/// Inertia of a body seen from another frame.
 inline Inertia moved(const Rigid& x, const Inertia& i) {
   const Vec3 first = x.rotation.lazyProduct(i.first);
   const Mat<3, 3> turned = x.rotation.lazyProduct(i.second);

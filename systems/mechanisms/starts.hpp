@@ -20,7 +20,7 @@ struct RowLabel {
 };
 /// Some of these rows, one behind the other.
 std::string in_words(const std::vector<int>& some, const std::vector<RowLabel>& rows);
-/// That a row contradicts those of a list.
+/// Sentence that a row contradicts those of a list.
 std::string contradiction(const RowLabel& row, const std::string& list);
 
 /// Starts of a mechanism, by the names of coordinates and velocities.

@@ -218,6 +218,43 @@ Rigid Tree::from_root(int link) const {
   return from_root(node.link.parent) * node.across(placed_.data() + node.element);  // a rotor
 }
 
+// X of a link.
+void Tree::place_link(Node& node, const Node& parent, const double* element) {
+  if (node.planar) {
+    node.flat = node.terms.sum_in_plane(element);
+    if (!node.on_root) node.flat = parent.flat * node.flat;
+  } else if (!node.rotor) {
+    node.place = node.across(element);
+    if (!node.on_root)
+      node.place = (parent.planar ? parent.flat.in_space() : parent.place) * node.place;
+  }
+}
+
+// Ad_X S of a link, and the spin of a rotor; its parent is placed.
+void Tree::place_columns(Node& node, const Node& parent, const double* g) {
+  if (node.count > 1) {
+    for (int i = 0; i < node.count; ++i)
+      node.columns.col(i) = node.place.move(node.directions.col(i));
+  } else if (node.rotor && parent.turns) {
+    const double* turned = g + parent.element;
+    const Vec<12> seen = node.turned_spin.at(turned[0], turned[1]);
+    node.columns.col(0) = seen.head<6>();
+    node.spin_here = seen.tail<6>();
+  } else if (!node.on_root) {
+    if (node.planar) {
+      in_plane(node.columns.col(0)) = parent.flat.move_in_plane(in_plane(node.directions.col(0)));
+    } else if (parent.planar) {
+      node.columns.col(0) = parent.flat.move(node.directions.col(0));
+    } else {
+      node.columns.col(0) = parent.place.move(node.directions.col(0));
+    }
+    if (node.rotor) {
+      node.spin_here =
+          parent.planar ? parent.flat.move_wrench(node.spin) : parent.place.move_wrench(node.spin);
+    }
+  }
+}
+
 HAMEL_FLATTEN void Tree::place(const double* g) {
   if (placed_at(g)) return;
   std::memcpy(placed_.data(), g, placed_.size() * sizeof(double));
@@ -229,35 +266,8 @@ HAMEL_FLATTEN void Tree::place(const double* g) {
       continue;
     }
     const Node& parent = at(node.link.parent);
-    if (node.planar) {
-      node.flat = node.terms.sum_in_plane(element);
-      if (!node.on_root) node.flat = parent.flat * node.flat;
-    } else if (!node.rotor) {
-      node.place = node.across(element);
-      if (!node.on_root)
-        node.place = (parent.planar ? parent.flat.in_space() : parent.place) * node.place;
-    }
-    if (node.count > 1) {
-      for (int i = 0; i < node.count; ++i)
-        node.columns.col(i) = node.place.move(node.directions.col(i));
-    } else if (node.rotor && parent.turns) {
-      const double* turned = g + parent.element;
-      const Vec<12> seen = node.turned_spin.at(turned[0], turned[1]);
-      node.columns.col(0) = seen.head<6>();
-      node.spin_here = seen.tail<6>();
-    } else if (!node.on_root) {
-      if (node.planar) {
-        in_plane(node.columns.col(0)) = parent.flat.move_in_plane(in_plane(node.directions.col(0)));
-      } else if (parent.planar) {
-        node.columns.col(0) = parent.flat.move(node.directions.col(0));
-      } else {
-        node.columns.col(0) = parent.place.move(node.directions.col(0));
-      }
-      if (node.rotor) {
-        node.spin_here = parent.planar ? parent.flat.move_wrench(node.spin)
-                                       : parent.place.move_wrench(node.spin);
-      }
-    }
+    place_link(node, parent, element);
+    place_columns(node, parent, g);
   }
 }
 

@@ -102,7 +102,7 @@ class Tree {
   void accumulate_inertia();
   /// Link seen from its root (the ground: from the world), and its root in the world.
   Rigid from_root(int link) const;
-  /// The same where it is known already, else null.
+  /// from_root() where it is known already, else null.
   const Rigid* known_from_root(int link) const {
     if (link == kGround) return &rest_;
     const Node& node = at(link);
@@ -205,6 +205,8 @@ class Tree {
   Node& at(int link) { return nodes_[static_cast<size_t>(link)]; }
   Wrench force_on(const Node& node) const;
   static bool is_free(const Node& node);
+  static void place_link(Node& node, const Node& parent, const double* element);
+  static void place_columns(Node& node, const Node& parent, const double* g);
   static void move_free(Node& node, const double* xi);
   void find_planar(Node& node, const double* drawn) const;
   void find_rotors();

@@ -37,7 +37,7 @@ HAMEL_FLATTEN void Tree::accumulate_inertia() {
   }
 }
 
-// That of a root with its whole twist xi, at the position of C, in its own axes.
+// Twist of a root, its velocities xi the whole of it at the position of C, in its own axes.
 inline void Tree::move_free(Node& node, const double* xi) {
   const Vec3& c = node.link.on_child.position;
   if (node.planar) {

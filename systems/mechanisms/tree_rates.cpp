@@ -22,7 +22,7 @@ HAMEL_FLATTEN void Tree::accelerate() {
   }
 }
 
-// What is summed in F of a link that is no rotor, and its weight.
+// Part of a link that is no rotor in the sum F, with its weight.
 inline Wrench Tree::force_on(const Node& node) const {
   const bool is_root = node.link.parent == kGround;
   const Inertia& own = node.own;

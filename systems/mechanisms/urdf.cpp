@@ -74,7 +74,7 @@ class Writer {
     root_ = given.back();
   }
 
-  // What a joint moves has some mass.
+  // Refuses joints that move no mass.
   void check_masses() {
     std::vector<double> carried(links_.size());
     for (int i = count() - 1; i >= 0; --i) {
@@ -259,7 +259,7 @@ class Writer {
     out += "]\n";
   }
 
-  // What the mechanism leaves out.
+  // Notes on what the mechanism leaves out.
   std::vector<std::string> notes() const {
     std::vector<std::string> out;
     const auto note = [&](const std::string& what, const std::vector<std::string>& names) {

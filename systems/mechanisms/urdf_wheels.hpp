@@ -16,7 +16,7 @@ struct RobotWheel {
   double lowest() const;
 };
 
-/// Those of the names LINK, LINK:wheel, LINK:ball. Adds what is wrong to mistakes.
+/// Wheels by the names LINK, LINK:wheel, LINK:ball. Adds what is wrong to mistakes.
 std::vector<RobotWheel> find_wheels(const Robot& robot, const std::vector<std::string>& names,
                                     const std::string& path, std::vector<std::string>& mistakes);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Action = std::function<int()>;
 
-// Of a command whose work, pieces of a file, is cut into parts that share a folder.
+// Options of a command whose work, pieces of a file, is cut into parts that share a folder.
 void add_parts(CLI::App& app, PartOptions& options, const std::string& file,
                const std::string& pieces, const std::string& folder) {
   app.add_option("FILE", options.file, file + ", TOML (tools/studies)")->required();

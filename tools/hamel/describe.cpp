@@ -13,6 +13,7 @@
 #include <hamel/systems/mechanisms/library.hpp>
 
 #include "commands.hpp"
+#include "description_text.hpp"
 #include "screen.hpp"
 
 namespace hamel::tools {
@@ -259,41 +260,6 @@ Json description_of(const std::string& name, const Parameters& given) {
   throw ConfigError({unknown_name("name", name, known)});
 }
 
-// One line per member; lists of objects as indented lines.
-void print(const Json& json) {
-  for (const auto& [key, value] : json.items()) {
-    if (value.is_array() && value.empty()) continue;
-    if (value.is_string()) {
-      if (!value.get<std::string>().empty()) say("  {:<12} {}\n", key, value.get<std::string>());
-    } else if (value.is_array() && !value.empty() && value.front().is_object()) {
-      say("  {}\n", key);
-      for (const Json& entry : value) {
-        std::string line;
-        for (const auto& [name, member] : entry.items()) {
-          const std::string text = member.is_string() ? member.get<std::string>() : member.dump();
-          line += name == "name" || name == "group" ? fmt::format("{:<14}", text)
-                  : name == "default"               ? fmt::format(" = {:<12}", text)
-                  : name == "unit"                  ? fmt::format(" [{}]", text)
-                  : name == "range"     ? (text.empty() ? "" : fmt::format("  {};", text))
-                  : name == "domain"    ? fmt::format("; domain {}", text)
-                  : name == "symmetric" ? (text == "true" ? "; symmetric" : "; not symmetric")
-                                        : fmt::format("  {}", text);
-        }
-        say("    {}\n", line);
-      }
-    } else if (value.is_object()) {
-      for (const auto& [name, member] : value.items())
-        say("  {:<12} {} {}\n", name == value.begin().key() ? key : "", name, member.dump());
-    } else {
-      say("  {:<12} {}\n", key, value.dump());
-    }
-  }
-}
-
-}  // namespace
-
-namespace {
-
 // A mechanism as its file, which the program reads.
 std::string toml_of(const std::string& name) {
   if (names_file(name)) {
@@ -318,7 +284,7 @@ int describe(const DescribeOptions& options) {
   if (options.analyse) return analyse(options);
   const Json json = description_of(options.name, options.parameters);
   if (options.json) say_json(json);
-  else print(json);
+  else print_description(json);
   return 0;
 }
 

@@ -144,7 +144,7 @@ int finish(const EnsembleOptions& options, const Ensemble& ensemble, const Ensem
   return 0;
 }
 
-// One member, as values and as a run with its page.
+// Shows one member, as values and as a run with its page.
 int one_member(const EnsembleOptions& options, const Ensemble& ensemble) {
   const Member member = ensemble.member(*options.member);
   std::string page;

@@ -45,6 +45,23 @@ std::vector<const Variation*> lists_of(const EnsembleConfig& config) {
   return out;
 }
 
+// Places of the cells along a list, so many of its values a cell: between the first and the last.
+std::vector<Cell> ticks(const std::vector<double>& list, size_t together) {
+  std::vector<Cell> out;
+  for (size_t i = 0; i < list.size(); i += together)
+    out.emplace_back((list[i] + list[std::min(i + together, list.size()) - 1]) / 2);
+  return out;
+}
+
+// Note on cells of several members: so many of each combination, tall x wide combinations.
+std::string cell_note(bool classes, size_t members, size_t tall, size_t wide) {
+  if (members * tall * wide <= 1) return "";
+  std::string out = fmt::format("A cell shows the {} of its {} members, a click the first of them.",
+                                classes ? "most frequent class" : "mean", members * tall * wide);
+  if (tall > 1 || wide > 1) out += fmt::format(" {} x {} combinations are one cell.", tall, wide);
+  return out;
+}
+
 // A cell for each combination of two lists, or for some that are neighbours: the mean over its
 // members that have a value, or their most frequent class.
 void add_heatmap(Page& page, const EnsembleResult& result, const Shown& column,
@@ -58,12 +75,6 @@ void add_heatmap(Page& page, const EnsembleResult& result, const Shown& column,
   map.title = column.label;
   map.x = labelled(result, lists[1]->name);
   map.y = labelled(result, lists[0]->name);
-  const auto ticks = [](const std::vector<double>& list, size_t together) {
-    std::vector<Cell> out;
-    for (size_t i = 0; i < list.size(); i += together)
-      out.emplace_back((list[i] + list[std::min(i + together, list.size()) - 1]) / 2);
-    return out;
-  };
   map.x_values = ticks(lists[1]->numbers, wide);
   map.y_values = ticks(lists[0]->numbers, tall);
   map.unit = column.unit == "1" ? "" : column.unit;
@@ -90,14 +101,9 @@ void add_heatmap(Page& page, const EnsembleResult& result, const Shown& column,
       if (classes && *most > 0) map.values[i][j] = static_cast<double>(most - of.begin());
       else map.values[i][j] /= of[0];  // NaN of none
     }
-  const size_t together = column.values.size() / (all_rows * all_columns);
-  if (together > 1 || tall > 1 || wide > 1) {
-    map.note += fmt::format("{}A cell shows the {} of its {} members, a click the first of them.",
-                            map.note.empty() ? "" : ". ", classes ? "most frequent class" : "mean",
-                            together * tall * wide);
-    if (tall > 1 || wide > 1)
-      map.note += fmt::format(" {} x {} combinations are one cell.", tall, wide);
-  }
+  const std::string note =
+      cell_note(classes, column.values.size() / (all_rows * all_columns), tall, wide);
+  if (!note.empty()) map.note += (map.note.empty() ? "" : ". ") + note;
   if (!result.failures.empty()) map.marks = marks;
   page.heatmap(map);
 }
@@ -146,7 +152,7 @@ Series curve_of(const std::string& name, const std::vector<double>& x, const std
   return out;
 }
 
-// One dot a member, coloured by its class, or, along one list, a curve.
+// Dots, one a member, coloured by its class, or, along one list, a curve.
 void add_dots(Page& page, const EnsembleResult& result, const Shown& column,
               const std::string& name, bool curve) {
   const std::vector<double>& x = numbers_of(result, name);
@@ -206,7 +212,7 @@ Series stairs(const std::string& name, const Histogram& h) {
   return out;
 }
 
-// Those asked for; of random draws one of each quantity.
+// Histograms of the configuration; of random draws one of each quantity.
 void add_histograms(Page& page, const EnsembleResult& result) {
   const bool random = std::ranges::any_of(result.config.vary,
                                           [](const Variation& v) { return v.law != Law::values; });

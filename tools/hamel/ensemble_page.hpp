@@ -9,7 +9,7 @@
 
 namespace hamel::tools {
 
-/// Of all members: not of a shard. motions: the figures of some members, in a first section.
+/// Page of all members, not of a shard. motions: the figures of some members, in a first section.
 Page ensemble_page(const EnsembleResult& result, const std::map<long, Page>& motions);
 
 }  // namespace hamel::tools

@@ -1,4 +1,4 @@
-// One figure of a page in a separate file: PDF, SVG or PNG.
+// File of a single figure of a page: PDF, SVG or PNG.
 #pragma once
 
 #include <string>

@@ -29,7 +29,7 @@ CLI::Option* number_option(CLI::App& app, const std::string& flag,
       ->type_name(std::is_same_v<Value, long> ? "INT" : "FLOAT");
 }
 
-/// The same into a variable that outlives the app.
+/// Defines it for a variable that outlives the app.
 template <class Value>
 CLI::Option* number_option(CLI::App& app, const std::string& flag, Value& out,
                            const std::string& help) {

@@ -114,7 +114,7 @@ class Page {
 Series thinned(std::string name, const std::vector<double>& x, const std::vector<double>& y,
                bool peaks, size_t points = 1200);
 
-/// The same of values of either sign; of a curve that goes up and down more often than a figure can
+/// Thins values of either sign; of a curve that goes up and down more often than a figure can
 /// show, a band from the least to the greatest value of each of equal windows.
 Series drawable(std::string name, const std::vector<double>& x, const std::vector<double>& y);
 

@@ -20,8 +20,8 @@ Page run_page(const Result& result, const std::string& record);
 std::vector<std::string> page_mistakes(const std::string& path,
                                        const std::vector<std::string>& formats = {".html"});
 
-/// One column of a run against time, thinned; as magnitude, for a logarithmic axis, the largest
-/// over windows.
+/// Column of a run against time, thinned; as magnitude, for a logarithmic axis, the largest over
+/// windows.
 Series curve(const Result& result, const std::string& name, const std::string& column,
              bool magnitude = true);
 

@@ -22,7 +22,7 @@ void finish_screen();
 /// Text on standard error as it is, where that can be written.
 void write_message(std::string_view text);
 
-/// The same with a format, and with control characters made visible.
+/// Writes with a format, and with control characters made visible.
 template <class... T>
 void say(fmt::format_string<T...> format, T&&... values) {
   write_screen(visible(fmt::format(format, std::forward<T>(values)...)));

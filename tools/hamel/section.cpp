@@ -147,7 +147,7 @@ void print(const SectionOptions& options, const Section& section) {
 
 }  // namespace
 
-// What a section makes no use of; until is how long it waits.
+// Options that a section makes no use of; until is how long it waits.
 static const std::vector<std::string> kOfRows = {"every",   "output_step", "output_times", "events",
                                                  "stop_at", "check",       "no_exact",     "until"};
 
@@ -192,7 +192,7 @@ void SectionLine::define(CLI::App& app) {
       "  hamel section rattleback --event reversed --direction 1 --count 10 --json");
 }
 
-// What the file has of the section itself, unless the line gives it.
+// Takes from the file the settings of the section itself, unless the line gives them.
 void SectionLine::take_from_file(const CLI::App& app) {
   SectionRequest& request = options_.request;
   long direction = request.direction;

@@ -4,9 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include <hamel/framework/analysis/linearisation.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/run/record/velocity_text.hpp>
@@ -15,14 +13,13 @@
 #include "run_page.hpp"
 #include "screen.hpp"
 #include "steady.hpp"
+#include "steady_json.hpp"
 #include "steady_page.hpp"
 
 namespace hamel::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr int kMostValues = 100000;
+constexpr int kMostPoints = 100000;
 constexpr int kMostDimension = 100;  // n^4 operations a motion
 
 // name=from:to:count, or name=from:to for 101 values.
@@ -47,9 +44,9 @@ struct Vary {
     if (numbers.size() == 2) numbers.push_back(101);
     if (numbers.size() != 3) throw wrong();
     const double count = numbers[2];
-    if (count != std::floor(count) || count < 2 || count > kMostValues) {
+    if (count != std::floor(count) || count < 2 || count > kMostPoints) {
       throw ConfigError({fmt::format("--vary: got {} values, expected a whole number from 2 to {}",
-                                     count, kMostValues)});
+                                     count, kMostPoints)});
     }
     for (int i = 0; i < count; ++i) {
       values.push_back(numbers[0] + (numbers[1] - numbers[0]) * i / (count - 1));
@@ -63,103 +60,6 @@ Simulation at(const SteadyOptions& options, const std::string& name, double valu
   else if (!name.empty()) config.parameters[name] = {value};
   Simulation out(registry(), config.system);
   return out.config(config);
-}
-
-// To the digits that are known.
-Json eigenvalues_of(const SteadyMotion& motion) {
-  Json out = Json::array();
-  for (size_t i = 0; i < motion.eigenvalues.size(); ++i) {
-    const auto x = motion.eigenvalues[i];
-    out.push_back({round_to_known(x.real(), motion.round_off[i]),
-                   round_to_known(x.imag(), motion.round_off[i])});
-  }
-  return out;
-}
-
-// Null where an error covers the verdict.
-Json growing_of(const SteadyMotion& motion) {
-  const std::optional<int> growing = motion.decided_growing();
-  return growing ? Json(*growing) : Json();
-}
-
-// Of each eigenvalue what moves, velocities first.
-Json modes_of(const SteadyMotion& motion) {
-  Json out = Json::array();
-  for (const std::vector<ModePart>& mode : motion.modes) {
-    Json& parts = out.emplace_back(Json::object());
-    for (const ModePart& part : mode) parts[part.name] = part.size;
-  }
-  return out;
-}
-
-Json json_of(const SteadyPlace& place) {
-  return {{"value", place.value}, {"element", place.element}, {"velocity", place.velocity}};
-}
-
-Json json_of(const NumberMatrix& m) {
-  Json out = Json::array();
-  for (int i = 0; i < m.rows; ++i) {
-    Json row = Json::array();
-    for (int j = 0; j < m.columns; ++j) row.push_back(m(i, j));
-    out.push_back(row);
-  }
-  return out;
-}
-
-Json json_of(const Linearisation& linear, const std::optional<double>& sample_time) {
-  Json out = {{"states", linear.states},
-              {"inputs", linear.inputs},
-              {"quantities", linear.quantities},
-              {"A", json_of(linear.a)},
-              {"B", json_of(linear.b)},
-              {"C", json_of(linear.c)},
-              {"errors",
-               {{"A", json_of(linear.a_error)},
-                {"B", json_of(linear.b_error)},
-                {"C", json_of(linear.c_error)}}},
-              {"values", linear.values},
-              {"embedding", json_of(linear.embedding)},
-              {"unused_inputs", linear.unused}};
-  if (sample_time) {
-    const DiscretePair pair = linear.sampled(*sample_time);
-    out["discrete"] = {
-        {"sample_time", *sample_time}, {"A", json_of(pair.a)}, {"B", json_of(pair.b)}};
-  }
-  return out;
-}
-
-Json json_of(const SteadySweep& sweep) {
-  Json out = {{"vary", Json::array()}, {"crossings", Json::array()}};
-  for (size_t i = 0; i < sweep.values.size(); ++i) {
-    const SteadyMotion& motion = sweep.motions[i];
-    Json& entry = out["vary"].emplace_back(Json{{"value", sweep.values[i]},
-                                                {"found", motion.found},
-                                                {"eigenvalues", eigenvalues_of(motion)},
-                                                {"eigenvalue_errors", motion.round_off},
-                                                {"round_off", motion.round_off},
-                                                {"growing", growing_of(motion)}});
-    if (motion.found)
-      entry["motion"] = {{"element", motion.element}, {"velocity", motion.velocity}};
-  }
-  for (const SteadyCrossing& crossing : sweep.crossings) {
-    out["crossings"].push_back(
-        {{"value", round_to_known(crossing.value, crossing.round_off)},
-         {"round_off", crossing.round_off},
-         {"kind", crossing.pair ? "pair" : "real"},
-         {"bifurcation", name_of(crossing.kind)},
-         {"supercritical", crossing.supercritical ? Json(*crossing.supercritical) : Json()},
-         {"other", crossing.other ? json_of(*crossing.other) : Json()}});
-  }
-  out["ends"] = Json::array();
-  for (const SteadyEnd& end : sweep.ends) {
-    out["ends"].push_back({{"value", round_to_known(end.value, end.round_off)},
-                           {"round_off", end.round_off},
-                           {"towards", end.towards_last ? "last" : "first"},
-                           {"bifurcation", name_of(end.kind)},
-                           {"other", end.other ? json_of(*end.other) : Json()}});
-  }
-  out["end"] = sweep.ends.empty() ? Json() : out["ends"][0];
-  return out;
 }
 
 void print(const SystemModel& system, const SteadyMotion& motion) {
@@ -203,6 +103,19 @@ void print(const std::string& name, const SteadySweep& sweep) {
   print_ends(name, sweep);
 }
 
+// Lines of a motion, where one was found, and of a sweep with its branches. vary: may be null.
+void print(const SystemModel& system, const SteadyMotion& motion, const Vary* vary,
+           const SteadySweep& sweep) {
+  if (motion.found) print(system, motion);
+  else if (vary == nullptr) say("{}: no steady motion was found near this start\n", system.name);
+  if (vary == nullptr) return;
+  print(vary->name, sweep);
+  for (size_t i = 0; i < sweep.branches.size(); ++i) {
+    say("  branch {}, from {} = {:.6g} on\n", i + 2, vary->name, sweep.branches[i].start->value);
+    print(vary->name, sweep.branches[i]);
+  }
+}
+
 // The system of a line, its parameters and start: what a page can be made again from.
 std::string command_line(const SteadyOptions& options) {
   std::string out = "hamel steady " + options.config.system;
@@ -217,7 +130,7 @@ std::string command_line(const SteadyOptions& options) {
   return out + (options.branches ? " --branches" : "");
 }
 
-// What cannot be, before anything runs.
+// Refuses options that contradict each other, before anything runs.
 void refuse_mistakes(const SteadyOptions& options, bool vary) {
   if (options.branches && !vary)
     throw ConfigError({"--branches: branches meet along a parameter; give --vary"});
@@ -234,31 +147,12 @@ void refuse_mistakes(const SteadyOptions& options, bool vary) {
   }
 }
 
-// sweep: none without --vary.
-Json answer(const SteadyOptions& options, const Simulation& first, const SystemModel& system,
-            const SteadyMotion& motion, const SteadySweep* sweep) {
-  Json out = {{"system", options.config.system},
-              {"parameters", Json::object()},
-              {"motion", {{"element", motion.element}, {"velocity", motion.velocity}}},
-              {"residual", motion.residual},
-              {"eigenvalues", eigenvalues_of(motion)},
-              {"eigenvalue_errors", motion.round_off},
-              {"round_off", motion.round_off},
-              {"growing", growing_of(motion)},
-              {"modes", modes_of(motion)},
-              {"neutral", motion.neutral}};
-  for (const Field& field : system.fields) out["parameters"][field.name] = field.value;
-  if (motion.found && sweep == nullptr)
-    out["linearisation"] = json_of(linearisation(registry(), first), options.sample_time);
-  if (sweep != nullptr) {
-    out.update(json_of(*sweep));
-    if (options.branches) out["branches"] = Json::array();
-    for (const SteadySweep& branch : sweep->branches) {
-      Json& entry = out["branches"].emplace_back(json_of(branch));
-      entry["start"] = json_of(*branch.start);
-    }
-  }
-  return out;
+void refuse_large(const SystemModel& system) {
+  if (system.group.dim > kMostDimension)
+    throw ConfigError(
+        {fmt::format("{}: its dimension {} is above {}, the most whose steady "
+                     "motions are looked for",
+                     system.name, system.group.dim, kMostDimension)});
 }
 
 }  // namespace
@@ -270,33 +164,20 @@ int steady(const SteadyOptions& options) {
   const Simulation first = at(options, vary ? vary->name : "", vary ? vary->values[0] : 0);
   const Run built = first.build();
   const SystemModel& system = built.system();
-  if (system.group.dim > kMostDimension)
-    throw ConfigError(
-        {fmt::format("{}: its dimension {} is above {}, the most whose steady "
-                     "motions are looked for",
-                     system.name, system.group.dim, kMostDimension)});
+  refuse_large(system);
   const SteadyMotion motion = steady_motion(registry(), first);
   SteadySweep sweep;
   if (vary) {
     const auto there = [&](double value) { return at(options, vary->name, value); };
     sweep = sweep_steady(registry(), vary->values, there, options.branches);
   }
-  const bool any = std::any_of(sweep.motions.begin(), sweep.motions.end(),
-                               [](const SteadyMotion& one) { return one.found; });
-  if (options.json) {
-    say_json(answer(options, first, system, motion, vary ? &sweep : nullptr));
-  } else {
-    if (motion.found) print(system, motion);
-    else if (!vary) say("{}: no steady motion was found near this start\n", system.name);
-    if (vary) print(vary->name, sweep);
-    for (size_t i = 0; i < sweep.branches.size(); ++i) {
-      say("  branch {}, from {} = {:.6g} on\n", i + 2, vary->name, sweep.branches[i].start->value);
-      print(vary->name, sweep.branches[i]);
-    }
-  }
+  if (options.json) say_json(steady_json(options, first, system, motion, vary ? &sweep : nullptr));
+  else print(system, motion, vary ? &*vary : nullptr, sweep);
   if (!options.report.empty())
     steady_page(vary->name, system, sweep, command_line(options)).write(options.report);
-  if (motion.found || any) return 0;
+  if (motion.found || std::any_of(sweep.motions.begin(), sweep.motions.end(),
+                                  [](const SteadyMotion& one) { return one.found; }))
+    return 0;
   complain("hamel: no steady motion near this start: a residual of {:.2e} is left\n",
            motion.residual);
   return 1;

@@ -47,7 +47,7 @@ void announce(const Study& study, const std::string& folder, bool quiet) {
       cells, steps, folder);
 }
 
-constexpr size_t kMostRows = 20;  // of a table on the screen; the page has all
+constexpr size_t kRowsOnScreen = 20;  // of a table on the screen; the page has all
 
 // The table under a verdict, its columns as wide as they need.
 std::string table_of(const Verdict& verdict) {
@@ -68,7 +68,7 @@ std::string table_of(const Verdict& verdict) {
   };
   if (verdict.rows.empty()) return out;
   for (size_t k = 0; k < widths.size(); ++k) add(k, verdict.columns[k]);
-  const size_t shown = std::min(verdict.rows.size(), kMostRows);
+  const size_t shown = std::min(verdict.rows.size(), kRowsOnScreen);
   for (size_t i = 0; i < shown; ++i)
     for (size_t k = 0; k < widths.size(); ++k) add(k, text(verdict.rows[i][k]));
   if (verdict.rows.size() > shown)

@@ -122,12 +122,17 @@ class Comparison {
     row.emplace_back(first_few(never, 4));
   }
 
-  void orders() {
-    std::vector<std::string> axes = study_axes(), short_of, late, unsettled;
-    std::erase_if(axes, [](const std::string& axis) { return axis == "step" || axis == "rtol"; });
+  // Methods by what was measured of the order that their scheme claims.
+  struct Orders {
     size_t measured = 0, reach = 0;
-    std::vector<std::string> unknown;
-    double worst = std::numeric_limits<double>::infinity();
+    double worst = std::numeric_limits<double>::infinity();  // order less claim of those that reach
+    std::vector<std::string> short_of, late, unsettled, unknown;
+  };
+
+  Orders measured_orders() const {
+    std::vector<std::string> axes = study_axes();
+    std::erase_if(axes, [](const std::string& axis) { return axis == "step" || axis == "rtol"; });
+    Orders out;
     for (const auto& [key, cells] : view_.groups(axes)) {
       const StudyMetrics& m = view_.metrics(cells.front());
       const std::string name = "`" + view_.name(cells.front()) + "`";
@@ -135,87 +140,108 @@ class Comparison {
       if (m.order_of < 2 || claim == 0) continue;
       const std::string verdict = view_.order_verdict(cells);
       if (verdict == "not measured") {
-        unknown.push_back(name);
+        out.unknown.push_back(name);
         continue;
       }
-      ++measured;
+      ++out.measured;
       if (verdict == "ok") {
-        ++reach;
-        worst = std::min(worst, m.order - claim);
-      } else {
-        auto& list = verdict == "finest only"       ? late
-                     : verdict == "below its claim" ? short_of
-                                                    : unsettled;
-        list.push_back(fmt::format("{} {:.2f} of {} ({} of {} steps; the two finest {:.2f})", name,
-                                   m.order, claim, m.order_points, m.order_of, m.order_finest));
+        ++out.reach;
+        out.worst = std::min(out.worst, m.order - claim);
+        continue;
       }
+      auto& list = verdict == "finest only"       ? out.late
+                   : verdict == "below its claim" ? out.short_of
+                                                  : out.unsettled;
+      list.push_back(fmt::format("{} {:.2f} of {} ({} of {} steps; the two finest {:.2f})", name,
+                                 m.order, claim, m.order_points, m.order_of, m.order_finest));
     }
-    if (measured > 0) {
-      std::string text =
-          measured == 1
-              ? fmt::format("The one measured order {} the claim of its scheme to {}",
-                            reach == 1 ? "reaches" : "does not reach", kShortOfClaim)
-              : fmt::format("{} of {} measured orders {} the claim of their scheme to {}", reach,
-                            measured, reach == 1 ? "reaches" : "reach", kShortOfClaim);
-      if (reach > 0) text += fmt::format(" (at worst {:+.2f})", worst);
-      text += ".";
-      if (!late.empty()) text += " Only with the finest steps: " + first_few(late, 6) + ".";
-      if (!short_of.empty()) text += " Below it: " + first_few(short_of, 8) + ".";
-      say(!short_of.empty() ? "failed" : unsettled.empty() ? "ok" : "note", text);
-      if (!unsettled.empty())
-        say("note",
-            "Not in the asymptotic range, no order is derived: " + first_few(unsettled, 8) + ".");
-    }
-    if (!unknown.empty())
+    return out;
+  }
+
+  void say_measured(const Orders& found) {
+    std::string text =
+        found.measured == 1
+            ? fmt::format("The one measured order {} the claim of its scheme to {}",
+                          found.reach == 1 ? "reaches" : "does not reach", kShortOfClaim)
+            : fmt::format("{} of {} measured orders {} the claim of their scheme to {}",
+                          found.reach, found.measured, found.reach == 1 ? "reaches" : "reach",
+                          kShortOfClaim);
+    if (found.reach > 0) text += fmt::format(" (at worst {:+.2f})", found.worst);
+    text += ".";
+    if (!found.late.empty())
+      text += " Only with the finest steps: " + first_few(found.late, 6) + ".";
+    if (!found.short_of.empty()) text += " Below it: " + first_few(found.short_of, 8) + ".";
+    say(!found.short_of.empty() ? "failed" : found.unsettled.empty() ? "ok" : "note", text);
+    if (!found.unsettled.empty())
+      say("note", "Not in the asymptotic range, no order is derived: " +
+                      first_few(found.unsettled, 8) + ".");
+  }
+
+  void orders() {
+    const Orders found = measured_orders();
+    if (found.measured > 0) say_measured(found);
+    if (!found.unknown.empty())
       say("note",
           fmt::format("{}: fewer than two steps have an error above the floor and below {} of "
                       "the motion: {}.",
-                      plural(unknown.size(), "method") + " without an order", kAsymptotic,
-                      first_few(unknown, 6)));
+                      plural(found.unknown.size(), "method") + " without an order", kAsymptotic,
+                      first_few(found.unknown, 6)));
+  }
+
+  // Sums over the groups of otherwise equal cells that a value of an axis is in; error and time as
+  // logarithms of their ratio to the best of the group.
+  struct Tally {
+    double error = 0, time = 0;
+    size_t groups = 0, timed = 0, worst = 0, failed = 0;
+    std::vector<size_t> cells;
+  };
+  using Tallies = std::map<std::string, Tally>;  // by value
+
+  // Error of a cell; all below the floor are equal.
+  double error(size_t i) const {
+    const StudyMetrics& m = view_.metrics(i);
+    return std::isnan(m.floor) ? m.floor : std::max(m.error, m.floor);
+  }
+
+  // Adds a group of otherwise equal cells. False where fewer than two of them have an error: there
+  // only failures are counted.
+  bool add_group(const std::string& axis, const std::vector<size_t>& cells,
+                 Tallies& tallies) const {
+    const auto tally_of = [&](size_t i) -> Tally& { return tallies[view_.cell(i).axes.at(axis)]; };
+    double least = std::numeric_limits<double>::infinity(), fastest = least, largest = 0;
+    std::vector<size_t> good;
+    for (const size_t i : cells) {
+      if (!view_.metrics(i).ok) {
+        ++tally_of(i).failed;
+      } else if (std::isfinite(error(i))) {
+        good.push_back(i);
+        least = std::min(least, error(i));
+        largest = std::max(largest, error(i));
+        if (view_.seconds(i) > 0) fastest = std::min(fastest, view_.seconds(i));
+      }
+    }
+    if (good.size() < 2) return false;
+    for (const size_t i : good) {
+      Tally& tally = tally_of(i);
+      ++tally.groups;
+      tally.cells.push_back(i);
+      tally.error += std::log(error(i) / least);
+      if (view_.seconds(i) > 0) {
+        ++tally.timed;
+        tally.time += std::log(view_.seconds(i) / fastest);
+      }
+      if (error(i) == largest && largest > 1.05 * least) ++tally.worst;
+    }
+    return true;
   }
 
   // Which value of an axis is worse at otherwise equal cells: geometric means of the factor over
   // the best.
   void worse(const std::string& axis) {
-    struct Tally {
-      double error = 0, time = 0;
-      size_t groups = 0, timed = 0, worst = 0, failed = 0;
-      std::vector<size_t> cells;
-    };
-    std::map<std::string, Tally> tallies;
+    Tallies tallies;
     size_t compared = 0;
-    for (const auto& cells : view_.otherwise_equal(axis)) {
-      double least = std::numeric_limits<double>::infinity(), fastest = least, largest = 0;
-      size_t good = 0;
-      const auto error = [&](size_t i) {  // below the floor all are equal
-        const StudyMetrics& m = view_.metrics(i);
-        return std::isnan(m.floor) ? m.floor : std::max(m.error, m.floor);
-      };
-      for (const size_t i : cells) {
-        if (!view_.metrics(i).ok) {
-          ++tallies[view_.cell(i).axes.at(axis)].failed;
-        } else if (std::isfinite(error(i))) {
-          ++good;
-          least = std::min(least, error(i));
-          largest = std::max(largest, error(i));
-          if (view_.seconds(i) > 0) fastest = std::min(fastest, view_.seconds(i));
-        }
-      }
-      if (good < 2) continue;
-      ++compared;
-      for (const size_t i : cells) {
-        if (!view_.metrics(i).ok || !std::isfinite(error(i))) continue;
-        Tally& tally = tallies[view_.cell(i).axes.at(axis)];
-        ++tally.groups;
-        tally.cells.push_back(i);
-        tally.error += std::log(error(i) / least);
-        if (view_.seconds(i) > 0) {
-          ++tally.timed;
-          tally.time += std::log(view_.seconds(i) / fastest);
-        }
-        if (error(i) == largest && largest > 1.05 * least) ++tally.worst;
-      }
-    }
+    for (const auto& cells : view_.otherwise_equal(axis))
+      if (add_group(axis, cells, tallies)) ++compared;
     if (compared == 0) return;
     const auto mean = [](double sum, size_t n) {
       return n == 0 ? kNotMeasured : std::exp(sum / static_cast<double>(n));

@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kMostNames = 12;    // curves that can be distinguished in one figure
 constexpr size_t kMostCurves = 200;  // of one figure with all its filters; rows of a heat map
 
-// Of so many curves each which is a multiple of this is drawn.
+// Distance of the curves that are drawn, of so many.
 size_t stride(size_t curves) { return (curves + kMostCurves - 1) / kMostCurves; }
 
 std::string not_drawn(size_t curves, const char* what) {
@@ -82,7 +82,7 @@ class StudyPage {
     return out;
   }
 
-  // Of the curves that `curves` leaves out.
+  // Note on the curves that `curves` leaves out.
   std::string left_out() const {
     std::vector<std::string> axes = names_;
     axes.insert(axes.end(), filters_.begin(), filters_.end());
@@ -93,7 +93,7 @@ class StudyPage {
     return view_.metrics(i).ok && std::isfinite(view_.metrics(i).error);
   }
 
-  // One curve for each method, by a number of each cell.
+  // Curves, one for each method, by a number of each cell.
   template <class X>
   std::vector<Series> curves(X x, bool with_fit) const {
     std::vector<std::string> axes = names_;

@@ -50,7 +50,8 @@ class Judge {
     say(ok == view_.run().size() && view_.result().config.reference ? "ok" : "note", text);
   }
 
-  // One sentence for each reason. A cell that fails is a result, and nothing wrong with the study.
+  // Says a sentence for each reason. A cell that fails is a result, and nothing wrong with the
+  // study.
   void failures() {
     std::map<std::string, std::vector<size_t>> by_reason;
     for (const size_t i : view_.run())

@@ -57,7 +57,7 @@ nb::object helper(const char* module, const char* name);
 struct SystemText {
   std::string toml, name;
 };
-/// Of the system of a run that could start.
+/// Description of the system of a run that could start.
 ModelDescription described(const Simulation& simulation);
 
 /// A run as Python states it: the builder, and the text that its system was read from.
@@ -76,8 +76,8 @@ struct ByParts : Mechanism {
   Functions functions;
 };
 
-/// Of a registered name, a file, a TOML text (which has a line break), a Mechanism, a Config or a
-/// Builder.
+/// Builder of a registered name, a file, a TOML text (which has a line break), a Mechanism, a
+/// Config or a Builder.
 Builder builder_of(nb::handle system);
 Builder builder_of(nb::handle system, const nb::kwargs& options);
 /// The options as hamel.run has them; ConfigError with every one that does not fit.

@@ -91,7 +91,7 @@ const char* name_of(const Option& option) {
   return option.name == std::string("from") ? "from_" : option.name;
 }
 
-// Of the system before the options; false where it cannot be built without them.
+// Has the system this parameter before the options? False where it cannot be built without them.
 bool is_parameter(const Builder& builder, const std::string& name) {
   try {
     const std::vector<Field> fields = described(builder.simulation).parameters;

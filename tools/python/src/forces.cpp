@@ -1,4 +1,4 @@
-// What drives a mechanism by parts: motors, forces, springs, prescribed rates, events, the start;
+// Drives of a mechanism by parts: motors, forces, springs, prescribed rates, events, the start;
 // functions of Python and compiled ones.
 #include <cstdint>
 #include <span>

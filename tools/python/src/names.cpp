@@ -1,4 +1,4 @@
-// What there is by name: hamel.list and hamel.describe.
+// Names and their descriptions: hamel.list and hamel.describe.
 #include <hamel/framework/run/names/system_file.hpp>
 
 #include "bindings.hpp"

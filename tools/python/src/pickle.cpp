@@ -120,7 +120,7 @@ nb::dict pack(const StoredResult& stored) {
 
 namespace {
 
-// What a pickle holds, as far as types go; throws whatever does not fit.
+// Reads a pickle, as far as types go; throws whatever does not fit.
 StoredResult read(const nb::dict& state) {
   Result result;
   result.config = get<Config>(state, "config");

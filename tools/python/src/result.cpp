@@ -1,4 +1,4 @@
-// What a run leaves behind, hamel.Result: its rows as views by name, its record, its pickle.
+// Result of a run, hamel.Result: its rows as views by name, its record, its pickle.
 #include <deque>
 
 #include "bindings.hpp"
