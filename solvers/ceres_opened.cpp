@@ -13,7 +13,10 @@ std::shared_ptr<Solver> made(const std::string& name) {
 
 }  // namespace
 
-bool Ceres::found() { return !module_path("ceres").empty(); }
+bool Ceres::found() {
+  static const bool there = !module_path("ceres").empty();
+  return there;
+}
 std::shared_ptr<Solver> Ceres::make() { return made(name()); }
 std::shared_ptr<Solver> CeresTiny::make() { return made(name()); }
 

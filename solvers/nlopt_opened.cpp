@@ -4,7 +4,10 @@
 
 namespace hamel {
 
-bool Nlopt::found() { return !module_path("nlopt").empty(); }
+bool Nlopt::found() {
+  static const bool there = !module_path("nlopt").empty();
+  return there;
+}
 std::shared_ptr<Solver> Nlopt::make() const {
   static const Module module = open_module("nlopt");
   return make_opened(module, label);
