@@ -54,7 +54,7 @@ Module open_module(const std::string& name) {
     const char* const text = dlerror();
     return std::string(text == nullptr ? "" : text);
   };
-  void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const library = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr) return {nullptr, reason()};
   std::string entry = fmt::format("hamel_{}_{}", name, version());
   std::ranges::replace(entry, '.', '_');
