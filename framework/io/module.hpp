@@ -1,5 +1,5 @@
 // Modules: parts of the library that are opened when they are named, each a shared library
-// hamel_<name>.so, because of what it links (Ceres: 30 libraries and a thread for each core). Linux
+// hamel_<name>.so, because of what it links (Ceres: 25 libraries and a thread for each core). Linux
 // and what is like it; not installed.
 //
 // A module is looked for in few folders, relative to the program or shared library that this code

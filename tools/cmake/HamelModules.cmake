@@ -1,17 +1,17 @@
 # Optional parts of the library: what needs a package that not everyone has.
 #
 # A part is a static library, which programs of users link. The program, libhamel.so and the Python module of the build open
-# it as a module instead, hamel_<part>.so, when it is named (framework/io/module.hpp): Ceres alone brings 30 libraries and
+# it as a module instead, hamel_<part>.so, when it is named (framework/io/module.hpp): Ceres alone brings 25 libraries and
 # a thread for each core.
 include(GNUInstallDirs)
-if(NOT UNIX OR HAMEL_SANITIZE)
+if(NOT UNIX OR HAMEL_SANITIZE OR (PROJECT_IS_TOP_LEVEL AND NOT HAMEL_BUILD_TOOLS AND NOT HAMEL_SHARED))
   set(HAMEL_MODULES OFF)
 endif()
 set(HAMEL_MODULE_FOLDER ${CMAKE_INSTALL_LIBDIR}/hamel)  # in the build and installed
 
 # hamel_part(ceres OF solvers LINK Ceres::ceres SOURCES ceres.cpp ... [SHARED library]): the target hamel_solvers_ceres, to be
 # linked by ${HAMEL_PART_CERES}. SHARED: the shared library of the package, without which there is no module. Besides
-# SOURCES, <part>_module.cpp has the entry of the module, and <part>_opened.cpp is linked in place of SOURCES.
+# SOURCES, ceres_module.cpp has the entry of the module, and ceres_opened.cpp is linked in place of SOURCES.
 function(hamel_part part)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "OF;FOLDER;SHARED" "LINK;SOURCES")
   if(arg_FOLDER)
