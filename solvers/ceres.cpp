@@ -82,6 +82,7 @@ class CeresSolver final : public Solver, ceres::IterationCallback {
 
 }  // namespace
 
+bool Ceres::found() { return true; }
 std::shared_ptr<Solver> Ceres::make() { return std::make_shared<CeresSolver>(); }
 
 }  // namespace hamel

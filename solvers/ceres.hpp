@@ -22,6 +22,8 @@ struct Ceres {
     return "the residual at two digits below the tolerance; 50 iterations";
   }
   static std::string source() { return "Ceres Solver 2.1; Madsen, Nielsen, Tingleff 2004"; }
+  /// False where it is a module that is not there (framework/io/module.hpp).
+  static bool found();
   static std::shared_ptr<Solver> make();
 };
 

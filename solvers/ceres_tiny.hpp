@@ -12,6 +12,7 @@
 #include <string>
 
 #include <hamel/framework/loop/solver.hpp>
+#include <hamel/solvers/ceres.hpp>
 
 namespace hamel {
 
@@ -25,6 +26,8 @@ struct CeresTiny {
            "iterations";
   }
   static std::string source() { return "Madsen, Nielsen, Tingleff 2004; Ceres Solver 2.1"; }
+  /// False where it is a module that is not there (framework/io/module.hpp).
+  static bool found() { return Ceres::found(); }
   static std::shared_ptr<Solver> make();
 };
 

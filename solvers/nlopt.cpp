@@ -141,6 +141,8 @@ class NloptSolver final : public Solver {
 
 }  // namespace
 
+bool Nlopt::found() { return true; }
+
 std::shared_ptr<Solver> Nlopt::make() const {
   return std::make_shared<NloptSolver>(algorithm, derivatives);
 }

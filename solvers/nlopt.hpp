@@ -37,6 +37,8 @@ struct Nlopt {
     return "the residual at two digits below the tolerance; a leg that does not halve the residual";
   }
   std::string source() const { return std::string(reference) + "; NLopt 2.7.1"; }
+  /// False where it is a module that is not there (framework/io/module.hpp).
+  static bool found();
   std::shared_ptr<Solver> make() const;
 };
 

@@ -27,6 +27,9 @@ SolverInfo words_of(const S& solver) {
 template <class S>
 void add_solver(Registry& registry, const S& solver) {
   SolverInfo info = words_of(solver);
+  if constexpr (requires { solver.found(); }) {
+    if (!solver.found()) return registry.add_absent(std::move(info));
+  }
   if constexpr (requires { solver.make(); }) info.make = [solver] { return solver.make(); };
   registry.add(std::move(info));
 }

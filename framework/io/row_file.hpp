@@ -22,6 +22,10 @@
 #include <vector>
 
 namespace hamel {
+namespace hdf5 {
+class RowWriter;
+class RowReader;
+}  // namespace hdf5
 
 /// Columns of a row that belong together: a number, or the entries of a vector.
 struct ColumnGroup {
@@ -52,7 +56,7 @@ std::uint64_t checksum_of_rows(std::uint64_t before, std::span<const double> row
 class RowFileWriter {
  public:
   /// Unfinished where the file cannot be created, ConfigError without HDF5 in the build.
-  RowFileWriter(std::string path, const std::vector<ColumnGroup>& groups,
+  RowFileWriter(const std::string& path, const std::vector<ColumnGroup>& groups,
                 const std::map<std::string, std::string>& texts, const NamedRows& named = {});
   /// Leaves the file as it is, unfinished.
   ~RowFileWriter();
@@ -64,8 +68,7 @@ class RowFileWriter {
   void finish(const std::string& record, const NamedRows& named = {});
 
  private:
-  struct Data;
-  std::unique_ptr<Data> data_;
+  std::unique_ptr<hdf5::RowWriter> file_;
 };
 
 class RowFileReader {
@@ -93,8 +96,7 @@ class RowFileReader {
   std::vector<Mark> marks() const;
 
  private:
-  struct Data;
-  std::unique_ptr<Data> data_;
+  std::unique_ptr<hdf5::RowReader> file_;
 };
 
 }  // namespace hamel

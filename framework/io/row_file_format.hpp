@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include <hamel/framework/io/hdf5_format.hpp>
 #include <hamel/framework/io/hdf5_handle.hpp>
-#include <hamel/framework/io/row_file.hpp>
 
 namespace hamel::hdf5 {
 

@@ -7,13 +7,9 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
-#include <hamel/framework/io/row_file.hpp>
 #include <hamel/framework/io/row_file_format.hpp>
 
-namespace hamel {
-
-using namespace hdf5;
-
+namespace hamel::hdf5 {
 namespace {
 
 bool is_bytes(hid_t set) {
@@ -39,9 +35,24 @@ void read_column(hid_t set, hsize_t first, hsize_t count, hsize_t width, double*
 
 constexpr std::size_t kPiece = 4096;  // rows that are read at once
 
-}  // namespace
+class Reader final : public RowReader {
+ public:
+  explicit Reader(const std::string& path);
+  const std::vector<ColumnGroup>& groups() const override;
+  std::string text(const std::string& name) const override;
+  bool finished() const override;
+  std::string record() const override;
+  std::size_t rows() const override;
+  std::optional<std::uint64_t> checksum() const override;
+  void read(std::size_t first, std::size_t count, std::vector<double>& out) const override;
+  std::vector<RowFileReader::Mark> marks() const override;
 
-struct RowFileReader::Data {
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+struct Reader::Data {
   std::string path;
   std::unique_ptr<Handle> file;
   std::vector<ColumnGroup> groups;
@@ -73,7 +84,7 @@ struct RowFileReader::Data {
   }
 };
 
-RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<Data>()) {
+Reader::Reader(const std::string& path) : data_(std::make_unique<Data>()) {
   begin();
   data_->path = path;
   const auto refuse = [&](const std::string& why) {
@@ -126,24 +137,21 @@ RowFileReader::RowFileReader(const std::string& path) : data_(std::make_unique<D
   if (!data_->texts_are_those_written()) refuse("it is damaged: its texts are not those written");
 }
 
-RowFileReader::~RowFileReader() = default;
-RowFileReader::RowFileReader(RowFileReader&&) noexcept = default;
+const std::vector<ColumnGroup>& Reader::groups() const { return data_->groups; }
+std::size_t Reader::rows() const { return data_->rows; }
 
-const std::vector<ColumnGroup>& RowFileReader::groups() const { return data_->groups; }
-std::size_t RowFileReader::rows() const { return data_->rows; }
-
-bool RowFileReader::finished() const {
+bool Reader::finished() const {
   return data_->attempt([&] { return read_number(*data_->file, kFinished) == 1; });
 }
-std::string RowFileReader::record() const {
+std::string Reader::record() const {
   return data_->attempt([&] { return read_bytes(*data_->file, kRecord); });
 }
-std::optional<std::uint64_t> RowFileReader::checksum() const {
+std::optional<std::uint64_t> Reader::checksum() const {
   if (H5Aexists(*data_->file, kChecksum) <= 0) return {};
   return data_->attempt([&] { return read_number(*data_->file, kChecksum); });
 }
 
-std::string RowFileReader::text(const std::string& name) const {
+std::string Reader::text(const std::string& name) const {
   return data_->attempt([&]() -> std::string {
     if (has_text(*data_->file, name)) return read_bytes(*data_->file, name);
     if (H5Aexists(*data_->file, name.c_str()) > 0) return read_text(*data_->file, name);
@@ -151,7 +159,7 @@ std::string RowFileReader::text(const std::string& name) const {
   });
 }
 
-void RowFileReader::read(std::size_t first, std::size_t count, std::vector<double>& out) const {
+void Reader::read(std::size_t first, std::size_t count, std::vector<double>& out) const {
   std::size_t width = 0, at = 0;
   for (const ColumnGroup& group : data_->groups) width += group.columns.size();
   out.resize(count * width);
@@ -166,8 +174,8 @@ void RowFileReader::read(std::size_t first, std::size_t count, std::vector<doubl
   }
 }
 
-std::vector<RowFileReader::Mark> RowFileReader::marks() const {
-  std::vector<Mark> out;
+std::vector<RowFileReader::Mark> Reader::marks() const {
+  std::vector<RowFileReader::Mark> out;
   const std::string all = data_->attempt([&] { return read_bytes(*data_->file, kMarks); });
   MarkHead head{};
   std::uint64_t sum = kNoRows;
@@ -193,4 +201,10 @@ std::vector<RowFileReader::Mark> RowFileReader::marks() const {
   return out;
 }
 
-}  // namespace hamel
+}  // namespace
+
+std::unique_ptr<RowReader> read_rows(const std::string& path) {
+  return std::make_unique<Reader>(path);
+}
+
+}  // namespace hamel::hdf5

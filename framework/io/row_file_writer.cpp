@@ -9,13 +9,9 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
-#include <hamel/framework/io/row_file.hpp>
 #include <hamel/framework/io/row_file_format.hpp>
 
-namespace hamel {
-
-using namespace hdf5;
-
+namespace hamel::hdf5 {
 namespace {
 
 constexpr hsize_t kChunkRows = 4096, kChunkBytes = 1 << 16;
@@ -68,18 +64,20 @@ void write_named(hid_t set, const NamedRows& named) {
     append_to(set, type_of_named(named), 0, named.rows.size(), 1, bytes.data());
 }
 
-}  // namespace
+class Writer final : public RowWriter {
+ public:
+  Writer(const std::string& path, const std::vector<ColumnGroup>& groups, const Texts& texts,
+         const NamedRows& named);
+  void append(std::span<const double> rows) override;
+  void mark(std::string_view bytes) override;
+  void finish(const std::string& record, const NamedRows& named) override;
 
-// As FNV-1a, by numbers instead of bytes; turned, so that a sign counts as much as what is behind
-// the point.
-std::uint64_t checksum_of_rows(std::uint64_t before, std::span<const double> rows) {
-  constexpr std::uint64_t prime = 1099511628211u;
-  for (const double value : rows)
-    before = std::rotl((before ^ std::bit_cast<std::uint64_t>(value)) * prime, 29);
-  return before;
-}
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
 
-struct RowFileWriter::Data {
+struct Writer::Data {
   std::string path;
   std::vector<hsize_t> widths;
   std::unique_ptr<Handle> file;
@@ -113,13 +111,12 @@ struct RowFileWriter::Data {
   }
 };
 
-RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& groups,
-                             const std::map<std::string, std::string>& texts,
-                             const NamedRows& named)
+Writer::Writer(const std::string& path, const std::vector<ColumnGroup>& groups, const Texts& texts,
+               const NamedRows& named)
     : data_(std::make_unique<Data>()) {
   begin();
   Data& d = *data_;
-  d.path = std::move(path);
+  d.path = path;
   d.attempt([&] {
     const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "H5Pcreate");
     check(H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED),
@@ -159,9 +156,7 @@ RowFileWriter::RowFileWriter(std::string path, const std::vector<ColumnGroup>& g
   });
 }
 
-RowFileWriter::~RowFileWriter() = default;
-
-void RowFileWriter::append(std::span<const double> rows) {
+void Writer::append(std::span<const double> rows) {
   Data& d = *data_;
   const hsize_t count = rows.size() / d.width;
   if (count == 0) return;
@@ -184,7 +179,7 @@ void RowFileWriter::append(std::span<const double> rows) {
   d.sum = checksum_of_rows(d.sum, rows);
 }
 
-void RowFileWriter::mark(std::string_view bytes) {
+void Writer::mark(std::string_view bytes) {
   Data& d = *data_;
   const MarkHead head = {d.rows, d.sum, bytes.size(), checksum(bytes)};
   std::string text(sizeof head, '\0');
@@ -197,7 +192,7 @@ void RowFileWriter::mark(std::string_view bytes) {
   d.marked += text.size();
 }
 
-void RowFileWriter::finish(const std::string& record, const NamedRows& named) {
+void Writer::finish(const std::string& record, const NamedRows& named) {
   Data& d = *data_;
   d.attempt([&] {
     append_to(*d.record, H5T_NATIVE_UINT8, 0, record.size(), 1, record.data());
@@ -215,4 +210,12 @@ void RowFileWriter::finish(const std::string& record, const NamedRows& named) {
   });
 }
 
-}  // namespace hamel
+}  // namespace
+
+std::unique_ptr<RowWriter> write_rows(const std::string& path,
+                                      const std::vector<ColumnGroup>& groups, const Texts& texts,
+                                      const NamedRows& named) {
+  return std::make_unique<Writer>(path, groups, texts, named);
+}
+
+}  // namespace hamel::hdf5

@@ -5,6 +5,8 @@ option(HAMEL_BUILD_TOOLS "Build the program `hamel`" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_BUILD_TESTS "Build the tests and examples" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_BUILD_BENCHMARKS "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_SHARED "Link libhamel.so, the library by name, beside the archives: for packages" OFF)
+option(HAMEL_MODULES "The program, libhamel.so and the Python module open Ceres, NLopt and HDF5 when they are named"
+       ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_INSTALL "Define the install rules" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_WERROR "Treat warnings in our own sources as errors" ${PROJECT_IS_TOP_LEVEL})
 option(HAMEL_PCH "Parse Eigen and the standard library once for all layers" ${PROJECT_IS_TOP_LEVEL})
@@ -50,8 +52,7 @@ endif()
 # True of a library that is linked at run time, such as the Python module: Debian's archives cannot be part of it.
 set(HAMEL_OF_SHARED "$<OR:$<STREQUAL:$<TARGET_PROPERTY:TYPE>,MODULE_LIBRARY>,$<STREQUAL:$<TARGET_PROPERTY:TYPE>,SHARED_LIBRARY>>")
 
-# The archive, where it links: Debian's shared library brings curl and with it 30 libraries, which are two thirds of
-# what `hamel --version` takes.
+# For programs that link HDF5: the archive, where it links. Debian's shared library brings curl and with it 30 libraries.
 if(HAMEL_HDF5_LIBRARY)
   find_library(HAMEL_HDF5_ARCHIVE NAMES libhdf5.a libhdf5_serial.a)
   find_library(HAMEL_SZ_LIBRARY NAMES sz)

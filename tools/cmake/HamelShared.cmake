@@ -25,6 +25,7 @@ target_link_libraries(hamel_shared PRIVATE $<BUILD_INTERFACE:hamel::hamel>)
 target_compile_features(hamel_shared INTERFACE cxx_std_20)
 target_include_directories(hamel_shared INTERFACE
   "$<BUILD_INTERFACE:${roots}>" $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+hamel_opens_modules(hamel_shared)
 set_target_properties(hamel_shared PROPERTIES
   OUTPUT_NAME hamel EXPORT_NAME shared CXX_EXTENSIONS OFF LINK_DEPENDS ${version_script}
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})

@@ -84,7 +84,11 @@ Json to_json(const Table& table) {
   return out;
 }
 
-std::vector<Table> tables() {
+// Those of the systems have rows where that kind is asked for, or every one: mechanisms are read
+// for them.
+bool with_systems(const std::string& kind) { return kind.empty() || kind == "systems"; }
+
+std::vector<Table> tables(const std::string& kind) {
   const Registry& all = registry();
   Table groups{"groups", {"name", "dim", "columns", "retractions"}, {}};
   for (const std::string& name : all.groups()) {
@@ -128,8 +132,11 @@ std::vector<Table> tables() {
         {name, fmt::format("not built (needs {}): {}", info.package, info.summary)});
   }
   Table systems{"systems", {"name", "group", "parameters", "summary"}, {}};
-  std::vector<std::string> both = all.systems();
-  for (const std::string& name : all.deferred_systems()) both.push_back(name);
+  std::vector<std::string> both;
+  if (with_systems(kind)) {
+    both = all.systems();
+    for (const std::string& name : all.deferred_systems()) both.push_back(name);
+  }
   for (const std::string& name : both) {
     const SystemInfo& info = *all.system(name);
     std::vector<std::string> fields;
@@ -203,12 +210,14 @@ std::string kind_in_words(const SystemInfo& info) {
   return b.norm() > 0 ? "affine rows" : "rows, metric or forces that depend on the configuration";
 }
 
-std::vector<Table> markdown_tables() {
+std::vector<Table> markdown_tables(const std::string& kind) {
   const Registry& all = registry();
   Grouped of_groups, of_systems({"left-invariant"}), of_solvers({"always"});
   for (const std::string& name : all.groups()) of_groups.add(code(all.retractions(name)), name);
-  for (const std::string& name : all.systems()) {
-    of_systems.add(kind_in_words(*all.system(name)), name);
+  if (with_systems(kind)) {
+    for (const std::string& name : all.systems()) {
+      of_systems.add(kind_in_words(*all.system(name)), name);
+    }
   }
   for (const std::string& name : all.deferred_systems())
     of_systems.add("mechanisms by parts", name);
@@ -266,7 +275,8 @@ int list(const ListOptions& options) {
   std::vector<std::string> kinds;
   Json json = Json::object();
   bool found = options.kind.empty();
-  for (const Table& table : options.markdown ? markdown_tables() : tables()) {
+  for (const Table& table :
+       options.markdown ? markdown_tables(options.kind) : tables(options.kind)) {
     kinds.push_back(table.kind);
     if (!options.kind.empty() && table.kind != options.kind) continue;
     found = true;
