@@ -29,7 +29,7 @@ Json growing_of(const SteadyMotion& motion) {
   return growing ? Json(*growing) : Json();
 }
 
-// Of each eigenvalue what moves, velocities first.
+// Parts of the mode of each eigenvalue, velocities first.
 Json modes_of(const SteadyMotion& motion) {
   Json out = Json::array();
   for (const std::vector<ModePart>& mode : motion.modes) {
