@@ -1,4 +1,4 @@
-// What the library needs of HDF5: tables (table.hpp) and files of rows (row_file.hpp), as one
+// Functions of HDF5 for the library: tables (table.hpp) and files of rows (row_file.hpp), as one
 // interface, since HDF5 may be linked, a module that is opened (module.hpp), or absent. Not
 // installed.
 #pragma once

@@ -84,7 +84,7 @@ Json to_json(const Table& table) {
   return out;
 }
 
-// Those of the systems have rows where that kind is asked for, or every one: mechanisms are read
+// Rows of the systems are there where that kind is requested, or every one: mechanisms are read
 // for them.
 bool with_systems(const std::string& kind) { return kind.empty() || kind == "systems"; }
 

@@ -1,4 +1,4 @@
-// The reactions of a run's constraints at its states, each solved once, whoever wants it: columns,
+// The reactions of a run's constraints at its states, each solved once, for all: columns,
 // contacts that may be lost, the balance of the energy, kept numbers of an ensemble.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Reactions of a run: solved once a state, whoever wants them.
+// Reactions of a run: solved once a state.
 #include <gtest/gtest.h>
 
 #include <hamel/hamel.hpp>
