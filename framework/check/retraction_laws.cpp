@@ -98,7 +98,9 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
                        .norm());
     right((numerical.right(xi) - dR).norm() / condition);
     left((numerical.left(xi) * dL_inverse - one).norm() / condition);
+    // Farther out the step of a map that is not symmetric may be one of a shorter xi.
     for (const double s : {0.0, 0.3, 0.5, 1.0}) {
+      if (length > 0.35 * edge) break;
       const Vector step = on.compose(on.inverse(on.tau(-s * xi)), on.tau((1 - s) * xi));
       recovered((on.recover_step(step, s) - xi).norm() / (resolved * condition));
     }
@@ -122,7 +124,8 @@ LawReport check_retraction(const GroupInfo& info, const Geometry& geometry,
       {"dR^T dR^-T = id", inverses.value, algebraic},
       {"s dR_z0^T m0 + (1-s) dR_z1^T (m0 + nu) = p for mixed_momentum", base.value, algebraic},
       {"tau^-1(tau(xi)) = xi from |xi| = 1e-12 to the edge", round_trip.value, algebraic},
-      {"recover_step(tau(-s xi)^-1 tau((1-s) xi), s) = xi", recovered.value, algebraic},
+      {"recover_step(tau(-s xi)^-1 tau((1-s) xi), s) = xi to 0.3 of the edge", recovered.value,
+       algebraic},
       {"0 and everything up to the edge is in the domain, and tau^-1 is defined there",
        domain.value, 0},
       {"NaN is not in the domain", nan.value, 0},

@@ -88,17 +88,20 @@ Json to_json(const Table& table) {
 // for them.
 bool with_systems(const std::string& kind) { return kind.empty() || kind == "systems"; }
 
-std::vector<Table> tables(const std::string& kind) {
-  const Registry& all = registry();
-  Table groups{"groups", {"name", "dim", "columns", "retractions"}, {}};
+Table table_of_groups(const Registry& all) {
+  Table out{"groups", {"name", "dim", "columns", "retractions"}, {}};
   for (const std::string& name : all.groups()) {
     const GroupInfo& info = *all.group(name);
     std::vector<std::string> columns = info.columns;
     if (columns.size() > 6) columns = {columns.front(), "...", columns.back()};
-    groups.rows.push_back(
+    out.rows.push_back(
         {name, std::to_string(info.dim), join(columns), join(all.retractions(name))});
   }
-  Table retractions{"retractions", {"name", "symmetric", "groups"}, {}};
+  return out;
+}
+
+Table table_of_retractions(const Registry& all) {
+  Table out{"retractions", {"name", "symmetric", "groups"}, {}};
   for (const std::string& name : all.retractions()) {
     std::vector<std::string> where;
     bool symmetric = true;  // on every group that is not abelian
@@ -108,30 +111,41 @@ std::vector<Table> tables(const std::string& kind) {
         symmetric = symmetric && info->symmetric;
       }
     }
-    retractions.rows.push_back({name, symmetric ? "yes" : "no", join(where)});
+    out.rows.push_back({name, symmetric ? "yes" : "no", join(where)});
   }
-  Table schemes{"schemes", {"name", "order", "formula"}, {}};
+  return out;
+}
+
+Table table_of_schemes(const Registry& all) {
+  Table out{"schemes", {"name", "order", "formula"}, {}};
   for (const std::string& name : all.schemes()) {
     const SchemeInfo& info = *all.scheme(name);
     const int half = info.claim(0.5, true, true).order, zero = info.claim(0, true, true).order;
     std::string order = half == 0 ? "-" : std::to_string(half);
     if (!info.adapted) order = "leaves d";
     else if (half != zero) order = fmt::format("{} at s = 1/2, else {}", half, zero);
-    schemes.rows.push_back({name, order, info.formula});
+    out.rows.push_back({name, order, info.formula});
     for (const auto& [alias, scheme] : all.scheme_aliases()) {
-      if (scheme == name) schemes.rows.push_back({alias, order, "another name of " + name});
+      if (scheme == name) out.rows.push_back({alias, order, "another name of " + name});
     }
   }
-  Table solvers{"solvers", {"name", "summary"}, {}};
+  return out;
+}
+
+Table table_of_solvers(const Registry& all) {
+  Table out{"solvers", {"name", "summary"}, {}};
   for (const std::string& name : all.solvers()) {
-    solvers.rows.push_back({name, all.solver(name)->summary});
+    out.rows.push_back({name, all.solver(name)->summary});
   }
   for (const std::string& name : all.absent_solvers()) {
     const SolverInfo& info = *all.absent_solver(name);
-    solvers.rows.push_back(
-        {name, fmt::format("not built (needs {}): {}", info.package, info.summary)});
+    out.rows.push_back({name, fmt::format("not built (needs {}): {}", info.package, info.summary)});
   }
-  Table systems{"systems", {"name", "group", "parameters", "summary"}, {}};
+  return out;
+}
+
+Table table_of_systems(const Registry& all, const std::string& kind) {
+  Table out{"systems", {"name", "group", "parameters", "summary"}, {}};
   std::vector<std::string> both;
   if (with_systems(kind)) {
     both = all.systems();
@@ -141,9 +155,15 @@ std::vector<Table> tables(const std::string& kind) {
     const SystemInfo& info = *all.system(name);
     std::vector<std::string> fields;
     for (const Field& field : info.fields) fields.push_back(field.name);
-    systems.rows.push_back({name, info.group.name, join(fields), info.summary});
+    out.rows.push_back({name, info.group.name, join(fields), info.summary});
   }
-  return {groups, retractions, schemes, solvers, systems};
+  return out;
+}
+
+std::vector<Table> tables(const std::string& kind) {
+  const Registry& all = registry();
+  return {table_of_groups(all), table_of_retractions(all), table_of_schemes(all),
+          table_of_solvers(all), table_of_systems(all, kind)};
 }
 
 // ---- Markdown: short tables, names of one kind in one row
