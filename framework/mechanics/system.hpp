@@ -69,6 +69,12 @@ std::vector<std::string> shape_names(const S& system) {
     return {};
   }
 }
+/// Is an invariant the energy, which states of a run have (systems/energy.hpp)?
+template <class Value>
+constexpr bool is_energy() {
+  return requires { requires Value::is_energy; };
+}
+
 template <class S, class Visitor>
 void tell_invariants(const S& system, Visitor& add) {
   if constexpr (requires { system.invariants(add); }) {
@@ -203,33 +209,32 @@ SystemModel erase(const S& system) {
   }
   auto add = [&model](std::string name, auto value) {
     model.invariants.push_back(
-        {std::move(name), [value](std::span<const double> g, std::span<const double> xi) -> double {
-      return value(G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
+        {std::move(name),
+         [value](std::span<const double> g, std::span<const double> xi) -> double {
+           return value(G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
          },
-         requires { requires decltype(value)::is_energy;
+         detail::is_energy<decltype(value)>()});
+  };
+  detail::tell_invariants(system, add);
+  auto add_event = [&model](std::string name, std::string meaning, int direction, auto value) {
+    model.events.push_back(
+        {std::move(name), std::move(meaning), direction,
+         [value](double t, std::span<const double> g, std::span<const double> xi) -> double {
+           return value(t, G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
+         }});
+  };
+  detail::tell_events(system, add_event);
+  if constexpr (requires { system.contacts(); }) {
+    model.contacts = system.contacts();
+  } else {
+    static_assert(!named::contacts<S>,
+                  "contacts of this system cannot be called: expected a const member contacts()");
   }
-});
-};
-detail::tell_invariants(system, add);
-auto add_event = [&model](std::string name, std::string meaning, int direction, auto value) {
-  model.events.push_back(
-      {std::move(name), std::move(meaning), direction,
-       [value](double t, std::span<const double> g, std::span<const double> xi) -> double {
-         return value(t, G::from_coordinates(g), Vec<n>(Eigen::Map<const Vec<n>>(xi.data())));
-       }});
-};
-detail::tell_events(system, add_event);
-if constexpr (requires { system.contacts(); }) {
-  model.contacts = system.contacts();
-} else {
-  static_assert(!named::contacts<S>,
-                "contacts of this system cannot be called: expected a const member contacts()");
-}
-model.shape = detail::shape_names(system);
-name_quantities(model);
-Scene<G> scene(model.drawing);
-detail::tell_drawing(system, scene);
-return model;
+  model.shape = detail::shape_names(system);
+  name_quantities(model);
+  Scene<G> scene(model.drawing);
+  detail::tell_drawing(system, scene);
+  return model;
 }
 
 /// A system whose dimension is one of its parameters: it names its group ("se2*so2^5") and gives
