@@ -225,7 +225,7 @@ class Loop final : public TimeLoop {
     Node now, previous;
     double last_h;
   };
-  // Of the last step.
+  // Node at which the last step began.
   const Node& first_node() const {
     switch (beginning_) {
       case Beginning::step: return kept(Kept::step).now;

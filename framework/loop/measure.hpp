@@ -23,25 +23,6 @@ struct LastStep {
   double h;  // of the last substep; 0 before the first
 };
 
-/// A v and b; rates: k numbers.
-template <class P>
-void find_rates(const P& problem, double t, const typename P::Element& g,
-                const typename P::Vector& v, Eigen::Map<Eigen::VectorXd>& rates,
-                typename P::Multipliers& b) {
-  const int k = problem.constraint_count();
-  if constexpr (requires { problem.has_drift(); }) {  // without the matrix, where there is no b
-    if (problem.holonomic_rows() == 0 && !problem.has_drift() &&
-        problem.constraint_values(t, g, v, b)) {
-      rates = b;
-      b.setZero();
-      return;
-    }
-  }
-  typename P::ConstraintMatrix a(k, problem.dim());
-  problem.constraints(t, g, a, b);
-  for (int i = 0; i < k; ++i) rates[i] = a.row(i).dot(v);
-}
-
 /// A v of the last substep, v recovered from its two configurations (xi at the start); for
 /// holonomic rows the change of phi. Returns |A v - b| over the other rows.
 template <class P>
@@ -70,9 +51,11 @@ template <class P>
       t = last.time_before + s * last.h;
       v /= last.h;
     }
+    typename P::ConstraintMatrix a(k, problem.dim());
     typename P::Multipliers b(k);
+    problem.constraints(t, base, a, b);
     Eigen::Map<Eigen::VectorXd> found(rates.data(), k);
-    find_rates(problem, t, base, v, found, b);
+    for (int i = 0; i < k; ++i) found[i] = a.row(i).dot(v);
     if (moved && held > 0) {
       typename P::HolonomicValues before(held), after(held);
       problem.holonomic(last.before, before);

@@ -125,7 +125,6 @@ class DynamicProblem {
   void framed_motion(double t, const Element& g, const State& x, Vector& xi, State& rate) const {
     mechanics_->framed_motion(t, g.data(), x, xi, rate);
   }
-  bool has_drift() const { return mechanics_->has_drift(); }
   bool autonomous() const { return mechanics_->autonomous(); }
   void holonomic(const Element& g, HolonomicValues& phi) const {
     mechanics_->holonomic(g.data(), phi);

@@ -144,6 +144,7 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
       x.setZero();
       for (int i = 0; i < table.all_stages(); ++i) {
         const double weight = this->h_ * table.dense[at(i * table.degree + j)];
+        if (weight == 0) continue;
         q += weight * this->q_rates_[at(i)];
         x += weight * this->x_rates_[at(i)];
       }
