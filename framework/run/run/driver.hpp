@@ -140,6 +140,7 @@ class Driver {
   std::vector<std::unique_ptr<Sink>> sinks_;
   Result result_;
   Snapshot node_, row_;
+  std::vector<double> element_;  // of a state that is checked
   std::vector<Events::Found> found_;
   std::vector<double> times_;  // of the rows; empty: every so many steps
   size_t next_ = 0;

@@ -1,5 +1,4 @@
 // End of a run: a state that is none, the last row and the measurements over all.
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -22,13 +21,9 @@ bool Driver::good(const Snapshot& state) {
 std::string Driver::flaw(const Snapshot& state) {
   if (const Reason reason = flaw_of(state); reason != Reason::converged) return to_string(reason);
   if (plan_.geometry == nullptr || state.coordinates.empty()) return "";  // of a bare state
-  const auto small = [](double x) { return std::abs(x) < 1e8; };
-  if (!state.element.empty() && plan_.geometry->defect(state.element.data()) < 1e-9 &&
-      std::ranges::all_of(state.coordinates, small))
-    return "";  // without the cost of from_coordinates
-  std::vector<double> element(static_cast<size_t>(plan_.geometry->size()));
+  element_.resize(static_cast<size_t>(plan_.geometry->size()));
   try {
-    plan_.geometry->from_coordinates(state.coordinates, element.data());
+    plan_.geometry->from_coordinates(state.coordinates, element_.data());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
