@@ -11,8 +11,7 @@ namespace {
 
 const hdf5::Format& format_for(const std::string& what) {
   const hdf5::Format* const format = hdf5::format();
-  if (format == nullptr)
-    throw ConfigError({fmt::format("{}: this build has no HDF5 (libhdf5-dev)", what)});
+  if (format == nullptr) throw ConfigError({fmt::format("{}: {}", what, hdf5_missing())});
   return *format;
 }
 
@@ -21,6 +20,12 @@ const hdf5::Format& format_for(const std::string& what) {
 std::string hdf5_version() {
   const hdf5::Format* const format = hdf5::format();
   return format == nullptr ? "" : format->version();
+}
+
+std::string hdf5_missing() {
+  if (hdf5::format() != nullptr) return "";
+  const std::string reason = hdf5::reason();
+  return reason.empty() ? "this build has no HDF5 (libhdf5-dev)" : "no HDF5: " + reason;
 }
 
 void Table::write_hdf5(const std::string& path,

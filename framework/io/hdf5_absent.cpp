@@ -3,4 +3,5 @@
 
 namespace hamel::hdf5 {
 const Format* format() { return nullptr; }
+std::string reason() { return ""; }
 }  // namespace hamel::hdf5

@@ -58,6 +58,8 @@ class Format {
 /// Null without HDF5. Defined in hdf5_linked.cpp, hdf5_opened.cpp or hdf5_absent.cpp, one of which
 /// is linked.
 const Format* format();
+/// Why a module that is there cannot be opened; "" otherwise.
+std::string reason();
 
 // The parts of the linked one.
 std::string library_version();

@@ -30,4 +30,6 @@ const Format* format() {
   return &linked;
 }
 
+std::string reason() { return ""; }
+
 }  // namespace hamel::hdf5

@@ -44,6 +44,8 @@ HAMEL_API std::string csv_field(const std::string& text);
 
 /// Whether this build can write HDF5, and the version it uses ("" without).
 HAMEL_API std::string hdf5_version();
+/// Why there is none; "" where there is.
+std::string hdf5_missing();
 
 /// Reads back what write_hdf5 wrote (texts: the attributes of the file).
 HAMEL_API Table read_hdf5(const std::string& path,

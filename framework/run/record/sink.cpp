@@ -255,8 +255,8 @@ std::string record_mistake(const std::string& path) {
   if (format_of(path) == nullptr)
     return unknown_name("output format", extension, output_formats()) + " in '" + path + "'";
   if (path == "-") return "";
-  if (extension == ".h5" && hdf5_version().empty())
-    return fmt::format("output: '{}': this build has no HDF5 (libhdf5-dev)", path);
+  if (extension == ".h5" && !hdf5_missing().empty())
+    return fmt::format("output: '{}': {}", path, hdf5_missing());
   return unwritable(path);
 }
 
