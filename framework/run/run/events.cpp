@@ -12,6 +12,7 @@
 #include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/event_formula.hpp>
+#include <hamel/framework/run/run/reactions.hpp>
 
 namespace hamel {
 namespace {

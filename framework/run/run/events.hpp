@@ -14,9 +14,10 @@
 
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/run/run/dense_output.hpp>
-#include <hamel/framework/run/run/reactions.hpp>
 
 namespace hamel {
+
+class Reactions;
 
 class Events {
  public:

@@ -12,6 +12,7 @@
 
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/run/run/own_system.hpp>
+#include <hamel/framework/run/run/reactions.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {

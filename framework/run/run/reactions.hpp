@@ -1,5 +1,5 @@
 // The reactions of a run's constraints at its states, each solved once, for all: columns,
-// contacts that may be lost, the balance of the energy, kept numbers of an ensemble.
+// contacts that may be lost, the balance of the energy, kept numbers of an ensemble. Not installed.
 #pragma once
 
 #include <memory>
