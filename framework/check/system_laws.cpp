@@ -91,6 +91,36 @@ void without_matrices(const SystemModel& model, const Geometry& geometry, const 
     report.push_back({"the values of the rows are A xi - b", values.value, algebraic});
 }
 
+// Checks that the rates that a system computes along a motion are those of its I and A, found by
+// differences.
+void rates_along(const SystemModel& model, const Geometry& geometry, const Start& start,
+                 LawReport& report) {
+  const Mechanics& mechanics = *model.mechanics;
+  const Eigen::Index n = mechanics.dim(), k = mechanics.constraint_count();
+  const DynamicProblem problem({std::shared_ptr<const void>(), &geometry}, model.mechanics);
+  Eigen::VectorXd g(geometry.size()), moved(g), step(n), rows(k), momentum(n), b(k);
+  Eigen::MatrixXd inertia(n, n), a(k, n);
+  const Eigen::VectorXd xi = Eigen::VectorXd::LinSpaced(n, 0.7, -1.2);
+  Largest wrong_rows, wrong_momentum;
+  for (int i = 0; i < 5; ++i) {
+    place_near(geometry, start, i, g);
+    if (!mechanics.autonomous() || !mechanics.rates(0, g.data(), xi, rows, momentum)) return;
+    mechanics.constraints(0, g.data(), a, b);
+    const double row_size = a.norm() * xi.squaredNorm() + b.norm() * xi.norm();
+    Eigen::VectorXd by_rows = Eigen::VectorXd::Zero(k), by_inertia = Eigen::VectorXd::Zero(n);
+    differentiate_along(problem, g, xi, step, moved, [&](double, double weight) {
+      mechanics.constraints(0, moved.data(), a, b);
+      mechanics.inertia(moved.data(), inertia);
+      by_rows += weight * (b - a * xi);
+      by_inertia += weight * (inertia * xi);
+    });
+    if (k > 0) wrong_rows((rows - by_rows).norm() / row_size);
+    wrong_momentum((momentum - by_inertia).norm() / (inertia.norm() * xi.squaredNorm()));
+  }
+  if (k > 0) report.push_back({"the rates of the rows are theirs", wrong_rows.value, 1e-9});
+  report.push_back({"the rate of the inertia is its own", wrong_momentum.value, 1e-9});
+}
+
 // The frame that a system states: A E = 0, and the rates of y are those of the equations with
 // multipliers.
 void frame(const SystemModel& model, const Geometry& geometry, const Start& start,
@@ -155,6 +185,7 @@ LawReport check_system(const SystemModel& model, double until, const Geometry* g
        check::algebraic});
   if (model.drive && geometry != nullptr) check::inputs_of_zero(model, *geometry, start, report);
   if (geometry != nullptr) check::without_matrices(model, *geometry, start, report);
+  if (geometry != nullptr) check::rates_along(model, *geometry, start, report);
   if (model.mechanics->framed_size() > 0 && geometry != nullptr)
     check::frame(model, *geometry, start, report);
   if (!model.exact) return report;

@@ -79,6 +79,24 @@ class TypedMechanics final : public Mechanics {
     else to_a = a;
     Eigen::Map<Vec<k>>(to_b.data()) = b;
   }
+  // By one dual number, where the formulas are ones over any scalar.
+  bool rates(double /*t*/, const double* g, ConstVector xi, Vector rows,
+             Vector momentum) const override {
+    if constexpr (F::has_dual_rates()) {
+      const Vec<n> along(xi);
+      Mat<n, k> transposed;
+      Mat<n, n> inertia;
+      Vec<k> row_rate;
+      Vec<n> momentum_rate = Vec<n>::Zero();
+      formulas_.dual_rates(element_along<typename F::Dual, typename F::G>(load(g), along), along,
+                           transposed, row_rate, inertia, momentum_rate);
+      rows = row_rate;
+      momentum = momentum_rate;
+      return true;
+    } else {
+      return Mechanics::rates(0, g, xi, rows, momentum);
+    }
+  }
   int framed_size() const override { return F::framed() ? n - k : 0; }
   void expand(const double* g, ConstVector x, Vector to) const override {
     if constexpr (F::framed()) {
