@@ -162,7 +162,7 @@ struct SO3 {
   static Element<double> nearest(std::span<const double> values);
   /// The rotation in the first 9 values, row by row, if its defect is at most 1e-6 (then normalised
   /// to round-off), else std::invalid_argument in the name of `group`.
-  static Element<double> rotation_from(const std::string& group, std::span<const double> values);
+  static Element<double> rotation_from(const char* group, std::span<const double> values);
 };
 
 template <>
