@@ -18,8 +18,8 @@ Trajectory::Trajectory(std::vector<ColumnGroup> groups) : groups_(std::move(grou
     columns_.insert(columns_.end(), group.columns.begin(), group.columns.end());
 }
 
-void Trajectory::append(std::span<const double> row) {
-  values_.insert(values_.end(), row.begin(), row.end());
+void Trajectory::append(std::span<const double> rows) {
+  values_.insert(values_.end(), rows.begin(), rows.end());
 }
 
 void Trajectory::thin() {

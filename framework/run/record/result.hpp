@@ -39,7 +39,8 @@ class HAMEL_API Trajectory {
   size_t index(const std::string& column) const;
   std::vector<double> column(const std::string& name) const;
   bool has(const std::string& column) const;
-  void append(std::span<const double> row);
+  /// Rows, one after the other.
+  void append(std::span<const double> rows);
   /// Drops every second row.
   void thin();
   /// 1: every recorded row is here; else every so manyth, and the last.

@@ -267,6 +267,7 @@ class MemorySink final : public Sink {
   MemorySink(Trajectory& rows, std::size_t most) : out_(rows), most_(most) {}
   void begin(const RunHead& head) override { out_ = Trajectory(head.columns); }
   void rows(std::span<const double> values) override {
+    if (most_ == 0) return out_.append(values);
     const std::size_t width = out_.columns().size();
     for (std::size_t at = 0; at < values.size(); at += width) {
       const auto row = values.subspan(at, width);
@@ -276,7 +277,7 @@ class MemorySink final : public Sink {
         continue;
       }
       out_.append(row);
-      if (most_ == 0 || out_.rows() <= most_) continue;
+      if (out_.rows() <= most_) continue;
       out_.thin();
       stride_ *= 2;
       if ((seen_ - 1) % stride_ != 0) last_.assign(row.begin(), row.end());
