@@ -25,7 +25,9 @@ FeedbackFormulas::FeedbackFormulas(const EnsembleConfig& config, const SystemMod
     if (std::ranges::any_of(config.vary, [&, &name = input](auto& v) { return v.name == name; }))
       wrong("it is varied too");
     try {
-      formulas_.emplace_back(input, Expression(states_.state().in_formula(text), variables));
+      const StateNumber number(Expression(states_.state().in_formula(text), variables));
+      number.require(states_.columns(), parts_);
+      formulas_.emplace_back(input, number);
     } catch (const ExpressionError& error) {
       wrong(fmt::format("'{}': {}", text, states_.state().in_words(error.what())));
     }
@@ -42,10 +44,9 @@ FeedbackFormulas::FeedbackFormulas(const EnsembleConfig& config, const SystemMod
 }
 
 void FeedbackFormulas::act(Run& run) {
-  const Snapshot& state = run.state();
-  states_.values(state, {}, state.energy, values_);
-  values_.insert(values_.end(), constants_.values().begin(), constants_.values().end());
-  for (const auto& [input, formula] : formulas_) run.input(input, formula(values_));
+  const Snapshot& state = run.state(parts_);
+  for (const auto& [input, number] : formulas_)
+    run.input(input, number(states_.columns(), state, {}, constants_.values(), work_));
 }
 
 }  // namespace hamel::ensemble

@@ -24,8 +24,9 @@ class FeedbackFormulas {
  private:
   StateNames states_;
   MemberConstants constants_;
-  std::vector<std::pair<std::string, Expression>> formulas_;
-  std::vector<double> values_;
+  std::vector<std::pair<std::string, StateNumber>> formulas_;
+  StateParts parts_ = kNoParts;  // of a state, that they need
+  std::vector<double> work_;
 };
 
 }  // namespace hamel::ensemble

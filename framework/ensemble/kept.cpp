@@ -12,40 +12,16 @@
 #include <hamel/framework/mechanics/components.hpp>
 
 namespace hamel::ensemble {
-namespace {
 
-// What of a snapshot is measured, by the names of a run's columns.
-template <class F>
-void measured(F&& f) {
-  f(kConstraint, [](const Snapshot& s) { return s.constraint; });
-  f(kHolonomic, [](const Snapshot& s) { return s.holonomic; });
-  f(kGroupDefect, [](const Snapshot& s) { return s.group_defect; });
-  f(kIterations, [](const Snapshot& s) { return static_cast<double>(s.iterations); });
-  f(kResidual, [](const Snapshot& s) { return s.residual; });
-}
-
-}  // namespace
-
-StateNames::StateNames(const SystemModel& system, bool measures) : state_(system) {
-  const std::vector<Component> components = components_of(system);
-  std::vector<std::string> units = units_of_element(system.group);
-  units.resize(system.group.columns.size());
-  units.insert(units.begin(), "s");
-  for (const Component& c : components) units.push_back(c.unit);
-  for (size_t i = 0; i < units.size(); ++i) add(state_.variables()[i], units[i]);
-  for (size_t i = 0; i < components.size(); ++i)
-    add(fmt::format("mu{}", i + 1), unit_of_momentum(components[i]));
-  add(kEnergy.name, kEnergy.unit);
-  add(measures ? kEnergyError.name : "", kEnergyError.unit);
-  measured([&](const Quantity& quantity, auto) { add(quantity.name, quantity.unit); });
-  if (!measures) return;
-  works_ = works(*system.mechanics);
-  if (works_) add(kWork.name, kWork.unit);
-  for (int row = 0; row < system.mechanics->constraint_count(); ++row) {
-    const auto i = static_cast<size_t>(row);
-    reactions_.push_back(i < system.reactions.size() ? system.reactions[i]
-                                                     : fmt::format("lambda{}", row + 1));
-    add(reactions_.back(), unit_of_reaction(system, row));
+StateNames::StateNames(const SystemModel& system, bool measures)
+    : state_(system),
+      columns_(system, {.holonomic = true,
+                        .work = measures && works(*system.mechanics),
+                        .reactions = measures}) {
+  for (size_t i = 0; i < columns_.size(); ++i) {
+    const bool left_out = !measures && columns_.of(i) == StateColumns::Of::energy_error;
+    const std::string name = left_out ? "" : name_in_formula(columns_.name(i));
+    names_.push_back(std::ranges::find(names_, name) == names_.end() ? name : "");
   }
 }
 
@@ -53,23 +29,19 @@ bool StateNames::works(const Mechanics& mechanics) {
   return mechanics.has_force() || mechanics.has_drift();
 }
 
-void StateNames::add(const std::string& name, const std::string& unit) {
-  names_.push_back(std::ranges::find(names_, name) == names_.end() ? name : "");
-  units_.push_back(unit);
+double StateNumber::operator()(const StateColumns& columns, const Snapshot& state,
+                               const StateExtras& extras, const std::vector<double>& constants,
+                               std::vector<double>& work) const {
+  if (!formula_) return columns.value(used_[0], state, extras);
+  work.resize(columns.size() + constants.size());
+  for (const size_t i : used_)
+    work[i] = i < columns.size() ? columns.value(i, state, extras) : constants[i - columns.size()];
+  return (*formula_)(work);
 }
 
-void StateNames::values(const Snapshot& state, const StateExtras& extras, double energy_start,
-                        std::vector<double>& out) const {
-  out.assign(1, state.time);
-  out.insert(out.end(), state.coordinates.begin(), state.coordinates.end());
-  out.insert(out.end(), state.velocity.begin(), state.velocity.end());
-  out.insert(out.end(), state.momentum.begin(), state.momentum.end());
-  out.push_back(state.energy);
-  out.push_back(extras.balanced ? extras.energy_error : energy_error(state.energy, energy_start));
-  measured([&](const Quantity&, auto of) { out.push_back(of(state)); });
-  if (works_) out.push_back(extras.work);
-  for (size_t i = 0; i < reactions_.size(); ++i)
-    out.push_back(extras.reactions.empty() ? 0 : extras.reactions[i]);
+void StateNumber::require(const StateColumns& columns, StateParts& parts) const {
+  for (const size_t i : used_)
+    if (i < columns.size()) StateColumns::require(columns.of(i), parts);
 }
 
 MemberConstants::MemberConstants(const EnsembleConfig& config, const SystemModel& system,
@@ -181,7 +153,12 @@ void KeptFormulas::settle(double sign) {
   at_.assign(times_.size(), {});
   for (size_t i = 0; i < atoms_.size(); ++i) {
     Atom& atom = atoms_[i];
-    if (atom.from == From::most || atom.from == From::least) peaks_.push_back(i);
+    const bool peak = atom.from == From::most || atom.from == From::least;
+    if (atom.number) atom.number->require(states_.columns(), parts_);
+    if (peak) {
+      peaks_.push_back(i);
+      atom.number->require(states_.columns(), peak_parts_);
+    }
     if (atom.from != From::at) continue;
     atom.place = static_cast<size_t>(std::ranges::lower_bound(times_, found[atom.place], before) -
                                      times_.begin());
@@ -201,50 +178,52 @@ void KeptFormulas::begin(long member) {
   }
 }
 
-double KeptFormulas::value_of(const Atom& atom) const {
-  return atom.formula ? (*atom.formula)(values_) : values_[atom.quantity];
+double KeptFormulas::value_of(const Atom& atom, const Snapshot& state,
+                              const StateExtras& extras) const {
+  return (*atom.number)(states_.columns(), state, extras, constants_.values(), work_);
 }
 
-void KeptFormulas::look_at(const Snapshot& state) {
-  states_.values(state, extras_, energy_start_, values_);
-  values_.insert(values_.end(), constants_.values().begin(), constants_.values().end());
+// These, or none but the energy at the start.
+StateExtras KeptFormulas::with_start(const StateExtras* extras) const {
+  StateExtras out = extras != nullptr ? *extras : alone_;
+  out.energy_start = alone_.energy_start;
+  return out;
 }
 
-void KeptFormulas::take_atom(Atom& atom) {
-  atom.value = value_of(atom);
+void KeptFormulas::take(Atom& atom, const Snapshot& state, const StateExtras& extras) {
+  atom.value = value_of(atom, state, extras);
   atom.missing = false;
 }
 
 // The atoms that the state at the start or the end gives.
-void KeptFormulas::take(From from) {
+void KeptFormulas::take(From from, const Snapshot& state, const StateExtras& extras) {
   for (Atom& atom : atoms_)
-    if (atom.from == from) take_atom(atom);
+    if (atom.from == from) take(atom, state, extras);
 }
 
-void KeptFormulas::start(const Snapshot& state) {
-  energy_start_ = state.energy;
-  look_at(state);
-  take(From::start);
+void KeptFormulas::start(const Snapshot& state, const StateExtras* extras) {
+  alone_.energy_start = state.energy;
+  take(From::start, state, with_start(extras));
 }
 
-void KeptFormulas::peak(const Snapshot& state) {
-  look_at(state);
+void KeptFormulas::peak(const Snapshot& state, const StateExtras* extras) {
+  const StateExtras all = with_start(extras);
   for (const size_t i : peaks_) {
     Atom& atom = atoms_[i];
-    const double value = value_of(atom);
+    const double value = value_of(atom, state, all);
     const bool better = atom.from == From::most ? value > atom.value : value < atom.value;
     if (better || !std::isfinite(value)) atom.value = value;
   }
 }
 
-void KeptFormulas::at(size_t time, const Snapshot& state) {
-  look_at(state);
-  for (const size_t atom : at_[time]) take_atom(atoms_[atom]);
+void KeptFormulas::at(size_t time, const Snapshot& state, const StateExtras* extras) {
+  const StateExtras all = with_start(extras);
+  for (const size_t atom : at_[time]) take(atoms_[atom], state, all);
 }
 
-void KeptFormulas::end(const Snapshot& state, const std::vector<EventMet>& met) {
-  look_at(state);
-  take(From::end);
+void KeptFormulas::end(const Snapshot& state, const std::vector<EventMet>& met,
+                       const StateExtras* extras) {
+  take(From::end, state, with_start(extras));
   for (const EventMet& event : met) {
     for (Atom& atom : atoms_) {
       if (atom.from != From::count && atom.from != From::time) continue;

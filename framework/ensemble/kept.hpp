@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hamel/framework/ensemble/ensemble.hpp>
@@ -15,40 +16,27 @@
 #include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/record/result.hpp>
+#include <hamel/framework/run/record/state_columns.hpp>
 
 namespace hamel::ensemble {
 
-/// What is measured at a state beside it (member_physics.hpp).
-struct StateExtras {
-  std::vector<double> reactions = {};  // the multipliers of the rows
-  bool balanced = false;               // work is done, and the next two are known
-  double work = 0, energy_error = 0;
-};
-
-/// The numbers of a state by name: t, the coordinates, the velocities, the momenta, and what is
-/// measured.
+/// The numbers of a state by name, as formulas have them: t, the coordinates, the velocities, the
+/// momenta, and what is measured.
 class StateNames {
  public:
-  /// measures: with the energy error, work and reactions, for which values() needs the extras.
+  /// measures: with the energy error, work and reactions.
   StateNames(const SystemModel& system, bool measures);
-  /// As formulas have them.
+  /// "": the name of another one.
   const std::vector<std::string>& names() const { return names_; }
   const QuantityNames& state() const { return state_; }
-  const std::string& unit(size_t i) const { return units_[i]; }
-  /// In the order of the names, and of nothing else.
-  void values(const Snapshot& state, const StateExtras& extras, double energy_start,
-              std::vector<double>& out) const;
+  const StateColumns& columns() const { return columns_; }
   /// Do forces or moving constraints?
   static bool works(const Mechanics& mechanics);
-  /// The names among them of reactions.
-  const std::vector<std::string>& reactions() const { return reactions_; }
 
  private:
-  void add(const std::string& name, const std::string& unit);
   QuantityNames state_;
-  std::vector<std::string> names_, units_;  // "": the name of another one
-  std::vector<std::string> reactions_;
-  bool works_ = false;
+  StateColumns columns_;
+  std::vector<std::string> names_;
 };
 
 /// The numbers of a member that do not change on the way: parameters, inputs, what is varied, its
@@ -69,6 +57,28 @@ class MemberConstants {
   std::vector<std::string> names_;
   std::vector<double> values_;
   std::vector<std::pair<size_t, size_t>> varied_;  // place, variation
+};
+
+/// The velocity alone.
+inline constexpr StateParts kNoParts = {false, false, false, false, false};
+
+/// A number of a state: of one column, or a formula of some and the constants.
+class StateNumber {
+ public:
+  explicit StateNumber(size_t column) : used_{column} {}
+  /// Over the names with the constants behind them.
+  explicit StateNumber(Expression formula) : used_(formula.used()), formula_(std::move(formula)) {}
+  /// Places of the names in it.
+  const std::vector<size_t>& used() const { return used_; }
+  /// work: of any content.
+  double operator()(const StateColumns& columns, const Snapshot& state, const StateExtras& extras,
+                    const std::vector<double>& constants, std::vector<double>& work) const;
+  /// The parts of a state that it needs.
+  void require(const StateColumns& columns, StateParts& parts) const;
+
+ private:
+  std::vector<size_t> used_;
+  std::optional<Expression> formula_;  // none: the column
 };
 
 /// A number that a member has not.
@@ -101,19 +111,27 @@ class KeptFormulas {
   bool wants_peaks() const { return wants_peaks_; }
   /// Iterations and residuals of steps?
   bool wants_solver() const { return wants_solver_; }
-  /// Constraint residuals or the group's defect?
-  bool wants_defects() const { return wants_defects_; }
   bool wants_reactions() const { return wants_reactions_; }
   /// Work, or the energy error where work is done: every node is to be seen.
   bool wants_balance() const { return wants_balance_; }
 
-  // Of one member, in this order; extras: of the next state.
+  /// What of the states is needed: at peaks; at all of them; at the start, whose energy others are
+  /// compared with.
+  const StateParts& peak_parts() const { return peak_parts_; }
+  const StateParts& parts() const { return parts_; }
+  StateParts start_parts() const {
+    StateParts out = parts_;
+    out.energy = out.energy || wants_start_;
+    return out;
+  }
+
+  // Of one member, in this order.
   void begin(long member);
-  void extras(const StateExtras& of_next) { extras_ = of_next; }
-  void start(const Snapshot& state);
-  void peak(const Snapshot& state);
-  void at(size_t time, const Snapshot& state);
-  void end(const Snapshot& state, const std::vector<EventMet>& met);
+  void start(const Snapshot& state, const StateExtras* extras = nullptr);
+  void peak(const Snapshot& state, const StateExtras* extras = nullptr);
+  void at(size_t time, const Snapshot& state, const StateExtras* extras = nullptr);
+  void end(const Snapshot& state, const std::vector<EventMet>& met,
+           const StateExtras* extras = nullptr);
   /// The columns; the reason why there are none, else "".
   std::string finish(std::span<double> out);
 
@@ -123,8 +141,7 @@ class KeptFormulas {
     From from;
     std::string unit;
     size_t place = 0;                   // of the time or the event
-    size_t quantity = 0;                // of a state
-    std::optional<Expression> formula;  // in its place
+    std::optional<StateNumber> number;  // of a state
     double value = 0;
     bool missing = false;
   };
@@ -138,14 +155,14 @@ class KeptFormulas {
   std::string flaw_of_name(const std::string& name, const Variations& variations) const;
   void check_histograms(const EnsembleConfig& config, std::vector<std::string>& mistakes) const;
   void settle(double sign);
-  void take_atom(Atom& atom);
-  void look_at(const Snapshot& state);
-  void take(From from);
-  double value_of(const Atom& atom) const;
+  void take(Atom& atom, const Snapshot& state, const StateExtras& extras);
+  void take(From from, const Snapshot& state, const StateExtras& extras);
+  double value_of(const Atom& atom, const Snapshot& state, const StateExtras& extras) const;
+  StateExtras with_start(const StateExtras* extras) const;
 
   StateNames states_;
   MemberConstants constants_;
-  std::vector<double> values_;  // of the state and the constants
+  mutable std::vector<double> work_;
   std::vector<Atom> atoms_;
   std::vector<std::vector<size_t>> at_;  // atoms of each time
   std::vector<size_t> peaks_;            // atoms: most and least
@@ -154,10 +171,10 @@ class KeptFormulas {
   std::vector<double> times_, arguments_;
   std::vector<std::string> events_, quantities_;
   size_t kept_ = 0, classes_ = 0;
-  bool wants_start_ = false, wants_peaks_ = false, wants_solver_ = false, wants_defects_ = false;
+  bool wants_start_ = false, wants_peaks_ = false, wants_solver_ = false;
   bool wants_reactions_ = false, wants_balance_ = false;
-  StateExtras extras_;
-  double energy_start_ = 0;
+  StateParts parts_ = kNoParts, peak_parts_ = kNoParts;
+  StateExtras alone_;  // with the energy at the start
 };
 
 }  // namespace hamel::ensemble

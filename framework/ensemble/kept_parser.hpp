@@ -54,7 +54,7 @@ class KeptFormulas::Parser {
   }
   size_t atom(From from, size_t place, const std::string& quantity, const std::string& text) {
     if (const auto known = atoms_.find(text); known != atoms_.end()) return known->second;
-    Atom made{from, "", place, 0, {}};
+    Atom made{from, "", place, {}};
     if (from == From::time) made.unit = "s";
     else if (from == From::count) made.unit = "1";
     else state(quantity, made);
@@ -156,19 +156,13 @@ class KeptFormulas::Parser {
   void state(const std::string& quantity, Atom& out) {
     const std::string text = out_.states_.state().in_formula(quantity);
     const std::vector<std::string>& names = out_.states_.names();
-    const auto speaks_of = [&](const Quantity& q) {
-      return text.find(q.name) != std::string::npos;
-    };
-    out_.wants_start_ = out_.wants_start_ || speaks_of(kEnergyError);  // against that of the start
-    out_.wants_solver_ = out_.wants_solver_ || speaks_of(kIterations) || speaks_of(kResidual);
-    out_.wants_defects_ = out_.wants_defects_ || speaks_of(kConstraint) || speaks_of(kHolonomic) ||
-                          speaks_of(kGroupDefect);
     const auto it = std::ranges::find(names, text);
-    physics(text);
+    check_physics(text);
     if (it != names.end() && !text.empty()) {
-      out.quantity = static_cast<size_t>(it - names.begin());
-      out.unit = out_.states_.unit(out.quantity);
-      return;
+      const auto column = static_cast<size_t>(it - names.begin());
+      out.number.emplace(column);
+      out.unit = out_.states_.columns().unit(column);
+      return note(*out.number);
     }
     if (text.empty() || text.front() != '(') {
       std::vector<std::string> known;
@@ -176,24 +170,35 @@ class KeptFormulas::Parser {
         if (!name.empty()) known.push_back(name);
       throw std::invalid_argument(unknown_name("quantity of " + system_.name, quantity, known));
     }
-    out.formula.emplace(text, out_.constants_.behind(names));
+    out.number.emplace(Expression(text, out_.constants_.behind(names)));
+    note(*out.number);
   }
 
-  // What needs more than the states.
-  void physics(const std::string& text) {
+  // Refuses what a system has no number of.
+  void check_physics(const std::string& text) const {
     const bool works = StateNames::works(*system_.mechanics);
-    const std::vector<std::string>& reactions = out_.states_.reactions();
     for (const std::string& word : words_of(text)) {
       if (word == kWork.name && !works)
         throw std::invalid_argument(
             fmt::format("work: no forces and no moving constraints do work on {}", system_.name));
-      const bool reaction = std::ranges::find(reactions, word) != reactions.end();
-      if (word.starts_with("lambda") && !reaction && reactions.empty())
+      if (word.starts_with("lambda") && system_.mechanics->constraint_count() == 0)
         throw std::invalid_argument(
             fmt::format("{}: {} has no constraints, and no reactions", word, system_.name));
-      out_.wants_reactions_ = out_.wants_reactions_ || reaction;
-      out_.wants_balance_ =
-          out_.wants_balance_ || (works && (word == kWork.name || word == kEnergyError.name));
+    }
+  }
+  // Notes what is to be followed for it.
+  void note(const StateNumber& number) {
+    using Of = StateColumns::Of;
+    const StateColumns& columns = out_.states_.columns();
+    const auto want = [](bool& wanted, bool now) { wanted = wanted || now; };
+    const bool works = StateNames::works(*system_.mechanics);
+    for (const size_t i : number.used()) {
+      if (i >= columns.size()) continue;
+      const Of of = columns.of(i);
+      want(out_.wants_start_, of == Of::energy_error);  // against that of the start
+      want(out_.wants_solver_, of == Of::iterations || of == Of::residual);
+      want(out_.wants_reactions_, of == Of::reaction);
+      want(out_.wants_balance_, works && (of == Of::work || of == Of::energy_error));
     }
   }
   static std::vector<std::string> words_of(const std::string& text) {

@@ -56,12 +56,13 @@ bool LaneMembers::begin(long first, size_t count) {
   return kernel_ != nullptr;
 }
 
-// visit(lane), with state_ measured, of each lane that has not failed.
+// visit(lane), with these parts of its state_. That of a lane that has failed is of no use: its
+// member begins again, alone.
 template <class Visit>
-void LaneMembers::each_running(const Visit& visit) {
+void LaneMembers::each_running(const StateParts& parts, const Visit& visit) {
   for (size_t i = 0; i < lanes_.size(); ++i) {
-    if (!lanes_[i]->runs || kernel_->failed(static_cast<int>(i))) continue;
-    kernel_->measure(static_cast<int>(i), state_, !plan_.kept->wants_defects());
+    if (!lanes_[i]->runs) continue;
+    kernel_->state(static_cast<int>(i), state_, parts);
     visit(*lanes_[i]);
   }
 }
@@ -72,7 +73,7 @@ bool LaneMembers::follow() {
   const bool peaks = plan_.kept->wants_peaks();
   const long total = plan_.resolved.steps(), every = plan_.base.every;
   if (peaks || plan_.kept->wants_start()) {
-    each_running([&](Lane& lane) {
+    each_running(plan_.kept->start_parts(), [&](Lane& lane) {
       lane.runner.kept().start(state_);
       if (peaks) lane.runner.kept().peak(state_);
     });
@@ -83,9 +84,9 @@ bool LaneMembers::follow() {
     kernel_->advance(count);
     done += count;
     if (peaks && done % every == 0)
-      each_running([&](Lane& lane) { lane.runner.kept().peak(state_); });
+      each_running(plan_.kept->peak_parts(), [&](Lane& lane) { lane.runner.kept().peak(state_); });
   }
-  each_running([&](Lane& lane) {
+  each_running(plan_.kept->parts(), [&](Lane& lane) {
     lane.failure.time = state_.time;
     if (peaks) lane.runner.kept().peak(state_);
     lane.runner.kept().end(state_, {});

@@ -32,7 +32,7 @@ class LaneMembers {
   bool begin(long first, size_t count);
   bool follow();
   template <class Visit>
-  void each_running(const Visit& visit);
+  void each_running(const StateParts& parts, const Visit& visit);
 
   const Plan& plan_;
   const LaneInfo* info_;

@@ -121,15 +121,13 @@ bool MemberRunner::run(long member, std::span<double> out, MemberFailure& failur
 // To the formulas, with what is measured beside the state: at once, or when that is known.
 template <class Use>
 void MemberRunner::give(const Snapshot& state, const Use& use) {
-  if (!physics_.any()) return use(state);
-  physics_.give(state, [this, use](const Snapshot& then, const StateExtras& extras) {
-    kept_.extras(extras);
-    use(then);
-  });
+  if (physics_.any()) physics_.give(state, use);
+  else use(state, StateExtras());
 }
 
 void MemberRunner::peak(const Snapshot& state) {
-  give(state, [this](const Snapshot& then) { kept_.peak(then); });
+  give(state,
+       [this](const Snapshot& then, const StateExtras& extras) { kept_.peak(then, &extras); });
 }
 
 // States at times, and rows of max and min, up to now.
@@ -139,7 +137,9 @@ void MemberRunner::look(double now) {
   const std::vector<double>&times = kept_.times(), &rows = plan_.rows;
   while (time_ < times.size() && sign * (times[time_] - now) <= slack) {
     give(run_->at(times[time_]),
-         [this, place = time_](const Snapshot& state) { kept_.at(place, state); });
+         [this, place = time_](const Snapshot& state, const StateExtras& extras) {
+           kept_.at(place, state, &extras);
+         });
     ++time_;
   }
   if (!kept_.wants_peaks()) return;
@@ -188,10 +188,17 @@ bool MemberRunner::follow(MemberFailure& failure) {
   const bool nodes = kept_.wants_peaks() && plan_.rows.empty();
   time_ = row_ = 0;
   acted_ = 0;
-  if (physics_.wants_nodes()) physics_.node(run.state());
+  const auto parts = [this](StateParts of) {
+    of.element = physics_.any();
+    of.energy = of.energy || physics_.wants_nodes();  // whose balance it is
+    return of;
+  };
+  const StateParts of_peaks = parts(kept_.peak_parts()), of_all = parts(kept_.parts());
+  if (physics_.wants_nodes()) physics_.node(run.state(of_all));
   if (kept_.wants_start() || kept_.wants_peaks() || !kept_.times().empty()) {
-    give(run.state(), [this](const Snapshot& state) { kept_.start(state); });
-    if (nodes) peak(run.state());
+    give(run.state(parts(kept_.start_parts())),
+         [this](const Snapshot& state, const StateExtras& extras) { kept_.start(state, &extras); });
+    if (nodes) peak(run.state(of_peaks));
     look(plan_.base.from);
   }
   double now = plan_.base.from;
@@ -208,15 +215,17 @@ bool MemberRunner::follow(MemberFailure& failure) {
       failure.reason = status.reason;
       return true;
     }
-    if (physics_.wants_nodes()) physics_.step(run, before, run.state());
+    if (physics_.wants_nodes()) physics_.step(run, before, run.state(of_peaks));
     look(now);
-    if (nodes && done % plan_.base.every == 0) peak(run.state());
+    if (nodes && done % plan_.base.every == 0) peak(run.state(of_peaks));
     if (chosen && now == before) break;
   }
-  const Snapshot& last = run.state();
+  const Snapshot& last = run.state(of_all);
   failure.time = last.time;
   if (kept_.wants_peaks()) peak(last);
-  give(last, [this](const Snapshot& state) { kept_.end(state, run_->events()); });
+  give(last, [this](const Snapshot& state, const StateExtras& extras) {
+    kept_.end(state, run_->events(), &extras);
+  });
   physics_.finish();
   return true;
 }

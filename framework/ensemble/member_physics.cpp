@@ -29,13 +29,13 @@ void MemberPhysics::step(const Run& run, double before, const Snapshot& state) {
 }
 
 void MemberPhysics::give(const Snapshot& state, Use use) {
-  StateExtras extras;
+  std::span<const double> reactions;
   if (of_rows_ != nullptr) {
     const Eigen::VectorXd& lambda = of_rows_->at(state);
-    extras.reactions.assign(lambda.begin(), lambda.end());
+    reactions = {lambda.data(), static_cast<size_t>(lambda.size())};
   }
-  if (balance_ == nullptr) return use(state, extras);
-  waiting_.push_back({state, std::move(extras), std::move(use)});
+  if (balance_ == nullptr) return use(state, {.reactions = reactions});
+  waiting_.push_back({state, {reactions.begin(), reactions.end()}, std::move(use)});
   balance_->row(state);
   settle();
 }
@@ -52,10 +52,9 @@ void MemberPhysics::settle() {
   for (const BalancedState& known : settled_) {
     Waiting one = std::move(waiting_.front());
     waiting_.pop_front();
-    one.extras.balanced = true;
-    one.extras.work = known.work;
-    one.extras.energy_error = known.defect / known.scale;
-    one.use(one.state, one.extras);
+    one.use(one.state, {.reactions = one.reactions,
+                        .work = known.work,
+                        .balance_error = known.defect / known.scale});
   }
 }
 

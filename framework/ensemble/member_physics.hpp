@@ -36,7 +36,7 @@ class MemberPhysics {
  private:
   struct Waiting {
     Snapshot state;
-    StateExtras extras;
+    std::vector<double> reactions;
     Use use;
   };
   void settle();

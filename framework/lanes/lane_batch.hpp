@@ -45,7 +45,8 @@ class LaneBatch {
   virtual bool failed(int lane) const = 0;
   /// As if nothing had been before.
   virtual void put(int lane, const Node<P>& start) = 0;
-  virtual void get(int lane, Node<P>& now, Node<P>& previous) const = 0;
+  /// previous: null where it is not wanted.
+  virtual void get(int lane, Node<P>& now, Node<P>* previous) const = 0;
 };
 
 /// What the batch is made of: one step (its constants) and one problem for each lane.

@@ -48,18 +48,18 @@ class LaneLoop final : public LaneKernel, private LaneRescue<P> {
     steps_ += count;
   }
   bool failed(int lane) const override { return batch_->failed(lane); }
-  void measure(int lane, Snapshot& out, bool state_alone) const override {
+  void state(int lane, Snapshot& out, const StateParts& parts) const override {
     const Body& body = *bodies_[static_cast<std::size_t>(lane)];
     Node now(body.problem), previous(body.problem);
-    batch_->get(lane, now, previous);
+    batch_->get(lane, now, parts.measures ? &previous : nullptr);
     typename P::Vector xi;
     body.problem.velocity(now.x, xi);
     const double h = steps_ == 0 ? 0 : body.setup.step;
     out.step = steps_;
     out.time = body.setup.from + static_cast<double>(steps_) * body.setup.step;
     out.time_offset = (1 - body.setup.s) * h;
-    state(body.problem, now.g, xi, out);
-    if (state_alone) return;
+    hamel::state(body.problem, now.g, xi, out, parts);
+    if (!parts.measures) return;
     hamel::measure(body.problem, {previous.g, previous.t, now.g, now.t, h}, body.setup.s, xi, out);
   }
   void restart(std::span<const KernelSetup> setups) override {

@@ -38,18 +38,19 @@ class LaneNodes {
     set_lane<T>(failed_, lane, false);
     nodes_.count_anew();
   }
-  void get(int lane, hamel::Node<P>& now, hamel::Node<P>& previous) const {
-    get_lane(nodes_.now().g, lane, now.g);
-    get_lane(nodes_.now().x, lane, now.x);
-    now.t = nodes_.now().t;
-    get_lane(nodes_.previous().g, lane, previous.g);
-    get_lane(nodes_.previous().x, lane, previous.x);
-    previous.t = nodes_.previous().t;
+  void get(int lane, hamel::Node<P>& now, hamel::Node<P>* previous) const {
+    get_node(nodes_.now(), lane, now);
+    if (previous != nullptr) get_node(nodes_.previous(), lane, *previous);
   }
 
  protected:
   using Mask = typename T::Mask;
   LaneNodes(const EachBody<P>& problems, double h) : problem_(problems), h_(h), nodes_(problem_) {}
+  static void get_node(const hamel::Node<Problem>& from, int lane, hamel::Node<P>& to) {
+    get_lane(from.g, lane, to.g);
+    get_lane(from.x, lane, to.x);
+    to.t = from.t;
+  }
 
   Problem problem_;
   double h_;
@@ -288,7 +289,7 @@ class LanePair final : public LaneBatch<P> {
   void put(int lane, const Node<P>& start) override {
     parts_[lane / width].put(lane % width, start);
   }
-  void get(int lane, Node<P>& now, Node<P>& previous) const override {
+  void get(int lane, Node<P>& now, Node<P>* previous) const override {
     parts_[lane / width].get(lane % width, now, previous);
   }
 

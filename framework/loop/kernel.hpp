@@ -61,12 +61,14 @@ class Kernel {
   /// Steps taken, the parts of one counted as one; is the node such a jump or kink?
   virtual long whole_steps() const = 0;
   virtual bool off_grid() const = 0;
-  /// Measures the current state into out (its vectors are reused).
-  virtual void measure(Snapshot& out) const = 0;
-  /// The state alone: step, time, coordinates, element, velocity, momentum, energy.
-  virtual void state(Snapshot& out) const = 0;
-  /// The same without the coordinates.
-  virtual void bare_state(Snapshot& out) const = 0;
+  /// The current state (the vectors of out are reused).
+  virtual void state(Snapshot& out, const StateParts& parts) const = 0;
+  /// Measured.
+  void measure(Snapshot& out) const { state(out, {}); }
+  /// Alone.
+  void state(Snapshot& out) const { state(out, {.measures = false}); }
+  /// Without the coordinates too.
+  void bare_state(Snapshot& out) const { state(out, {.coordinates = false, .measures = false}); }
   virtual const SolverStats& stats() const = 0;
 
   /// The node itself, and that at the beginning of the last step: time, coordinates, and the

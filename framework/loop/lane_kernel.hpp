@@ -22,9 +22,8 @@ class LaneKernel {
   /// Has a step of this lane failed? Its state is then of no use, and its motion the scalar
   /// kernel's.
   virtual bool failed(int lane) const = 0;
-  /// Measures the state of a lane into out, as Kernel::measure without the solver's part;
-  /// state_alone: nor what is found from the ends of the last step and the group's defect.
-  virtual void measure(int lane, Snapshot& out, bool state_alone = false) const = 0;
+  /// The state of a lane, as Kernel::state has it, but for the solver's part.
+  virtual void state(int lane, Snapshot& out, const StateParts& parts) const = 0;
   /// Other starts, at the time of the first ones: configuration and velocity of each lane.
   virtual void restart(std::span<const KernelSetup> setups) = 0;
 };

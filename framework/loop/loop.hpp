@@ -51,22 +51,17 @@ class Loop final : public TimeLoop {
     }
   }
 
-  [[gnu::cold]] void state(Snapshot& out) const override {
-    typename P::Vector xi(problem_.dim());
-    state(nodes_.now(), out, xi);
+  using Kernel::state;
+  [[gnu::cold]] void state(Snapshot& out, const StateParts& parts) const override {
+    state(nodes_.now(), out, parts);
   }
-  [[gnu::cold]] void bare_state(Snapshot& out) const override {
-    typename P::Vector xi(problem_.dim());
-    state(nodes_.now(), out, xi, /*coordinates=*/false);
-  }
-  [[gnu::cold]] void measure(Snapshot& out) const override { measure(nodes_.now(), out); }
   [[gnu::cold]] void node(Snapshot& out) const override { carried(nodes_.now(), out); }
   [[gnu::cold]] void beginning(Snapshot& out) const override { carried(first_node(), out); }
   double beginning_time() const override { return first_node().t; }
   [[gnu::cold]] bool interpolate(double t, Snapshot& out) override {
     if constexpr (kEstimates) {
       if (!has_dense_output() || !step_.interpolate(part_of_step(t), nodes_.next())) return false;
-      measure(nodes_.next(), out);
+      state(nodes_.next(), out, {});
       out.time = t;
       return true;
     }
@@ -78,7 +73,8 @@ class Loop final : public TimeLoop {
         return false;
       typename P::Vector xi(problem_.dim());
       problem_.velocity(nodes_.next().x, xi);
-      hamel::motion(whole_, nodes_.next().g, xi, out, /*coordinates=*/false);
+      hamel::state(whole_, nodes_.next().g, xi, out,
+                   {.coordinates = false, .momentum = false, .energy = false});
       out.time = t;
       return true;
     }
@@ -118,24 +114,21 @@ class Loop final : public TimeLoop {
   bool has_dense_output() const { return step_.estimated_order() > 0 && last_h_ != 0; }
   double part_of_step(double t) const { return (t - nodes_.previous().t) / last_h_; }
 
-  [[gnu::cold]] void state(const Node& node, Snapshot& out, typename P::Vector& xi,
-                           bool coordinates = true) const {
+  [[gnu::cold]] void carried(const Node& node, Snapshot& out) const {
+    typename P::Vector xi(problem_.dim());
+    problem_.velocity(node.x, xi);
+    hamel::state(whole_, node.g, xi, out, {});
+    out.time = node.t;
+  }
+  // A step that keeps its rows at its end by itself is measured there, others along the step.
+  [[gnu::cold]] void state(const Node& node, Snapshot& out, const StateParts& parts) const {
+    typename P::Vector xi(problem_.dim());
     out.step = steps_;
     out.time = &node == &nodes_.now() ? time() : node.t;
     if constexpr (requires { step_.velocity(node, xi); }) step_.velocity(node, xi);
     else problem_.velocity(node.x, xi);
-    hamel::state(whole_, node.g, xi, out, coordinates);
-  }
-  [[gnu::cold]] void carried(const Node& node, Snapshot& out) const {
-    typename P::Vector xi(problem_.dim());
-    problem_.velocity(node.x, xi);
-    hamel::state(whole_, node.g, xi, out);
-    out.time = node.t;
-  }
-  // A step that keeps its rows at its end by itself is measured there, others along the step.
-  [[gnu::cold]] void measure(const Node& node, Snapshot& out) const {
-    typename P::Vector xi(problem_.dim());
-    state(node, out, xi);
+    hamel::state(whole_, node.g, xi, out, parts);
+    if (!parts.measures) return;
     double h = last_h_;
     if constexpr (kEstimates) h = step_.estimated_order() > 0 ? 0 : h;
     hamel::measure(whole_, {nodes_.previous().g, nodes_.previous().t, node.g, node.t, h}, setup_.s,

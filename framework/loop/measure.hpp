@@ -80,26 +80,22 @@ void find_momentum(const P& problem, const typename P::Element& g, const typenam
   out = inertia.lazyProduct(xi);
 }
 
-/// Place and velocity alone: coordinates where they are wanted, element, velocity.
-template <class P>
-[[gnu::cold]] void motion(const P& problem, const typename P::Element& g,
-                          const typename P::Vector& xi, Snapshot& out, bool coordinates) {
-  out.coordinates.resize(coordinates ? static_cast<size_t>(problem.columns()) : 0);
-  if (coordinates) problem.coordinates(g, out.coordinates.data());
-  out.element.resize(static_cast<size_t>(problem.element_size()));
-  problem.store(g, out.element.data());
-  out.velocity.assign(xi.data(), xi.data() + xi.size());
-}
-
-/// The state alone: coordinates, element, velocity, momentum, energy. xi: the nodal velocity.
+/// The velocity, and what is wanted of the coordinates, the element, momentum and energy. xi: the
+/// nodal velocity.
 template <class P>
 [[gnu::cold]] void state(const P& problem, const typename P::Element& g,
-                         const typename P::Vector& xi, Snapshot& out, bool coordinates = true) {
-  motion(problem, g, xi, out, coordinates);
+                         const typename P::Vector& xi, Snapshot& out, const StateParts& parts) {
+  out.coordinates.resize(parts.coordinates ? static_cast<size_t>(problem.columns()) : 0);
+  if (parts.coordinates) problem.coordinates(g, out.coordinates.data());
+  out.element.resize(parts.element ? static_cast<size_t>(problem.element_size()) : 0);
+  if (parts.element) problem.store(g, out.element.data());
+  out.velocity.assign(xi.data(), xi.data() + xi.size());
+  out.momentum.clear();
+  if (!parts.momentum && !parts.energy) return;
   typename P::Vector mu(problem.dim());
   find_momentum(problem, g, xi, mu);
-  out.momentum.assign(mu.data(), mu.data() + mu.size());
-  out.energy = 0.5 * mu.dot(xi) + problem.potential(g);
+  if (parts.momentum) out.momentum.assign(mu.data(), mu.data() + mu.size());
+  if (parts.energy) out.energy = 0.5 * mu.dot(xi) + problem.potential(g);
 }
 
 /// Measures the state and the step that led to it.

@@ -27,7 +27,14 @@ struct SolverStats {
   std::vector<Fallback> first_fallbacks;  // at most 20
 };
 
-/// A state with its measurements.
+/// What is found of a state beside its time and its velocity.
+struct StateParts {
+  bool coordinates = true, element = true;
+  bool momentum = true, energy = true;
+  bool measures = true;  // from constraint_rates on
+};
+
+/// A state with its measurements. Parts that were not found are empty, their numbers of no use.
 struct Snapshot {
   long step = 0;
   double time = 0;

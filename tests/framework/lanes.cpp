@@ -64,7 +64,7 @@ void expect_the_bits_of_the_scalar_kernel(const std::string& scheme,
         alone[i]->advance(count);
         Snapshot one, lane;
         alone[i]->measure(one);
-        all->measure(static_cast<int>(i), lane);
+        all->state(static_cast<int>(i), lane, {});
         ASSERT_FALSE(all->failed(static_cast<int>(i)));
         EXPECT_EQ(lane.time, one.time);
         EXPECT_EQ(lane.step, one.step);
@@ -155,7 +155,7 @@ TEST(Lanes, OneThatFailsLeavesTheOthersAlone) {
       alone->advance(50);
       Snapshot one, lane;
       alone->measure(one);
-      all->measure(static_cast<int>(i), lane);
+      all->state(static_cast<int>(i), lane, {});
       EXPECT_EQ(lane.coordinates, one.coordinates) << scheme << " lane " << i;
       EXPECT_EQ(lane.velocity, one.velocity) << scheme << " lane " << i;
     }
@@ -188,7 +188,7 @@ TEST(Lanes, ASystemOfOnesOwnIsAdded) {
   alone->advance(200);
   Snapshot one, lane;
   alone->measure(one);
-  all->measure(0, lane);
+  all->state(0, lane, {});
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(lane.velocity[i], one.velocity[i], 200 * 1e-14);
     EXPECT_NEAR(lane.coordinates[i], one.coordinates[i], 200 * 1e-14);

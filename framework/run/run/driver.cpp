@@ -169,7 +169,7 @@ void Driver::begin() {
     kernel().measure(result_.last);
     recorder_->begin(result_.last);
     if (recorder_->wants_nodes()) recorder_->node(node_);
-    over_ = !(times_.empty() ? record(node_) : output(plan_.config.from));
+    over_ = !(times_.empty() ? record_node() : output(plan_.config.from));
   }
   if (!over_ && plan_.events->any()) observe_start();
 }
@@ -250,14 +250,12 @@ const Snapshot& Driver::at(double t) {
 }
 
 double Driver::time() {
-  if (result_.stopped_by_event) return result_.last.time;
-  kernel().state(row_);
-  return row_.time;
+  return result_.stopped_by_event ? result_.last.time : kernel().time();
 }
 
-const Snapshot& Driver::state() {
+const Snapshot& Driver::state(const StateParts& parts) {
   if (result_.stopped_by_event) return result_.last;
-  kernel().measure(row_);
+  kernel().state(row_, parts);
   return row_;
 }
 

@@ -34,7 +34,7 @@ class Driver {
   void input(const std::string& name, double value);
   void restart(const Start& start);
   const Snapshot& at(double t);
-  const Snapshot& state();
+  const Snapshot& state(const StateParts& parts);
   double time();
   const std::vector<EventMet>& events() const { return result_.events; }
   bool over() const { return over_; }
@@ -98,7 +98,8 @@ class Driver {
   void observe_start();
   // Rows at the output times up to t.
   bool output(double t);
-  bool record(const Snapshot& state);
+  bool record_node();
+  bool record(Clock::time_point begin);
   // False, and the run has failed, where the state has a flaw; result_.last is the last good one.
   bool good(const Snapshot& state);
   std::string flaw(const Snapshot& state);

@@ -80,7 +80,7 @@ Result& Driver::end() {
   try {
     entered_ = Clock::now();
     begin();
-    if (plan_.recording && !over_ && times_.empty()) record(node_);
+    if (plan_.recording && !over_ && times_.empty()) record_node();
     over_ = true;
     if (!result_.stopped_by_event && !flawed_) {
       kernel().measure(row_);

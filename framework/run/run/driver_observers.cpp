@@ -32,7 +32,7 @@ bool Driver::observe_step(double begin) {
   if (!plan_.recording) return true;
   balance_step(begin, node_);
   if (!times_.empty()) return output(node_.time);
-  return node_.step % plan_.config.every == 0 ? record(node_) : true;
+  return node_.step % plan_.config.every == 0 ? record_node() : true;
 }
 
 // A step from `begin`, whole or up to an event within it, to what follows the energy.
@@ -72,7 +72,10 @@ bool Driver::observe_event(const Events::Found& event, double begin, bool& go_on
   result_.stopped_by_event = true;
   result_.status.reason = "stopped at " + event.name;
   result_.last = event.state;
-  if (plan_.recording && times_.empty()) record(event.state);
+  if (plan_.recording && times_.empty()) {
+    row_ = event.state;
+    record(Clock::now());
+  }
   go_on = false;
   return true;
 }
@@ -81,34 +84,37 @@ bool Driver::output(double t) {
   const double sign = plan_.config.until >= plan_.config.from ? 1 : -1;
   const double slack = 1e-12 * std::abs(plan_.config.until - plan_.config.from);
   for (; next_ < times_.size() && sign * (times_[next_] - t) <= slack; ++next_) {
+    const Clock::time_point begin = Clock::now();
     if (const Status status = dense().at(times_[next_], row_); !status.ok) {
       result_.status = status;
       return false;
     }
-    if (!record(row_)) return false;
+    if (!record(begin)) return false;
   }
   return true;
 }
 
-// state is the kernel's own, to be measured, or one that has been.
-bool Driver::record(const Snapshot& state) {
-  const bool own = &state == &node_;
-  if (own) {
-    if (node_.step == recorded_) return true;  // nothing new
-    recorded_ = node_.step;
-  }
-  const Timed timed(in_rows_);
-  if (own) kernel().measure(row_);
-  const bool good_row = good(own ? row_ : state);
+// The node, unless it is a row already.
+bool Driver::record_node() {
+  if (node_.step == recorded_) return true;
+  recorded_ = node_.step;
+  const Clock::time_point begin = Clock::now();
+  kernel().measure(row_);
+  return record(begin);
+}
+
+// The state in row_, measured since `begin`; row_ is another one afterwards.
+bool Driver::record(Clock::time_point begin) {
+  const bool good_row = good(row_);
   if (!good_row && sinks_begun_) return false;
-  if (own) std::swap(result_.last, row_);
-  else result_.last = state;
+  std::swap(result_.last, row_);
   const Snapshot& row = result_.last;
   recorder_->take(row);
-  {
-    const Timed compared(comparing_);
-    recorder_->compare(row);
-  }
+  const Clock::time_point taken = Clock::now();
+  recorder_->compare(row);
+  const Clock::time_point compared = Clock::now();
+  in_rows_ += compared - begin;
+  comparing_ += compared - taken;
   ++rows_;
   if (!sinks_begun_) {
     Result at_start = head();

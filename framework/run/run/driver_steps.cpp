@@ -95,7 +95,7 @@ bool Driver::observe_steps(long before, double begin, bool at_end) {
   bool go_on = good(node_);
   if (go_on && every_node_ && node_.step > before) go_on = observe_step(begin);
   else if (go_on && plan_.recording && times_.empty() && node_.step % plan_.config.every == 0)
-    go_on = record(node_);
+    go_on = record_node();
   if (!go_on || !result_.status.ok || at_end) return go_on;
   result_.status = steps_go_on(node_.step - before, node_);
   return result_.status.ok;

@@ -57,18 +57,8 @@ Status RestartedKernel::advance(long count) {
   return status;
 }
 
-void RestartedKernel::measure(Snapshot& out) const {
-  kernel_->measure(out);
-  out.step += steps_;
-}
-
-void RestartedKernel::state(Snapshot& out) const {
-  kernel_->state(out);
-  out.step += steps_;
-}
-
-void RestartedKernel::bare_state(Snapshot& out) const {
-  kernel_->bare_state(out);
+void RestartedKernel::state(Snapshot& out, const StateParts& parts) const {
+  kernel_->state(out, parts);
   out.step += steps_;
 }
 

@@ -28,9 +28,8 @@ class RestartedKernel final : public Kernel {
   Status advance(long count) override;
   long whole_steps() const override { return whole_ + kernel_->whole_steps(); }
   bool off_grid() const override { return kernel_->off_grid(); }
-  void measure(Snapshot& out) const override;
-  void state(Snapshot& out) const override;
-  void bare_state(Snapshot& out) const override;
+  using Kernel::state;
+  void state(Snapshot& out, const StateParts& parts) const override;
   const SolverStats& stats() const override;
   void node(Snapshot& out) const override { kernel_->node(out); }
   void beginning(Snapshot& out) const override { kernel_->beginning(out); }

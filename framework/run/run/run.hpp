@@ -60,8 +60,9 @@ class HAMEL_API Run {
   /// The state at a time within the last step, by dense output. Throws std::runtime_error where
   /// there is none.
   const Snapshot& at(double t);
-  /// The current state with its measurements; at an event that ended the run, the state there.
-  const Snapshot& state();
+  /// The current state with its measurements, or with the parts that are wanted; at an event that
+  /// ended the run, the state there.
+  const Snapshot& state(const StateParts& parts = {});
   /// Its time, without the measurements.
   double time();
   /// The events met so far.

@@ -2,45 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <hamel/framework/mechanics/components.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
-#include <hamel/framework/run/record/named_columns.hpp>
 
 namespace hamel {
 namespace {
-
-// The rows of one part together, those of the part that is named first at first: rear.reaction1 is
-// one of rear.
-std::vector<size_t> by_parts(const std::vector<std::string>& reactions) {
-  const auto part = [&](size_t row) { return reactions[row].substr(0, reactions[row].rfind('.')); };
-  std::vector<size_t> out;
-  for (size_t i = 0; i < reactions.size(); ++i) {
-    size_t at = out.size();
-    while (at > 0 && part(out[at - 1]) != part(i)) --at;
-    out.insert(out.begin() + static_cast<long>(at > 0 ? at : out.size()), i);
-  }
-  return out;
-}
-
-ColumnGroup numbered(const char* name, std::size_t count) {
-  ColumnGroup out{name, "", "", "", {}};
-  for (std::size_t i = 1; i <= count; ++i) out.columns.push_back(name + std::to_string(i));
-  return out;
-}
-
-ColumnGroup momentum_columns(const SystemModel& system) {
-  ColumnGroup out = numbered("mu", static_cast<std::size_t>(system.group.dim));
-  std::vector<std::string> units;
-  for (const Component& c : components_of(system)) units.push_back(unit_of_momentum(c));
-  out.unit = fmt::format("{}", fmt::join(units, ","));
-  out.meaning = fmt::format("nodal body momentum, of {}", fmt::join(system.rates, ","));
-  out.frame = velocity_columns(system).frame;
-  return out;
-}
 
 double value_of(const Invariant& invariant, const Snapshot& state) {
   return invariant.energy ? state.energy : invariant.value(state.coordinates, state.velocity);
@@ -63,8 +32,12 @@ RunRecorder::RunRecorder(const SystemModel& system, const Start& start, EnergyBa
     : system_(system),
       start_(start),
       balance_(std::move(balance)),
+      columns_(system, {.holonomic = system.mechanics->holonomic_rows() > 0,
+                        .work = balance_.active(),
+                        .reactions = reactions != nullptr,
+                        .reaction_power = reactions != nullptr,
+                        .exact = static_cast<bool>(system.exact)}),
       pulls_(system.contacts.size()),
-      reaction_rows_(by_parts(system.reactions)),
       of_rows_(std::move(reactions)) {
   const auto& mechanics = system.mechanics;
   if (balance_.active()) {
@@ -72,29 +45,16 @@ RunRecorder::RunRecorder(const SystemModel& system, const Start& start, EnergyBa
         "forces or moving constraints do work: the energy error is the defect of the energy "
         "balance, relative to the largest energy");
   }
-  holonomic_ = mechanics->holonomic_rows() > 0;
-  all_holonomic_ = holonomic_ && mechanics->holonomic_rows() == mechanics->constraint_count();
+  const bool holonomic = mechanics->holonomic_rows() > 0;
+  all_holonomic_ = holonomic && mechanics->holonomic_rows() == mechanics->constraint_count();
   drifts_ = mechanics->has_drift();
-  if (holonomic_) all_.holonomic_max = 0;
+  if (holonomic) all_.holonomic_max = 0;
   if (of_rows_ != nullptr) {
     all_.reaction_work = 0;
     lambda_.resize(mechanics->constraint_count());
-    for (size_t i = reaction_rows_.size(); i < static_cast<size_t>(lambda_.size()); ++i)
-      reaction_rows_.push_back(i);
   }
   if (system.exact)
     all_.exact_error_final = all_.exact_error_max = all_.exact_velocity_error_max = 0;
-}
-
-void RunRecorder::add(const Quantity& quantity, double value) {
-  if (first_)
-    columns_.push_back({quantity.name, quantity.unit, quantity.meaning, "", {quantity.name}});
-  rows_.push_back(value);
-}
-template <class Group>
-void RunRecorder::add(Group&& group, std::span<const double> values) {
-  if (first_) columns_.push_back(group());
-  rows_.insert(rows_.end(), values.begin(), values.end());
 }
 
 void RunRecorder::begin(const Snapshot& start) {
@@ -117,45 +77,24 @@ void RunRecorder::impact(const Snapshot& before, const Snapshot& after) {
 
 void RunRecorder::take(const Snapshot& state) {
   last_row_ = state.time;
-  const double error = all_.take(state, energy_start_);
-  add(kTime, state.time);
-  add([&] { return element_columns(system_); }, state.coordinates);
-  add([&] { return velocity_columns(system_); }, state.velocity);
-  add(kEnergy, state.energy);
-  add(kEnergyError, error);
-  add(kConstraint, state.constraint);
-  add(kGroupDefect, state.group_defect);
-  add(kIterations, static_cast<double>(state.iterations));
-  add(kResidual, state.residual);
-  if (holonomic_) add(kHolonomic, state.holonomic);
-  add([&] { return momentum_columns(system_); }, state.momentum);
+  all_.take(state, energy_start_);
 }
 
 void RunRecorder::compare(const Snapshot& state) {
-  if (balance_.active()) {
-    balance_.row(state);
-    add(kWork, 0);  // until it is settled
-  }
+  if (balance_.active()) balance_.row(state);  // work and error are known when it is settled
+  StateExtras extras{.energy_start = energy_start_};
   if (of_rows_ != nullptr) {
     react(state);
-    add_reactions();
+    extras.reactions = {lambda_.data(), static_cast<std::size_t>(lambda_.size())};
+    extras.reaction_power = power_;
   }
   look_at_invariants(state);
-  if (system_.exact) {
-    const auto [error, velocity_error] = look_at_exact(state);
-    add(kExactError, error);
-    add(kExactVelocityError, velocity_error);
-  }
-  if (first_) {
-    width_ = rows_.size();
-    std::size_t at = 0;
-    for (const ColumnGroup& group : columns_) {
-      if (group.name == kEnergyError.name) energy_error_ = at;
-      if (group.name == kWork.name) work_ = at;
-      at += group.columns.size();
-    }
-  }
-  first_ = false;
+  if (system_.exact)
+    std::tie(extras.exact_error, extras.exact_velocity_error) = look_at_exact(state);
+  const std::size_t at = rows_.size();
+  rows_.resize(at + columns_.size());
+  for (std::size_t i = 0; i < columns_.size(); ++i)
+    rows_[at + i] = columns_.value(i, state, extras);
   settle();
 }
 
@@ -181,20 +120,23 @@ std::pair<double, double> RunRecorder::look_at_exact(const Snapshot& state) {
 // Completes rows whose work is known; the end of a run may be none.
 void RunRecorder::settle() {
   if (!balance_.active()) {
-    complete_ = rows_.size() / width_;
+    complete_ = rows_.size() / columns_.size();
     return;
   }
+  const std::size_t energy_error = *columns_.find(StateColumns::Of::energy_error),
+                    work = *columns_.find(StateColumns::Of::work);
   balance_.settled(settled_);
   for (const BalancedState& state : settled_) {
-    if (complete_ * width_ == rows_.size()) break;
-    double* row = rows_.data() + width_ * complete_++;
-    row[energy_error_] = state.defect / state.scale;
-    row[work_] = state.work;
+    if (complete_ * columns_.size() == rows_.size()) break;
+    double* row = rows_.data() + columns_.size() * complete_++;
+    row[energy_error] = state.defect / state.scale;
+    row[work] = state.work;
   }
 }
 
 void RunRecorder::drop_rows() {
-  rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(complete_ * width_));
+  rows_.erase(rows_.begin(),
+              rows_.begin() + static_cast<std::ptrdiff_t>(complete_ * columns_.size()));
   complete_ = 0;
 }
 
@@ -261,27 +203,6 @@ void RunRecorder::look_at_reaction_work() {
       fmt::format("the work of reactions is summed over the rows, and known to about {:.1g} J: "
                   "record more rows, or take shorter steps",
                   error));
-}
-
-void RunRecorder::add_reactions() {
-  std::vector<double> lambda;
-  for (const size_t row : reaction_rows_) lambda.push_back(lambda_[static_cast<Eigen::Index>(row)]);
-  const auto describe = [&] {
-    ColumnGroup out = numbered("lambda", lambda.size());
-    const std::vector<std::string>& names = system_.reactions;
-    for (size_t i = 0; i < names.size(); ++i) out.columns[i] = names[reaction_rows_[i]];
-    bool known = false;
-    std::vector<std::string> units;
-    for (const size_t row : reaction_rows_) {
-      units.push_back(unit_of_reaction(system_, static_cast<int>(row)));
-      known = known || !units.back().empty();
-    }
-    if (known) out.unit = fmt::format("{}", fmt::join(units, ","));
-    out.meaning = "multipliers of the rows A xi = b";
-    return out;
-  };
-  add(describe, lambda);
-  add(kReactionPower, power_);
 }
 
 void RunRecorder::finish(const Snapshot& last) {

@@ -11,6 +11,7 @@
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/run/record/result.hpp>
+#include <hamel/framework/run/record/state_columns.hpp>
 #include <hamel/framework/run/run/energy_balance.hpp>
 #include <hamel/framework/run/run/reactions.hpp>
 
@@ -38,16 +39,18 @@ class RunRecorder {
   void begin(const Snapshot& start);
   /// An event changed the state: what that did to the energy and the invariants is no error.
   void impact(const Snapshot& before, const Snapshot& after);
-  /// Begins the row of a state with what the kernel measured of it (the columns of
-  /// tools/README.md).
+  /// The measurements that a state carries.
   void take(const Snapshot& state);
-  /// Ends it with the equations of motion, the invariants and the exact motion.
+  /// Those by the equations of motion, the invariants and the exact motion, and the state's row
+  /// (the columns of tools/README.md).
   void compare(const Snapshot& state);
-  /// The columns of a row, after the first.
-  const std::vector<ColumnGroup>& columns() const { return columns_; }
+  /// The columns of a row.
+  const std::vector<ColumnGroup>& columns() const { return columns_.groups(); }
   /// The rows that are complete and were not dropped, one after the other. Where work is done the
   /// first rows wait.
-  std::span<const double> rows() const { return std::span(rows_).first(complete_ * width_); }
+  std::span<const double> rows() const {
+    return std::span(rows_).first(complete_ * columns_.size());
+  }
   void drop_rows();
   /// After the last state, a row or not: no row waits.
   void finish(const Snapshot& last);
@@ -57,20 +60,15 @@ class RunRecorder {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(all_, first_, energy_start_, time_start_, last_row_, width_, energy_error_, work_,
-            rows_, exact_lost_, notes_, pulls_, time_, power_, power_time_, second_work_,
-            second_power_, second_time_, odd_, start_configuration_, lambda_, balance_);
+    archive(all_, energy_start_, time_start_, last_row_, rows_, exact_lost_, notes_, pulls_, time_,
+            power_, power_time_, second_work_, second_power_, second_time_, odd_,
+            start_configuration_, lambda_, balance_);
   }
   /// A resumed run: the exact motion is followed to here through the times of the rows before.
   void follow_exact(double time);
 
  private:
-  void add(const Quantity& quantity, double value);
-  // group() describes the values, of the first row.
-  template <class Group>
-  void add(Group&& group, std::span<const double> values);
   void react(const Snapshot& state, bool start = false);
-  void add_reactions();
   void add_second(double power, double at);
   void look_at_reaction_work();
   void look_at_invariants(const Snapshot& state);
@@ -81,21 +79,19 @@ class RunRecorder {
 
   const SystemModel& system_;
   Start start_;
-  std::vector<ColumnGroup> columns_;
   std::vector<double> rows_;
-  std::size_t width_ = 0, complete_ = 0;
-  std::size_t energy_error_ = 0, work_ = 0;  // their columns
+  std::size_t complete_ = 0;  // rows
   std::vector<BalancedState> settled_;
   std::vector<double> start_configuration_;
   Measurements all_;
-  bool first_ = true, holonomic_ = false, all_holonomic_ = false;
+  bool all_holonomic_ = false;
   double energy_start_ = 0, time_start_ = 0, last_row_ = 0;
   EnergyBalance balance_;
+  StateColumns columns_;
   ExactFlow exact_;
   bool exact_lost_ = false;  // noted already
   std::vector<std::string> notes_;
-  std::vector<char> pulls_;            // of the contacts, noted already
-  std::vector<size_t> reaction_rows_;  // in the order of their columns
+  std::vector<char> pulls_;  // of the contacts, noted already
   // The multipliers lambda of A xi = b, from the continuous equations at each state, and their
   // power lambda . A v in the last step before it, A v recovered from the configurations
   // (Snapshot::constraint_rates) and lambda interpolated to the same time, Snapshot::time_offset

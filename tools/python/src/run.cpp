@@ -27,6 +27,9 @@ struct ByHand {
     if (current == nullptr) current = &run.state();
     return *current;
   }
+  const Snapshot& part(const StateParts& parts) {
+    return current != nullptr ? *current : run.state(parts);
+  }
 };
 
 class Alone {
@@ -248,14 +251,16 @@ void bind_run(nb::module_& m) {
           "time",
           [](ByHand& self) {
             const Alone alone(self);
-            return self.state().time;
+            return self.run.time();
           },
           "[s]")
       .def_prop_ro(
           "coordinates",
           [](ByHand& self) {
             const Alone alone(self);
-            return array(self.state().coordinates);
+            return array(
+                self.part({.element = false, .momentum = false, .energy = false, .measures = false})
+                    .coordinates);
           },
           nb::sig("def coordinates(self) -> numpy.typing.NDArray[numpy.float64]"),
           "of the element g")
@@ -263,7 +268,12 @@ void bind_run(nb::module_& m) {
           "velocity",
           [](ByHand& self) {
             const Alone alone(self);
-            return array(self.state().velocity);
+            return array(self.part({.coordinates = false,
+                                    .element = false,
+                                    .momentum = false,
+                                    .energy = false,
+                                    .measures = false})
+                             .velocity);
           },
           nb::sig("def velocity(self) -> numpy.typing.NDArray[numpy.float64]"),
           "nodal body velocity xi, shape (n,)")

@@ -1,0 +1,145 @@
+#include <hamel/framework/run/record/state_columns.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/system.hpp>
+#include <hamel/framework/run/record/measures.hpp>
+#include <hamel/framework/run/record/named_columns.hpp>
+
+namespace hamel {
+namespace {
+
+// The rows of one part together, those of the part that is named first at first: rear.reaction1 is
+// one of rear. Rows without a name are last.
+std::vector<std::size_t> by_parts(const std::vector<std::string>& reactions, std::size_t rows) {
+  const auto part = [&](std::size_t row) {
+    return reactions[row].substr(0, reactions[row].rfind('.'));
+  };
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < reactions.size(); ++i) {
+    std::size_t at = out.size();
+    while (at > 0 && part(out[at - 1]) != part(i)) --at;
+    out.insert(out.begin() + static_cast<long>(at > 0 ? at : out.size()), i);
+  }
+  for (std::size_t i = out.size(); i < rows; ++i) out.push_back(i);
+  return out;
+}
+
+ColumnGroup numbered(const char* name, const char* meaning, std::size_t count) {
+  ColumnGroup out{name, "", meaning, "", {}};
+  for (std::size_t i = 1; i <= count; ++i) out.columns.push_back(name + std::to_string(i));
+  return out;
+}
+
+std::vector<std::string> units_of(const std::vector<Component>& components, bool momentum) {
+  std::vector<std::string> out;
+  for (const Component& component : components)
+    out.push_back(momentum ? unit_of_momentum(component) : component.unit);
+  return out;
+}
+
+}  // namespace
+
+StateColumns::StateColumns(const SystemModel& system, const Has& has) {
+  const std::vector<Component> components = components_of(system);
+  add(Of::time, kTime);
+  add(Of::coordinate, element_columns(system), units_of_element(system.group));
+  const ColumnGroup velocities = velocity_columns(system);
+  add(Of::velocity, velocities, units_of(components, false));
+  add(Of::energy, kEnergy);
+  add(Of::energy_error, kEnergyError);
+  add(Of::constraint, kConstraint);
+  add(Of::group_defect, kGroupDefect);
+  add(Of::iterations, kIterations);
+  add(Of::residual, kResidual);
+  if (has.holonomic) add(Of::holonomic, kHolonomic);
+  ColumnGroup momenta = numbered("mu", "", static_cast<std::size_t>(system.group.dim));
+  momenta.meaning = fmt::format("nodal body momentum, of {}", fmt::join(system.rates, ","));
+  momenta.frame = velocities.frame;
+  add(Of::momentum, std::move(momenta), units_of(components, true));
+  if (has.work) add(Of::work, kWork);
+  if (has.reactions) {
+    const auto rows = static_cast<std::size_t>(system.mechanics->constraint_count());
+    const std::vector<std::size_t> order = by_parts(system.reactions, rows);
+    ColumnGroup group = numbered("lambda", "multipliers of the rows A xi = b", rows);
+    std::vector<std::string> units;
+    for (std::size_t i = 0; i < rows; ++i) {
+      if (i < system.reactions.size()) group.columns[i] = system.reactions[order[i]];
+      units.push_back(unit_of_reaction(system, static_cast<int>(order[i])));
+    }
+    add(Of::reaction, std::move(group), units, order);
+  }
+  if (has.reaction_power) add(Of::reaction_power, kReactionPower);
+  if (has.exact) {
+    add(Of::exact_error, kExactError);
+    add(Of::exact_velocity_error, kExactVelocityError);
+  }
+}
+
+void StateColumns::add(Of of, const Quantity& quantity) {
+  columns_.push_back({of, 0, quantity.name, quantity.unit});
+  groups_.push_back({quantity.name, quantity.unit, quantity.meaning, "", {quantity.name}});
+}
+
+void StateColumns::add(Of of, ColumnGroup group, const std::vector<std::string>& units,
+                       const std::vector<std::size_t>& places) {
+  for (std::size_t i = 0; i < group.columns.size(); ++i) {
+    columns_.push_back(
+        {of, places.empty() ? i : places[i], group.columns[i], i < units.size() ? units[i] : ""});
+  }
+  const bool known = std::ranges::any_of(units, [](const auto& unit) { return !unit.empty(); });
+  if (of != Of::reaction || known) group.unit = fmt::format("{}", fmt::join(units, ","));
+  groups_.push_back(std::move(group));
+}
+
+std::optional<std::size_t> StateColumns::find(Of of) const {
+  const auto it = std::ranges::find(columns_, of, &Column::of);
+  if (it == columns_.end()) return {};
+  return static_cast<std::size_t>(it - columns_.begin());
+}
+
+double StateColumns::value(std::size_t i, const Snapshot& state, const StateExtras& extras) const {
+  const Column& column = columns_[i];
+  switch (column.of) {
+    case Of::time: return state.time;
+    case Of::coordinate: return state.coordinates[column.place];
+    case Of::velocity: return state.velocity[column.place];
+    case Of::momentum: return state.momentum[column.place];
+    case Of::energy: return state.energy;
+    case Of::energy_error:
+      return extras.balance_error.value_or(energy_error(state.energy, extras.energy_start));
+    case Of::constraint: return state.constraint;
+    case Of::holonomic: return state.holonomic;
+    case Of::group_defect: return state.group_defect;
+    case Of::iterations: return static_cast<double>(state.iterations);
+    case Of::residual: return state.residual;
+    case Of::work: return extras.work;
+    case Of::reaction: return extras.reactions.empty() ? 0 : extras.reactions[column.place];
+    case Of::reaction_power: return extras.reaction_power;
+    case Of::exact_error: return extras.exact_error;
+    case Of::exact_velocity_error: return extras.exact_velocity_error;
+  }
+  return 0;
+}
+
+void StateColumns::require(Of of, StateParts& parts) {
+  switch (of) {
+    case Of::coordinate: parts.coordinates = true; break;
+    case Of::momentum: parts.momentum = true; break;
+    case Of::energy:
+    case Of::energy_error: parts.energy = true; break;
+    case Of::constraint:
+    case Of::holonomic:
+    case Of::group_defect:
+    case Of::iterations:
+    case Of::residual: parts.measures = true; break;
+    default: break;
+  }
+}
+
+}  // namespace hamel

@@ -1,0 +1,80 @@
+// The numbers of a state by name: columns of a run's rows, what an ensemble keeps, the variables of
+// formulas. One list of names, units and meanings; the value of each is found when it is asked for.
+// Not installed.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/io/row_file.hpp>
+#include <hamel/framework/loop/snapshot.hpp>
+#include <hamel/framework/mechanics/quantities.hpp>
+#include <hamel/framework/mechanics/system_model.hpp>
+
+namespace hamel {
+
+/// Numbers that are known beside a state.
+struct StateExtras {
+  double energy_start = 0;
+  std::span<const double> reactions = {};  // the multipliers of all rows
+  double reaction_power = 0;
+  double work = 0;
+  std::optional<double> balance_error = {};  // of the energy, where work is done
+  double exact_error = 0, exact_velocity_error = 0;
+};
+
+class StateColumns {
+ public:
+  enum class Of {
+    time,
+    coordinate,
+    velocity,
+    energy,
+    energy_error,
+    constraint,
+    group_defect,
+    iterations,
+    residual,
+    holonomic,
+    momentum,
+    work,
+    reaction,
+    reaction_power,
+    exact_error,
+    exact_velocity_error
+  };
+  /// Columns that not every system and every use has.
+  struct Has {
+    bool holonomic = false, work = false, reactions = false, reaction_power = false, exact = false;
+  };
+  StateColumns(const SystemModel& system, const Has& has);
+
+  std::size_t size() const { return columns_.size(); }
+  const std::vector<ColumnGroup>& groups() const { return groups_; }
+  const std::string& name(std::size_t i) const { return columns_[i].name; }
+  const std::string& unit(std::size_t i) const { return columns_[i].unit; }
+  Of of(std::size_t i) const { return columns_[i].of; }
+  /// The first column of that kind; none.
+  std::optional<std::size_t> find(Of of) const;
+  double value(std::size_t i, const Snapshot& state, const StateExtras& extras) const;
+  /// Adds the parts of a state that it needs.
+  static void require(Of of, StateParts& parts);
+
+ private:
+  struct Column {
+    Of of;
+    std::size_t place;  // within the vector
+    std::string name, unit;
+  };
+  void add(Of of, const Quantity& quantity);
+  // The columns of a group, in the order of these places; the unit of all where one is known.
+  void add(Of of, ColumnGroup group, const std::vector<std::string>& units,
+           const std::vector<std::size_t>& places = {});
+  std::vector<Column> columns_;
+  std::vector<ColumnGroup> groups_;
+};
+
+}  // namespace hamel
