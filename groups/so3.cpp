@@ -48,8 +48,9 @@ Mat<3, 3> SO3::rotation_from(const char* group, std::span<const double> values) 
   for (int i = 0; i < 9; ++i) g(i / 3, i % 3) = values[static_cast<std::size_t>(i)];
   const double error = defect(g);
   if (!(error <= 1e-6)) {
-    throw std::invalid_argument(std::string(group) + ": R11..R33 has max(|R^T R - I|, |det R - 1|) = " +
-                                to_text(error) + ", expected a rotation matrix (at most 1e-6)");
+    throw std::invalid_argument(std::string(group) +
+                                ": R11..R33 has max(|R^T R - I|, |det R - 1|) = " + to_text(error) +
+                                ", expected a rotation matrix (at most 1e-6)");
   }
   return error > 2e-15 ? normalise(normalise(g)) : g;
 }

@@ -249,9 +249,7 @@ const Snapshot& Driver::at(double t) {
   return row_;
 }
 
-double Driver::time() {
-  return result_.stopped_by_event ? result_.last.time : kernel().time();
-}
+double Driver::time() { return result_.stopped_by_event ? result_.last.time : kernel().time(); }
 
 const Snapshot& Driver::state(const StateParts& parts) {
   if (result_.stopped_by_event) return result_.last;

@@ -71,9 +71,7 @@ void Run::input(const std::string& name, double value) {
   seen(driver_, "input").input(name, value);
 }
 const Snapshot& Run::at(double t) { return seen(driver_, "at").at(t); }
-const Snapshot& Run::state(const StateParts& parts) {
-  return seen(driver_, "state").state(parts);
-}
+const Snapshot& Run::state(const StateParts& parts) { return seen(driver_, "state").state(parts); }
 double Run::time() { return seen(driver_, "time").time(); }
 const std::vector<EventMet>& Run::events() const { return seen(driver_, "events").events(); }
 bool Run::over() const { return seen(driver_, "over").over(); }
