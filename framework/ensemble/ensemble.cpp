@@ -11,8 +11,8 @@
 
 #include <hamel/framework/ensemble/collector.hpp>
 #include <hamel/framework/ensemble/lane_members.hpp>
-#include <hamel/framework/run/record/shards.hpp>
-#include <hamel/framework/run/run/workers.hpp>
+#include <hamel/framework/batch/shards.hpp>
+#include <hamel/framework/batch/workers.hpp>
 
 namespace hamel {
 namespace {

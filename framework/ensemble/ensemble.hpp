@@ -21,7 +21,7 @@
 #include <hamel/framework/io/export.hpp>
 #include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/names/config.hpp>
-#include <hamel/framework/run/record/shard.hpp>
+#include <hamel/framework/batch/shard.hpp>
 
 namespace hamel {
 

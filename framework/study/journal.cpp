@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/run/record/shards.hpp>
+#include <hamel/framework/batch/shards.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {

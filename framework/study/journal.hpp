@@ -1,10 +1,10 @@
-// The journal of a study (run/record/journal_file.hpp): a line for each reference, cell and timing.
+// The journal of a study (batch/journal_file.hpp): a line for each reference, cell and timing.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include <hamel/framework/run/record/journal_file.hpp>
+#include <hamel/framework/batch/journal_file.hpp>
 #include <hamel/framework/study/study.hpp>
 
 namespace hamel::study {

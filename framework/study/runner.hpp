@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include <hamel/framework/run/run/workers.hpp>
+#include <hamel/framework/batch/workers.hpp>
 #include <hamel/framework/study/journal.hpp>
 
 namespace hamel::study {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <memory>
 
-#include <hamel/framework/run/record/shards.hpp>
+#include <hamel/framework/batch/shards.hpp>
 #include <hamel/framework/study/parts.hpp>
 #include <hamel/framework/study/runner.hpp>
 

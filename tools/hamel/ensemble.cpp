@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/ensemble/ensemble.hpp>
-#include <hamel/framework/run/record/shards.hpp>
+#include <hamel/framework/batch/shards.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"

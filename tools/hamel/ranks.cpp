@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/run/record/shards.hpp>
+#include <hamel/framework/batch/shards.hpp>
 
 #include "interrupt.hpp"
 #include "screen.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <hamel/framework/run/record/shard.hpp>
+#include <hamel/framework/batch/shard.hpp>
 
 #include "commands.hpp"
 

@@ -1,4 +1,4 @@
-#include <hamel/framework/run/record/journal_file.hpp>
+#include <hamel/framework/batch/journal_file.hpp>
 
 #include <sys/file.h>
 #include <unistd.h>

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <hamel/framework/io/errors.hpp>
-#include <hamel/framework/run/record/journal_file.hpp>
-#include <hamel/framework/run/record/shard.hpp>
+#include <hamel/framework/batch/journal_file.hpp>
+#include <hamel/framework/batch/shard.hpp>
 
 namespace hamel {
 

@@ -1,4 +1,4 @@
-#include <hamel/framework/run/record/shards.hpp>
+#include <hamel/framework/batch/shards.hpp>
 
 #include <fcntl.h>
 #include <sys/file.h>
