@@ -45,6 +45,7 @@ JournalSubject subject_of_part(JournalSubject whole, const Shard& part) {
 }
 
 long first_piece(const Shard& part, long pieces) { return pieces * (part.index - 1) / part.count; }
+long behind(const Shard& part, long pieces) { return pieces * part.index / part.count; }
 
 namespace {
 

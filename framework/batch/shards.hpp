@@ -7,20 +7,19 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/batch/journal_file.hpp>
 #include <hamel/framework/batch/shard.hpp>
+#include <hamel/framework/io/errors.hpp>
 
 namespace hamel {
 
-/// ConfigError where it is no part, or one of more than 100,000.
-Shard checked(const Shard& part);
 /// "journal.jsonl" of the whole, "journal-3-of-16.jsonl" of a part.
 std::string journal_name(const Shard& part);
 /// The subject of a part's journal, made from that of the whole.
 JournalSubject subject_of_part(JournalSubject whole, const Shard& part);
-/// Of so many pieces the first one of a part; of the part behind the last one, their number.
+/// Of so many pieces the first one of a part, and the first one behind it.
 long first_piece(const Shard& part, long pieces);
+long behind(const Shard& part, long pieces);
 
 /// Parts that another process may still write.
 struct HAMEL_API MissingParts : ConfigError {

@@ -118,8 +118,8 @@ bool Collector::in_range(const Piece& piece, long count) const {
 void Collector::take(const Piece& piece) {
   const long number = piece.first / kPiece, count = piece.count(width_);
   const long at = piece.first - result_.first;
-  const bool mine =
-      piece.first % kPiece == 0 && number >= first_piece_ && number < first_piece_ + pieces();
+  const bool mine = piece.first % kPiece == 0 && number >= first_piece_ &&
+                    number < first_piece_ + static_cast<long>(there_.size());
   if (!mine || piece.rows.size() != static_cast<size_t>(count) * width_ ||
       count != std::min(kPiece, result_.members - at) || !in_range(piece, count))
     throw std::runtime_error("no piece of this ensemble");
@@ -193,7 +193,6 @@ void Collector::fill_varied() {
 }
 
 void Collector::finish() {
-  result_.complete = result_.done == result_.members;
   name_failures();
   fill_varied();
   std::vector<std::span<const double>> kept;

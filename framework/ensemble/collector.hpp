@@ -36,8 +36,6 @@ class Collector {
 
   /// Is this piece, by its number in the whole, there?
   bool has(long piece) const { return there_[static_cast<size_t>(piece - first_piece_)] != 0; }
-  long first_piece() const { return first_piece_; }
-  long pieces() const { return static_cast<long>(there_.size()); }
   /// Different pieces may be taken by different threads at once. std::runtime_error for one that is
   /// no piece of this shard.
   void take(const Piece& piece);
@@ -45,7 +43,6 @@ class Collector {
   void finish();
 
  private:
-  void begin_chunk_statistics();
   bool in_range(const Piece& piece, long count) const;
   void follow_chunk(const Piece& piece);
   void name_failures();

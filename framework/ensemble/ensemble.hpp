@@ -10,18 +10,16 @@
 // statistics: framework/ensemble/README.md.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/batch/batch.hpp>
 #include <hamel/framework/io/export.hpp>
 #include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/names/config.hpp>
-#include <hamel/framework/batch/shard.hpp>
 
 namespace hamel {
 
@@ -140,10 +138,10 @@ struct StatisticsAt {
   std::vector<std::pair<std::string, Moments>> quantities;
 };
 
-struct HAMEL_API EnsembleResult {
+struct HAMEL_API EnsembleResult : BatchResult {
   EnsembleConfig config;
-  Shard shard;
   long first = 0, members = 0;  // those of the shard
+  long done = 0;                // finished members
   /// A row for each member: what is varied, what is kept (NaN: failed, or no such event), the
   /// class, and `failure`, 0 or the number of its reason.
   Table table;
@@ -155,12 +153,6 @@ struct HAMEL_API EnsembleResult {
   std::vector<long> class_counts;
   Covariance covariance;  // of the kept columns
   std::vector<StatisticsAt> statistics;
-  std::vector<std::string> notes;  // lines of the journal that were damaged
-  bool complete = false;
-  long resumed = 0, done = 0;  // members taken over from the journal; finished in all
-  int threads = 1;
-  long shards = 1;     // that were merged
-  double seconds = 0;  // of this session
 
   /// The record as JSON: the same text for any number of threads and shards but for the last three
   /// members.
@@ -178,7 +170,7 @@ struct Member {
   MemberFailure failure;
 };
 
-class HAMEL_API Ensemble {
+class HAMEL_API Ensemble : public Batch<Ensemble> {
  public:
   /// Throws ConfigError with everything that is wrong.
   Ensemble(const Registry& registry, EnsembleConfig config);
@@ -186,21 +178,9 @@ class HAMEL_API Ensemble {
   const EnsembleConfig& config() const { return config_; }
   /// The number of members.
   long members() const { return config_.members; }
-  /// How many run at the same time; 0: as many as there are cores.
-  Ensemble& threads(int count);
   /// Several members at once where lanes are compiled for the system (systems/lanes.hpp): the same
   /// bytes in less time, and the default.
   Ensemble& lanes(bool use);
-  /// Keeps a journal there and resumes from an existing one.
-  Ensemble& folder(std::string path);
-  /// Runs a part alone, whose journal merge() reads.
-  Ensemble& shard(Shard part);
-  /// Forgets the journal that is there.
-  Ensemble& fresh(bool forget = true);
-  /// Called now and then, from one thread at a time, with the fraction of the members done.
-  Ensemble& progress(std::function<void(double)> report);
-  /// Polled in each member: true abandons what is in flight and returns.
-  Ensemble& stop(const std::atomic<bool>* flag);
   /// Throws ConfigError before anything runs: a folder that cannot be written, another ensemble's
   /// journal.
   EnsembleResult run() const;
@@ -215,12 +195,7 @@ class HAMEL_API Ensemble {
 
   const Registry* registry_;
   EnsembleConfig config_;
-  int threads_ = 0;
-  std::string folder_;
-  Shard shard_;
-  bool fresh_ = false, lanes_ = true;
-  std::function<void(double)> progress_;
-  const std::atomic<bool>* stop_ = nullptr;
+  bool lanes_ = true;
 };
 
 }  // namespace hamel

@@ -56,10 +56,13 @@ void read_data(EnsembleConfig& config) {
 }  // namespace ensemble
 
 std::vector<std::string> EnsembleConfig::mistakes(const Registry& registry) const {
-  EnsembleConfig copy = *this;
-  std::vector<std::string> out;
-  ensemble::Plan(registry, copy, out);
-  return out;
+  try {
+    EnsembleConfig copy = *this;
+    ensemble::Plan(registry, copy);
+  } catch (const ConfigError& error) {
+    return error.mistakes();
+  }
+  return {};
 }
 
 std::vector<std::string> EnsembleConfig::fingerprint() const {

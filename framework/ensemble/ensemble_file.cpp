@@ -271,9 +271,7 @@ EnsembleConfig parse_ensemble(const std::string& text, const std::string& origin
   EnsembleConfig config = reader.file(text);
   if (!reader.mistakes().empty()) throw ConfigError(reader.mistakes());
   ensemble::read_data(config);
-  std::vector<std::string> mistakes;
-  ensemble::Plan(registry, config, mistakes);
-  if (!mistakes.empty()) throw ConfigError(mistakes);
+  ensemble::Plan(registry, config);
   return config;
 }
 

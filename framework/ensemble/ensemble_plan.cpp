@@ -25,8 +25,13 @@ void add_placed(const EnsembleConfig& config, const std::vector<std::string>& fo
 
 }  // namespace
 
-Plan::Plan(const Registry& given, EnsembleConfig& from, std::vector<std::string>& mistakes)
-    : registry(given), config(from) {
+Plan::Plan(const Registry& given, EnsembleConfig& from) : registry(given), config(from) {
+  std::vector<std::string> mistakes;
+  complete(from, mistakes);
+  if (!mistakes.empty()) throw ConfigError(mistakes);
+}
+
+void Plan::complete(EnsembleConfig& from, std::vector<std::string>& mistakes) {
   if (from.keep.empty())
     mistakes.push_back(placed(config, "keep", "keep: nothing is kept of a member"));
   if (config.run.check)

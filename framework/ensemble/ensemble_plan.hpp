@@ -22,8 +22,8 @@ void read_data(EnsembleConfig& config);
 /// What all threads share: an ensemble without mistakes.
 class Plan {
  public:
-  /// Completes the configuration; adds to mistakes.
-  Plan(const Registry& registry, EnsembleConfig& config, std::vector<std::string>& mistakes);
+  /// Completes the configuration. ConfigError with all mistakes.
+  Plan(const Registry& registry, EnsembleConfig& config);
 
   const Registry& registry;
   const EnsembleConfig& config;
@@ -46,6 +46,7 @@ class Plan {
   bool varies_start() const;
 
  private:
+  void complete(EnsembleConfig& from, std::vector<std::string>& mistakes);
   bool give_inputs(const SystemModel& system);
   const LaneInfo* find_lanes(const Run& run) const;
   void check_trajectories(std::vector<std::string>& mistakes) const;

@@ -2,27 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <stdexcept>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/batch/shards.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kName = "journal.jsonl";
-
-JournalSubject subject(const StudyConfig& config) {
-  JournalSubject out{"study", "cells", {}};
-  std::istringstream in(config.fingerprint());
-  for (std::string line; std::getline(in, line);) out.lines.push_back(line);
-  return out;
-}
 
 // The numbers that a run leaves, by name, for writing and reading alike.
 template <class Metrics, class Visit>
@@ -86,6 +75,8 @@ void take_reference(const Json& line, const std::vector<Shape>& shapes, StudyRes
   result.references[system] = std::move(r);
 }
 
+}  // namespace
+
 void take_line(const std::string& text, const std::vector<Shape>& shapes, StudyResult& result) {
   const Json line = Json::parse(text);
   if (line.contains("reference")) return take_reference(line, shapes, result);
@@ -94,8 +85,7 @@ void take_line(const std::string& text, const std::vector<Shape>& shapes, StudyR
   expect(result.cells[cell].runs(), "no cell that is run");
   if (line.contains("round")) {
     const auto round = index_of(line["round"]);
-    expect(round < static_cast<size_t>(result.config.repeats), "no such round");
-    mine.nanoseconds.resize(static_cast<size_t>(result.config.repeats), kPending);
+    expect(round < mine.nanoseconds.size(), "no such round");
     take(line.at("ns"), mine.nanoseconds[round]);
     return;
   }
@@ -110,8 +100,6 @@ void take_line(const std::string& text, const std::vector<Shape>& shapes, StudyR
   mine = std::move(m);
 }
 
-}  // namespace
-
 std::vector<Shape> shapes(const Registry& registry, const StudyConfig& config) {
   std::vector<Shape> out;
   for (const StudySystem& system : config.systems) {
@@ -122,12 +110,6 @@ std::vector<Shape> shapes(const Registry& registry, const StudyConfig& config) {
   return out;
 }
 
-std::vector<std::string> read_lines(const std::string& lines, const std::vector<Shape>& shapes,
-                                    StudyResult& result) {
-  std::istringstream in(lines);
-  return read_sealed(in, kName, [&](const std::string& line) { take_line(line, shapes, result); });
-}
-
 bool finished_cell(const StudyResult& result, size_t cell) {
   const StudyMetrics& m = result.metrics[cell];
   const auto rounds = static_cast<size_t>(result.config.repeats);
@@ -136,48 +118,21 @@ bool finished_cell(const StudyResult& result, size_t cell) {
          std::count(m.nanoseconds.begin(), m.nanoseconds.end(), kPending) == 0;
 }
 
-std::vector<std::string> join(const std::string& folder, long count,
-                              const std::vector<Shape>& shapes, StudyResult& result) {
-  return join_shards(
-      folder, count, subject(result.config),
-      [&](const std::string& line) { take_line(line, shapes, result); },
-      [&](const Shard& part) -> std::string {
-        result.shard = part;
-        long done = 0, all = 0;
-        for (size_t i = 0; i < result.cells.size(); ++i) {
-          if (!result.runs(i)) continue;
-          ++all;
-          done += finished_cell(result, i) ? 1 : 0;
-        }
-        result.shard = {};
-        return done == all ? "" : fmt::format("{} of {} cells", done, all);
-      });
+std::string line_of(size_t system, const StudyReference& reference) {
+  Json line = {{"reference", system}, {"kind", reference.kind}};
+  members(reference, [&](const char* name, const auto& x) { line[name] = json_of(x); });
+  return line.dump();
 }
 
-Journal::Journal(const std::string& folder, const StudyConfig& config, const Shard& part,
-                 bool fresh)
-    : file_(folder, journal_name(part), subject_of_part(subject(config), part), fresh) {}
-
-std::vector<std::string> Journal::read(const std::vector<Shape>& shapes,
-                                       StudyResult& result) const {
-  return file_.read([&](const std::string& line) { take_line(line, shapes, result); });
-}
-
-void Journal::measured(size_t cell, const StudyMetrics& metrics) {
+std::string line_of(size_t cell, const StudyMetrics& metrics) {
   Json line = {{"cell", cell}, {"ok", metrics.ok}, {"reason", metrics.reason}};
   numbers(metrics, [&](const char* name, const auto& x) { line[name] = json_of(x); });
   line["final"] = json_of(metrics.final);
-  file_.append(line.dump());
+  return line.dump();
 }
 
-void Journal::referred(size_t system, const StudyReference& reference) {
-  Json line = {{"reference", system}, {"kind", reference.kind}};
-  members(reference, [&](const char* name, const auto& x) { line[name] = json_of(x); });
-  file_.append(line.dump());
-}
-
-void Journal::timed(size_t cell, size_t round, double nanoseconds) {
-  file_.append(Json{{"cell", cell}, {"round", round}, {"ns", json_of(nanoseconds)}}.dump());
+std::string line_of(size_t cell, size_t round, double nanoseconds) {
+  return Json{{"cell", cell}, {"round", round}, {"ns", json_of(nanoseconds)}}.dump();
 }
 
 }  // namespace hamel::study

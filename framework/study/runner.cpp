@@ -1,144 +1,120 @@
 #include <hamel/framework/study/runner.hpp>
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel::study {
 
-Runner::Runner(const Registry& registry, StudyResult& result, Journal* journal,
-               std::function<void(double)> progress, const std::atomic<bool>* stop)
-    : registry_(registry),
+Runner::Runner(const Registry& registry, const BatchSettings& settings, StudyResult& result)
+    : Engine(settings, result),
+      registry_(registry),
       result_(result),
-      journal_(journal),
-      progress_(std::move(progress)),
-      stop_(stop) {}
+      shapes_(shapes(registry, result.config)) {}
 
-// The pieces that the result has not yet, and what part of all steps is done.
-void Runner::list() {
-  const auto rounds = static_cast<size_t>(result_.config.repeats);
-  references_.clear();
-  ready_.clear();
-  timings_.clear();
-  waiting_.assign(result_.config.systems.size(), {});
-  std::vector<bool> used(waiting_.size());
-  long left = 0;
-  all_ = 0;
+size_t Runner::number_of(const Work& work) const {
+  if (work.kind == Kind::reference) return work.index;
+  const size_t round = work.kind == Kind::measure ? 0 : 1 + work.round;
+  return result_.references.size() + round * result_.cells.size() + work.index;
+}
+
+Runner::Work Runner::work_of(size_t number) const {
+  const size_t systems = result_.references.size(), cells = result_.cells.size();
+  if (number < systems) return {Kind::reference, number};
+  const size_t cell = (number - systems) % cells, round = (number - systems) / cells;
+  if (round == 0) return {Kind::measure, cell};
+  return {Kind::time, cell, round - 1};
+}
+
+JournalSubject Runner::subject() const {
+  JournalSubject out{"study", "cells", {}};
+  std::istringstream in(result_.config.fingerprint());
+  for (std::string line; std::getline(in, line);) out.lines.push_back(line);
+  return out;
+}
+
+void Runner::take(const std::string& line) { take_line(line, shapes_, result_); }
+
+std::string Runner::lacks(const Shard& part) const {
+  long done = 0, all = 0;
   for (size_t i = 0; i < result_.cells.size(); ++i) {
-    const StudyCell& cell = result_.cells[i];
-    if (!result_.runs(i)) continue;
-    all_ += static_cast<long>(rounds + 1) * expected_steps(cell.config());
-    const bool there = !result_.references[cell.system].times.empty();
-    if (!used[cell.system]) {
-      used[cell.system] = true;
-      const long steps = steps_of_reference(cell.system);
-      all_ += steps;
-      if (!there) {
-        references_.push_back({Kind::reference, cell.system});
-        left += steps;
-      }
-    }
-    if (result_.metrics[i].done) continue;
-    (there ? ready_ : waiting_[cell.system]).push_back({Kind::measure, i});
-    left += expected_steps(cell.config());
+    if (!result_.runs_in(part, i)) continue;
+    ++all;
+    done += finished_cell(result_, i) ? 1 : 0;
   }
-  for (size_t round = 0; round < rounds; ++round) {
-    for (size_t i = 0; i < result_.cells.size(); ++i) {
-      if (!result_.runs(i) || result_.metrics[i].nanoseconds[round] != kPending) continue;
-      timings_.push_back({Kind::time, i, round});
-      left += expected_steps(result_.cells[i].config());
-    }
-  }
-  finished_ = all_ - left;
+  return done == all ? "" : fmt::format("{} of {} cells", done, all);
 }
 
-bool Runner::complete() const {
+// References, then cells, each after its reference, then timings.
+Engine::Pieces Runner::pieces() const {
+  Pieces out;
+  const auto rounds = static_cast<size_t>(result_.config.repeats);
+  std::vector<size_t> mine;
   for (size_t i = 0; i < result_.cells.size(); ++i)
-    if (result_.runs(i) && !finished_cell(result_, i)) return false;
-  return true;
-}
-
-void Runner::run() {
-  list();
-  finished(0);
-  workers_.run(result_.threads, [this](int) { work(); });
-}
-
-// References first, then cells whose reference is there, then timings. Nothing: no more, or
-// stopped.
-std::optional<Runner::Piece> Runner::next() {
-  std::unique_lock lock(mutex_);
-  while (!stopped(stop_) && !workers_.failed()) {
-    for (auto* queue : {&references_, &ready_, &timings_}) {
-      if (queue->empty()) continue;
-      const Piece piece = queue->front();
-      queue->pop_front();
-      if (piece.kind == Kind::reference) ++in_flight_;
-      return piece;
-    }
-    if (in_flight_ == 0) break;
-    changed_.wait(lock);
+    if (result_.runs(i)) mine.push_back(i);
+  const auto add = [&](const Work& work, bool there, long steps, size_t after = kNone) {
+    out.all += steps;
+    if (!there) out.left.push_back({number_of(work), steps, after});
+  };
+  std::vector<char> used(result_.references.size());
+  for (const size_t i : mine) used[result_.cells[i].system] = 1;
+  std::vector<size_t> made(used.size(), kNone);  // where in the list
+  for (size_t i = 0; i < used.size(); ++i) {
+    if (used[i] == 0) continue;
+    const bool there = !result_.references[i].times.empty();
+    if (!there) made[i] = out.left.size();
+    add({Kind::reference, i}, there,
+        reference_steps(registry_, result_.config, result_.config.systems[i]));
   }
-  return {};
-}
-
-void Runner::work() {
-  while (const auto piece = next()) {
-    bool good = false;
-    try {
-      good = done(*piece);
-    } catch (...) {
-      workers_.fail(std::current_exception());
-    }
-    if (piece->kind == Kind::reference) {
-      const std::lock_guard lock(mutex_);
-      --in_flight_;
-      if (good)
-        ready_.insert(ready_.end(), waiting_[piece->index].begin(), waiting_[piece->index].end());
-      changed_.notify_all();
-    }
-    if (!good) return;
+  std::vector<long> steps;
+  for (const size_t i : mine) {
+    steps.push_back(expected_steps(result_.cells[i].config()));
+    const bool there = result_.metrics[i].done;
+    out.resumed += there ? 1 : 0;
+    add({Kind::measure, i}, there, steps.back(), made[result_.cells[i].system]);
   }
+  for (size_t round = 0; round < rounds; ++round)
+    for (size_t k = 0; k < mine.size(); ++k)
+      add({Kind::time, mine[k], round}, result_.metrics[mine[k]].nanoseconds[round] != kPending,
+          steps[k]);
+  return out;
 }
 
-long Runner::steps_of_reference(size_t system) const {
-  return reference_steps(registry_, result_.config, result_.config.systems[system]);
+Engine::Worker Runner::worker() {
+  return [this](size_t number, const Counted& counted) { return does(work_of(number), counted); };
 }
 
-// False: stopped on the way.
-bool Runner::done(const Piece& piece) {
-  if (piece.kind == Kind::reference) return make_reference(piece.index);
-  if (!(piece.kind == Kind::measure ? measure(piece.index) : time(piece.index, piece.round)))
-    return false;
-  finished(expected_steps(result_.cells[piece.index].config()));
-  return true;
+bool Runner::does(const Work& work, const Counted& counted) {
+  switch (work.kind) {
+    case Kind::reference: return make_reference(work.index, counted);
+    case Kind::measure: return measure(work.index);
+    case Kind::time: return time(work.index, work.round);
+  }
+  return false;
 }
 
-bool Runner::make_reference(size_t system) {
+bool Runner::make_reference(size_t system, const Counted& counted) {
   const auto cell = std::find_if(
       result_.cells.begin(), result_.cells.end(),
       [&](const StudyCell& candidate) { return candidate.runs() && candidate.system == system; });
-  long left = steps_of_reference(system);  // an estimate: no more than these are counted
-  const auto stepped = [&](long steps) {
-    finished(std::min(steps, left));
-    left -= std::min(steps, left);
-  };
   StudyReference made = study::reference(registry_, result_.config, result_.config.systems[system],
-                                         cell->config(), stepped, stop_);
+                                         cell->config(), counted, stop());
   if (made.times.empty()) return false;
-  if (journal_ != nullptr) journal_->referred(system, made);
-  finished(left);
-  result_.references[system] = std::move(made);  // not read before work() publishes it
+  keep([&] { return line_of(system, made); });
+  result_.references[system] = std::move(made);  // read by pieces that begin after this one
   return true;
 }
 
 bool Runner::measure(size_t cell) {
   const size_t system = result_.cells[cell].system;
   StudyMetrics measured = study::measure(registry_, result_.config.systems[system],
-                                         result_.cells[cell], result_.references[system], stop_);
+                                         result_.cells[cell], result_.references[system], stop());
   if (!measured.done) return false;
-  if (journal_ != nullptr) journal_->measured(cell, measured);
+  keep([&] { return line_of(cell, measured); });
   const std::lock_guard lock(mutex_);  // the cell may be timed at the same time
   StudyMetrics& mine = result_.metrics[cell];
   measured.nanoseconds = std::move(mine.nanoseconds);
@@ -148,19 +124,19 @@ bool Runner::measure(size_t cell) {
 
 bool Runner::time(size_t cell, size_t round) {
   const double ns = time_per_step(registry_, result_.config.systems[result_.cells[cell].system],
-                                  result_.cells[cell], stop_);
-  if (stopped(stop_)) return false;
-  if (journal_ != nullptr) journal_->timed(cell, round, ns);
+                                  result_.cells[cell], stop());
+  if (stopped()) return false;
+  keep([&] { return line_of(cell, round, ns); });
   const std::lock_guard lock(mutex_);
   result_.metrics[cell].nanoseconds[round] = ns;
   return true;
 }
 
-void Runner::finished(long steps) {
-  finished_ += steps;
-  const std::unique_lock lock(reporting_, std::try_to_lock);
-  if (progress_ && lock)
-    progress_(static_cast<double>(finished_) / static_cast<double>(std::max(all_, 1L)));
+void Runner::finish() {
+  std::vector<std::vector<bool>> angles;
+  for (const StudySystem& system : result_.config.systems)
+    angles.push_back(angle_columns(model(registry_, system).group));
+  compare(result_.config, result_.cells, angles, result_.references, result_.metrics);
 }
 
 }  // namespace hamel::study

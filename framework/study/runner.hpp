@@ -1,66 +1,50 @@
-// The threads of a study: references, cells and rounds of timings, each piece of work taken by the
-// next thread that is free. The yield of a piece depends on its system or cell alone, so the number
-// of threads changes nothing but the times.
+// A study as pieces of the engine (batch/engine.hpp): references, cells and rounds of timings, each
+// of which becomes a line of the journal. The yield of a piece depends on its system or cell alone,
+// so the number of threads changes nothing but the times.
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
-#include <deque>
 #include <functional>
 #include <mutex>
-#include <optional>
+#include <string>
 #include <vector>
 
-#include <hamel/framework/batch/workers.hpp>
+#include <hamel/framework/batch/engine.hpp>
 #include <hamel/framework/study/journal.hpp>
 
 namespace hamel::study {
 
-class Runner {
+class Runner : public Engine {
  public:
-  /// journal: null for none.
-  Runner(const Registry& registry, StudyResult& result, Journal* journal,
-         std::function<void(double)> progress, const std::atomic<bool>* stop);
-
-  /// Does what the result has not yet; what a piece threw is thrown here.
-  void run();
-  /// Whether nothing is left to do.
-  bool complete() const;
+  /// result: with all cells, and nothing measured.
+  Runner(const Registry& registry, const BatchSettings& settings, StudyResult& result);
 
  private:
   enum class Kind { reference, measure, time };
-  struct Piece {
+  // A piece by its number: references first, then cells, then timings.
+  struct Work {
     Kind kind;
     size_t index;  // of the system, or of the cell
     size_t round = 0;
   };
+  size_t number_of(const Work& work) const;
+  Work work_of(size_t number) const;
 
-  void list();
-  std::optional<Piece> next();
-  void work();
-  bool done(const Piece& piece);
-  long steps_of_reference(size_t system) const;
-  bool make_reference(size_t system);
+  JournalSubject subject() const override;
+  void take(const std::string& line) override;
+  std::string lacks(const Shard& part) const override;
+  Pieces pieces() const override;
+  Worker worker() override;
+  void finish() override;
+
+  bool does(const Work& work, const Counted& counted);
+  bool make_reference(size_t system, const Counted& counted);
   bool measure(size_t cell);
   bool time(size_t cell, size_t round);
-  void finished(long steps);
 
   const Registry& registry_;
   StudyResult& result_;
-  Journal* journal_;
-  std::function<void(double)> progress_;
-  const std::atomic<bool>* stop_;
-
-  std::mutex mutex_;  // of the queues and of the results
-  std::condition_variable changed_;
-  std::deque<Piece> references_, ready_, timings_;
-  std::vector<std::deque<Piece>> waiting_;  // cells of each system whose reference is not there
-  size_t in_flight_ = 0;                    // references
-  Workers workers_;
-
-  std::mutex reporting_;
-  long all_ = 0;
-  std::atomic<long> finished_ = 0;
+  std::vector<Shape> shapes_;
+  std::mutex mutex_;  // of the metrics
 };
 
 }  // namespace hamel::study

@@ -10,8 +10,6 @@
 // alike. The measured quantities and their sources: framework/study/README.md.
 #pragma once
 
-#include <atomic>
-#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <map>
@@ -19,10 +17,10 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/batch/batch.hpp>
 #include <hamel/framework/io/export.hpp>
 #include <hamel/framework/io/table.hpp>
 #include <hamel/framework/run/names/config.hpp>
-#include <hamel/framework/batch/shard.hpp>
 
 namespace hamel {
 
@@ -195,21 +193,15 @@ struct StudyReference {
   std::vector<std::vector<double>> coordinates, velocities;
 };
 
-struct HAMEL_API StudyResult {
+struct HAMEL_API StudyResult : BatchResult {
   StudyConfig config;
   StudyCells cells;
   std::vector<StudyMetrics> metrics;       // one for each cell; not done where the cell is skipped
   std::vector<StudyReference> references;  // one for each system
-  std::vector<std::string> notes;          // lines of the journal that were damaged
-  bool complete = false;
-  size_t resumed = 0;  // cells taken over from the journal, references not counted
-  Shard shard;         // the cells of this part alone
-  long shards = 1;     // that were merged
-  int threads = 1;
-  double seconds = 0;  // of this session
 
-  /// Is this cell run, and one of the part?
-  bool runs(size_t cell) const;
+  /// Is this cell run, and one of the shard?
+  bool runs(size_t cell) const { return runs_in(shard, cell); }
+  bool runs_in(const Shard& part, size_t cell) const;
   /// One row per cell, axes and metrics as columns.
   Table table() const;
   /// Versions, compiler, flags, host, git, counts and the study file, as JSON.
@@ -218,26 +210,13 @@ struct HAMEL_API StudyResult {
   void write(const std::string& folder) const;
 };
 
-class HAMEL_API Study {
+class HAMEL_API Study : public Batch<Study> {
  public:
   /// Throws ConfigError with everything that is wrong.
   Study(const Registry& registry, StudyConfig config);
 
   const StudyConfig& config() const { return config_; }
   const StudyCells& cells() const { return cells_; }
-  /// How many run at the same time; 0: as many as there are cores.
-  Study& threads(int count);
-  /// Keeps a journal there and resumes from an existing one.
-  Study& folder(std::string path);
-  /// Runs a part alone, whose journal merge() reads; its references too.
-  Study& shard(Shard part);
-  /// Forgets the journal that is there.
-  Study& fresh(bool forget = true);
-  /// Called now and then, from one thread at a time, with the fraction of the work done, references
-  /// too.
-  Study& progress(std::function<void(double)> report);
-  /// Polled every several hundred steps: true abandons what is in flight and returns.
-  Study& stop(const std::atomic<bool>* flag);
   /// Throws ConfigError before anything runs: a folder that cannot be written, another study's
   /// journal.
   StudyResult run() const;
@@ -247,18 +226,10 @@ class HAMEL_API Study {
 
  private:
   StudyResult begun(Shard part) const;
-  void begin_metrics(StudyResult& result) const;
-  void compare(StudyResult& result) const;
 
   const Registry* registry_;
   StudyConfig config_;
   StudyCells cells_;
-  int threads_ = 0;
-  std::string folder_;
-  Shard shard_;
-  bool fresh_ = false;
-  std::function<void(double)> progress_;
-  const std::atomic<bool>* stop_ = nullptr;
 };
 
 }  // namespace hamel

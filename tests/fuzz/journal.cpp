@@ -2,6 +2,7 @@
 // is given the checksums that it lacks, so that what follows them is reached.
 #include <sstream>
 
+#include <hamel/framework/batch/journal_file.hpp>
 #include <hamel/framework/study/journal.hpp>
 #include <hamel/framework/study/parts.hpp>
 
@@ -33,15 +34,17 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (text.starts_with('!')) {
     std::istringstream in(text.substr(1));
     text.clear();
-    for (std::string line; std::getline(in, line);) text += study::sealed(line) + "\n";
+    for (std::string line; std::getline(in, line);) text += sealed(line) + "\n";
   }
   StudyResult result;
   result.config = config;
   result.cells = cells;
   result.metrics.resize(cells.size());
-  result.references.resize(config.systems.size());
-  study::read_lines(text, shapes, result);
   for (StudyMetrics& m : result.metrics) m.nanoseconds.resize(2, study::kPending);
+  result.references.resize(config.systems.size());
+  std::istringstream lines(text);
+  read_sealed(lines, "journal.jsonl",
+              [&](const std::string& line) { study::take_line(line, shapes, result); });
   study::compare(config, cells, angles, result.references, result.metrics);
   fuzz::expect(result.table().rows() == cells.size(), "a row for each cell");
   return 0;

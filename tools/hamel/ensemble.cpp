@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/framework/batch/shards.hpp>
+#include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/batch/shards.hpp>
+#include <hamel/framework/io/errors.hpp>
 
 #include "interrupt.hpp"
 #include "screen.hpp"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/study/journal.hpp>
+#include <hamel/framework/batch/journal_file.hpp>
 
 #include "studies.hpp"
 
@@ -78,7 +78,7 @@ TEST_F(StudyJournal, LengthsAndIndicesAreChecked) {
     Json line = Json::parse(lines[i]);
     line.erase("sum");
     change(line);
-    lines[i] = study::sealed(line.dump());
+    lines[i] = sealed(line.dump());
     const StudyResult result = resumed(lines);
     EXPECT_EQ(result.notes.size(), 1u) << lines[i];
     expect_equal(result);

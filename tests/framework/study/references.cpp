@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <hamel/framework/study/journal.hpp>
+#include <hamel/framework/batch/journal_file.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 #include "studies.hpp"
@@ -127,7 +127,7 @@ TEST(StudyReferences, AreKept) {
   for (std::string line; std::getline(in, line);) {
     if (const size_t at = line.find("converged: lift"); at != std::string::npos) {
       line.replace(at, 15, "converged: kept");
-      line = study::sealed(line.substr(0, line.rfind(",\"sum\"")) + "}");
+      line = sealed(line.substr(0, line.rfind(",\"sum\"")) + "}");
     }
     journal.push_back(line);
   }

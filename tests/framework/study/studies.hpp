@@ -1,13 +1,14 @@
 // Studies for the tests of studies: Suslov's body with a full inertia, in three steps.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <hamel/hamel.hpp>
+
+#include "../temporary_folder.hpp"
 
 namespace hamel::test {
 
@@ -59,22 +60,5 @@ inline StudyConfig forgetful() {
   config.systems = {{.label = "forgetful", .name = "forgetful", .start = kFull.start}};
   return config;
 }
-
-/// A temporary folder.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    path_ = (std::filesystem::temp_directory_path() / "hamel_study_XXXXXX").string();
-    EXPECT_NE(mkdtemp(path_.data()), nullptr);
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 }  // namespace hamel::test

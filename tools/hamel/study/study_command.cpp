@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/batch/shards.hpp>
+#include <hamel/framework/run/record/result.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
