@@ -98,7 +98,7 @@ Action define_report(CLI::App& app) {
 }
 
 Action define_study(CLI::App& app) {
-  const auto options = std::make_shared<StudyOptions>();
+  const auto options = std::make_shared<PartOptions>();
   add_parts(app, *options, "a study", "cells",
             "cells.csv, cells.h5, record.json, report.html [FILE's name with -study]");
   app.footer(

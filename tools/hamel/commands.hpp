@@ -51,7 +51,7 @@ struct ReproduceOptions {
 };
 int reproduce(const ReproduceOptions& options);
 
-/// Work in parts that share a folder (ranks.hpp).
+/// Work in parts that share a folder (batch_command.hpp).
 struct PartOptions {
   std::string file, directory;  // empty: the file's name with -study or -ensemble
   int threads = 0;              // 0: all cores
@@ -62,8 +62,7 @@ struct PartOptions {
   bool quiet = false;
 };
 
-struct StudyOptions : PartOptions {};
-int study(const StudyOptions& options);
+int study(const PartOptions& options);
 
 struct EnsembleOptions : PartOptions {
   std::optional<long> member;

@@ -7,15 +7,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/batch/shards.hpp>
 #include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/systems/by_name.hpp>
 
+#include "batch_command.hpp"
 #include "commands.hpp"
 #include "ensemble_members.hpp"
 #include "ensemble_page.hpp"
 #include "interrupt.hpp"
-#include "ranks.hpp"
 #include "run_figures.hpp"
 #include "screen.hpp"
 
@@ -24,11 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-std::string folder_of(const EnsembleOptions& options) {
-  return options.directory.empty() ? fs::path(options.file).stem().string() + "-ensemble"
-                                   : options.directory;
-}
 
 // "skew = 0.3, start.omega3 = -1": what a member is varied by.
 std::string varied_of(const EnsembleResult& result, long member) {
@@ -116,34 +110,6 @@ std::map<long, Page> motions_of(const Ensemble& ensemble, const EnsembleResult& 
   return out;
 }
 
-int finish(const EnsembleOptions& options, const Ensemble& ensemble, const EnsembleResult& result) {
-  const std::string folder = folder_of(options);
-  const bool part = result.shard.count > 1;
-  if (!part) {
-    result.write(folder);
-    write_trajectories(ensemble, folder);
-    if (report_page().empty())
-      complain("hamel: no report.html: this program was built without node and npm\n");
-    else
-      ensemble_page(result, motions_of(ensemble, result))
-          .write((fs::path(folder) / "report.html").string());
-  }
-  if (options.json) {
-    say("{}\n", result.record());
-  } else if (!options.quiet) {
-    const std::string where =
-        part ? fmt::format(
-                   "  kept in                {}/: --merge joins the {} shards when all are "
-                   "there\n",
-                   folder, result.shard.count)
-             : fmt::format("  written to             {}/: {}ensemble.csv, ensemble.json{}\n",
-                           folder, hdf5_version().empty() ? "" : "ensemble.h5, ",
-                           report_page().empty() ? "" : ", report.html");
-    say("{}{}", summary(result), where);
-  }
-  return 0;
-}
-
 // Shows one member, as values and as a run with its page.
 int one_member(const EnsembleOptions& options, const Ensemble& ensemble) {
   const Member member = ensemble.member(*options.member);
@@ -190,38 +156,29 @@ int one_member(const EnsembleOptions& options, const Ensemble& ensemble) {
 
 }  // namespace
 
-int ensemble(const EnsembleOptions& given) {
-  EnsembleOptions options = given;
-  const std::string folder = folder_of(options);
-  const std::optional<Rank> rank = options.member ? std::nullopt : take_part_as_rank(options);
+int ensemble(const EnsembleOptions& options) {
   Ensemble ensemble(registry(), read_ensemble(options.file, registry()));
-  ensemble.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_when_asked());
+  ensemble.stop(&stop_when_asked());
   if (options.member) return one_member(options, ensemble);
-  const auto merge = [&] {
-    const MergeLock alone(folder, stop_when_asked());
-    return finish(options, ensemble, ensemble.merge());
-  };
-  if (options.merge) return merge();
-  if (!options.shard.empty()) ensemble.shard(shard_of(options.shard));
-  EnsembleResult result;
-  {
-    Progress progress("ensemble", options.quiet);
-    result = ensemble.progress([&](double fraction) { progress(fraction); }).run();
-  }
-  if (!result.complete) {
-    complain(
-        "hamel: interrupted: {} of {} members are finished and kept in {}; the same command "
-        "resumes there\n",
-        result.done, result.members, folder);
-    return 1;
-  }
-  if (!rank && result.shard.count > 1) return finish(options, ensemble, result);
-  if (!rank) {
-    const MergeLock alone(folder, stop_when_asked());
-    return finish(options, ensemble, result);
-  }
-  if (rank->index > 0) return 0;
-  return merge_when_there(folder, merge);
+  const BatchCommand command(options, "ensemble");
+  return command.run(
+      ensemble,
+      [&](const EnsembleResult& result) {
+        return command.show(
+            result, {.files = fmt::format("{}ensemble.csv, ensemble.json",
+                                          hdf5_version().empty() ? "" : "ensemble.h5, "),
+                     .write =
+                         [&] {
+                           result.write(command.folder());
+                           write_trajectories(ensemble, command.folder());
+                         },
+                     .page = [&] { return ensemble_page(result, motions_of(ensemble, result)); },
+                     .record = [&] { return result.record(); },
+                     .summary = [&] { return summary(result); }});
+      },
+      [](const EnsembleResult& result) {
+        return fmt::format("{} of {} members are finished", result.done, result.members);
+      });
 }
 
 }  // namespace hamel::tools

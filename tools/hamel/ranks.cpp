@@ -28,8 +28,6 @@ long count_of(const char* name, const char* text) {
   return out;
 }
 
-}  // namespace
-
 std::optional<Rank> rank_of_launcher() {
   constexpr const char* kNames[][2] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                        {"PMI_RANK", "PMI_SIZE"}};
@@ -44,6 +42,8 @@ std::optional<Rank> rank_of_launcher() {
   }
   return {};
 }
+
+}  // namespace
 
 Shard shard_of(const std::string& text) {
   Shard out;

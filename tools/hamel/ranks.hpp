@@ -16,15 +16,13 @@ struct Rank {
   long index = 0, count = 1;
 };
 
-/// The rank as Open MPI (OMPI_COMM_WORLD_*) or a launcher of PMI (MPICH, Intel, srun --mpi=pmi2)
-/// states it; none for one process. ConfigError where it is no rank.
-std::optional<Rank> rank_of_launcher();
-
 /// "3/16". ConfigError.
 Shard shard_of(const std::string& text);
 
-/// The rank of the launcher that does a part of the whole work, and no part or merge that is asked
-/// for: it becomes a shard, with one thread unless more are given, silent but for the first.
+/// The rank as Open MPI (OMPI_COMM_WORLD_*) or a launcher of PMI (MPICH, Intel, srun --mpi=pmi2)
+/// states it, which becomes a shard, with one thread unless more are given, silent but for the
+/// first; none for one process, and where a shard or a merge is requested. ConfigError where it is
+/// no rank.
 std::optional<Rank> take_part_as_rank(PartOptions& options);
 
 /// Calls merge, which throws ConfigError where parts are missing or incomplete, until all are

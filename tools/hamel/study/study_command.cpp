@@ -1,18 +1,14 @@
 // hamel study: all cells of a study file, with a journal from which an interrupted study resumes.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <optional>
 
 #include <fmt/format.h>
 
-#include <hamel/framework/batch/shards.hpp>
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/systems/by_name.hpp>
 
+#include "batch_command.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
-#include "ranks.hpp"
 #include "screen.hpp"
 #include "study_page.hpp"
 
@@ -102,65 +98,32 @@ std::string summary(const StudyResult& result) {
                            result.threads, result.threads == 1 ? "" : "s");
 }
 
-int finish(const StudyOptions& options, const std::string& folder, const StudyResult& result) {
-  namespace fs = std::filesystem;
-  if (result.shard.count > 1) {
-    if (!options.quiet)
-      say("  kept in                {}/: --merge joins the {} shards when all are there\n", folder,
-          result.shard.count);
-    return 0;
-  }
-  result.write(folder);
-  if (report_page().empty()) {
-    complain("hamel: no report.html: this program was built without node and npm\n");
-  } else {
-    study_page(result).write((fs::path(folder) / "report.html").string());
-  }
-  if (options.json) say("{}\n", result.record());
-  else if (!options.quiet)
-    say("{}  written to             {}/: cells.csv, {}record.json{}\n", summary(result), folder,
-        hdf5_version().empty() ? "" : "cells.h5, ", report_page().empty() ? "" : ", report.html");
-  return 0;
-}
-
 }  // namespace
 
-int study(const StudyOptions& given) {
-  namespace fs = std::filesystem;
-  StudyOptions options = given;
-  const std::string folder = options.directory.empty()
-                                 ? fs::path(options.file).stem().string() + "-study"
-                                 : options.directory;
-  const std::optional<Rank> rank = take_part_as_rank(options);
+int study(const PartOptions& options) {
+  const BatchCommand command(options, "study");
   Study study(registry(), read_study(options.file, registry()));
-  study.threads(options.threads).folder(folder).fresh(options.fresh).stop(&stop_when_asked());
-  const auto merge = [&] {
-    const MergeLock alone(folder, stop_when_asked());
-    return finish(options, folder, study.merge());
-  };
-  if (options.merge) return merge();
-  if (!options.shard.empty()) study.shard(shard_of(options.shard));
-  announce(study, folder, options.quiet);
-  StudyResult result;
-  {
-    Progress progress("study", options.quiet);
-    result = study.progress([&](double fraction) { progress(fraction); }).run();
-  }
-  if (!result.complete) {
-    size_t done = 0, all = 0;
-    for (size_t i = 0; i < result.cells.size(); ++i) {
-      all += result.runs(i);
-      done += result.runs(i) && result.metrics[i].done;
-    }
-    complain(
-        "hamel: interrupted: {} of {} cells are measured and kept in {}; the same command "
-        "resumes there\n",
-        done, all, folder);
-    return 1;
-  }
-  if (!rank) return finish(options, folder, result);
-  if (rank->index > 0) return 0;
-  return merge_when_there(folder, merge);
+  if (!options.merge) announce(study, command.folder(), command.options().quiet);
+  return command.run(
+      study,
+      [&](const StudyResult& result) {
+        return command.show(result,
+                            {.files = fmt::format("cells.csv, {}record.json",
+                                                  hdf5_version().empty() ? "" : "cells.h5, "),
+                             .write = [&] { result.write(command.folder()); },
+                             .page = [&] { return study_page(result); },
+                             .record = [&] { return result.record(); },
+                             .summary =  // verdicts are of the whole
+                             [&] { return result.shard.count > 1 ? "" : summary(result); }});
+      },
+      [](const StudyResult& result) {
+        size_t done = 0, all = 0;
+        for (size_t i = 0; i < result.cells.size(); ++i) {
+          all += result.runs(i);
+          done += result.runs(i) && result.metrics[i].done;
+        }
+        return fmt::format("{} of {} cells are measured", done, all);
+      });
 }
 
 }  // namespace hamel::tools
