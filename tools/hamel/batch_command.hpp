@@ -1,4 +1,6 @@
-// Course and output of `hamel study` and `hamel ensemble`: work in pieces that share a folder.
+// Course and output of `hamel study` and `hamel ensemble`: work in pieces that share a folder,
+// whole or in parts. A rank of mpirun is a part; no library of MPI is needed, as ranks share a
+// folder alone.
 #pragma once
 
 #include <functional>
@@ -11,7 +13,6 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "page.hpp"
-#include "ranks.hpp"
 
 namespace hamel::tools {
 
@@ -25,8 +26,9 @@ struct BatchOutput {
 
 class BatchCommand {
  public:
-  /// kind: "study"; the folder is FILE's name with -study unless another one is given. ConfigError
-  /// where the launcher's variables are no rank.
+  /// kind: "study"; the folder is FILE's name with -study unless another one is given. The rank of
+  /// a launcher becomes a shard, with one thread unless more are given, silent but for the first;
+  /// not where a shard or a merge is requested. ConfigError where it is no rank.
   BatchCommand(const PartOptions& options, const std::string& kind);
 
   const PartOptions& options() const { return options_; }
@@ -37,34 +39,36 @@ class BatchCommand {
   /// was interrupted, finished(result) is stated: "3 of 7 cells are measured".
   template <class Work, class Finish, class Finished>
   int run(Work& work, const Finish& finish, const Finished& finished) const {
-    const auto alone = [&](const auto& result_of) {
-      const MergeLock lock(folder_, stop_when_asked());
-      return finish(result_of());
+    const auto merge = [&] {
+      const MergeLock alone(folder_, stop_when_asked());
+      return finish(work.merge());
     };
-    const auto merge = [&] { return alone([&] { return work.merge(); }); };
     work.threads(options_.threads).folder(folder_).fresh(options_.fresh).stop(&stop_when_asked());
     if (options_.merge) return merge();
-    if (!options_.shard.empty()) work.shard(shard_of(options_.shard));
-    const auto result = [&] {
-      Progress progress(kind_, options_.quiet);
-      const auto out = work.progress([&](double fraction) { progress(fraction); }).run();
-      work.progress({});
-      return out;
-    }();
+    if (!options_.shard.empty()) work.shard(shard());
+    std::optional<Progress> progress(std::in_place, kind_, options_.quiet);
+    const auto result = work.progress([&](double fraction) { (*progress)(fraction); }).run();
+    progress.reset();
     if (!result.complete) return interrupted(finished(result));
-    if (rank_) return rank_->index > 0 ? 0 : merge_when_there(folder_, merge);
-    return result.shard.count > 1 ? finish(result) : alone([&]() -> auto& { return result; });
+    if (rank_) return *rank_ > 0 ? 0 : merge_when_there(merge);
+    if (result.shard.count > 1) return finish(result);
+    const MergeLock alone(folder_, stop_when_asked());
+    return finish(result);
   }
 
   /// Writes a whole result and its page, and prints the record or the summary.
   int show(const BatchResult& result, const BatchOutput& output) const;
 
  private:
+  Shard shard() const;
   int interrupted(const std::string& finished) const;
+  /// Calls merge, which throws MissingParts, until all parts are there. A rank that has died leaves
+  /// none: where no part grows for ten minutes, that is stated.
+  int merge_when_there(const std::function<int()>& merge) const;
 
   PartOptions options_;
   std::string kind_, folder_;
-  std::optional<Rank> rank_;
+  std::optional<long> rank_;  // of several
 };
 
 }  // namespace hamel::tools
