@@ -52,7 +52,7 @@ class Batch {
 };
 
 struct BatchResult {
-  std::vector<std::string> notes;  // lines of the journal that were damaged
+  std::vector<std::string> notes;  // lines of the journal that were damaged, and others
   bool complete = false;
   size_t resumed = 0;  // cells or members taken over from the journal
   Shard shard;         // the part that was run

@@ -15,7 +15,7 @@ void Engine::run() {
   if (!settings_.folder.empty()) {
     journal_.emplace(settings_.folder, journal_name(part), subject_of_part(subject(), part),
                      settings_.fresh);
-    result_.notes = journal_->read([&](const std::string& line) { take(line); });
+    add_notes(journal_->read([&](const std::string& line) { take(line); }));
   }
   list();
   count(0);
@@ -25,10 +25,14 @@ void Engine::run() {
 
 void Engine::merge() {
   result_.shards = shards_in(settings_.folder);
-  result_.notes = join_shards(
+  add_notes(join_shards(
       settings_.folder, result_.shards, subject(), [&](const std::string& line) { take(line); },
-      [&](const Shard& part) { return lacks(part); });
+      [&](const Shard& part) { return lacks(part); }));
   end(true);
+}
+
+void Engine::add_notes(const std::vector<std::string>& notes) {
+  result_.notes.insert(result_.notes.end(), notes.begin(), notes.end());
 }
 
 void Engine::end(bool complete) {

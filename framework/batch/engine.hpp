@@ -83,6 +83,7 @@ class Engine {
   void done(size_t piece, bool good);
   void fail();
   void count(long share);
+  void add_notes(const std::vector<std::string>& notes);
   void end(bool complete);
 
   const BatchSettings& settings_;

@@ -35,7 +35,9 @@ class Session : public Engine {
         plan_(registry, config_),
         result_(begun(result, config, part)),
         collector_(plan_, result),
-        lanes_(lanes) {}
+        lanes_(lanes) {
+    if (lanes && !plan_.alone.empty()) result.notes.push_back(plan_.alone);
+  }
 
  private:
   static EnsembleResult& begun(EnsembleResult& out, const EnsembleConfig& config,

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -24,6 +25,7 @@
 namespace hamel {
 
 class Registry;
+class Run;
 
 /// What one name takes over the members: a parameter ("skew", "inertia3"), an input, "speed",
 /// "start.omega" (a velocity or a coordinate), "start.configuration", "start.velocity".
@@ -35,18 +37,21 @@ struct Variation {
     log_uniform,  // least, most, both above 0
     haar,         // start.configuration: its rotation uniform on SO(3)
     tau_normal,   // start.configuration: g tau(xi), xi normal, one deviation or n of them
-    energy        // start.velocity: uniform on the surface of that energy, in the metric of inertia
+    energy,       // start.velocity: uniform on the surface of that energy, in the metric of inertia
+    function      // of the member's index, in the program
   };
   std::string name;
   Law law = Law::values;
   std::vector<double> numbers = {};
+  std::function<double(long member)> function = {};
 };
 
 /// What is kept of each member: a formula of end.X, start.X, max.X, min.X, at(T).X,
 /// event.NAME.count, event.NAME.time, the parameters and what is varied. Without a name the formula
-/// is its name.
+/// is its name. A function in place of the formula receives the member's run at its end.
 struct Kept {
   std::string name, formula;
+  std::function<double(Run&)> function = {};
 };
 
 /// Members by a formula whose value is the index of a name.
@@ -91,6 +96,14 @@ struct HAMEL_API EnsembleConfig {
   /// "file:line:column" by key, "vary.skew"; empty for an ensemble made in a program.
   std::map<std::string, std::string> where = {};
 
+  /// Adds a variation by a function of the member's index. Functions are called from several
+  /// threads and more than once for a member: they depend on nothing else. A journal and a record
+  /// have their names alone.
+  EnsembleConfig& vary_by(std::string name, std::function<double(long member)> function);
+  /// Adds a quantity that is kept: a function of the member's run at its end. A member of which it
+  /// throws, or is not finite, fails. Members then run one by one, which a note of the result
+  /// states where lanes would have been used.
+  EnsembleConfig& keep_by(std::string name, std::function<double(Run&)> function);
   /// Everything that is wrong, each mistake with its place.
   std::vector<std::string> mistakes(const Registry& registry) const;
   /// What fixes the results, one line per item: a journal belongs to these lines.

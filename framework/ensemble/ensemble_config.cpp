@@ -1,5 +1,6 @@
 // An ensemble as data: its files read, its mistakes, and the lines that fix its results.
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@ const char* name_of(Law law) {
     case Law::haar: return "uniform so3";
     case Law::tau_normal: return "tau_normal";
     case Law::energy: return "energy";
+    case Law::function: return "function";
   }
   return "";
 }
@@ -55,6 +57,16 @@ void read_data(EnsembleConfig& config) {
 
 }  // namespace ensemble
 
+EnsembleConfig& EnsembleConfig::vary_by(std::string name, std::function<double(long)> function) {
+  vary.push_back({std::move(name), Law::function, {}, std::move(function)});
+  return *this;
+}
+
+EnsembleConfig& EnsembleConfig::keep_by(std::string name, std::function<double(Run&)> function) {
+  keep.push_back({std::move(name), "", std::move(function)});
+  return *this;
+}
+
 std::vector<std::string> EnsembleConfig::mistakes(const Registry& registry) const {
   try {
     EnsembleConfig copy = *this;
@@ -76,7 +88,9 @@ std::vector<std::string> EnsembleConfig::fingerprint() const {
   for (const auto& [name, event] : events) out.push_back(fmt::format("event {} = {}", name, event));
   for (const auto& [input, formula] : feedback.inputs)
     out.push_back(fmt::format("feedback {} = {}, each {} s", input, formula, feedback.period));
-  for (const Kept& kept : keep) out.push_back(fmt::format("keep {} = {}", kept.name, kept.formula));
+  for (const Kept& kept : keep)
+    out.push_back(fmt::format("keep {} = {}", kept.name,
+                              kept.function ? "a function of the run" : kept.formula));
   if (!classes.names.empty())
     out.push_back(fmt::format("class {} = {}", join(classes.names), classes.formula));
   if (!statistics_at.empty())

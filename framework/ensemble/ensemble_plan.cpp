@@ -111,7 +111,7 @@ void Plan::check_trajectories(std::vector<std::string>& mistakes) const {
     add("a run has no inputs by formulas ([feedback])");
 }
 
-const LaneInfo* Plan::find_lanes(const Run& run) const {
+const LaneInfo* Plan::find_lanes(const Run& run) {
   const KernelSetup& setup = run.driver().plan().setup;
   const bool plain = !resolved.chooses_steps() && setup.composition.size() == 1 &&
                      setup.solver == nullptr && setup.inputs == nullptr;
@@ -124,7 +124,12 @@ const LaneInfo* Plan::find_lanes(const Run& run) const {
   // Without a kernel of the same types the erased one runs, whose last digits differ.
   if (registry.kernel(group, mechanics, resolved.retraction, resolved.scheme) == nullptr)
     return nullptr;
-  return registry.lanes(group, mechanics, resolved.retraction, resolved.scheme);
+  const LaneInfo* out = registry.lanes(group, mechanics, resolved.retraction, resolved.scheme);
+  const std::string function = kept->function();
+  if (out == nullptr || function.empty()) return out;
+  alone = fmt::format("members run one by one, not in lanes: '{}' is a function of their run",
+                      function);
+  return nullptr;
 }
 
 // A first value to each input that is varied or fed back; were there any without?

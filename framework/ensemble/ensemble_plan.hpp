@@ -39,6 +39,8 @@ class Plan {
   /// Where members run in lanes: compiled for their system and scheme, steps of one size, and all
   /// that is kept of nodes; else null.
   const LaneInfo* lanes = nullptr;
+  /// The reason where a function of the program keeps members out of lanes; else "".
+  std::string alone;
 
   Simulation simulation(const Config& run) const;
   /// Does each member have a system of its own, or another start at speed?
@@ -48,7 +50,7 @@ class Plan {
  private:
   void complete(EnsembleConfig& from, std::vector<std::string>& mistakes);
   bool give_inputs(const SystemModel& system);
-  const LaneInfo* find_lanes(const Run& run) const;
+  const LaneInfo* find_lanes(const Run& run);
   void check_trajectories(std::vector<std::string>& mistakes) const;
   void check_unused(std::vector<std::string>& mistakes) const;
 };

@@ -101,12 +101,18 @@ KeptFormulas::KeptFormulas(const EnsembleConfig& config, const SystemModel& syst
     const Kept& kept = config.keep[i];
     const std::string key = fmt::format("keep[{}]", i),
                       name = kept.name.empty() ? kept.formula : kept.name;
-    const std::string flaw = flaw_of_name(name, variations);
-    if (flaw.empty()) add(key, name, kept.formula);
-    else
+    const std::string flaw =
+        name.empty() && kept.function ? "a function has no name" : flaw_of_name(name, variations);
+    if (!flaw.empty()) {
       mistakes.push_back(placed(
           config, key,
           fmt::format("{}: {}: {{ name = \"...\", formula = \"...\" }} gives another", key, flaw)));
+    } else if (kept.function) {
+      columns_.push_back({name, "", "a function of each member's run"});
+      formulas_.push_back({name, {}, {}, kept.function, 0});
+    } else {
+      add(key, name, kept.formula);
+    }
   }
   kept_ = columns_.size();
   check_histograms(config, mistakes);
@@ -237,10 +243,23 @@ void KeptFormulas::end(const Snapshot& state, const std::vector<EventMet>& met,
   }
 }
 
+std::string KeptFormulas::function() const {
+  for (const Formula& formula : formulas_)
+    if (formula.function) return formula.name;
+  return "";
+}
+
+void KeptFormulas::functions(Run& run) {
+  for (Formula& formula : formulas_)
+    if (formula.function) formula.value = formula.function(run);
+}
+
 std::string KeptFormulas::finish(std::span<double> out) {
   for (size_t i = 0; i < formulas_.size(); ++i) {
     const Formula& formula = formulas_[i];
-    if (formula.expression) {
+    if (formula.function) {
+      out[i] = formula.value;
+    } else if (formula.expression) {
       arguments_.clear();
       for (const size_t atom : formula.atoms) arguments_.push_back(atoms_[atom].value);
       arguments_.insert(arguments_.end(), constants_.values().begin(), constants_.values().end());

@@ -2,6 +2,7 @@
 // installed.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -114,6 +115,8 @@ class KeptFormulas {
   bool wants_reactions() const { return wants_reactions_; }
   /// Work, or the energy error where work is done: every node is to be seen.
   bool wants_balance() const { return wants_balance_; }
+  /// The name of a function of the run among them; "" for none.
+  std::string function() const;
 
   /// What of the states is needed: at peaks; at all of them; at the start, whose energy others are
   /// compared with.
@@ -132,6 +135,8 @@ class KeptFormulas {
   void at(size_t time, const Snapshot& state, const StateExtras* extras = nullptr);
   void end(const Snapshot& state, const std::vector<EventMet>& met,
            const StateExtras* extras = nullptr);
+  /// The functions, of the run that has ended.
+  void functions(Run& run);
   /// The columns; the reason why there are none, else "".
   std::string finish(std::span<double> out);
 
@@ -147,8 +152,10 @@ class KeptFormulas {
   };
   struct Formula {
     std::string name;
-    std::vector<size_t> atoms;             // used
-    std::optional<Expression> expression;  // of them and the constants; none: the atom alone
+    std::vector<size_t> atoms;                  // used
+    std::optional<Expression> expression;       // of them and the constants; none: the atom alone
+    std::function<double(Run&)> function = {};  // in their place
+    double value = 0;                           // of the function
   };
   class Parser;
 

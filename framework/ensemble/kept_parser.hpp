@@ -31,7 +31,7 @@ class KeptFormulas::Parser {
   void column(const std::string& name, const std::string& formula) {
     used_.clear();
     const std::string rewritten = rewrite(formula);
-    Formula made{name, used_, {}};
+    Formula made{name, used_, {}, {}, 0};
     const bool alone = used_.size() == 1 && rewritten == variable(used_[0]);
     if (!alone) {
       std::vector<std::string> variables;

@@ -110,7 +110,10 @@ bool MemberRunner::run(long member, std::span<double> out, MemberFailure& failur
     prepare(member);
     physics_.begin(*run_);
     if (!follow(failure)) return false;
-    if (failure.reason.empty()) failure.reason = kept_.finish(out);
+    if (failure.reason.empty()) {
+      kept_.functions(*run_);
+      failure.reason = kept_.finish(out);
+    }
   } catch (const std::exception& error) {  // a start that is none, no state within a step
     failure.reason = first_line(error);
   }

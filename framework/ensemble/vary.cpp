@@ -15,7 +15,8 @@ using Law = Variation::Law;
 using Kind = Target::Kind;
 
 bool is_number(Law law) {
-  return law == Law::values || law == Law::uniform || law == Law::normal || law == Law::log_uniform;
+  return law == Law::values || law == Law::uniform || law == Law::normal ||
+         law == Law::log_uniform || law == Law::function;
 }
 
 // What is wrong with the numbers of a law; "" for nothing.
@@ -42,6 +43,7 @@ std::string flaw_of(const Variation& v) {
                  ? ""
                  : wrong("tau_normal", "a deviation of at least 0, or one for each component");
     case Law::energy: return x.size() == 1 ? "" : wrong("energy", "one number, in J");
+    case Law::function: return v.function ? "" : "expected a function of the member";
     case Law::haar: break;
   }
   return "";
@@ -247,18 +249,23 @@ void Variations::count_members(EnsembleConfig& config, std::vector<std::string>&
   }
 }
 
-// Numbers out of a field's range: those that may be drawn, of a normal those that are.
+// Numbers out of a field's range: those that may be drawn, of a normal or a function those that
+// are.
 void Variations::check_ranges(long members, const SystemModel& system,
                               std::vector<std::string>& wrong) const {
   for (const size_t i : numbered_) {
     const Range* range = range_of(system, targets_[i]);
-    if (range == nullptr) continue;
-    if (vary_[i].law == Law::normal) {
+    const bool function = vary_[i].law == Law::function;
+    if (range == nullptr && !function) continue;
+    if (vary_[i].law == Law::normal || function) {
+      const auto allowed = [&](double x) {
+        return std::isfinite(x) && (range == nullptr || range->allows(x));
+      };
       long member = 0;
-      while (member < members && range->allows(number(i, member))) ++member;
+      while (member < members && allowed(number(i, member))) ++member;
       if (member < members)
         wrong[i] = fmt::format("member {} would have {}, expected {}", member, number(i, member),
-                               range->words());
+                               range == nullptr ? "a finite number" : range->words());
       continue;
     }
     std::vector<double> ends = vary_[i].numbers;
@@ -282,6 +289,7 @@ double Variations::number(size_t variation, long member) const {
     const auto at = static_cast<size_t>(member / strides_[variation]);
     return x[at % x.size()];
   }
+  if (v.law == Law::function) return v.function(member);
   Draws random = draws(variation, member);
   switch (v.law) {
     case Law::uniform: return x[0] + (x[1] - x[0]) * random.uniform();
