@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/batch/places.hpp>
 #include <hamel/framework/ensemble/ensemble_plan.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/run/names/system_file.hpp>
@@ -41,7 +42,7 @@ void read_data(EnsembleConfig& config) {
     try {
       read();
     } catch (const ConfigError& error) {
-      throw ConfigError({placed(config, key, error.what())});
+      throw ConfigError({placed(config.where, key, error.what())});
     }
   };
   placing("inputs", [&] {

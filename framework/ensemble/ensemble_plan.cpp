@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/batch/places.hpp>
 #include <hamel/framework/ensemble/member.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/run/driver.hpp>
@@ -19,7 +20,7 @@ void add_placed(const EnsembleConfig& config, const std::vector<std::string>& fo
     std::string place = "system";
     for (const auto& [key, where] : config.where)
       if (text.starts_with(key + ":") || text.starts_with("unknown " + key + " ")) place = key;
-    mistakes.push_back(placed(config, place, text));
+    mistakes.push_back(placed(config.where, place, text));
   }
 }
 
@@ -33,9 +34,9 @@ Plan::Plan(const Registry& given, EnsembleConfig& from) : registry(given), confi
 
 void Plan::complete(EnsembleConfig& from, std::vector<std::string>& mistakes) {
   if (from.keep.empty())
-    mistakes.push_back(placed(config, "keep", "keep: nothing is kept of a member"));
+    mistakes.push_back(placed(config.where, "keep", "keep: nothing is kept of a member"));
   if (config.run.check)
-    mistakes.push_back(placed(config, "check", "check: not of the members of an ensemble"));
+    mistakes.push_back(placed(config.where, "check", "check: not of the members of an ensemble"));
   base = config.run;
   base.check = false;
   base.no_exact = true;
@@ -57,7 +58,7 @@ void Plan::complete(EnsembleConfig& from, std::vector<std::string>& mistakes) {
     feedback.emplace(config, system, *variations, mistakes);
     lanes = find_lanes(run);
     if (variations->any(Target::Kind::energy) && system.mechanics->has_drift())
-      mistakes.push_back(placed(config, "vary.start.velocity",
+      mistakes.push_back(placed(config.where, "vary.start.velocity",
                                 "start.velocity: the rows of this system move, and no energy "
                                 "surface is uniform"));
   } catch (const ConfigError& error) {
@@ -74,18 +75,18 @@ void Plan::complete(EnsembleConfig& from, std::vector<std::string>& mistakes) {
     MemberRunner(*this).config(0);
   } catch (const ConfigError& error) {
     const std::string first = error.mistakes().front();
-    if (first.starts_with("vary: ")) mistakes.push_back(placed(config, "vary", first));
+    if (first.starts_with("vary: ")) mistakes.push_back(placed(config.where, "vary", first));
   }
 }
 
 // Parts that nothing uses are read as those that something does.
 void Plan::check_unused(std::vector<std::string>& mistakes) const {
   if (!config.statistics_of.empty() && config.statistics_at.empty())
-    mistakes.push_back(placed(config, "statistics_of",
+    mistakes.push_back(placed(config.where, "statistics_of",
                               "statistics_of: expected statistics_at too, the times of these"));
   if (config.feedback.inputs.empty() && config.where.contains("feedback"))
     mistakes.push_back(
-        placed(config, "feedback", "feedback: expected inputs by name, input = \"formula\""));
+        placed(config.where, "feedback", "feedback: expected inputs by name, input = \"formula\""));
   if (!kept) return;
   for (const auto& [name, formula] : config.events) {
     if (std::ranges::find(kept->events(), formula) != kept->events().end()) continue;
@@ -93,14 +94,14 @@ void Plan::check_unused(std::vector<std::string>& mistakes) const {
     run.events.push_back(formula);
     for (const std::string& text : simulation(run).mistakes())
       mistakes.push_back(
-          placed(config, "events." + name, fmt::format("events.{}: {}", name, text)));
+          placed(config.where, "events." + name, fmt::format("events.{}: {}", name, text)));
   }
 }
 
 void Plan::check_trajectories(std::vector<std::string>& mistakes) const {
   constexpr size_t most = 100;
   const auto add = [&](const std::string& text) {
-    mistakes.push_back(placed(config, "trajectories", "trajectories: " + text));
+    mistakes.push_back(placed(config.where, "trajectories", "trajectories: " + text));
   };
   for (const long member : config.trajectories)
     if (member < 0 || member >= config.members)

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/batch/places.hpp>
 #include <hamel/framework/io/errors.hpp>
 
 namespace hamel::ensemble {
@@ -16,7 +17,7 @@ FeedbackFormulas::FeedbackFormulas(const EnsembleConfig& config, const SystemMod
   for (const auto& [input, text] : config.feedback.inputs) {
     const std::string key = "feedback." + input;
     const auto wrong = [&, &name = input](const std::string& why) {
-      mistakes.push_back(placed(config, key, fmt::format("feedback.{}: {}", name, why)));
+      mistakes.push_back(placed(config.where, key, fmt::format("feedback.{}: {}", name, why)));
     };
     std::vector<std::string> known;
     for (const InputField& field : system.inputs) known.push_back(field.name);
@@ -35,10 +36,11 @@ FeedbackFormulas::FeedbackFormulas(const EnsembleConfig& config, const SystemMod
   const double period = config.feedback.period, steps = period / config.run.step_or_usual();
   const bool whole = std::abs(steps - std::round(steps)) < 1e-9 * std::abs(steps);
   if (!formulas_.empty() && !(period > 0 && std::isfinite(period)))
-    mistakes.push_back(placed(config, "feedback", "feedback: expected a period above 0, in s"));
+    mistakes.push_back(
+        placed(config.where, "feedback", "feedback: expected a period above 0, in s"));
   else if (!formulas_.empty() && !config.run.completed().chooses_steps() && !(whole && steps > 0.5))
     mistakes.push_back(
-        placed(config, "feedback",
+        placed(config.where, "feedback",
                fmt::format("feedback: the period {} is not a multiple of the step, {}", period,
                            config.run.step_or_usual())));
 }

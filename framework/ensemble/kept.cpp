@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/batch/places.hpp>
 #include <hamel/framework/ensemble/kept_parser.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/components.hpp>
@@ -93,7 +94,7 @@ KeptFormulas::KeptFormulas(const EnsembleConfig& config, const SystemModel& syst
       parser.column(name, text);
     } catch (const std::invalid_argument& error) {
       mistakes.push_back(
-          placed(config, key,
+          placed(config.where, key,
                  fmt::format("{}: '{}': {}", key, text, states_.state().in_words(error.what()))));
     }
   };
@@ -105,7 +106,7 @@ KeptFormulas::KeptFormulas(const EnsembleConfig& config, const SystemModel& syst
         name.empty() && kept.function ? "a function has no name" : flaw_of_name(name, variations);
     if (!flaw.empty()) {
       mistakes.push_back(placed(
-          config, key,
+          config.where, key,
           fmt::format("{}: {}: {{ name = \"...\", formula = \"...\" }} gives another", key, flaw)));
     } else if (kept.function) {
       columns_.push_back({name, "", "a function of each member's run"});
@@ -147,7 +148,7 @@ void KeptFormulas::check_histograms(const EnsembleConfig& config,
   for (const KeptColumn& column : columns_) names.push_back(column.name);
   for (const auto& [name, request] : config.histograms)
     if (std::ranges::find(names, name) == names.end())
-      mistakes.push_back(placed(config, "histograms." + name,
+      mistakes.push_back(placed(config.where, "histograms." + name,
                                 "histograms: " + unknown_name("kept quantity", name, names)));
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/batch/places.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
 
@@ -169,11 +170,6 @@ std::string conflict(const std::vector<Target>& targets, size_t i) {
 
 }  // namespace
 
-std::string placed(const EnsembleConfig& config, const std::string& key, const std::string& text) {
-  const auto it = config.where.find(key);
-  return it == config.where.end() ? text : fmt::format("{}: {}", it->second, text);
-}
-
 std::vector<size_t> rotations_of(const GroupInfo& group) {
   std::vector<size_t> out;
   size_t column = 0;
@@ -201,7 +197,7 @@ Variations::Variations(EnsembleConfig& config, const SystemModel& system,
     if (wrong[i].empty()) continue;
     const std::string key = "vary." + vary_[i].name;
     const bool named = wrong[i].find(vary_[i].name) != std::string::npos;
-    mistakes.push_back(placed(config, key, named ? wrong[i] : key + ": " + wrong[i]));
+    mistakes.push_back(placed(config.where, key, named ? wrong[i] : key + ": " + wrong[i]));
   }
 }
 
@@ -234,7 +230,7 @@ void Variations::count_members(EnsembleConfig& config, std::vector<std::string>&
   if (config.members == 0) config.members = config.grid ? lists : longest;
   const long members = config.members;
   const auto add = [&](const std::string& text) {
-    mistakes.push_back(placed(config, "members", text));
+    mistakes.push_back(placed(config.where, "members", text));
   };
   if (members <= 0 || members >= most)
     return add(fmt::format("members: got {}, expected 1 to {}", members, most - 1));

@@ -11,9 +11,6 @@
 
 namespace hamel::ensemble {
 
-/// "file:line:column: text" where the key has a place.
-std::string placed(const EnsembleConfig& config, const std::string& key, const std::string& text);
-
 /// What a variation sets.
 struct Target {
   enum class Kind { parameter, input, speed, velocity, coordinate, rotation, moved, energy };

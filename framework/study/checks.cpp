@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/batch/places.hpp>
 #include <hamel/framework/study/parts.hpp>
 
 namespace hamel {
@@ -38,15 +39,8 @@ class Checks {
   }
 
  private:
-  // With the place of the longest part of the key that has one: "exclude[0].s" or "exclude[0]".
-  void add(std::string key, const std::string& mistake) {
-    auto place = study_.where.find(key);
-    while (place == study_.where.end() && key.find_last_of(".[") != std::string::npos) {
-      key.resize(key.find_last_of(".["));
-      place = study_.where.find(key);
-    }
-    out_.push_back(place == study_.where.end() ? mistake
-                                               : fmt::format("{}: {}", place->second, mistake));
+  void add(const std::string& key, const std::string& mistake) {
+    out_.push_back(placed(study_.where, key, mistake));
   }
 
   void plain_numbers() {

@@ -1,0 +1,14 @@
+// Places of a file's keys, for the mistakes that are found after it was read. Not installed.
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace hamel {
+
+/// The mistake behind the place, "file:line:column", of the longest part of the key that has one:
+/// exclude[0].s, or exclude[0]. A key without any, as of a program, adds nothing.
+std::string placed(const std::map<std::string, std::string>& where, std::string key,
+                   const std::string& mistake);
+
+}  // namespace hamel
