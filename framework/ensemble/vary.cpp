@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include <fmt/format.h>
 
@@ -258,10 +259,14 @@ void Variations::check_ranges(long members, const SystemModel& system,
         return std::isfinite(x) && (range == nullptr || range->allows(x));
       };
       long member = 0;
-      while (member < members && allowed(number(i, member))) ++member;
-      if (member < members)
-        wrong[i] = fmt::format("member {} would have {}, expected {}", member, number(i, member),
-                               range == nullptr ? "a finite number" : range->words());
+      try {
+        while (member < members && allowed(number(i, member))) ++member;
+        if (member < members)
+          wrong[i] = fmt::format("member {} would have {}, expected {}", member, number(i, member),
+                                 range == nullptr ? "a finite number" : range->words());
+      } catch (const std::exception& error) {  // of a function
+        wrong[i] = fmt::format("of member {}: {}", member, error.what());
+      }
       continue;
     }
     std::vector<double> ends = vary_[i].numbers;

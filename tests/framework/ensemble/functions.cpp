@@ -92,6 +92,11 @@ TEST(EnsembleFunctions, AreCheckedBeforeAnythingRuns) {
                  [](long member) { return 1 / (3.0 - static_cast<double>(member)); });
   EXPECT_THAT(refusal([&] { Ensemble(registry(), config); }),
               HasSubstr("vary.start.omega2: member 3 would have inf, expected a finite number"));
+  config.vary.back().function = [](long member) -> double {
+    throw std::runtime_error(member == 0 ? "too dark" : "later");
+  };
+  EXPECT_THAT(refusal([&] { Ensemble(registry(), config); }),
+              HasSubstr("vary.start.omega2: of member 0: too dark"));
   config.vary.back().function = {};
   EXPECT_THAT(refusal([&] { Ensemble(registry(), config); }),
               HasSubstr("vary.start.omega2: expected a function of the member"));

@@ -1,4 +1,9 @@
 // Many runs from one file: hamel.ensemble.
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
 #include "long_call.hpp"
 
 namespace hamel::python {
@@ -10,12 +15,51 @@ Shard shard_of(nb::handle given) {
   return {index, count};
 }
 
+// The number that a function gives; an exception in one line, as failures of members are listed.
+template <class Argument>
+double number_of(const Function& function, const Argument& argument) {
+  try {
+    return nb::cast<double>(function(argument));
+  } catch (const nb::python_error& error) {
+    const std::string type = nb::cast<std::string>(error.type().attr("__name__"));
+    throw std::runtime_error(type + ": " + nb::cast<std::string>(nb::str(error.value())));
+  } catch (const nb::cast_error&) {
+    throw std::runtime_error("a function returned no number");
+  }
+}
+
+// Variation: a number from the index.
+std::function<double(long)> varied_by(const Function& function) {
+  return [function](long member) {
+    const Entered python;
+    return number_of(function, member);
+  };
+}
+
+// Kept quantity: a number from the state at the end.
+std::function<double(Run&)> kept_by(const Function& function) {
+  auto names = std::make_shared<std::shared_ptr<const StateNames>>();  // under Python's lock
+  return [function, names](Run& run) {
+    const Snapshot& state = run.state();
+    const Entered python;
+    if (*names == nullptr) *names = std::make_shared<const StateNames>(run.system());
+    return number_of(function, NamedState{state, *names});
+  };
+}
+
 EnsembleResult ensemble(nb::handle file, int threads, nb::handle folder, nb::handle shard,
-                        bool merge, bool fresh, nb::object progress) {
+                        bool merge, bool fresh, nb::object progress, const nb::dict& vary_by,
+                        const nb::dict& keep_by) {
   const std::string given = text("file", file);
-  Ensemble out(registry(), given.find('\n') == std::string::npos
-                               ? read_ensemble(given, registry())
-                               : parse_ensemble(given, "ensemble.toml", registry()));
+  EnsembleConfig config = given.find('\n') == std::string::npos
+                              ? read_ensemble(given, registry())
+                              : parse_ensemble(given, "ensemble.toml", registry());
+  Functions functions;
+  for (const auto& [name, function] : vary_by)
+    config.vary_by(nb::cast<std::string>(name), varied_by(functions.add(function)));
+  for (const auto& [name, function] : keep_by)
+    config.keep_by(nb::cast<std::string>(name), kept_by(functions.add(function)));
+  Ensemble out(registry(), std::move(config));
   out.threads(threads).fresh(fresh);
   if (!folder.is_none()) out.folder(text("folder", folder));
   if (!shard.is_none()) out.shard(shard_of(shard));
@@ -78,13 +122,19 @@ void bind_ensemble(nb::module_& m) {
   m.def(
       "ensemble", &ensemble, "file"_a, nb::kw_only(), "threads"_a = 0, "folder"_a = nb::none(),
       "shard"_a = nb::none(), "merge"_a = false, "fresh"_a = false, "progress"_a = nb::none(),
+      "vary_by"_a = nb::dict(), "keep_by"_a = nb::dict(),
       nb::sig("def ensemble(file: str | os.PathLike[str], *, threads: int = 0, folder: str | "
               "os.PathLike[str] | None = None, shard: tuple[int, int] | None = None, merge: bool "
               "= False, fresh: bool = False, progress: collections.abc.Callable[[float], object] "
-              "| bool | None = None) -> EnsembleResult"),
+              "| bool | None = None, vary_by: dict[str, collections.abc.Callable[[int], float]] = "
+              "{}, keep_by: dict[str, collections.abc.Callable[[State], float]] = {}) -> "
+              "EnsembleResult"),
       "The members of an ensemble's file (or of its text), as `hamel ensemble` runs them. threads: "
       "0 is all cores. folder: keeps a journal there and resumes from it. shard=(i, n): the part "
-      "i of n, from 1; merge=True joins the parts in the folder. Ctrl-C stops it.");
+      "i of n, from 1; merge=True joins the parts in the folder. vary_by: names to vary, each by a "
+      "function of the member's index; keep_by: further numbers, each a function of the member's "
+      "State at the end. They are called from several threads, and depend on nothing else. Ctrl-C "
+      "stops it.");
 }
 
 }  // namespace hamel::python

@@ -183,6 +183,34 @@ def test_figures_of_studies_branches_and_ensembles():
     assert "40, of which 0 failed" in two._repr_html_()
 
 
+def test_an_ensemble_by_functions():
+    text = 'system = "suslov"\nuntil = 1\nmembers = 40\nkeep = ["end.omega1", "end.energy"]\n'
+    ours = hamel.ensemble(
+        text,
+        threads=2,
+        vary_by={"inertia1": lambda member: 1 + member / 40},
+        keep_by={"twice": lambda state: 2 * state["omega1"], "e": lambda state: state.energy},
+    )
+    assert ours and len(ours) == 40
+    np.testing.assert_array_equal(ours["inertia1"], 1 + np.arange(40) / 40)
+    np.testing.assert_array_equal(ours["twice"], 2 * ours["end.omega1"])
+    np.testing.assert_array_equal(ours["e"], ours["end.energy"])
+
+    def wrong(state):
+        raise ValueError("not this one")
+
+    def wrong_index(member):
+        raise IndexError("out of it")
+
+    failed = hamel.ensemble(text, keep_by={"x": wrong})
+    assert failed.record["failed"] == 40
+    assert failed.record["failures"][0]["reason"] == "ValueError: not this one"
+    failed = hamel.ensemble(text, keep_by={"x": lambda state: "two"})
+    assert failed.record["failures"][0]["reason"] == "a function returned no number"
+    with pytest.raises(hamel.ConfigError, match="inertia1.*IndexError: out of it"):
+        hamel.ensemble(text, vary_by={"inertia1": wrong_index})
+
+
 def test_a_result_moves(tmp_path):
     result = hamel.run("rattleback", until=1, output_step=0.1)
     animation = result.animation()
