@@ -14,7 +14,7 @@
 
 namespace hamel {
 
-/// What a journal is about: "study", its pieces in plural, and the lines that fix the results.
+/// Subject of a journal: "study", its pieces in plural, and the lines that fix the results.
 struct JournalSubject {
   std::string kind, pieces;
   std::vector<std::string> lines;

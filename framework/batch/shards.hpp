@@ -1,4 +1,4 @@
-// What ensembles and studies in parts share: the journal of each part, and how they are joined. Not
+// Parts of ensembles and studies: the journal of each part, and how they are joined. Not
 // installed.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace hamel {
 std::string journal_name(const Shard& part);
 /// The subject of a part's journal, made from that of the whole.
 JournalSubject subject_of_part(JournalSubject whole, const Shard& part);
-/// Of so many pieces the first one of a part, and the first one behind it.
+/// First of so many pieces in a part, and the first one behind it.
 long first_piece(const Shard& part, long pieces);
 long behind(const Shard& part, long pieces);
 

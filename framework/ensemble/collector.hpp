@@ -17,7 +17,7 @@ namespace hamel::ensemble {
 constexpr long kPiece = 16;
 inline long pieces_of(long members) { return (members + kPiece - 1) / kPiece; }
 
-/// Of the members from first on, so many.
+/// Takes so many members from first on.
 struct Piece {
   long first = 0;
   std::vector<double> rows = {};  // member after member
@@ -55,7 +55,7 @@ class Collector {
   long first_piece_;
   std::vector<char> there_;
   std::mutex mutex_;
-  // Of statistics_at: chunks in flight, and what is done.
+  // For statistics_at: chunks in flight, and what is done.
   struct Chunk {
     long members = 0;
     std::vector<std::vector<double>> columns;

@@ -27,7 +27,7 @@ namespace hamel {
 class Registry;
 class Run;
 
-/// What one name takes over the members: a parameter ("skew", "inertia3"), an input, "speed",
+/// Values of one name over the members: a parameter ("skew", "inertia3"), an input, "speed",
 /// "start.omega" (a velocity or a coordinate), "start.configuration", "start.velocity".
 struct Variation {
   enum class Law {
@@ -46,7 +46,7 @@ struct Variation {
   std::function<double(long member)> function = {};
 };
 
-/// What is kept of each member: a formula of end.X, start.X, max.X, min.X, at(T).X,
+/// Kept number of each member: a formula of end.X, start.X, max.X, min.X, at(T).X,
 /// event.NAME.count, event.NAME.time, the parameters and what is varied. Without a name the formula
 /// is its name. A function in place of the formula receives the member's run at its end.
 struct Kept {
@@ -106,7 +106,7 @@ struct HAMEL_API EnsembleConfig {
   EnsembleConfig& keep_by(std::string name, std::function<double(Run&)> function);
   /// Everything that is wrong, each mistake with its place.
   std::vector<std::string> mistakes(const Registry& registry) const;
-  /// What fixes the results, one line per item: a journal belongs to these lines.
+  /// Items that fix the results, one line each: a journal belongs to these lines.
   std::vector<std::string> fingerprint() const;
 };
 
@@ -122,14 +122,14 @@ struct MemberFailure {
   std::string reason;
 };
 
-/// Of the members where it has a value; the deviation is that of a sample, n - 1.
+/// Moments over the members where it has a value; the deviation is that of a sample, n - 1.
 struct HAMEL_API Moments {
   long count = 0;
   double mean = 0, squares = 0;  // sum of (x - mean)^2
   double least = 0, most = 0;
 
   double deviation() const;
-  /// Of the two together (Chan, Golub, LeVeque).
+  /// Moments of the two together (Chan, Golub, LeVeque).
   static Moments of_both(const Moments& a, const Moments& b);
 };
 
@@ -139,7 +139,7 @@ struct Histogram {
   long below = 0, above = 0;
 };
 
-/// Of kept quantities in pairs; a pair with fewer than two members has NaN.
+/// Covariance of kept quantities in pairs; a pair with fewer than two members has NaN.
 struct Covariance {
   std::vector<std::vector<double>> matrix = {};
   std::vector<std::vector<long>> members = {};  // that have both values, over which it is
@@ -174,7 +174,7 @@ struct HAMEL_API EnsembleResult : BatchResult {
   void write(const std::string& folder) const;
 };
 
-/// One member alone.
+/// Member by itself.
 struct Member {
   long index = 0;
   Config config;  // of the same run, but for feedback
@@ -200,7 +200,7 @@ class HAMEL_API Ensemble : public Batch<Ensemble> {
   /// Joins the shards whose journals are in the folder. ConfigError where some are missing or
   /// incomplete, or are of another ensemble or program.
   EnsembleResult merge() const;
-  /// One member: the same values as in the whole.
+  /// A single member: the same values as in the whole.
   Member member(long index) const;
 
  private:

@@ -1,4 +1,4 @@
-// What an ensemble leaves: the table of its members and the record.
+// Output of an ensemble: the table of its members and the record.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -63,7 +63,7 @@ Json kept_of(const EnsembleResult& result) {
   return out;
 }
 
-// What does not depend on threads and shards.
+// Members of the record that do not depend on threads and shards.
 Json core(const EnsembleResult& result) {
   Json out = {{"members", result.members},
               {"failed", result.failures.size()},

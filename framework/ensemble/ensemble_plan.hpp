@@ -1,4 +1,5 @@
-// What all members of an ensemble have in common, checked before anything runs. Not installed.
+// Plan of an ensemble: what all members have in common, checked before anything runs. Not
+// installed.
 #pragma once
 
 #include <memory>
@@ -19,7 +20,7 @@ namespace hamel::ensemble {
 /// Reads the files of the system and of inputs, where their texts are not there yet. ConfigError.
 void read_data(EnsembleConfig& config);
 
-/// What all threads share: an ensemble without mistakes.
+/// Plan that all threads share: an ensemble without mistakes.
 class Plan {
  public:
   /// Completes the configuration. ConfigError with all mistakes.

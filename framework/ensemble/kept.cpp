@@ -132,7 +132,7 @@ KeptFormulas::KeptFormulas(const EnsembleConfig& config, const SystemModel& syst
   settle(config.run.until >= config.run.from ? 1 : -1);
 }
 
-// What is wrong with the name of a column; "" for nothing.
+// Flaw of the name of a column; "" for none.
 std::string KeptFormulas::flaw_of_name(const std::string& name,
                                        const Variations& variations) const {
   const auto has_name = [&](const auto& other) { return other.name == name; };

@@ -1,4 +1,4 @@
-// What is kept of a member: formulas of its states and events, evaluated as the run goes. Not
+// Kept quantities of a member: formulas of its states and events, evaluated as the run goes. Not
 // installed.
 #pragma once
 
@@ -118,8 +118,8 @@ class KeptFormulas {
   /// The name of a function of the run among them; "" for none.
   std::string function() const;
 
-  /// What of the states is needed: at peaks; at all of them; at the start, whose energy others are
-  /// compared with.
+  /// Parts of the states that are needed: at peaks; at all of them; at the start, whose energy
+  /// others are compared with.
   const StateParts& peak_parts() const { return peak_parts_; }
   const StateParts& parts() const { return parts_; }
   StateParts start_parts() const {
@@ -128,7 +128,7 @@ class KeptFormulas {
     return out;
   }
 
-  // Of one member, in this order.
+  // Calls for one member, in this order.
   void begin(long member);
   void start(const Snapshot& state, const StateExtras* extras = nullptr);
   void peak(const Snapshot& state, const StateExtras* extras = nullptr);

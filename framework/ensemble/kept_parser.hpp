@@ -152,7 +152,7 @@ class KeptFormulas::Parser {
     if (it == out_.events_.end()) out_.events_.push_back(watched);
     return use(atom(count ? From::count : From::time, place, "", word));
   }
-  // One number of a state, or a formula of them and the constants.
+  // Number of a state, or a formula of some and the constants.
   void state(const std::string& quantity, Atom& out) {
     const std::string text = out_.states_.state().in_formula(quantity);
     const std::vector<std::string>& names = out_.states_.names();

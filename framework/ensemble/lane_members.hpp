@@ -21,7 +21,7 @@ class LaneMembers {
   bool run(long first, std::span<double> rows, std::vector<MemberFailure>& failures);
 
  private:
-  /// One lane's member.
+  /// Member of a lane.
   struct Lane {
     explicit Lane(const Plan& plan, const std::atomic<bool>* stop) : runner(plan, stop) {}
     MemberRunner runner;

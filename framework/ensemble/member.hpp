@@ -1,4 +1,4 @@
-// One member after the other, in one thread: the run is built once where only starts and inputs
+// Members one after the other, in one thread: the run is built once where only starts and inputs
 // differ, and restarted. Not installed.
 #pragma once
 
@@ -38,7 +38,7 @@ class MemberRunner {
   KeptFormulas& kept() { return kept_; }
   /// The columns of that member, or the reason why there are none.
   std::string finish(std::span<double> out);
-  /// The same run as a configuration.
+  /// Configuration of the same run.
   Config config(long member);
 
  private:
@@ -68,7 +68,7 @@ class MemberRunner {
   Start common_;                               // the start that all have in common
   size_t time_ = 0, row_ = 0;                  // the next ones
   long acted_ = 0;                             // the next multiple of the feedback's period
-  // Of a start.
+  // Work space of a start.
   mutable Eigen::VectorXd g_, drift_;
   mutable Eigen::MatrixXd inertia_, rows_;
 };

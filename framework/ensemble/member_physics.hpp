@@ -1,5 +1,5 @@
-// What a member's states do not carry themselves: the reactions of the constraints, and the energy
-// balance, for which every node is needed. As a run's rows have them (run_recorder.hpp). Not
+// Numbers that a member's states do not carry themselves: the reactions of the constraints, and the
+// energy balance, for which every node is needed. As a run's rows have them (run_recorder.hpp). Not
 // installed.
 #pragma once
 

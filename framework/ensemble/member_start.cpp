@@ -71,7 +71,7 @@ Start MemberRunner::start_of(long member, Start start) {
   return start;
 }
 
-// Of all xi with A xi = b and these components the one next to the start's in the metric I:
+// From all xi with A xi = b and these components takes the one next to the start's in the metric I:
 //   xi = xi0 + I^-1 C^T (C I^-1 C^T)^-1 (d - C xi0),  C = (A; e_j), d = (b; values).
 GivenComponents MemberRunner::given_components(const Start& start) const {
   matrices(start);

@@ -32,7 +32,7 @@ constexpr Words4 philox(Words4 counter, Words2 key) {
   return counter;
 }
 
-/// What distinguishes the numbers of two names: FNV-1a, 32 bits.
+/// Key that distinguishes the numbers of two names: FNV-1a, 32 bits.
 constexpr uint32_t stream_of(std::string_view name) {
   uint32_t hash = 2166136261u;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
@@ -57,7 +57,7 @@ class Draws {
     const uint64_t bits = (uint64_t{words_[at + 1]} << 32 | words_[at]) >> 11;
     return (static_cast<double>(bits) + 0.5) * 0x1p-53;
   }
-  /// Of mean 0 and deviation 1, by Box and Muller.
+  /// Normal draw of mean 0 and deviation 1, by Box and Muller.
   double normal() {
     const double radius = std::sqrt(-2 * std::log(uniform()));
     return radius * std::cos(2 * std::numbers::pi * uniform());

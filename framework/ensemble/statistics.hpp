@@ -11,14 +11,14 @@ namespace hamel::ensemble {
 
 constexpr long kChunk = 1024;
 
-/// Of values that are there (NaN: none), in their order.
+/// Moments of the values that are there (NaN: none), in their order.
 Moments moments_of(std::span<const double> values);
 /// The tree: neighbours first, then neighbours of these; an odd one goes up alone.
 Moments joined(std::vector<Moments> chunks);
 /// The value of member `first` is the first.
 Moments moments_of_column(std::span<const double> values, long first);
 
-/// Of sorted values, with linear interpolation between them; NaN of none.
+/// Quantile of sorted values, with linear interpolation between them; NaN of none.
 double quantile(std::span<const double> sorted, double part);
 Histogram histogram_of(std::span<const double> values, const HistogramRequest& request,
                        const Moments& moments);

@@ -21,7 +21,7 @@ bool is_number(Law law) {
          law == Law::log_uniform || law == Law::function;
 }
 
-// What is wrong with the numbers of a law; "" for nothing.
+// Flaw of the numbers of a law; "" for none.
 std::string flaw_of(const Variation& v) {
   const std::vector<double>& x = v.numbers;
   if (!std::ranges::all_of(x, [](double y) { return std::isfinite(y); }))

@@ -1,4 +1,4 @@
-// What a member is varied by: the names of an ensemble resolved in its system, and the numbers of
+// Variations of a member: the names of an ensemble resolved in its system, and the numbers of
 // each member. Not installed.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace hamel::ensemble {
 
-/// What a variation sets.
+/// Target that a variation sets.
 struct Target {
   enum class Kind { parameter, input, speed, velocity, coordinate, rotation, moved, energy };
   Kind kind = Kind::parameter;
@@ -28,7 +28,7 @@ class Variations {
 
   const std::vector<Variation>& all() const { return vary_; }
   const std::vector<Target>& targets() const { return targets_; }
-  /// Those that are one number each, by index into all(): the columns of a table.
+  /// Variations that are one number each, by index into all(): the columns of a table.
   const std::vector<size_t>& numbered() const { return numbered_; }
   bool any(Target::Kind kind) const;
   /// The number of a member for a variation that is one.

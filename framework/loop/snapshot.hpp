@@ -27,7 +27,7 @@ struct SolverStats {
   std::vector<Fallback> first_fallbacks;  // at most 20
 };
 
-/// What is found of a state beside its time and its velocity.
+/// Parts of a state beside its time and its velocity.
 struct StateParts {
   bool coordinates = true, element = true;
   bool momentum = true, energy = true;

@@ -43,7 +43,7 @@ class ReversibleControl {
   bool started_ = false;
 };
 
-/// That of a problem.
+/// Rate of the motion of a problem.
 template <class P>
 class RateOf final : public MotionRate {
  public:

@@ -74,7 +74,7 @@ class StepEquation {
   virtual void exact_linearise(const Unknown& x, Unknown& f, Jacobian& j) const = 0;
 };
 
-/// That of a step.
+/// Equation of a compiled step.
 template <class Step>
 class ErasedStep final : public StepEquation<typename Step::Unknown> {
  public:

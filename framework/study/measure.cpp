@@ -1,4 +1,4 @@
-// One cell: a run with recording, and the time of one without.
+// Cell of a study: a run with recording, and the time of one without.
 #include <time.h>
 
 #include <algorithm>

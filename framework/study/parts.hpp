@@ -27,7 +27,8 @@ SystemModel model(const Registry& registry, const StudySystem& system);
 
 inline bool stopped(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
 
-/// That many steps, or fewer when one fails or the flag, which is polled on the way, becomes true.
+/// Takes that many steps, or fewer when one fails or the flag, which is polled on the way, becomes
+/// true.
 Status advance(Run& run, long steps, const std::atomic<bool>* stop);
 
 /// The values of the axis "step".
@@ -47,7 +48,7 @@ StudyReference reference(const Registry& registry, const StudyConfig& config,
 long reference_steps(const Registry& registry, const StudyConfig& config,
                      const StudySystem& system);
 
-/// One run with recording. Not done when stop became true on the way.
+/// Measures a run with recording. Not done when stop became true on the way.
 StudyMetrics measure(const Registry& registry, const StudySystem& system, const StudyCell& cell,
                      const StudyReference& reference, const std::atomic<bool>* stop);
 

@@ -103,7 +103,7 @@ class HAMEL_API StudyAxes {
   void set(const std::string& axis, std::shared_ptr<const StudyAxisValue> value);
   /// The options of `run` that are axes become the values here.
   void apply(Config& run) const;
-  /// The same without the value on an axis.
+  /// Axes without the value on this one.
   StudyAxes without(const std::string& axis) const;
   bool operator<(const StudyAxes& other) const;
 
@@ -111,7 +111,7 @@ class HAMEL_API StudyAxes {
   std::vector<std::shared_ptr<const StudyAxisValue>> values_;  // in the order of study_axes()
 };
 
-/// One combination: run, or skipped and why.
+/// Combination that is run, or skipped and why.
 struct HAMEL_API StudyCell {
   size_t system = 0;                   // index into the systems
   std::shared_ptr<const Config> base;  // of the cells of one system: all but the axes
@@ -202,7 +202,7 @@ struct HAMEL_API StudyResult : BatchResult {
   /// Is this cell run, and one of the shard?
   bool runs(size_t cell) const { return runs_in(shard, cell); }
   bool runs_in(const Shard& part, size_t cell) const;
-  /// One row per cell, axes and metrics as columns.
+  /// Table with a row for each cell, axes and metrics as columns.
   Table table() const;
   /// Versions, compiler, flags, host, git, counts and the study file, as JSON.
   std::string record() const;

@@ -77,7 +77,7 @@ class StudyReader {
       read_.unknown(node, "mode", word, {"factorial", "zipped"});
   }
 
-  // One value or a list of them, each with its place.
+  // Value or a list of them, each with its place.
   bool axis(const std::string& key, const toml::node& node) {
     bool found = false;
     Config::fields([&](const Option& option, auto member) {
@@ -164,7 +164,7 @@ class StudyReader {
     }
   }
 
-  // One value or a list, as the names that the axis has for them.
+  // Value or a list, as the names that the axis has for them.
   void matched(const toml::node& node, const std::string& key, StudyExclusion& out) {
     std::vector<std::string> known = study_axes();
     if (std::find(known.begin(), known.end(), key) == known.end()) {

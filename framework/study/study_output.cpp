@@ -25,7 +25,7 @@ std::string status_of(const StudyCell& cell, const StudyMetrics& m) {
   return m.ok ? "ok" : "failed";
 }
 
-// One column of texts or of numbers, from each cell with its metrics.
+// Column of texts or of numbers, from each cell with its metrics.
 class Columns {
  public:
   explicit Columns(const StudyResult& result) : result_(result) {}

@@ -27,7 +27,7 @@ DataFormulas DataFormulasReader::read(const Names& inputs) {
   return out;
 }
 
-// One entry of a matrix that has the size already.
+// Entry of a matrix that has the size already.
 void DataFormulasReader::entry(const Node& node, const std::string& key, const Names& variables,
                                FormulaMatrix& out, Eigen::Index i, Eigen::Index j) {
   if (node.is_number()) {

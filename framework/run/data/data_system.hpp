@@ -48,7 +48,7 @@ SystemModel data_system(const Registry& registry, const std::string& text,
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path);
 
-/// The same of a file whose text is at hand.
+/// Reads a file whose text is at hand in the same way.
 std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
                                                                 const std::string& path,
                                                                 const std::string& text);

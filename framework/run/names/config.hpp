@@ -17,7 +17,7 @@
 
 namespace hamel {
 
-/// One option: a double (or none), long, bool or string, or a list of doubles or
+/// Option of a run: a double (or none), long, bool or string, or a list of doubles or
 /// strings.
 struct Option {
   const char* name;  // in files and records; on the command line with dashes, --on-failure
@@ -132,7 +132,7 @@ struct HAMEL_API Config {
     f(Option{"force", "", "compose a step that is not reversible all the same"}, &Config::force);
     f(Option{"no_exact", "", "leave out the comparison with the exact motion"}, &Config::no_exact);
   }
-  /// The same for the members of a Start.
+  /// Calls it for the members of a Start.
   template <class F>
   static void start_fields(F&& f) {
     f(Option{"configuration", "", "start, in the element's CSV columns"}, &Start::configuration);

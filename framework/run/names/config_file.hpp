@@ -9,7 +9,7 @@
 
 namespace hamel {
 
-/// What a file has of an option of a command: texts (a flag is "true"), and file, line, column.
+/// Option of a command in a file: texts (a flag is "true"), and file, line, column.
 struct CommandOption {
   std::vector<std::string> values = {};
   std::string place = {};

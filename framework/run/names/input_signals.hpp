@@ -36,7 +36,7 @@ HAMEL_API std::string text_of(const InputSignal& signal);
 
 /// The table of a file. ConfigError "what: path:line: ...".
 HAMEL_API InputTable read_input_table(const std::string& what, const InputFile& file);
-/// The same of a file whose text is at hand.
+/// Reads a file whose text is at hand in the same way.
 HAMEL_API InputTable read_input_table(const std::string& what, const InputFile& file,
                                       const std::string& text);
 

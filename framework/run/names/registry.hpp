@@ -53,7 +53,7 @@ struct SchemeInfo {
   bool defined(bool left_invariant) const { return left_invariant || !left_invariant_only; }
   /// The order claimed for a run; 0 where the scheme is not defined.
   ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) const;
-  /// The same on a system. With forces at the nodes only (lift), constant inertia and rows A xi = 0
+  /// Order on a system. With forces at the nodes only (lift), constant inertia and rows A xi = 0
   /// count as left-invariant: (M43).
   ClaimedOrder claim(double s, TauTraits tau, const Mechanics& system,
                      const std::string& force_at) const;
@@ -130,7 +130,7 @@ class Registry {
   void add_kernel(const std::string& problem, const std::string& retraction,
                   const std::string& scheme, KernelFactory factory);
 
-  /// The same for bodies in lanes.
+  /// Adds the kernel of bodies in lanes.
   void add_lanes(const std::string& problem, const std::string& retraction,
                  const std::string& scheme, LaneInfo info);
 

@@ -107,7 +107,7 @@ static std::string final_velocity(const Result& result) {
                            std::fmax(0, result.exact_velocity_error_max));
 }
 
-// Of no steps there is no mean.
+// No steps have no mean.
 static std::string solver_in_words(const SolverStats& stats, long steps) {
   if (steps == 0) return fmt::format("{} iterations", stats.iterations);
   return fmt::format("{:.2f} iterations a step (max {}), residual at most {:.1e}",

@@ -96,7 +96,7 @@ struct HAMEL_API Result : Measurements {
   std::string steps_in_words() const;
   /// The record of tools/README.md as JSON; indent < 0 for one line.
   std::string record(int indent = 2) const;
-  /// One screen of text: status, iterations, drifts, error against the exact solution.
+  /// Report on one screen: status, iterations, drifts, error against the exact solution.
   std::string report() const;
   /// Writes by extension, output_formats(): the rows that are in memory and the record, or (.json)
   /// the record. The file appears whole or not at all. ConfigError when it cannot be written.

@@ -29,7 +29,7 @@ std::string path_of_events(const std::string& path);
 /// The events of a run, in sets and files called `events`: name, t, the columns of the
 /// element and of xi. No set where none are watched.
 NamedRows event_rows(const RunHead& head);
-/// The same with the events that occurred.
+/// Rows of the events that occurred.
 NamedRows event_rows(NamedRows head, const std::vector<EventMet>& met);
 
 class Sink {

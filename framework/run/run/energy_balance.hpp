@@ -23,7 +23,7 @@ class EnergyBalance {
 
   /// Takes each node, from the start on: its step, time, coordinates, velocity and energy.
   void node(const Snapshot& state);
-  /// The same for the end of a step from the time `begin`. The explicit pairs take long steps with
+  /// Takes the end of a step from the time `begin`. The explicit pairs take long steps with
   /// a dense output: the power is asked for within them too, since the work is not known from their
   /// ends alone. motion_within(t, Snapshot&) -> bool, as Kernel::motion_within.
   template <class Within>

@@ -83,7 +83,7 @@ std::string RowsWatch::remark(const Snapshot& state) {
                      names());
 }
 
-// Those of the combination that is next to zero.
+// Names of the rows in the combination that is next to zero.
 std::string RowsWatch::names() const {
   const dense::Svd svd = dense::svd(rows_, Eigen::ComputeThinU);
   const Eigen::VectorXd parts = svd.u.rightCols<1>().cwiseAbs();

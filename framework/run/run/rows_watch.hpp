@@ -46,7 +46,7 @@ class RowsWatch {
  private:
   void set_rows(const Snapshot& state);
   void set_frame(double t);
-  // Of [A; E^T], without memory taken.
+  // Factors of [A; E^T], without memory taken.
   dense::Pivots pivots();
 
   std::shared_ptr<const Geometry> geometry_;

@@ -1,4 +1,4 @@
-// One run: the driver of a trajectory, by hand or to its end.
+// Run: the driver of a trajectory, by hand or to its end.
 //
 //   hamel::Run run = hamel::simulate("segway").step(0.005).input("left_torque", 0).build();
 //   while (run.state().time < 10) {
@@ -36,11 +36,11 @@ class HAMEL_API Run {
   Run& operator=(Run&&) noexcept;
   ~Run();
 
-  /// One step (or count of them); the status of the first that failed. Behind an event that ends
-  /// the run, or an observer that returned false, it does nothing: ok, with the reason. Behind
+  /// Takes a step (or count of them); the status of the first that failed. Behind an event that
+  /// ends the run, or an observer that returned false, it does nothing: ok, with the reason. Behind
   /// finish() it fails with this as the reason; so do the others that step.
   Status step(long count = 1);
-  /// One step; a chosen one ends at t at the latest.
+  /// Takes a step; a chosen one ends at t at the latest.
   Status step_towards(double t);
   /// Steps to time t, which is finite: chosen ones end there, others at the node nearest to it.
   Status advance_to(double t);

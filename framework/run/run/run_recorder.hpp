@@ -41,8 +41,8 @@ class RunRecorder {
   void impact(const Snapshot& before, const Snapshot& after);
   /// The measurements that a state carries.
   void take(const Snapshot& state);
-  /// Those by the equations of motion, the invariants and the exact motion, and the state's row
-  /// (the columns of tools/README.md).
+  /// Measurements by the equations of motion, the invariants and the exact motion, and the state's
+  /// row (the columns of tools/README.md).
   void compare(const Snapshot& state);
   /// The columns of a row.
   const std::vector<ColumnGroup>& columns() const { return columns_.groups(); }

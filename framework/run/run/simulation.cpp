@@ -27,7 +27,7 @@ void add_notes(Result& result, long impacts) {
         impacts, impacts > 1 ? "s" : "", result.last.time));
   }
   constexpr double percent = 0.01;
-  // Of an energy that is 0 at the start, or nearly, the change is compared with the kinetic energy.
+  // Where the energy is 0 at the start, or nearly, its change is compared with the kinetic energy.
   const Snapshot& last = result.last;
   double kinetic = 0;
   for (size_t i = 0; i < std::min(last.velocity.size(), last.momentum.size()); ++i)
