@@ -13,9 +13,10 @@
 namespace hamel {
 namespace {
 
-// Relative to that of the code: beside a Python module, of libhamel.so installed and in the build,
-// of the program in both, of an installed Python module.
-constexpr const char* kModuleFolders[] = {"", "hamel", HAMEL_LIBDIR "/hamel",
+// Relative to that of the code: of a Python module (a folder that is no package: they are none that
+// Python could import), of libhamel.so installed and in the build, of the program in both, of an
+// installed Python module.
+constexpr const char* kModuleFolders[] = {"modules", "hamel", HAMEL_LIBDIR "/hamel",
                                           "../" HAMEL_LIBDIR "/hamel",
                                           "../../../../" HAMEL_LIBDIR "/hamel"};
 
