@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <stdexcept>
+#include <string>
 
 #include <hamel/framework/check/system_laws.hpp>
 #include <hamel/groups/exp.hpp>
+#include <hamel/groups/rn.hpp>
 #include <hamel/systems/chaplygin_sleigh.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 #include <hamel/systems/suslov.hpp>
@@ -74,6 +77,41 @@ TEST(SystemLaws, SeePlantedMistakes) {
   EXPECT_GE(failures(check_system<WrongInvariant, Exp<SO3>>(full<WrongInvariant>())), 2);
   EXPECT_GE(failures(check_system<Inadmissible, Exp<SO3>>(full<Inadmissible>())), 1);
   EXPECT_GE(failures(check_system<Asymmetric, Exp<SO3>>(full<Asymmetric>())), 1);
+}
+
+// A blade on a plane that states the rate of its row, times a factor.
+struct Blade {
+  using Group = Rn<3>;
+  static std::string name() { return "blade"; }
+  static Mat<3, 3> inertia() { return Vec<3>(1, 2, 3).asDiagonal(); }
+  static Mat<1, 3> constraints(const Vec<3>& q) {
+    return Mat<1, 3>{{0, std::sin(q[0]), -std::cos(q[0])}};
+  }
+  static Start start() { return {.velocity = {1, 1, 0}}; }
+};
+struct StatedRates final : LeftInvariantMechanics {
+  explicit StatedRates(double times)
+      : LeftInvariantMechanics(Blade::inertia(), Eigen::MatrixXd::Zero(1, 3)), factor(times) {}
+  bool left_invariant() const override { return false; }
+  bool constant_constraints() const override { return false; }
+  void constraints(double, const double* q, Matrix a, Vector b) const override {
+    a = Blade::constraints({q[0], q[1], q[2]});
+    b.setZero();
+  }
+  bool rates(double, const double* q, ConstVector xi, Vector rows, Vector momentum) const override {
+    rows[0] = -factor * xi[0] * (std::cos(q[0]) * xi[1] + std::sin(q[0]) * xi[2]);
+    momentum.setZero();
+    return true;
+  }
+  double factor;
+};
+TEST(SystemLaws, SeeRatesThatAreNotThoseOfTheRows) {
+  const auto geometry = erased_geometry<Exp<Rn<3>>>();
+  for (const double factor : {1.0, 1 + 1e-6}) {
+    SystemModel model = erase(Blade());
+    model.mechanics = std::make_shared<StatedRates>(factor);
+    EXPECT_EQ(failures(check_system(model, 1, geometry.get())), factor == 1 ? 0 : 1) << factor;
+  }
 }
 
 /// A parameter of default 0 that never reaches the struct; and one that cannot be anything but
