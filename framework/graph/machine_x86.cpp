@@ -1,0 +1,58 @@
+#include <hamel/framework/graph/machine_x86.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hamel::graph {
+
+std::string machine_code_refusal() {
+#if defined(__x86_64__) && defined(__linux__)
+  static const bool has_avx = __builtin_cpu_supports("avx");
+  return has_avx ? "" : "the processor has no AVX";
+#else
+  return "it is written for x86-64 under Linux";
+#endif
+}
+
+std::unique_ptr<const MachineCode> MachineCode::make(const Program& program, int width) {
+  if (!machine_code_refusal().empty()) return nullptr;
+  const int lanes = std::min(width, 4);
+  std::unique_ptr<const MachineCode> code(new MachineCode(emit(program, lanes, width), width));
+  return code->memory_.data() ? std::move(code) : nullptr;
+}
+
+MachineCode::MachineCode(EmittedCode code, int width)
+    : code_(std::move(code)),
+      memory_(code_.bytes),
+      width_(static_cast<size_t>(width)),
+      lanes_(std::min<size_t>(width_, 4)) {}
+
+bool MachineCode::run(const double* x, double* y, double* work) const {
+  for (size_t first = 0; first < width_; first += lanes_) {
+    if (!run_lanes(x + first, y + first, work)) return false;
+  }
+  return true;
+}
+
+bool MachineCode::run_lanes(const double* x, double* y, double* work) const {
+  using Function = void (*)(const double* x, double* y, double* work, const double* table);
+  const double* const bases[] = {x, work, code_.table.data()};
+  const auto at = [&](const LaneAddress& a) {
+    return bases[static_cast<size_t>(a.base)] + a.offset;
+  };
+  for (const Segment& segment : code_.segments) {
+    reinterpret_cast<Function>(memory_.data() + segment.begin)(x, y, work, code_.table.data());
+    for (const LibraryCall& call : segment.calls) {
+      const double *a = at(call.a), *b = at(call.b);
+      double* const to = work + call.to;
+      for (size_t j = 0; j < lanes_; ++j) to[j] = evaluate(call.op, a[j], b[j]);
+    }
+  }
+  if (!code_.has_angles) return true;
+  bool within = true;  // false where it is not a number, too
+  for (size_t j = 0; j < lanes_; ++j) within = within && work[j] <= kLargestAngle;
+  return within;
+}
+
+}  // namespace hamel::graph
