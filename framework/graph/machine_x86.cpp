@@ -1,7 +1,7 @@
 #include <hamel/framework/graph/machine_x86.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace hamel::graph {
@@ -42,7 +42,8 @@ bool MachineCode::run_lanes(const double* x, double* y, double* work) const {
     return bases[static_cast<size_t>(a.base)] + a.offset;
   };
   for (const Segment& segment : code_.segments) {
-    reinterpret_cast<Function>(memory_.data() + segment.begin)(x, y, work, code_.table.data());
+    const auto address = reinterpret_cast<std::uintptr_t>(memory_.data() + segment.begin);
+    reinterpret_cast<Function>(address)(x, y, work, code_.table.data());
     for (const LibraryCall& call : segment.calls) {
       const double *a = at(call.a), *b = at(call.b);
       double* const to = work + call.to;

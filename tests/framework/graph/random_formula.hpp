@@ -134,4 +134,40 @@ inline std::shared_ptr<const Program> random_program(unsigned seed, int inputs, 
   return std::make_shared<const Program>(recording, outputs);
 }
 
+/// Program in layers, of whose values many more are live at once than a machine has registers.
+inline std::shared_ptr<const Program> wide_program(unsigned seed, int inputs, size_t live) {
+  Recording recording;
+  std::vector<Number> layer;
+  for (int i = 0; i < inputs; ++i) layer.push_back(recording.input("x" + std::to_string(i)));
+  std::mt19937 random(seed);
+  const auto below = [&](size_t n) {
+    return std::uniform_int_distribution<size_t>(0, n - 1)(random);
+  };
+  for (int k = 0; k < 5; ++k) {
+    std::vector<Number> next;
+    for (size_t i = 0; i < live; ++i) {
+      const Number a = layer[below(layer.size())], b = layer[below(layer.size())],
+                   c = layer[below(layer.size())];
+      switch (below(11)) {
+        case 0: next.push_back(sqrt(a)); break;
+        case 1: next.push_back(rint(a)); break;
+        case 2: next.push_back(select(a < b, c, a)); break;
+        case 3: next.push_back(select(a <= b && b == c, b, c)); break;
+        case 4: next.push_back(min(a, b) / c); break;
+        case 5: next.push_back(abs(a) * b); break;
+        case 6: next.push_back(a - -b); break;
+        case 7: next.push_back(atan2(a, b)); break;
+        case 8: next.push_back(sin(a)); break;
+        case 9: next.push_back(max(a * b, c)); break;
+        default: next.push_back(a * b + c); break;
+      }
+    }
+    layer = next;
+  }
+  Number sum = 0;
+  for (size_t i = layer.size(); i-- > 0;) sum = atan(sum) + layer[i];
+  return std::make_shared<const Program>(
+      recording, Program::Outputs{{"sum", sum}, {"first", layer.front()}, {"last", layer.back()}});
+}
+
 }  // namespace hamel::graph::test
