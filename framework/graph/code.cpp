@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -17,28 +18,29 @@ bool is_switched_off() {
   return off;
 }
 
-bool has_angles(const Program& program) {
-  const auto& code = program.instructions();
-  return std::any_of(code.begin(), code.end(),
-                     [](const Instruction& i) { return is_beyond(i.op); });
-}
-
 }  // namespace
 
 struct Code::Insides {
   Insides(std::shared_ptr<const Program> of, int lanes, Machine allowed)
       : program(std::move(of)), width(lanes) {
-    if (allowed == Machine::allowed && !is_switched_off())
+    if (allowed == Machine::allowed && !is_switched_off()) {
       machine = MachineCode::make(*program, width);
-    if (!machine || has_angles(*program)) interpreter.emplace(*program);
-    if (machine) work_size = machine->work_size();
-    if (interpreter) work_size = std::max(work_size, interpreter->work_size(width));
+    }
+    if (!machine || machine->has_angles()) work_size = Interpreter::work_size(*program, width);
+    if (machine) work_size = std::max(work_size, machine->work_size());
+  }
+  const Interpreter& interpreter() const {  // of machine code: made when an angle is too large
+    std::call_once(once, [this] { made.emplace(*program); });
+    return *made;
   }
   std::shared_ptr<const Program> program;
   int width;
   std::unique_ptr<const MachineCode> machine;
-  std::optional<Interpreter> interpreter;  // also of angles beyond the range of machine code
   size_t work_size = 0;
+
+ private:
+  mutable std::once_flag once;
+  mutable std::optional<Interpreter> made;
 };
 
 Code::Code(std::shared_ptr<const Program> program, int width, Machine machine) {
@@ -47,6 +49,7 @@ Code::Code(std::shared_ptr<const Program> program, int width, Machine machine) {
     throw std::invalid_argument("graph::Code: a width of 1, 4 or 8, not " + std::to_string(width));
   }
   insides_ = std::make_shared<const Insides>(std::move(program), width, machine);
+  if (!insides_->machine) (void)insides_->interpreter();
 }
 Code::~Code() = default;
 Code::Code(const Code&) = default;
@@ -62,7 +65,7 @@ size_t Code::work_size() const { return insides_->work_size; }
 void Code::operator()(const double* x, double* y, double* work) const {
   const Insides& i = *insides_;
   if (i.machine && i.machine->run(x, y, work)) return;
-  i.interpreter->run(i.width, x, y, work);
+  i.interpreter().run(i.width, x, y, work);
 }
 
 std::string machine_code_refused() {

@@ -26,7 +26,7 @@ inline Operand memory(Base base, int displacement) { return {-1, base, displacem
 /// Instructions as bytes, in the order of the calls. Operands: to = a op b.
 class Encoder {
  public:
-  explicit Encoder(bool packed) : packed_(packed) {}
+  explicit Encoder(bool packed) : packed_(packed) { bytes_.reserve(4096); }
 
   void add(int to, int a, Operand b) { arithmetic(0x58, to, a, b); }       // VADDSD VADDPD
   void multiply(int to, int a, Operand b) { arithmetic(0x59, to, a, b); }  // VMULSD VMULPD

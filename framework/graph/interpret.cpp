@@ -164,10 +164,9 @@ bool has_avx2() { return false; }
 }  // namespace
 
 Interpreter::Interpreter(const Program& program)
-    : plan_{program.constants(), program.inputs().size(), {}, {}, {}},
-      values_(static_cast<size_t>(program.value_count())) {
+    : plan_{program.constants(), program.inputs().size(), {}, {}, {}} {
   const size_t first = static_cast<size_t>(program.first_result());
-  std::vector<unsigned> values(values_);  // their new numbers
+  std::vector<unsigned> values(static_cast<size_t>(program.value_count()));  // their new numbers
   for (size_t i = 0; i < first; ++i) values[i] = static_cast<unsigned>(i);
   const auto value = [&](int v) { return v < 0 ? 0 : values[static_cast<size_t>(v)]; };
 

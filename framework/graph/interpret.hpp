@@ -18,7 +18,9 @@ class Interpreter {
   explicit Interpreter(const Program& program);
 
   /// Doubles of work space for width bodies, 1, 4 or 8.
-  size_t work_size(int width) const { return values_ * static_cast<size_t>(width); }
+  static size_t work_size(const Program& program, int width) {
+    return static_cast<size_t>(program.value_count()) * static_cast<size_t>(width);
+  }
   /// y = outputs of x: value i of lane j at [i width + j].
   void run(int width, const double* x, double* y, double* work) const;
 
@@ -37,7 +39,6 @@ class Interpreter {
 
  private:
   Plan plan_;
-  size_t values_;
 };
 
 }  // namespace hamel::graph

@@ -56,6 +56,7 @@ class MachineCode {
 
   /// Doubles of work space.
   size_t work_size() const { return code_.slots * lanes_; }
+  bool has_angles() const { return code_.has_angles; }
   /// y = outputs of x, as Interpreter::run. False where an angle lies beyond kLargestAngle: y is
   /// then invalid.
   bool run(const double* x, double* y, double* work) const;
