@@ -15,6 +15,10 @@
 
 namespace hamel {
 
+namespace graph {
+class Number;
+}
+
 constexpr size_t kMostCharacters = 2000;  // of a formula
 
 /// Error of a formula: its message, and behind how many of its characters.
@@ -41,6 +45,9 @@ class Expression {
   double differentiate(std::span<const double> values, double factor, std::span<double> out) const;
   /// Its rate of change where the variables change at these rates.
   double rate(std::span<const double> values, std::span<const double> rates) const;
+  /// The formula of these variables as a node of the thread's graph::Recording, whose values and
+  /// derivatives are those of this object up to round-off.
+  graph::Number record(std::span<const graph::Number> variables) const;
   /// The variables that occur in it, by index.
   std::vector<size_t> used() const;
   bool constant() const { return inputs_.empty(); }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <hamel/framework/io/toml_formulas.hpp>
-#include <hamel/framework/run/data/data_mechanics.hpp>
+#include <hamel/framework/run/data/formula_matrix.hpp>
 
 namespace hamel {
 

@@ -19,25 +19,34 @@ bool DataFormulas::left_invariant() const {
          holonomic.constant.rows() == 0 && potential.is_constant() && force.is_zero();
 }
 
-DataMechanics::DataMechanics(DataFormulas formulas, const GroupInfo& group,
-                             std::shared_ptr<const Geometry> geometry,
+DataMechanics::DataMechanics(std::shared_ptr<const FormulaPrograms> programs,
+                             const GroupInfo& group, std::shared_ptr<const Geometry> geometry,
                              std::shared_ptr<const Inputs> given)
-    : f_(std::move(formulas)),
+    : programs_(std::move(programs)),
+      f_(programs_->formulas()),
       geometry_(std::move(geometry)),
       rates_(group, geometry_),
       given_(std::move(given)),
       n_(group.dim),
       own_(static_cast<int>(f_.rows.constant.rows())),
       held_(static_cast<int>(f_.holonomic.constant.rows())),
-      values_(time() + 1 + f_.inputs + static_cast<size_t>(n_), 0.0),
-      slopes_(values_.size()),
+      values_(2 * programs_->variables(), 0.0),
       now_(n_) {
-  const size_t t = time(), first_rate = t + 1 + f_.inputs;
+  const size_t t = time(), first_rate = t + 1 + f_.inputs, end = programs_->variables();
   autonomous_ = !f_.rows.uses(t, first_rate) && !f_.drift.uses(t, first_rate) &&
                 !f_.force.uses(t, first_rate);
-  velocity_force_ = f_.force.uses(first_rate, values_.size());
+  velocity_force_ = f_.force.uses(first_rate, end);
   // Not the second derivatives of phi, nor the rates of inputs.
   exact_rates_ = held_ == 0 && !f_.drift.uses(t + 1, first_rate);
+}
+
+const double* DataMechanics::outputs(Evaluation e) const {
+  const graph::Code& code = programs_->code(e);
+  const size_t count = code.program().results().size();
+  if (outputs_.size() < count) outputs_.resize(count);
+  if (work_.size() < code.work_size()) work_.resize(code.work_size());
+  code(values_.data(), outputs_.data(), work_.data());
+  return outputs_.data();
 }
 
 bool DataMechanics::constant_constraints() const {
@@ -56,25 +65,25 @@ void DataMechanics::take(ConstVector xi) const {
 }
 
 void DataMechanics::inertia(const double* g, Matrix out) const {
-  if (!f_.inertia.is_constant()) take(g);
-  f_.inertia.at(values_, out);
+  if (f_.inertia.is_constant()) return f_.inertia.fill(nullptr, out);
+  take(g);
+  f_.inertia.fill(outputs(Evaluation::inertia), out);
 }
 
 void DataMechanics::constraints(double t, const double* g, Matrix a, Vector b) const {
+  const double* y = nullptr;
   if (!constant_constraints()) {
     take(g);
     take(t);
+    y = outputs(Evaluation::constraints);
   }
-  f_.rows.at(values_, a.topRows(own_));
-  f_.drift.at(values_, b.head(own_));
+  f_.rows.fill(y, a.topRows(own_));
+  f_.drift.fill(y + f_.rows.entries.size(), b.head(own_));
   b.tail(held_).setZero();
-  for (int i = 0; i < held_; ++i) {
-    std::fill(slopes_.begin(), slopes_.end(), 0.0);
-    for (const FormulaMatrix::Entry& e : f_.holonomic.entries) {
-      if (e.row == i) e.value.differentiate(values_, 1, slopes_);
-    }
+  const double* slopes = y + f_.rows.entries.size() + f_.drift.entries.size();
+  for (int i = 0; i < held_; ++i, slopes += time()) {
     now_.setZero();
-    rates_.add_pulled_back(g, values_.data(), slopes_.data(), now_);
+    rates_.add_pulled_back(g, values_.data(), slopes, now_);
     a.row(own_ + i) = now_.transpose();
   }
 }
@@ -84,54 +93,45 @@ bool DataMechanics::rates(double t, const double* g, ConstVector xi, Vector rows
   if (!exact_rates_) return false;
   take(g);
   take(t);
-  std::fill(slopes_.begin(), slopes_.end(), 0.0);
-  if (!rates_.along(values_.data(), xi.data(), slopes_.data())) return false;
-  slopes_[time()] = 1;
-  rows.setZero();
-  momentum.setZero();
-  f_.rows.add_rate(values_, slopes_, -1, xi, rows);
-  f_.drift.add_rate(values_, slopes_, 1, Eigen::Matrix<double, 1, 1>::Ones(), rows);
-  f_.inertia.add_rate(values_, slopes_, 1, xi, momentum);
+  take(xi);
+  const auto of_variables = values_.begin() + static_cast<std::ptrdiff_t>(programs_->variables());
+  std::fill(of_variables, values_.end(), 0.0);
+  if (!rates_.along(values_.data(), xi.data(), &*of_variables)) return false;
+  of_variables[static_cast<std::ptrdiff_t>(time())] = 1;
+  const double* y = outputs(Evaluation::rates);
+  rows = Eigen::Map<const Eigen::VectorXd>(y, own_);
+  momentum = Eigen::Map<const Eigen::VectorXd>(y + own_, n_);
   return true;
 }
 
 void DataMechanics::holonomic(const double* g, Vector out) const {
   if (held_ == 0) return;
   take(g);
-  f_.holonomic.at(values_, out);
+  f_.holonomic.fill(outputs(Evaluation::holonomic), out);
 }
 
 double DataMechanics::potential(const double* g) const {
   if (f_.potential.is_constant()) return f_.potential.constant(0, 0);
   take(g);
-  return f_.potential.entries.front().value(values_);
-}
-
-void DataMechanics::add_inertial_slopes(ConstVector xi) const {
-  for (const FormulaMatrix::Entry& e : f_.inertia.entries)
-    e.value.differentiate(values_, 0.5 * xi[e.row] * xi[e.column], slopes_);
+  return *outputs(Evaluation::potential);
 }
 
 void DataMechanics::force(double t, const double* g, ConstVector xi, Vector out) const {
   take(g);
   take(t);
   take(xi);
-  f_.force.at(values_, out);
+  const double* y = outputs(Evaluation::force);
+  f_.force.fill(y, out);
   if (f_.potential.is_constant() && f_.inertia.is_constant()) return;
-  std::fill(slopes_.begin(), slopes_.end(), 0.0);
-  for (const FormulaMatrix::Entry& e : f_.potential.entries)
-    e.value.differentiate(values_, -1, slopes_);
-  add_inertial_slopes(xi);
-  rates_.add_pulled_back(g, values_.data(), slopes_.data(), out);
+  rates_.add_pulled_back(g, values_.data(), y + f_.force.entries.size(), out);
 }
 
 void DataMechanics::inertial_force(const double* g, ConstVector xi, Vector out) const {
   out.setZero();
   if (f_.inertia.is_constant()) return;
   take(g);
-  std::fill(slopes_.begin(), slopes_.end(), 0.0);
-  add_inertial_slopes(xi);
-  rates_.add_pulled_back(g, values_.data(), slopes_.data(), out);
+  take(xi);
+  rates_.add_pulled_back(g, values_.data(), outputs(Evaluation::inertial_force), out);
 }
 
 double DataMechanics::power(double t, const double* g, ConstVector xi) const {
@@ -139,7 +139,7 @@ double DataMechanics::power(double t, const double* g, ConstVector xi) const {
   take(g);
   take(t);
   take(xi);
-  f_.force.at(values_, now_);
+  f_.force.fill(outputs(Evaluation::applied_force), now_);
   return now_.dot(xi);
 }
 
@@ -149,12 +149,13 @@ std::vector<std::string> DataMechanics::start_mistakes(double t, const double* g
   take(t);
   take(xi);
   std::vector<std::string> out;
+  std::vector<double> slopes(programs_->variables());
   const auto check = [&](const FormulaMatrix& matrix, bool differentiated) {
     for (const FormulaMatrix::Entry& e : matrix.entries) {
-      std::fill(slopes_.begin(), slopes_.end(), 0.0);
-      const double value = e.value.differentiate(values_, 1, slopes_);
+      std::fill(slopes.begin(), slopes.end(), 0.0);
+      const double value = e.value.differentiate(values_, 1, slopes);
       const bool smooth =
-          std::all_of(slopes_.begin(), slopes_.end(), [](double x) { return std::isfinite(x); });
+          std::all_of(slopes.begin(), slopes.end(), [](double x) { return std::isfinite(x); });
       if (!std::isfinite(value))
         out.push_back(fmt::format("{}: '{}' is {} at the start", e.where, e.text, value));
       else if (differentiated && !smooth)

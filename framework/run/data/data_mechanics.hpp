@@ -6,52 +6,17 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/io/expression.hpp>
 #include <hamel/framework/mechanics/coordinate_rates.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/run/data/formula_programs.hpp>
 
 namespace hamel {
-
-/// A matrix of numbers and formulas.
-struct FormulaMatrix {
-  struct Entry {
-    Eigen::Index row, column;
-    Expression value;
-    std::string text, where;  // "system.toml:4:9: potential"
-  };
-  Eigen::MatrixXd constant;  // 0 where there is a formula
-  std::vector<Entry> entries;
-
-  bool is_constant() const { return entries.empty(); }
-  bool is_zero() const { return is_constant() && constant.isZero(0); }
-  bool uses(size_t first, size_t last) const;  // variables first <= i < last
-  /// out += factor times the rate of the matrix, times x.
-  template <class X, class Out>
-  void add_rate(std::span<const double> values, std::span<const double> rates, double factor,
-                const X& x, Out&& out) const {
-    for (const Entry& e : entries) out[e.row] += factor * e.value.rate(values, rates) * x[e.column];
-  }
-  template <class Out>
-  void at(std::span<const double> values, Out&& out) const {
-    for (Eigen::Index j = 0; j < constant.cols(); ++j)
-      for (Eigen::Index i = 0; i < constant.rows(); ++i) out(i, j) = constant(i, j);
-    for (const Entry& e : entries) out(e.row, e.column) = e.value(values);
-  }
-};
-
-/// The formulas of a system. Their variables, in this order: coordinates, t, inputs, rates.
-struct DataFormulas {
-  FormulaMatrix inertia, rows, drift, holonomic, potential, force;
-  size_t inputs = 0;
-
-  bool left_invariant() const;
-};
 
 class DataMechanics final : public Mechanics {
  public:
   /// given: null where no input drives it, and its formulas have none.
-  DataMechanics(DataFormulas formulas, const GroupInfo& group,
+  DataMechanics(std::shared_ptr<const FormulaPrograms> programs, const GroupInfo& group,
                 std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Inputs> given);
   int dim() const override { return n_; }
   int constraint_count() const override { return own_ + held_; }
@@ -80,16 +45,17 @@ class DataMechanics final : public Mechanics {
   void take(const double* g) const;
   void take(double t) const;
   void take(ConstVector xi) const;
-  void add_inertial_slopes(ConstVector xi) const;  // of 1/2 xi^T I xi by the coordinates
+  const double* outputs(Evaluation e) const;  // at the values taken
 
-  DataFormulas f_;
+  std::shared_ptr<const FormulaPrograms> programs_;
+  DataFormulas f_;  // a copy: expressions serve one thread
   std::shared_ptr<const Geometry> geometry_;
   CoordinateRates rates_;
   std::shared_ptr<const Inputs> given_;
   int n_, own_, held_;
   bool autonomous_, velocity_force_, exact_rates_;
-  mutable std::vector<double> values_,
-      slopes_;  // of the variables; of the coordinates, or their rates
+  mutable std::vector<double> values_;          // of the variables, then their rates
+  mutable std::vector<double> outputs_, work_;  // of the program evaluated last; its work space
   mutable Eigen::VectorXd now_;
 };
 

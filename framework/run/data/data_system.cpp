@@ -43,7 +43,11 @@ class File {
     for (const std::string& input : names_.inputs)
       formulas_.set(input, 0);  // where nothing drives it
     const DataFormulas idle = names_.inputs.empty() ? driven : matrices.read({});
-    const auto make = [idle, driven, geometry,
+    const auto programs_of = [&](const DataFormulas& formulas) {
+      return std::make_shared<const FormulaPrograms>(
+          formulas, static_cast<size_t>(geometry->columns()), names_.rates.size());
+    };
+    const auto make = [idle = programs_of(idle), driven = programs_of(driven), geometry,
                        group = model_.group](const std::shared_ptr<const Inputs>& inputs) {
       return std::make_shared<DataMechanics>(inputs == nullptr ? idle : driven, group, geometry,
                                              inputs);
