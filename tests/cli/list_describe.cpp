@@ -278,6 +278,16 @@ TEST_F(Help, Version) {
   const Outcome o = run({"--version"});
   EXPECT_EQ(o.status, 0);
   EXPECT_THAT(o.out, testing::ContainsRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+  EXPECT_THAT(o.out, testing::Not(HasSubstr("formulas")));
+}
+
+TEST_F(Help, VersionSaysHowFormulasRun) {
+  const Outcome o = run({"--version", "--verbose"});
+  EXPECT_EQ(o.status, 0);
+  EXPECT_THAT(o.out, HasSubstr("\nformulas: "));
+  const Outcome without = run({"--version", "--verbose"}, "HAMEL_NO_MACHINE_CODE=1 exec ");
+  EXPECT_THAT(without.out,
+              HasSubstr("formulas: interpreted, since HAMEL_NO_MACHINE_CODE is set\n"));
 }
 
 TEST_F(Help, NothingOrAnUnknownCommandIsBadInput) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <hamel/framework/graph/code.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
@@ -106,10 +107,21 @@ std::string empty_option(const CLI::App& app) {
   return "";
 }
 
+std::string version_text(bool verbose) {
+  std::string text = fmt::format("hamel {} ({})", version(), git_hash());
+  if (!verbose) return text;
+  text += fmt::format("\nbuilt by {}, {}", compiler(), build_flags());
+  const std::string refused = graph::machine_code_refused();
+  return text + (refused.empty()
+                     ? "\nformulas: machine code for x86-64 with AVX, of 1, 4 or 8 bodies"
+                     : fmt::format("\nformulas: interpreted, since {}", refused));
+}
+
 int program(int argc, char** argv) {
   begin_screen();
   CLI::App app("Geometric integrators for nonholonomic systems on Lie groups.", "hamel");
-  app.set_version_flag("--version", fmt::format("hamel {} ({})", version(), git_hash()));
+  app.set_version_flag("--version", [&app] { return version_text(app.count("--verbose") > 0); });
+  app.add_flag("--verbose")->description("With --version: the build, and how formulas run");
   app.require_subcommand(1);
   app.footer(
       "Examples:\n"
