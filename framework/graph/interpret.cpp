@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 namespace hamel::graph {
 namespace {
@@ -118,14 +117,14 @@ inline void compute(const Interpreter::Run& run, const std::array<unsigned, 3>* 
 
 template <int W>
 inline void interpret(const Interpreter::Plan& plan, const double* x, double* y, double* values) {
-  std::memcpy(values, x, plan.inputs * W * sizeof(double));
+  std::copy_n(x, plan.inputs * W, values);
   double* constants = values + plan.inputs * W;
   for (size_t i = 0; i < plan.constants.size(); ++i) {
     for (int j = 0; j < W; ++j) constants[i * W + static_cast<size_t>(j)] = plan.constants[i];
   }
   for (const Interpreter::Run& run : plan.runs) compute<W>(run, plan.operands.data(), values);
   for (size_t k = 0; k < plan.results.size(); ++k) {
-    std::memcpy(y + k * W, values + plan.results[k] * W, W * sizeof(double));
+    std::copy_n(values + plan.results[k] * W, W, y + k * W);
   }
 }
 

@@ -30,7 +30,8 @@ MachineCode::MachineCode(EmittedCode code, int width)
 
 bool MachineCode::run(const double* x, double* y, double* work) const {
   for (size_t first = 0; first < width_; first += lanes_) {
-    if (!run_lanes(x + first, y + first, work)) return false;
+    // No addresses behind null, of programs without inputs or outputs.
+    if (!run_lanes(x ? x + first : x, y ? y + first : y, work)) return false;
   }
   return true;
 }
