@@ -8,6 +8,8 @@
 #include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/run/data/data_drawing.hpp>
 #include <hamel/framework/run/data/data_formulas.hpp>
+#include <hamel/framework/run/data/data_mechanics.hpp>
+#include <hamel/framework/run/data/formula_programs.hpp>
 #include <hamel/framework/run/data/toml_events.hpp>
 #include <hamel/framework/run/data/toml_parameters.hpp>
 #include <hamel/framework/run/names/toml_config.hpp>
