@@ -1,5 +1,6 @@
 // Systems by data alone, and hamel describe --analyse.
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
@@ -198,6 +199,22 @@ TEST_F(DataSystem, ParametersInputsAndEvents) {
     EXPECT_EQ(o.status, 2) << message;
     EXPECT_THAT(o.err, HasSubstr(message));
   }
+}
+
+/// Machine code and the interpreter give the same bits: rows are equal as text.
+TEST_F(DataSystem, RunsTheSameWithoutMachineCode) {
+  const auto rows = [&](const std::string& before) {
+    const Outcome o = run(
+        {"run", std::string(std::getenv("HAMEL_SOURCE")) + "/tests/examples/scooter_by_rows.toml",
+         "--input", "torque=0.02", "--until", "5", "-o", file("rows.csv"), "--quiet"},
+        before);
+    EXPECT_EQ(o.status, 0) << o.err;
+    const std::string text = contents(file("rows.csv"));
+    return text.substr(0, text.find("\n#"));
+  };
+  const std::string with = rows("");
+  EXPECT_GT(with.size(), 1000u);
+  EXPECT_EQ(rows("HAMEL_NO_MACHINE_CODE=1 exec "), with);
 }
 
 TEST_F(DataSystem, IsDescribed) {
