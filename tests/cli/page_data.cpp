@@ -220,7 +220,7 @@ TEST(PageData, ManyOscillationsAreABand) {
   EXPECT_FALSE(beside["series"][1].contains("low"));
 }
 
-// Figures of one name are told apart, and no name has a space.
+// Further figures of one name get a number, and no name has a space.
 TEST(PageData, NamesOfFigures) {
   std::vector<Figure> all = {{.title = "Inputs", .drawing = Plot{}},
                              {.title = "Inputs", .drawing = Plot{}},

@@ -59,7 +59,7 @@ class Page {
   void add(const Figure& figure);
   /// Adds those of one section of a result, in their order.
   void add(const std::vector<Figure>& figures, const std::string& section);
-  /// The same below a heading with its name; nothing where it has none.
+  /// Adds them below a heading with its name; nothing where it has none.
   void add_section(const std::vector<Figure>& figures, const std::string& title);
   void members(const Members& members);
   /// Throws ConfigError when the page is not in this program or the file cannot be written.

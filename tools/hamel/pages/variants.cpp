@@ -25,7 +25,7 @@ StudyConfig paper_study(const std::string& stem) {
 
 namespace {
 
-// What the figures of a run show: its errors, and two components of the momentum.
+// Columns in the figures of a run: its errors, and two components of the momentum.
 const std::vector<std::string> kErrors = {"energy_error", "exact_error", "exact_velocity_error",
                                           "constraint", "group_defect"};
 const std::vector<std::string> kMomenta = {"mu1", "mu2"};
