@@ -1,6 +1,7 @@
 """Figures of the report page as inline SVG: plots, paths and heat maps, with their style.
 
-A figure is the block of the page's data (tools/report/README.md), which C++ makes. Colours are CSS properties with a second set for dark pages; no external file is loaded.
+A figure is the block of the page's data (tools/report/README.md), which C++ makes. Colours are CSS
+properties with a second set for dark pages; no external file is loaded.
 """
 
 from __future__ import annotations
@@ -175,7 +176,8 @@ def _plot(block: dict[str, Any]) -> Figure | None:
     up = _Axis(heights, height - _BOTTOM, _TOP, log_y)
     if block["kind"] == "path":
         _equalise(across, up)
-    parts = [_grid(across, up, height, block), *_markings(block, across, up)]
+    shown = {**block, "title": ": ".join([block["title"], *first.values()])}
+    parts = [_grid(across, up, height, shown), *_markings(block, across, up)]
     alone = len(curves) == 1 and curves[0].name in ("", block["title"])
     ends = _spaced([up.at(c.points[-1][1]) for c in drawn], 13, _TOP + 4, height - _BOTTOM)
     for k, curve in enumerate(drawn):

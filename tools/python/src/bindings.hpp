@@ -163,6 +163,8 @@ void bind_names(nb::module_& m);
 void bind_result(nb::module_& m);
 void bind_run(nb::module_& m);
 void bind_section(nb::module_& m);
+/// A method for each option of a run (Config::fields).
+void bind_setters(nb::class_<Builder>& builder);
 void bind_simulation(nb::module_& m);
 void bind_steady(nb::module_& m);
 void bind_study(nb::module_& m);

@@ -142,6 +142,19 @@ def test_a_result_shows_itself():
     assert "<td>" in hamel.study(system="suslov", step=[0.1], until=1, repeats=1)._repr_html_()
 
 
+def test_each_option_is_a_method_of_the_builder():
+    options = {name for name, of in vars(hamel.Config).items() if isinstance(of, property)}
+    others = {"system", "parameters", "configuration", "velocity", "momentum"}
+    assert len(options - others) > 20
+    assert all(callable(vars(hamel.Simulation).get(name)) for name in options - others)
+    builder = hamel.simulate("suslov").rtol(1e-9).check().steps_max(7).output_times([0.1])
+    config = builder.events("omega1=0.5").force_at("base").config
+    assert (config.rtol, config.check, config.steps_max) == (1e-9, True, 7)
+    assert (config.output_times, config.events) == ([0.1], ["omega1=0.5"])
+    with pytest.raises(hamel.ConfigError, match="step: got 'no'"):
+        builder.step("no")
+
+
 def test_the_figures_of_a_run_are_those_of_the_page(cli, tmp_path):
     """All that `hamel report --figure` names, but the motion (animation()) and figures in space."""
     for system in ("suslov", "rattleback", "falling_disk"):
