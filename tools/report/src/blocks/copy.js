@@ -1,6 +1,6 @@
 // Text to the clipboard, by a button that tells whether it got there.
 
-import { h } from './dom.js';
+import { h } from '../dom.js';
 
 /** A button with this label that copies what `text()` returns. */
 export function copyButton(label, text, attributes = { class: 'copy' }) {

@@ -1,6 +1,6 @@
 // Zooming a chart: a box drawn with the mouse, Ctrl and the wheel, two fingers; a double click shows all again.
 
-import { h } from './dom.js';
+import { h } from '../dom.js';
 
 const touched = matchMedia('(pointer: coarse)').matches;  // there a finger on a chart scrolls the page
 const inside = (axis) => ({ type: 'inside', [axis]: 0, filterMode: 'none', zoomOnMouseWheel: 'ctrl', moveOnMouseMove: false, moveOnMouseWheel: false, disabled: touched });

@@ -1,7 +1,7 @@
 // Charts by keyboard: the arrow keys go from point to point, PageUp and PageDown from curve to curve, and what stands there is shown
 // and read out; Enter shows its member.
 
-import { h } from './dom.js';
+import { h } from '../dom.js';
 
 /** now(curve) -> {series, points} for curves, or {series, points, columns} for cells in rows of `columns`; choose(i): of a point that is
  * a member, for Enter. */

@@ -1,15 +1,15 @@
 // The figures of curves: `plot` (over x) and `path` (in the plane, equal scales).
 
 import { axisOptions, makeChart, TEXT, TOOLTIP, widest } from './chart.js';
-import { h } from './dom.js';
-import { figure, remark } from './figure.js';
+import { h } from '../dom.js';
+import { figure, remark } from '../figure.js';
 import { makeFilters } from './filters.js';
-import { formatNumber, formatShort, logTicks, MISSING, niceTicks } from './format.js';
+import { formatNumber, formatShort, logTicks, MISSING, niceTicks } from '../format.js';
 import { readByKeys } from './keys.js';
 import { makeLegend, MANY } from './legend.js';
 import { DECADES, markings } from './markings.js';
 import { choosable } from './choosing.js';
-import { columnsToCsv } from './save.js';
+import { columnsToCsv } from '../save.js';
 import { covered, extent, readSeries } from './series.js';
 import { makeZoom, ZOOMS } from './zoom.js';
 

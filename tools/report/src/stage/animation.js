@@ -1,11 +1,11 @@
 // The figure `animation`: bodies that move, with play, a bar to scrub, speed, and a view turned by dragging or keys.
 
 import { Color, Group, Matrix4, Mesh, MeshBasicMaterial, Scene, Vector3 } from 'three';
-import { h } from './dom.js';
-import { figure, remark } from './figure.js';
-import { formatNumber, formatShort } from './format.js';
+import { h } from '../dom.js';
+import { figure, remark } from '../figure.js';
+import { formatNumber, formatShort } from '../format.js';
 import { arrowOf, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion } from './motion.js';
-import { columnsToCsv } from './save.js';
+import { columnsToCsv } from '../save.js';
 import { addLight, lines, pairs, solids, stand, styled } from './shapes.js';
 import { ABOVE, HOME, Stage } from './stage.js';
 

@@ -1,9 +1,9 @@
 // A table sorted by a click on a column's head: first rising, then falling, then as it was. With filters where the
 // data asks for them. Long tables stand in a box of their own and grow while they are scrolled.
 
-import { h, inline } from './dom.js';
-import { columnFormat, formatValue } from './format.js';
-import { onPaper } from './print.js';
+import { h, inline } from '../dom.js';
+import { columnFormat, formatValue } from '../format.js';
+import { onPaper } from '../print.js';
 import { compare, makeFilter } from './table_filter.js';
 
 const SLICE = 150;  // rows made at a time

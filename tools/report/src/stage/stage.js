@@ -4,11 +4,11 @@
 import { OrthographicCamera, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { SVGRenderer } from 'three/examples/jsm/renderers/SVGRenderer.js';
-import { followWidth, widthOf } from './chart.js';
-import { h } from './dom.js';
-import { remark } from './figure.js';
-import { onPaper, onPaperFor } from './print.js';
-import { SHARPER } from './save.js';
+import { followWidth, widthOf } from '../charts/chart.js';
+import { h } from '../dom.js';
+import { remark } from '../figure.js';
+import { onPaper, onPaperFor } from '../print.js';
+import { SHARPER } from '../save.js';
 
 export const HOME = [0.76, -0.52, 0.42];  // from where the eye looks, at first
 export const ABOVE = [0, -1e-5, 1];       // x to the right, y up

@@ -2,8 +2,8 @@
 // click on it in a figure, by Enter, or by its number.
 
 import { copyButton } from './copy.js';
-import { h, inline } from './dom.js';
-import { formatShort, MISSING } from './format.js';
+import { h, inline } from '../dom.js';
+import { formatShort, MISSING } from '../format.js';
 
 let store = null;   // the members of this page
 let make = null;    // a block -> {element, draw}

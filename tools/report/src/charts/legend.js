@@ -1,6 +1,6 @@
 // The legend under a figure: a button a series, which hides or shows it.
 
-import { h } from './dom.js';
+import { h } from '../dom.js';
 
 export const MANY = 12;  // more entries scroll, and the figure takes the whole width
 

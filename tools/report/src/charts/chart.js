@@ -6,7 +6,7 @@ import { CustomChart, HeatmapChart, LineChart } from 'echarts/charts';
 import { DataZoomComponent, GridComponent, LegendComponent, MarkAreaComponent, MarkLineComponent, MarkPointComponent, ToolboxComponent,
   TooltipComponent, VisualMapComponent } from 'echarts/components';
 import { SVGRenderer } from 'echarts/renderers';
-import { onPaper } from './print.js';
+import { onPaper } from '../print.js';
 
 use([CustomChart, HeatmapChart, LineChart, DataZoomComponent, GridComponent, LegendComponent, MarkAreaComponent, MarkLineComponent, MarkPointComponent,
   ToolboxComponent, TooltipComponent, VisualMapComponent, SVGRenderer]);

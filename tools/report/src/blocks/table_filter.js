@@ -1,7 +1,7 @@
 // The filter over a table: words that a row must hold, and a drop-down for each column of few values.
 
-import { h } from './dom.js';
-import { formatValue } from './format.js';
+import { h } from '../dom.js';
+import { formatValue } from '../format.js';
 
 const FEW = 12;  // so many different values fit a drop-down
 

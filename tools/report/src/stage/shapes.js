@@ -5,7 +5,7 @@ import { AmbientLight, BoxGeometry, CircleGeometry, Color, ConeGeometry, Cylinde
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
-import { luminance } from './colours.js';
+import { luminance } from '../charts/colours.js';
 import { turnFromZ } from './motion.js';
 
 const MARK = 0.7;   // radians

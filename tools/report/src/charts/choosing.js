@@ -1,7 +1,7 @@
 // A click on a point of a chart that is a member chooses it; a ring marks the chosen one, whoever chose it.
 
-import { h } from './dom.js';
-import { choose, onChoice, state } from './members.js';
+import { h } from '../dom.js';
+import { choose, onChoice, state } from '../blocks/members.js';
 
 const NEAR = { dots: 16, curve: 40 };  // pixels
 const TWICE = 250;                     // milliseconds: two clicks show the whole chart again, and choose nothing

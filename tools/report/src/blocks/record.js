@@ -1,8 +1,8 @@
 // The record of a run as keys and values, nested keys joined by dots, with its JSON to copy.
 
 import { copyButton } from './copy.js';
-import { h } from './dom.js';
-import { formatShort, formatValue, MISSING } from './format.js';
+import { h } from '../dom.js';
+import { formatShort, formatValue, MISSING } from '../format.js';
 
 /** What a reader looks for; the rest is folded away. */
 const SOUGHT = /^(system|group|scheme|s|retraction|solver|compose|tolerance|rtol|atol|step|until|status|reason|steps|time|notes|git|version|host|title)$|^(parameters|start|diagnostics|timing|failure|study)\b/;

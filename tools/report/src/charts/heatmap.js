@@ -4,14 +4,14 @@
 import { axisOptions, makeChart, TEXT, TOOLTIP, widest, widthOf } from './chart.js';
 import { makeRing } from './choosing.js';
 import { COLOURS, inkOn, sequential } from './colours.js';
-import { h } from './dom.js';
-import { figure, remark } from './figure.js';
-import { formatNumber, formatShort, power } from './format.js';
+import { h } from '../dom.js';
+import { figure, remark } from '../figure.js';
+import { formatNumber, formatShort, power } from '../format.js';
 import { readByKeys } from './keys.js';
 import { swatch } from './legend.js';
-import { choose } from './members.js';
+import { choose } from '../blocks/members.js';
 import { styleOf } from './palette.js';
-import { columnsToCsv } from './save.js';
+import { columnsToCsv } from '../save.js';
 import { extent } from './series.js';
 
 const WIDE = 16;       // more columns take the whole width of the page

@@ -1,6 +1,6 @@
 // Paragraphs and verdicts.
 
-import { h, inline } from './dom.js';
+import { h, inline } from '../dom.js';
 
 const VERDICTS = { ok: ['✓', 'OK'], failed: ['✕', 'Failed'], note: ['i', 'Note'] };
 

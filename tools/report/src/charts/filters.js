@@ -1,7 +1,7 @@
 // Selectors over a plot: of the series only those with the chosen tags are shown. A series that has no tag of a
 // name belongs to every choice (a reference line).
 
-import { h } from './dom.js';
+import { h } from '../dom.js';
 
 const ALL = 'all';
 

@@ -1,11 +1,11 @@
 // The figure `sphere`: curves on the unit sphere, turned by dragging or with the arrow keys.
 
 import { CircleGeometry, Mesh, MeshBasicMaterial, Scene } from 'three';
-import { h } from './dom.js';
-import { figure, remark } from './figure.js';
-import { makeLegend } from './legend.js';
-import { styleOf } from './palette.js';
-import { columnsToCsv } from './save.js';
+import { h } from '../dom.js';
+import { figure, remark } from '../figure.js';
+import { makeLegend } from '../charts/legend.js';
+import { styleOf } from '../charts/palette.js';
+import { columnsToCsv } from '../save.js';
 import { lines, pairs, styled } from './shapes.js';
 import { HOME, Stage } from './stage.js';
 

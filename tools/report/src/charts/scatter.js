@@ -2,14 +2,14 @@
 // correlations above it. Drawn as SVG: the dots of a class in one pair are one path.
 
 import { followWidth, FONT, widthOf } from './chart.js';
-import { h } from './dom.js';
-import { figure, remark } from './figure.js';
-import { formatNumber, formatShort, niceTicks } from './format.js';
+import { h } from '../dom.js';
+import { figure, remark } from '../figure.js';
+import { formatNumber, formatShort, niceTicks } from '../format.js';
 import { makeLegend } from './legend.js';
-import { choose, onChoice, state } from './members.js';
+import { choose, onChoice, state } from '../blocks/members.js';
 import { styleOf } from './palette.js';
-import { onPaper } from './print.js';
-import { columnsToCsv } from './save.js';
+import { onPaper } from '../print.js';
+import { columnsToCsv } from '../save.js';
 import { extent } from './series.js';
 
 const [LEFT, RIGHT, TOP, BOTTOM] = [58, 10, 8, 34];

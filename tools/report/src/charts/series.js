@@ -1,6 +1,6 @@
 // The series of a block as ECharts takes them, on two axes that may be logarithmic or have a common offset taken away.
 
-import { formatShort, prose } from './format.js';
+import { formatShort, prose } from '../format.js';
 import { styleOf } from './palette.js';
 
 const FEW = 48;       // so few points get markers
