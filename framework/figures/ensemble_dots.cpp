@@ -36,15 +36,6 @@ double correlation(const Numbers& x, const Numbers& y) {
   return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : std::numeric_limits<double>::quiet_NaN();
 }
 
-// 21st, 22nd.
-const char* ordinal_end(size_t n) {
-  return n % 100 / 10 == 1 ? "th"
-         : n % 10 == 1     ? "st"
-         : n % 10 == 2     ? "nd"
-         : n % 10 == 3     ? "rd"
-                           : "th";
-}
-
 }  // namespace
 
 const std::vector<double>& numbers_of(const EnsembleResult& result, const std::string& name) {
@@ -84,8 +75,17 @@ size_t stride_of_dots(const EnsembleResult& result) {
   return out;
 }
 
+std::string ordinal(size_t n) {
+  const char* end = n % 100 / 10 == 1 ? "th"
+                    : n % 10 == 1     ? "st"
+                    : n % 10 == 2     ? "nd"
+                    : n % 10 == 3     ? "rd"
+                                      : "th";
+  return fmt::format("{}{}", n, end);
+}
+
 std::string sampled(size_t stride) {
-  return stride > 1 ? fmt::format("Each {}{} member.", stride, ordinal_end(stride)) : "";
+  return stride > 1 ? fmt::format("Each {} member.", ordinal(stride)) : "";
 }
 
 std::vector<long long> classes_of(const EnsembleResult& result) {

@@ -26,6 +26,9 @@ std::vector<long long> classes_of(const EnsembleResult& result);
 /// it does not miss most of their values.
 size_t stride_of_dots(const EnsembleResult& result);
 
+/// 21 -> "21st".
+std::string ordinal(size_t n);
+
 /// "Each 25th member."; "" where all are shown.
 std::string sampled(size_t stride);
 

@@ -40,15 +40,12 @@ std::string joined(const std::string& a, const std::string& b) {
   return a.empty() || b.empty() ? a + b : a + " " + b;
 }
 
-Figure over_time(const ErrorFigure& error, double floor, std::vector<Curve> curves,
+Figure figure_of(const ErrorFigure& error, double floor, std::vector<Curve> curves,
                  std::string note) {
-  return {.title = error.title,
-          .drawing = Plot{.x = time_axis(),
-                          .y = {.label = error.label, .log = true},
-                          .curves = std::move(curves),
-                          .floor = floor},
-          .note = std::move(note),
-          .name = error.name};
+  Figure out = over_time(error.title, {.label = error.label, .log = true}, std::move(curves),
+                         error.name, std::move(note));
+  std::get<Plot>(out.drawing).floor = floor;
+  return out;
 }
 
 // The windows whose largest values are the points of each curve.
@@ -71,10 +68,7 @@ class ByName {
       return figure.title == name && std::get<Plot>(figure.drawing).y.unit == unit;
     });
     Figure& figure =
-        at != figures_.end()
-            ? *at
-            : figures_.emplace_back(
-                  Figure{.title = name, .drawing = Plot{.x = time_axis(), .y = {name, unit}}});
+        at != figures_.end() ? *at : figures_.emplace_back(over_time(name, {name, unit}, {}));
     std::get<Plot>(figure.drawing).curves.push_back(std::move(curve));
   }
   void add_to(std::vector<Figure>& out) const {
@@ -103,6 +97,17 @@ void add_motions(std::vector<Figure>& out, const std::vector<NamedRun>& runs) {
 }  // namespace
 
 bool does_work(const Result& r) { return std::isfinite(r.work); }
+
+Figure over_time(std::string title, Axis y, std::vector<Curve> curves, std::string name,
+                 std::string note, std::vector<Mark> marks) {
+  return {.title = std::move(title),
+          .drawing = Plot{.x = {"time t", "s"},
+                          .y = std::move(y),
+                          .curves = std::move(curves),
+                          .marks = std::move(marks)},
+          .note = std::move(note),
+          .name = std::move(name)};
+}
 
 ErrorFigure error_figure(const std::string& column, bool balance) {
   if (balance && column == kBalance.column) return kBalance;
@@ -162,7 +167,7 @@ void add_accuracy(std::vector<Figure>& out, const Result& r) {
       curves[0].name = error.title;
       curves[0].key = "accuracy";
     }
-    out.push_back(over_time(error, floor_of(r, error.column), std::move(curves),
+    out.push_back(figure_of(error, floor_of(r, error.column), std::move(curves),
                             joined(windows_note(r, columns), error.note)));
   };
   const bool known = r.trajectory.has(kExactVelocityError.name);
@@ -198,7 +203,7 @@ std::vector<Figure> of_runs(const std::vector<NamedRun>& runs) {
       error.title = "Energy error, or defect of the energy balance";
       error.label = "relative";
     }
-    out.push_back(over_time(error, floor, std::move(curves), windows_of(shown, error.column)));
+    out.push_back(figure_of(error, floor, std::move(curves), windows_of(shown, error.column)));
   }
   for (Figure& figure : out) figure.section = "Accuracy";
   const size_t errors = out.size();

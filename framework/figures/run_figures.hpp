@@ -26,8 +26,9 @@ void add_physics(std::vector<Figure>& out, const Registry& registry, const Resul
 /// Errors, energy, constraints and group, each with the floor of round-off.
 void add_accuracy(std::vector<Figure>& out, const Result& result);
 
-/// "time t [s]".
-inline Axis time_axis() { return {.label = "time t", .unit = "s"}; }
+/// Curves over time.
+Figure over_time(std::string title, Axis y, std::vector<Curve> curves, std::string name = "",
+                 std::string note = "", std::vector<Mark> marks = {});
 
 /// Rows at about equal distances, the last among them.
 std::vector<size_t> thin_rows(const Result& result, size_t points);

@@ -48,10 +48,7 @@ void add_inputs(std::vector<Figure>& out, const Result& r, const std::vector<Mar
     if (r.config.inputs.contains(fields[i].name))
       by_unit[fields[i].unit].push_back(drawn(*r.inputs, i, t0, t1));
   for (auto& [unit, curves] : by_unit)
-    out.push_back(
-        {.title = "Inputs",
-         .drawing =
-             Plot{.x = time_axis(), .y = {"", unit}, .curves = std::move(curves), .marks = marks}});
+    out.push_back(over_time("Inputs", {"", unit}, std::move(curves), "", "", marks));
 }
 
 }  // namespace hamel::figures

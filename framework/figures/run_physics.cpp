@@ -31,10 +31,8 @@ class ByUnit {
               const std::string& other, const std::vector<Mark>& marks) const {
     for (const std::string& unit : order_) {
       const auto title = titles.find(unit);
-      out.push_back(
-          {.title = title == titles.end() ? other : title->second,
-           .drawing = Plot{
-               .x = time_axis(), .y = {"", unit}, .curves = curves_.at(unit), .marks = marks}});
+      out.push_back(over_time(title == titles.end() ? other : title->second, {"", unit},
+                              curves_.at(unit), "", "", marks));
     }
   }
 
@@ -80,7 +78,8 @@ std::vector<std::pair<std::string, std::vector<int>>> rows_by_part(const Result&
 
 // Does the k-th contact push? The event has the time when it ceased to; the rows only what they
 // show. Marks the first that pulls.
-std::string contact_note(const Result& r, const std::string& column, size_t k, Plot& plot) {
+std::string contact_note(const Result& r, const std::string& column, size_t k,
+                         std::vector<Mark>& marks) {
   const std::string event = events_of(*r.system)[r.system->events.size() + k].name;
   const auto met = std::find_if(r.events.begin(), r.events.end(),
                                 [&](const EventMet& e) { return e.name == event; });
@@ -100,13 +99,14 @@ std::string contact_note(const Result& r, const std::string& column, size_t k, P
   if (met != r.events.end())
     return is + fmt::format("the contact **ceases to push** at t = {:.6g} (`{}`); {}.", met->time,
                             event, in_rows);
-  if (pulls) plot.marks.push_back({t, "contact pulls"});
+  if (pulls) marks.push_back({t, "contact pulls"});
   return is + in_rows + ".";
 }
 
 void add_reactions_of(std::vector<Figure>& out, const Result& r, const std::vector<Mark>& marks,
                       const std::string& part, const std::vector<int>& rows, std::string note) {
-  Plot plot{.x = time_axis(), .y = {.label = "lambda"}, .marks = marks};
+  std::vector<Curve> curves;
+  std::vector<Mark> all_marks = marks;
   bool forces = true;  // all in N
   for (const int i : rows) {
     const std::string column = r.system->reactions.empty()
@@ -116,19 +116,18 @@ void add_reactions_of(std::vector<Figure>& out, const Result& r, const std::vect
     const auto& contacts = r.system->contacts;
     const auto contact = std::find(contacts.begin(), contacts.end(), i);
     Curve& reaction =
-        plot.curves.emplace_back(in_unit(curve(r, column, column), unit_of_reaction(*r.system, i)));
+        curves.emplace_back(in_unit(curve(r, column, column), unit_of_reaction(*r.system, i)));
     forces = forces && !reaction.unit.empty();
     if (contact == contacts.end()) continue;
     reaction.note = "contact";
     note += (note.empty() ? "" : " ") +
-            contact_note(r, column, static_cast<size_t>(contact - contacts.begin()), plot);
+            contact_note(r, column, static_cast<size_t>(contact - contacts.begin()), all_marks);
   }
-  if (plot.curves.empty()) return;
-  if (forces) plot.y.unit = "N";
-  out.push_back({.title = part.empty() ? "Reaction forces" : "Reaction forces: " + part,
-                 .drawing = std::move(plot),
-                 .note = std::move(note),
-                 .name = part.empty() ? "reactions" : "reactions-" + part});
+  if (curves.empty()) return;
+  out.push_back(over_time(part.empty() ? "Reaction forces" : "Reaction forces: " + part,
+                          {"lambda", forces ? "N" : ""}, std::move(curves),
+                          part.empty() ? "reactions" : "reactions-" + part, std::move(note),
+                          std::move(all_marks)));
 }
 
 void add_reactions(std::vector<Figure>& out, const Result& r, const std::vector<Mark>& marks) {
@@ -192,18 +191,14 @@ void add_energy_balance(std::vector<Figure>& out, const Result& r, const std::ve
   std::vector<double> rest = r.trajectory.column("energy");
   const std::vector<double> work = r.trajectory.column("work");
   for (size_t i = 0; i < rest.size(); ++i) rest[i] -= work[i];
-  out.push_back(
-      {.title = "Energy balance",
-       .drawing =
-           Plot{.x = time_axis(),
-                .y = {"", "J"},
-                .curves = {in_unit(curve(r, "energy E", "energy"), "J"),
-                           in_unit(curve(r, "work W", "work"), "J"),
-                           in_unit(thinned("E - W", r.trajectory.column("t"), rest, false), "J")},
-                .marks = marks},
-       .note = "W is the work of forces and moving constraints, by a quadrature over all steps; E "
-               "- W is constant but for the error of the scheme.",
-       .name = "energy"});
+  out.push_back(over_time(
+      "Energy balance", {"", "J"},
+      {in_unit(curve(r, "energy E", "energy"), "J"), in_unit(curve(r, "work W", "work"), "J"),
+       in_unit(thinned("E - W", r.trajectory.column("t"), rest, false), "J")},
+      "energy",
+      "W is the work of forces and moving constraints, by a quadrature over all steps; E - W is "
+      "constant but for the error of the scheme.",
+      marks));
 }
 
 }  // namespace

@@ -49,8 +49,9 @@ void add_members(Page& page, const EnsembleResult& result, const std::map<long, 
       "values and its command line, which writes its values, its configuration and a page with "
       "its motion. Row k of ensemble.csv and of each data set of ensemble.h5 is member k, from 0."};
   if (stride > 1)
-    out.paragraphs.push_back(fmt::format("This page has the values of {} of the {} members. {}",
-                                         index.size(), count, figures::sampled(stride)));
+    out.paragraphs.push_back(
+        fmt::format("This page has the values of {} of the {} members: each {}.", index.size(),
+                    count, figures::ordinal(stride)));
   for (const TableColumn& column : result.table.columns) {
     const bool varied = column.meaning.starts_with("varied");
     if (!varied && std::ranges::find(result.kept, column.name) == result.kept.end()) continue;

@@ -108,23 +108,19 @@ void add_figures(Page& page, const std::vector<Outcome>& outcomes,
   for (size_t j = 0; j < kErrors.size(); ++j) {
     const figures::ErrorFigure error = figures::error_figure(kErrors[j]);
     const std::string note = error.note;
-    page.add({.title = error.title,
-              .drawing =
-                  figures::Plot{.x = figures::time_axis(),
-                                .y = {.label = error.label, .log = true},
-                                .curves = curves(&Outcome::errors, j),
-                                .floor = kErrors[j] == "constraint" ? kRoundOff / step : kRoundOff},
-              .note = note + (note.empty() ? "" : " ") + first.windows,
-              .name = error.name});
+    Figure figure = figures::over_time(error.title, {.label = error.label, .log = true},
+                                       curves(&Outcome::errors, j), error.name,
+                                       note + (note.empty() ? "" : " ") + first.windows);
+    std::get<figures::Plot>(figure.drawing).floor =
+        kErrors[j] == "constraint" ? kRoundOff / step : kRoundOff;
+    page.add(figure);
   }
   for (size_t j = 0; j < kMomenta.size(); ++j) {
     std::vector<figures::Curve> all = curves(&Outcome::momenta, j);
     if (!exact.empty()) all.push_back(exact[j]);
-    page.add({.title = fmt::format("Body momentum, {} component", j == 0 ? "first" : "second"),
-              .drawing = figures::Plot{.x = figures::time_axis(),
-                                       .y = {.label = kMomenta[j]},
-                                       .curves = std::move(all)},
-              .name = kMomenta[j]});
+    page.add(
+        figures::over_time(fmt::format("Body momentum, {} component", j == 0 ? "first" : "second"),
+                           {.label = kMomenta[j]}, std::move(all), kMomenta[j]));
   }
 }
 
