@@ -151,7 +151,7 @@ def test_each_option_is_a_method_of_the_builder():
     config = builder.events("omega1=0.5").force_at("base").config
     assert (config.rtol, config.check, config.steps_max) == (1e-9, True, 7)
     assert (config.output_times, config.events) == ([0.1], ["omega1=0.5"])
-    with pytest.raises(hamel.ConfigError, match="step: got 'no'"):
+    with pytest.raises(hamel.ConfigError, match="step: 'no' is not a number"):
         builder.step("no")
 
 
