@@ -1,4 +1,4 @@
-"""Figures of the report page as inline SVG: plots, paths and heat maps, with their style.
+"""Figures of the report page as inline SVG: plots and paths, with their style.
 
 A figure is the block of the page's data (tools/report/README.md), which C++ makes. Colours are CSS
 properties with a second set for dark pages; no external file is loaded.
@@ -38,7 +38,7 @@ STYLE = f"""<style>
 .hamel svg text {{ fill: var(--ink); font: 11px system-ui, sans-serif; }}
 </style>"""
 
-_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 640, 220, 58, 130, 24, 34
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 640, 220, 58, 130, 24, 34
 _MOST_CURVES = 6
 _Point = tuple[float, float]
 
@@ -78,7 +78,7 @@ class Figure:
         return f"<hamel figure: {self.title}>"
 
 
-class _Axis:
+class Axis:
     """A scale from values to pixels; `first` and `last` are the pixels of its ends."""
 
     def __init__(self, values: Sequence[float], first: float, last: float, log: bool) -> None:
@@ -123,7 +123,7 @@ class _Drawn:
             if under is not None and not (log_y and under <= 0):
                 self.below.append((x, under))
 
-    def svg(self, across: _Axis, up: _Axis, colour: str) -> str:
+    def svg(self, across: Axis, up: Axis, colour: str) -> str:
         places = [f"{across.at(x):.1f},{up.at(y):.1f}" for x, y in self.points]
         title = f"<title>{html.escape(f'{self.name} {self.fit}')}</title>"
         if self.dots:
@@ -146,15 +146,11 @@ class _Drawn:
         )
 
 
-def draw(block: dict[str, Any]) -> Figure | None:
-    """A plot, a path or a heat map; None of other kinds, and where fewer than two points are."""
-    if block["kind"] == "heatmap":
-        return _heat_map(block)
-    return _plot(block) if block["kind"] in ("plot", "path") else None
+def plot(block: dict[str, Any]) -> Figure | None:
+    """A plot or a path; None where fewer than two points are.
 
-
-def _plot(block: dict[str, Any]) -> Figure | None:
-    """At most six curves, each with its name at its end, of the first value of each filter."""
+    At most six curves, each with its name at its end, of the first value of each filter.
+    """
     log_x, log_y = bool(block.get("log_x")), bool(block.get("log_y"))
     first = {f["name"]: f["values"][0] for f in block.get("filters", []) if f["values"]}
     curves = []
@@ -167,42 +163,42 @@ def _plot(block: dict[str, Any]) -> Figure | None:
     points = [point for curve in drawn for point in curve.points + curve.below]
     if len(set(points)) < 2:
         return None
-    across = _Axis([x for x, _ in points], _LEFT, _WIDTH - _RIGHT, log_x)
-    height = float(_HEIGHT)
+    across = Axis([x for x, _ in points], LEFT, WIDTH - RIGHT, log_x)
+    height = float(HEIGHT)
     heights = [y for _, y in points]
     if block["kind"] == "path":
-        scale = (_WIDTH - _LEFT - _RIGHT) / (across.high - across.low)
-        height = _TOP + _BOTTOM + min(max(scale * (max(heights) - min(heights)), 80.0), 320.0)
-    up = _Axis(heights, height - _BOTTOM, _TOP, log_y)
+        scale = (WIDTH - LEFT - RIGHT) / (across.high - across.low)
+        height = TOP + BOTTOM + min(max(scale * (max(heights) - min(heights)), 80.0), 320.0)
+    up = Axis(heights, height - BOTTOM, TOP, log_y)
     if block["kind"] == "path":
         _equalise(across, up)
     shown = {**block, "title": ": ".join([block["title"], *first.values()])}
     parts = [_grid(across, up, height, shown), *_markings(block, across, up)]
     alone = len(curves) == 1 and curves[0].name in ("", block["title"])
-    ends = _spaced([up.at(c.points[-1][1]) for c in drawn], 13, _TOP + 4, height - _BOTTOM)
+    ends = _spaced([up.at(c.points[-1][1]) for c in drawn], 13, TOP + 4, height - BOTTOM)
     for k, curve in enumerate(drawn):
         parts.append(curve.svg(across, up, f"var(--c{k})"))
         if not alone:
             parts.append(
-                f'<text x="{_WIDTH - _RIGHT + 6}" y="{ends[k] + 4:.1f}" '
+                f'<text x="{WIDTH - RIGHT + 6}" y="{ends[k] + 4:.1f}" '
                 f'style="fill:var(--c{k})">{html.escape(curve.name)}</text>'
             )
     if len(curves) > _MOST_CURVES:
         more = f"{len(curves) - _MOST_CURVES} more"
-        parts.append(f'<text x="{_WIDTH - _RIGHT + 6}" y="{height - 6:.1f}">{more}</text>')
-    return _figure(block, height, parts)
+        parts.append(f'<text x="{WIDTH - RIGHT + 6}" y="{height - 6:.1f}">{more}</text>')
+    return figure_of(block, height, parts)
 
 
-def _figure(block: dict[str, Any], height: float, parts: Sequence[str]) -> Figure:
+def figure_of(block: dict[str, Any], height: float, parts: Sequence[str]) -> Figure:
     label = html.escape(block["title"])
     return Figure(
         block,
-        f'<svg viewBox="0 0 {_WIDTH} {height:.0f}" role="img" aria-label="{label}">'
+        f'<svg viewBox="0 0 {WIDTH} {height:.0f}" role="img" aria-label="{label}">'
         f"<title>{label}</title>{''.join(parts)}</svg>",
     )
 
 
-def _markings(block: dict[str, Any], across: _Axis, up: _Axis) -> Iterator[str]:
+def _markings(block: dict[str, Any], across: Axis, up: Axis) -> Iterator[str]:
     """Shaded intervals, moments on the x axis, the floor of round-off; where they are in sight."""
     for band in block.get("bands", []):
         a, b = across.at(band["from"]), across.at(band["to"])
@@ -227,58 +223,7 @@ def _markings(block: dict[str, Any], across: _Axis, up: _Axis) -> Iterator[str]:
         )
 
 
-def _heat_map(block: dict[str, Any]) -> Figure | None:
-    """Cells, darker for larger values, or a colour for each class; rows as on the page."""
-    rows, texts = block["values"], [str(y) for y in block["y_values"]]
-    values = [v for row in rows for v in row if v is not None and (v > 0 or not block["log"])]
-    if not values:
-        return None
-    rising = all(isinstance(y, int | float) for y in block["y_values"])
-    rising = rising and block["y_values"] == sorted(block["y_values"])
-    shade = _Axis(values, 0.12, 0.95, bool(block["log"]))
-    wide = (_WIDTH - _LEFT - _RIGHT) / len(rows[0])
-    tall = min(22.0, 260 / len(rows))
-    height = _TOP + _BOTTOM + tall * len(rows)
-    parts = _titles(height, block)
-    every_x, every_y = (max(1, math.ceil(n)) for n in (len(rows[0]) / 8, 14 / tall))
-    for i, row in enumerate(rows):
-        top = _TOP + tall * (len(rows) - 1 - i if rising else i)
-        if i % every_y == 0:
-            parts.append(
-                f'<text x="{_LEFT - 6}" y="{top + tall / 2 + 4:.1f}" text-anchor="end">'
-                f"{html.escape(_short(texts[i]))}</text>"
-            )
-        for j, value in enumerate(row):
-            mark = block["marks"][i][j] if block.get("marks") else ""
-            shown = value is not None and (value > 0 or not block["log"])
-            if block.get("classes"):
-                fill = f"var(--c{int(value) % 6})" if shown else "none"
-                words, opacity = block["classes"][int(value)] if shown else mark, 1.0
-            else:
-                fill = "var(--c0)" if shown else "none"
-                words, opacity = f"{value:.3g}" if shown else mark, shade.at(value) if shown else 1
-            parts.append(
-                f'<rect x="{_LEFT + wide * j:.1f}" y="{top:.1f}" width="{wide:.1f}" '
-                f'height="{tall:.1f}" fill="{fill}" fill-opacity="{opacity:.2f}" '
-                f'stroke="var(--grid)"><title>{html.escape(words)}</title></rect>'
-            )
-    for j in range(0, len(rows[0]), every_x):
-        parts.append(
-            f'<text x="{_LEFT + wide * (j + 0.5):.1f}" y="{height - _BOTTOM + 15:.1f}" '
-            f'text-anchor="middle">{html.escape(_short(str(block["x_values"][j])))}</text>'
-        )
-    return _figure(block, height, parts)
-
-
-def _short(text: str) -> str:
-    """A number with four digits, a longer word with its beginning."""
-    try:
-        return f"{float(text):.4g}"
-    except ValueError:
-        return text if len(text) <= 9 else text[:8] + "…"
-
-
-def _equalise(across: _Axis, up: _Axis) -> None:
+def _equalise(across: Axis, up: Axis) -> None:
     """Widens the axis with the smaller range for its pixels, about its middle."""
     ratio = abs(across.last - across.first) / abs(up.last - up.first)
     wide, high = across.high - across.low, up.high - up.low
@@ -287,29 +232,29 @@ def _equalise(across: _Axis, up: _Axis) -> None:
     axis.low, axis.high = middle - size / 2, middle + size / 2
 
 
-def _titles(height: float, block: dict[str, Any]) -> list[str]:
+def titles(height: float, block: dict[str, Any]) -> list[str]:
     """The title, and the names of the axes at their ends."""
-    end = _WIDTH - _RIGHT
+    end = WIDTH - RIGHT
     title, x, y = (html.escape(block[name]) for name in ("title", "x", "y"))
     return [
-        f'<text x="{_LEFT}" y="13" style="font-weight:600">{title}</text>',
+        f'<text x="{LEFT}" y="13" style="font-weight:600">{title}</text>',
         f'<text x="{end}" y="{height - 5:.1f}" text-anchor="end">{x}</text>',
         f'<text x="{end}" y="13" text-anchor="end">{y}</text>',
     ]
 
 
-def _grid(across: _Axis, up: _Axis, height: float, block: dict[str, Any]) -> str:
-    end = _WIDTH - _RIGHT
-    parts = _titles(height, block)
+def _grid(across: Axis, up: Axis, height: float, block: dict[str, Any]) -> str:
+    end = WIDTH - RIGHT
+    parts = titles(height, block)
     for tick in up.ticks():
         at = up.at(tick)
         parts.append(
-            f'<line x1="{_LEFT}" x2="{end}" y1="{at:.1f}" y2="{at:.1f}" stroke="var(--grid)"/>'
-            f'<text x="{_LEFT - 6}" y="{at + 4:.1f}" text-anchor="end">{tick:.4g}</text>'
+            f'<line x1="{LEFT}" x2="{end}" y1="{at:.1f}" y2="{at:.1f}" stroke="var(--grid)"/>'
+            f'<text x="{LEFT - 6}" y="{at + 4:.1f}" text-anchor="end">{tick:.4g}</text>'
         )
     for tick in across.ticks():
         parts.append(
-            f'<text x="{across.at(tick):.1f}" y="{height - _BOTTOM + 15:.1f}" '
+            f'<text x="{across.at(tick):.1f}" y="{height - BOTTOM + 15:.1f}" '
             f'text-anchor="middle">{tick:.4g}</text>'
         )
     return "".join(parts)

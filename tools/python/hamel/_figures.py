@@ -11,10 +11,12 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from hamel._chart import Figure, draw, in_frame
-from hamel._hamel import EnsembleResult, Result, StudyResult, SteadySweep
+from hamel._chart import Figure, in_frame, plot
+from hamel._hamel import EnsembleResult, Result, SteadySweep, StudyResult
+from hamel._heat_map import heat_map
 
 _Figures = dict[str, Figure]
+_KINDS = {"plot": plot, "path": plot, "heatmap": heat_map}
 
 
 def figures_of(result: Result | StudyResult | EnsembleResult | SteadySweep) -> _Figures:
@@ -22,7 +24,8 @@ def figures_of(result: Result | StudyResult | EnsembleResult | SteadySweep) -> _
     if isinstance(result, Result) and len(result) < 2:
         return {}
     blocks = json.loads(result._figures())
-    return {name: figure for name, block in blocks.items() if (figure := draw(block))}
+    drawn = {name: _KINDS[b["kind"]](b) for name, b in blocks.items() if b["kind"] in _KINDS}
+    return {name: figure for name, figure in drawn.items() if figure is not None}
 
 
 def html_of(result: Result) -> str:
