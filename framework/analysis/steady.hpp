@@ -113,6 +113,7 @@ struct SteadySweep {
   std::vector<SteadyEnd> ends;            // two at most; a branch without one leaves the range
   std::optional<SteadyPlace> start;   // of a branch that crosses another one: where it was entered
   std::vector<SteadySweep> branches;  // the others that were met and followed, none of them twice
+  std::string parameter = "", unit = "";  // by name, for figures: whoever varies it knows them
 };
 /// The branch through the steady motion near the start of at(values[0]), or of the first value that
 /// has one. Where steady motions form a family, it is that of the momentum along the start of

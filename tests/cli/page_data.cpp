@@ -7,7 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "page.hpp"
+#include <hamel/framework/figures/curves.hpp>
+#include <hamel/framework/figures/figures.hpp>
+
+#include "pages/page.hpp"
 
 namespace hamel::tools {
 std::string_view report_page() { return "__HAMEL_DATA__"; }
@@ -16,7 +19,8 @@ std::string_view report_page() { return "__HAMEL_DATA__"; }
 namespace {
 
 using namespace hamel;
-using namespace hamel::tools;
+using namespace hamel::figures;
+using hamel::tools::Page;
 using Json = nlohmann::json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -38,15 +42,15 @@ Json block(const std::function<void(Page&)>& fill) {
 
 TEST(PageData, HeatMap) {
   const Json b = block([](Page& page) {
-    page.heatmap({.title = "Errors",
-                  .x = "system",
-                  .y = "step",
-                  .x_values = {"suslov", "sleigh"},
-                  .y_values = {0.1, 0.05, 0.025},
-                  .values = {{1, 2}, {3, kNaN}, {1e-15, 6}},
-                  .marks = {{"", ""}, {"", "failed"}, {"", ""}},
-                  .log = true,
-                  .unit = "m"});
+    page.add({.title = "Errors",
+              .drawing = HeatMap{.x = {"system"},
+                                 .y = {"step"},
+                                 .x_values = {"suslov", "sleigh"},
+                                 .y_values = {0.1, 0.05, 0.025},
+                                 .values = {{1, 2}, {3, kNaN}, {1e-15, 6}},
+                                 .marks = {{"", ""}, {"", "failed"}, {"", ""}},
+                                 .log = true,
+                                 .unit = "m"}});
   });
   EXPECT_EQ(b, Json::parse(R"({"kind": "heatmap", "title": "Errors", "x": "system", "y": "step",
       "x_values": ["suslov", "sleigh"], "y_values": [0.1, 0.05, 0.025], "log": true, "unit": "m", "note": "",
@@ -55,13 +59,18 @@ TEST(PageData, HeatMap) {
 
 TEST(PageData, PlotWithFitsMarkersAndFilters) {
   const Json b = block([](Page& page) {
-    Series first{"lift", {0.1, 0.2}, {1, 2}};
-    first.markers = true;
-    first.fit = Fit{2.0004, "order 2.00"};
-    first.tags = {{"system", "suslov"}};
-    page.plot("Order", {.x = "h", .y = "error", .log_x = true, .log_y = true},
-              {first, {"h squared", {0.1, 0.2}, {1, 4}}}, "note",
-              {{"system", {"suslov", "sleigh"}}});
+    const Curve first{.name = "lift",
+                      .x = {0.1, 0.2},
+                      .y = {1, 2},
+                      .markers = true,
+                      .fit = Fit{2.0004, "order 2.00"},
+                      .tags = {{"system", "suslov"}}};
+    page.add({.title = "Order",
+              .drawing = Plot{.x = {"h", "", true},
+                              .y = {"error", "", true},
+                              .curves = {first, {"h squared", "", {0.1, 0.2}, {1, 4}}},
+                              .filters = {{"system", {"suslov", "sleigh"}}}},
+              .note = "note"});
   });
   EXPECT_EQ(b["filters"], Json::parse(R"([{"name": "system", "values": ["suslov", "sleigh"]}])"));
   EXPECT_EQ(b["series"][0],
@@ -75,22 +84,29 @@ TEST(PageData, PlotWithFitsMarkersAndFilters) {
 
 TEST(PageData, Dots) {
   const Json b = block([](Page& page) {
-    Series dots{.name = "eigenvalues", .x = {1, 1}, .y = {0, 1}, .dots = true};
-    page.plot("Branches", {.x = with_unit("speed", "m/s"), .y = with_unit("count", "")}, {dots});
+    const Curve dots{
+        .name = "force", .unit = "N", .x = {1, 1}, .y = {0, 1}, .note = "contact", .dots = true};
+    page.add({.title = "Branches",
+              .drawing = Plot{.x = {"speed", "m/s"}, .y = {"count"}, .curves = {dots}}});
   });
   EXPECT_EQ(b["series"][0]["dots"], true);
+  EXPECT_EQ(b["series"][0]["name"], "force [N], contact");
   EXPECT_EQ(b["x"], "speed [m/s]");
   EXPECT_EQ(b["y"], "count");
 }
 
 TEST(PageData, PlotWithFloorSlopesAndMarks) {
   const Json b = block([](Page& page) {
-    Series omega{"omega [rad/s]", {0, 1}, {1, 2}};
-    omega.key = "omega";
-    page.plot("Velocity",
-              {.x = "t", .y = "y", .floor = 2.2e-16, .slopes = {1, 2}, .marks = {{0.5, "stop"}}},
-              {omega});
+    page.add(
+        {.title = "Velocity",
+         .drawing = Plot{.x = {"t"},
+                         .y = {"", "rad/s"},
+                         .curves = {{.name = "omega", .x = {0, 1}, .y = {1, 2}, .key = "omega"}},
+                         .floor = 2.2e-16,
+                         .slopes = {1, 2},
+                         .marks = {{0.5, "stop"}}}});
   });
+  EXPECT_EQ(b["y"], "[rad/s]");
   EXPECT_EQ(b["floor"], 2.2e-16);
   EXPECT_EQ(b["slopes"], Json::parse("[1, 2]"));
   EXPECT_EQ(b["marks"], Json::parse(R"([{"x": 0.5, "text": "stop"}])"));
@@ -105,7 +121,7 @@ TEST(PageData, MaximaOverWindows) {
     x.push_back(i);
     y.push_back(i % 10 == 9 ? 1e-20 : 1);
   }
-  const Series s = thinned("error", x, y, true, 100);
+  const Curve s = thinned("error", x, y, true, 100);
   EXPECT_EQ(s.y, std::vector<double>(50, 1.0));
 }
 
@@ -114,7 +130,7 @@ TEST(PageData, CurvesKeepTheirEnds) {
   std::vector<double> x, y(1000, 0.5);
   for (int i = 0; i < 1000; ++i) x.push_back(i);
   y[500] = 1;
-  const Series s = thinned("angle", x, y, false, 100);
+  const Curve s = thinned("angle", x, y, false, 100);
   EXPECT_EQ(s.x.front(), 0);
   EXPECT_EQ(s.x.back(), 999);
   EXPECT_EQ(*std::max_element(s.y.begin(), s.y.end()), 1);
@@ -145,7 +161,8 @@ TEST(PageData, Animation) {
     };
     disk.trail = true;
     disk.trail_point = {0, 0, -1};
-    page.animation({.title = "Rolling", .times = {0, 0.5}, .bodies = {disk}, .floor = true});
+    page.add({.title = "Rolling",
+              .drawing = Animation{.times = {0, 0.5}, .bodies = {disk}, .floor = true}});
   });
   const Json& body = b["bodies"][0];
   EXPECT_EQ(body["poses"], Json::parse("[[1.0, 2.0, 3.0, 1.0, 0.0, 0.0, 0.0],"
@@ -175,7 +192,7 @@ TEST(PageData, ManyOscillationsAreABand) {
     slow.push_back(std::sin(10 * t));
     noisy.push_back(t + 1e-3 * (i % 2));
   }
-  const Series band = drawable("fast", x, fast);
+  const Curve band = drawable("fast", x, fast);
   ASSERT_EQ(band.low.size(), band.y.size());
   EXPECT_EQ(band.x.front(), 0);
   EXPECT_EQ(band.x.back(), 20);
@@ -186,17 +203,36 @@ TEST(PageData, ManyOscillationsAreABand) {
   }
   EXPECT_TRUE(drawable("slow", x, slow).low.empty());
   EXPECT_TRUE(drawable("noisy", x, noisy).low.empty());
-  const Json b = block([&](Page& page) { page.plot("Band", {.x = "t", .y = "x"}, {band}); });
+  const auto drawn = [](std::vector<Curve> curves) {
+    return block([&](Page& page) {
+      page.add(
+          {.title = "Band", .drawing = Plot{.x = {"t"}, .y = {"x"}, .curves = std::move(curves)}});
+    });
+  };
+  const Json b = drawn({band});
   EXPECT_EQ(b["series"][0]["low"].size(), band.y.size());
   EXPECT_TRUE(b["series"][0].value("envelope", false));
   // Round-off beside a velocity is no band.
-  Series narrow = band, still{"v", {0, 20}, {4, 4}};
+  Curve narrow = band, still{.name = "v", .x = {0, 20}, .y = {4, 4}};
   for (std::vector<double>* values : {&narrow.y, &narrow.low})
     for (double& v : *values) v *= 1e-17;
-  const Json beside = block([&](Page& page) {
-    page.plot("Band", {.x = "t", .y = "x"}, {still, narrow});
-  });
+  const Json beside = drawn({still, narrow});
   EXPECT_FALSE(beside["series"][1].contains("low"));
+}
+
+// Further figures of one name get a number, and no name has a space.
+TEST(PageData, NamesOfFigures) {
+  std::vector<Figure> all = {{.title = "Inputs", .drawing = Plot{}},
+                             {.title = "Inputs", .drawing = Plot{}},
+                             {.title = "Angular velocity", .drawing = Plot{}},
+                             {.title = "Energy error", .drawing = Plot{}, .name = "energy-error"}};
+  name_apart(all);
+  EXPECT_EQ(all[0].name, "inputs");
+  EXPECT_EQ(all[1].name, "inputs-no2");
+  EXPECT_EQ(all[2].name, "angular-velocity");
+  const Json json = Json::parse(to_json(all));
+  EXPECT_EQ(json.size(), 4u);
+  EXPECT_EQ(json["energy-error"]["title"], "Energy error");
 }
 
 }  // namespace

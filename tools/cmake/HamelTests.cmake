@@ -21,10 +21,9 @@ add_library(hamel_mpreal INTERFACE)
 target_include_directories(hamel_mpreal SYSTEM INTERFACE ${HAMEL_MPREAL_INCLUDE})
 target_link_libraries(hamel_mpreal INTERFACE ${HAMEL_MPFR} ${HAMEL_GMP})
 add_library(hamel_page INTERFACE)
-target_sources(hamel_page INTERFACE
-  ${PROJECT_SOURCE_DIR}/tools/hamel/page.cpp ${PROJECT_SOURCE_DIR}/tools/hamel/curves.cpp)
+target_sources(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel/pages/page.cpp)
 target_include_directories(hamel_page INTERFACE ${PROJECT_SOURCE_DIR}/tools/hamel)
-target_link_libraries(hamel_page INTERFACE fmt::fmt nlohmann_json::nlohmann_json)
+target_link_libraries(hamel_page INTERFACE hamel::figures fmt::fmt nlohmann_json::nlohmann_json)
 
 # Is the program configured with its report page?
 if(TARGET hamel_program AND HAMEL_NODE AND HAMEL_NPM AND NOT HAMEL_REPORT_PAGE STREQUAL "OFF")

@@ -6,7 +6,7 @@
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
-#include "screen.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {

@@ -13,7 +13,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 
-#include "screen.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {

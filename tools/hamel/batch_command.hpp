@@ -11,8 +11,8 @@
 #include <hamel/framework/batch/shards.hpp>
 
 #include "commands.hpp"
-#include "interrupt.hpp"
-#include "page.hpp"
+#include "pages/page.hpp"
+#include "words/interrupt.hpp"
 
 namespace hamel::tools {
 

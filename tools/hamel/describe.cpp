@@ -13,8 +13,8 @@
 #include <hamel/systems/mechanisms/library.hpp>
 
 #include "commands.hpp"
-#include "description_text.hpp"
-#include "screen.hpp"
+#include "words/description_text.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {

@@ -8,15 +8,15 @@
 #include <nlohmann/json.hpp>
 
 #include <hamel/framework/ensemble/ensemble.hpp>
+#include <hamel/framework/figures/figures.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "batch_command.hpp"
 #include "commands.hpp"
-#include "ensemble_members.hpp"
-#include "ensemble_page.hpp"
-#include "interrupt.hpp"
-#include "run_figures.hpp"
-#include "screen.hpp"
+#include "pages/ensemble_page.hpp"
+#include "pages/run_page.hpp"
+#include "words/interrupt.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -103,8 +103,7 @@ std::map<long, Page> motions_of(const Ensemble& ensemble, const EnsembleResult& 
     const std::optional<Result> one = run_of(ensemble.member(k));
     if (!one || !one->status.ok) continue;
     Page page(fmt::format("Member {}", k), "");
-    page.section("Motion");
-    add_motion(page, *one);
+    page.add_section(figures::motion_of_run(registry(), *one), "Motion");
     if (!page.figures().empty()) out.emplace(k, std::move(page));
   }
   return out;

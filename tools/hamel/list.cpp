@@ -12,8 +12,8 @@
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
-#include "help.hpp"
-#include "screen.hpp"
+#include "lines/help.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {

@@ -14,9 +14,9 @@
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
 
-#include "command_lines.hpp"
-#include "help.hpp"
-#include "screen.hpp"
+#include "lines/command_lines.hpp"
+#include "lines/help.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -50,7 +50,7 @@ int carry_out(const std::function<int()>& command) {
   }
 }
 
-std::vector<std::string> names_of(const CLI::App& app) {
+std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> out;
   for (const CLI::App* one : app.get_subcommands({})) out.push_back(one->get_name());
   return out;
@@ -62,7 +62,7 @@ int print_help(const CLI::App& app, const std::string& of) {
     say("{}", app.get_formatter()->make_help(&app, "hamel", CLI::AppFormatMode::Normal));
     return 0;
   }
-  const std::vector<std::string> names = names_of(app);
+  const std::vector<std::string> names = command_names(app);
   if (std::find(names.begin(), names.end(), of) == names.end())
     throw ConfigError({unknown_name("command", of, names)});
   CLI::App& asked = *app.get_subcommand(of);
@@ -74,7 +74,7 @@ int print_help(const CLI::App& app, const std::string& of) {
 
 // The first word that is neither a command nor an option of `hamel` itself; "" for none.
 std::string first_mistake(const CLI::App& app, int argc, char** argv) {
-  const std::vector<std::string> names = names_of(app);
+  const std::vector<std::string> names = command_names(app);
   if (argc < 2) return fmt::format("a command is needed: expected one of {}", join(names));
   if (argv[1][0] == '-' || std::find(names.begin(), names.end(), argv[1]) != names.end()) return "";
   return unknown_name("command", argv[1], names);

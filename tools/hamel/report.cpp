@@ -2,20 +2,19 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
-#include <set>
 
 #include <fmt/format.h>
 
+#include <hamel/framework/figures/figures.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/run/recorded_simulation.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
-#include "figure_file.hpp"
-#include "run_figures.hpp"
-#include "run_names.hpp"
-#include "run_verdict.hpp"
+#include "pages/figure_file.hpp"
+#include "pages/run_page.hpp"
+#include "words/run_names.hpp"
+#include "words/run_verdict.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -58,73 +57,6 @@ void name_apart(std::vector<ReadRun>& runs) {
   }
   const std::vector<std::string> names = names_of(results, files);
   for (size_t i = 0; i < runs.size(); ++i) runs[i].name = names[i];
-}
-
-// The windows whose largest values are the points of each curve.
-std::string windows_of(const std::vector<const ReadRun*>& runs, const std::string& column) {
-  std::set<std::string> different;
-  std::string each;
-  for (const ReadRun* run : runs) {
-    const std::string note = windows_note(run->result, {column});
-    different.insert(note);
-    if (!note.empty()) each += fmt::format("{}`{}`: {}", each.empty() ? "" : " ", run->name, note);
-  }
-  return different.size() == 1 ? *different.begin() : each;
-}
-
-// An error of all runs that have it.
-void add_error(Page& page, const std::vector<ReadRun>& runs, const std::string& name,
-               const std::string& title, const std::string& y, const std::string& column) {
-  Axes axes{.x = "time t [s]", .y = y, .log_x = false, .log_y = true, .name = name};
-  std::vector<Series> series;
-  std::vector<const ReadRun*> shown;
-  for (const ReadRun& run : runs) {
-    if (!run.result.trajectory.has(column)) continue;
-    series.push_back(curve(run.result, run.name, column));
-    shown.push_back(&run);
-    axes.floor = std::max(axes.floor, floor_of(run.result, column));
-  }
-  if (!series.empty()) page.plot(title, axes, series, windows_of(shown, column));
-}
-
-// Figures by name and unit, so that what is called otherwise in another system is never beside it.
-class ByName {
- public:
-  void add(const std::string& name, const std::string& unit, Series series) {
-    const auto at = std::find_if(figures_.begin(), figures_.end(), [&](const Figure& figure) {
-      return figure.name == name && figure.unit == unit;
-    });
-    Figure& figure = at == figures_.end() ? figures_.emplace_back(Figure{name, unit, {}}) : *at;
-    figure.series.push_back(std::move(series));
-  }
-  void plot(Page& page) const {
-    for (const auto& [name, unit, series] : figures_)
-      page.plot(name, {.x = "time t [s]", .y = with_unit(name, unit)}, series);
-  }
-
- private:
-  struct Figure {
-    std::string name, unit;
-    std::vector<Series> series;
-  };
-  std::vector<Figure> figures_;
-};
-
-void add_motions(Page& page, const std::vector<ReadRun>& runs) {
-  ByName velocities, coordinates;
-  for (const ReadRun& run : runs) {
-    const Result& r = run.result;
-    const std::vector<Component> names = components_of(*r.system);
-    for (const Component& c : names)
-      velocities.add(c.name, c.unit, curve(r, run.name, c.name, false));
-    const std::vector<std::string>&columns = r.system->group.columns,
-          units = units_of_element(r.system->group);
-    for (size_t i = 0; i < columns.size(); ++i)
-      coordinates.add(columns[i], i < units.size() ? units[i] : "",
-                      curve(r, run.name, columns[i], false));
-  }
-  velocities.plot(page);
-  coordinates.plot(page);
 }
 
 std::string systems_of(const std::vector<ReadRun>& runs) {
@@ -172,18 +104,11 @@ Page compared(const std::vector<ReadRun>& runs) {
       page.text({fmt::format("{}: one recorded state in {} is shown.", run.name, stride)});
   }
 
-  page.section("Accuracy");
-  add_error(page, runs, "error", "Error of the configuration against the exact motion",
-            "|difference|", kExactError.name);
-  add_error(page, runs, "velocity-error", "Error of the velocity against the exact motion",
-            "|difference|", kExactVelocityError.name);
-  add_error(page, runs, "energy-error", "Energy error, or defect of the energy balance", "relative",
-            kEnergyError.name);
-  add_error(page, runs, "constraint", "Constraint residual", "|A xi/h|", kConstraint.name);
-  add_error(page, runs, "group-defect", "Group defect", "defect", kGroupDefect.name);
-
-  page.section("Motion");
-  add_motions(page, runs);
+  std::vector<figures::NamedRun> named;
+  for (const ReadRun& run : runs) named.push_back({run.name, &run.result});
+  const std::vector<Figure> figures = figures::of_runs(named);
+  page.add_section(figures, "Accuracy");
+  page.add_section(figures, "Motion");
   for (const ReadRun& run : runs) {
     page.section("Record of " + run.name);
     page.record(run.record);

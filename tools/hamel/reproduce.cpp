@@ -12,8 +12,8 @@
 #include <hamel/systems/suslov.hpp>
 
 #include "commands.hpp"
-#include "screen.hpp"
-#include "variants.hpp"
+#include "pages/variants.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -142,7 +142,7 @@ class Report {
             configuration_error(exp, "lift s=1/2"), configuration_error(cayley, "lift s=0"),
             configuration_error(cayley, "lift s=1/2")),
     });
-    const std::vector<Series> exact = exact_momentum(exp.front().cell.config());
+    const std::vector<figures::Curve> exact = exact_momentum(exp.front().cell.config());
     for (size_t i = 0; i < 2; ++i) {
       page_.section(i == 0 ? "Figure 1 with exp" : "Figure 1 with Cayley");
       add_figures(page_, i == 0 ? exp : cayley, exact);
@@ -182,7 +182,7 @@ class Report {
         runs.push_back(with(with(all, "system", system.label), "step", h));
       keep(runs.front());
       std::vector<std::vector<Cell>> rows;
-      std::vector<Series> convergence;
+      std::vector<figures::Curve> convergence;
       std::string orders;
       for (size_t i = 0; i < runs[0].size(); ++i) {
         const double e0 = runs[0][i].measured.exact_error_final,
@@ -192,24 +192,23 @@ class Report {
         rows.push_back({finest.name, e0, e1, e2, std::log2(e0 / e1), std::log2(e1 / e2),
                         finest.measured.exact_velocity_error_max,
                         finest.measured.energy_error_max});
-        Series& line = convergence.emplace_back(
-            Series{finest.name,
-                   {runs[0][i].cell.config().step_or_usual(),
-                    runs[1][i].cell.config().step_or_usual(), finest.cell.config().step_or_usual()},
-                   {e0, e1, e2}});
+        figures::Curve& line = convergence.emplace_back(figures::Curve{
+            .name = finest.name,
+            .x = {runs[0][i].cell.config().step_or_usual(),
+                  runs[1][i].cell.config().step_or_usual(), finest.cell.config().step_or_usual()},
+            .y = {e0, e1, e2}});
         const double order = std::log2(e1 / e2);
-        line.fit = Fit{order, fmt::format("order {:.2f}", order)};
+        line.fit = figures::Fit{order, fmt::format("order {:.2f}", order)};
         orders += fmt::format("{}`{}` {:.2e} ({:.2f})", i == 0 ? "" : ", ", finest.name, e2, order);
       }
-      page_.plot(
-          "Order of convergence",
-          {.x = "step h [s]",
-           .y = "configuration error at the end",
-           .log_x = true,
-           .log_y = true,
-           .slopes = {1, 2}},
-          convergence,
-          fmt::format("{} s with Cayley; the order between the two finer steps.", study.until));
+      page_.add({.title = "Order of convergence",
+                 .drawing = figures::Plot{.x = {"step h", "s", true},
+                                          .y = {"configuration error at the end", "", true},
+                                          .curves = convergence,
+                                          .slopes = {1, 2}},
+                 .note = fmt::format("{} s with Cayley; the order between the two finer steps.",
+                                     study.until),
+                 .name = "order"});
       story_.summarise(
           fmt::format("{} s with Cayley at h = {}. Configuration error at the end for the finest "
                       "step, and the order measured: {}.",

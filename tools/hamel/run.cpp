@@ -7,9 +7,9 @@
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
-#include "interrupt.hpp"
-#include "run_page.hpp"
-#include "screen.hpp"
+#include "pages/run_page.hpp"
+#include "words/interrupt.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {

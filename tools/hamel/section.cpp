@@ -7,75 +7,31 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hamel/framework/figures/figures.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>
 #include <hamel/systems/by_name.hpp>
 
-#include "help.hpp"
-#include "interrupt.hpp"
-#include "page.hpp"
-#include "run_page.hpp"
-#include "screen.hpp"
+#include "lines/help.hpp"
+#include "pages/page.hpp"
+#include "pages/run_page.hpp"
+#include "words/interrupt.hpp"
+#include "words/screen.hpp"
 
 namespace hamel::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<double>& numbers(const TableColumn& column) {
-  return std::get<std::vector<double>>(column.values);
-}
-
-// The columns for the axes of the page: those given, else the first two that vary most beside t.
-std::vector<const TableColumn*> axes_of(const Table& points, const std::string& given) {
-  std::vector<const TableColumn*> out;
-  if (!given.empty()) {
-    const size_t comma = given.find(',');
-    if (comma == std::string::npos)
-      throw ConfigError({fmt::format("--axes: got '{}', expected two columns, A,B", given)});
-    return {&points.column(given.substr(0, comma)), &points.column(given.substr(comma + 1))};
-  }
-  std::vector<std::pair<double, const TableColumn*>> spread;
-  for (size_t j = 3; j + 1 < points.columns.size(); ++j) {
-    const std::vector<double>& values = numbers(points.columns[j]);
-    if (values.empty()) continue;
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    const double size = std::max({1.0, std::abs(*least), std::abs(*most)});
-    if (*most - *least > 1e-6 * size) out.push_back(&points.columns[j]);
-    if (out.size() == 2) return out;
-  }
-  return {};
-}
-
 Page page_of(const SectionOptions& options, const Section& section) {
   Page page(
       "Section of " + options.config.system,
       fmt::format("the states where {}, {} points", options.request.event, section.points.rows()));
   page.section("Points");
-  const std::vector<const TableColumn*> axes = axes_of(section.points, options.axes);
-  if (axes.size() == 2) {
-    const auto& of_start = std::get<std::vector<long long>>(section.points.columns[0].values);
-    std::vector<Series> series;
-    for (size_t i = 0; i < of_start.size(); ++i) {
-      const auto start = static_cast<size_t>(of_start[i]);
-      while (series.size() < start) {
-        Series& one = series.emplace_back();
-        one.name = fmt::format("start {}", series.size());
-        one.dots = true;
-      }
-      series[start - 1].x.push_back(numbers(*axes[0])[i]);
-      series[start - 1].y.push_back(numbers(*axes[1])[i]);
-    }
-    std::erase_if(series, [](const Series& one) { return one.x.empty(); });
-    const auto label = [](const TableColumn& column) {
-      return with_unit(column.name, column.unit);
-    };
-    page.plot("Section", {.x = label(*axes[0]), .y = label(*axes[1]), .name = "section"}, series,
-              "One colour for each start. Points on a closed curve belong to a quasi-periodic "
-              "motion, points that fill an area to a chaotic one.");
-  } else {
+  const std::vector<Figure> points = figures::of_section(section, options.axes);
+  page.add(points, "Points");
+  if (points.empty())
     page.text({"No two columns vary over the points: the motions are periodic, or at rest."});
-  }
   page.section("Motions");
   std::vector<std::vector<Cell>> rows;
   for (size_t i = 0; i < section.orbits.size(); ++i) {

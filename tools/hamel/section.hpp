@@ -6,7 +6,7 @@
 
 #include <hamel/framework/analysis/section.hpp>
 
-#include "run_line.hpp"
+#include "lines/run_line.hpp"
 
 namespace hamel::tools {
 

@@ -5,16 +5,17 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/figures/figures.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/run/record/velocity_text.hpp>
 #include <hamel/systems/by_name.hpp>
 
-#include "run_page.hpp"
-#include "screen.hpp"
+#include "pages/run_page.hpp"
+#include "pages/steady_page.hpp"
 #include "steady.hpp"
-#include "steady_json.hpp"
-#include "steady_page.hpp"
+#include "words/screen.hpp"
+#include "words/steady_json.hpp"
 
 namespace hamel::tools {
 namespace {
@@ -170,11 +171,13 @@ int steady(const SteadyOptions& options) {
   if (vary) {
     const auto there = [&](double value) { return at(options, vary->name, value); };
     sweep = sweep_steady(registry(), vary->values, there, options.branches);
+    sweep.parameter = vary->name;
+    sweep.unit = figures::unit_of(vary->name, system);
   }
   if (options.json) say_json(steady_json(options, first, system, motion, vary ? &sweep : nullptr));
   else print(system, motion, vary ? &*vary : nullptr, sweep);
   if (!options.report.empty())
-    steady_page(vary->name, system, sweep, command_line(options)).write(options.report);
+    steady_page(system, sweep, command_line(options)).write(options.report);
   if (motion.found || std::any_of(sweep.motions.begin(), sweep.motions.end(),
                                   [](const SteadyMotion& one) { return one.found; }))
     return 0;

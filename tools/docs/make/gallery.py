@@ -70,20 +70,21 @@ def escape(text):
     return re.sub(r"([\\*_`\[\]<|$])", r"\\\1", text)
 
 
-def motion(program, folder):
-    """The poses that the page of a run draws, for static/player.js."""
+def motion(root, program, folder):
+    """The motion of the front page: the block that the page of a run draws, in the player of the notebooks."""
     page = folder / "played.html"
     if not page.exists():
         hamel(program, "run", PLAYED, "--until", "7", "--output-step", "0.05", "--report", str(page), "--quiet")
-    data = json.loads(re.search(r'id="hamel-data">(.*?)</script>', page.read_text(), re.S)[1].replace("<\\/", "</"))
-    for section in data["sections"]:
-        for block in section["blocks"]:
-            if block["kind"] == "animation":
-                return {"times": block["times"], "bodies": block["bodies"]}
-    raise SystemExit(f"docs: the page of {PLAYED} has no motion")
+    text = re.search(r'id="hamel-data">(.*?)</script>', page.read_text(), re.S)[1]
+    blocks = [block for section in json.loads(text)["sections"] for block in section["blocks"]]
+    block = next(block for block in blocks if block["kind"] == "animation")
+    block["title"] = "A roller racer, from above, drives forward because its handlebar is turned to and fro"
+    data = json.dumps(block, separators=(",", ":")).replace("</", "<\\/")
+    player = (root / "tools/python/hamel/animation.html").read_text().replace("__MOTION__", data)
+    return f'<div class="motion" id="played"><iframe srcdoc="{html.escape(player)}" title="{block["title"]}"></iframe></div>'
 
 
-def texts(build, site):
+def texts(root, build, site):
     program = str(build / "tools/hamel")
     systems = json.loads(hamel(program, "list", "systems", "--json").stdout)
     names = [system["name"] for system in systems]
@@ -102,6 +103,5 @@ def texts(build, site):
                     f"<span>{html.escape(name)}</span></a>" for name in names)
     return {
         "gallery.txt": f'```{{raw}} html\n<div class="tiles">{tiles}</div>\n```\n\n' + "\n".join(told),
-        "motion.txt": "```{raw} html\n<script>window.hamelMotion = "
-                      + json.dumps(motion(program, folder), separators=(",", ":")) + "</script>\n```\n",
+        "motion.txt": "```{raw} html\n" + motion(root, program, folder) + "\n```\n",
     }

@@ -143,7 +143,7 @@ def main(root, build):
     site = Site(root, build)
     for name, text in printed.texts(root, build).items():
         site.write(f"generated/{name}", text)
-    for name, text in gallery.texts(build, site).items():
+    for name, text in gallery.texts(root, build, site).items():
         site.write(f"generated/{name}", text)
     if list((build / "tools/python/hamel").glob("_hamel.*.so")):
         notebooks.write(root, build, site)

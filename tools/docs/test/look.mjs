@@ -93,7 +93,7 @@ for (const [size, options] of Object.entries(sizes)) {
 }
 {
   const { page, context } = await visit('index.html', { viewport: { width: 1366, height: 900 } });
-  const picture = () => page.evaluate(() => document.querySelector('#played canvas').toDataURL());
+  const picture = async () => (await (await page.$('#played iframe')).contentFrame()).evaluate(() => document.querySelector('canvas').toDataURL());
   await page.waitForTimeout(300);
   const first = await picture();
   await page.waitForTimeout(700);

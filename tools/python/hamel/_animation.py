@@ -13,9 +13,6 @@ import pathlib
 
 from hamel._hamel import Result
 
-_MOST_POSES = 600
-_DIGITS = 6
-
 
 class Animation:
     """A motion; a notebook shows it, write() saves it as a page."""
@@ -23,11 +20,10 @@ class Animation:
     def __init__(self, result: Result, height: int = 320) -> None:
         if len(result) < 2:
             raise ValueError("animation: the result has fewer than two rows")
-        motion = result._motion(_MOST_POSES)
-        if not motion["bodies"]:
+        blocks = json.loads(result._figures()).values()
+        motion = next((block for block in blocks if block["kind"] == "animation"), None)
+        if motion is None:
             raise ValueError(f"animation: {result.config.system} has no drawing")
-        for body in motion["bodies"]:
-            body["poses"] = [[round(x, _DIGITS) for x in pose] for pose in body["poses"]]
         motion["title"] = f"Motion of {result.config.system}"
         self.height = height
         self.poses = len(motion["times"])

@@ -1,6 +1,7 @@
-"""Charts as inline SVG: curves or points over linear or logarithmic axes, with their style.
+"""Figures of the report page as inline SVG: plots and paths, with their style.
 
-Colours are CSS properties with a second set for dark pages; no external file is loaded.
+A figure is the block of the page's data (tools/report/README.md), which C++ makes. Colours are CSS
+properties with a second set for dark pages; no external file is loaded.
 """
 
 from __future__ import annotations
@@ -9,8 +10,7 @@ import html
 import math
 import os
 import pathlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from hamel._hamel import ConfigError
@@ -38,9 +38,9 @@ STYLE = f"""<style>
 .hamel svg text {{ fill: var(--ink); font: 11px system-ui, sans-serif; }}
 </style>"""
 
-_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 640, 220, 58, 130, 24, 34
-_MOST_POINTS = 600
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 640, 220, 58, 130, 24, 34
 _MOST_CURVES = 6
+_Point = tuple[float, float]
 
 
 def in_frame(content: str) -> str:
@@ -48,20 +48,12 @@ def in_frame(content: str) -> str:
     return f'{STYLE}<div class="hamel">{content}</div>'
 
 
-@dataclass(frozen=True)
-class Curve:
-    """A curve with its name; x and y are arrays of equal shape (points,)."""
-
-    name: str
-    x: Any
-    y: Any
-
-
 class Figure:
-    """A figure: a notebook shows it, svg is its text, write() saves it."""
+    """A figure: a notebook shows it, svg is its text, data its curves, write() saves it."""
 
-    def __init__(self, title: str, svg: str) -> None:
-        self.title = title
+    def __init__(self, data: dict[str, Any], svg: str) -> None:
+        self.title: str = data["title"]
+        self.data = data
         self.svg = svg
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -86,28 +78,11 @@ class Figure:
         return f"<hamel figure: {self.title}>"
 
 
-def with_unit(name: str, unit: str) -> str:
-    """'v1 [m/s]'; the name alone without a unit."""
-    return f"{name} [{unit}]" if unit and unit != "1" else name
-
-
-def peaks(curve: Curve) -> Curve:
-    """The magnitudes; of long curves the largest of each of 300 windows, so that none is lost."""
-    import numpy as np
-
-    y = np.abs(curve.y)
-    if len(y) <= _MOST_POINTS:
-        return Curve(curve.name, curve.x, y)
-    windows = np.array_split(np.arange(len(y)), _MOST_POINTS // 2)
-    at = np.array([w[np.argmax(np.where(np.isfinite(y[w]), y[w], -1))] for w in windows])
-    return Curve(curve.name, curve.x[at], y[at])
-
-
-class _Axis:
+class Axis:
     """A scale from values to pixels; `first` and `last` are the pixels of its ends."""
 
-    def __init__(self, values: Any, first: float, last: float, log: bool) -> None:
-        low, high = float(values.min()), float(values.max())
+    def __init__(self, values: Sequence[float], first: float, last: float, log: bool) -> None:
+        low, high = min(values), max(values)
         if log:
             low, high = math.log10(low), math.log10(high)
         if high - low < 1e-12 * max(1.0, abs(high)):
@@ -130,75 +105,125 @@ class _Axis:
         return inner if len(inner) > 1 else [10**self.low, 10**self.high]
 
 
-def chart(
-    title: str,
-    x: str,
-    y: str,
-    curves: Sequence[Curve],
-    *,
-    log_x: bool = False,
-    log_y: bool = False,
-    equal: bool = False,
-    dots: bool = False,
-) -> Figure | None:
-    """At most six curves, each with its name at its end; None where they have no point.
+class _Drawn:
+    """A curve of a block as it is drawn: without gaps and what an axis cannot show."""
 
-    log_x and log_y omit what is not positive, equal gives both axes one scale, dots draws points.
-    """
-    import numpy as np
+    def __init__(self, series: dict[str, Any], log_x: bool, log_y: bool) -> None:
+        self.name: str = series["name"]
+        self.dots = bool(series.get("dots"))
+        self.dashed = bool(series["dashed"])
+        self.fit: str = series.get("fit", {}).get("text", "")
+        low = series.get("low") or [None] * len(series["x"])
+        self.points: list[_Point] = []
+        self.below: list[_Point] = []
+        for x, y, under in zip(series["x"], series["y"], low, strict=True):
+            if x is None or y is None or (log_x and x <= 0) or (log_y and y <= 0):
+                continue
+            self.points.append((x, y))
+            if under is not None and not (log_y and under <= 0):
+                self.below.append((x, under))
 
-    drawn = []
-    for curve in curves[:_MOST_CURVES]:
-        cx, cy = np.asarray(curve.x, float), np.asarray(curve.y, float)
-        seen = np.isfinite(cx) & np.isfinite(cy)
-        seen &= ((cx > 0) | (not log_x)) & ((cy > 0) | (not log_y))
-        at = np.flatnonzero(seen)
-        at = at[np.unique(np.linspace(0, len(at) - 1, min(len(at), _MOST_POINTS)).astype(int))]
-        if len(at):
-            drawn.append((curve.name, cx[at], cy[at]))
-    if not drawn:
-        return None
-    all_x = np.concatenate([cx for _, cx, _ in drawn])
-    all_y = np.concatenate([cy for _, _, cy in drawn])
-    across = _Axis(all_x, _LEFT, _WIDTH - _RIGHT, log_x)
-    height = float(_HEIGHT)
-    if equal:
-        scale = (_WIDTH - _LEFT - _RIGHT) / (across.high - across.low)
-        height = _TOP + _BOTTOM + min(max(scale * float(np.ptp(all_y)), 80.0), 320.0)
-    up = _Axis(all_y, height - _BOTTOM, _TOP, log_y)
-    if equal:
-        _equalise(across, up)
-    parts = [_grid(across, up, height, x, y, title)]
-    ends = _spaced([up.at(float(cy[-1])) for _, _, cy in drawn], 13, _TOP + 4, height - _BOTTOM)
-    for k, (name, cx, cy) in enumerate(drawn):
-        at_points = [(across.at(float(a)), up.at(float(b))) for a, b in zip(cx, cy, strict=True)]
-        if dots:
-            parts += [
-                f'<circle cx="{a:.1f}" cy="{b:.1f}" r="2" fill="var(--c{k})"/>'
-                for a, b in at_points
-            ]
-        else:
-            points = " ".join(f"{a:.1f},{b:.1f}" for a, b in at_points)
-            parts.append(
-                f'<polyline points="{points}" fill="none" stroke="var(--c{k})" '
-                'stroke-width="1.5"/>'
+    def svg(self, across: Axis, up: Axis, colour: str) -> str:
+        places = [f"{across.at(x):.1f},{up.at(y):.1f}" for x, y in self.points]
+        title = f"<title>{html.escape(f'{self.name} {self.fit}')}</title>"
+        if self.dots:
+            return "".join(
+                '<circle cx="{}" cy="{}" r="2" fill="{}"/>'.format(*place.split(","), colour)
+                for place in places
             )
-        parts.append(
-            f'<text x="{_WIDTH - _RIGHT + 6}" y="{ends[k] + 4:.1f}" style="fill:var(--c{k})">'
-            f"{html.escape(name)}</text>"
+        places = [a for a, before in zip(places, ["", *places], strict=False) if a != before]
+        out = ""
+        if self.below:
+            back = [f"{across.at(x):.1f},{up.at(y):.1f}" for x, y in reversed(self.below)]
+            out = (
+                f'<polygon points="{" ".join(places + back)}" fill="{colour}" '
+                'fill-opacity="0.35"/>'
+            )
+        dashes = ' stroke-dasharray="5 4"' if self.dashed else ""
+        return out + (
+            f'<polyline points="{" ".join(places)}" fill="none" stroke="{colour}" '
+            f'stroke-width="1.5"{dashes}>{title}</polyline>'
         )
+
+
+def plot(block: dict[str, Any]) -> Figure | None:
+    """A plot or a path; None where fewer than two points are.
+
+    At most six curves, each with its name at its end, of the first value of each filter.
+    """
+    log_x, log_y = bool(block.get("log_x")), bool(block.get("log_y"))
+    first = {f["name"]: f["values"][0] for f in block.get("filters", []) if f["values"]}
+    curves = []
+    for series in block["series"]:
+        tags = series.get("tags", {})
+        if all(tags.get(name, value) == value for name, value in first.items()):
+            curves.append(_Drawn(series, log_x, log_y))
+    curves = [curve for curve in curves if curve.points]
+    drawn = curves[:_MOST_CURVES]
+    points = [point for curve in drawn for point in curve.points + curve.below]
+    if len(set(points)) < 2:
+        return None
+    across = Axis([x for x, _ in points], LEFT, WIDTH - RIGHT, log_x)
+    height = float(HEIGHT)
+    heights = [y for _, y in points]
+    if block["kind"] == "path":
+        scale = (WIDTH - LEFT - RIGHT) / (across.high - across.low)
+        height = TOP + BOTTOM + min(max(scale * (max(heights) - min(heights)), 80.0), 320.0)
+    up = Axis(heights, height - BOTTOM, TOP, log_y)
+    if block["kind"] == "path":
+        _equalise(across, up)
+    shown = {**block, "title": ": ".join([block["title"], *first.values()])}
+    parts = [_grid(across, up, height, shown), *_markings(block, across, up)]
+    alone = len(curves) == 1 and curves[0].name in ("", block["title"])
+    ends = _spaced([up.at(c.points[-1][1]) for c in drawn], 13, TOP + 4, height - BOTTOM)
+    for k, curve in enumerate(drawn):
+        parts.append(curve.svg(across, up, f"var(--c{k})"))
+        if not alone:
+            parts.append(
+                f'<text x="{WIDTH - RIGHT + 6}" y="{ends[k] + 4:.1f}" '
+                f'style="fill:var(--c{k})">{html.escape(curve.name)}</text>'
+            )
     if len(curves) > _MOST_CURVES:
         more = f"{len(curves) - _MOST_CURVES} more"
-        parts.append(f'<text x="{_WIDTH - _RIGHT + 6}" y="{height - 6:.1f}">{more}</text>')
-    label = html.escape(title)
+        parts.append(f'<text x="{WIDTH - RIGHT + 6}" y="{height - 6:.1f}">{more}</text>')
+    return figure_of(block, height, parts)
+
+
+def figure_of(block: dict[str, Any], height: float, parts: Sequence[str]) -> Figure:
+    label = html.escape(block["title"])
     return Figure(
-        title,
-        f'<svg viewBox="0 0 {_WIDTH} {height:.0f}" role="img" aria-label="{label}">'
+        block,
+        f'<svg viewBox="0 0 {WIDTH} {height:.0f}" role="img" aria-label="{label}">'
         f"<title>{label}</title>{''.join(parts)}</svg>",
     )
 
 
-def _equalise(across: _Axis, up: _Axis) -> None:
+def _markings(block: dict[str, Any], across: Axis, up: Axis) -> Iterator[str]:
+    """Shaded intervals, moments on the x axis, the floor of round-off; where they are in sight."""
+    for band in block.get("bands", []):
+        a, b = across.at(band["from"]), across.at(band["to"])
+        yield (
+            f'<rect x="{min(a, b):.1f}" y="{up.last}" width="{abs(b - a):.1f}" '
+            f'height="{up.first - up.last:.1f}" fill="var(--grid)" opacity="0.6">'
+            f"<title>{html.escape(band['text'])}</title></rect>"
+        )
+    for mark in block.get("marks", []):
+        at = across.at(mark["x"])
+        if across.first <= at <= across.last:
+            yield (
+                f'<line x1="{at:.1f}" x2="{at:.1f}" y1="{up.first}" y2="{up.last}" '
+                f'stroke="var(--faint)" stroke-dasharray="5 4"><title>'
+                f"{html.escape(mark['text'])}</title></line>"
+            )
+    if up.log and block.get("floor", 0) > 0 and up.last <= up.at(block["floor"]) <= up.first:
+        at = up.at(block["floor"])
+        yield (
+            f'<line x1="{across.first}" x2="{across.last}" y1="{at:.1f}" y2="{at:.1f}" '
+            'stroke="var(--faint)" stroke-dasharray="5 4"><title>round-off</title></line>'
+        )
+
+
+def _equalise(across: Axis, up: Axis) -> None:
     """Widens the axis with the smaller range for its pixels, about its middle."""
     ratio = abs(across.last - across.first) / abs(up.last - up.first)
     wide, high = across.high - across.low, up.high - up.low
@@ -207,24 +232,31 @@ def _equalise(across: _Axis, up: _Axis) -> None:
     axis.low, axis.high = middle - size / 2, middle + size / 2
 
 
-def _grid(across: _Axis, up: _Axis, height: float, x: str, y: str, title: str) -> str:
-    end = _WIDTH - _RIGHT
-    parts = [f'<text x="{_LEFT}" y="13" style="font-weight:600">{html.escape(title)}</text>']
+def titles(height: float, block: dict[str, Any]) -> list[str]:
+    """The title, and the names of the axes at their ends."""
+    end = WIDTH - RIGHT
+    title, x, y = (html.escape(block[name]) for name in ("title", "x", "y"))
+    return [
+        f'<text x="{LEFT}" y="13" style="font-weight:600">{title}</text>',
+        f'<text x="{end}" y="{height - 5:.1f}" text-anchor="end">{x}</text>',
+        f'<text x="{end}" y="13" text-anchor="end">{y}</text>',
+    ]
+
+
+def _grid(across: Axis, up: Axis, height: float, block: dict[str, Any]) -> str:
+    end = WIDTH - RIGHT
+    parts = titles(height, block)
     for tick in up.ticks():
         at = up.at(tick)
         parts.append(
-            f'<line x1="{_LEFT}" x2="{end}" y1="{at:.1f}" y2="{at:.1f}" stroke="var(--grid)"/>'
-            f'<text x="{_LEFT - 6}" y="{at + 4:.1f}" text-anchor="end">{tick:.4g}</text>'
+            f'<line x1="{LEFT}" x2="{end}" y1="{at:.1f}" y2="{at:.1f}" stroke="var(--grid)"/>'
+            f'<text x="{LEFT - 6}" y="{at + 4:.1f}" text-anchor="end">{tick:.4g}</text>'
         )
     for tick in across.ticks():
         parts.append(
-            f'<text x="{across.at(tick):.1f}" y="{height - _BOTTOM + 15:.1f}" '
+            f'<text x="{across.at(tick):.1f}" y="{height - BOTTOM + 15:.1f}" '
             f'text-anchor="middle">{tick:.4g}</text>'
         )
-    parts.append(
-        f'<text x="{end}" y="{height - 5:.1f}" text-anchor="end">{html.escape(x)}</text>'
-        f'<text x="{end}" y="13" text-anchor="end">{html.escape(y)}</text>'
-    )
     return "".join(parts)
 
 

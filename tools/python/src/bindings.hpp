@@ -20,6 +20,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <hamel/framework/figures/figures.hpp>
 #include <hamel/simulate.hpp>
 #include <hamel/systems/by_text.hpp>
 
@@ -52,6 +53,20 @@ inline std::string key_of(nb::handle key) { return utf8("keyword", key); }
 
 /// The function `name` of the Python module hamel.`module`, imported when it is called.
 nb::object helper(const char* module, const char* name);
+
+/// Binds figures(), _repr_html_() and _figures(): the JSON of what of(self) makes, for
+/// hamel/_figures.py.
+template <class Class, class Of>
+void bind_figures(Class& bound, const char* html, const char* help, Of of) {
+  bound
+      .def(
+          "_repr_html_", [html](nb::handle self) { return helper("_figures", html)(self); },
+          nb::sig("def _repr_html_(self) -> str"))
+      .def(
+          "figures", [](nb::handle self) { return helper("_figures", "figures_of")(self); },
+          nb::sig("def figures(self) -> dict[str, _Figure]"), help)
+      .def("_figures", [of](typename Class::Type& self) { return figures::to_json(of(self)); });
+}
 
 /// A system by data, or a mechanism, whose text is at hand; the name is its file's.
 struct SystemText {
@@ -129,8 +144,6 @@ class StoredResult {
 };
 
 nb::object result_of(Result result, std::string source, const Functions& functions);
-/// At most `most` poses of the bodies that are drawn, and their shapes.
-nb::dict motion(StoredResult& stored, size_t most);
 nb::dict pack(const StoredResult& stored);
 void unpack(StoredResult& self, const nb::dict& state);
 /// A run to be stepped by hand.
@@ -150,6 +163,8 @@ void bind_names(nb::module_& m);
 void bind_result(nb::module_& m);
 void bind_run(nb::module_& m);
 void bind_section(nb::module_& m);
+/// A method for each option of a run (Config::fields).
+void bind_setters(nb::class_<Builder>& builder);
 void bind_simulation(nb::module_& m);
 void bind_steady(nb::module_& m);
 void bind_study(nb::module_& m);

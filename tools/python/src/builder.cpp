@@ -66,16 +66,6 @@ auto set_by(Simulation& (Simulation::*member)(Value)) {
   };
 }
 
-// An option of Config by the way of apply().
-auto by_option(const char* name) {
-  return [name](nb::object self, nb::handle value) {
-    nb::kwargs options = nb::steal<nb::kwargs>(PyDict_New());
-    options[name] = value;
-    apply(nb::cast<Builder&>(self), options);
-    return self;
-  };
-}
-
 void bind_functions(nb::class_<Builder>& builder) {
   builder
       .def(
@@ -157,12 +147,6 @@ void bind_options(nb::class_<Builder>& builder) {
               "= None, momentum: _Numbers | None = None) -> Simulation"),
           "Where to start: columns of the element, body velocity or body momentum (n numbers "
           "each), projected onto the constraints.")
-      .def("speed", set_by(&Simulation::speed), "v"_a, nb::rv_policy::reference,
-           "The start in its place: straight ahead at v m/s.")
-      .def("scheme", set_by(&Simulation::scheme), "name"_a, nb::rv_policy::reference)
-      .def("s", set_by(&Simulation::s), "value"_a, nb::rv_policy::reference,
-           "The discretisation parameter, in [0, 1].")
-      .def("retraction", set_by(&Simulation::retraction), "name"_a, nb::rv_policy::reference)
       .def(
           "solver",
           [](Builder& self, const std::string& name, double tolerance) -> Builder& {
@@ -171,11 +155,6 @@ void bind_options(nb::class_<Builder>& builder) {
           },
           "name"_a, "tolerance"_a = Config().tolerance, nb::rv_policy::reference,
           "Of the implicit equation; tolerance on |F| / scale.")
-      .def("on_failure", set_by(&Simulation::on_failure), "policy"_a, nb::rv_policy::reference,
-           "'stop', 'halve' or 'retry:SOLVER'.")
-      .def("compose", set_by(&Simulation::compose), "name"_a, nb::rv_policy::reference)
-      .def("step", set_by(&Simulation::step), "h"_a, nb::rv_policy::reference,
-           "The step h [s], of either sign.")
       .def(
           "tolerance",
           [](Builder& self, std::optional<double> relative,
@@ -185,12 +164,6 @@ void bind_options(nb::class_<Builder>& builder) {
           },
           "relative"_a = nb::none(), "absolute"_a = nb::none(), nb::rv_policy::reference,
           "Steps chosen by the error.")
-      .def("from_", set_by(&Simulation::from), "t"_a, nb::rv_policy::reference,
-           "The start time [s].")
-      .def("until", set_by(&Simulation::until), "t"_a, nb::rv_policy::reference,
-           "The end time [s].")
-      .def("every", set_by(&Simulation::every), "steps"_a, nb::rv_policy::reference,
-           "Record every this many steps.")
       .def(
           "output",
           [](Builder& self, nb::handle times) -> Builder& {
@@ -202,12 +175,6 @@ void bind_options(nb::class_<Builder>& builder) {
           "times"_a, nb::rv_policy::reference,
           nb::sig("def output(self, times: _Numbers) -> Simulation"),
           "Rows at these times [s], or this distance in time, by dense output.")
-      .def("events", by_option("events"), "names"_a,
-           nb::sig("def events(self, names: str | collections.abc.Sequence[str]) -> Simulation"),
-           "Events to locate and record: by name, or 'column=value'.")
-      .def("stop_at", by_option("stop_at"), "names"_a,
-           nb::sig("def stop_at(self, names: str | collections.abc.Sequence[str]) -> Simulation"),
-           "Ends the run at the first of these.")
       .def(
           "record_to",
           [](Builder& self, nb::handle path) -> Builder& {
@@ -243,6 +210,7 @@ void bind_options(nb::class_<Builder>& builder) {
 
 void bind_builder(nb::module_& m, nb::class_<Builder>& builder) {
   bind_event_state(m);
+  bind_setters(builder);
   bind_options(builder);
   bind_functions(builder);
 }

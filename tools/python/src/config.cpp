@@ -3,6 +3,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <string_view>
 
 #include <hamel/framework/io/whole_number.hpp>
 
@@ -90,6 +91,26 @@ std::string help_of(const Option& option) {
 const char* name_of(const Option& option) {
   return option.name == std::string("from") ? "from_" : option.name;
 }
+
+// Text that lives as long as the module: nanobind refers to it.
+const char* kept(std::string text) {
+  static std::deque<std::string> all;
+  return all.emplace_back(std::move(text)).c_str();
+}
+
+// The type of an option, as a stub has it.
+const char* type_of(std::string Config::*) { return "str"; }
+const char* type_of(double Config::*) { return "float"; }
+const char* type_of(std::optional<double> Config::*) { return "float | None"; }
+const char* type_of(long Config::*) { return "int"; }
+const char* type_of(bool Config::*) { return "bool"; }
+const char* type_of(std::vector<double> Config::*) { return "_Numbers"; }
+const char* type_of(std::vector<std::string> Config::*) {
+  return "str | collections.abc.Sequence[str]";
+}
+
+// Is its method one of two numbers, as in C++ (builder.cpp)?
+bool has_own_setter(std::string_view name) { return name == "solver" || name == "tolerance"; }
 
 // Has the system this parameter before the options? False where it cannot be built without them.
 bool is_parameter(const Builder& builder, const std::string& name) {
@@ -242,19 +263,33 @@ void bind_config(nb::module_& m) {
       "record_to=r.path).");
   config.attr("__hash__") = nb::none();
   Config::fields([&](const Option& option, auto member) {
-    static std::deque<std::string> kept;  // nanobind refers to them
-    kept.push_back(help_of(option));
-    config.def_rw(name_of(option), member, kept.back().c_str());
+    config.def_rw(name_of(option), member, kept(help_of(option)));
   });
-  const auto start = [&](const char* name, std::vector<double> Start::*member, const char* help) {
+  Config::start_fields([&](const Option& option, auto member) {
     config.def_prop_rw(
-        name, [member](const Config& c) { return c.start.*member; },
+        option.name, [member](const Config& c) { return c.start.*member; },
         [member](Config& c, std::vector<double> value) { c.start.*member = std::move(value); },
-        help);
-  };
-  start("configuration", &Start::configuration, "start, in the columns of the element");
-  start("velocity", &Start::velocity, "start, body components; projected onto the constraints");
-  start("momentum", &Start::momentum, "the same as body momentum");
+        kept(help_of(option)));
+  });
+}
+
+void bind_setters(nb::class_<Builder>& builder) {
+  Config::fields([&](const Option& option, auto member) {
+    const char* name = name_of(option);
+    if (has_own_setter(name)) return;
+    const std::string type = type_of(member), otherwise = type == "bool" ? " = True" : "";
+    const auto set = [name](nb::object self, nb::handle value) {
+      nb::kwargs options = nb::steal<nb::kwargs>(PyDict_New());
+      options[name] = value;
+      apply(nb::cast<Builder&>(self), options);
+      return self;
+    };
+    const char* signature =
+        kept("def " + std::string(name) + "(self, value: " + type + otherwise + ") -> Simulation");
+    const char* help = kept(help_of(option));
+    if (type == "bool") builder.def(name, set, "value"_a = true, nb::sig(signature), help);
+    else builder.def(name, set, "value"_a, nb::sig(signature), help);
+  });
 }
 
 std::string options_of_a_run() {

@@ -73,10 +73,11 @@ EnsembleResult ensemble(nb::handle file, int threads, nb::handle folder, nb::han
 }  // namespace
 
 void bind_ensemble(nb::module_& m) {
-  nb::class_<EnsembleResult>(m, "EnsembleResult",
-                             "What was kept of the members: one row for each, result['end.omega']; "
-                             "true where all are done.")
-      .def("__bool__", [](const EnsembleResult& r) { return r.complete; })
+  nb::class_<EnsembleResult> result(
+      m, "EnsembleResult",
+      "What was kept of the members: one row for each, result['end.omega']; "
+      "true where all are done.");
+  result.def("__bool__", [](const EnsembleResult& r) { return r.complete; })
       .def("__len__", [](const EnsembleResult& r) { return r.table.rows(); })
       .def(
           "__getitem__",
@@ -107,18 +108,13 @@ void bind_ensemble(nb::module_& m) {
       .def(
           "to_pandas", [](nb::handle self) { return helper("_frames", "table_to_pandas")(self); },
           nb::sig("def to_pandas(self) -> pandas.DataFrame"), "A row for each member.")
-      .def(
-          "_repr_html_",
-          [](nb::handle self) { return helper("_figures", "html_of_ensemble")(self); },
-          nb::sig("def _repr_html_(self) -> str"))
-      .def(
-          "figures",
-          [](nb::handle self) { return helper("_figures", "figures_of_ensemble")(self); },
-          nb::sig("def figures(self) -> dict[str, _Figure]"), "A figure for each kept number.")
       .def("__repr__", [](const EnsembleResult& r) {
         return "<hamel.EnsembleResult of " + std::to_string(r.table.rows()) + " members" +
                (r.complete ? "" : ", stopped") + ">";
       });
+  bind_figures(result, "html_of_ensemble",
+               "Each kept number over the varied ones, its distribution and its moments in time.",
+               [](const EnsembleResult& r) { return figures::of_ensemble(r); });
   m.def(
       "ensemble", &ensemble, "file"_a, nb::kw_only(), "threads"_a = 0, "folder"_a = nb::none(),
       "shard"_a = nb::none(), "merge"_a = false, "fresh"_a = false, "progress"_a = nb::none(),

@@ -251,14 +251,6 @@ void bind_result(nb::module_& m) {
           nb::sig("def to_xarray(self) -> xarray.Dataset"),
           "The dimension t, and one for each vector; units as attributes.")
       .def(
-          "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of")(self); },
-          nb::sig("def _repr_html_(self) -> str"))
-      .def(
-          "figures", [](nb::handle self) { return helper("_figures", "figures_of")(self); },
-          nb::sig("def figures(self) -> dict[str, _Figure]"),
-          "The figures of the report page, by the names of hamel report --figure; a notebook shows "
-          "each.")
-      .def(
           "animation",
           [](nb::handle self, int height) {
             return helper("_animation", "Animation")(self, height);
@@ -266,8 +258,6 @@ void bind_result(nb::module_& m) {
           "height"_a = 320, nb::sig("def animation(self, height: int = 320) -> _Animation"),
           "The drawing of the system in motion, which a notebook shows; height in pixels. "
           "ValueError where the system has no drawing, or the rows are in files.")
-      .def("_motion", &motion, "most"_a,
-           nb::sig("def _motion(self, most: int) -> dict[str, typing.Any]"))
       .def("__str__",
            [](const StoredResult& s) {
              return s.result.system == nullptr ? s.report : s.result.report();
@@ -281,6 +271,13 @@ void bind_result(nb::module_& m) {
            })
       .def("__getstate__", [](const StoredResult& s) { return pack(s); })
       .def("__setstate__", [](StoredResult& s, const nb::dict& state) { unpack(s, state); });
+  bind_figures(result, "html_of",
+               "The figures of the report page, by the names of hamel report --figure; a notebook "
+               "shows each.",
+               [](StoredResult& s) {
+                 s.restore_system();
+                 return figures::of_run(registry(), s.result);
+               });
 }
 
 }  // namespace hamel::python

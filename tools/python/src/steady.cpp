@@ -60,7 +60,10 @@ SteadySweep sweep(nb::handle system, nb::handle vary, bool branches, const nb::k
     return out;
   };
   const Away free;
-  return sweep_steady(registry(), along.values, at, branches);
+  SteadySweep out = sweep_steady(registry(), along.values, at, branches);
+  out.parameter = along.name;
+  out.unit = figures::unit_of(along.name, at(along.values.front()).build().system());
+  return out;
 }
 
 SteadyMotion steady(nb::handle system, const nb::kwargs& options) {
@@ -141,7 +144,8 @@ void bind_sweep(nb::module_& m) {
       .def_ro("towards_last", &SteadyEnd::towards_last, "of the values; else towards the first")
       .def_prop_ro("kind", [](const SteadyEnd& e) { return name_of(e.kind); })
       .def_ro("other", &SteadyEnd::other, "on the branch that continues");
-  nb::class_<SteadySweep>(m, "SteadySweep", "A branch of steady motions along a parameter.")
+  nb::class_<SteadySweep> sweep(m, "SteadySweep", "A branch of steady motions along a parameter.");
+  sweep.def_ro("parameter", &SteadySweep::parameter, "the name of what is varied; '' of branches")
       .def_prop_ro(
           "values", [](const SteadySweep& s) { return array(s.values); },
           nb::sig("def values(self) -> numpy.typing.NDArray[numpy.float64]"), "of the parameter")
@@ -151,17 +155,14 @@ void bind_sweep(nb::module_& m) {
               "where it ends between the values, two at most; else it leaves the range")
       .def_ro("start", &SteadySweep::start, "of a branch that crosses another one")
       .def_ro("branches", &SteadySweep::branches, "the others that were met and followed")
-      .def(
-          "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of_sweep")(self); },
-          nb::sig("def _repr_html_(self) -> str"))
-      .def(
-          "figures", [](nb::handle self) { return helper("_figures", "figures_of_sweep")(self); },
-          nb::sig("def figures(self) -> dict[str, _Figure]"),
-          "Growth rates and frequencies along the parameter.")
       .def("__repr__", [](const SteadySweep& s) {
         return "<hamel.SteadySweep of " + std::to_string(s.values.size()) + " values, " +
                std::to_string(s.crossings.size()) + " crossings>";
       });
+  bind_figures(sweep, "html_of_sweep",
+               "Real parts (growth) and imaginary parts (frequency) of the eigenvalues along the "
+               "parameter.",
+               [](const SteadySweep& s) { return figures::of_sweep(s); });
 }
 
 void bind_linearisation(nb::module_& m) {

@@ -85,10 +85,11 @@ StudyResult study(nb::handle file, int threads, nb::handle folder, bool fresh, n
 }  // namespace
 
 void bind_study(nb::module_& m) {
-  nb::class_<StudyResult>(m, "StudyResult",
-                          "What a study measured: one row for each combination, axes and metrics "
-                          "as columns, study['error']; true where it is complete.")
-      .def("__bool__", [](const StudyResult& r) { return r.complete; })
+  nb::class_<StudyResult> result(
+      m, "StudyResult",
+      "What a study measured: one row for each combination, axes and metrics "
+      "as columns, study['error']; true where it is complete.");
+  result.def("__bool__", [](const StudyResult& r) { return r.complete; })
       .def("__len__", [](const StudyResult& r) { return r.cells.size(); })
       .def(
           "__getitem__",
@@ -118,17 +119,13 @@ void bind_study(nb::module_& m) {
       .def(
           "to_pandas", [](nb::handle self) { return helper("_frames", "table_to_pandas")(self); },
           nb::sig("def to_pandas(self) -> pandas.DataFrame"), "A row for each cell.")
-      .def(
-          "_repr_html_", [](nb::handle self) { return helper("_figures", "html_of_study")(self); },
-          nb::sig("def _repr_html_(self) -> str"))
-      .def(
-          "figures", [](nb::handle self) { return helper("_figures", "figures_of_study")(self); },
-          nb::sig("def figures(self) -> dict[str, _Figure]"),
-          "The error over the step or the tolerance, where it is varied.")
       .def("__repr__", [](const StudyResult& r) {
         return "<hamel.StudyResult of " + std::to_string(r.cells.size()) + " cells" +
                (r.complete ? "" : ", stopped") + ">";
       });
+  bind_figures(result, "html_of_study",
+               "Work-precision diagrams, the error over the step and the tolerance, heat maps.",
+               [](const StudyResult& r) { return figures::of_study(r); });
   m.def(
       "study", &study, "file"_a = nb::none(), nb::kw_only(), "threads"_a = 0,
       "folder"_a = nb::none(), "fresh"_a = false, "progress"_a = nb::none(), "options"_a,

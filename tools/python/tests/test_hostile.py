@@ -253,7 +253,7 @@ def use(thing):
         lambda r: r["omega1"],
         lambda r: r.values,
         lambda r: r.figures(),
-        lambda r: r._motion(10),
+        lambda r: r.animation(),
         lambda r: r.write("/dev/null/x.csv"),
         lambda r: pickle.dumps(r),
         lambda r: r.run(),

@@ -142,6 +142,19 @@ def test_a_result_shows_itself():
     assert "<td>" in hamel.study(system="suslov", step=[0.1], until=1, repeats=1)._repr_html_()
 
 
+def test_each_option_is_a_method_of_the_builder():
+    options = {name for name, of in vars(hamel.Config).items() if isinstance(of, property)}
+    others = {"system", "parameters", "configuration", "velocity", "momentum"}
+    assert len(options - others) > 20
+    assert all(callable(vars(hamel.Simulation).get(name)) for name in options - others)
+    builder = hamel.simulate("suslov").rtol(1e-9).check().steps_max(7).output_times([0.1])
+    config = builder.events("omega1=0.5").force_at("base").config
+    assert (config.rtol, config.check, config.steps_max) == (1e-9, True, 7)
+    assert (config.output_times, config.events) == ([0.1], ["omega1=0.5"])
+    with pytest.raises(hamel.ConfigError, match="step: 'no' is not a number"):
+        builder.step("no")
+
+
 def test_the_figures_of_a_run_are_those_of_the_page(cli, tmp_path):
     """All that `hamel report --figure` names, but the motion (animation()) and figures in space."""
     for system in ("suslov", "rattleback", "falling_disk"):
@@ -150,7 +163,14 @@ def test_the_figures_of_a_run_are_those_of_the_page(cli, tmp_path):
         names = said.split("expected one of ")[1].strip().split(", ")
         figures = hamel.run(system, until=1, step=0.01).figures()
         assert sorted(figures) == sorted(set(names) - {"motion", "axes"})
-    assert figures["path"].svg.count("<polyline") == 1
+        cli("report", "run.h5", "-o", "page.html")
+        text = (tmp_path / "page.html").read_text().split('id="hamel-data">')[1]
+        sections = json.loads(text.split("</script>")[0])["sections"]
+        kinds = ("plot", "path", "sphere", "animation")
+        blocks = [b for section in sections for b in section["blocks"] if b["kind"] in kinds]
+        for name, block in zip(names, blocks, strict=True):
+            assert name not in figures or figures[name].data == block
+    assert figures["path"].svg.count("<polyline") == 2  # of the disk and of its contact
     figures["path"].write(tmp_path / "path.svg")
     xml.etree.ElementTree.parse(tmp_path / "path.svg")
     assert hamel.run("suslov", until=0.01, step=0.01, output_times=[0.01]).figures() == {}
@@ -162,6 +182,7 @@ def test_figures_of_studies_branches_and_ensembles():
     )
     error = study.figures()["error"]
     assert error.svg.count("<polyline") == 2 and ">rkmk4<" in error.svg
+    assert error.title == "Error against step" and error.data["slopes"] == [2, 4]
     assert error.svg in study._repr_html_()
     # Two decades of a logarithmic axis are as long as twice one: the fourth order falls faster.
     lines = [
@@ -171,8 +192,10 @@ def test_figures_of_studies_branches_and_ensembles():
     slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in lines]
     assert slopes[1] / slopes[0] == pytest.approx(4 / 2, rel=0.05)
     branch = hamel.steady("bicycle", vary=("speed", 1, 8, 15))
-    points = sum(len(motion.eigenvalues) for motion in branch.motions)
-    assert branch.figures()["growth"].svg.count("<circle") == points
+    growth = branch.figures()["growth"].data
+    drawn = [x for curve in growth["series"] for x in curve["y"] if x is not None]
+    assert len(drawn) == sum(len(motion.eigenvalues) for motion in branch.motions)
+    assert growth["x"] == "speed [m/s]" and growth["bands"]
     assert "hopf" in branch._repr_html_()
     text = 'system = "suslov"\nuntil = 1\nmembers = 40\nkeep = ["end.omega1"]\n[vary]\n'
     one = hamel.ensemble(text + "start.omega1 = { normal = [1, 0.1] }\n")
@@ -180,6 +203,12 @@ def test_figures_of_studies_branches_and_ensembles():
     more = "start.omega1 = { normal = [1, 0.1] }\ninertia1 = { uniform = [1, 2] }"
     two = hamel.ensemble(text + more)
     assert two.figures()["end.omega1"].title == "Members by end.omega1"
+    assert "end.omega1-over-inertia1" in two.figures()
+    grid = hamel.ensemble(
+        'system = "suslov"\nuntil = 1\ngrid = true\nkeep = ["end.omega1"]\n[vary]\n'
+        "start.omega1 = { values = [1, 2] }\ninertia1 = { values = [1, 2, 3] }"
+    )
+    assert grid.figures()["end.omega1"].svg.count("<rect") == 6
     assert "40, of which 0 failed" in two._repr_html_()
 
 
@@ -218,7 +247,7 @@ def test_a_result_moves(tmp_path):
     data = json.loads(
         animation.page().split('id="motion">')[1].split("</script>")[0].replace("<\\/", "</")
     )
-    assert data["times"] == list(result.t)
+    np.testing.assert_allclose(data["times"], result.t, rtol=1e-14)
     pose = data["bodies"][0]["poses"][-1]
     np.testing.assert_allclose(pose[:3], [result[x][-1] for x in "xyz"], atol=1e-6)
     w, x, y, z = pose[3:]

@@ -3,20 +3,20 @@
 import './style.css';
 import './figures.css';
 import './print.css';
-import { animation } from './animation.js';
+import { animation } from './stage/animation.js';
 import { h, inline, problem } from './dom.js';
-import { heatmap } from './heatmap.js';
-import { members } from './members.js';
-import { assignStyles } from './palette.js';
-import { path, plot } from './plot.js';
+import { heatmap } from './charts/heatmap.js';
+import { members } from './blocks/members.js';
+import { assignStyles } from './charts/palette.js';
+import { path, plot } from './charts/plot.js';
 import { showPicture } from './picture.js';
 import { preparePrinting } from './print.js';
-import { record } from './record.js';
-import { scatter } from './scatter.js';
-import { sphere } from './sphere.js';
+import { record } from './blocks/record.js';
+import { scatter } from './charts/scatter.js';
+import { sphere } from './stage/sphere.js';
 import { stateOf } from './state.js';
-import { table } from './table.js';
-import { text, verdict } from './text.js';
+import { table } from './blocks/table.js';
+import { text, verdict } from './blocks/text.js';
 
 const MOTIONS = { path, sphere, animation };  // what a member may carry
 const KINDS = { text, verdict, table, record, plot, path, sphere, heatmap, scatter, animation, members: (block) => members(block, (motion) => MOTIONS[motion.kind](motion)) };

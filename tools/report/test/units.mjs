@@ -1,10 +1,10 @@
 // What can be checked without a browser: [what, whether it is so].
 
-import { luminance, sequential } from '../src/colours.js';
+import { luminance, sequential } from '../src/charts/colours.js';
 import { logTicks, niceTicks, prose } from '../src/format.js';
-import { floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/motion.js';
+import { floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, slerp, turnFromZ, turned } from '../src/stage/motion.js';
 import { columnsToCsv } from '../src/save.js';
-import { covered, readSeries } from '../src/series.js';
+import { covered, readSeries } from '../src/charts/series.js';
 import { stateOf } from '../src/state.js';
 
 const near = (a, b) => a.length === b.length && a.every((v, i) => Math.abs(v - b[i]) < 1e-12);

@@ -1,0 +1,165 @@
+// The figure `animation`: bodies that move, with play, a bar to scrub, speed, and a view turned by dragging or keys.
+
+import { Color, Group, Matrix4, Mesh, MeshBasicMaterial, Scene, Vector3 } from 'three';
+import { h } from '../dom.js';
+import { figure, remark } from '../figure.js';
+import { formatNumber, formatShort } from '../format.js';
+import { arrowOf, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion } from './motion.js';
+import { columnsToCsv } from '../save.js';
+import { addLight, lines, pairs, solids, stand, styled } from './shapes.js';
+import { ABOVE, HOME, Stage } from './stage.js';
+
+const heightFor = (width) => Math.round(Math.max(250, Math.min(380, 0.75 * width)));
+const TICKS = 1000;       // of the bar
+const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+const PLEASANT = [4, 25]; // seconds that a motion may take as it is; others are brought near 10
+const TRAILS = ['--c2', '--c1', '--c3', '--c4', '--c6', '--c8'];
+const ARROW = 0.15;       // of what is seen, and the reach of all bodies at least: the length of the strongest force
+// So many times this reach is the room before they are followed at first, and is seen around them then.
+const FAR = (bodies) => (bodies.length > 1 ? 7 : 40);
+const AROUND = (bodies) => (bodies.length > 1 ? 1.2 : 3.2);
+
+export function animation(block) {
+  const motion = readMotion(block);
+  const { times, bodies } = motion;
+  const [start, end] = [times[0], times[times.length - 1]];
+  const room = Math.max(...motion.box[1].map((v, i) => v - motion.box[0][i]));
+  const long = room > FAR(bodies) * motion.reach;
+  const grid = block.floor ? floorGrid(motion.box, long ? 0.47 * AROUND(bodies) * motion.reach : 0) : null;
+  let [now, playing, pushing] = [start, false, false];
+  const poses = () => bodies.map((body) => poseAt(body, placeInTime(times, now)));
+
+  const holder = h('div', { class: 'stage3d drawing', role: 'img', tabindex: 0, 'aria-label':
+    `Animation: ${block.title ?? 'untitled'}; ${bodies.map((body) => body.name).join(', ')}; t from ${formatShort(start)} to ` +
+    `${formatShort(end)}. Space plays, arrow keys turn the view, plus and minus zoom, 0 resets.` });
+  const stage = new Stage(holder, { height: heightFor, box: motion.box, from: block.view === 'top' ? ABOVE : HOME, floor: Boolean(block.floor),
+    build: (solid) => build(motion, grid, solid, poses, () => placeInTime(times, now), () => pushing, long ? AROUND(bodies) * motion.reach : room) });
+  const bar = h('input', { type: 'range', class: 'bar', min: 0, max: TICKS, value: 0, 'aria-label': 'time',
+    oninput: () => { pause(); seek(start + (bar.value / TICKS) * (end - start)); } });
+  const clock = h('output', { class: 'clock' });
+  const play = h('button', { type: 'button', class: 'play', onclick: () => (playing ? pause() : run()) });
+  const speed = h('select', { 'aria-label': 'speed' }, SPEEDS.map((s) => h('option', { value: s }, `${s}×`)));
+  speed.value = speedFor(end - start);
+  const where = () => new Vector3(...middleOf(bodies, poses()));
+  const follow = (yes) => {
+    stage.follow(yes ? where : null, AROUND(bodies) * motion.reach);
+    button.setAttribute('aria-pressed', String(yes));
+  };
+  const button = h('button', { type: 'button', onclick: () => follow(button.getAttribute('aria-pressed') !== 'true') }, 'follow');
+  const tools = [h('button', { type: 'button', onclick: () => stage.goTo(ABOVE) }, 'from above'), button,
+    h('button', { type: 'button', class: 'home', onclick: () => { follow(long); stage.goTo(stage.from); } }, 'reset view')];
+
+  if (motion.strongest > 0) {
+    const push = h('button', { type: 'button', 'aria-pressed': 'false', onclick: () => {
+      pushing = !pushing;
+      push.setAttribute('aria-pressed', String(pushing));
+      stage.paint();
+    } }, 'reactions');
+    tools.unshift(push);
+  }
+
+  const seek = (t) => {
+    now = Math.max(start, Math.min(end, t));
+    bar.value = end > start ? ((now - start) / (end - start)) * TICKS : 0;
+    clock.textContent = `t = ${formatNumber(now, 4)}`;
+    bar.setAttribute('aria-valuetext', clock.textContent);
+    stage.paint();
+  };
+  const say = () => { play.textContent = playing ? '❚❚ pause' : '▶ play'; };
+  const pause = () => {
+    playing = false;
+    say();
+  };
+  const run = () => {
+    if (now >= end) seek(start);
+    playing = true;
+    say();
+    let last = performance.now();
+    const tick = (at) => {
+      if (!playing) return;
+      seek(now + Math.max(0, Math.min(at - last, 250)) / 1000 * speed.value);
+      last = at;
+      if (now >= end) pause(); else requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  };
+  holder.addEventListener('keydown', (event) => {
+    if (event.key !== ' ') return;
+    event.preventDefault();
+    if (playing) pause(); else run();
+  });
+
+  const csv = () => columnsToCsv([{ name: 't', values: times }, ...bodies.flatMap(({ name }, b) => ['x', 'y', 'z', 'qw', 'qx', 'qy', 'qz'].map((axis, k) =>
+    ({ name: `${name} ${axis}`, values: block.bodies[b].poses.map((pose) => pose?.[k]) })))]);
+  const element = figure(block, [holder,
+    h('div', { class: 'player' }, play, bar, clock, h('label', {}, 'speed ', speed), h('span', { class: 'views' }, tools)),
+    motion.missing ? remark(`${motion.missing} of ${times.length} poses are missing.`) : null, block.note ? remark(block.note) : null], { svg: () => stage.picture(false), png: () => stage.picture(true), csv });
+  const draw = () => {
+    say();
+    const drawn = stage.draw();
+    follow(long);
+    seek(start);
+    return drawn;
+  };
+  return { element, draw, picture: () => stage.picture(false) };
+}
+
+/** 1 where the motion then takes a pleasant time, else what brings it near ten seconds. */
+function speedFor(duration) {
+  if (!(duration > 0) || (duration >= PLEASANT[0] && duration <= PLEASANT[1])) return 1;
+  const off = (s) => Math.abs(Math.log(duration / s / 10));
+  return SPEEDS.reduce((best, s) => (off(s) < off(best) ? s : best));
+}
+
+/** The scene at the time `now`: grid, shadows straight down on it, bodies, and the ways of points: all thin, the past strong. */
+function build(motion, grid, solid, poses, now, pushing, seen) {
+  const scene = new Scene();
+  const light = addLight(scene, solid);
+  if (grid) scene.add(lines(solid, grid.lines.flat(2), styled('--mesh'), 0.9, { renderOrder: -3 }));
+  const groups = motion.bodies.map(({ shapes }) => {
+    const group = new Group();
+    for (const shape of shapes) {
+      const part = stand(new Group(), shape.pose);
+      solids(shape, solid).forEach((piece) => part.add(piece));
+      group.add(part);
+    }
+    return group;
+  });
+  scene.add(...groups);
+  const flatten = new Matrix4().makeScale(1, 1, 0);
+  const shadows = [];
+  const dark = new MeshBasicMaterial({ color: styled('--shadow'), depthWrite: false });
+  if (grid) groups.forEach((body) => body.traverse((part) => {
+    if (!part.isMesh || part.isLineSegments2) return;  // lines cast none
+    shadows.push({ part, body, shadow: Object.assign(new Mesh(part.geometry, dark), { matrixAutoUpdate: false, renderOrder: -2, frustumCulled: false }) });
+  }));
+  shadows.forEach(({ shadow }) => scene.add(shadow));
+  const trails = motion.bodies.map(({ way, point }, b) => {
+    if (!way) return null;
+    const colour = styled(TRAILS[b % TRAILS.length]);
+    const past = lines(solid, [], colour, 2.2);
+    scene.add(lines(solid, pairs(way), new Color(colour).lerp(styled('--paper'), 0.5), 1.3, { renderOrder: -1, depthWrite: false }), past);
+    return (pose, { i }) => past.place(pairs([...way.slice(0, i + 1), pose ? placed(pose, point) : null]));
+  });
+  const scale = Math.max(motion.reach, ARROW * seen) / motion.strongest;
+  const arrows = motion.forces.map(() => lines(solid, [], styled('--ink'), 3, { depthTest: false, renderOrder: 1 }));
+  if (arrows.length) scene.add(...arrows);
+  const update = (camera) => {
+    light(camera);
+    arrows.forEach((arrow, f) => arrow.place(pushing() ? arrowOf(motion.forces[f], now(), scale) : []));
+    const at = poses();
+    groups.forEach((body, b) => {
+      body.visible = Boolean(at[b]);
+      if (at[b]) stand(body, at[b]).updateMatrixWorld(true);
+      trails[b]?.(at[b], now());
+    });
+    for (const { part, body, shadow } of shadows) {
+      shadow.visible = body.visible;
+      shadow.matrix.multiplyMatrices(flatten, part.matrixWorld);
+    }
+  };
+  const top = (pose, { hull }) => [pose.at[0], pose.at[1], Math.max(...hull.map(({ point, air }) => placed(pose, point)[2] + air))];
+  const labels = motion.bodies.length < 2 ? [] : motion.bodies.map((body, b) =>
+    ({ text: body.name, up: 9, at: () => { const pose = poses()[b]; return pose ? top(pose, body) : [NaN, NaN, NaN]; } }));
+  return { scene, update, labels, scale: grid ? `grid ${formatShort(grid.step, 3)}` : '' };
+}
