@@ -1,6 +1,4 @@
 // Formulas of files as nodes of a graph.
-#include <algorithm>
-#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -14,36 +12,7 @@ namespace {
 
 using graph::Condition, graph::Number;
 
-// Functions and operators with numbers as values; the name and count of arguments are those of the
-// rule.
-struct RecordedRule {
-  std::string_view name;
-  Number (*value)(const Number& x, const Number& y);
-};
-constexpr RecordedRule kRecordedRules[] = {
-    {"sin", [](const Number& x, const Number&) { return sin(x); }},
-    {"cos", [](const Number& x, const Number&) { return cos(x); }},
-    {"tan", [](const Number& x, const Number&) { return tan(x); }},
-    {"asin", [](const Number& x, const Number&) { return asin(x); }},
-    {"acos", [](const Number& x, const Number&) { return acos(x); }},
-    {"atan", [](const Number& x, const Number&) { return atan(x); }},
-    {"sinh", [](const Number& x, const Number&) { return sinh(x); }},
-    {"cosh", [](const Number& x, const Number&) { return cosh(x); }},
-    {"tanh", [](const Number& x, const Number&) { return tanh(x); }},
-    {"exp", [](const Number& x, const Number&) { return exp(x); }},
-    {"ln", [](const Number& x, const Number&) { return log(x); }},
-    {"sqrt", [](const Number& x, const Number&) { return sqrt(x); }},
-    {"abs", [](const Number& x, const Number&) { return abs(x); }},
-    {"sign", [](const Number& x, const Number&) { return select(x > 0, 1, select(x < 0, -1, 0)); }},
-    {"rint", [](const Number& x, const Number&) { return rint(x); }},
-    {"atan2", [](const Number& y, const Number& x) { return atan2(y, x); }},
-    {"min", [](const Number& x, const Number& y) { return min(x, y); }},
-    {"max", [](const Number& x, const Number& y) { return max(x, y); }},
-    {"/", [](const Number& x, const Number& y) { return x / y; }},
-    {"^", [](const Number& x, const Number& y) { return pow(x, y); }},
-    {"-", [](const Number& x, const Number&) { return -x; }},  // of one argument
-};
-
+// Comparisons that are conditions of what chooses by them, where their rule is 1 or 0.
 struct RecordedComparison {
   std::string_view name;
   Condition (*value)(const Number& x, const Number& y);
@@ -57,12 +26,6 @@ constexpr RecordedComparison kRecordedComparisons[] = {
     {"!=", [](const Number& x, const Number& y) { return x != y; }},
 };
 
-template <class Table>
-auto* find_rule(const Table& table, std::string_view name) {
-  const auto it = std::ranges::find(table, name, [](const auto& rule) { return rule.name; });
-  return it == std::end(table) ? nullptr : &*it;
-}
-
 // A value; of comparisons also the condition, of which it is 1 or 0.
 struct RecordedValue {
   RecordedValue() = default;
@@ -74,12 +37,14 @@ struct RecordedValue {
   std::optional<Condition> condition;
 };
 
-RecordedValue value_of_rule(std::string_view name, const RecordedValue& x, const RecordedValue& y) {
+RecordedValue value_of_rule(const Expression::Rule& rule, const RecordedValue& x,
+                            const RecordedValue& y) {
+  const std::string_view name = rule.name;
   if (name == "&&") return x.holds() && y.holds();
   if (name == "||") return x.holds() || y.holds();
-  if (const RecordedComparison* c = find_rule(kRecordedComparisons, name))
-    return c->value(x.number, y.number);
-  return find_rule(kRecordedRules, name)->value(x.number, y.number);
+  for (const RecordedComparison& c : kRecordedComparisons)
+    if (c.name == name) return c.value(x.number, y.number);
+  return rule.recorded(x.number, y.number);
 }
 
 }  // namespace
@@ -95,7 +60,7 @@ graph::Number Expression::record(std::span<const graph::Number> variables) const
       case Op::subtract: slots[i.to] = x.number - y.number; break;
       case Op::multiply: slots[i.to] = x.number * y.number; break;
       case Op::square: slots[i.to] = x.number * x.number; break;
-      case Op::rule: slots[i.to] = value_of_rule(i.rule->name, x, y); break;
+      case Op::rule: slots[i.to] = value_of_rule(*i.rule, x, y); break;
       case Op::choose: slots[i.to] = select(x.holds(), y.number, slots[i.c].number); break;
     }
   }
