@@ -269,17 +269,13 @@ void add_times(std::vector<Figure>& out, const EnsembleResult& result) {
 
 std::vector<Figure> of_ensemble(const EnsembleResult& result) {
   std::vector<Figure> out;
-  const auto in_section = [&](const char* section) {
-    for (Figure& figure : out)
-      if (figure.section.empty()) figure.section = section;
-  };
   add_dependence(out, result);
-  in_section("What is kept over what is varied");
+  put_in_section("What is kept over what is varied", out);
   add_scatter_matrix(out, result);
   add_histograms(out, result);
-  in_section("Distributions");
+  put_in_section("Distributions", out);
   add_times(out, result);
-  in_section("Mean and deviation in time");
+  put_in_section("Mean and deviation in time", out);
   name_apart(out);
   return out;
 }

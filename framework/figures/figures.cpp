@@ -36,6 +36,11 @@ void name_apart(std::vector<Figure>& figures) {
   }
 }
 
+void put_in_section(const char* section, std::vector<Figure>& figures) {
+  for (Figure& figure : figures)
+    if (figure.section.empty()) figure.section = section;
+}
+
 std::string unit_of(const std::string& name, const SystemModel& system) {
   std::string out;
   Config::fields([&](const Option& option, auto) {
@@ -51,15 +56,11 @@ std::vector<Figure> of_run(const Registry& registry, const Result& result) {
   if (result.trajectory.rows() == 0) return out;
   std::vector<Mark> events;
   for (const EventMet& event : result.events) events.push_back({event.time, event.name});
-  const auto in_section = [&](const char* section) {
-    for (Figure& figure : out)
-      if (figure.section.empty()) figure.section = section;
-  };
   add_inputs(out, result, events);
   add_physics(out, registry, result, events);
-  in_section("Velocity, shape and reactions");
+  put_in_section("Velocity, shape and reactions", out);
   add_accuracy(out, result);
-  in_section("Accuracy");
+  put_in_section("Accuracy", out);
   name_apart(out);
   return out;
 }

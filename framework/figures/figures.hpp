@@ -60,5 +60,7 @@ HAMEL_API std::string unit_of(const std::string& name, const SystemModel& system
 /// Gives each figure a name, from its title where it has none, with -no2, -no3, ... for further
 /// ones of the same name.
 void name_apart(std::vector<Figure>& figures);
+/// Figures that stand in no section stand in this one.
+void put_in_section(const char* section, std::vector<Figure>& figures);
 
 }  // namespace hamel::figures
