@@ -37,7 +37,9 @@ constexpr int kOperations = 14;
 std::vector<long double> smooth(const std::vector<double>& x, const std::vector<double>& r,
                                 long double e, unsigned seed) {
   std::vector<long double> moved;
-  for (size_t i = 0; i < x.size(); ++i) moved.push_back(x[i] + e * r[i]);
+  for (size_t i = 0; i < x.size(); ++i) {
+    moved.push_back(static_cast<long double>(x[i]) + e * static_cast<long double>(r[i]));
+  }
   return test::RandomFormula<long double>(moved, seed, test::Kind::smooth, kOperations).numbers();
 }
 
