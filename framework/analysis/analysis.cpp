@@ -9,8 +9,8 @@
 #include <hamel/framework/analysis/conserved.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/lie/geometry.hpp>
-#include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/metric/admissible_frame.hpp>
 
 namespace hamel {
 namespace {

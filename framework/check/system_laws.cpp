@@ -5,7 +5,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 

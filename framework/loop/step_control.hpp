@@ -15,7 +15,7 @@
 
 #include <cmath>
 
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/schemes/problem.hpp>
 
 namespace hamel {

@@ -7,13 +7,13 @@
 //   E(g)^T ( s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 - I(g) v ) = 0,   A(g) v = b(t + s h, g),
 //   E(g)^T ( m1 - m0 - nu ) = 0,                                   A(g1) w = b(t + h, g1),
 // with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one (*) of
-// mechanics/admissible_frame.hpp, in the frame at g. On a left-invariant problem v = E y and w = E
+// metric/admissible_frame.hpp, in the frame at g. On a left-invariant problem v = E y and w = E
 // y1: 2 m unknowns, no rows. Derivatives: (c) and (d) of lie/trivialised.hpp.
 #pragma once
 
 #include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
-#include <hamel/framework/mechanics/held_rows.hpp>
+#include <hamel/framework/metric/held_rows.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {

@@ -9,8 +9,8 @@
 
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/lie/linear_solve.hpp>
-#include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/metric/admissible_frame.hpp>
 
 namespace hamel {
 

@@ -9,7 +9,7 @@
 // hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu) = dR_{z0}^-T q, m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i; at
 // s = 1/2 with a symmetric tau mu0 = dR_{z1}^-T q. The step solves
 //   E(g0)^T (mu0 - I(g0) xi_0) = 0,    A(g) v = b(t + s h, g),   phi(g1) = 0 in place of its rows,
-// in the frame at g0 ((*) of mechanics/admissible_frame.hpp), and xi_1 is the admissible velocity
+// in the frame at g0 ((*) of metric/admissible_frame.hpp), and xi_1 is the admissible velocity
 // of mu1 at g1.
 //
 // Forces at the nodes, (M43): nu = h d(v^T I(g) v)/2 only, and f - dV is taken at both ends with
@@ -27,7 +27,7 @@
 
 #include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/lie/trivialised.hpp>
-#include <hamel/framework/mechanics/held_rows.hpp>
+#include <hamel/framework/metric/held_rows.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {

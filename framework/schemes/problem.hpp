@@ -66,7 +66,7 @@ concept Problem = requires(const P& problem, typename P::Element& g, typename P:
   problem.force(t, g, v, v);
   problem.inertial_force(g, v, v);
   { problem.force_depends_on_velocity() } -> std::convertible_to<bool>;
-  // The frame of the admissible velocities at a configuration (mechanics/admissible_frame.hpp).
+  // The frame of the admissible velocities at a configuration (metric/admissible_frame.hpp).
   place.set(problem, t, g);
   place.assemble(v, b, x);
   place.admissible(v, x);

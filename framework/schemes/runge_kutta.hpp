@@ -17,7 +17,7 @@
 #include <vector>
 
 #include <hamel/framework/lie/types.hpp>
-#include <hamel/framework/mechanics/held_rows.hpp>
+#include <hamel/framework/metric/held_rows.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 #include <hamel/framework/schemes/stage_motion.hpp>
 #include <hamel/framework/schemes/tableau.hpp>

@@ -10,7 +10,7 @@
 // between (ImplicitStep), an explicit one is not (ExplicitStep). It is made as Step(problem, s), as
 // Step(problem, s, force_at) where it has that choice, or from a Tableau as Step(problem, tableau).
 // An explicit scheme derives from ExplicitDefaults; EquationsOfMotion
-// (mechanics/equations_of_motion.hpp) has the rate of xi, without multipliers.
+// (metric/equations_of_motion.hpp) has the rate of xi, without multipliers.
 #pragma once
 
 #include <concepts>

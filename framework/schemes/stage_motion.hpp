@@ -1,11 +1,11 @@
 // The equations of motion as the stages of an explicit scheme evaluate them: in the frame that the
 // system states (mechanics/framed_equations.hpp), else with multipliers
-// (mechanics/equations_of_motion.hpp).
+// (metric/equations_of_motion.hpp).
 #pragma once
 
 #include <utility>
 
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 
 namespace hamel {
 

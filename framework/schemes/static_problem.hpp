@@ -4,9 +4,9 @@
 #include <memory>
 
 #include <hamel/framework/lie/group_operations.hpp>
-#include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/general_system.hpp>
-#include <hamel/framework/mechanics/stated_frame.hpp>
+#include <hamel/framework/metric/admissible_frame.hpp>
+#include <hamel/framework/metric/stated_frame.hpp>
 
 namespace hamel {
 

@@ -22,7 +22,7 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 #include <hamel/hamel.hpp>
 

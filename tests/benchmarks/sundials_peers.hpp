@@ -14,7 +14,7 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 #include <hamel/framework/schemes/static_problem.hpp>
 #include <hamel/groups/cayley.hpp>

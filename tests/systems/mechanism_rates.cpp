@@ -6,7 +6,7 @@
 #include <string>
 
 #include <hamel/framework/check/laws.hpp>
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/systems/mechanisms/contact.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/mechanisms/mechanism_file.hpp>

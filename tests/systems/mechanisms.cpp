@@ -8,7 +8,7 @@
 
 #include <hamel/framework/check/system_laws.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 

@@ -6,7 +6,7 @@
 // 4.7e-13 and came nearer to what the solver hybrid gives (energy_preserving: 3.5e-13 off before,
 // 2.3e-14 now), but for the sleigh (5e-14, as before) and ball_on_turntable (7e-14, now 1.3e-13).
 // routh_sphere is recorded anew since problems of run-time sizes take another frame
-// (mechanics/run_time_frame.hpp). It changed by 2.0e-13 and went away from what hybrid gives (5e-14
+// (metric/run_time_frame.hpp). It changed by 2.0e-13 and went away from what hybrid gives (5e-14
 // before, 1.6e-13 now). Over ten sizes of the step the mean distance is 6.9e-14 (4.7e-14 before),
 // of ball_on_turntable 6.2e-14 (1.6e-13), of n_trailer 4.9e-14 (4.8e-14).
 //

@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/loop/snapshot.hpp>
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 
 namespace hamel {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/run/run/rows_watch.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/lie/decompositions.hpp>
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/run/run/plan.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 

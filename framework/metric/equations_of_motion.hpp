@@ -21,8 +21,8 @@
 
 #include <hamel/framework/lie/differences.hpp>
 #include <hamel/framework/lie/types.hpp>
-#include <hamel/framework/mechanics/dense_factors.hpp>
-#include <hamel/framework/mechanics/run_time_factors.hpp>
+#include <hamel/framework/metric/dense_factors.hpp>
+#include <hamel/framework/metric/run_time_factors.hpp>
 
 namespace hamel {
 

@@ -21,8 +21,8 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/lie/linear_solve.hpp>
-#include <hamel/framework/mechanics/run_time_frame.hpp>
 #include <hamel/framework/mechanics/small_factors.hpp>
+#include <hamel/framework/metric/run_time_frame.hpp>
 
 namespace hamel {
 

@@ -13,8 +13,8 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/small_factors.hpp>
+#include <hamel/framework/metric/admissible_frame.hpp>
 
 namespace hamel {
 

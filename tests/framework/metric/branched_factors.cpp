@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <hamel/framework/lie/decompositions.hpp>
-#include <hamel/framework/mechanics/branched_factors.hpp>
+#include <hamel/framework/metric/branched_factors.hpp>
 
 namespace hamel {
 namespace {

@@ -1,4 +1,4 @@
-// The frames of the general schemes (framework/mechanics/admissible_frame.hpp, stated_frame.hpp)
+// The frames of the general schemes (framework/metric/admissible_frame.hpp, stated_frame.hpp)
 // against their definition, on random full inertias and rows, for sizes known at compile time and
 // at run time.
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 
 #include <Eigen/QR>
 
-#include <hamel/framework/mechanics/admissible_frame.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
-#include <hamel/framework/mechanics/stated_frame.hpp>
+#include <hamel/framework/metric/admissible_frame.hpp>
+#include <hamel/framework/metric/stated_frame.hpp>
 
 namespace hamel {
 namespace {

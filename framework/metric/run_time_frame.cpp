@@ -1,4 +1,4 @@
-#include <hamel/framework/mechanics/run_time_frame.hpp>
+#include <hamel/framework/metric/run_time_frame.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // asked before, and equal to what differences of the rows and the drift give.
 #include <gtest/gtest.h>
 
-#include <hamel/framework/mechanics/equations_of_motion.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/schemes/static_problem.hpp>
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/se2.hpp>

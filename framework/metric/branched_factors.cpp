@@ -1,11 +1,11 @@
-#include <hamel/framework/mechanics/branched_factors.hpp>
+#include <hamel/framework/metric/branched_factors.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <hamel/framework/lie/short_vectors.hpp>
-#include <hamel/framework/mechanics/few_factors.hpp>
+#include <hamel/framework/metric/few_factors.hpp>
 
 namespace hamel {
 
