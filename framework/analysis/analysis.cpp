@@ -10,7 +10,7 @@
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
-#include <hamel/framework/metric/admissible_frame.hpp>
+#include <hamel/framework/metric/metric.hpp>
 
 namespace hamel {
 namespace {
@@ -66,7 +66,7 @@ class Frame {
 
   const Geometry& geometry_;
   const Mechanics& mechanics_;
-  AdmissibleFrame<> place_;
+  Metric<> place_;
   Vector g_;
   Matrix frame_;
 };

@@ -170,15 +170,15 @@ class Formulas {
     return rows && (r == 0 || dual_differential()) && (constant_inertia() || dual_inertia()) &&
            (!has_drift<S>() || has_constant_drift<S>() || dual_drift());
   }
-  /// A^T and I, and the rates of b - A xi and I xi at constant xi along the curve g tau(e xi), of
+  /// A and I, and the rates of b - A xi and I xi at constant xi along the curve g tau(e xi), of
   /// which `moving` is the first-order jet; rows and I that are constant are left as they are.
-  void dual_rates(const DualElement& moving, const Vec<n>& xi, Mat<n, k>& rows, Vec<k>& row_rate,
+  void dual_rates(const DualElement& moving, const Vec<n>& xi, Mat<k, n>& rows, Vec<k>& row_rate,
                   Mat<n, n>& inertia, Vec<n>& momentum_rate) const {
     const auto split = [&](const auto& from, int at) {
       for (int i = 0; i < from.rows(); ++i) {
         double rate = 0;
         for (int j = 0; j < n; ++j) {
-          rows(j, at + i) = from(i, j).a;
+          rows(at + i, j) = from(i, j).a;
           rate -= from(i, j).v[0] * xi[j];
         }
         row_rate[at + i] = rate;

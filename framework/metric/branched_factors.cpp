@@ -196,11 +196,6 @@ void BranchedFactors::factor_gram(int width) {
   with_any_count<kFewRows>(k_, [&](auto k) { factor_rows(k, width, gram_.data()); });
 }
 
-void BranchedFactors::apply_inertia(const double* inertia, const double* xi, double* mu) const {
-  const int n = n_;
-  for (int i = 0; i < n; ++i) mu[i] = dot(inertia + i * n, xi, n);
-}
-
 // x <- L^-T x.
 void BranchedFactors::solve_transposed(double* x) const {
   const int n = n_;

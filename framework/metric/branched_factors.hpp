@@ -29,9 +29,6 @@ class BranchedFactors {
   /// Y and the factors of Y^T Y.
   void find_rows(const Matrix& a) { find_rows(a.data()); }
 
-  void apply_inertia(const Matrix& inertia, const Vector& xi, Vector& mu) const {
-    apply_inertia(inertia.data(), xi.data(), mu.data());
-  }
   /// W mu.
   void apply_root(const Vector& mu, Vector& out) const {
     out = mu;
@@ -61,7 +58,6 @@ class BranchedFactors {
  private:
   bool find_root(const double* inertia);
   void find_rows(const double* a);
-  void apply_inertia(const double* inertia, const double* xi, double* mu) const;
   void solve_transposed(double* x) const;
   void solve(double* x) const;
   void subtract_rows(const double* c, const double* v, double* out) const;

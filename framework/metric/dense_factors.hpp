@@ -10,13 +10,12 @@
 
 namespace hamel {
 
-template <class Vector, class Multipliers>
+template <int N, int K>
 class DenseFactors {
-  static constexpr int N = Vector::RowsAtCompileTime, K = Multipliers::RowsAtCompileTime;
-
  public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Multipliers = Eigen::Matrix<double, K, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
-  using Columns = Eigen::Matrix<double, N, K>;
 
   DenseFactors(int /*n*/, int /*k*/) {}
 
@@ -54,9 +53,9 @@ class DenseFactors {
     return definite;
   }
   /// Y and the factors of Y^T Y; not a number where a row depends on those before.
-  void find_rows(const Columns& rows) {
-    if (diagonal_) y_ = weights_.asDiagonal() * rows;
-    else y_ = root_.lazyProduct(rows);
+  void find_rows(const Eigen::Matrix<double, K, N>& a) {
+    if (diagonal_) y_ = weights_.asDiagonal() * a.transpose();
+    else y_ = root_.lazyProduct(a.transpose());
 #pragma GCC unroll 4
     for (int j = 0; j < K; ++j) {
 #pragma GCC unroll 4
@@ -94,7 +93,7 @@ class DenseFactors {
   bool diagonal_ = false;
   Vector weights_;  // the diagonal of W, where there is no more
   Matrix root_;     // W
-  Columns y_;
+  Eigen::Matrix<double, N, K> y_;
   Eigen::Matrix<double, K, K> gram_;
 };
 

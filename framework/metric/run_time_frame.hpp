@@ -4,7 +4,8 @@
 //   A = [A_d A_f],   xi_d = A_d^-1 c - B xi_f,   B = A_d^-1 A_f,
 // and E, of n x m, is -B in the rows d and 1 in the rows f: A E = 0. The equations of a step are
 //   (c_i / |D^-1/2 a_i|, D_f^-1/2 E^T r) = 0,                                                   (*)
-// D_f the part of D = diag(I) (admissible_frame.hpp): square roots of an energy, as there. The
+// D_f the part of D = diag(I), a massless direction taken as the lightest other: square roots of an
+// energy. The
 // velocity with A xi = c, E^T I xi = y has xi_f = (E^T I E)^-1 (y - N^T A_d^-1 c), N the rows d of
 // I E.
 //

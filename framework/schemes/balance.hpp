@@ -4,11 +4,11 @@
 // The nodal momenta are embedded, mu_i = I(g_i) xi_i. Unknowns v = xi/h and w = xi_1. With z0 = -s
 // xi, z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g f1, m_i = Ad*_{f_i^-1} mu_i,
 // nu = h force(t + s h, g, v), both equations of the cotangent lift are balanced on d at g:
-//   E(g)^T ( s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 - I(g) v ) = 0,   A(g) v = b(t + s h, g),
+//   E(g)^T ( I(g) v - s dR_{z0}^T m0 - (1-s) dR_{z1}^T m1 ) = 0,   A(g) v = b(t + s h, g),
 //   E(g)^T ( m1 - m0 - nu ) = 0,                                   A(g1) w = b(t + h, g1),
-// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one (*) of
-// metric/admissible_frame.hpp, in the frame at g. On a left-invariant problem v = E y and w = E
-// y1: 2 m unknowns, no rows. Derivatives: (c) and (d) of lie/trivialised.hpp.
+// with phi(g1) = 0 in place of its rows of A(g) v = b. Each line is one F(r, c) of
+// metric/metric.hpp at g. On a left-invariant problem v = E y and w = E y1: 2 m unknowns, no rows.
+// Derivatives: (c) and (d) of lie/trivialised.hpp.
 #pragma once
 
 #include <hamel/framework/lie/linear_solve.hpp>
@@ -39,7 +39,7 @@ class BalanceStep {
     from_ = &node;
     h_ = h;
     x_.setConstant(std::numeric_limits<double>::quiet_NaN());  // nothing is evaluated so far
-    place_.set(problem_, node.t, node.g);  // here the frame of the step gets its signs
+    place_.set(problem_, node.t, node.g);
     inertia_ = place_.inertia;
     problem_.momentum(inertia_, node.x, mu0_);
     double size = 2 * place_.size(node.x, mu0_);
@@ -58,38 +58,25 @@ class BalanceStep {
   }
   double scale_squared() const { return scale_squared_; }
   void expand(Unknown& z) const requires(!P::left_invariant) {
-    place_.expand(z.data());
-    place_.expand(z.data() + problem_.dim());
+    f_ = z.head(half());
+    place_.expand(f_, h_, ends_only ? 0 : problem_.holonomic_rows());  // phi(g1): h times as much
+    z.head(half()) = f_;
+    f_ = z.tail(half());
+    place_.expand(f_);
+    z.tail(half()) = f_;
   }
 
   /// F but for what the round-off of a configuration does to its rows.
   void residual_of_places(const Unknown& x, Unknown& f) const
       requires(P::HolonomicValues::SizeAtCompileTime != 0) {
-    residual(x, f);
-    drop_round_off(place_.a, phi_, f);
+    evaluate(x);
+    drop_round_off(place_.a, phi_, rows_);
+    assemble(f);
   }
 
   void residual(const Unknown& x, Unknown& f) const {
     evaluate(x);
-    // (1) on the base point.
-    problem_.dtau_right_transpose(z0_, m0_, r_);
-    r_ *= s_;
-    problem_.dtau_right_transpose(z1_, m1_, mu_);
-    r_ += (1 - s_) * mu_;
-    problem_.momentum(place_.inertia, x_, mu_);
-    r_ -= mu_;
-    if constexpr (ends_only) {
-      place_.weigh(r_);
-      f.head(half()) = r_;
-    } else {
-      place_.assemble(r_, rows_, f_);
-      f.head(half()) = f_;
-    }
-    // (2).
-    r_ = m1_ - m0_;
-    if constexpr (!P::left_invariant) r_ -= h_ * nu_;
-    place_.assemble(r_, end_rows_, f_);
-    f.tail(half()) = f_;
+    assemble(f);
   }
 
   /// F and its derivative in (y, y1).
@@ -103,11 +90,11 @@ class BalanceStep {
     const At<Tau> z0(z0_), z1(z1_);
     const Matrix push1 = G::Ad(G::inverse(z1.f)).transpose();
     j.template topLeftCorner<m, m>() =
-        h_ * problem_.reduce_both((1 - s_) * (1 - s_) * z1.left_transpose_derivative(m1_) -
-                                  s_ * s_ * z0.left_transpose_derivative(m0_));
-    j.template topLeftCorner<m, m>().diagonal().array() -= 1;
+        h_ * problem_.reduce_both(s_ * s_ * z0.left_transpose_derivative(m0_) -
+                                  (1 - s_) * (1 - s_) * z1.left_transpose_derivative(m1_));
+    j.template topLeftCorner<m, m>().diagonal().array() += 1;
     j.template topRightCorner<m, m>() =
-        (1 - s_) * problem_.reduce_momentum(z1.right.transpose() * push1);
+        (s_ - 1) * problem_.reduce_momentum(z1.right.transpose() * push1);
     j.template bottomLeftCorner<m, m>() =
         h_ *
         problem_.reduce_both((1 - s_) * z1.push_derivative(m1_) + s_ * z0.push_derivative(m0_));
@@ -140,6 +127,27 @@ class BalanceStep {
     problem_.compose(from_->g, f0_, base_);
     problem_.inverse(f1_, g1_);
     problem_.compose(base_, g1_, g1_);
+  }
+  // F at the last x.
+  void assemble(Unknown& f) const {
+    // (1) on the base point.
+    problem_.momentum(place_.inertia, x_, r_);
+    problem_.dtau_right_transpose(z0_, m0_, mu_);
+    r_ -= s_ * mu_;
+    problem_.dtau_right_transpose(z1_, m1_, mu_);
+    r_ -= (1 - s_) * mu_;
+    if constexpr (ends_only) {
+      place_.weigh(r_);
+      f.head(half()) = r_;
+    } else {
+      place_.assemble(r_, rows_, f_);
+      f.head(half()) = f_;
+    }
+    // (2).
+    r_ = m1_ - m0_;
+    if constexpr (!P::left_invariant) r_ -= h_ * nu_;
+    place_.assemble(r_, end_rows_, f_);
+    f.tail(half()) = f_;
   }
   // m0, m1, nu and the rows at x.
   void evaluate(const Unknown& x) const {
@@ -181,7 +189,7 @@ class BalanceStep {
   const Node* from_ = nullptr;
   Vector mu0_ = P::Vector::Zero(problem_.dim());
   // Work: the place at the base point, and what the last x determined. Allocated once.
-  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable typename P::Metric place_{problem_};
   mutable Element f0_ = problem_.element(), f1_ = f0_, base_ = f0_, g1_ = f0_;
   mutable Vector v_ = mu0_, z0_ = v_, z1_ = v_, nu_ = v_, m0_ = v_, m1_ = v_, mu_ = v_, r_ = v_;
   mutable typename P::State x_ = P::State::Zero(problem_.state_size()), w_ = x_, f_ = x_;

@@ -42,7 +42,7 @@ class BoxedStep {
   }
   void guess(Unknown& x) const { x = from_->x; }
   double scale_squared() const { return scale_squared_; }
-  void expand(Unknown& z) const requires(!P::left_invariant) { place_.expand(z.data()); }
+  void expand(Unknown& z) const requires(!P::left_invariant) { place_.expand(z); }
 
   void residual(const Unknown& x, Unknown& f) const {
     set_step(x);
@@ -95,7 +95,7 @@ class BoxedStep {
   const Node* from_ = nullptr;
   Vector full_mu_ = P::Vector::Zero(problem_.dim());
   typename P::Matrix embedding_{problem_.dim(), problem_.dim()};
-  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable typename P::Metric place_{problem_};
   mutable Vector v_ = full_mu_, z_ = v_, r_ = v_, mu_ = v_;
   typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};
   typename P::Multipliers b_{problem_.constraint_count()};

@@ -10,7 +10,7 @@
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/lie/linear_solve.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
-#include <hamel/framework/metric/admissible_frame.hpp>
+#include <hamel/framework/metric/metric.hpp>
 
 namespace hamel {
 
@@ -27,7 +27,7 @@ class DynamicProblem {
   using ConstraintMatrix = Eigen::MatrixXd;
   using Multipliers = Eigen::VectorXd;
   using HolonomicValues = Eigen::VectorXd;
-  using AdmissibleFrame = hamel::AdmissibleFrame<>;
+  using Metric = hamel::Metric<>;
   using Unconstrained = DynamicProblem;
 
   DynamicProblem(std::shared_ptr<const Geometry> geometry,

@@ -53,7 +53,7 @@ class EnergyPreserving::Step {
   }
   void guess(Unknown& x) const { x = from_->x; }
   double scale_squared() const { return scale_squared_; }
-  void expand(Unknown& z) const requires(!P::left_invariant) { place_.expand(z.data()); }
+  void expand(Unknown& z) const requires(!P::left_invariant) { place_.expand(z); }
 
   void residual(const Unknown& x, Unknown& f) const {
     mean_ = 0.5 * (from_->x + x);
@@ -82,7 +82,7 @@ class EnergyPreserving::Step {
   P problem_;
   double h_ = 0, scale_squared_ = 0;
   const Node* from_ = nullptr;
-  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable typename P::Metric place_{problem_};
   mutable Unknown mean_ = P::State::Zero(problem_.state_size());
   mutable Vector w_ = P::Vector::Zero(problem_.dim()), mu_ = w_, r_ = w_;
   typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};

@@ -1,7 +1,7 @@
 // gni: reflect the momentum at the node, then take a free variational step.
 //
 // The momentum p- = I v- that arrives at a node leaves it as p+ = 2 p~ - p-, p~ = I xi the part of
-// p- that no reaction can carry (metric/admissible_frame.hpp); as velocities v+ = 2 xi - v-.
+// p- that no reaction can carry (metric/metric.hpp); as velocities v+ = 2 xi - v-.
 // Then the unconstrained step of the cotangent lift, mu0 = p+, p- = mu1: lift of the problem
 // without its rows, which starts from v+ and ends in v-. A node carries v-. Order 2 (s = 1/2, or V
 // = f = 0 with a symmetric tau). Weakness: |det| of the map is 1, while systems such as Suslov's
@@ -68,7 +68,7 @@ class Gni::Step {
  private:
   P problem_;
   Free free_;
-  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable typename P::Metric place_{problem_};
   Node leaving_{problem_};
   mutable typename P::Vector momentum_ = P::Vector::Zero(problem_.dim()), velocity_ = momentum_;
 };

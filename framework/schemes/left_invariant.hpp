@@ -124,9 +124,9 @@ class LeftInvariant : public GroupOperations<Tau, T> {
   }
 
   /// The frame, the same everywhere.
-  class AdmissibleFrame {
+  class Metric {
    public:
-    explicit AdmissibleFrame(const LeftInvariant& problem)
+    explicit Metric(const LeftInvariant& problem)
         : inertia(problem.inertia_), frame_(problem.frame_) {}
     Matrix inertia;
     void set(const LeftInvariant&, double, const Element&, bool /*same_frame*/ = false) {}

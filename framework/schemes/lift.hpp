@@ -9,8 +9,7 @@
 // hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu) = dR_{z0}^-T q, m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i; at
 // s = 1/2 with a symmetric tau mu0 = dR_{z1}^-T q. The step solves
 //   E(g0)^T (mu0 - I(g0) xi_0) = 0,    A(g) v = b(t + s h, g),   phi(g1) = 0 in place of its rows,
-// in the frame at g0 ((*) of metric/admissible_frame.hpp), and xi_1 is the admissible velocity
-// of mu1 at g1.
+// as F(r, c) of metric/metric.hpp at g0, and xi_1 is the admissible velocity of mu1 at g1.
 //
 // Forces at the nodes, (M43): nu = h d(v^T I(g) v)/2 only, and f - dV is taken at both ends with
 // half of h,
@@ -94,8 +93,8 @@ class Lift::General {
       apply(node.t, node.g, node.x);
     }
     place_.momentum(node.x, target_);
-    // |mu0| + |I xi/h| + |h force| in the units of (*); at rest without force those of unit
-    // velocities.
+    // |mu0| + |I xi/h| + |h force| as square roots of an energy; at rest without force those of
+    // unit velocities.
     const double size = 2 * place_.size(target_) + std::abs(h) * place_.size(force_);
     scale_squared_ = size > 0 ? size * size : problem_.dim();
     if (nodal_) {
@@ -106,12 +105,7 @@ class Lift::General {
   void guess(Unknown& x) const { x = from_->x; }
   double scale_squared() const { return scale_squared_; }
   /// A row phi(g1) moves by h times a velocity.
-  void expand(Unknown& z) const {
-    for (int i = problem_.constraint_count() - problem_.holonomic_rows();
-         i < problem_.constraint_count(); ++i)
-      z[i] /= h_;
-    place_.expand(z.data());
-  }
+  void expand(Unknown& z) const { place_.expand(z, h_, problem_.holonomic_rows()); }
 
   HAMEL_FLATTEN void residual(const Unknown& x, Unknown& f) const {
     evaluate(x);
@@ -121,8 +115,9 @@ class Lift::General {
   /// F but for what the round-off of a configuration does to its rows.
   void residual_of_places(const Unknown& x, Unknown& f) const
       requires(P::HolonomicValues::SizeAtCompileTime != 0) {
-    residual(x, f);
-    drop_round_off(place_.a, phi_, f);
+    evaluate(x);
+    drop_round_off(place_.a, phi_, rows_);
+    place_.assemble(mu_, rows_, f);
   }
 
   bool finish(const Unknown& x, Node& next) const {
@@ -256,7 +251,7 @@ class Lift::General {
   Vector target_ = P::Vector::Zero(problem_.dim());
   // Work: the place at place_g_ (g0, and g1 once finished), and what the last x determined.
   // Allocated once.
-  mutable typename P::AdmissibleFrame place_{problem_};
+  mutable typename P::Metric place_{problem_};
   mutable typename P::Element place_g_ = problem_.element();
   mutable double place_time_ = kNothing;
   mutable typename P::Element f0_ = place_g_, f1_ = f0_, base_ = f0_, g1_ = f0_;

@@ -32,8 +32,7 @@ template <class P>
 concept Problem = requires(const P& problem, typename P::Element& g, typename P::Vector& v,
                            typename P::State& x, typename P::Matrix& inertia,
                            typename P::ConstraintMatrix& a, typename P::Multipliers& b,
-                           typename P::HolonomicValues& phi, typename P::AdmissibleFrame& place,
-                           double t) {
+                           typename P::HolonomicValues& phi, typename P::Metric& place, double t) {
   { P::left_invariant } -> std::convertible_to<bool>;
   { problem.dim() } -> std::convertible_to<int>;
   { problem.constraint_count() } -> std::convertible_to<int>;
@@ -66,7 +65,7 @@ concept Problem = requires(const P& problem, typename P::Element& g, typename P:
   problem.force(t, g, v, v);
   problem.inertial_force(g, v, v);
   { problem.force_depends_on_velocity() } -> std::convertible_to<bool>;
-  // The frame of the admissible velocities at a configuration (metric/admissible_frame.hpp).
+  // Inertia and rows at a configuration, factored (metric/metric.hpp).
   place.set(problem, t, g);
   place.assemble(v, b, x);
   place.admissible(v, x);

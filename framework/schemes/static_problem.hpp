@@ -5,7 +5,7 @@
 
 #include <hamel/framework/lie/group_operations.hpp>
 #include <hamel/framework/mechanics/general_system.hpp>
-#include <hamel/framework/metric/admissible_frame.hpp>
+#include <hamel/framework/metric/metric.hpp>
 #include <hamel/framework/metric/stated_frame.hpp>
 
 namespace hamel {
@@ -17,7 +17,7 @@ class WithoutRows : public P {
   using ConstraintMatrix = Mat<0, P::n>;
   using Multipliers = Vec<0>;
   using HolonomicValues = Vec<0>;
-  using AdmissibleFrame = hamel::AdmissibleFrame<P::n, 0>;
+  using Metric = hamel::Metric<P::n, 0>;
   using OfMotion = WithoutRows;
   static constexpr bool framed() { return false; }
   explicit WithoutRows(const P& problem) : P(problem) {}
@@ -47,8 +47,7 @@ class StaticProblem : public GroupOperations<Tau> {
   using ConstraintMatrix = Mat<k, n>;
   using Multipliers = Vec<k>;
   using HolonomicValues = Vec<r>;
-  using AdmissibleFrame =
-      std::conditional_t<F::framed(), StatedFrame<n, k>, hamel::AdmissibleFrame<n, k>>;
+  using Metric = std::conditional_t<F::framed(), StatedFrame<n, k>, hamel::Metric<n, k>>;
   using Unconstrained = WithoutRows<StaticProblem>;
   /// Whose equations of motion are compiled: they are the same with every retraction.
   using OfMotion = StaticProblem<System, typename FirstOf<typename Group::Retractions>::type>;
@@ -100,9 +99,9 @@ class StaticProblem : public GroupOperations<Tau> {
   }
   static constexpr bool force_depends_on_velocity() { return has_force<System>(); }
   double potential(const Element& g) const { return formulas_->potential(g); }
-  /// A^T and I with the rates of b - A xi and I xi along g tau(e xi), by one dual number (where
+  /// A and I with the rates of b - A xi and I xi along g tau(e xi), by one dual number (where
   /// has_dual_rates()).
-  void dual_rates(const Element& g, const Vector& xi, Mat<n, k>& rows, Multipliers& row_rate,
+  void dual_rates(const Element& g, const Vector& xi, ConstraintMatrix& rows, Multipliers& row_rate,
                   Matrix& inertia, Vector& momentum_rate) const {
     using Dual = typename F::Dual;
     formulas_->dual_rates(element_along<Dual, Group>(g, xi), xi, rows, row_rate, inertia,

@@ -247,11 +247,9 @@ class Multipliers {
       const auto g = At::element(y);
       own.formulas_.constraints(t, g, own.a_, own.b_);
       own.formulas_.force(t, g, xi, force);
-      Mat<n, k> columns;
       Vec<k> row_rate;
       Vec<n> momentum_rate;
-      own.rates_.problem.dual_rates(g, xi, columns, row_rate, own.inertia_, momentum_rate);
-      own.a_ = columns.transpose();
+      own.rates_.problem.dual_rates(g, xi, own.a_, row_rate, own.inertia_, momentum_rate);
       rows = -row_rate;
     }
     Eigen::Map<Vec<n>>(f + p) =

@@ -38,14 +38,14 @@ struct ReducedMidpoint : hamel::SchemeDefaults {
     }
     void guess(Unknown& x) const { x = from_->x; }
     double scale_squared() const { return 4 * std::pow(place_.size(mu0_), 2); }
-    void expand(Unknown& z) const { place_.expand(z.data()); }
+    void expand(Unknown& z) const { place_.expand(z); }
     void residual(const Unknown& x, Unknown& f) const {
       problem_.velocity(x, w_);
       problem_.momentum(place_.inertia, x, mu_);
       problem_.ad_transpose(w_, mu_, r_);
       r_ = 2 * (mu_ - mu0_) - h_ * r_;
       rows_ = place_.a * w_;
-      place_.assemble(r_, rows_, f);  // (A w, E^T r)
+      place_.assemble(r_, rows_, f);  // 0 where r is a reaction and A w = 0
     }
     bool finish(const Unknown& x, Node& next) const {
       problem_.velocity(x, w_);
@@ -60,7 +60,7 @@ struct ReducedMidpoint : hamel::SchemeDefaults {
 
    private:
     P problem_;
-    mutable typename P::AdmissibleFrame place_{problem_};
+    mutable typename P::Metric place_{problem_};
     const Node* from_ = nullptr;
     double h_ = 0;
     mutable typename P::Vector w_{problem_.dim()}, mu_ = w_, r_ = w_;

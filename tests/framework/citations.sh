@@ -3,7 +3,7 @@
 # READMEs with their headings, and equations (M...), each defined once in framework/schemes/README.md and listed
 # in its table.
 #
-# A path is cited by any of its endings, admissible_frame.hpp or schemes/README.md, and a program by its path without an
+# A path is cited by any of its endings, stated_frame.hpp or schemes/README.md, and a program by its path without an
 # extension, also in the build's folder. Names that begin with my_, own_ or mine, and NAMES, are placeholders.
 set -euo pipefail
 cd "$1"

@@ -45,7 +45,7 @@ struct MyScheme : SchemeDefaults {
 
    private:
     P problem_;
-    mutable typename P::AdmissibleFrame place_{problem_};
+    mutable typename P::Metric place_{problem_};
     const Node* from_ = nullptr;
     double h_ = 0;
     mutable typename P::Element f_ = problem_.element();
