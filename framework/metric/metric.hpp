@@ -115,6 +115,17 @@ class Metric {
     }
     factors_.apply_root_transpose(work_, z);
   }
+  /// z <- z - Y (Y^T Y)^-1 Y^T z: F(r, 0) of r = I W^T z.
+  void drop_reaction(Vector& z) {
+    if (k() == 0) return;
+    if (on_chain()) {
+      z.head(k()).setZero();
+      return;
+    }
+    factors_.subtract_rows(none_, z, lambda_);
+    factors_.solve_gram(lambda_);
+    factors_.add_reaction(lambda_, z);
+  }
   /// The xi of (1). xi may be mu.
   void solve(const Vector& mu, const Multipliers& c, Vector& xi) {
     if constexpr (!fixed)

@@ -126,6 +126,8 @@ class StatedFrame : public InertiaUnits<N> {
     for (int i = K - places; i < K; ++i) c[i] /= h;
     combine(c, z.template tail<m>(), z);
   }
+  /// F(r, 0) of r = I xi, z the coordinates of xi.
+  static void drop_reaction(Vector& z) { z.template head<K>().setZero(); }
   /// The admissible velocity of mu, refined once: the round-off of the factor is nearly the same in
   /// every step, and adds up (a disk turned back after 7 s returns 60 times as near).
   void admissible(const Vector& mu, Vector& xi) const {

@@ -57,13 +57,16 @@ class BalanceStep {
     x.tail(half()) = from_->x;
   }
   double scale_squared() const { return scale_squared_; }
+  /// dF/d(v, w) = [1, -(1-s) (1 - Y (Y^T Y)^-1 Y^T); 0, 1] + O(h) in the coordinates of
+  /// metric/metric.hpp, solved for (v, w). Rows phi(g1): h times as much.
   void expand(Unknown& z) const requires(!P::left_invariant) {
-    f_ = z.head(half());
-    place_.expand(f_, h_, ends_only ? 0 : problem_.holonomic_rows());  // phi(g1): h times as much
-    z.head(half()) = f_;
-    f_ = z.tail(half());
+    f_ = r_ = z.tail(half());
+    if constexpr (!ends_only) place_.drop_reaction(r_);
     place_.expand(f_);
     z.tail(half()) = f_;
+    f_ = z.head(half()) + (1 - s_) * r_;
+    place_.expand(f_, h_, ends_only ? 0 : problem_.holonomic_rows());
+    z.head(half()) = f_;
   }
 
   /// F but for what the round-off of a configuration does to its rows.
