@@ -95,7 +95,7 @@ class Train final : public Mechanics {
   }
 
   /// The rows are e_i . u_i, u_i = u_{i-1} - L_i w_i e_i.
-  bool constraint_values(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
+  void constraint_values(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
     const Headings h(g, n_);
     Plane u(xi[kV], xi[kV + 1]);
     out[0] = h.across(0).dot(u);
@@ -103,7 +103,6 @@ class Train final : public Mechanics {
       u -= at(lengths_, i) * turning(xi, i) * h.across(i);
       out[i] = h.across(i).dot(u);
     }
-    return true;
   }
 
   void force(double /*t*/, const double* g, ConstVector xi, Vector out) const override {
@@ -119,7 +118,7 @@ class Train final : public Mechanics {
     });
   }
   /// dl/dalpha_j' = J_j w_j - L_j e_j . P_j, and the momentum of the car with all of them.
-  bool momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const override {
+  void momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const override {
     const Headings h(g, n_);
     inertial_force.setZero();
     out[kOmega] = 0;
@@ -134,7 +133,6 @@ class Train final : public Mechanics {
       out[kOmega] += out[kAlpha + j];
       inertial_force[kAlpha + j] = length * w * h.along(j).dot(momentum);
     });
-    return true;
   }
 
  private:

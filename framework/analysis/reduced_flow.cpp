@@ -41,13 +41,11 @@ StepRange Flow::velocity_steps(const Vector& xi, int component) const {
 
 Vector Flow::extents(const Vector& g) const {
   const int n = dim(), k = constraint_count();
-  Vector out = Vector::Constant(n, 1), momentum(n), rows(k);
+  Vector out = Vector::Constant(n, 1);
   if (mechanics_->constant_inertia() && mechanics_->constant_constraints()) return out;
+  if (mechanics_->exact_rates()) return out;  // none is needed
   Matrix inertia(n, n), a(k, n);
   Vector b(k);
-  if (mechanics_->rates(0, g.data(), out, rows, momentum) ||
-      mechanics_->motion(0, g.data(), out, inertia, a, b, rows, momentum))
-    return out;  // exact: none is needed
   Vector all(n * n + k * n + k);
   for (int i = 0; i < n; ++i) {
     const Vector along = Vector::Unit(n, i);
@@ -114,9 +112,6 @@ void Flow::find_rates(const Vector& g, const Vector& xi, const Vector& extents, 
   momentum = Vector::Zero(n);
   rows = Vector::Zero(k);
   if (mechanics_->constant_inertia() && mechanics_->constant_constraints()) return;
-  if (mechanics_->rates(0, g.data(), xi, rows, momentum)) return;
-  momentum.setZero();
-  rows.setZero();
   const double speed = xi.cwiseQuotient(extents).lpNorm<Eigen::Infinity>();  // 1/s
   if (!(speed > 0)) return;
   Matrix inertia(n, n), a(k, n);
@@ -137,7 +132,9 @@ Vector Flow::acceleration(const Vector& g, const Vector& xi, const Vector& exten
   Vector b(k), row_rate(k), change(n);
   if (mechanics_->constant_inertia()) mechanics_->inertia(g.data(), inertia);
   if (k > 0 && mechanics_->constant_constraints()) mechanics_->constraints(0, g.data(), a, b);
-  if (!mechanics_->motion(0, g.data(), xi, inertia, a, b, row_rate, change)) {
+  if (mechanics_->exact_rates()) {
+    mechanics_->motion(*geometry_, 0, g.data(), xi, inertia, a, b, row_rate, change);
+  } else {
     Vector turned(n), momentum_rate;
     find_rates(g, xi, extents, momentum_rate, row_rate);
     mechanics_->inertia(g.data(), inertia);

@@ -71,13 +71,14 @@ template <class P>
 template <class P>
 void find_momentum(const P& problem, const typename P::Element& g, const typename P::Vector& xi,
                    typename P::Vector& out) {
-  if constexpr (requires { problem.momentum_at(g, xi, out, out); }) {
+  if constexpr (P::Vector::RowsAtCompileTime == Eigen::Dynamic) {  // some have it without I
     typename P::Vector inertial_force(problem.dim());
-    if (problem.momentum_at(g, xi, out, inertial_force)) return;
+    problem.momentum_at(g, xi, out, inertial_force);
+  } else {
+    typename P::Matrix inertia;
+    problem.inertia(g, inertia);
+    out = inertia.lazyProduct(xi);
   }
-  typename P::Matrix inertia(problem.dim(), problem.dim());
-  problem.inertia(g, inertia);
-  out = inertia.lazyProduct(xi);
 }
 
 /// The velocity, and what is wanted of the coordinates, the element, momentum and energy. xi: the

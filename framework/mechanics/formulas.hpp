@@ -101,10 +101,13 @@ class Formulas {
     if constexpr (r > 0) out = system_.holonomic(g);
   }
   void force(double t, const Element& g, const Vec<n>& xi, Vec<n>& out) const {
+    applied_force(t, g, xi, out);
+    if constexpr (!constant_inertia()) out += inertia_differential(g, xi);
+  }
+  void applied_force(double t, const Element& g, const Vec<n>& xi, Vec<n>& out) const {
     out.setZero();
     if constexpr (has_potential<S>()) out -= potential_differential(g);
     if constexpr (has_force<S>()) out += force_of(system_, t, g, xi);
-    if constexpr (!constant_inertia()) out += inertia_differential(g, xi);
   }
   void inertial_force([[maybe_unused]] const Element& g, [[maybe_unused]] const Vec<n>& xi,
                       Vec<n>& out) const {

@@ -79,8 +79,9 @@ class TypedMechanics final : public Mechanics {
     else to_a = a;
     Eigen::Map<Vec<k>>(to_b.data()) = b;
   }
+  bool exact_rates() const override { return F::has_dual_rates(); }
   // By one dual number, where the formulas are ones over any scalar.
-  bool rates(double /*t*/, const double* g, ConstVector xi, Vector rows,
+  void rates(const Geometry& geometry, double t, const double* g, ConstVector xi, Vector rows,
              Vector momentum) const override {
     if constexpr (F::has_dual_rates()) {
       const Vec<n> along(xi);
@@ -92,9 +93,8 @@ class TypedMechanics final : public Mechanics {
                            transposed, row_rate, inertia, momentum_rate);
       rows = row_rate;
       momentum = momentum_rate;
-      return true;
     } else {
-      return Mechanics::rates(0, g, xi, rows, momentum);
+      Mechanics::rates(geometry, t, g, xi, rows, momentum);
     }
   }
   int framed_size() const override { return F::framed() ? n - k : 0; }

@@ -4,7 +4,9 @@
 //   A(t, g) xi = b(t, g)    k rows; the last of them are the differentials of the holonomic rows
 //   phi(g) = 0              holonomic rows, imposed at the ends of each step, (M19)
 // general_system.hpp derives a Mechanics from a system's struct. A system whose dimension is a
-// parameter derives from Mechanics itself (systems/n_trailer.hpp).
+// parameter derives from Mechanics itself (systems/n_trailer.hpp), and states I, A and the force;
+// the rest follows from them (mechanics.cpp), and is overridden where a system computes it faster
+// or exactly.
 #pragma once
 
 #include <memory>
@@ -13,6 +15,8 @@
 #include <Eigen/Core>
 
 namespace hamel {
+
+class Geometry;
 
 /// Sizes are fixed in the life of an object; out-parameters have these sizes. Elements as Packing.
 class Mechanics {
@@ -37,32 +41,22 @@ class Mechanics {
 
   /// I(g), n x n.
   virtual void inertia(const double* g, Matrix out) const = 0;
-  /// I(g) xi and 1/2 d(xi^T I(g) xi), n entries each, where a system has them without I(g); false:
-  /// it has not.
-  virtual bool momentum(const double* /*g*/, ConstVector /*xi*/, Vector /*out*/,
-                        Vector /*inertial_force*/) const {
-    return false;
-  }
+  /// I(g) xi and 1/2 d(xi^T I(g) xi), n entries each.
+  virtual void momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const;
   /// A(t, g), k x n, and b(t, g).
   virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
-  /// A xi - b, k entries, where a system has it without A; false: it has not.
-  virtual bool constraint_values(double /*t*/, const double* /*g*/, ConstVector /*xi*/,
-                                 Vector /*out*/) const {
-    return false;
-  }
-  /// db/dt - (dA/dt) xi, k entries, and (dI/dt) xi, n entries, along (t, g) at g' = g xi, where a
-  /// system computes them; false: it does not.
-  virtual bool rates(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Vector /*rows*/,
-                     Vector /*momentum*/) const {
-    return false;
-  }
-  /// All of the equations of motion, where a system has them at once (false: it has not): I and A,
-  /// b (left as they are where they are constant), db/dt - (dA/dt) xi, and ad*_xi I xi + F -
-  /// (dI/dt) xi.
-  virtual bool motion(double /*t*/, const double* /*g*/, ConstVector /*xi*/, Matrix /*inertia*/,
-                      Matrix /*a*/, Vector /*b*/, Vector /*rows*/, Vector /*change*/) const {
-    return false;
-  }
+  /// A xi - b, k entries.
+  virtual void constraint_values(double t, const double* g, ConstVector xi, Vector out) const;
+  /// Are rates() and motion() free of differences?
+  virtual bool exact_rates() const { return false; }
+  /// db/dt - (dA/dt) xi, k entries, and (dI/dt) xi, n entries, along (t, g) at g' = g xi. Only
+  /// tau and products are taken of the geometry.
+  virtual void rates(const Geometry& geometry, double t, const double* g, ConstVector xi,
+                     Vector rows, Vector momentum) const;
+  /// All of the equations of motion: I and A, b (left as they are where they are constant), db/dt -
+  /// (dA/dt) xi, and ad*_xi I xi + F - (dI/dt) xi.
+  virtual void motion(const Geometry& geometry, double t, const double* g, ConstVector xi,
+                      Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const;
   /// How many velocities are independent in the frame that a system states, the first of xi
   /// (framed_equations.hpp); 0: it states none.
   virtual int framed_size() const { return 0; }
@@ -81,11 +75,8 @@ class Mechanics {
   virtual void inertial_force(const double* /*g*/, ConstVector /*xi*/, Vector out) const {
     out.setZero();
   }
-  /// The rest of it, f - dV, where a system has it alone; false: it has not.
-  virtual bool applied_force(double /*t*/, const double* /*g*/, ConstVector /*xi*/,
-                             Vector /*out*/) const {
-    return false;
-  }
+  /// The rest of it, f - dV.
+  virtual void applied_force(double t, const double* g, ConstVector xi, Vector out) const;
   /// Does f of (M3) depend on xi?
   virtual bool force_depends_on_velocity() const { return true; }
   /// <f, xi>, the power of the force.
@@ -127,16 +118,18 @@ class UnconstrainedMechanics final : public Mechanics {
   bool constant_constraints() const override { return true; }
   bool left_invariant() const override { return system_->left_invariant(); }
   void inertia(const double* g, Matrix out) const override { system_->inertia(g, out); }
-  bool momentum(const double* g, ConstVector xi, Vector out, Vector force) const override {
-    return system_->momentum(g, xi, out, force);
+  void momentum(const double* g, ConstVector xi, Vector out, Vector force) const override {
+    system_->momentum(g, xi, out, force);
   }
   void constraints(double, const double*, Matrix, Vector) const override {}
-  bool rates(double t, const double* g, ConstVector xi, Vector, Vector momentum) const override {
-    return system_->rates(t, g, xi, rows_, momentum);
+  bool exact_rates() const override { return system_->exact_rates(); }
+  void rates(const Geometry& geometry, double t, const double* g, ConstVector xi, Vector,
+             Vector momentum) const override {
+    system_->rates(geometry, t, g, xi, rows_, momentum);
   }
-  bool motion(double t, const double* g, ConstVector xi, Matrix inertia, Matrix, Vector, Vector,
-              Vector change) const override {
-    return system_->motion(t, g, xi, inertia, a_, b_, rows_, change);
+  void motion(const Geometry& geometry, double t, const double* g, ConstVector xi, Matrix inertia,
+              Matrix, Vector, Vector, Vector change) const override {
+    system_->motion(geometry, t, g, xi, inertia, a_, b_, rows_, change);
   }
   bool autonomous() const override { return system_->autonomous(); }
   bool has_force() const override { return system_->has_force(); }
@@ -146,8 +139,8 @@ class UnconstrainedMechanics final : public Mechanics {
   void inertial_force(const double* g, ConstVector xi, Vector out) const override {
     system_->inertial_force(g, xi, out);
   }
-  bool applied_force(double t, const double* g, ConstVector xi, Vector out) const override {
-    return system_->applied_force(t, g, xi, out);
+  void applied_force(double t, const double* g, ConstVector xi, Vector out) const override {
+    system_->applied_force(t, g, xi, out);
   }
   bool force_depends_on_velocity() const override { return system_->force_depends_on_velocity(); }
   double power(double t, const double* g, ConstVector xi) const override {

@@ -3,21 +3,19 @@
 // Lagrange-d'Alembert with multipliers, d/dt along the motion:
 //   I xi' = ad*_xi I xi + force - (dI/dt) xi + A^T lambda,   A xi' = db/dt - (dA/dt) xi.
 // (dI/dt) xi and db/dt - (dA/dt) xi: by one dual number where the problem has its formulas over any
-// scalar, its own where it has them (Mechanics::motion and rates), else by differences along g
-// tau(e xi) at t, and in t at g (lie/differences.hpp). A left-invariant problem has y' in closed
-// form. Accelerations and multipliers are those of (1) in metric.hpp, mu what changes the momentum
-// and c = db/dt - (dA/dt) xi.
+// scalar, else by differences; an erased problem has all at once (Mechanics::motion). A
+// left-invariant problem has y' in closed form. Accelerations and multipliers are those of (1) in
+// metric.hpp, mu what changes the momentum and c = db/dt - (dA/dt) xi.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <type_traits>
 #include <utility>
 
 #include <Eigen/Core>
 
-#include <hamel/framework/lie/differences.hpp>
 #include <hamel/framework/lie/types.hpp>
+#include <hamel/framework/mechanics/differenced_rates.hpp>
 #include <hamel/framework/metric/metric.hpp>
 
 namespace hamel {
@@ -39,6 +37,24 @@ using OfMotion = typename detail::OfMotion<P>::type;
 
 template <class Problem>
 class EquationsOfMotion {
+  using Factored =
+      Metric<Problem::Vector::RowsAtCompileTime, Problem::Multipliers::RowsAtCompileTime>;
+  static constexpr bool evaluates_at_once =
+      requires(const Problem& problem, const typename Problem::Element& g,
+               typename Problem::Vector& v, typename Problem::Multipliers& c, Factored& at) {
+    problem.motion(0.0, g, v, at.inertia, at.a, at.b, c, v);
+  };
+  static constexpr bool has_dual_rates = [] {
+    if constexpr (requires { Problem::has_dual_rates(); }) return Problem::has_dual_rates();
+    else return false;
+  }();
+  static constexpr bool has_differences =
+      !evaluates_at_once && !has_dual_rates && !Problem::left_invariant;
+  struct NoDifferences {
+    explicit NoDifferences(const Problem& /*problem*/) {}
+  };
+  using Differences = std::conditional_t<has_differences, DifferencedRates<Problem>, NoDifferences>;
+
  public:
   using Element = typename Problem::Element;
   using Vector = typename Problem::Vector;
@@ -54,12 +70,7 @@ class EquationsOfMotion {
         work_(problem.dim()),
         momentum_rate_(problem.dim()),
         row_rate_(Problem::Multipliers::Zero(problem.constraint_count())),
-        time_rate_(row_rate_),
-        time_work_{row_rate_, row_rate_},
-        moved_b_(row_rate_),
-        moved_a_(problem.constraint_count(), problem.dim()),
-        moved_inertia_(problem.dim(), problem.dim()),
-        moved_(problem.element()) {}
+        differences_(problem) {}
 
   /// The rate of the carried velocity at an admissible (t, g, x): the equations without
   /// multipliers, of which any explicit scheme is made (tests/examples/own_general_scheme.cpp).
@@ -75,14 +86,14 @@ class EquationsOfMotion {
   }
   /// xi' and lambda (k entries, N or N m as the rows have it) at (t, g, xi).
   void solve(double t, const Element& g, const Vector& xi) {
-    if (!evaluate_at_once(t, g, xi)) {
-      if (has_dual_rates() && metric_.known()) {
-        evaluate_with_rates(g, xi);
-        factor();
-      } else {
-        set(t, g);
-        find_rates(t, g, xi);
-      }
+    if constexpr (evaluates_at_once) {
+      if (!metric_.known()) set(t, g);
+      problem_.motion(t, g, xi, metric_.inertia, metric_.a, metric_.b, row_rate_, change_);
+      factor();
+    } else {
+      if (!has_dual_rates || !metric_.known()) set(t, g);
+      find_rates(t, g, xi);
+      if (has_dual_rates) factor();
       metric_.momentum(xi, momentum_);
       problem_.force(t, g, xi, change_);
       if (!problem_.constant_inertia()) change_ -= momentum_rate_;
@@ -116,88 +127,26 @@ class EquationsOfMotion {
   const Multipliers& reaction() { return metric_.multipliers(change_, acceleration_); }
 
  private:
-  static constexpr bool has_dual_rates() {
-    if constexpr (requires { Problem::has_dual_rates(); }) return Problem::has_dual_rates();
-    else return false;
-  }
-  // All at once, by the problem itself.
-  bool evaluate_at_once([[maybe_unused]] double t, [[maybe_unused]] const Element& g,
-                        [[maybe_unused]] const Vector& xi) {
-    if constexpr (requires {
-                    problem_.motion(t, g, xi, metric_.inertia, metric_.a, metric_.b, row_rate_,
-                                    change_);
-                  }) {
-      if (!metric_.known()) set(t, g);
-      if (!problem_.motion(t, g, xi, metric_.inertia, metric_.a, metric_.b, row_rate_, change_))
-        return false;
-      factor();
-      return true;
-    } else {
-      return false;
-    }
-  }
-  // By one dual number; nothing in b is a function of time.
-  void evaluate_with_rates([[maybe_unused]] const Element& g, [[maybe_unused]] const Vector& xi) {
-    if constexpr (has_dual_rates())
-      problem_.dual_rates(g, xi, metric_.a, row_rate_, metric_.inertia, momentum_rate_);
-  }
   // I and A have been evaluated.
   void factor() {
     metric_.factor(!problem_.constant_inertia(),
                    problem_.constraint_count() > 0 && !problem_.constant_constraints());
   }
 
-  void find_rates(double t, const Element& g, const Vector& xi) {
-    row_rate_.setZero();
-    if (problem_.constraint_count() == 0 && problem_.constant_inertia()) return;
-    const bool moves = !problem_.constant_constraints(), varies = !problem_.constant_inertia();
-    if (!moves && !varies) return;
-    if constexpr (has_dual_rates()) return evaluate_with_rates(g, xi);
-    if constexpr (requires { problem_.rates(t, g, xi, row_rate_, momentum_rate_); }) {
-      if (problem_.rates(t, g, xi, row_rate_, momentum_rate_)) return;
-    }
-    row_rate_.setZero();
-    momentum_rate_.setZero();
-    // b - A xi.
-    const auto lack = [&](double at, const Element& where) {
-      problem_.constraints(at, where, moved_a_, moved_b_);
-      moved_b_ -= moved_a_.lazyProduct(xi);
-    };
-    differentiate_along(problem_, g, xi, work_, moved_, [&](double, double weight) {
-      if (moves) {
-        lack(t, moved_);
-        row_rate_ += weight * moved_b_;
-      }
-      if (varies) {
-        problem_.inertia(moved_, moved_inertia_);
-        momentum_rate_ += weight * moved_inertia_.lazyProduct(xi);
-      }
-    });
-    if (!moves || autonomous()) return;
-    differentiate_in_time(
-        t,
-        [&](double at) -> const Multipliers& {
-          lack(at, g);
-          return moved_b_;
-        },
-        time_work_, time_rate_);
-    row_rate_ += time_rate_;
-  }
-  bool autonomous() const {
-    if constexpr (requires { problem_.autonomous(); }) return problem_.autonomous();
-    else return true;
+  // By one dual number, which leaves I and A too (nothing in b is a function of time there).
+  void find_rates([[maybe_unused]] double t, [[maybe_unused]] const Element& g,
+                  [[maybe_unused]] const Vector& xi) {
+    if (problem_.constant_inertia() && problem_.constant_constraints()) row_rate_.setZero();
+    else if constexpr (has_dual_rates)
+      problem_.dual_rates(g, xi, metric_.a, row_rate_, metric_.inertia, momentum_rate_);
+    else if constexpr (has_differences) differences_(problem_, t, g, xi, row_rate_, momentum_rate_);
   }
 
   Problem problem_;
-  Metric<Vector::RowsAtCompileTime, Multipliers::RowsAtCompileTime> metric_;
+  Factored metric_;
   Vector acceleration_, momentum_, change_, work_, momentum_rate_;  // (I xi)' at constant xi
-  // Rates of b - A xi at constant xi.
-  Multipliers row_rate_, time_rate_;
-  std::array<Multipliers, 2> time_work_;
-  Multipliers moved_b_;
-  typename Problem::ConstraintMatrix moved_a_;
-  typename Problem::Matrix moved_inertia_;
-  Element moved_;
+  Multipliers row_rate_;                                            // of b - A xi at constant xi
+  [[no_unique_address]] Differences differences_;
 };
 
 }  // namespace hamel

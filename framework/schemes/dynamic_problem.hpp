@@ -101,22 +101,18 @@ class DynamicProblem {
   bool constant_inertia() const { return mechanics_->constant_inertia(); }
   bool constant_constraints() const { return mechanics_->constant_constraints(); }
   void inertia(const Element& g, Matrix& out) const { mechanics_->inertia(g.data(), out); }
-  bool momentum_at(const Element& g, const Vector& xi, Vector& out, Vector& inertial_force) const {
-    return mechanics_->momentum(g.data(), xi, out, inertial_force);
+  void momentum_at(const Element& g, const Vector& xi, Vector& out, Vector& inertial_force) const {
+    mechanics_->momentum(g.data(), xi, out, inertial_force);
   }
   void constraints(double t, const Element& g, ConstraintMatrix& a, Multipliers& b) const {
     mechanics_->constraints(t, g.data(), a, b);
   }
-  bool constraint_values(double t, const Element& g, const Vector& xi, Multipliers& out) const {
-    return mechanics_->constraint_values(t, g.data(), xi, out);
+  void constraint_values(double t, const Element& g, const Vector& xi, Multipliers& out) const {
+    mechanics_->constraint_values(t, g.data(), xi, out);
   }
-  bool rates(double t, const Element& g, const Vector& xi, Multipliers& rows,
-             Vector& momentum) const {
-    return mechanics_->rates(t, g.data(), xi, rows, momentum);
-  }
-  bool motion(double t, const Element& g, const Vector& xi, Matrix& inertia, ConstraintMatrix& a,
+  void motion(double t, const Element& g, const Vector& xi, Matrix& inertia, ConstraintMatrix& a,
               Multipliers& b, Multipliers& rows, Vector& change) const {
-    return mechanics_->motion(t, g.data(), xi, inertia, a, b, rows, change);
+    mechanics_->motion(*geometry_, t, g.data(), xi, inertia, a, b, rows, change);
   }
   bool framed() const { return mechanics_->framed_size() > 0; }
   void expand(const Element& g, const State& x, Vector& xi) const {
@@ -135,8 +131,8 @@ class DynamicProblem {
   void inertial_force(const Element& g, const Vector& xi, Vector& out) const {
     mechanics_->inertial_force(g.data(), xi, out);
   }
-  bool applied_force(double t, const Element& g, const Vector& xi, Vector& out) const {
-    return mechanics_->applied_force(t, g.data(), xi, out);
+  void applied_force(double t, const Element& g, const Vector& xi, Vector& out) const {
+    mechanics_->applied_force(t, g.data(), xi, out);
   }
   bool force_depends_on_velocity() const { return mechanics_->force_depends_on_velocity(); }
   double potential(const Element& g) const { return mechanics_->potential(g.data()); }

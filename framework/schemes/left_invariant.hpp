@@ -100,7 +100,19 @@ class LeftInvariant : public GroupOperations<Tau, T> {
     a = rows_;
     b.setZero();
   }
+  void momentum_at(const Element& /*g*/, const Vector& xi, Vector& out,
+                   Vector& inertial_force) const {
+    out = inertia_.lazyProduct(xi);
+    inertial_force.setZero();
+  }
+  void constraint_values(double /*t*/, const Element& /*g*/, const Vector& v,
+                         Multipliers& out) const {
+    out = rows_.lazyProduct(v);
+  }
   static void holonomic(const Element& /*g*/, HolonomicValues& /*phi*/) {}
+  static void applied_force(double /*t*/, const Element& /*g*/, const Vector& /*xi*/, Vector& out) {
+    out.setZero();
+  }
   static void force(double /*t*/, const Element& /*g*/, const Vector& /*xi*/, Vector& out) {
     out.setZero();
   }

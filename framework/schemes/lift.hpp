@@ -1,13 +1,9 @@
 // lift: the paper's definition D^{D*} = (iota* x iota*) o D^{T*} o T pi*, read literally. It is the
 // discrete Lagrange-d'Alembert scheme of L_d(g0, g1) = h L(g, xi/h).
 //
-// Unknown v = xi/h. With z0 = -s xi, z1 = (1-s) xi, f_i = tau(z_i), base point g = g0 f0^-1, g1 = g
-// f1,
-//   p = I(g) v,   nu = h F(t + s h, g, v),   C = (s dR_{z0} + (1-s) dR_{z1})^T.
-// Momenta carried to the base point, m_i = Ad*_{f_i^-1} mu_i, satisfy (lie/trivialised.hpp)
-//   (1)  s dR_{z0}^T m0 + (1-s) dR_{z1}^T m1 = p,     (2)  m1 - m0 = nu,
-// hence m0 = C^-1 (p - (1-s) dR_{z1}^T nu) = dR_{z0}^-T q, m1 = m0 + nu, mu_i = Ad_{f_i}^T m_i; at
-// s = 1/2 with a symmetric tau mu0 = dR_{z1}^-T q. The step solves
+// Unknown v = xi/h. At the base point g of the step, g1 its end (cotangent_lift.hpp),
+//   p = I(g) v,   nu = h F(t + s h, g, v)
+// give the momenta mu0 and mu1 at its ends. The step solves
 //   E(g0)^T (mu0 - I(g0) xi_0) = 0,    A(g) v = b(t + s h, g),   phi(g1) = 0 in place of its rows,
 // as F(r, c) of metric/metric.hpp at g0, and xi_1 is the admissible velocity of mu1 at g1.
 //
@@ -15,8 +11,7 @@
 // half of h,
 //   E(g0)^T (mu0 - I(g0) xi_0 - h/2 F0) = 0,   mu1 + h/2 F1 in place of mu1,
 //   F_i = (f - dV)(t_i, g_i, v).
-// With a constant inertia nu = 0 then, and at s = 1/2 with a symmetric tau mu_i = even +- odd in
-// closed form (M50).
+// With a constant inertia nu = 0 then.
 //
 // On a left-invariant problem v = E y, nu = 0 and m unknowns remain: E^T mu0 = mu_bar_k,
 // mu_bar_{k+1} = E^T mu1. At s = 0, at s = 1 for a symmetric tau, and at every s for a
@@ -24,9 +19,8 @@
 // and Martinez 2001; Fedorov and Zenkov 2005; Kobilarov 2010.
 #pragma once
 
-#include <hamel/framework/lie/linear_solve.hpp>
-#include <hamel/framework/lie/trivialised.hpp>
 #include <hamel/framework/metric/held_rows.hpp>
+#include <hamel/framework/schemes/cotangent_lift.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 
 namespace hamel {
@@ -73,8 +67,7 @@ class Lift::General {
       : problem_(problem),
         s_(s),
         nodal_(force_at == ForceAt::nodes),
-        mirrored_(s == 0.5 && problem.symmetric()),
-        split_(kSplits && mirrored_ && nodal_ && problem.constant_inertia()) {}
+        lift_(problem, s, /*impulse=*/!nodal_ || !problem.constant_inertia()) {}
 
   int size() const { return problem_.dim(); }
   /// Is the element at the end to be normalised? It is before the place there is found.
@@ -123,19 +116,10 @@ class Lift::General {
   bool finish(const Unknown& x, Node& next) const {
     if ((v_.array() != x.array()).any()) evaluate_again(x);
     if (!problem_.in_domain(step_)) return false;
-    if (split_) {
-      mu_ = even_ - odd_;
-    } else {
-      if (mirrored_) {
-        z_ = -s_ * step_;
-        problem_.dtau_right_inverse_transpose(z_, q_, m_);
-      }
-      m_ += nu_;
-      problem_.Ad_transpose(f1_, m_, mu_);
-    }
+    lift_.find_end(problem_, nu_, mu_);
     next.t = from_->t + h_;
-    if (normalises_) problem_.normalise(g1_);
-    next.g = g1_;
+    if (normalises_) problem_.normalise(lift_.end());
+    next.g = lift_.end();
     apply(next.t, next.g, v_);
     if (nodal_) mu_ += (h_ / 2) * force_;
     place_.set(problem_, next.t, next.g);
@@ -146,41 +130,26 @@ class Lift::General {
   }
 
  private:
-  static constexpr bool kSplits = requires(const P& problem, Vector& x) {
-    problem.end_momenta(x, x, x, x);
-  };
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // evaluated so far
 
   // Out of line: finish stays half as long.
   [[gnu::noinline, gnu::cold]] void evaluate_again(const Unknown& x) const { evaluate(x); }
-  // mu0 - I(g0) xi_0, m0 (in m_), nu and the rows at v = x.
+  // mu0 - I(g0) xi_0, nu and the rows at v = x.
   void evaluate(const Unknown& x) const {
     v_ = x;
     step_ = h_ * v_;
-    z_ = (1 - s_) * step_;
-    problem_.tau(z_, f1_);
-    if (s_ == 0) {
-      base_ = from_->g;
-    } else if (mirrored_) {  // f0 = f1^-1, z0 = -z1
-      problem_.compose(from_->g, f1_, base_);
-    } else {
-      z_ = -s_ * step_;
-      problem_.tau(z_, f0_);
-      problem_.inverse(f0_, base_);
-      problem_.compose(from_->g, base_, base_);
-    }
-    problem_.compose(base_, f1_, g1_);
-
+    lift_.place(problem_, from_->g, step_);
     const double t = from_->t + s_ * h_;
-    find_momentum();
-    if (!nodal_) problem_.force(t, base_, v_, nu_);
+    if (problem_.constant_inertia()) place_.momentum(v_, p_);
+    else problem_.momentum_at(lift_.base(), v_, p_, nu_);  // nu_: d(v^T I(g) v)/2
+    if (!nodal_) problem_.force(t, lift_.base(), v_, nu_);
     if (!nodal_ || !problem_.constant_inertia()) nu_ *= h_;
-    find_start_momentum();
+    lift_.find_start(problem_, step_, p_, nu_, mu_);
     mu_ -= target_;
     if (rows_.size() > 0) {
-      find_rows(t);
+      problem_.constraint_values(t, lift_.base(), v_, rows_);
       if (phi_.size() > 0) {  // in metres: a velocity error would show as h times itself
-        problem_.holonomic(g1_, phi_);
+        problem_.holonomic(lift_.end(), phi_);
         rows_.tail(phi_.size()) = phi_;
       }
     }
@@ -189,77 +158,26 @@ class Lift::General {
       mu_ -= (h_ / 2) * force_;
     }
   }
-
-  // mu0, in mu_.
-  void find_start_momentum() const {
-    if constexpr (kSplits) {
-      if (split_) {
-        problem_.end_momenta(step_, p_, even_, odd_);
-        mu_ = even_ + odd_;
-        return;
-      }
-    }
-    problem_.mixed_momentum(s_, step_, p_, nu_, q_);
-    if (mirrored_) {
-      problem_.dtau_right_inverse_transpose(z_, q_, mu_);
-    } else if (s_ == 0) {
-      m_ = mu_ = q_;
-    } else {
-      problem_.dtau_right_inverse_transpose(z_, q_, m_);
-      problem_.Ad_transpose(f0_, m_, mu_);
-    }
-  }
-
-  // A(g) v - b.
-  void find_rows(double t) const {
-    if constexpr (requires { problem_.constraint_values(t, base_, v_, rows_); }) {
-      if (problem_.constraint_values(t, base_, v_, rows_)) return;
-    }
-    problem_.constraints(t, base_, a_, b_);
-    multiply(a_, v_, rows_);
-    rows_ -= b_;
-  }
-  // p_ = I(g) v, and nu_ = d(v^T I(g) v)/2 where that is not 0.
-  void find_momentum() const {
-    if (problem_.constant_inertia()) return place_.momentum(v_, p_);
-    if constexpr (requires { problem_.momentum_at(base_, v_, p_, nu_); }) {
-      if (problem_.momentum_at(base_, v_, p_, nu_)) return;
-    }
-    problem_.inertia(base_, inertia_);
-    if (nodal_) problem_.inertial_force(base_, v_, nu_);
-    multiply(inertia_, v_, p_);
-  }
-
   // force_: f - dV with the velocity v; at the base point the whole F serves as its size.
   void apply(double t, const typename P::Element& g, const Vector& v) const {
-    if constexpr (requires { problem_.applied_force(t, g, v, force_); }) {
-      if (nodal_ && problem_.applied_force(t, g, v, force_)) return;
-    }
-    problem_.force(t, g, v, force_);
-    if (nodal_ && !problem_.constant_inertia()) {
-      problem_.inertial_force(g, v, p_);
-      force_ -= p_;
-    }
+    if (nodal_) problem_.applied_force(t, g, v, force_);
+    else problem_.force(t, g, v, force_);
   }
 
   P problem_;
   double s_;
-  bool nodal_, mirrored_, normalises_ = false;
-  bool split_;  // (M50): mu0 = even_ + odd_, mu1 = even_ - odd_
+  bool nodal_, normalises_ = false;
   const Node* from_ = nullptr;
   double h_ = 0, scale_squared_ = 0;
   Vector target_ = P::Vector::Zero(problem_.dim());
   // Work: the place at place_g_ (g0, and g1 once finished), and what the last x determined.
   // Allocated once.
+  mutable CotangentLift<P> lift_;
   mutable typename P::Metric place_{problem_};
   mutable typename P::Element place_g_ = problem_.element();
   mutable double place_time_ = kNothing;
-  mutable typename P::Element f0_ = place_g_, f1_ = f0_, base_ = f0_, g1_ = f0_;
-  mutable Vector v_ = target_, z_ = v_, step_ = v_, p_ = v_, nu_ = v_, q_ = v_, m_ = v_, mu_ = v_,
-                 even_ = v_, odd_ = v_, force_ = v_;
-  mutable typename P::Matrix inertia_{problem_.dim(), problem_.dim()};
-  mutable typename P::ConstraintMatrix a_{problem_.constraint_count(), problem_.dim()};
-  mutable typename P::Multipliers b_{problem_.constraint_count()}, rows_ = b_;
+  mutable Vector v_ = target_, step_ = v_, p_ = v_, nu_ = v_, mu_ = v_, force_ = v_;
+  mutable typename P::Multipliers rows_ = P::Multipliers::Zero(problem_.constraint_count());
   mutable typename P::HolonomicValues phi_{problem_.holonomic_rows()};
 };
 

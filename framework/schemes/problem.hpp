@@ -60,10 +60,13 @@ concept Problem = requires(const P& problem, typename P::Element& g, typename P:
   { problem.constant_inertia() } -> std::convertible_to<bool>;
   { problem.constant_constraints() } -> std::convertible_to<bool>;
   problem.inertia(g, inertia);
+  problem.momentum_at(g, v, v, v);
   problem.constraints(t, g, a, b);
+  problem.constraint_values(t, g, v, b);
   problem.holonomic(g, phi);
   problem.force(t, g, v, v);
   problem.inertial_force(g, v, v);
+  problem.applied_force(t, g, v, v);
   { problem.force_depends_on_velocity() } -> std::convertible_to<bool>;
   // Inertia and rows at a configuration, factored (metric/metric.hpp).
   place.set(problem, t, g);

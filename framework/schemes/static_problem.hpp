@@ -26,6 +26,8 @@ class WithoutRows : public P {
   static constexpr bool constant_constraints() { return true; }
   static void constraints(double /*t*/, const typename P::Element& /*g*/, ConstraintMatrix& /*a*/,
                           Multipliers& /*b*/) {}
+  static void constraint_values(double /*t*/, const typename P::Element& /*g*/,
+                                const typename P::Vector& /*v*/, Multipliers& /*out*/) {}
   static void holonomic(const typename P::Element& /*g*/, HolonomicValues& /*phi*/) {}
 };
 
@@ -81,14 +83,19 @@ class StaticProblem : public GroupOperations<Tau> {
   }
 
   void inertia(const Element& g, Matrix& out) const { formulas_->inertia(g, out); }
+  void momentum_at(const Element& g, const Vector& xi, Vector& out, Vector& inertial_force) const {
+    Matrix inertia;
+    formulas_->inertia(g, inertia);
+    out = inertia.lazyProduct(xi);
+    formulas_->inertial_force(g, xi, inertial_force);
+  }
   void constraints(double t, const Element& g, ConstraintMatrix& a, Multipliers& b) const {
     formulas_->constraints(t, g, a, b);
   }
   /// A v - b, but for the rows that are differentials.
-  bool constraint_values(double t, const Element& g, const Vector& v, Multipliers& out) const {
+  void constraint_values(double t, const Element& g, const Vector& v, Multipliers& out) const {
     out.setZero();
     formulas_->constraint_values(t, g, v, out);
-    return true;
   }
   void holonomic(const Element& g, HolonomicValues& phi) const { formulas_->holonomic(g, phi); }
   void force(double t, const Element& g, const Vector& xi, Vector& out) const {
@@ -96,6 +103,9 @@ class StaticProblem : public GroupOperations<Tau> {
   }
   void inertial_force(const Element& g, const Vector& xi, Vector& out) const {
     formulas_->inertial_force(g, xi, out);
+  }
+  void applied_force(double t, const Element& g, const Vector& xi, Vector& out) const {
+    formulas_->applied_force(t, g, xi, out);
   }
   static constexpr bool force_depends_on_velocity() { return has_force<System>(); }
   double potential(const Element& g) const { return formulas_->potential(g); }

@@ -91,11 +91,10 @@ void Multibody::inertia(const double* g, Matrix out) const {
   else carrying(g).inertia(out);
 }
 
-bool Multibody::momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const {
+void Multibody::momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const {
   Tree& at = turned(g);
   at.move(xi);
   at.momentum(out, inertial_force);
-  return true;
 }
 
 namespace {
@@ -140,22 +139,21 @@ void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const
   }
 }
 
-bool Multibody::constraint_values(double t, const double* g, ConstVector xi, Vector out) const {
+void Multibody::constraint_values(double t, const double* g, ConstVector xi, Vector out) const {
   for (int i = 0; i < constraint_count(); ++i) {
     if (varies_[static_cast<size_t>(kept_[static_cast<size_t>(i)])] == 0)
       out[i] = fixed_rows_.row(i).dot(xi);
   }
-  if (constant_rows_) return true;
+  if (constant_rows_) return;
   Tree& at = placed(g);
   at.move(xi);
   rows_.each_velocity(
       at, t, xi.data(), [&](size_t i) { return varies_[i] != 0; },
       [&](size_t i, double value) { out[slots_[i]] = value; });
-  return true;
 }
 
-bool Multibody::motion(double t, const double* g, ConstVector xi, Matrix inertia, Matrix a,
-                       Vector b, Vector rows, Vector change) const {
+void Multibody::motion(const Geometry& /*geometry*/, double t, const double* g, ConstVector xi,
+                       Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const {
   const bool moves = !constant_rows_ || !constant_inertia_ || forces_.any();
   Tree& at = constant_inertia_ && constant_potential_ ? placed(g) : carrying(g);
   if (moves) at.move(xi);
@@ -172,7 +170,6 @@ bool Multibody::motion(double t, const double* g, ConstVector xi, Matrix inertia
     if (!constant_potential_) forces_.add_potential_force(at, g, change);
   }
   if (forces_.any()) add_force(at, t, g, xi, change);
-  return true;
 }
 
 void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) const {
@@ -226,10 +223,9 @@ void Multibody::force(double t, const double* g, ConstVector xi, Vector out) con
   add_applied_force(t, g, xi, out);
 }
 
-bool Multibody::applied_force(double t, const double* g, ConstVector xi, Vector out) const {
+void Multibody::applied_force(double t, const double* g, ConstVector xi, Vector out) const {
   out.setZero();
   add_applied_force(t, g, xi, out);
-  return true;
 }
 
 void Multibody::add_applied_force(double t, const double* g, ConstVector xi, Vector out) const {

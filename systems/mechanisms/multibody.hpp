@@ -45,15 +45,16 @@ class Multibody final : public Mechanics {
   bool constant_potential() const { return constant_potential_; }
 
   void inertia(const double* g, Matrix out) const override;
-  bool momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const override;
+  void momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
-  bool constraint_values(double t, const double* g, ConstVector xi, Vector out) const override;
-  bool motion(double t, const double* g, ConstVector xi, Matrix inertia, Matrix a, Vector b,
-              Vector rows, Vector change) const override;
+  void constraint_values(double t, const double* g, ConstVector xi, Vector out) const override;
+  bool exact_rates() const override { return true; }
+  void motion(const Geometry& geometry, double t, const double* g, ConstVector xi, Matrix inertia,
+              Matrix a, Vector b, Vector rows, Vector change) const override;
   void holonomic(const double* g, Vector out) const override;
   void force(double t, const double* g, ConstVector xi, Vector out) const override;
   void inertial_force(const double* g, ConstVector xi, Vector out) const override;
-  bool applied_force(double t, const double* g, ConstVector xi, Vector out) const override;
+  void applied_force(double t, const double* g, ConstVector xi, Vector out) const override;
   bool force_depends_on_velocity() const override { return forces_.any(); }
   double power(double t, const double* g, ConstVector xi) const override;
   double potential(const double* g) const override;

@@ -98,10 +98,11 @@ struct StatedRates final : LeftInvariantMechanics {
     a = Blade::constraints({q[0], q[1], q[2]});
     b.setZero();
   }
-  bool rates(double, const double* q, ConstVector xi, Vector rows, Vector momentum) const override {
+  bool exact_rates() const override { return true; }
+  void rates(const Geometry&, double, const double* q, ConstVector xi, Vector rows,
+             Vector momentum) const override {
     rows[0] = -factor * xi[0] * (std::cos(q[0]) * xi[1] + std::sin(q[0]) * xi[2]);
     momentum.setZero();
-    return true;
   }
   double factor;
 };

@@ -88,20 +88,20 @@ void DataMechanics::constraints(double t, const double* g, Matrix a, Vector b) c
   }
 }
 
-bool DataMechanics::rates(double t, const double* g, ConstVector xi, Vector rows,
-                          Vector momentum) const {
-  if (!exact_rates_) return false;
+void DataMechanics::rates(const Geometry& geometry, double t, const double* g, ConstVector xi,
+                          Vector rows, Vector momentum) const {
+  if (!exact_rates_) return Mechanics::rates(geometry, t, g, xi, rows, momentum);
   take(g);
   take(t);
   take(xi);
   const auto of_variables = values_.begin() + static_cast<std::ptrdiff_t>(programs_->variables());
   std::fill(of_variables, values_.end(), 0.0);
-  if (!rates_.along(values_.data(), xi.data(), &*of_variables)) return false;
+  if (!rates_.along(values_.data(), xi.data(), &*of_variables))
+    return Mechanics::rates(geometry, t, g, xi, rows, momentum);
   of_variables[static_cast<std::ptrdiff_t>(time())] = 1;
   const double* y = outputs(Evaluation::rates);
   rows = Eigen::Map<const Eigen::VectorXd>(y, own_);
   momentum = Eigen::Map<const Eigen::VectorXd>(y + own_, n_);
-  return true;
 }
 
 void DataMechanics::holonomic(const double* g, Vector out) const {

@@ -29,7 +29,8 @@ class DataMechanics final : public Mechanics {
   bool force_depends_on_velocity() const override { return velocity_force_; }
   void inertia(const double* g, Matrix out) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
-  bool rates(double t, const double* g, ConstVector xi, Vector rows,
+  bool exact_rates() const override { return exact_rates_; }
+  void rates(const Geometry& geometry, double t, const double* g, ConstVector xi, Vector rows,
              Vector momentum) const override;
   void holonomic(const double* g, Vector out) const override;
   void force(double t, const double* g, ConstVector xi, Vector out) const override;
