@@ -85,12 +85,12 @@ class TypedMechanics final : public Mechanics {
              Vector momentum) const override {
     if constexpr (F::has_dual_rates()) {
       const Vec<n> along(xi);
-      Mat<n, k> transposed;
+      Mat<k, n> a;
       Mat<n, n> inertia;
       Vec<k> row_rate;
       Vec<n> momentum_rate = Vec<n>::Zero();
-      formulas_.dual_rates(element_along<typename F::Dual, typename F::G>(load(g), along), along,
-                           transposed, row_rate, inertia, momentum_rate);
+      formulas_.dual_rates(element_along<typename F::Dual, typename F::G>(load(g), along), along, a,
+                           row_rate, inertia, momentum_rate);
       rows = row_rate;
       momentum = momentum_rate;
     } else {
