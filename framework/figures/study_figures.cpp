@@ -165,7 +165,7 @@ class StudyFigures {
          curves(
              [&](size_t i) {
                const Config c = view_.cell(i).config();
-               return c.chooses_steps() ? c.relative() + c.absolute() : kNotMeasured;
+               return c.chooses_steps() ? c.errors().at(1) : kNotMeasured;
              },
              true),
          "Where steps are chosen by the error; the slope should be 1.");

@@ -15,6 +15,7 @@
 #include <hamel/framework/loop/solver.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/schemes/error_scale.hpp>
 #include <hamel/framework/schemes/scheme.hpp>
 #include <hamel/framework/schemes/tableau.hpp>
 
@@ -38,7 +39,7 @@ struct KernelSetup {
   std::shared_ptr<Solver> fallback;  // for retry; null as above
   std::string fallback_name;
   const Tableau* tableau = nullptr;  // of explicit schemes that are given by one
-  double rtol = 0, atol = 0;         // tolerances that choose the steps; 0: all of size step
+  ErrorScale errors;                 // that choose the steps; 0: all of size step
   bool first_chosen = false;         // the first too
   double largest = std::numeric_limits<double>::infinity();  // of chosen steps
   int order = 0;                                             // the scheme's, with its composition

@@ -44,8 +44,7 @@ class Loop final : public TimeLoop {
     if (!chooses_steps()) return;
     if constexpr (kEstimates) {
       errors_.emplace(step_.estimated_order());
-      if (setup.first_chosen)
-        h_ = std::copysign(step_.first_step(nodes_.now(), setup_.rtol, setup_.atol), h_);
+      if (setup.first_chosen) h_ = std::copysign(step_.first_step(nodes_.now(), setup_.errors), h_);
     } else if constexpr (kSymmetric) {
       rate_ = std::make_unique<RateOf<P>>(problem_);
     }
@@ -163,7 +162,7 @@ class Loop final : public TimeLoop {
     }
     if constexpr (kEstimates) {
       if (errors_ && report.ok()) {
-        error_ = step_.error(nodes_.next(), setup_.rtol, setup_.atol);
+        error_ = step_.error(nodes_.next(), setup_.errors);
         if (!(error_ <= 1)) report.reason = Reason::rejected;
       }
     }

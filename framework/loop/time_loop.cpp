@@ -177,7 +177,7 @@ SolveReport TimeLoop::composed_step() {
 SolveReport TimeLoop::chosen_step() {
   if (errors_) return error_controlled_step();
   const double end = end_of_step(t_), left = end - t_;
-  h_ = controlled_size(std::pow(setup_.rtol + setup_.atol, 1.0 / setup_.order));
+  h_ = controlled_size(std::pow(setup_.errors.at(1), 1.0 / setup_.order));
   h_ = std::copysign(std::min(std::abs(h_), setup_.largest), h_);
   const bool cut = std::abs(h_) >= (1 - kSliver) * std::abs(left);
   if (cut) {

@@ -58,7 +58,7 @@ class TimeLoop : public Kernel {
   virtual void put(double t, std::span<const double> coordinates,
                    std::span<const double> velocity) = 0;
 
-  bool chooses_steps() const { return setup_.rtol > 0 || setup_.atol > 0; }
+  bool chooses_steps() const { return setup_.errors.chooses_steps(); }
 
   KernelSetup setup_;
   double h_;

@@ -12,6 +12,7 @@
 // IV.8.
 #pragma once
 
+#include <hamel/framework/schemes/error_scale.hpp>
 #include <hamel/framework/schemes/runge_kutta.hpp>
 
 namespace hamel {
@@ -65,23 +66,23 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     return this->table_.estimates() ? this->table_.estimated_order : 0;
   }
   /// The error of the step that was just finished; it is good up to 1.
-  double error(const Node& next, double rtol, double atol) const {
-    const double e = estimate(this->table_.e, next, rtol, atol);
+  double error(const Node& next, const ErrorScale& scale) const {
+    const double e = estimate(this->table_.e, next, scale);
     if (this->table_.e3.empty() || e == 0) return e;
-    const double e3 = estimate(this->table_.e3, next, rtol, atol);
+    const double e3 = estimate(this->table_.e3, next, scale);
     return e * (e / std::hypot(e, 0.1 * e3));  // no square: e may be 1e-200, at rest
   }
 
   /// A first step from a node: an Euler step and the change of the rates along it, as in dopri5.f.
-  double first_step(const Node& node, double rtol, double atol) {
+  double first_step(const Node& node, const ErrorScale& scale) {
     const int n = this->problem_.dim();
     this->begin(node, 1);
     const auto size = [&](const Vector& eta_rate, const State& x_rate) {
       this->problem_.velocity(x_rate, error_);
       double norm = 0;  // by hypot: squares of 1e-200 or 1e200 are no numbers
       for (int i = 0; i < n; ++i) {
-        norm = std::hypot(norm, eta_rate[i] / (atol + rtol),
-                          error_[i] / (atol + rtol * std::abs(after_[i])));
+        norm =
+            std::hypot(norm, eta_rate[i] / scale.at(1), error_[i] / scale.at(std::abs(after_[i])));
       }
       return norm / std::sqrt(2 * n);
     };
@@ -152,8 +153,8 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
     this->extended_ = true;
     return true;
   }
-  double estimate(std::span<const double> weights, const Node& next, double rtol,
-                  double atol) const {
+  double estimate(std::span<const double> weights, const Node& next,
+                  const ErrorScale& scale) const {
     error_.setZero();
     x_error_.setZero();
     for (int i = 0; i <= last(); ++i) {
@@ -162,13 +163,13 @@ class MuntheKaas::Step : public RungeKutta<Step<P>, P, typename P::Vector> {
       error_ += weight * this->q_rates_[at(i)];
       x_error_ += weight * this->x_rates_[at(i)];
     }
-    double most = error_.cwiseAbs().maxCoeff() / (atol + rtol);
+    double most = error_.cwiseAbs().maxCoeff() / scale.at(1);
     this->problem_.velocity(this->from_->x, this->xi_);
     this->problem_.velocity(next.x, after_);
     this->problem_.velocity(x_error_, error_);
     for (int i = 0; i < this->problem_.dim(); ++i) {
       const double size = std::max(std::abs(this->xi_[i]), std::abs(after_[i]));
-      const double part = std::abs(error_[i]) / (atol + rtol * size);
+      const double part = std::abs(error_[i]) / scale.at(size);
       if (!(part <= most)) most = part;
     }
     return most;

@@ -28,7 +28,7 @@ void compare(const StudyConfig& config, const StudyCells& cells,
   // Over the step; where steps are chosen over the tolerance.
   const auto size = [&](size_t i) {
     const Config c = cells[i].config();
-    return c.chooses_steps() ? c.relative() + c.absolute() : c.step_or_usual();
+    return c.chooses_steps() ? c.errors().at(1) : c.step_or_usual();
   };
   std::vector<std::vector<size_t>> over;
   for (const bool chosen : {false, true}) {

@@ -14,6 +14,7 @@
 #include <hamel/framework/mechanics/parameters.hpp>
 #include <hamel/framework/mechanics/start.hpp>
 #include <hamel/framework/run/names/input_signals.hpp>
+#include <hamel/framework/schemes/error_scale.hpp>
 
 namespace hamel {
 
@@ -157,10 +158,9 @@ struct HAMEL_API Config {
   bool leaves_method() const;
   /// The step; where none is given one of kUsualStep in the direction of the run.
   double step_or_usual() const { return step.value_or(std::copysign(kUsualStep, until - from)); }
-  /// Are steps chosen by the error, with which tolerances?
+  /// Are steps chosen by the error? Without atol both tolerances are the same.
   bool chooses_steps() const { return rtol || atol; }
-  double relative() const { return rtol.value_or(0); }
-  double absolute() const { return atol.value_or(relative()); }
+  ErrorScale errors() const { return {rtol.value_or(0), atol.value_or(rtol.value_or(0))}; }
 
   /// The times of the rows where they are given by output_step or output_times, else none.
   std::vector<double> recorded_times() const;

@@ -7,7 +7,7 @@ namespace hamel {
 
 DenseOutput::DenseOutput(Kernel& kernel, KernelFactory factory, KernelSetup setup)
     : kernel_(kernel), factory_(std::move(factory)), setup_(std::move(setup)) {
-  setup_.rtol = setup_.atol = 0;
+  setup_.errors = {};
   setup_.first_chosen = false;
 }
 

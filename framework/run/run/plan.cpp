@@ -75,8 +75,7 @@ void check_composition(const Config& config, const SchemeInfo& scheme, const Cla
 // The tolerances, where the scheme can choose its steps by them.
 void choose_steps(const Config& config, const SchemeInfo& scheme, const ClaimedOrder& claim,
                   Method& method, Mistakes& mistakes) {
-  method.setup.rtol = config.relative();
-  method.setup.atol = config.absolute();
+  method.setup.errors = config.errors();
   if (config.step_max) method.setup.largest = *config.step_max;
   method.setup.first_chosen = scheme.estimates_error && !config.step;
   if (scheme.estimates_error) return;

@@ -22,7 +22,7 @@ void RestartedKernel::begin_anew() {
   whole_ += kernel_->whole_steps();
   setup_.from = node.time;
   setup_.step = kernel_->next_step();
-  if (setup_.rtol == 0 && setup_.atol == 0)
+  if (!setup_.errors.chooses_steps())
     setup_.from = origin_ + static_cast<double>(whole_ - origin_steps_) * setup_.step;
   kernel_->node(node);
   setup_.configuration = node.coordinates;

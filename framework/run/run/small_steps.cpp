@@ -129,14 +129,14 @@ std::optional<std::string> below_round_off(const KernelSetup& setup, const Snaps
     motion.solve(now.time, turned, moved);
     for (Eigen::Index i = 0; i < xi.size(); ++i)
       noise = std::max(noise, std::abs(motion.acceleration()[i] - rate[i]) * std::abs(step) /
-                                  (setup.atol + setup.rtol * std::abs(xi[i])));
+                                  setup.errors.at(std::abs(xi[i])));
   }
   if (!(noise > (usual > 0 ? kNoiseOfSmall : kNoise))) return {};
   const double reached = usual > 0 ? noise * usual / std::abs(step) : 100 * noise;
   return fmt::format(
       "rtol = {:g} is below the round-off of the equations of motion at t = {:.6g}: "
       "at least {:.0e} can be reached",
-      setup.rtol, now.time, reached * setup.rtol);
+      setup.errors.relative, now.time, reached * setup.errors.relative);
 }
 
 }  // namespace
