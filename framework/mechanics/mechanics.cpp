@@ -42,7 +42,8 @@ struct OnGroup {
 
 }  // namespace
 
-void Mechanics::momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const {
+void Mechanics::momentum_of_inertia(const double* g, ConstVector xi, Vector out,
+                                    Vector inertial_force) const {
   static thread_local Eigen::MatrixXd i;
   i.resize(dim(), dim());
   inertia(g, i);
@@ -50,7 +51,7 @@ void Mechanics::momentum(const double* g, ConstVector xi, Vector out, Vector ine
   this->inertial_force(g, xi, inertial_force);
 }
 
-void Mechanics::constraint_values(double t, const double* g, ConstVector xi, Vector out) const {
+void Mechanics::values_of_constraints(double t, const double* g, ConstVector xi, Vector out) const {
   static thread_local Eigen::MatrixXd a;
   static thread_local Eigen::VectorXd b;
   a.resize(constraint_count(), dim());
@@ -60,7 +61,8 @@ void Mechanics::constraint_values(double t, const double* g, ConstVector xi, Vec
   out -= b;
 }
 
-void Mechanics::applied_force(double t, const double* g, ConstVector xi, Vector out) const {
+void Mechanics::force_without_inertial(double t, const double* g, ConstVector xi,
+                                       Vector out) const {
   force(t, g, xi, out);
   if (constant_inertia()) return;
   static thread_local Eigen::VectorXd inertial;
@@ -69,8 +71,8 @@ void Mechanics::applied_force(double t, const double* g, ConstVector xi, Vector 
   out -= inertial;
 }
 
-void Mechanics::rates(const Geometry& geometry, double t, const double* g, ConstVector xi,
-                      Vector rows, Vector momentum) const {
+void Mechanics::rates_by_differences(const Geometry& geometry, double t, const double* g,
+                                     ConstVector xi, Vector rows, Vector momentum) const {
   struct Work {
     Work(const OnGroup& here)
         : differences(here),
@@ -94,8 +96,9 @@ void Mechanics::rates(const Geometry& geometry, double t, const double* g, Const
   momentum = work.momentum;
 }
 
-void Mechanics::motion(const Geometry& geometry, double t, const double* g, ConstVector xi,
-                       Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const {
+void Mechanics::motion_of_parts(const Geometry& geometry, double t, const double* g, ConstVector xi,
+                                Matrix inertia, Matrix a, Vector b, Vector rows,
+                                Vector change) const {
   if (!constant_inertia()) this->inertia(g, inertia);
   if (constraint_count() > 0 && !constant_constraints()) constraints(t, g, a, b);
   static thread_local Eigen::VectorXd mu, rate;

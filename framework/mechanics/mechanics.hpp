@@ -42,21 +42,29 @@ class Mechanics {
   /// I(g), n x n.
   virtual void inertia(const double* g, Matrix out) const = 0;
   /// I(g) xi and 1/2 d(xi^T I(g) xi), n entries each.
-  virtual void momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const;
+  virtual void momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const {
+    momentum_of_inertia(g, xi, out, inertial_force);
+  }
   /// A(t, g), k x n, and b(t, g).
   virtual void constraints(double t, const double* g, Matrix a, Vector b) const = 0;
   /// A xi - b, k entries.
-  virtual void constraint_values(double t, const double* g, ConstVector xi, Vector out) const;
+  virtual void constraint_values(double t, const double* g, ConstVector xi, Vector out) const {
+    values_of_constraints(t, g, xi, out);
+  }
   /// Are rates() and motion() free of differences?
   virtual bool exact_rates() const { return false; }
   /// db/dt - (dA/dt) xi, k entries, and (dI/dt) xi, n entries, along (t, g) at g' = g xi. Only
   /// tau and products are taken of the geometry.
   virtual void rates(const Geometry& geometry, double t, const double* g, ConstVector xi,
-                     Vector rows, Vector momentum) const;
+                     Vector rows, Vector momentum) const {
+    rates_by_differences(geometry, t, g, xi, rows, momentum);
+  }
   /// All of the equations of motion: I and A, b (left as they are where they are constant), db/dt -
   /// (dA/dt) xi, and ad*_xi I xi + F - (dI/dt) xi.
   virtual void motion(const Geometry& geometry, double t, const double* g, ConstVector xi,
-                      Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const;
+                      Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const {
+    motion_of_parts(geometry, t, g, xi, inertia, a, b, rows, change);
+  }
   /// How many velocities are independent in the frame that a system states, the first of xi
   /// (framed_equations.hpp); 0: it states none.
   virtual int framed_size() const { return 0; }
@@ -76,13 +84,27 @@ class Mechanics {
     out.setZero();
   }
   /// The rest of it, f - dV.
-  virtual void applied_force(double t, const double* g, ConstVector xi, Vector out) const;
+  virtual void applied_force(double t, const double* g, ConstVector xi, Vector out) const {
+    force_without_inertial(t, g, xi, out);
+  }
   /// Does f of (M3) depend on xi?
   virtual bool force_depends_on_velocity() const { return true; }
   /// <f, xi>, the power of the force.
   virtual double power(double /*t*/, const double* /*g*/, ConstVector /*xi*/) const { return 0; }
   /// V(g).
   virtual double potential(const double* /*g*/) const { return 0; }
+
+ private:
+  // The defaults, out of line; the virtual functions are not, as every object needs the vtable
+  // (tools/cmake/localise).
+  void momentum_of_inertia(const double* g, ConstVector xi, Vector out,
+                           Vector inertial_force) const;
+  void values_of_constraints(double t, const double* g, ConstVector xi, Vector out) const;
+  void rates_by_differences(const Geometry& geometry, double t, const double* g, ConstVector xi,
+                            Vector rows, Vector momentum) const;
+  void motion_of_parts(const Geometry& geometry, double t, const double* g, ConstVector xi,
+                       Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const;
+  void force_without_inertial(double t, const double* g, ConstVector xi, Vector out) const;
 };
 
 /// The left-invariant case: constant inertia and rows, nothing else.
