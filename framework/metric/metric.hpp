@@ -20,9 +20,10 @@
 // term that it adds to I xi is a reaction, with lambda + kappa c in place of lambda.
 //
 // W and the factors of Y^T Y: those of dense_factors.hpp, or where sizes are known at run time only
-// of branched_factors.hpp. Long chains with more rows than free velocities, as a train of trailers,
-// have a full I and a full Y^T Y of nearly its size, whose factors cost n^3; a basis of ker A by
-// elimination costs n^2 there (run_time_frame.hpp) and takes the place of (2), F in that basis.
+// of branched_factors.hpp. With more than 12 velocities a basis of ker A by elimination
+// (run_time_frame.hpp) takes the place of (2), F in that basis: W amplifies the round-off of a
+// momentum by the root of the condition of I, 4e4 of a chain of 200 bodies; and a train of trailers
+// has a full I and a full Y^T Y of nearly its size, whose factors cost n^3, the elimination n^2.
 // F is (M39) of framework/schemes/README.md.
 #pragma once
 
@@ -56,13 +57,15 @@ class Metric {
       : inertia(n, n),
         a(k, n),
         b(k),
-        factors_(has_chain(n, k) ? 0 : n, has_chain(n, k) ? 0 : k),
+        factors_(has_chain(n) ? 0 : n, has_chain(n) ? 0 : k),
         lambda_(Multipliers::Zero(k)),
         none_(Multipliers::Zero(k)),
-        refined_(none_),
-        work_(n) {
+        rows_(none_),
+        first_(none_),
+        work_(n),
+        left_(n) {
     if constexpr (!fixed)
-      if (has_chain(n, k)) chain_.emplace(n, k);
+      if (has_chain(n)) chain_.emplace(n, k);
   }
   /// Any system with dim() and constraint_count(): Mechanics, or a problem of schemes/problem.hpp.
   template <class System>
@@ -148,16 +151,19 @@ class Metric {
     return lambda_;
   }
   /// The admissible velocity of mu, A xi = b, refined once: Y^T Y squares the condition of the
-  /// rows.
+  /// rows, and the round-off of its factors is nearly the same in every step. xi is not mu.
   void admissible(const Vector& mu, Vector& xi) {
     if (on_chain() || k() == 0) return solve(mu, b, xi);
     project(mu, b, work_);
-    refined_ = lambda_;
-    factors_.subtract_rows(b, work_, lambda_);
-    factors_.solve_gram(lambda_);
-    factors_.add_reaction(lambda_, work_);
-    lambda_ += refined_;
     factors_.apply_root_transpose(work_, xi);
+    first_ = lambda_;
+    momentum(xi, left_);
+    left_ = mu - left_;
+    rows_ = b - a.lazyProduct(xi);
+    project(left_, rows_, work_);
+    factors_.apply_root_transpose(work_, left_);
+    xi += left_;
+    lambda_ += first_;
     if (massless_) [[unlikely]]
       lambda_ -= stiffness_ * b;
   }
@@ -206,7 +212,7 @@ class Metric {
 
  private:
   int k() const { return static_cast<int>(a.rows()); }
-  static constexpr bool has_chain(int n, int k) { return !fixed && n > 12 && 2 * k > n; }
+  static constexpr bool has_chain(int n) { return !fixed && n > 12; }
   bool on_chain() const {
     if constexpr (fixed) return false;
     else return chain_.has_value();
@@ -230,8 +236,8 @@ class Metric {
   using Factors = std::conditional_t<fixed, DenseFactors<N, K>, BranchedFactors>;
   Factors factors_;
   [[no_unique_address]] std::conditional_t<fixed, NoChain, std::optional<RunTimeFrame>> chain_;
-  Multipliers lambda_, none_, refined_;
-  Vector work_;
+  Multipliers lambda_, none_, rows_, first_;
+  Vector work_, left_;
   bool known_ = false, massless_ = false;
   double stiffness_ = 0;
 };

@@ -101,7 +101,7 @@ TEST(LongChain, AccelerationsOfManyRowsAreThoseWithMultipliers) {
     geometry->tau(shift.data(), moved.data());
     geometry->compose(g.data(), moved.data(), moved.data());
     motion.solve(0, moved, xi);
-    ASSERT_TRUE(mechanics.motion(0, moved.data(), xi, inertia, a, b, rows, change));
+    mechanics.motion(*geometry, 0, moved.data(), xi, inertia, a, b, rows, change);
     Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n + k, n + k);
     whole << inertia, -a.transpose(), a, Eigen::MatrixXd::Zero(k, k);
     Eigen::VectorXd right(n + k);

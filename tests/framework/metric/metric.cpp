@@ -170,10 +170,11 @@ TEST(Metric, IsItsDefinition) {
   for (int trial = 0; trial < 20; ++trial) {
     for (const bool diagonal : {false, true})
       expect_metric<Metric<6, 3>>(random_system(random, 6, 3, diagonal), random);
-    for (const auto& [n, k] : {std::pair{1, 0}, {3, 1}, {5, 4}, {6, 3}, {6, 6}, {12, 9}, {20, 9}})
+    for (const auto& [n, k] : {std::pair{1, 0}, {3, 1}, {5, 4}, {6, 3}, {6, 6}, {12, 9}})
       expect_metric<Metric<>>(random_system(random, n, k), random);
-    // A long chain has its basis.
-    expect_frame<Metric<>>(random_system(random, 20, 17), Matrix(), random);
+    // More velocities have their basis.
+    for (const int k : {0, 9, 17})
+      expect_frame<Metric<>>(random_system(random, 20, k), Matrix(), random);
   }
 }
 
