@@ -121,6 +121,28 @@ void rates_along(const SystemModel& model, const Geometry& geometry, const Start
   report.push_back({"the rate of the inertia is its own", wrong_momentum.value, 1e-9});
 }
 
+// Checks that the accelerations that a system has at once are those of its parts.
+void accelerations(const SystemModel& model, const Geometry& geometry, const Start& start,
+                   LawReport& report) {
+  const Mechanics& mechanics = *model.mechanics;
+  if (!mechanics.has_accelerations()) return;
+  const Eigen::Index n = mechanics.dim();
+  const DynamicProblem problem({std::shared_ptr<const void>(), &geometry}, model.mechanics);
+  EquationsOfMotion<DynamicProblem> motion(problem);
+  Eigen::VectorXd g(geometry.size()), found(n);
+  Largest wrong;
+  for (int i = 0; i < 5; ++i) {
+    place_near(geometry, start, i, g);
+    Eigen::VectorXd xi(n);
+    for (Eigen::Index j = 0; j < n; ++j) xi[j] = std::sin(1.7 * static_cast<double>(j + i) + 0.3);
+    motion.solve(0.3, g, xi);
+    mechanics.accelerations(0.3, g.data(), xi, found);
+    wrong((found - motion.acceleration()).norm() /
+          (motion.acceleration().norm() + xi.squaredNorm()));
+  }
+  report.push_back({"the accelerations are those of I, A and the forces", wrong.value, 1e-10});
+}
+
 // The frame that a system states: A E = 0, and the rates of y are those of the equations with
 // multipliers.
 void frame(const SystemModel& model, const Geometry& geometry, const Start& start,
@@ -186,6 +208,7 @@ LawReport check_system(const SystemModel& model, double until, const Geometry* g
   if (model.drive && geometry != nullptr) check::inputs_of_zero(model, *geometry, start, report);
   if (geometry != nullptr) check::without_matrices(model, *geometry, start, report);
   if (geometry != nullptr) check::rates_along(model, *geometry, start, report);
+  if (geometry != nullptr) check::accelerations(model, *geometry, start, report);
   if (model.mechanics->framed_size() > 0 && geometry != nullptr)
     check::frame(model, *geometry, start, report);
   if (!model.exact) return report;

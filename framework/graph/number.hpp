@@ -86,6 +86,8 @@ class Recording {
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
+  /// Is current no longer: its graph is complete, and may be read by every thread.
+  void end();
   /// Recording of this thread. Throws std::logic_error where there is none.
   static Recording& current();
 
@@ -114,6 +116,7 @@ class Recording {
   std::vector<Node> nodes_;
   std::vector<int> table_;  // of nodes by hash, open addressing; -1: free
   Recording* outer_;
+  bool ended_ = false;
 };
 
 Number operator+(const Number& a, const Number& b);

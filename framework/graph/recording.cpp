@@ -14,7 +14,11 @@ thread_local Recording* current_recording = nullptr;
 }  // namespace
 
 Recording::Recording() : table_(1024, -1), outer_(current_recording) { current_recording = this; }
-Recording::~Recording() { current_recording = outer_; }
+Recording::~Recording() { end(); }
+
+void Recording::end() {
+  if (!std::exchange(ended_, true)) current_recording = outer_;
+}
 
 Recording& Recording::current() {
   if (!current_recording) throw std::logic_error("graph::Number: no Recording in this thread");

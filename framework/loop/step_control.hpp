@@ -87,10 +87,17 @@ class RateOf final : public MotionRate {
  private:
   double rate(const Node& node, typename P::Vector& xi, typename P::State& x_rate) {
     problem_.velocity(node.x, xi);
-    motion_(node.t, node.g, node.x, x_rate);
+    evaluate(node, x_rate);
     if (!(length_ > 0)) return 0;
     const double v = motion_.size(node.x) / length_;
     return std::sqrt(v * v + motion_.size(x_rate) / length_);
+  }
+  // The rate of x, and the metric there.
+  void evaluate(const Node& node, typename P::State& x_rate) {
+    motion_(node.t, node.g, node.x, x_rate);
+    if constexpr (!P::left_invariant) {
+      if (motion_.gives_accelerations()) motion_.set(node.t, node.g);
+    }
   }
   double length_of_motion(double h) {
     rate(*node_, xi_, x_rate_);
@@ -103,7 +110,7 @@ class RateOf final : public MotionRate {
     moved_.x = h * node_->x + (h * h / 2) * x_rate_;
     const double moved = motion_.size(moved_.x);
     moved_.x = node_->x + h * x_rate_;
-    motion_(moved_.t, moved_.g, moved_.x, moved_rate_);
+    evaluate(moved_, moved_rate_);
     moved_rate_ -= x_rate_;
     const double square = motion_.size(moved_rate_) / moved;  // kappa^2
     return square > 0 ? std::sqrt((v * v + a * a / square) / square) : 0;

@@ -16,7 +16,9 @@ constexpr double kSliver = 1e-6;
 }  // namespace
 
 TimeLoop::TimeLoop(const KernelSetup& setup)
-    : setup_(setup), h_(setup.step), from_(setup.from), time_(setup.from), t_(setup.from) {}
+    : setup_(setup), h_(setup.step), from_(setup.from), time_(setup.from), t_(setup.from) {
+  if (setup_.mechanics != nullptr) setup_.mechanics->begin();
+}
 
 Status TimeLoop::take_steps(long count) {
   const FlushDenormals flushed;

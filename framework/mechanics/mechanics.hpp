@@ -65,6 +65,13 @@ class Mechanics {
                       Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const {
     motion_of_parts(geometry, t, g, xi, inertia, a, b, rows, change);
   }
+  /// A run begins: what was chosen on the way of another one is forgotten, so that a motion depends
+  /// on its start alone.
+  virtual void begin() const {}
+  /// Has it xi' of the equations of motion at once, at an admissible (t, g, xi)?
+  virtual bool has_accelerations() const { return false; }
+  virtual void accelerations(double /*t*/, const double* /*g*/, ConstVector /*xi*/,
+                             Vector /*out*/) const {}
   /// How many velocities are independent in the frame that a system states, the first of xi
   /// (framed_equations.hpp); 0: it states none.
   virtual int framed_size() const { return 0; }

@@ -80,9 +80,15 @@ class EquationsOfMotion {
     if constexpr (Problem::left_invariant) {
       problem_.acceleration(x, rate);
     } else {
+      if (gives_accelerations()) return find_accelerations(t, g, x, rate);
       solve(t, g, x);
       rate = acceleration_;
     }
+  }
+  /// Does the problem have the rate at once? Then operator() sets nothing for what follows.
+  bool gives_accelerations() const {
+    if constexpr (requires { problem_.has_accelerations(); }) return problem_.has_accelerations();
+    else return false;
   }
   /// xi' and lambda (k entries, N or N m as the rows have it) at (t, g, xi).
   void solve(double t, const Element& g, const Vector& xi) {
@@ -127,6 +133,11 @@ class EquationsOfMotion {
   const Multipliers& reaction() { return metric_.multipliers(change_, acceleration_); }
 
  private:
+  void find_accelerations([[maybe_unused]] double t, [[maybe_unused]] const Element& g,
+                          [[maybe_unused]] const State& x, [[maybe_unused]] State& rate) {
+    if constexpr (requires { problem_.accelerations(t, g, x, rate); })
+      problem_.accelerations(t, g, x, rate);
+  }
   // I and A have been evaluated.
   void factor() {
     metric_.factor(!problem_.constant_inertia(),

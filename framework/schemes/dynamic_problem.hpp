@@ -114,6 +114,10 @@ class DynamicProblem {
               Multipliers& b, Multipliers& rows, Vector& change) const {
     mechanics_->motion(*geometry_, t, g.data(), xi, inertia, a, b, rows, change);
   }
+  bool has_accelerations() const { return mechanics_->has_accelerations(); }
+  void accelerations(double t, const Element& g, const State& x, State& rate) const {
+    mechanics_->accelerations(t, g.data(), x, rate);
+  }
   bool framed() const { return mechanics_->framed_size() > 0; }
   void expand(const Element& g, const State& x, Vector& xi) const {
     mechanics_->expand(g.data(), x, xi);

@@ -141,7 +141,7 @@ class RungeKutta {
     double off = 0;  // squared, of the rows of phi, in the metric
     const int held = problem_.holonomic_rows();
     if (held > 0) {
-      if (motion_.framed()) motion_.rows().set(node.t, node.g);  // the stages have set none
+      if (!motion_.sets_rows()) motion_.rows().set(node.t, node.g);
       gaps_.setZero();
       problem_.holonomic(from_->g, phi_);
       gaps_.tail(held) = phi_;

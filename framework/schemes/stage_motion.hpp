@@ -40,7 +40,9 @@ class StageMotion {
     else if constexpr (kFrame == Frame::never) return onto_rows(t, g, x);
     else return framed() ? onto_frame(t, g, x) : onto_rows(t, g, x);
   }
-  /// The rows and the metric of the last set() or evaluation without a frame.
+  /// Has the last evaluation set rows()?
+  bool sets_rows() const { return !framed() && !equations_.gives_accelerations(); }
+  /// The rows and the metric of the last set() or evaluation that sets them.
   EquationsOfMotion<Problem>& rows() { return equations_; }
 
  private:

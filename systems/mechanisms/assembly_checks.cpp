@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <hamel/systems/mechanisms/assembly.hpp>
+#include <hamel/systems/mechanisms/programs/body_formulas.hpp>
 
 namespace hamel {
 
@@ -63,8 +64,7 @@ void Assembly::check_body(const Mechanism::BodyPart& body) {
 
 // A body that can be moved for nothing has no equation of motion.
 void Assembly::check_masses(const Tree& tree) {
-  Eigen::MatrixXd inertia(tree.dim(), tree.dim());
-  tree.inertia(inertia);
+  const Eigen::MatrixXd inertia = inertia_at(tree, tree.drawn());
   for (const auto& joint : parts_.joints_) {
     const int link = body_links_.at(joint.child);
     if (find_joint_kind(joint.kind)->joints == 0 || link == kGround) continue;

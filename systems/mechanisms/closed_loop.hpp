@@ -18,8 +18,8 @@ struct Loop {
 
   bool is_hinge() const { return !axis.isZero(0); }
   size_t row_count() const { return is_hinge() ? 5 : 3; }
-  /// At a tree that was placed; with rates one that moved and accelerated.
-  void rows(const Tree& tree, bool with_rates, Row* out) const;
+  /// At a tree that was placed.
+  void rows(const Tree& tree, Row* out) const;
 };
 
 }  // namespace hamel::mechanisms

@@ -5,7 +5,8 @@
 //   u . (v + omega x q) = u . v_ground(q),    and where the height z(q) may change, z(q) = 0, whose
 //   differential is gamma . (v + omega x q): q may move in the body, but only along the ground.
 // Each kind is one class of the folder contacts/, listed in contact_kinds.cpp, with one formula for
-// q and u, of which both the rows (T = double) and their rates along the motion (T = Dual) follow:
+// q and u, of which the rows at one place (T = double) and their programs (T = graph::Number,
+// programs/row_formulas.hpp) follow:
 //   struct Blade {                                   // may have members, stated in fields(f)
 //     static std::string name(), summary();          // in files: [[blade]]; for the schema
 //     static std::vector<std::string> meanings();    // of the directions: "does not slip across"
@@ -19,16 +20,22 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <hamel/framework/mechanics/drawing.hpp>
-#include <hamel/systems/mechanisms/dual.hpp>
 #include <hamel/systems/mechanisms/kind.hpp>
 #include <hamel/systems/mechanisms/tree.hpp>
 
+namespace hamel::graph {
+class Number;
+}
+
 namespace hamel::mechanisms {
+
+struct RecordedContact;  // programs/contact_view.hpp
+template <class T>
+class ContactView;
 
 /// The ground moves with this velocity, and turns about the world's origin.
 struct Ground {
@@ -37,20 +44,12 @@ struct Ground {
   bool moves() const { return rate != 0 || !velocity.isZero(0); }
 };
 
-/// Row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and
-/// phi, and d/dt (b - A xi) along the motion, xi held.
+/// Row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and phi.
 struct Row {
   int link = kGround, other = kGround;
   Wrench wrench = Wrench::Zero(), other_wrench;  // this one where there is another link
   int dof = -1;
-  double drift = 0, phi = 0, rate = 0;
-
-  /// A xi of wrenches, on a tree that moved.
-  double power(const Tree& tree) const {
-    double out = wrench.dot(tree.twist(link));
-    if (other != kGround) out -= other_wrench.dot(tree.twist(other));
-    return out;
-  }
+  double drift = 0, phi = 0;
 };
 
 class ContactModel;
@@ -62,11 +61,9 @@ struct Contact {
   std::shared_ptr<const ContactModel> model;
   int link = 0;
   Vec3 at = Vec3::Zero();  // as drawn
-  // Found by ConstraintRows::find_fixed:
-  int carrier = 0;  // the link, or its parent where the link's own turning changes nothing: a wheel
-  bool fixed = false;  // its rows are the same wrenches in the carrier at all times
-  std::array<Wrench, most_rows> wrenches = {};
-  double height = 0;
+  // The link, or its parent where the link's own turning changes nothing: a wheel. Found by
+  // ConstraintRows::find_carriers.
+  int carrier = 0;
 
   /// How many rows, the last of them its height.
   size_t row_count() const;
@@ -86,16 +83,13 @@ class ContactModel {
   virtual double radius() const = 0;
   virtual std::vector<BodyShape> shapes(const Point& at) const = 0;
 
-  /// At a tree that was placed; with rates one that moved and accelerated.
-  virtual void rows(const Contact& contact, const Tree& tree, const Ground& ground, bool with_rates,
+  /// At a tree that was placed.
+  virtual void rows(const Contact& contact, const Tree& tree, const Ground& ground,
                     Row* out) const = 0;
-  /// A xi - b of its rows, at a tree that moved with xi.
-  virtual void velocities(const Contact& contact, const Tree& tree, const Ground& ground,
-                          double* out) const = 0;
-  /// phi of its last row, at a tree that was placed.
-  virtual double height(const Contact& contact, const Tree& tree) const = 0;
   /// The point of contact with the ground, in the world.
   virtual Vec3 touch(const Contact& contact, const Tree& tree) const = 0;
+  virtual RecordedContact record(const ContactView<graph::Number>& view,
+                                 const Ground& ground) const = 0;
 
   size_t directions() const { return directions_; }
 
@@ -117,25 +111,16 @@ const std::vector<ContactKind>& contact_kinds();
 /// Null where there is none.
 const ContactKind* find_contact_kind(const std::string& name);
 
-/// Inputs of the formula of a contact, seen from the root: as values, or with the rates along
-/// the motion.
-template <class T>
-class ContactView {
-  static constexpr bool has_rates = !std::is_same_v<T, double>;
-
+/// Inputs of the formula of a contact, seen from the root.
+template <>
+class ContactView<double> {
  public:
-  using Vector = VecT<T, 3>;
+  using Vector = Vec3;
 
-  ContactView(const ContactView&) = delete;
-  ContactView& operator=(const ContactView&) = delete;
   ContactView(const Contact& contact, const Tree& tree)
-      : body_(seen(contact.carrier, tree)), root_(tree.root_in_world(contact.link)) {
-    if constexpr (has_rates) {
-      against_ = tree.against_root(contact.carrier);
-      root_twist_ = tree.root_twist(contact.link);
-    }
-    at =
-        with_rate(body_.apply(contact.at), [&](const Vec3& x) { return velocity_at(against_, x); });
+      : at(tree.from_root(contact.carrier).apply(contact.at)),
+        body_(tree.from_root(contact.carrier)),
+        root_(tree.root_in_world(contact.link)) {
     vertical = world_axis(2);
   }
 
@@ -143,46 +128,14 @@ class ContactView {
   Vector vertical;  // upwards
 
   /// A direction of the body, as drawn.
-  Vector turned(const Vec3& direction) const {
-    return with_rate(body_.rotation.lazyProduct(direction),
-                     [&](const Vec3& v) { return Vec3(upper(against_).cross(v)); });
-  }
+  Vector turned(const Vec3& direction) const { return body_.rotation.lazyProduct(direction); }
   /// The world's x, y or z.
-  Vector world_axis(int i) const {
-    return with_rate(root_.rotation.row(i).transpose(),
-                     [&](const Vec3& v) { return Vec3(v.cross(upper(root_twist_))); });
-  }
-
-  Vector point_in_world(const Vector& q) const {
-    if constexpr (has_rates)
-      return dual(root_.apply(value(q)),
-                  root_.rotation * (rate(q) + velocity_at(root_twist_, value(q))));
-    else return root_.apply(q);
-  }
-  double height(const Vector& q) const { return root_.apply(value(q))[2]; }
-  Vector direction_in_world(const Vector& u) const {
-    if constexpr (has_rates)
-      return dual(root_.rotation * value(u),
-                  root_.rotation * (rate(u) + upper(root_twist_).cross(value(u))));
-    else return root_.rotation.lazyProduct(u);
-  }
+  Vector world_axis(int i) const { return root_.rotation.row(i).transpose(); }
+  Vector point_in_world(const Vector& q) const { return root_.apply(q); }
+  Vector direction_in_world(const Vector& u) const { return root_.rotation.lazyProduct(u); }
 
  private:
-  template <class Rate>
-  static Vector with_rate(const Vec3& v, Rate&& rate) {
-    if constexpr (has_rates) return dual(v, rate(v));
-    else return v;
-  }
-
-  const Rigid& seen(int link, const Tree& tree) {
-    const Rigid* const known = tree.known_from_root(link);
-    return known != nullptr ? *known : found_.emplace(tree.from_root(link));
-  }
-
-  std::optional<Rigid> found_;
-  const Rigid& body_;           // the carrier
-  const Rigid& root_;           // in the world
-  Twist against_, root_twist_;  // with rates
+  const Rigid &body_, &root_;  // the carrier; the root in the world
 };
 
 /// The point of contact, and the horizontal directions in which it does not slip.

@@ -1,11 +1,9 @@
-// The kinds of contacts by name, and their rows, also with rates, from one formula each.
-//
-// The power of a wrench F on a link changes by F' . V + F . D, D the change of its twist
-// (tree.hpp); seen from the root F = (q x u, u).
+// The kinds of contacts by name, and their rows from one formula each.
 #include <hamel/systems/mechanisms/contacts/ball_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/blade_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/roller_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/wheel_contact.hpp>
+#include <hamel/systems/mechanisms/programs/contact_view.hpp>
 
 namespace hamel::mechanisms {
 namespace {
@@ -45,29 +43,29 @@ class ContactOf final : public ContactModel {
   }
   std::vector<BodyShape> shapes(const Point& at) const override { return kind_.shapes(at); }
 
-  void rows(const Contact& contact, const Tree& tree, const Ground& ground, bool with_rates,
+  void rows(const Contact& contact, const Tree& tree, const Ground& ground,
             Row* out) const override {
-    if (with_rates) find_rows<Dual>(contact, tree, ground, out);
-    else find_rows<double>(contact, tree, ground, out);
-  }
-
-  HAMEL_FLATTEN void velocities(const Contact& contact, const Tree& tree, const Ground& ground,
-                                double* out) const override {
     const ContactView<double> view(contact, tree);
     const auto touch = kind_.touch(view);
-    const Vec3 velocity = velocity_at(tree.twist(contact.link), touch.point);
-    const bool ground_moves = ground.moves();
+    const auto set = [&](const Vec3& u) {
+      out->link = contact.link;
+      out->wrench = force_at(touch.point, u);
+    };
     for (const Vec3& u : touch.directions) {
-      *out = u.dot(velocity);
-      if (ground_moves) *out -= drift(view, ground, touch.point, u);
+      set(u);
+      if (ground.moves()) out->drift = drift(view, ground, touch.point, u);
       ++out;
     }
-    *out = view.vertical.dot(velocity);
+    set(view.vertical);
+    out->phi = view.point_in_world(touch.point)[2];
   }
 
-  HAMEL_FLATTEN double height(const Contact& contact, const Tree& tree) const override {
-    const ContactView<double> view(contact, tree);
-    return view.height(kind_.touch(view).point);
+  RecordedContact record(const ContactView<Number>& view, const Ground& ground) const override {
+    const auto touch = kind_.touch(view);
+    RecordedContact out{touch.point, {touch.directions.begin(), touch.directions.end()}, {}};
+    for (const NumberVec3& u : touch.directions)
+      out.drifts.push_back(ground.moves() ? drift(view, ground, touch.point, u) : Number(0));
+    return out;
   }
 
   Vec3 touch(const Contact& contact, const Tree& tree) const override {
@@ -76,43 +74,6 @@ class ContactOf final : public ContactModel {
   }
 
  private:
-  template <class T>
-  HAMEL_FLATTEN void find_rows(const Contact& contact, const Tree& tree, const Ground& ground,
-                               Row* out) const {
-    constexpr bool with_rates = std::is_same_v<T, Dual>;
-    const ContactView<T> view(contact, tree);
-    const auto touch = kind_.touch(view);
-    const Vec3 q = value(touch.point);
-    Vec3 velocity, change;  // of the body at q: v + omega x q, and its rate
-    if constexpr (with_rates) {
-      const Twist twist = tree.twist(contact.link);
-      velocity = velocity_at(twist, q);
-      change =
-          velocity_at(tree.acceleration(contact.link), q) + upper(twist).cross(rate(touch.point));
-    }
-    const auto set = [&](const VecT<T, 3>& u) {
-      out->link = contact.link;
-      out->wrench = force_at(q, value(u));
-      if constexpr (with_rates) out->rate = -(rate(u).dot(velocity) + value(u).dot(change));
-    };
-    const bool ground_moves = ground.moves();
-    for (const VecT<T, 3>& u : touch.directions) {
-      set(u);
-      if (ground_moves) {
-        const T given = drift(view, ground, touch.point, u);
-        if constexpr (with_rates) {
-          out->drift = given.value;
-          out->rate += given.rate;
-        } else {
-          out->drift = given;
-        }
-      }
-      ++out;
-    }
-    set(view.vertical);
-    out->phi = view.height(touch.point);
-  }
-
   Kind kind_;
 };
 

@@ -50,14 +50,6 @@ struct Forces {
   /// Is one of them of t?
   bool time_dependent() const;
   bool has_signals() const { return !motors.empty() || !forces.empty(); }
-  double potential(const Tree& tree, const double* g) const;
-  /// out -= dV of the springs.
-  void add_spring_force(const Tree& tree, const double* g, Eigen::Ref<Eigen::VectorXd> out) const;
-  /// out -= dV.
-  void add_potential_force(const Tree& tree, const double* g,
-                           Eigen::Ref<Eigen::VectorXd> out) const;
-  /// out += f; the tree placed and moving.
-  void add_force(const Tree& tree, const SignalInput& now, Eigen::Ref<Eigen::VectorXd> out) const;
 };
 
 }  // namespace hamel::mechanisms

@@ -1,20 +1,23 @@
 #include <hamel/systems/mechanisms/multibody.hpp>
 
 #include <algorithm>
-#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include <hamel/systems/mechanisms/programs/force_formulas.hpp>
 
 namespace hamel::mechanisms {
 
 Multibody::Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
                      std::shared_ptr<const Geometry> geometry)
-    : trees_{tree, tree},
+    : tree_(tree),
       rows_(std::move(rows)),
       row_info_(rows_.info()),
       forces_(std::move(forces)),
       geometry_(std::move(geometry)),
       coordinates_(static_cast<size_t>(geometry_->columns())),
-      work_(tree.dim()) {
-  rows_.find_fixed(tree);
+      work_(2 * tree.dim() + static_cast<Eigen::Index>(row_info_.size())) {
+  rows_.find_carriers(tree);
   std::vector<int> all(row_info_.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   keep(all);
@@ -32,9 +35,7 @@ void Multibody::keep(const std::vector<int>& rows) {
       if (holonomic) ++holonomic_;
     }
   }
-  varies_.assign(row_info_.size(), 0);
-  for (const int row : kept_) varies_[static_cast<size_t>(row)] = 1;
-  fixed_rows_ = Eigen::MatrixXd::Zero(this->constraint_count(), dim());
+  forget_programs();
 }
 
 void Multibody::drive(const std::vector<Driver>& drivers,
@@ -55,6 +56,7 @@ void Multibody::drive(const std::vector<Driver>& drivers,
         };
       }
   }
+  forget_programs();
 }
 
 bool Multibody::autonomous() const {
@@ -67,35 +69,212 @@ bool Multibody::autonomous() const {
                               [](const Prescribed& p) { return p.time_dependent; });
 }
 
-Tree& Multibody::placed(const double* g) const {
-  if (trees_[last_].placed_at(g)) return trees_[last_];
-  last_ = 1 - last_;
-  trees_[last_].place(g);
-  return trees_[last_];
+// ---- programs -----------------------------------------------------------------------------------
+
+void Multibody::forget_programs() {
+  programs_.reset();
+  first_motion_.reset();
+  motion_.reset();
+  recorded_motion_ = false;
+  state_.assign(parts().state_size(), 0.0);
 }
 
-Tree& Multibody::turned(const double* g) const {
-  Tree& tree = placed(g);
-  tree.turn_inertia();
-  return tree;
+MechanismPrograms& Multibody::programs() const {
+  if (!programs_) programs_.emplace(parts());
+  return *programs_;
 }
 
-Tree& Multibody::carrying(const double* g) const {
-  Tree& tree = placed(g);
-  tree.accumulate_inertia();
-  return tree;
+const double* Multibody::state(const double* g) const {
+  std::copy_n(g, tree_.size(), state_.data());
+  return state_.data();
 }
+
+const double* Multibody::state(const double* g, ConstVector xi) const {
+  std::copy_n(g, tree_.size(), state_.data());
+  std::copy_n(xi.data(), dim(), state_.data() + tree_.size());
+  return state_.data();
+}
+
+const double* Multibody::state(double t, const double* g, ConstVector xi) const {
+  state(g, xi);
+  take_signals(t);
+  take_rates(t);
+  return state_.data();
+}
+
+// Reads the element and the velocity that are there.
+void Multibody::take_signals(double t) const {
+  const size_t signals = count_signals(forces_);
+  if (signals == 0) return;
+  const double* const g = state_.data();
+  const auto first = static_cast<size_t>(tree_.size()), n = static_cast<size_t>(dim());
+  SignalInput now{t, {}, {state_.data() + first, n}, {}};
+  InputValues u;
+  if (forces_.has_signals()) {
+    geometry_->coordinates(g, coordinates_.data());
+    now.coordinates = coordinates_;
+    if (inputs_ != nullptr) u = inputs_->at(t);
+    now.inputs = {u.data(), static_cast<size_t>(u.size())};
+  }
+  find_signals(forces_, tree_, g, now, state_.data() + first + n);
+}
+
+void Multibody::take_rates(double t) const {
+  double* out = state_.data() + state_.size() - 3 * rows_.prescribed.size();
+  for (const Prescribed& p : rows_.prescribed) *out++ = p.rate(t);
+  for (const Prescribed& p : rows_.prescribed) *out++ = ConstraintRows::slope(p, t);
+}
+
+// ---- Mechanics ----------------------------------------------------------------------------------
 
 void Multibody::inertia(const double* g, Matrix out) const {
-  if (constant_inertia_) out = inertia_;
-  else carrying(g).inertia(out);
+  if (constant_inertia_) {
+    out = inertia_;
+    return;
+  }
+  const auto n = static_cast<size_t>(dim()), stride = static_cast<size_t>(out.outerStride());
+  programs().inertia(state(g), out.data(), [&](size_t i) { return i % n + i / n * stride; });
 }
 
 void Multibody::momentum(const double* g, ConstVector xi, Vector out, Vector inertial_force) const {
-  Tree& at = turned(g);
-  at.move(xi);
-  at.momentum(out, inertial_force);
+  programs().momentum(state(g, xi), work_.data());
+  out = work_.head(dim());
+  inertial_force = work_.segment(dim(), dim());
 }
+
+void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const {
+  if (constant_rows_) {
+    a = fixed_rows_;
+    b.setZero();
+    return;
+  }
+  const auto k = static_cast<size_t>(constraint_count());
+  const auto stride = static_cast<size_t>(a.outerStride());
+  state(g);
+  take_rates(t);
+  programs().rows(state_.data(), a.data(), [&](size_t i) { return i % k + i / k * stride; });
+  programs().drift(state_.data(), b.data());
+}
+
+void Multibody::constraint_values(double t, const double* g, ConstVector xi, Vector out) const {
+  state(g, xi);
+  take_rates(t);
+  programs().row_values(state_.data(), out.data());
+}
+
+void Multibody::motion(const Geometry& /*geometry*/, double t, const double* g, ConstVector xi,
+                       Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const {
+  if (!constant_inertia_) this->inertia(g, inertia);
+  if (!constant_rows_) constraints(t, g, a, b);
+  programs().motion(state(t, g, xi), work_.data());
+  rows = work_.head(constraint_count());
+  change = work_.segment(constraint_count(), dim());
+}
+
+void Multibody::holonomic(const double* g, Vector out) const {
+  if (holonomic_ == 0) return;
+  double* gap = state_.data() + state_.size() - rows_.prescribed.size();
+  for (const Prescribed& p : rows_.prescribed)
+    *gap++ =
+        p.held >= 0 ? ConstraintRows::beyond(p, tree_.joint(p.held), g + tree_.element(p.held)) : 0;
+  programs().holonomic(state(g), out.data());
+}
+
+void Multibody::force(double t, const double* g, ConstVector xi, Vector out) const {
+  applied_force(t, g, xi, out);
+  if (constant_inertia_) return;
+  programs().inertial_force(state_.data(), work_.data());
+  out += work_.head(dim());
+}
+
+void Multibody::inertial_force(const double* g, ConstVector xi, Vector out) const {
+  if (constant_inertia_) out.setZero();
+  else programs().inertial_force(state(g, xi), out.data());
+}
+
+void Multibody::applied_force(double t, const double* g, ConstVector xi, Vector out) const {
+  state(g, xi);
+  take_signals(t);
+  programs().applied_force(state_.data(), out.data());
+}
+
+double Multibody::power(double t, const double* g, ConstVector xi) const {
+  if (!forces_.any()) return 0;
+  state(g, xi);
+  take_signals(t);
+  programs().given_force(state_.data(), work_.data());
+  return work_.head(dim()).dot(xi);
+}
+
+double Multibody::potential(const double* g) const {
+  double out = 0;
+  state(g);
+  find_coordinates(forces_, tree_, g, state_.data() + tree_.size() + dim());
+  programs().potential(state_.data(), &out);
+  return out;
+}
+
+bool Multibody::has_accelerations() const {
+  return dim() - constraint_count() <= MotionProgram::kMostIndependent;
+}
+
+void Multibody::begin() const { motion_ = first_motion_; }
+
+std::optional<MotionProgram> Multibody::record(std::span<const double> state) const {
+  try {
+    return MotionProgram(parts(), state);
+  } catch (const std::domain_error&) {
+    return std::nullopt;
+  }
+}
+
+void Multibody::accelerations(double t, const double* g, ConstVector xi, Vector out) const {
+  state(t, g, xi);
+  if (!recorded_motion_) {
+    std::vector<double> drawn = tree_.drawn();
+    drawn.resize(state_.size(), 0.0);
+    motion_ = first_motion_ = record(drawn);
+    recorded_motion_ = true;
+  }
+  if (motion_ && (*motion_)(state_.data(), out.data())) return;
+  motion_ = record(state_);
+  if (motion_ && (*motion_)(state_.data(), out.data())) return;
+  out.setConstant(std::numeric_limits<double>::quiet_NaN());  // the rows depend on each other
+}
+
+void Multibody::find_constants(const std::vector<std::vector<double>>& poses) {
+  const int n = dim(), k = constraint_count();
+  Eigen::MatrixXd inertia(n, n), a(k, n), first_a(k, n);
+  Eigen::VectorXd b(k), weight(n);
+  // (A stiffness is there to act: only weight is looked at.)
+  bool same_inertia = true, same_rows = !has_drift() && holonomic_ == 0;
+  bool level = std::ranges::all_of(forces_.springs,
+                                   [](const Spring& spring) { return spring.stiffness == 0; });
+  constant_inertia_ = constant_rows_ = false;
+  Eigen::MatrixXd first(n, n);
+  this->inertia(poses.front().data(), first);
+  // Round-off of each velocity is that of what it moves: a needle on a ship has its own.
+  const Eigen::VectorXd own = first.diagonal().cwiseMax(0).cwiseSqrt();
+  const double near = 1e-13, heaviest = forces_.gravity.norm() * own.maxCoeff();
+  constraints(0, poses.front().data(), first_a, b);
+  for (const auto& pose : poses) {
+    this->inertia(pose.data(), inertia);
+    constraints(0, pose.data(), a, b);
+    programs().weight(state(pose.data()), weight.data());
+    same_inertia =
+        same_inertia &&
+        ((inertia - first).array().abs() <= near * (own * own.transpose()).array()).all();
+    same_rows = same_rows && (a - first_a).lpNorm<Eigen::Infinity>() <= near;
+    level = level && (weight.array().abs() <= near * heaviest * own.array()).all();
+  }
+  constant_inertia_ = same_inertia;
+  constant_potential_ = level;
+  constant_rows_ = same_rows;
+  inertia_ = first;
+  fixed_rows_ = first_a;
+}
+
+// ---- the tree -----------------------------------------------------------------------------------
 
 namespace {
 
@@ -115,65 +294,8 @@ HAMEL_FLATTEN void write(const Row& row, const Tree& tree, Mechanics::Matrix& a,
 
 }  // namespace
 
-// Rows that vary, of a tree that was placed; with rates one that moved and accelerated.
-template <bool with_rates>
-void Multibody::find_rows(const Tree& tree, double t, Matrix a, Vector b, double* rates) const {
-  if (a.outerStride() == a.rows()) std::copy_n(fixed_rows_.data(), fixed_rows_.size(), a.data());
-  else a = fixed_rows_;
-  b.setZero();
-  rows_.each<with_rates>(
-      tree, t, [&](size_t i) { return varies_[i] != 0; },
-      [&](size_t i, const Row& row) {
-        write(row, tree, a, slots_[i]);
-        b[slots_[i]] = row.drift;
-        if constexpr (with_rates) rates[slots_[i]] = row.rate;
-      });
-}
-
-void Multibody::constraints(double t, const double* g, Matrix a, Vector b) const {
-  if (constant_rows_) {
-    a = fixed_rows_;
-    b.setZero();
-  } else {
-    find_rows<false>(placed(g), t, a, b, nullptr);
-  }
-}
-
-void Multibody::constraint_values(double t, const double* g, ConstVector xi, Vector out) const {
-  for (int i = 0; i < constraint_count(); ++i) {
-    if (varies_[static_cast<size_t>(kept_[static_cast<size_t>(i)])] == 0)
-      out[i] = fixed_rows_.row(i).dot(xi);
-  }
-  if (constant_rows_) return;
-  Tree& at = placed(g);
-  at.move(xi);
-  rows_.each_velocity(
-      at, t, xi.data(), [&](size_t i) { return varies_[i] != 0; },
-      [&](size_t i, double value) { out[slots_[i]] = value; });
-}
-
-void Multibody::motion(const Geometry& /*geometry*/, double t, const double* g, ConstVector xi,
-                       Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const {
-  const bool moves = !constant_rows_ || !constant_inertia_ || forces_.any();
-  Tree& at = constant_inertia_ && constant_potential_ ? placed(g) : carrying(g);
-  if (moves) at.move(xi);
-  if (!constant_rows_ || !constant_inertia_) at.accelerate();
-  rows.setZero();
-  if (!constant_rows_) find_rows<true>(at, t, a, b, rows.data());
-  if (!constant_inertia_) {
-    at.inertia(inertia);
-    at.bias(forces_.gravity, change);
-    if (!constant_potential_) forces_.add_spring_force(at, g, change);
-  } else {
-    work_ = inertia_.lazyProduct(xi);
-    geometry_->ad_transpose(xi.data(), work_.data(), change.data());
-    if (!constant_potential_) forces_.add_potential_force(at, g, change);
-  }
-  if (forces_.any()) add_force(at, t, g, xi, change);
-}
-
 void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) const {
-  const Tree& at = placed(g);
+  const Tree& at = tree(g);
   a.setZero();
   rows_.each(at, t, [&](size_t i, const Row& row) {
     const auto to = static_cast<Eigen::Index>(i);
@@ -186,7 +308,7 @@ void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) 
 Vec3 Multibody::reaction(size_t contact, const double* g,
                          std::span<const double> multipliers) const {
   const std::string& part = rows_.contacts[contact].name;
-  const Tree& at = placed(g);
+  const Tree& at = tree(g);
   Vec3 force = Vec3::Zero();
   rows_.each(at, 0, [&](size_t i, const Row& row) {
     const int slot = slots_[i];
@@ -195,113 +317,6 @@ Vec3 Multibody::reaction(size_t contact, const double* g,
                (at.root_in_world(row.link).rotation * lower(row.wrench));
   });
   return force;
-}
-
-void Multibody::holonomic(const double* g, Vector out) const {
-  if (holonomic_ == 0) return;
-  const int before = constraint_count() - holonomic_;
-  rows_.each_holonomic(
-      placed(g), [&](size_t i) { return slots_[i] >= before; },
-      [&](size_t i, double phi) { out[slots_[i] - before] = phi; });
-}
-
-void Multibody::add_force(const Tree& tree, double t, const double* g, ConstVector xi,
-                          Vector out) const {
-  SignalInput now{t, {}, {xi.data(), static_cast<size_t>(xi.size())}, {}};
-  InputValues u;
-  if (forces_.has_signals()) {
-    geometry_->coordinates(g, coordinates_.data());
-    now.coordinates = coordinates_;
-    if (inputs_ != nullptr) u = inputs_->at(t);
-    now.inputs = {u.data(), static_cast<size_t>(u.size())};
-  }
-  forces_.add_force(tree, now, out);
-}
-
-void Multibody::force(double t, const double* g, ConstVector xi, Vector out) const {
-  inertial_force(g, xi, out);
-  add_applied_force(t, g, xi, out);
-}
-
-void Multibody::applied_force(double t, const double* g, ConstVector xi, Vector out) const {
-  out.setZero();
-  add_applied_force(t, g, xi, out);
-}
-
-void Multibody::add_applied_force(double t, const double* g, ConstVector xi, Vector out) const {
-  if (!constant_potential_) forces_.add_potential_force(carrying(g), g, out);
-  if (!forces_.any()) return;
-  Tree& at = placed(g);
-  at.move(xi);
-  add_force(at, t, g, xi, out);
-}
-
-void Multibody::inertial_force(const double* g, ConstVector xi, Vector out) const {
-  if (constant_inertia_) {
-    out.setZero();
-    return;
-  }
-  Tree& at = turned(g);
-  at.move(xi);
-  at.momentum(work_, out);
-}
-
-double Multibody::power(double t, const double* g, ConstVector xi) const {
-  if (!forces_.any()) return 0;
-  Tree& at = placed(g);
-  at.move(xi);
-  work_.setZero();
-  add_force(at, t, g, xi, work_);
-  return work_.dot(xi);
-}
-
-double Multibody::potential(const double* g) const { return forces_.potential(carrying(g), g); }
-
-void Multibody::find_constants(const std::vector<std::vector<double>>& poses) {
-  const int n = dim(), k = constraint_count();
-  Eigen::MatrixXd inertia(n, n), a(k, n), first_a(k, n);
-  Eigen::VectorXd b(k), slope(n);
-  // (A stiffness is there to act: only weight is looked at.)
-  bool same_inertia = true, level = std::ranges::all_of(forces_.springs, [](const Spring&spring) {
-                              return spring.stiffness == 0;
-                            });
-  std::vector<bool> same_row(static_cast<size_t>(k), !rows_.ground.moves());
-  inertia_.resize(n, n);
-  carrying(poses.front().data()).inertia(inertia_);
-  // Round-off of each velocity is that of what it moves: a needle on a ship has its own.
-  const Eigen::VectorXd own = inertia_.diagonal().cwiseMax(0).cwiseSqrt();
-  const double near = 1e-13, weight = forces_.gravity.norm() * own.maxCoeff();
-  constraints(0, poses.front().data(), first_a, b);
-  for (const auto& pose : poses) {
-    const Tree& at = carrying(pose.data());
-    at.inertia(inertia);
-    constraints(0, pose.data(), a, b);
-    slope.setZero();
-    forces_.add_potential_force(at, pose.data(), slope);
-    same_inertia =
-        same_inertia &&
-        ((inertia - inertia_).array().abs() <= near * (own * own.transpose()).array()).all();
-    for (int i = 0; i < k; ++i) {
-      if (!((a.row(i) - first_a.row(i)).lpNorm<Eigen::Infinity>() <= near))
-        same_row[static_cast<size_t>(i)] = false;
-    }
-    level = level && (slope.array().abs() <= near * weight * own.array()).all();
-  }
-  constant_inertia_ = same_inertia;
-  constant_potential_ = level;
-  constant_rows_ = holonomic_ == 0;
-  const size_t prescribed =
-      varies_.size() - rows_.prescribed.size();  // a rate of time from here on
-  for (size_t i = 0; i < varies_.size(); ++i) {
-    if (varies_[i] == 0) continue;
-    const int row = slots_[i];
-    if (i < prescribed && same_row[static_cast<size_t>(row)]) {
-      varies_[i] = 0;
-      fixed_rows_.row(row) = first_a.row(row);
-    } else {
-      constant_rows_ = false;
-    }
-  }
 }
 
 }  // namespace hamel::mechanisms

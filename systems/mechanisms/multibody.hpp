@@ -1,19 +1,19 @@
 // A tree of bodies with its rows and forces as Mechanics: what the schemes step.
 //
-// Nothing here takes memory once it is built. Work space and the last two placements are kept (a
-// step evaluates its base point and its end in turns), so that an object serves one run at a time.
+// What a step evaluates are programs (programs/mechanism_programs.hpp), recorded when the first of
+// them is needed; behind that nothing here takes memory. Work space is kept, so that an object
+// serves one run at a time.
 #pragma once
 
-#include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
-#include <hamel/systems/mechanisms/forces.hpp>
-#include <hamel/systems/mechanisms/rows.hpp>
+#include <hamel/systems/mechanisms/programs/mechanism_programs.hpp>
 
 namespace hamel::mechanisms {
 
@@ -34,7 +34,7 @@ class Multibody final : public Mechanics {
   /// Is I(g) the same for all g, are A and V? Read off several poses that share nothing.
   void find_constants(const std::vector<std::vector<double>>& poses);
 
-  int dim() const override { return trees_[0].dim(); }
+  int dim() const override { return tree_.dim(); }
   int constraint_count() const override { return static_cast<int>(kept_.size()); }
   int holonomic_rows() const override { return holonomic_; }
   bool constant_inertia() const override { return constant_inertia_; }
@@ -49,6 +49,9 @@ class Multibody final : public Mechanics {
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
   void constraint_values(double t, const double* g, ConstVector xi, Vector out) const override;
   bool exact_rates() const override { return true; }
+  void begin() const override;
+  bool has_accelerations() const override;
+  void accelerations(double t, const double* g, ConstVector xi, Vector out) const override;
   void motion(const Geometry& geometry, double t, const double* g, ConstVector xi, Matrix inertia,
               Matrix a, Vector b, Vector rows, Vector change) const override;
   void holonomic(const double* g, Vector out) const override;
@@ -65,9 +68,12 @@ class Multibody final : public Mechanics {
   const std::vector<int>& kept() const { return kept_; }
   const Geometry& geometry() const { return *geometry_; }
   /// The element of the drawn pose.
-  const std::vector<double>& drawn() const { return trees_[0].drawn(); }
+  const std::vector<double>& drawn() const { return tree_.drawn(); }
   /// The tree at g.
-  const Tree& tree(const double* g) const { return placed(g); }
+  const Tree& tree(const double* g) const {
+    tree_.place(g);
+    return tree_;
+  }
   /// The force of the kept rows of a contact (counted as in all_rows()) with these multipliers, in
   /// the world.
   Vec3 reaction(size_t contact, const double* g, std::span<const double> multipliers) const;
@@ -75,31 +81,34 @@ class Multibody final : public Mechanics {
   void look(double t, const double* g, Matrix a, Vector b, Vector phi) const;
 
  private:
-  Tree& placed(const double* g) const;
-  /// The tree at g with the inertias of its links; with all that these carry.
-  Tree& turned(const double* g) const;
-  Tree& carrying(const double* g) const;
-  /// out += f - dV.
-  void add_applied_force(double t, const double* g, ConstVector xi, Vector out) const;
-  void add_force(const Tree& tree, double t, const double* g, ConstVector xi, Vector out) const;
-  template <bool with_rates>
-  void find_rows(const Tree& tree, double t, Matrix a, Vector b, double* rates) const;
+  MechanismParts parts() const { return {tree_, rows_, forces_, kept_, holonomic_, *geometry_}; }
+  MechanismPrograms& programs() const;
+  std::optional<MotionProgram> record(std::span<const double> state) const;
+  void forget_programs();
+  // The state of programs: what of it depends on g; on xi too; on t and all.
+  const double* state(const double* g) const;
+  const double* state(const double* g, ConstVector xi) const;
+  const double* state(double t, const double* g, ConstVector xi) const;
+  void take_rates(double t) const;
+  void take_signals(double t) const;
 
-  mutable std::array<Tree, 2> trees_;
-  mutable size_t last_ = 0;  // of trees_
+  mutable Tree tree_;
   ConstraintRows rows_;
   std::vector<RowInfo> row_info_;
   Forces forces_;
   std::shared_ptr<const Geometry> geometry_;
-  std::vector<int> slots_;    // of each(): the row of A, or -1
-  std::vector<int> kept_;     // their inverse
-  std::vector<char> varies_;  // of each(): is it kept, and may it be another one elsewhere?
+  std::vector<int> slots_;  // of each(): the row of A, or -1
+  std::vector<int> kept_;   // their inverse
   std::shared_ptr<const Inputs> inputs_;
   int holonomic_ = 0;
   bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;
-  Eigen::MatrixXd inertia_;     // where it is constant
-  Eigen::MatrixXd fixed_rows_;  // A, but for the rows that vary, which are 0
-  mutable std::vector<double> coordinates_;
+  Eigen::MatrixXd inertia_, fixed_rows_;  // where they are constant
+  mutable std::optional<MechanismPrograms> programs_;
+  // The accelerations: the program with which each run begins, recorded at the drawn pose, and the
+  // one in use.
+  mutable std::optional<MotionProgram> first_motion_, motion_;
+  mutable bool recorded_motion_ = false;
+  mutable std::vector<double> state_, coordinates_;
   mutable Eigen::VectorXd work_;
 };
 

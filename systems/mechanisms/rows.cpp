@@ -46,9 +46,7 @@ std::vector<RowInfo> ConstraintRows::info() const {
   return out;
 }
 
-// The rows are wrenches fixed in the carrier where that only turns about the vertical, but for
-// those along the world's axes, and on ground that moves.
-void ConstraintRows::find_fixed(const Tree& tree) {
+void ConstraintRows::find_carriers(const Tree& tree) {
   for (Contact& contact : contacts) {
     contact.carrier = contact.link;
     if (!tree.rotor(contact.link)) continue;
@@ -61,21 +59,10 @@ void ConstraintRows::find_fixed(const Tree& tree) {
                                     });
     if (turns_about_itself) contact.carrier = tree.parent(contact.link);
   }
-  for (Contact& contact : contacts) {
-    if (ground.moves() || contact.model->of_world() || !tree.planar(contact.carrier)) continue;
-    const Rigid back = tree.from_root(contact.carrier).inverse();
-    Row rows[Contact::most_rows];
-    evaluate(contact, tree, false, rows);
-    for (size_t k = 0; k < contact.row_count(); ++k)
-      contact.wrenches[k] = back.move_wrench(rows[k].wrench);
-    contact.height = rows[contact.row_count() - 1].phi;
-    contact.fixed = true;
-  }
 }
 
-double ConstraintRows::beyond(const Prescribed& p, const Tree& tree) {
-  const Joint& joint = tree.joint(p.held);
-  const double apart = joint.coordinate(tree.placed(p.held)) - p.angle(0);
+double ConstraintRows::beyond(const Prescribed& p, const Joint& joint, const double* element) {
+  const double apart = joint.coordinate(element) - p.angle(0);
   return joint.only_turns() ? std::remainder(apart, 2 * std::numbers::pi) : apart;
 }
 

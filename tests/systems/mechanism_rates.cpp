@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <hamel/framework/check/laws.hpp>
@@ -81,6 +82,16 @@ void check_rates(const SystemModel& model) {
     expected += force - momentum_change;
     for (int i = 0; i < n; ++i)
       EXPECT_NEAR(change[i], expected[i], 1e-8 * (1 + inertia.norm())) << "velocity " << i;
+    if (mechanics.has_accelerations()) {
+      EquationsOfMotion<DynamicProblem> equations(DynamicProblem(geometry, model.mechanics));
+      equations.solve(t, g, xi);
+      mechanics.accelerations(t, g.data(), xi, change);
+      const double size = equations.acceleration().norm() + xi.squaredNorm();
+      // Loops that contradict each other have rows that depend on each other.
+      if (size < 1e6) {
+        EXPECT_LE((change - equations.acceleration()).norm(), 1e-9 * size);
+      }
+    }
     mechanics.applied_force(t, g.data(), xi, carried);
     EXPECT_LE((carried + inertial - force).norm(), 1e-14 * (1 + force.norm() + carried.norm()));
   }
@@ -198,7 +209,8 @@ TEST(LongChain, AStepTakesFewResiduals) {
   for (const double h : {0.001, 0.01}) {
     hamel::Run run = simulate(m).scheme("lift").step(h).build();
     residuals = 0;
-    ASSERT_TRUE(run.step());
+    const Status first = run.step();
+    ASSERT_TRUE(first) << first.reason;
     EXPECT_LT(residuals, 1000) << h;
     residuals = 0;
     ASSERT_TRUE(run.step(3));
@@ -287,6 +299,38 @@ TEST(MechanismRates, OfADiskNearlyFlat) {
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(ours.last.velocity[static_cast<size_t>(i)], turning[i], 1e-8) << i;
   EXPECT_NEAR(ours.last.energy, hers.last.energy, 1e-10);
+}
+
+// Each joint turns through twelve places, in some of which pivots of the frame vanish.
+TEST(MechanismAccelerations, AreThoseOfTheEquationsWhereverPivotsVanish) {
+  for (const char* name : {"bicycle", "kick_scooter", "car", "ballbot", "two_trailer_truck"}) {
+    SCOPED_TRACE(name);
+    const SystemModel model = registry().system(name)->make({});
+    const Mechanics& mechanics = *model.mechanics;
+    const auto geometry = registry().geometry(model.group.name, "exp");
+    const int n = mechanics.dim();
+    ASSERT_TRUE(mechanics.has_accelerations());
+    EquationsOfMotion<DynamicProblem> equations(DynamicProblem(geometry, model.mechanics));
+    VectorXd start(geometry->size()), g(start), step(n), xi(n), found(n);
+    geometry->from_coordinates(model.start.configuration, start.data());
+    int compared = 0;
+    for (int i = 0; i < n; ++i) xi[i] = std::sin(3.0 * i + 1);
+    for (int joint = 0; joint < n; ++joint) {
+      for (int place = 0; place < 12; ++place) {
+        step = place * (std::numbers::pi / 6) * VectorXd::Unit(n, joint);
+        geometry->tau(step.data(), g.data());
+        geometry->compose(start.data(), g.data(), g.data());
+        equations.solve(0, g, xi);
+        const double size = equations.acceleration().norm();
+        if (!(size < 1e6)) continue;  // the rows depend on each other there
+        mechanics.accelerations(0, g.data(), xi, found);
+        EXPECT_LE((found - equations.acceleration()).norm(), 1e-8 * (size + 1))
+            << "velocity " << joint << ", place " << place;
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 10 * n);
+  }
 }
 
 }  // namespace

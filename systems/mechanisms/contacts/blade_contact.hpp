@@ -14,7 +14,9 @@ struct BladeContact {
   void fields(auto& f) { f("along", along, "", "where it slides"); }
   template <class T>
   ContactPoint<T, 1> touch(const ContactView<T>& view) const {
-    return {view.at, {view.vertical.cross(view.turned(along)).normalized()}};
+    const VecT<T, 3> across = view.vertical.cross(view.turned(along));
+    using std::sqrt;
+    return {view.at, {(T(1.0) / sqrt(across.squaredNorm())) * across}};
   }
   std::vector<BodyShape> shapes(const Point& at) const {
     const auto end = [&](double way) -> Point {

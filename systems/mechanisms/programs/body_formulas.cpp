@@ -1,0 +1,461 @@
+#include <hamel/systems/mechanisms/programs/body_formulas.hpp>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace hamel::mechanisms {
+namespace {
+
+constexpr double kDust = 4 * std::numeric_limits<double>::epsilon();
+
+// Entries that round-off has left are zeros of the formula.
+template <class M>
+M without_dust(M m, double size) {
+  for (double& x : m.reshaped())
+    if (std::abs(x) <= kDust * size) x = 0;
+  return m;
+}
+
+// B T B^T of a rotation B, without round-off where T is one of the terms of a turning about e3.
+Mat<3, 3> conjugated(const Mat<3, 3>& b, const Mat<3, 3>& t) {
+  const Vec3 e = b.col(2);
+  const Mat<3, 3> one = Mat<3, 3>::Identity(), along = Vec3(0, 0, 1).asDiagonal();
+  const Mat<3, 3> turning = cross_matrix(Vec3(0, 0, 1));
+  if (t.isZero(0) || t == one) return t;
+  if (t == along) return e * e.transpose();
+  if (t == one - along) return one - Mat<3, 3>(e * e.transpose());
+  if (t == turning) return cross_matrix(e);
+  return without_dust(Mat<3, 3>(b * t * b.transpose()), 1);
+}
+
+// The motion of a joint, affine in the numbers of its element: constant + sum g_k terms_k.
+struct AffineMotion {
+  Rigid constant;
+  std::vector<Rigid> terms;
+
+  explicit AffineMotion(const Joint& joint) {
+    std::vector<double> element(static_cast<size_t>(joint.geometry()->size()), 0.0);
+    constant = joint.motion(element.data());
+    for (double& number : element) {
+      number = 1;
+      const Rigid one = joint.motion(element.data());
+      number = 0;
+      terms.push_back({one.rotation - constant.rotation, one.position - constant.position});
+    }
+  }
+  Pose at(std::span<const Number> g) const {
+    Pose out = numbers(constant);
+    for (size_t k = 0; k < terms.size(); ++k) {
+      for (int i = 0; i < 9; ++i)
+        out.rotation.reshaped()[i] += terms[k].rotation.reshaped()[i] * g[k];
+      for (int i = 0; i < 3; ++i) out.position[i] += terms[k].position[i] * g[k];
+    }
+    return out;
+  }
+  // Number k is an entry of the motion, or its negative: its rate is that of the entry.
+  Number rate(size_t k, const Pose& rates) const {
+    for (int i = 0; i < 12; ++i) {
+      const double own = entry(terms[k], i);
+      if (std::abs(own) != 1 || entry(constant, i) != 0) continue;
+      bool alone = true;
+      for (size_t j = 0; j < terms.size(); ++j)
+        alone = alone && (j == k || entry(terms[j], i) == 0);
+      if (!alone) continue;
+      return own * (i < 9 ? rates.rotation.reshaped()[i] : rates.position[i - 9]);
+    }
+    return 0;
+  }
+
+ private:
+  static double entry(const Rigid& x, int i) {
+    return i < 9 ? x.rotation.reshaped()[i] : x.position[i - 9];
+  }
+};
+
+NumberMat3 cross_numbers(const NumberVec3& v) {
+  NumberMat3 out;
+  out << Number(0), -v[2], v[1], v[2], Number(0), -v[0], -v[1], v[0], Number(0);
+  return out;
+}
+
+}  // namespace
+
+BodyFormulas::BodyFormulas(const Tree& tree, std::span<const Number> g, std::span<const Number> xi,
+                           const Vec3& gravity)
+    : tree_(tree),
+      xi_(xi.begin(), xi.end()),
+      gravity_(gravity),
+      nodes_(static_cast<size_t>(tree.links())),
+      element_rates_(g.size()) {
+  for (int link = 0; link < tree.links(); ++link) {
+    place(link, g);
+    move(link);
+    if (!tree.rotor(link)) find_moments(link);
+  }
+}
+
+// iota of a link's joint; the rates of its numbers.
+Pose BodyFormulas::motion(int link, std::span<const Number> g) {
+  const Joint& joint = tree_.joint(link);
+  const AffineMotion motion(joint);
+  const auto first = static_cast<size_t>(tree_.element(link));
+  const Pose out = motion.at(g.subspan(first, motion.terms.size()));
+  NumberVec3 omega = numbers(Vec3(Vec3::Zero())), velocity = omega;
+  for (int i = 0; i < joint.dim(); ++i) {
+    const Number& rate = xi_[static_cast<size_t>(tree_.first(link) + i)];
+    for (int x = 0; x < 3; ++x) {
+      omega[x] += joint.directions()(x, i) * rate;
+      velocity[x] += joint.directions()(3 + x, i) * rate;
+    }
+  }
+  const Pose rates{out.rotation.lazyProduct(cross_numbers(omega)), out.turn(velocity)};
+  for (size_t k = 0; k < motion.terms.size(); ++k)
+    element_rates_[first + k] = motion.rate(k, rates);
+  return out;
+}
+
+void BodyFormulas::place(int link, std::span<const Number> g) {
+  Node& node = nodes_[static_cast<size_t>(link)];
+  const Link& drawn = tree_.link(link);
+  const Joint& joint = *drawn.joint;
+  const Pose iota = motion(link, g);
+  const Rigid &before = drawn.on_parent, &after = drawn.on_child;
+  const bool conjugates = before.rotation == after.rotation;
+  NumberMat3 turned = iota.rotation;  // P iota C^-1
+  if (conjugates) {
+    const AffineMotion motion(joint);
+    turned = numbers(conjugated(before.rotation, motion.constant.rotation));
+    for (size_t k = 0; k < motion.terms.size(); ++k) {
+      const Mat<3, 3> term = conjugated(before.rotation, motion.terms[k].rotation);
+      const Number& number = g[static_cast<size_t>(tree_.element(link)) + k];
+      for (int i = 0; i < 9; ++i) turned.reshaped()[i] += term.reshaped()[i] * number;
+    }
+  } else {
+    turned = numbers(before.rotation)
+                 .lazyProduct(NumberMat3(turned.lazyProduct(numbers(after.rotation).transpose())));
+  }
+  const NumberVec3 at =
+      numbers(before.position) + numbers(before.rotation).lazyProduct(iota.position);
+  if (is_root(link)) {
+    node.place.position = numbers(after.position);
+    node.world.rotation = turned;
+    node.world.position = at - turned.lazyProduct(numbers(after.position));
+  } else {
+    const int parent = tree_.parent(link);
+    const NumberVec3 lever = at - numbers(tree_.link(parent).on_child.position);
+    node.place.rotation = this->at(parent).place.rotation.lazyProduct(turned);
+    node.place.position = this->at(parent).place.apply(lever);
+  }
+  const bool fixed = !is_root(link) && joint.dim() == 1;  // the axis, in the parent
+  const NumberMat3 frame =
+      fixed ? NumberMat3(
+                  this->at(tree_.parent(link)).place.rotation.lazyProduct(numbers(before.rotation)))
+            : NumberMat3(node.place.rotation.lazyProduct(numbers(after.rotation)));
+  for (int i = 0; i < joint.dim(); ++i) {
+    node.turns.push_back(frame.lazyProduct(numbers(Vec3(joint.directions().col(i).head<3>()))));
+    node.slides.push_back(frame.lazyProduct(numbers(Vec3(joint.directions().col(i).tail<3>()))));
+  }
+}
+
+void BodyFormulas::move(int link) {
+  Node& node = nodes_[static_cast<size_t>(link)];
+  node.turning = node.sliding = numbers(Vec3(Vec3::Zero()));
+  for (size_t i = 0; i < node.turns.size(); ++i) {
+    const Number& rate = xi_[static_cast<size_t>(tree_.first(link)) + i];
+    node.turning += rate * node.turns[i];
+    node.sliding += rate * node.slides[i];
+  }
+  node.omega = node.turning;
+  node.velocity = node.sliding;
+  if (is_root(link)) return;
+  const Node& parent = at(tree_.parent(link));
+  node.omega += parent.omega;
+  node.velocity +=
+      parent.velocity + cross(parent.omega, node.place.position - parent.place.position);
+}
+
+void BodyFormulas::find_moments(int link) {
+  Node& node = nodes_[static_cast<size_t>(link)];
+  const Vec3& c = tree_.link(link).on_child.position;
+  const Inertia& drawn = tree_.drawn_inertia(link);
+  const double length = 1 + c.norm();
+  const Inertia about = moved({Mat<3, 3>::Identity(), -c}, drawn);
+  const Vec3 first = without_dust(about.first, drawn.first.norm() + drawn.mass * c.norm());
+  const Mat<3, 3> second =
+      without_dust(about.second, drawn.second.norm() + drawn.mass * length * c.norm());
+  node.own = {drawn.mass, node.place.turn(numbers(first)),
+              turned_symmetric(node.place.rotation, numbers(second))};
+}
+
+NumberVec3 BodyFormulas::point(int link, const Vec3& drawn) const {
+  if (link == kGround) return numbers(drawn);
+  return at(link).place.apply(numbers(Vec3(drawn - tree_.link(link).on_child.position)));
+}
+
+NumberVec3 BodyFormulas::direction(int link, const Vec3& drawn) const {
+  if (link == kGround) return numbers(drawn);
+  return at(link).place.turn(numbers(drawn));
+}
+
+const Pose& BodyFormulas::root_in_world(int link) const {
+  if (link == kGround) return rest_;
+  while (!is_root(link)) link = tree_.parent(link);
+  return at(link).world;
+}
+
+void BodyFormulas::each_effect(int link, const NumberVec3& q, const NumberVec3& u,
+                               const std::function<void(int, const Number&)>& f) const {
+  for (int j = link; j != kGround; j = tree_.parent(j)) {
+    const Node& node = at(j);
+    const NumberVec3 lever = q - node.place.position;
+    for (size_t i = 0; i < node.turns.size(); ++i)
+      f(tree_.first(j) + static_cast<int>(i), dot(u, node.slides[i] + cross(node.turns[i], lever)));
+  }
+}
+
+void BodyFormulas::each_turning(int link, const NumberVec3& u,
+                                const std::function<void(int, const Number&)>& f) const {
+  for (int j = link; j != kGround; j = tree_.parent(j)) {
+    const Node& node = at(j);
+    for (size_t i = 0; i < node.turns.size(); ++i)
+      f(tree_.first(j) + static_cast<int>(i), dot(u, node.turns[i]));
+  }
+}
+
+NumberVec3 BodyFormulas::velocity(int link, const NumberVec3& q) const {
+  if (link == kGround) return numbers(Vec3(Vec3::Zero()));
+  const Node& node = at(link);
+  return node.velocity + cross(node.omega, q - node.place.position);
+}
+
+NumberVec3 BodyFormulas::turning(int link) const {
+  return link == kGround ? numbers(Vec3(Vec3::Zero())) : at(link).omega;
+}
+
+// ---- inertia ------------------------------------------------------------------------------------
+
+// With all that each link carries, about the point p of its root.
+std::vector<BodyFormulas::Moments> BodyFormulas::composites() const {
+  std::vector<Moments> out(nodes_.size());
+  for (int j = 0; j < tree_.links(); ++j) {
+    if (tree_.rotor(j)) continue;
+    const Moments& own = at(j).own;
+    Moments& all = out[static_cast<size_t>(j)];
+    int root = j;
+    while (!is_root(root)) root = tree_.parent(root);
+    const NumberVec3 r = at(j).place.position - at(root).place.position;
+    all = {own.mass, own.first + own.mass * r, own.second};
+    const auto both = [&](int a, int b) {
+      return r[a] * own.first[b] + own.first[a] * r[b] + own.mass * (r[a] * r[b]);
+    };
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3, c = (a + 2) % 3;
+      all.second(a, a) += both(b, b) + both(c, c);
+      all.second(a, b) -= both(a, b);
+      all.second(b, a) = all.second(a, b);
+    }
+  }
+  for (int j = tree_.links() - 1; j >= 0; --j) {
+    if (tree_.rotor(j) || is_root(j)) continue;
+    const Moments& from = out[static_cast<size_t>(j)];
+    Moments& to = out[static_cast<size_t>(tree_.parent(j))];
+    to.mass += from.mass;
+    to.first += from.first;
+    to.second += from.second;
+  }
+  return out;
+}
+
+// A column of I, and the row that mirrors it: a momentum about the root's point, on the velocities
+// of a link and of those that carry it.
+void BodyFormulas::write(int link, int column, const NumberVec3& force, const NumberVec3& moment,
+                         Matrix& out) const {
+  int root = link;
+  while (!is_root(root)) root = tree_.parent(root);
+  for (int j = link; j != kGround; j = tree_.parent(j)) {
+    const Node& node = at(j);
+    const NumberVec3 about = moment - cross(node.place.position - at(root).place.position, force);
+    for (size_t i = 0; i < node.turns.size(); ++i) {
+      const auto row = static_cast<size_t>(tree_.first(j)) + i;
+      const auto to = static_cast<size_t>(column);
+      out[row][to] = out[to][row] = dot(node.turns[i], about) + dot(node.slides[i], force);
+    }
+  }
+}
+
+BodyFormulas::Matrix BodyFormulas::inertia() const {
+  const auto n = static_cast<size_t>(dim());
+  Matrix out(n, Numbers(n));
+  const std::vector<Moments> all = composites();
+  for (int j = 0; j < tree_.links(); ++j) {
+    const Node& node = at(j);
+    int root = j;
+    while (!is_root(root)) root = tree_.parent(root);
+    if (tree_.rotor(j)) {
+      const int column = tree_.first(j);
+      const Number moment = tree_.moment(j);
+      out[static_cast<size_t>(column)][static_cast<size_t>(column)] = moment;
+      write(tree_.parent(j), column, numbers(Vec3(Vec3::Zero())), moment * node.turns[0], out);
+      continue;
+    }
+    const Moments& carried = all[static_cast<size_t>(j)];
+    for (size_t i = 0; i < node.turns.size(); ++i) {
+      const NumberVec3& turn = node.turns[i];
+      const NumberVec3 slide =
+          node.slides[i] + cross(node.place.position - at(root).place.position, turn);
+      const NumberVec3 force = carried.mass * slide + cross(turn, carried.first);
+      const NumberVec3 moment = carried.second.lazyProduct(turn) + cross(carried.first, slide);
+      write(j, tree_.first(j) + static_cast<int>(i), force, moment, out);
+    }
+  }
+  return out;
+}
+
+std::pair<BodyFormulas::Numbers, BodyFormulas::Numbers> BodyFormulas::momentum() const {
+  struct Carried {
+    NumberVec3 linear, angular;  // L, H about p_j
+  };
+  std::vector<Carried> all(nodes_.size());
+  Numbers out(xi_.size()), inertial(xi_.size());
+  for (int j = 0; j < tree_.links(); ++j) {
+    Carried& here = all[static_cast<size_t>(j)];
+    const Node& node = at(j);
+    if (tree_.rotor(j)) {  // its inertia is its parent's, but for its spin
+      const auto dof = static_cast<size_t>(tree_.first(j));
+      const Number moment = tree_.moment(j);
+      out[dof] = moment * (xi_[dof] + dot(node.turns[0], at(tree_.parent(j)).omega));
+      here.linear = numbers(Vec3(Vec3::Zero()));
+      here.angular = (moment * xi_[dof]) * node.turns[0];
+    } else {
+      const Moments& own = node.own;
+      here.linear = own.mass * node.velocity + cross(node.omega, own.first);
+      here.angular = own.second.lazyProduct(node.omega) + cross(own.first, node.velocity);
+    }
+  }
+  for (int j = tree_.links() - 1; j >= 0; --j) {
+    const Carried& here = all[static_cast<size_t>(j)];
+    const Node& node = at(j);
+    for (size_t i = 0; i < node.turns.size() && !tree_.rotor(j); ++i)
+      out[static_cast<size_t>(tree_.first(j)) + i] =
+          dot(node.turns[i], here.angular) + dot(node.slides[i], here.linear);
+    if (is_root(j)) continue;
+    const Node& parent = at(tree_.parent(j));
+    const NumberVec3 r = node.place.position - parent.place.position;
+    Carried& carrying = all[static_cast<size_t>(tree_.parent(j))];
+    carrying.linear += here.linear;
+    carrying.angular += here.angular + cross(r, here.linear);
+    if (tree_.rotor(j)) continue;
+    const NumberVec3 v = parent.velocity + cross(parent.omega, r);
+    for (size_t i = 0; i < node.turns.size(); ++i)
+      inertial[static_cast<size_t>(tree_.first(j)) + i] =
+          dot(here.angular, cross(parent.omega, node.turns[i])) +
+          dot(here.linear, cross(v, node.turns[i]) + cross(parent.omega, node.slides[i]));
+  }
+  return {std::move(out), std::move(inertial)};
+}
+
+BodyFormulas::Numbers BodyFormulas::weight() const {
+  Numbers out(xi_.size());
+  for (int j = 0; j < tree_.links(); ++j) {
+    if (tree_.rotor(j)) continue;
+    const Node& node = at(j);
+    const NumberVec3 a = root_in_world(j).turn_back(numbers(gravity_));
+    const NumberVec3 force = node.own.mass * a, moment = cross(node.own.first, a);
+    each_effect(j, node.place.position, force,
+                [&](int i, const Number& effect) { out[static_cast<size_t>(i)] += effect; });
+    each_turning(j, moment,
+                 [&](int i, const Number& effect) { out[static_cast<size_t>(i)] += effect; });
+  }
+  return out;
+}
+
+Number BodyFormulas::potential() const {
+  Number out = 0;
+  for (int j = 0; j < tree_.links(); ++j) {
+    if (tree_.rotor(j)) continue;
+    const Node& node = at(j);
+    const Pose& root = root_in_world(j);
+    const NumberVec3 first = node.own.first + node.own.mass * node.place.position;
+    out -= dot(numbers(gravity_), root.turn(first) + node.own.mass * root.position);
+  }
+  return out;
+}
+
+Eigen::MatrixXd inertia_at(const Tree& tree, std::span<const double> g) {
+  const graph::Recording recording;
+  const std::vector<Number> constants(g.begin(), g.end()), still(static_cast<size_t>(tree.dim()));
+  const BodyFormulas::Matrix found = BodyFormulas(tree, constants, still, Vec3::Zero()).inertia();
+  Eigen::MatrixXd out(tree.dim(), tree.dim());
+  for (int i = 0; i < tree.dim(); ++i)
+    for (int j = 0; j < tree.dim(); ++j)
+      out(i, j) = found[static_cast<size_t>(i)][static_cast<size_t>(j)].value();
+  return out;
+}
+
+// ---- efforts ------------------------------------------------------------------------------------
+
+BodyFormulas::Numbers BodyFormulas::efforts(std::span<const Number> xi_rate) const {
+  struct Part {
+    NumberVec3 turning, moving;  // a, l
+    NumberVec3 force, moment;    // F, N
+  };
+  std::vector<Part> parts(nodes_.size());
+  const auto part = [&](int link) -> Part& { return parts[static_cast<size_t>(link)]; };
+  Numbers out(xi_.size());
+  for (int j = 0; j < tree_.links(); ++j) {
+    if (tree_.rotor(j)) continue;
+    const Node& node = at(j);
+    Part& here = part(j);
+    here.turning = here.moving = numbers(Vec3(Vec3::Zero()));
+    for (size_t i = 0; i < node.turns.size(); ++i) {
+      const Number& rate = xi_rate[static_cast<size_t>(tree_.first(j)) + i];
+      here.turning += rate * node.turns[i];
+      here.moving += rate * node.slides[i];
+    }
+    if (is_root(j)) {
+      here.moving += cross(node.omega, node.velocity) - node.world.turn_back(numbers(gravity_));
+    } else {
+      const Node& parent = at(tree_.parent(j));
+      const Part& carrying = part(tree_.parent(j));
+      const NumberVec3 r = node.place.position - parent.place.position;
+      here.turning += carrying.turning + cross(parent.omega, node.turning);
+      here.moving += carrying.moving + cross(carrying.turning, r) +
+                     cross(parent.omega, cross(parent.omega, r)) +
+                     Number(2) * cross(parent.omega, node.sliding) +
+                     cross(node.turning, node.sliding);
+    }
+    const Moments& own = node.own;
+    here.force = own.mass * here.moving + cross(here.turning, own.first) +
+                 cross(node.omega, cross(node.omega, own.first));
+    here.moment = own.second.lazyProduct(here.turning) +
+                  cross(node.omega, NumberVec3(own.second.lazyProduct(node.omega))) +
+                  cross(own.first, here.moving);
+  }
+  for (int j = 0; j < tree_.links(); ++j) {
+    if (!tree_.rotor(j)) continue;
+    const Node &node = at(j), &parent = at(tree_.parent(j));
+    Part& carrying = part(tree_.parent(j));
+    const auto dof = static_cast<size_t>(tree_.first(j));
+    const Number moment = tree_.moment(j);
+    out[dof] = moment * (xi_rate[dof] + dot(node.turns[0], carrying.turning));
+    carrying.moment +=
+        moment * (xi_rate[dof] * node.turns[0] + xi_[dof] * cross(parent.omega, node.turns[0]));
+  }
+  for (int j = tree_.links() - 1; j >= 0; --j) {
+    if (tree_.rotor(j)) continue;
+    const Node& node = at(j);
+    const Part& here = part(j);
+    for (size_t i = 0; i < node.turns.size(); ++i)
+      out[static_cast<size_t>(tree_.first(j)) + i] =
+          dot(node.turns[i], here.moment) + dot(node.slides[i], here.force);
+    if (is_root(j)) continue;
+    Part& carrying = part(tree_.parent(j));
+    const NumberVec3 r = node.place.position - at(tree_.parent(j)).place.position;
+    carrying.force += here.force;
+    carrying.moment += here.moment + cross(r, here.force);
+  }
+  return out;
+}
+
+}  // namespace hamel::mechanisms

@@ -1,0 +1,111 @@
+#include <hamel/systems/mechanisms/programs/mechanism_programs.hpp>
+
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include <hamel/framework/graph/derivatives.hpp>
+#include <hamel/systems/mechanisms/programs/force_formulas.hpp>
+#include <hamel/systems/mechanisms/programs/recorded_mechanism.hpp>
+
+namespace hamel::mechanisms {
+namespace {
+
+using Numbers = std::vector<Number>;
+
+constexpr size_t kLongProgram = 20'000;  // instructions: machine code of more takes seconds to make
+
+Numbers joined(Numbers a, const Numbers& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace
+
+size_t MechanismParts::state_size() const {
+  return static_cast<size_t>(tree.size() + tree.dim()) + count_signals(forces) +
+         3 * rows.prescribed.size();
+}
+
+FilledProgram::FilledProgram(std::shared_ptr<const graph::Recording> recording,
+                             const Numbers& values)
+    : recording_(std::move(recording)), constants_(values.size(), 0.0) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (values[i].constant()) {
+      constants_[i] = values[i].value();
+    } else {
+      values_.push_back(values[i]);
+      places_.push_back(i);
+    }
+  }
+}
+
+void FilledProgram::evaluate(const double* state) {
+  if (places_.empty()) return;
+  if (!code_) {
+    graph::Program::Outputs outputs;
+    for (size_t i = 0; i < places_.size(); ++i)
+      outputs.emplace_back(std::to_string(places_[i]), values_[i]);
+    const auto program = std::make_shared<graph::Program>(*recording_, outputs);
+    const bool is_long = program->instructions().size() > kLongProgram;
+    code_.emplace(program, 1, is_long ? graph::Machine::refused : graph::Machine::allowed);
+    results_.resize(places_.size());
+    work_.resize(code_->work_size());
+  }
+  (*code_)(state, results_.data(), work_.data());
+}
+
+// Everything recorded, while it is made into programs.
+struct MechanismPrograms::Recorded {
+  explicit Recorded(const MechanismParts& parts) : mechanism(parts) {
+    const size_t n = mechanism.xi.size();
+    const BodyFormulas& bodies = mechanism.bodies;
+    const BodyFormulas::Matrix i = bodies.inertia();
+    for (size_t column = 0; column < n; ++column)
+      for (size_t row = 0; row < n; ++row) inertia.push_back(i[row][column]);
+    for (size_t column = 0; column < n; ++column)
+      for (const RecordedRow& row : mechanism.rows) rows.push_back(row.coefficients[column]);
+    for (const RecordedRow& row : mechanism.rows) {
+      drift.push_back(row.drift);
+      values.push_back(row.value);
+    }
+    for (size_t k = mechanism.rows.size() - static_cast<size_t>(parts.holonomic);
+         k < mechanism.rows.size(); ++k)
+      phi.push_back(mechanism.rows[k].phi);
+    std::tie(momentum, inertial) = bodies.momentum();
+    given.resize(n);
+    mechanism.add_given_forces(given);
+    applied = weight = bodies.weight();
+    mechanism.add_spring_forces(applied);
+    for (size_t k = 0; k < n; ++k) applied[k] += given[k];
+    change = bodies.efforts(Numbers(n));
+    for (Number& x : change) x = -x;
+    mechanism.add_spring_forces(change);
+    for (size_t k = 0; k < n; ++k) change[k] += given[k];
+    rates = mechanism.row_rates();
+    potential = {bodies.potential() + mechanism.spring_potential()};
+  }
+  FilledProgram program(const Numbers& numbers) const { return {mechanism.recording(), numbers}; }
+  RecordedMechanism mechanism;
+  Numbers inertia, rows, drift, values, phi, momentum, inertial, weight, applied, given, potential,
+      change, rates;
+};
+
+MechanismPrograms::MechanismPrograms(const MechanismParts& parts)
+    : MechanismPrograms(Recorded(parts)) {}
+
+MechanismPrograms::MechanismPrograms(const Recorded& recorded)
+    : inertia(recorded.program(recorded.inertia)),
+      rows(recorded.program(recorded.rows)),
+      drift(recorded.program(recorded.drift)),
+      row_values(recorded.program(recorded.values)),
+      holonomic(recorded.program(recorded.phi)),
+      momentum(recorded.program(joined(recorded.momentum, recorded.inertial))),
+      inertial_force(recorded.program(recorded.inertial)),
+      applied_force(recorded.program(recorded.applied)),
+      given_force(recorded.program(recorded.given)),
+      weight(recorded.program(recorded.weight)),
+      potential(recorded.program(recorded.potential)),
+      motion(recorded.program(joined(recorded.rates, recorded.change))) {}
+
+}  // namespace hamel::mechanisms

@@ -1,0 +1,44 @@
+// A mechanism recorded over the numbers of a state (mechanism_programs.hpp).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <hamel/systems/mechanisms/programs/mechanism_programs.hpp>
+#include <hamel/systems/mechanisms/programs/row_formulas.hpp>
+
+namespace hamel::mechanisms {
+
+class RecordedMechanism {
+ public:
+  using Numbers = std::vector<Number>;
+
+  explicit RecordedMechanism(const MechanismParts& parts);
+  ~RecordedMechanism() { recording_->end(); }
+  RecordedMechanism(const RecordedMechanism&) = delete;
+  RecordedMechanism& operator=(const RecordedMechanism&) = delete;
+  /// Current while this object lives; complete behind it.
+  const std::shared_ptr<graph::Recording>& recording() const { return recording_; }
+
+  /// db/dt - (dA/dt) xi along the motion, xi held.
+  Numbers row_rates() const;
+  /// out += -dV of the springs; the forces beside the potential.
+  void add_spring_forces(Numbers& out) const;
+  void add_given_forces(Numbers& out) const;
+  Number spring_potential() const;
+
+ private:
+  const MechanismParts& parts_;
+  const std::shared_ptr<graph::Recording> recording_ = std::make_shared<graph::Recording>();
+
+ public:
+  // In the order of a state.
+  const Numbers g, xi, signals, rates, slopes, gaps;
+  const BodyFormulas bodies;
+  const std::vector<RecordedRow> rows;  // those that are kept
+
+ private:
+  Numbers inputs(const char* name, size_t count);
+};
+
+}  // namespace hamel::mechanisms

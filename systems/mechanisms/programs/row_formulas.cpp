@@ -1,0 +1,117 @@
+#include <hamel/systems/mechanisms/programs/row_formulas.hpp>
+
+#include <hamel/systems/mechanisms/programs/contact_view.hpp>
+
+namespace hamel::mechanisms {
+namespace {
+
+class RowRecorder {
+ public:
+  explicit RowRecorder(const BodyFormulas& bodies) : bodies_(bodies) {}
+
+  RecordedRow& add() {
+    RecordedRow& row = rows.emplace_back();
+    row.coefficients.resize(static_cast<size_t>(bodies_.dim()));
+    return row;
+  }
+  // u . (velocity of the point q of a link), or with side = -1 its negative, onto a row.
+  void add_velocity(int link, const NumberVec3& q, const NumberVec3& u, double side,
+                    RecordedRow& row) const {
+    bodies_.each_effect(link, q, u, [&](int i, const Number& effect) {
+      row.coefficients[static_cast<size_t>(i)] += side * effect;
+    });
+    row.value += side * dot(u, bodies_.velocity(link, q));
+  }
+  void add_turning(int link, const NumberVec3& u, double side, RecordedRow& row) const {
+    bodies_.each_turning(link, u, [&](int i, const Number& effect) {
+      row.coefficients[static_cast<size_t>(i)] += side * effect;
+    });
+    row.value += side * dot(u, bodies_.turning(link));
+  }
+  void add_contact(const Contact& contact, const Ground& ground) {
+    const ContactView<Number> view(contact, bodies_);
+    const RecordedContact touch = contact.model->record(view, ground);
+    for (size_t i = 0; i < touch.directions.size(); ++i) {
+      RecordedRow& row = add();
+      add_velocity(contact.link, touch.point, touch.directions[i], 1, row);
+      row.drift = touch.drifts[i];
+      row.value -= row.drift;
+    }
+    RecordedRow& height = add();
+    add_velocity(contact.link, touch.point, view.vertical, 1, height);
+    height.phi = view.point_in_world(touch.point)[2];
+  }
+  // The formulas of closed_loop.hpp, seen from the one root of both links, else from the world.
+  void add_loop(const Loop& loop) {
+    const bool one_root = loop.a != kGround && loop.b != kGround && root(loop.a) == root(loop.b);
+    const auto seen = [&](int link, const NumberVec3& u) {
+      return one_root || link == kGround ? u : bodies_.root_in_world(link).turn(u);
+    };
+    const auto back = [&](int link, const NumberVec3& u) {
+      return one_root || link == kGround ? u : bodies_.root_in_world(link).turn_back(u);
+    };
+    const NumberVec3 on_b = bodies_.point(loop.b, loop.at);
+    const auto in_world = [&](int link, const NumberVec3& x) {
+      return one_root || link == kGround ? x : bodies_.root_in_world(link).apply(x);
+    };
+    const NumberVec3 apart =
+        in_world(loop.b, on_b) - in_world(loop.a, bodies_.point(loop.a, loop.at));
+    const auto point_of_a = [&]() -> NumberVec3 {
+      if (one_root) return on_b;
+      const NumberVec3 x = in_world(loop.b, on_b);
+      if (loop.a == kGround) return x;
+      const Pose& to = bodies_.root_in_world(loop.a);
+      return to.turn_back(x - to.position);
+    };
+    const NumberVec3 on_a = point_of_a();
+    const Mat<3, 3> frame = loop.is_hinge() ? frame_along(loop.axis) : Mat<3, 3>::Identity();
+    std::array<NumberVec3, 3> e;
+    for (int i = 0; i < 3; ++i) {
+      NumberVec3& u = e[static_cast<size_t>(i)];
+      u = seen(loop.a, bodies_.direction(loop.a, frame.col(i)));
+      RecordedRow& row = add();
+      add_velocity(loop.b, on_b, back(loop.b, u), 1, row);
+      add_velocity(loop.a, on_a, back(loop.a, u), -1, row);
+      row.phi = dot(u, apart);
+    }
+    if (!loop.is_hinge()) return;
+    const NumberVec3 axis = seen(loop.b, bodies_.direction(loop.b, loop.axis));
+    for (size_t i = 0; i < 2; ++i) {
+      const NumberVec3 moment = cross(axis, e[i]);
+      RecordedRow& row = add();
+      add_turning(loop.b, back(loop.b, moment), 1, row);
+      add_turning(loop.a, back(loop.a, moment), -1, row);
+      row.phi = dot(e[i], axis);
+    }
+  }
+
+  std::vector<RecordedRow> rows;
+
+ private:
+  int root(int link) const {
+    while (bodies_.tree().parent(link) != kGround) link = bodies_.tree().parent(link);
+    return link;
+  }
+  const BodyFormulas& bodies_;
+};
+
+}  // namespace
+
+std::vector<RecordedRow> record_rows(const ConstraintRows& rows, const BodyFormulas& bodies,
+                                     std::span<const Number> xi, std::span<const Number> rates,
+                                     std::span<const Number> gaps) {
+  RowRecorder out(bodies);
+  for (const Contact& contact : rows.contacts) out.add_contact(contact, rows.ground);
+  for (const Loop& loop : rows.loops) out.add_loop(loop);
+  for (size_t i = 0; i < rows.prescribed.size(); ++i) {
+    RecordedRow& row = out.add();
+    const auto dof = static_cast<size_t>(rows.prescribed[i].dof);
+    row.coefficients[dof] = 1;
+    row.drift = rates[i];
+    row.value = xi[dof] - rates[i];
+    row.phi = gaps[i];
+  }
+  return std::move(out.rows);
+}
+
+}  // namespace hamel::mechanisms
