@@ -31,6 +31,13 @@ std::vector<bool> live_nodes(const Recording& recording, const std::vector<Numbe
   return live;
 }
 
+bool has_sine(const Recording& recording, const std::vector<bool>& live) {
+  const std::vector<Node>& nodes = recording.nodes();
+  for (size_t i = 0; i < nodes.size(); ++i)
+    if (live[i] && (nodes[i].op == Op::sin || nodes[i].op == Op::cos)) return true;
+  return false;
+}
+
 // Recording of the live nodes with sines and cosines expanded; it is current while this object
 // exists.
 class Expansion {
@@ -100,8 +107,13 @@ std::vector<Number> values_of(const Program::Outputs& outputs) {
 
 Program::Program(const Recording& recording, const Outputs& outputs) : inputs_(recording.inputs()) {
   for (const auto& output : outputs) outputs_.push_back(output.first);
-  const Expansion expansion(recording, values_of(outputs));
-  number_values(expansion.recording(), expansion.outputs());
+  const std::vector<Number> values = values_of(outputs);
+  if (has_sine(recording, live_nodes(recording, values))) {
+    const Expansion expansion(recording, values);
+    number_values(expansion.recording(), expansion.outputs());
+  } else {
+    number_values(recording, values);
+  }
 }
 
 void Program::number_values(const Recording& recording, const std::vector<Number>& outputs) {

@@ -73,6 +73,7 @@ bool Multibody::autonomous() const {
 
 void Multibody::forget_programs() {
   programs_.reset();
+  rates_.reset();
   first_motion_.reset();
   motion_.reset();
   recorded_motion_ = false;
@@ -166,7 +167,8 @@ void Multibody::motion(const Geometry& /*geometry*/, double t, const double* g, 
                        Matrix inertia, Matrix a, Vector b, Vector rows, Vector change) const {
   if (!constant_inertia_) this->inertia(g, inertia);
   if (!constant_rows_) constraints(t, g, a, b);
-  programs().motion(state(t, g, xi), work_.data());
+  if (!rates_) rates_.emplace(record_rates(parts()));
+  (*rates_)(state(t, g, xi), work_.data());
   rows = work_.head(constraint_count());
   change = work_.segment(constraint_count(), dim());
 }

@@ -104,6 +104,7 @@ class Multibody final : public Mechanics {
   bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;
   Eigen::MatrixXd inertia_, fixed_rows_;  // where they are constant
   mutable std::optional<MechanismPrograms> programs_;
+  mutable std::optional<FilledProgram> rates_;
   // The accelerations: the program with which each run begins, recorded at the drawn pose, and the
   // one in use.
   mutable std::optional<MotionProgram> first_motion_, motion_;

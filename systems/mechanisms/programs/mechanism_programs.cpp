@@ -78,17 +78,11 @@ struct MechanismPrograms::Recorded {
     applied = weight = bodies.weight();
     mechanism.add_spring_forces(applied);
     for (size_t k = 0; k < n; ++k) applied[k] += given[k];
-    change = bodies.efforts(Numbers(n));
-    for (Number& x : change) x = -x;
-    mechanism.add_spring_forces(change);
-    for (size_t k = 0; k < n; ++k) change[k] += given[k];
-    rates = mechanism.row_rates();
     potential = {bodies.potential() + mechanism.spring_potential()};
   }
   FilledProgram program(const Numbers& numbers) const { return {mechanism.recording(), numbers}; }
   RecordedMechanism mechanism;
-  Numbers inertia, rows, drift, values, phi, momentum, inertial, weight, applied, given, potential,
-      change, rates;
+  Numbers inertia, rows, drift, values, phi, momentum, inertial, weight, applied, given, potential;
 };
 
 MechanismPrograms::MechanismPrograms(const MechanismParts& parts)
@@ -105,7 +99,15 @@ MechanismPrograms::MechanismPrograms(const Recorded& recorded)
       applied_force(recorded.program(recorded.applied)),
       given_force(recorded.program(recorded.given)),
       weight(recorded.program(recorded.weight)),
-      potential(recorded.program(recorded.potential)),
-      motion(recorded.program(joined(recorded.rates, recorded.change))) {}
+      potential(recorded.program(recorded.potential)) {}
+
+FilledProgram record_rates(const MechanismParts& parts) {
+  const RecordedMechanism mechanism(parts);
+  Numbers change = mechanism.bodies.efforts(Numbers(mechanism.xi.size()));
+  for (Number& x : change) x = -x;
+  mechanism.add_spring_forces(change);
+  mechanism.add_given_forces(change);
+  return {mechanism.recording(), joined(mechanism.row_rates(), change)};
+}
 
 }  // namespace hamel::mechanisms

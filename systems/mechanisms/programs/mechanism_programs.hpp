@@ -82,12 +82,15 @@ struct MechanismPrograms {
   FilledProgram given_force;     // f
   FilledProgram weight;          // what the weights do on xi
   FilledProgram potential;       // V
-  FilledProgram motion;          // db/dt - (dA/dt) xi, then ad*_xi I xi + F - (dI/dt) xi
 
  private:
   struct Recorded;
   explicit MechanismPrograms(const Recorded& recorded);
 };
+
+/// db/dt - (dA/dt) xi, then ad*_xi I xi + F - (dI/dt) xi: recorded apart, as it is half of all and
+/// few schemes ask for it.
+FilledProgram record_rates(const MechanismParts& parts);
 
 /// The accelerations, in one frame.
 class MotionProgram {
