@@ -26,12 +26,15 @@ bool with_few(int n, int k, F&& f) {
 }
 
 // S = L D L^T by rows: L below the diagonal, D^-1 on it; the columns of D L^T above serve as work
-// space.
+// space. True where a row is nearly a combination of those before.
 template <class Count>
-HAMEL_FLATTEN void factor_rows(Count k, int width, double* s) {
+HAMEL_FLATTEN bool factor_rows(Count k, int width, double* s) {
+  constexpr double kNearlyDependent = 1e-4;  // of a pivot in |y|^2
+  bool nearly_dependent = false;
   each(k, [&](auto j) {
     double* const here = s + j * width;
     double own = here[j];
+    const double least = kNearlyDependent * own;
     each(j, [&](auto l) {
       const double* const there = s + l * width;
       double left = here[l];
@@ -40,8 +43,10 @@ HAMEL_FLATTEN void factor_rows(Count k, int width, double* s) {
       here[l] = left * there[l];
       own -= left * here[l];
     });
+    nearly_dependent = nearly_dependent || own < least;
     here[j] = own > 0 ? 1 / own : std::numeric_limits<double>::quiet_NaN();
   });
+  return nearly_dependent;
 }
 // c <- S^-1 c.
 template <class Count>
@@ -193,7 +198,8 @@ BranchedFactors::Span BranchedFactors::span_of(const double* row, int k) {
 }
 
 void BranchedFactors::factor_gram(int width) {
-  with_any_count<kFewRows>(k_, [&](auto k) { factor_rows(k, width, gram_.data()); });
+  with_any_count<kFewRows>(
+      k_, [&](auto k) { nearly_dependent_ = factor_rows(k, width, gram_.data()); });
 }
 
 // x <- L^-T x.

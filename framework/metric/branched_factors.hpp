@@ -28,6 +28,8 @@ class BranchedFactors {
   bool find_root(const Matrix& inertia) { return find_root(inertia.data()); }
   /// Y and the factors of Y^T Y.
   void find_rows(const Matrix& a) { find_rows(a.data()); }
+  /// Is a row within 1/100 of a combination of those before? Y^T Y has lost four digits then.
+  bool nearly_dependent() const { return nearly_dependent_; }
 
   /// W mu.
   void apply_root(const Vector& mu, Vector& out) const {
@@ -75,6 +77,7 @@ class BranchedFactors {
   void factor_gram(int width);
 
   int n_, k_;
+  bool nearly_dependent_ = false;
   std::vector<double> lower_;    // L by rows, but for its diagonal
   std::vector<double> inverse_;  // of its diagonal
   std::vector<int> runs_;  // of row i from i (n + 1) on: [begin, end) of entries that are not 0

@@ -61,8 +61,12 @@ class DenseFactors {
 #pragma GCC unroll 4
       for (int i = j; i < K; ++i) gram_(i, j) = y_.col(i).dot(y_.col(j));
     }
+    const Multipliers squares = gram_.diagonal();
     factor_small(gram_);
+    nearly_dependent_ = ((gram_.diagonal().array() * squares.array()) > kNearlyDependent).any();
   }
+  /// Is a row within 1/100 of a combination of those before? Y^T Y has lost four digits then.
+  bool nearly_dependent() const { return nearly_dependent_; }
 
   void apply_inertia(const Matrix& inertia, const Vector& xi, Vector& mu) const {
     if (diagonal_) mu = inertia.diagonal().cwiseProduct(xi);
@@ -90,7 +94,8 @@ class DenseFactors {
   void solve_gram(Multipliers& c) const { solve_small(gram_, c); }
 
  private:
-  bool diagonal_ = false;
+  static constexpr double kNearlyDependent = 1e4;  // of |y|^2 over a pivot
+  bool diagonal_ = false, nearly_dependent_ = false;
   Vector weights_;  // the diagonal of W, where there is no more
   Matrix root_;     // W
   Eigen::Matrix<double, N, K> y_;

@@ -25,14 +25,15 @@ class StepWatch {
   /// Was a third of the last tries rejected? Where the tolerance is below round-off no size of a
   /// step is good for long.
   bool rejects() const { return last_tries_ >= kFew && 3 * last_rejected_ > last_tries_; }
-  /// The size of earlier steps, where later ones have been below 1e-3 of it for a thousand tries;
+  /// The size of earlier steps, where later ones have been below 1e-2 of it for a thousand tries;
   /// else 0. They do not creep yet, but a reason may be known.
   double shrunk_from() const { return shrunk_ >= 4 * kWindow ? largest_ : 0; }
   /// At a time, after the tries that were counted; true where they creep.
   bool look(double t) {
     if (since_ < window_) return false;
     const double each = std::abs(t - last_) / static_cast<double>(since_);
-    const bool shrunk = each < 1e-3 * largest_, small = shrunk && each < 1e-6 * span_;
+    const bool shrunk = each < 1e-2 * largest_,
+               small = each < 1e-3 * largest_ && each < 1e-6 * span_;
     shrunk_ = shrunk ? shrunk_ + since_ : 0;
     small_ = small ? small_ + since_ : 0;
     largest_ = std::max(largest_, each);
