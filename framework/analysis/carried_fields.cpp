@@ -46,11 +46,17 @@ void Fields::set_rows(double t) {
   }
 }
 
-Matrix Fields::operator()(const Vector& x) {
-  const double t = drift_ == 1 ? x[n_] : 0;
+const Vector& Fields::element(const Vector& x) {
   const Vector step = units_.cwiseProduct(x.head(n_));
   geometry_.tau(step.data(), at_.data());
   geometry_.compose(g_.data(), at_.data(), at_.data());
+  return at_;
+}
+
+Matrix Fields::operator()(const Vector& x) {
+  const double t = drift_ == 1 ? x[n_] : 0;
+  const Vector step = units_.cwiseProduct(x.head(n_));
+  element(x);
   set_rows(t);
   raised_.noalias() = metric_ * a_.transpose();
   lambda_.resize(a_.rows(), count());

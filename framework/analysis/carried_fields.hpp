@@ -39,6 +39,8 @@ class Fields {
   bool with_drift() const { return drift_ == 1; }
 
   Matrix operator()(const Vector& x);
+  /// The element at x.
+  const Vector& element(const Vector& x);
 
  private:
   const Geometry& geometry_;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <utility>
 
 #include <hamel/framework/analysis/carried_fields.hpp>
+#include <hamel/framework/analysis/exact_brackets.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 
 namespace hamel {
@@ -12,7 +15,8 @@ namespace {
 
 using namespace carried;
 
-constexpr double kNew = 1e-6;  // of the size of its generation: what is smaller is no new direction
+// Of the size of its generation: what is smaller is no new direction; of exact brackets.
+constexpr double kNew = 1e-6, kNewExact = 1e-10;
 // Times its estimated error, for a bracket that is too small to be a direction not to be zero. At
 // round-off the ratio was 0.1 to 3 on six systems and mechanisms, 10.4 on the snakeboard.
 constexpr double kSure = 30;
@@ -145,7 +149,14 @@ bool has_drift(const Geometry& geometry, const Mechanics& mechanics, const Vecto
 
 // Reach of fields that change with the place. nearby: what brackets span beside `here`, if that is
 // decided; near_zero: as of Growth.
-Reach reach_by_paths(Fields& fields, int possible, int most, int& nearby, bool& near_zero) {
+// exact: null where the fields are not known as formulas.
+Reach reach_by_brackets(Fields& fields, ExactBrackets* exact, int possible, int most, int& nearby,
+                        bool& near_zero) {
+  const auto brackets = [&](const Vector& place, int depth) {
+    return exact == nullptr ? generations(fields, place, depth)
+                            : exact->generations(fields.element(place), depth);
+  };
+  const double least = exact == nullptr ? kNew : kNewExact;
   const auto all = static_cast<int>(fields.coordinates());
   const Vector here = Vector::Zero(all);
   Reach reach;
@@ -157,22 +168,29 @@ Reach reach_by_paths(Fields& fields, int possible, int most, int& nearby, bool& 
   for (const int depth : {std::min(3, deepest), std::min(5, deepest), deepest}) {
     if (depth == looked) break;
     looked = depth;
-    reach = reach_of(generations(fields, here, depth), fields.count(), possible);
+    reach = reach_of(brackets(here, depth), fields.count(), possible, least);
     if (reach.dimensions.back() == possible) nearby = possible;
     else if (nearby < 0 && (depth == deepest || closed_at(reach, possible) >= 0)) {
-      const Reach generic = reach_of(generations(fields, there, depth), fields.count(), possible);
+      const Reach generic = reach_of(brackets(there, depth), fields.count(), possible, least);
       near_zero = generic.near_zero;
       nearby = closed_at(generic, possible);
     }
     if (reach.dimensions.back() == nearby) break;
   }
   // Paths decide what nested brackets leave to round-off.
-  if (nearby < 0 && !near_zero && !reach.near_zero) {
+  if (nearby < 0 && exact == nullptr && !near_zero && !reach.near_zero) {
     const Reach whole = reach_of({orbit(fields, here)}, fields.count(), possible, 0);
     near_zero = whole.near_zero;
     if (!whole.round_off) nearby = whole.dimensions.back();
   }
   return reach;
+}
+
+std::optional<ExactBrackets> exact_brackets(const graph::VectorFields* formulas, const Vector& g,
+                                            const Vector& units) {
+  if (formulas == nullptr) return std::nullopt;
+  ExactBrackets out(*formulas, g, units);
+  return out.possible() ? std::optional(std::move(out)) : std::nullopt;
 }
 
 }  // namespace
@@ -197,7 +215,11 @@ Growth growth_of(const Geometry& geometry, const Mechanics& mechanics, const dou
     reach = constant_reach(geometry, units, fields(here));
     nearby = reach.dimensions.back();
   } else {
-    reach = reach_by_paths(fields, possible, most, nearby, out.near_zero);
+    const auto* known = dynamic_cast<const graph::HasVectorFields*>(&mechanics);
+    const auto formulas = known != nullptr && !out.with_drift ? known->vector_fields(at) : nullptr;
+    std::optional<ExactBrackets> exact = exact_brackets(formulas.get(), g, units);
+    reach =
+        reach_by_brackets(fields, exact ? &*exact : nullptr, possible, most, nearby, out.near_zero);
   }
   out.looked_at = static_cast<int>(reach.dimensions.size());
   out.round_off = reach.round_off;

@@ -17,7 +17,7 @@
 
 namespace hamel::mechanisms {
 
-class Multibody final : public Mechanics {
+class Multibody final : public Mechanics, public graph::HasVectorFields {
  public:
   /// All rows of `rows`; keep() drops some.
   Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
@@ -52,6 +52,8 @@ class Multibody final : public Mechanics {
   void begin() const override;
   bool has_accelerations() const override;
   void accelerations(double t, const double* g, ConstVector xi, Vector out) const override;
+  /// Null where b is not 0, or changes with time.
+  std::shared_ptr<const graph::VectorFields> vector_fields(const double* g) const override;
   void motion(const Geometry& geometry, double t, const double* g, ConstVector xi, Matrix inertia,
               Matrix a, Vector b, Vector rows, Vector change) const override;
   void holonomic(const double* g, Vector out) const override;

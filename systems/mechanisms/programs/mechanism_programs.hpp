@@ -21,6 +21,7 @@
 #include <vector>
 
 #include <hamel/framework/graph/code.hpp>
+#include <hamel/framework/graph/vector_fields.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/systems/mechanisms/forces.hpp>
 #include <hamel/systems/mechanisms/rows.hpp>
@@ -91,6 +92,11 @@ struct MechanismPrograms {
 /// db/dt - (dA/dt) xi, then ad*_xi I xi + F - (dI/dt) xi: recorded apart, as it is half of all and
 /// few schemes ask for it.
 FilledProgram record_rates(const MechanismParts& parts);
+
+/// The admissible velocities near a state, A xi = 0, as fields. Throws std::domain_error where the
+/// rows depend on each other there.
+std::shared_ptr<const graph::VectorFields> record_fields(const MechanismParts& parts,
+                                                         std::span<const double> state);
 
 /// The accelerations, in one frame.
 class MotionProgram {

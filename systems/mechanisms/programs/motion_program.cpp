@@ -55,21 +55,21 @@ Number product(const Numbers& a, const Numbers& b) {
   return out;
 }
 
+}  // namespace
+
 Frame find_frame(const MechanismParts& parts, const RecordedMechanism& mechanism,
-                 std::span<const double> state) {
+                 std::span<const double> state, std::vector<Number> c) {
   if (mechanism.rows.empty()) return free_frame(mechanism.xi.size());
   std::vector<Numbers> a;
   for (const RecordedRow& row : mechanism.rows) a.push_back(row.coefficients);
   std::vector<Sample> samples = samples_near(parts, state);
-  return eliminate(std::move(a), mechanism.row_rates(), samples);
+  return eliminate(std::move(a), std::move(c), samples);
 }
-
-}  // namespace
 
 std::shared_ptr<const graph::Program> MotionProgram::record(const MechanismParts& parts,
                                                             std::span<const double> state) {
   const RecordedMechanism mechanism(parts);
-  const Frame frame = find_frame(parts, mechanism, state);
+  const Frame frame = find_frame(parts, mechanism, state, mechanism.row_rates());
   const size_t n = mechanism.xi.size(), m = frame.independent.size();
   const BodyFormulas::Matrix inertia = mechanism.bodies.inertia();
   std::vector<Numbers> columns(m, Numbers(n)), momenta(m, Numbers(n));  // of E, I E

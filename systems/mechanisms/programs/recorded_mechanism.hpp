@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
+#include <hamel/systems/mechanisms/programs/elimination.hpp>
 #include <hamel/systems/mechanisms/programs/mechanism_programs.hpp>
 #include <hamel/systems/mechanisms/programs/row_formulas.hpp>
 
@@ -40,5 +42,9 @@ class RecordedMechanism {
  private:
   Numbers inputs(const char* name, size_t count);
 };
+
+/// A frame of A xi' = c near a state. Throws std::domain_error where the rows depend on each other.
+Frame find_frame(const MechanismParts& parts, const RecordedMechanism& mechanism,
+                 std::span<const double> state, std::vector<Number> c);
 
 }  // namespace hamel::mechanisms
