@@ -65,6 +65,9 @@ Json run(const Json& request) {
               {"columns", result.trajectory.columns()},
               {"rows", result.trajectory.rows()},
               {"motion", nullptr}};
+  Config::fields([&](const Option& option, auto) {  // as it was run
+    out["options"][option.name] = result.config.text(option.name);
+  });
   const tools::RunVerdict verdict = tools::run_verdict(result);
   out["verdict"] = {{"kind", "verdict"}, {"status", verdict.status}, {"text", verdict.text}};
   for (size_t i = 0; i < drawn.size(); ++i) {

@@ -46,11 +46,11 @@ const parts = await bundled('main.js', { format: 'esm', splitting: true, entryNa
 parts.filter(({ path }) => path.endsWith('.js') || path.endsWith('playground.css')).forEach(({ path, contents }) => writeFileSync(path, contents));
 writeFileSync(join(output, 'worker.js'), worker);
 cpSync(join(module, 'hamel.wasm'), join(output, 'hamel.wasm'));
-writeFileSync(join(output, 'source.js'), "globalThis.hamelSource = () => ({ worker: () => new Worker('worker.js'), wasm: async () => new URL('hamel.wasm', location.href).href });\n");
+writeFileSync(join(output, 'source.js'), "globalThis.hamelSource = { worker: () => new Worker('worker.js'), wasm: fetch('hamel.wasm') };\n");
 writeFileSync(join(output, 'index.html'), fill(template, {
   POLICY: POLICY.files,
-  '<!--HEAD-->': `${comment}\n<link rel="preload" href="worker.js" as="worker">\n<link rel="stylesheet" href="playground.css">`,
-  '<!--SCRIPTS-->': '<script src="source.js"></script>\n<script type="module" src="playground.js"></script>',
+  '<!--HEAD-->': `${comment}\n<script src="source.js"></script>\n<link rel="stylesheet" href="playground.css">`,
+  '<!--SCRIPTS-->': '<script type="module" src="playground.js"></script>',
 }));
 
 // As one file: everything inside, the module compressed.
@@ -58,13 +58,11 @@ const quoted = (text) => JSON.stringify(text).replaceAll('<', '\\u003c');
 const whole = await bundled('main.js', { format: 'iife' });
 const inScript = (text) => text.replace(/<\/(script)/gi, '<\\/$1').replace(/<!--/g, '<\\!--');
 const source = `
-globalThis.hamelSource = () => ({
+globalThis.hamelSource = {
   worker: () => new Worker(URL.createObjectURL(new Blob([${quoted(worker)}], { type: 'text/javascript' }))),
-  wasm: async () => {
-    const packed = Uint8Array.from(atob(document.getElementById('module').textContent), (c) => c.charCodeAt(0));
-    return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
-  },
-});`;
+  wasm: Promise.resolve(new Response(new Blob([Uint8Array.from(atob(document.getElementById('module').textContent), (c) => c.charCodeAt(0))])
+    .stream().pipeThrough(new DecompressionStream('gzip')), { headers: { 'content-type': 'application/wasm' } })),
+};`;
 writeFileSync(join(output, 'playground.html'), fill(template, {
   POLICY: POLICY.one,
   '<!--HEAD-->': `${comment}\n<style>${textOf(whole, '.css')}</style>`,

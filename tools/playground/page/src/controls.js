@@ -10,7 +10,6 @@ const SLIDERS = {
   speed: { low: 0, high: 10 },
   step: { low: 1e-4, high: 0.2, log: true },
   rtol: { low: 1e-13, high: 1e-2, log: true },
-  s: { low: 0, high: 1 },
 };
 const CHOICES = ['scheme', 'retraction'];
 
@@ -79,14 +78,10 @@ export class Controls {
       this.rows.get(`inputs ${name}`)?.show(state.inputs[name] ?? 0, Object.hasOwn(state.inputs, name));
     for (const name of Object.keys(SLIDERS)) {
       const given = state.options[name];
-      this.rows.get(`options ${name}`)?.show(given === undefined ? this.usual(name) : Number(given), given !== undefined);
+      const ran = system.options[name];
+      this.rows.get(`options ${name}`)?.show(ran === '' ? null : Number(ran), given !== undefined);
     }
     for (const name of CHOICES) this.rows.get(`options ${name}`)?.show(state.options[name]);
-  }
-
-  usual(name) {
-    const text = this.options.find((option) => option.name === name)?.default ?? '';
-    return text === '' ? null : Number(text);
   }
 
   #build(system, state) {
@@ -97,8 +92,8 @@ export class Controls {
     };
     const of = (name) => this.options.find((option) => option.name === name) ?? { unit: '', meaning: '', names: [] };
     const option = (name, about) => add(`options ${name}`, slider({ name, unit: of(name).unit, meaning: of(name).meaning, ...about,
-      value: this.usual(name), moved: false }, (value) => this.change('options', name, value === null ? null : String(value))));
-    const run = [...Object.entries(SLIDERS).filter(([name]) => (name !== 'speed' || system.speed) && name !== 's').map(([name, about]) => option(name, about)),
+      value: null, moved: false }, (value) => this.change('options', name, value === null ? null : String(value))));
+    const run = [...Object.entries(SLIDERS).filter(([name]) => name !== 'speed' || system.speed).map(([name, about]) => option(name, about)),
       h('div', { class: 'choices' }, CHOICES.map((name) => add(`options ${name}`, choice({ ...of(name), value: state.options[name] }, (value) => this.change('options', name, value)))))];
     const parameters = system.parameters.flatMap(({ name, value, unit, meaning, range }) => value.map((x, i) =>
       add(`parameters ${name} ${i}`, slider({ name: value.length > 1 ? `${name}[${i + 1}]` : name, unit, meaning, value: x, moved: false, ...reachOf(x, range) }, (given) => {

@@ -5,6 +5,7 @@ import { posesOf } from './motion.js';
 
 const LIVE = { scheme: 'lift', step: '0.005' };  // small steps of one size, unless the state has others
 const LONG = '1e6';  // seconds
+const ROOM = 25;  // metres
 const BEHIND = 0.1;  // seconds that a frame may catch up: behind that the time of the run is slower than ours
 
 /**
@@ -25,13 +26,21 @@ export function keysOf(inputs) {
     .map(([key, sign]) => ({ key, label: key, says: `${name} ${sign > 0 ? '+' : '−'}`, push: { [name]: sign } })));
 }
 
+/** The bodies where they start, without trails, and with room on the floor to drive: poses in the corners of a large square. */
+function wide(block) {
+  const far = (x, y) => ([at_x, at_y, ...rest]) => [at_x + x * ROOM, at_y + y * ROOM, ...rest];
+  const { forces: _, ...rest } = block;
+  return { ...rest, times: [0, 1, 2], bodies: block.bodies.map((body) => ({ ...body, trail: false,
+    poses: [body.poses[0], far(-1, -1)(body.poses[0]), far(1, 1)(body.poses[0])] })) };
+}
+
 /** How strong a held key is at first: a tenth of the range where there is one. */
 const strengthOf = ({ range }) => (range.least !== null && range.most !== null ? (range.most - range.least) / 20 : 1);
 
 export class Drive {
-  /** library; figure: the animation; state; system: its description; ended(reason). */
-  constructor({ library, figure, state, system, ended }) {
-    Object.assign(this, { library, figure, state, system, ended, held: new Set(), last: {}, on: false, time: 0 });
+  /** library; figure: the animation, and its block; state; system: its description; ended(reason). */
+  constructor({ library, figure, block, state, system, ended }) {
+    Object.assign(this, { library, figure, block, state, system, ended, held: new Set(), last: {}, on: false, time: 0 });
     this.keys = keysOf(system.inputs);
     this.strength = Math.max(...system.inputs.map(strengthOf));
     this.element = this.#panel();
@@ -48,6 +57,7 @@ export class Drive {
     this.on = true;
     addEventListener('keydown', this.down, true);
     addEventListener('keyup', this.up, true);
+    this.figure.show(wide(this.block));
     this.figure.follow(true);
     this.#frame(performance.now());
   }

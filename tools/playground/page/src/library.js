@@ -1,9 +1,16 @@
 // The library in its worker: calls as promises, and a worker in place of one that is lost or takes too long.
 
-/** {worker() -> Worker, wasm() -> Promise of an address or of bytes}: how the page has them, in files or within itself. */
+async function compiled(response) {
+  const answer = await response;
+  const again = answer.clone();  // for a server that gives the file another type
+  return WebAssembly.compileStreaming(answer).catch(async () => WebAssembly.compile(await again.arrayBuffer()));
+}
+
+/** {worker() -> Worker, wasm: Promise of a Response}: how the page has them, in files or within itself. */
 export class Library {
   constructor(source) {
     this.source = source;
+    this.compiled = compiled(source.wasm);
     this.waiting = new Map();
     this.count = 0;
     this.#start();
@@ -23,7 +30,7 @@ export class Library {
       };
     });
     this.ready.catch(() => {});  // told by whoever calls
-    this.source.wasm().then((wasm) => worker.postMessage({ load: { wasm } }));
+    this.compiled.then((compiled) => worker.postMessage({ compiled }));
   }
 
   /** -> {answer, numbers}. A call that `restart` ends has the answer {ok: false, ended: true}. */

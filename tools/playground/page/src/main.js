@@ -17,7 +17,7 @@ const FIRST = 'bicycle';
 const [TYPED, CALM, SLOW] = [250, 350, 400];  // milliseconds: until a text is run, until figures are drawn, until a run is said to take long
 
 const $ = (id) => document.getElementById(id);
-const library = new Library(globalThis.hamelSource());
+const library = new Library(globalThis.hamelSource);
 const page = { state: stateOf(FIRST, ''), registered: new Map(), controls: null, editor: null, drive: null, catalogue: null,
   shown: null, figures: null, running: false, wanted: null, timer: 0, calm: 0 };
 
@@ -71,8 +71,8 @@ function show(answer, numbers, state) {
   $('verdict').replaceChildren(h('span', {}, inline(answer.failure ? `Ended at t = ${answer.time.toPrecision(6)} s: ${answer.failure}` : text)));
   $('facts').textContent = `${answer.method} · ${answer.steps_in_words} · ${answer.steps} steps in ${(1e3 * answer.seconds).toPrecision(3)} ms`;
   $('notes').replaceChildren(...answer.notes.map((note) => h('p', { class: 'remark' }, inline(note))));
-  page.system = answer.system;
-  if (page.controls) page.controls.show(answer.system, page.state);
+  page.system = { ...answer.system, options: answer.options };
+  page.controls?.show(page.system, page.state);
   $('drive').hidden = answer.system.inputs.length === 0 || !page.shown;
   page.calm = setTimeout(() => drawFigures(), CALM);
   done();
@@ -189,10 +189,11 @@ function addButtons() {
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   });
   $('drive').addEventListener('click', () => {
-    page.drive = new Drive({ library, figure: page.shown.figure, state: page.state, system: page.system, ended: (reason) => {
+    page.drive = new Drive({ library, figure: page.shown.figure, block: page.shown.block, state: page.state, system: page.system, ended: (reason) => {
       page.drive?.element.remove();
       page.drive = null;
       $('drive').disabled = false;
+      page.shown?.figure.show(page.shown.block);
       say(reason);
       if (reason) $('notes').replaceChildren(h('p', { class: 'remark' }, reason));
     } });
@@ -209,10 +210,9 @@ function addButtons() {
 async function begin() {
   await read();
   $('text').textContent = page.state.text;
-  const first = run();
+  run();
   addButtons();
   document.body.append(h('span', { id: 'light', class: 'light', hidden: true }));
-  await first;
   const { answer } = await library.call('catalogue');
   page.catalogue = answer;
   fillSystems(answer.systems);

@@ -1,6 +1,6 @@
 // In a worker, behind hamel.js: the functions of the module by their names.
 //
-// {load: ArrayBuffer or Response's address} once; then {id, call, request} -> {id, answer, numbers}.
+// {compiled: WebAssembly.Module} once; then {id, name, request} -> {id, answer, numbers}.
 
 let library = null;
 
@@ -21,11 +21,12 @@ function numbersOf(name, answer) {
 }
 
 onmessage = async ({ data }) => {
-  if (data.load) {
-    const { wasm } = data.load;
-    const given = typeof wasm === 'string' ? { locateFile: () => wasm } : { wasmBinary: wasm };
+  if (data.compiled) {
     try {
-      library = await createHamel(given);
+      library = await createHamel({ instantiateWasm: (imports, done) => {
+        WebAssembly.instantiate(data.compiled, imports).then((instance) => done(instance, data.compiled));
+        return {};
+      } });
       postMessage({ ready: true });
     } catch (error) {
       postMessage({ failed: `the library could not be loaded: ${error}` });

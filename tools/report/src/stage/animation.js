@@ -96,13 +96,15 @@ export function animation(block) {
     seek(start);
     return drawn;
   };
-  /** Shows another motion of as many bodies from where the eye is, at about the same time. */
+  /** Shows another motion of as many bodies from where the eye is, at about the same time; anew where the one before had ended. */
   const show = (other) => {
+    const over = now >= end;
     block = other;
     ({ motion, times, bodies, start, end, room, long, grid } = spread(block));
     live = null;
     stage.see(motion.box);
     seek(now);
+    if (over && !playing) run();
   };
   /** Shows the bodies in these poses, [{at, turn}, …], at a time t, whatever the motion is. */
   const feed = (t, given) => {
