@@ -1,7 +1,6 @@
 // Sliders of a system: the options of its run, its parameters, its inputs. What is moved stands beside the text and goes first.
 
 import { h } from '../../../report/src/dom.js';
-import { formatShort } from '../../../report/src/format.js';
 
 const STEPS = 400;
 // The options that have a slider: between which values, and whether by decades.
@@ -39,7 +38,7 @@ function slider({ name, unit, meaning, low, high, log, value, moved }, change) {
   const show = (x, isMoved) => {
     row.classList.toggle('moved', isMoved);
     if (document.activeElement !== bar) bar.value = x === null ? 0 : clamped(toBar(x));
-    if (document.activeElement !== exact) exact.value = x === null ? '' : formatShort(x, 6).replace('−', '-');
+    if (document.activeElement !== exact) exact.value = x === null ? '' : String(Number(x.toPrecision(6)));
     row.classList.toggle('unset', x === null);
   };
   bar.addEventListener('input', () => {

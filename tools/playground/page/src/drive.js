@@ -6,7 +6,7 @@ import { posesOf } from './motion.js';
 const LIVE = { scheme: 'lift', step: '0.005' };  // small steps of one size, unless the state has others
 const LONG = '1e6';  // seconds
 const ROOM = 25;  // metres
-const BEHIND = 0.1;  // seconds that a frame may catch up: behind that the time of the run is slower than ours
+const BEHIND = 1 / 30;  // seconds: a slower picture slows the run down, so that whoever drives keeps up
 
 /**
  * What the keys do, [{key, label, says, push: {input: part of its strength}}]: of one input left and right; of two of one unit
@@ -34,15 +34,16 @@ function wide(block) {
     poses: [body.poses[0], far(-1, -1)(body.poses[0]), far(1, 1)(body.poses[0])] })) };
 }
 
-/** How strong a held key is at first: a tenth of the range where there is one. */
-const strengthOf = ({ range }) => (range.least !== null && range.most !== null ? (range.most - range.least) / 20 : 1);
+/** How strong a held key is at first: half of what the range allows where there is one. */
+const strengthOf = ({ range }) => (range.least !== null && range.most !== null ? (range.most - range.least) / 4 : 1);
+const STRONG = { segway: 20 };  // where 1 is too weak to be of use
 
 export class Drive {
   /** library; figure: the animation, and its block; state; system: its description; ended(reason). */
   constructor({ library, figure, block, state, system, ended }) {
     Object.assign(this, { library, figure, block, state, system, ended, held: new Set(), last: {}, on: false, time: 0 });
     this.keys = keysOf(system.inputs);
-    this.strength = Math.max(...system.inputs.map(strengthOf));
+    this.strength = STRONG[system.name] ?? Math.max(...system.inputs.map(strengthOf));
     this.element = this.#panel();
     this.down = (event) => this.#key(event, true);
     this.up = (event) => this.#key(event, false);
@@ -76,7 +77,7 @@ export class Drive {
       const { answer, numbers } = await this.library.call('advance', { time: this.time, inputs: this.#inputs() });
       if (!this.on) return;
       if (!answer.ok || answer.failure) return this.stop(answer.failure || answer.mistakes.join('\n'));
-      this.element.dataset.state = JSON.stringify(answer.state);
+      this.element.dataset.state = JSON.stringify({ t: answer.time, ...answer.state });
       this.figure.feed(answer.time, posesOf(numbers));
       this.#frame(now);
     });

@@ -119,6 +119,7 @@ async function changed({ quickly = true } = {}) {
   clearTimeout(page.timer);
   page.timer = setTimeout(run, quickly ? 0 : TYPED);
   $('command').textContent = commandOf(page.state, registered());
+  $('system').value = page.state.text === registered() ? page.state.system : '';
   history.replaceState(null, '', await fragmentOf(page.state, registered()));
 }
 
@@ -152,7 +153,7 @@ async function read() {
     });
   } else if (state.system) await textOf(state.system).catch(() => { state.system = ''; });
   page.state = state;
-  $('system').value = state.system;
+  $('system').value = state.text === registered() ? state.system : '';
   page.editor?.show(state.text);
   $('command').textContent = commandOf(state, registered());
 }
@@ -171,7 +172,7 @@ function fillSystems(systems) {
   const group = (label, list) => h('optgroup', { label }, list.map(({ name, summary }) => h('option', { value: name, title: summary }, name.replaceAll('_', ' '))));
   $('system').replaceChildren(group('Mechanisms by parts', systems.filter((s) => s.mechanism)), group('Systems', systems.filter((s) => !s.mechanism)),
     h('option', { value: '', hidden: true }, 'a system of your own'));
-  $('system').value = page.state.system;
+  $('system').value = page.state.text === registered() ? page.state.system : '';
   $('system').addEventListener('change', () => choose($('system').value));
 }
 
