@@ -42,7 +42,7 @@ export function fileOf(state) {
   return `${stem}${isConfiguration(state.text) ? '_run' : ''}.toml`;
 }
 
-const word = (text) => (/^[\w.,:/+-]+$/.test(text) ? text : `'${text}'`);
+const word = (text) => (/^[\w.,:=/+-]+$/.test(text) ? text : `'${text}'`);
 
 /** The command that does the same. */
 export function commandOf(state, registered) {
