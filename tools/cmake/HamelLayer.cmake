@@ -23,7 +23,10 @@ endfunction()
 
 # Code that may become part of a shared library, such as the Python module (tools/python). Hidden symbols: calls
 # between objects stay direct.
-set(HAMEL_SHARED_CODE POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+set(HAMEL_SHARED_CODE CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+if(NOT EMSCRIPTEN)
+  list(APPEND HAMEL_SHARED_CODE POSITION_INDEPENDENT_CODE ON)
+endif()
 
 # Eigen and the standard library, parsed once for all sources of the layers: half of the time to compile most of them. No
 # header of this project: an include against the arrows would go unseen. -fpch-preprocess lets ccache see through it.

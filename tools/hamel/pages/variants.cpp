@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -60,9 +63,17 @@ std::vector<Outcome> run_all(const StudyConfig& study) {
   const auto part = [&](size_t first) {
     for (size_t i = first; i < cells.size(); i += 2) out[i] = run_variant(cells[i]);
   };
-  auto other = std::async(std::launch::async, part, size_t{1});
+  // No std::async: where no thread can be made, libc++ waits in it for ever.
+  std::packaged_task<void()> other([&] { part(1); });
+  std::future<void> done = other.get_future();
+  std::jthread helper;  // joins also where part(0) throws
+  try {
+    helper = std::jthread(std::ref(other));
+  } catch (const std::system_error&) {
+    other();
+  }
   part(0);
-  other.get();
+  done.get();
   return out;
 }
 

@@ -1,26 +1,12 @@
 // The whole page from the data in #hamel-data: header, contents, sections, blocks.
 
-import './style.css';
-import './figures.css';
-import './print.css';
-import { animation } from './stage/animation.js';
 import { h, inline, problem } from './dom.js';
-import { heatmap } from './charts/heatmap.js';
-import { members } from './blocks/members.js';
 import { assignStyles } from './charts/palette.js';
-import { path, plot } from './charts/plot.js';
 import { showPicture } from './picture.js';
 import { preparePrinting } from './print.js';
-import { record } from './blocks/record.js';
-import { scatter } from './charts/scatter.js';
-import { sphere } from './stage/sphere.js';
+import { drawAll, KINDS, showSection } from './sections.js';
 import { stateOf } from './state.js';
-import { table } from './blocks/table.js';
-import { text, verdict } from './blocks/text.js';
 
-const MOTIONS = { path, sphere, animation };  // what a member may carry
-const KINDS = { text, verdict, table, record, plot, path, sphere, heatmap, scatter, animation, members: (block) => members(block, (motion) => MOTIONS[motion.kind](motion)) };
-const FIGURES = new Set(['plot', 'path', 'sphere', 'heatmap', 'scatter', 'animation']);
 const HELP = 'Charts: a box drawn with the mouse zooms, Ctrl and wheel zoom at the pointer, a double click shows all again; the arrow ' +
   'keys read the points. A click on a name hides or shows its curve. Spheres and bodies turn by dragging or with the arrow keys; ' +
   'Ctrl and wheel or plus and minus zoom.';
@@ -34,63 +20,6 @@ function readData() {
     throw new Error('there is no list "sections" in it.');
   }
   return data;
-}
-
-/** A block -> its element; what cannot be shown becomes a box that says why. */
-function showBlock(block, number, later) {
-  const kind = String(block?.kind);
-  let element;
-  if (!Object.hasOwn(KINDS, kind)) {
-    element = problem(`Unknown kind of block: “${kind}”`, 'This page knows ' + Object.keys(KINDS).join(', ') + '.');
-  } else {
-    try {
-      const shown = KINDS[kind](block);
-      element = shown.element;
-      if (shown.draw) later.push({ element, kind, draw: shown.draw });
-    } catch (error) {
-      element = broken(kind, error);
-    }
-  }
-  element.dataset.block = kind;
-  element.id = `block-${number}`;
-  return element;
-}
-
-const broken = (kind, error) => problem(`This ${kind} could not be shown`, error.message);
-
-/** Draws every figure at once -> promises of what is still to come (pictures by WebGL). */
-function drawAll(later) {
-  return later.map(({ element, kind, draw }) => {
-    const fail = (error) => {
-      const box = broken(kind, error);
-      box.dataset.block = kind;
-      element.replaceWith(box);
-    };
-    try {
-      return Promise.resolve(draw()).catch(fail);
-    } catch (error) {
-      return fail(error);
-    }
-  });
-}
-
-/** Neighbouring figures share a grid: two side by side where there is room, wide ones one below the other. */
-function showSection(section, place, counter, later) {
-  const element = h('section', { id: `section-${place}`, 'aria-labelledby': `heading-${place}` },
-    h('h2', { id: `heading-${place}` }, inline(section?.title)));
-  let grid = null;
-  for (const block of section?.blocks ?? []) {
-    const shown = showBlock(block, ++counter.blocks, later);
-    if (!FIGURES.has(block?.kind) || shown.classList.contains('problem')) {
-      grid = null;
-      element.append(shown);
-    } else {
-      const wide = shown.classList.contains('wide');
-      if (!grid || wide !== grid.matches('.stacked')) element.append(grid = h('div', { class: wide ? 'figures stacked' : 'figures' }));
-      grid.append(shown);
-    }
-  }
-  return element;
 }
 
 function statusLine(data) {

@@ -1,10 +1,12 @@
 // Paper: before printing, what must be drawn for the width of the page is drawn again; afterwards for the screen.
 
-const preparations = [];
+const preparations = [];  // of what is drawn
 
-/** Something to be done before any printing and undone after it. */
+/** Something to be done before any printing and undone after it -> a function that ends this. */
 export function onPaper(prepare, restore) {
-  preparations.push({ prepare, restore });
+  const one = { prepare, restore };
+  preparations.push(one);
+  return () => { preparations.splice(preparations.indexOf(one), 1); };
 }
 
 /** Does what is drawn for paper, whatever the screen shows. */

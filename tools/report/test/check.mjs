@@ -110,7 +110,7 @@ const cases = [
   ['dead keys', () => bent(spin, 'stage/stage.js', 'controls.rotateLeft(TURN)', 'controls.rotateLeft(0)'), 1, /: an arrow key turns the view/],
   ['no dragging', () => bent(spin, 'stage/stage.js', 'enableDamping: false', 'enableRotate: false'), 1, /: dragging turns the view/],
   ['no way home', () => bent(spin, 'stage/animation.js', 'stage.goTo(stage.from); }', '}'), 1, /: the view resets/],
-  ['a figure that waits', () => bent(plot, 'page.js', 'Promise.resolve(draw())', 'new Promise((done) => { setTimeout(done, 4000); }).then(draw)'), 1, /plain screenshot: A plot shows curves: 0/],
+  ['a figure that waits', () => bent(plot, 'sections.js', 'Promise.resolve(draw())', 'new Promise((done) => { setTimeout(done, 4000); }).then(draw)'), 1, /plain screenshot: A plot shows curves: 0/],
   ['a first drawing that stays too wide', () => bent(plot, 'figures.css', '.chart > div:first-child { max-width: 100%; }', ''), 1, /drawings shrink with their cards: 1 do not/],
   ['no word about WebGL', () => bent(spin, 'stage/stage.js', 'Drawn without WebGL', 'Drawn'), 1, /drawn all the same and say so: 1 say nothing/],
   ['a saved figure without its colours', () => bent(plot, 'save.js', 'print.getPropertyValue(name).trim()', '`var(${name})`'), 1, /SVG: colours of its own/],

@@ -7,11 +7,11 @@ import { DataZoomComponent, GridComponent, LegendComponent, MarkAreaComponent, M
   TooltipComponent, VisualMapComponent } from 'echarts/components';
 import { SVGRenderer } from 'echarts/renderers';
 import { onPaper } from '../print.js';
+import { followWidth, FONT } from '../width.js';
 
 use([CustomChart, HeatmapChart, LineChart, DataZoomComponent, GridComponent, LegendComponent, MarkAreaComponent, MarkLineComponent, MarkPointComponent,
   ToolboxComponent, TooltipComponent, VisualMapComponent, SVGRenderer]);
 
-export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', 'DejaVu Sans', sans-serif";  // (in an attribute of the SVG)
 const PRINTED = 0.72;  // of its height on the screen is a chart on paper
 const [WHOLE, HALF] = [664, 313];  // pixels: its width on A4, alone and beside another (print.css); other paper scales it
 const WIDE_ON_PAPER = ':only-child, :is(.wide, .heatmap):not(.paired)';
@@ -28,20 +28,10 @@ export const axisOptions = (name, gap, more) => ({
   splitLine: { lineStyle: { color: 'var(--grid)' } }, ...Object.fromEntries(Object.entries(more).filter(([key]) => key !== 'axisLabel')),
 });
 
-/** Width of a text on the screen, in pixels. */
-const pen = document.createElement('canvas').getContext('2d');
-export function widthOf(text, size = 12) {
-  pen.font = `${size}px ${FONT}`;
-  return pen.measureText(text).width;
-}
-
-/** The widest of the texts. */
-export const widest = (texts, size) => Math.max(0, ...texts.map((text) => widthOf(text, size)));
-
 /**
  * Draws into `holder`, which is `height(width)` tall, and again whenever its width changes and for paper.
- * -> {chart, redraw(), picture(width, height, room, more)}: `picture` is the SVG of that size, with room below for what the
- * options `more` put there.
+ * -> {chart, redraw(), picture(width, height, room, more), dispose()}: `picture` is the SVG of that size, with room below for
+ * what the options `more` put there; after `dispose` nothing holds the chart.
  */
 export function makeChart(holder, height, option) {
   let [width, tall] = [holder.clientWidth, 0];
@@ -56,11 +46,11 @@ export function makeChart(holder, height, option) {
     holder.querySelector('svg').setAttribute('viewBox', `0 0 ${width} ${tall}`);  // paper may be narrower
   };
   redraw();
-  followWidth(holder, () => {
+  const unfollow = followWidth(holder, () => {
     width = holder.clientWidth;
     redraw();
   });
-  onPaper(() => {
+  const offPaper = onPaper(() => {
     width = holder.closest('.figure').matches(WIDE_ON_PAPER) ? WHOLE : HALF;
     redraw(PRINTED);
   }, () => {
@@ -75,16 +65,10 @@ export function makeChart(holder, height, option) {
     still.dispose();
     return svg;
   };
-  return { chart, redraw: () => redraw(), picture };
-}
-
-/** Calls back, once a frame, when the element has another width. */
-export function followWidth(element, callback) {
-  let last = element.clientWidth;
-  new ResizeObserver(() => requestAnimationFrame(() => {
-    const width = element.clientWidth;
-    if (width === last || width === 0 || matchMedia('print').matches) return;
-    last = width;
-    callback();
-  })).observe(element);
+  const dispose = () => {
+    unfollow();
+    offPaper();
+    chart.dispose();
+  };
+  return { chart, redraw: () => redraw(), picture, dispose };
 }

@@ -1,7 +1,7 @@
 // The figure `heatmap`: one coloured cell per pair of values, read with the pointer or the arrow keys; values that are classes have a
 // colour and a name each in place of a scale.
 
-import { axisOptions, makeChart, TEXT, TOOLTIP, widest, widthOf } from './chart.js';
+import { axisOptions, makeChart, TEXT, TOOLTIP } from './chart.js';
 import { makeRing } from './choosing.js';
 import { COLOURS, inkOn, sequential } from './colours.js';
 import { h } from '../dom.js';
@@ -13,6 +13,7 @@ import { choose } from '../blocks/members.js';
 import { styleOf } from './palette.js';
 import { columnsToCsv } from '../save.js';
 import { extent } from './series.js';
+import { widest, widthOf } from '../width.js';
 
 const WIDE = 16;       // more columns take the whole width of the page
 const [BAR, TOP] = [30, 8];

@@ -1,6 +1,6 @@
 // The figures of curves: `plot` (over x) and `path` (in the plane, equal scales).
 
-import { axisOptions, makeChart, TEXT, TOOLTIP, widest } from './chart.js';
+import { axisOptions, makeChart, TEXT, TOOLTIP } from './chart.js';
 import { h } from '../dom.js';
 import { figure, remark } from '../figure.js';
 import { makeFilters } from './filters.js';
@@ -12,6 +12,7 @@ import { choosable } from './choosing.js';
 import { columnsToCsv } from '../save.js';
 import { covered, extent, readSeries } from './series.js';
 import { makeZoom, ZOOMS } from './zoom.js';
+import { widest } from '../width.js';
 
 const MARGIN = { left: 74, right: 18, top: 12, bottom: 46 };
 const [BESIDE, BELOW] = [36, 11];  // pixels left of the numbers of the y axis: its name; from the x axis to its numbers, clear of those of y
@@ -79,7 +80,7 @@ function chartFigure(block, data, equal) {
       return { series, points: curves[i]?.points.length ?? 0, curves: shown.length, choose: chosen && ((at) => chosen(curves[i].points[at][2])) };
     });
   };
-  return { element, draw, picture };
+  return { element, draw, picture, dispose: () => drawn?.dispose() };
 }
 
 const isPoint = (p) => p[0] !== null && p[1] !== null;

@@ -1,7 +1,6 @@
 // The figure `scatter`: all pairs of columns as dots, a dot for each member in each pair; the names and histograms in the diagonal,
 // correlations above it. Drawn as SVG: the dots of a class in one pair are one path.
 
-import { followWidth, FONT, widthOf } from './chart.js';
 import { h } from '../dom.js';
 import { figure, remark } from '../figure.js';
 import { formatNumber, formatShort, niceTicks } from '../format.js';
@@ -11,6 +10,7 @@ import { styleOf } from './palette.js';
 import { onPaper } from '../print.js';
 import { columnsToCsv } from '../save.js';
 import { extent } from './series.js';
+import { followWidth, FONT, widthOf } from '../width.js';
 
 const [LEFT, RIGHT, TOP, BOTTOM] = [58, 10, 8, 34];
 const [LEAST, TALLEST, FLATTER] = [88, 150, 0.8];  // pixels of a cell: its least width, its greatest height; height over width

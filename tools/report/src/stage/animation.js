@@ -20,14 +20,9 @@ const FAR = (bodies) => (bodies.length > 1 ? 7 : 40);
 const AROUND = (bodies) => (bodies.length > 1 ? 1.2 : 3.2);
 
 export function animation(block) {
-  const motion = readMotion(block);
-  const { times, bodies } = motion;
-  const [start, end] = [times[0], times[times.length - 1]];
-  const room = Math.max(...motion.box[1].map((v, i) => v - motion.box[0][i]));
-  const long = room > FAR(bodies) * motion.reach;
-  const grid = block.floor ? floorGrid(motion.box, long ? 0.47 * AROUND(bodies) * motion.reach : 0) : null;
-  let [now, playing, pushing] = [start, false, false];
-  const poses = () => bodies.map((body) => poseAt(body, placeInTime(times, now)));
+  let { motion, times, bodies, start, end, room, long, grid } = spread(block);
+  let [now, playing, pushing, live] = [start, false, false, null];
+  const poses = () => live ?? bodies.map((body) => poseAt(body, placeInTime(times, now)));
 
   const holder = h('div', { class: 'stage3d drawing', role: 'img', tabindex: 0, 'aria-label':
     `Animation: ${block.title ?? 'untitled'}; ${bodies.map((body) => body.name).join(', ')}; t from ${formatShort(start)} to ` +
@@ -101,7 +96,38 @@ export function animation(block) {
     seek(start);
     return drawn;
   };
-  return { element, draw, picture: () => stage.picture(false) };
+  /** Shows another motion of as many bodies from where the eye is, at about the same time; anew where the one before had ended. */
+  const show = (other) => {
+    const over = now >= end;
+    block = other;
+    ({ motion, times, bodies, start, end, room, long, grid } = spread(block));
+    live = null;
+    stage.see(motion.box);
+    seek(now);
+    if (over && !playing) run();
+  };
+  /** Shows the bodies in these poses, [{at, turn}, …], at a time t, whatever the motion is. */
+  const feed = (t, given) => {
+    if (playing) pause();
+    [live, now] = [given, t];
+    clock.textContent = `t = ${formatNumber(t, 4)}`;
+    stage.paint();
+  };
+  const dispose = () => {
+    pause();
+    stage.dispose();
+  };
+  return { element, draw, picture: () => stage.picture(false), show, feed, follow, play: run, dispose };
+}
+
+/** A motion, its times and bodies, its room, whether that is long against the bodies, the grid on the floor. */
+function spread(block) {
+  const motion = readMotion(block);
+  const { times, bodies } = motion;
+  const room = Math.max(...motion.box[1].map((v, i) => v - motion.box[0][i]));
+  const long = room > FAR(bodies) * motion.reach;
+  const grid = block.floor ? floorGrid(motion.box, long ? 0.47 * AROUND(bodies) * motion.reach : 0) : null;
+  return { motion, times, bodies, start: times[0], end: times[times.length - 1], room, long, grid };
 }
 
 /** 1 where the motion then takes a pleasant time, else what brings it near ten seconds. */

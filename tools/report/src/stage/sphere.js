@@ -30,7 +30,7 @@ export function sphere(block) {
   const names = () => curves.filter((curve) => curve.show).map(({ name, style }) => ({ name, colour: style.colour }));
   const element = figure(block, [holder, legend.element, far > 1e-3 ? remark(`Some points lie off the unit sphere, by up to ${far.toPrecision(2)}.`) : null,
     block.note ? remark(block.note) : null], { svg: () => stage.picture(false, names()), png: () => stage.picture(true, names()), csv });
-  return { element, draw: () => stage.draw(), picture: () => stage.picture(false, names()) };
+  return { element, draw: () => stage.draw(), picture: () => stage.picture(false, names()), dispose: () => stage.dispose() };
 }
 
 function readCurve(series, i) {

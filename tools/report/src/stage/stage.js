@@ -4,11 +4,11 @@
 import { OrthographicCamera, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { SVGRenderer } from 'three/examples/jsm/renderers/SVGRenderer.js';
-import { followWidth, widthOf } from '../charts/chart.js';
 import { h } from '../dom.js';
 import { remark } from '../figure.js';
 import { onPaper, onPaperFor } from '../print.js';
 import { SHARPER } from '../save.js';
+import { followWidth, widthOf } from '../width.js';
 
 export const HOME = [0.76, -0.52, 0.42];  // from where the eye looks, at first
 export const ABOVE = [0, -1e-5, 1];       // x to the right, y up
@@ -48,11 +48,9 @@ export class Stage {
    * floor: no view from below; build(solid) -> {scene, update(), labels: [{text, at}]} of what stands there.
    */
   constructor(holder, { height, box, from, floor, build }) {
-    Object.assign(this, { holder, height, box, from, build, follows: null, reach: 0, drawings: 0 });
-    this.size = new Vector3(...box[1]).sub(new Vector3(...box[0]));
-    this.centre = new Vector3(...box[0]).addScaledVector(this.size, 0.5);
-    this.depth = 4 * this.size.length();
-    this.camera = new OrthographicCamera(-1, 1, 1, -1, 0, 2 * this.depth);
+    Object.assign(this, { holder, height, from, build, follows: null, reach: 0, drawings: 0, endings: [] });
+    this.camera = new OrthographicCamera(-1, 1, 1, -1, 0, 1);
+    this.#measure(box);
     this.camera.up.set(0, 0, 1);
     this.renderer = new SVGRenderer();
     this.renderer.setPrecision(1);
@@ -69,11 +67,13 @@ export class Stage {
     this.rebuild();
     this.goTo(this.from);
     this.controls.addEventListener('change', () => { if (!this.painting) this.paint(); });
-    followWidth(this.holder, () => this.paint());
     const isDark = matchMedia('(prefers-color-scheme: dark)');
-    isDark.addEventListener('change', () => this.rebuild());
-    onPaper(() => isDark.matches && this.rebuild(), () => isDark.matches && this.rebuild());  // in the colours of paper
+    const repaint = () => this.rebuild();
+    isDark.addEventListener('change', repaint);
+    this.endings.push(followWidth(this.holder, () => this.paint()), () => isDark.removeEventListener('change', repaint),
+      onPaper(() => isDark.matches && this.rebuild(), () => isDark.matches && this.rebuild()));  // in the colours of paper
     await afterFirstPicture();
+    if (this.disposed) return;
     const renderer = makeWebgl();
     if (renderer) {
       this.renderer.domElement.replaceWith(renderer.domElement);
@@ -84,6 +84,32 @@ export class Stage {
     }
   }
 
+  /** Ends what it holds beside its elements: a browser has few WebGL contexts. */
+  dispose() {
+    if (this.disposed) return;
+    this.disposed = true;
+    this.endings.forEach((end) => end());
+    this.controls.dispose();
+    if (!this.renderer.isWebGLRenderer) return;
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    --solid;
+  }
+
+  /** Another box is to be seen, from where the eye is; what stands there is built again. */
+  see(box) {
+    this.#measure(box);
+    this.#stand(this.camera.position.clone().sub(this.controls.target));
+    this.rebuild();
+  }
+
+  #measure(box) {
+    this.size = new Vector3(...box[1]).sub(new Vector3(...box[0]));
+    this.centre = new Vector3(...box[0]).addScaledVector(this.size, 0.5);
+    this.depth = 4 * this.size.length();
+    this.camera.far = 2 * this.depth;
+  }
+
   rebuild() {
     this.shown = this.build(this.renderer.isWebGLRenderer === true);
     this.paint();
@@ -92,8 +118,15 @@ export class Stage {
   /** Looks along `from`, all in sight. */
   goTo(from) {
     this.camera.zoom = 1;
+    this.#stand(new Vector3(...from));
+    this.controls.update();
+    this.paint();
+  }
+
+  /** Stands far off the middle, all in sight. */
+  #stand(from) {
     this.controls.target.copy(this.follows?.() ?? this.centre);
-    this.camera.position.copy(this.controls.target).addScaledVector(new Vector3(...from).normalize(), this.depth);
+    this.camera.position.copy(this.controls.target).addScaledVector(from.normalize(), this.depth);
     this.camera.lookAt(this.controls.target);
     this.camera.updateMatrixWorld();
     const half = (axis) => {
@@ -101,8 +134,6 @@ export class Stage {
       return (Math.abs(along.x) * this.size.x + Math.abs(along.y) * this.size.y + Math.abs(along.z) * this.size.z) / 2;
     };
     this.fit = [half(0), half(1)];
-    this.controls.update();
-    this.paint();
   }
 
   /** The eye goes with a point that moves, `reach` around it in sight; null: it stays. */

@@ -1,0 +1,234 @@
+// The page: an editor, sliders, the motion beside them.
+
+import '../../../report/src/style.css';
+import '../../../report/src/figures.css';
+import '../../../report/src/print.css';
+import './playground.css';
+import { animation } from '../../../report/src/stage/animation.js';
+import { h, inline } from '../../../report/src/dom.js';
+import { Controls } from './controls.js';
+import { Drive } from './drive.js';
+import { Library } from './library.js';
+import { mistakesOf } from './mistakes.js';
+import { alike, motionOf } from './motion.js';
+import { commandOf, fileOf, fragmentOf, stateOf, stateOfFragment } from './state.js';
+
+const FIRST = 'bicycle';
+const [TYPED, CALM, SLOW] = [250, 350, 400];  // milliseconds: until a text is run, until figures are drawn, until a run is said to take long
+
+const $ = (id) => document.getElementById(id);
+const library = new Library(globalThis.hamelSource);
+const page = { state: stateOf(FIRST, ''), registered: new Map(), controls: null, editor: null, drive: null, catalogue: null,
+  shown: null, figures: null, running: false, wanted: null, timer: 0, calm: 0 };
+
+/** The text of a registered system. */
+async function textOf(name) {
+  if (!page.registered.has(name)) {
+    const { answer } = await library.call('text', { name });
+    if (!answer.ok) throw new Error(answer.mistakes.join('\n'));
+    page.registered.set(name, answer.text);
+  }
+  return page.registered.get(name);
+}
+const registered = () => page.registered.get(page.state.system);
+
+// ---- runs: one at a time, the last one wanted next ----------------------------------------------------------------------
+
+function run() {
+  page.wanted = page.state;
+  if (!page.running) work();
+}
+
+async function work() {
+  page.running = true;
+  while (page.wanted) {
+    const state = page.wanted;
+    page.wanted = null;
+    const slow = setTimeout(() => { document.body.dataset.slow = 'true'; }, SLOW);
+    const { text, options, parameters, inputs } = state;
+    const { answer, numbers } = await library.call('run', { text, origin: fileOf(state), options, parameters, inputs })
+      .catch((error) => ({ answer: { ok: false, mistakes: [error.message] } }));
+    clearTimeout(slow);
+    delete document.body.dataset.slow;
+    if (!page.wanted || answer.ok) show(answer, numbers, state);
+  }
+  page.running = false;
+}
+
+function show(answer, numbers, state) {
+  if (answer.ended) return;
+  const mistakes = answer.ok ? [] : mistakesOf(answer.mistakes, fileOf(state));
+  document.body.classList.toggle('mistaken', !answer.ok);
+  $('mistakes').replaceChildren(...mistakes.map(({ line, column, text }) => h('li', {}, line ? h('button', { type: 'button', onclick: () => page.editor?.focus(line) },
+    `line ${line}${column ? `, column ${column}` : ''}`) : null, line ? ' ' : null, text)));
+  page.mistakes = mistakes;
+  page.editor?.mark(mistakes);
+  clearTimeout(page.calm);
+  if (!answer.ok) return done();
+  showMotion(motionOf(answer.motion, numbers));
+  const { status, text } = answer.verdict;
+  $('verdict').className = `verdict ${answer.failure ? 'failed' : status}`;
+  $('verdict').replaceChildren(h('span', {}, inline(answer.failure ? `Ended at t = ${answer.time.toPrecision(6)} s: ${answer.failure}` : text)));
+  $('facts').textContent = `${answer.method} · ${answer.steps_in_words} · ${answer.steps} steps in ${(1e3 * answer.seconds).toPrecision(3)} ms`;
+  $('notes').replaceChildren(...answer.notes.map((note) => h('p', { class: 'remark' }, inline(note))));
+  page.system = { ...answer.system, options: answer.options };
+  page.controls?.show(page.system, page.state);
+  $('drive').hidden = answer.system.inputs.length === 0 || !page.shown;
+  page.calm = setTimeout(() => drawFigures(), CALM);
+  done();
+}
+
+function done() {
+  document.documentElement.dataset.ready = 'true';
+  document.body.dataset.runs = String(1 + Number(document.body.dataset.runs ?? 0));
+}
+
+function showMotion(block) {
+  const before = page.shown;
+  if (before && alike(before.block, block) && JSON.stringify(before.block.bodies.map((b) => b.shapes)) === JSON.stringify(block.bodies.map((b) => b.shapes))) {
+    before.block = block;
+    before.figure.show(block);
+    return;
+  }
+  before?.figure.dispose();
+  page.shown = null;
+  if (!block) {
+    $('motion').replaceChildren(h('p', { class: 'remark' }, 'This system has no drawing: its figures are below.'));
+    return;
+  }
+  const figure = animation(block);
+  $('motion').replaceChildren(figure.element);
+  page.shown = { block, figure };
+  figure.draw();
+  figure.play();
+}
+
+/** Charts: their code comes when the first motion is there. */
+async function drawFigures() {
+  const { answer } = await library.call('figures');
+  if (!answer.ok || page.running) return;
+  const { draw } = await import('./figures.js');
+  page.figures?.();
+  page.figures = draw($('figures'), answer.sections);
+}
+
+// ---- what changes the state ---------------------------------------------------------------------------------------------
+
+async function changed({ quickly = true } = {}) {
+  if (page.drive) page.drive.stop();
+  clearTimeout(page.timer);
+  page.timer = setTimeout(run, quickly ? 0 : TYPED);
+  $('command').textContent = commandOf(page.state, registered());
+  $('system').value = page.state.text === registered() ? page.state.system : '';
+  history.replaceState(null, '', await fragmentOf(page.state, registered()));
+}
+
+function typed(text) {
+  page.state = { ...page.state, text };
+  changed({ quickly: false });
+}
+
+function moved(part, name, value) {
+  const { [name]: _, ...rest } = page.state[part];
+  page.state = { ...page.state, [part]: value === null ? rest : { ...rest, [name]: value } };
+  changed();
+}
+
+async function choose(name) {
+  page.state = stateOf(name, await textOf(name));
+  page.editor?.show(page.state.text);
+  changed();
+}
+
+/** The state that the address has; that of the first system where it has none. */
+async function read() {
+  const state = await stateOfFragment(location.hash).catch((error) => {
+    $('mistakes').replaceChildren(h('li', {}, error.message));
+    return null;
+  }) ?? { system: FIRST, options: {}, parameters: {}, inputs: {} };
+  if (state.text === undefined) {
+    state.text = await textOf(state.system).catch(async () => {
+      state.system = FIRST;
+      return textOf(FIRST);
+    });
+  } else if (state.system) await textOf(state.system).catch(() => { state.system = ''; });
+  page.state = state;
+  $('system').value = state.text === registered() ? state.system : '';
+  page.editor?.show(state.text);
+  $('command').textContent = commandOf(state, registered());
+}
+
+// ---- the parts that come behind the first motion ------------------------------------------------------------------------
+
+async function addEditor() {
+  const { completions, makeEditor } = await import('./editing.js');
+  $('text').hidden = true;
+  page.editor = makeEditor($('editor'), typed, completions(() => page));
+  page.editor.show(page.state.text);
+  page.editor.mark(page.mistakes ?? []);
+}
+
+function fillSystems(systems) {
+  const group = (label, list) => h('optgroup', { label }, list.map(({ name, summary }) => h('option', { value: name, title: summary }, name.replaceAll('_', ' '))));
+  $('system').replaceChildren(group('Mechanisms by parts', systems.filter((s) => s.mechanism)), group('Systems', systems.filter((s) => !s.mechanism)),
+    h('option', { value: '', hidden: true }, 'a system of your own'));
+  $('system').value = page.state.text === registered() ? page.state.system : '';
+  $('system').addEventListener('change', () => choose($('system').value));
+}
+
+function addButtons() {
+  const say = (text) => {
+    $('said').textContent = text;
+    setTimeout(() => { $('said').textContent = ''; }, 4000);
+  };
+  const copy = (text, what) => navigator.clipboard.writeText(text).then(() => say(`${what} copied`), () => say('this browser does not let a page copy'));
+  $('share').addEventListener('click', async () => copy(`${location.href.replace(/#.*/, '')}${await fragmentOf(page.state, registered())}`, 'address'));
+  $('copy').addEventListener('click', () => copy($('command').textContent, 'command'));
+  $('download').addEventListener('click', () => {
+    const link = h('a', { download: fileOf(page.state), href: URL.createObjectURL(new Blob([page.state.text], { type: 'application/toml' })) });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  });
+  $('drive').addEventListener('click', () => {
+    page.drive = new Drive({ library, figure: page.shown.figure, block: page.shown.block, state: page.state, system: page.system, ended: (reason) => {
+      page.drive?.element.remove();
+      page.drive = null;
+      $('drive').disabled = false;
+      page.shown?.figure.show(page.shown.block);
+      say(reason);
+      if (reason) $('notes').replaceChildren(h('p', { class: 'remark' }, reason));
+    } });
+    $('drive').disabled = true;
+    $('motion').append(page.drive.element);
+    page.drive.start();
+  });
+  $('stop').addEventListener('click', () => {
+    library.restart();
+    delete document.body.dataset.slow;
+  });
+}
+
+async function begin() {
+  await read();
+  $('text').textContent = page.state.text;
+  run();
+  addButtons();
+  document.body.append(h('span', { id: 'light', class: 'light', hidden: true }));
+  const { answer } = await library.call('catalogue');
+  page.catalogue = answer;
+  fillSystems(answer.systems);
+  $('version').textContent = `hamel ${answer.version} (${answer.git})`;
+  page.controls = new Controls($('controls'), answer.options, moved);
+  if (page.system) page.controls.show(page.system, page.state);
+  addEventListener('hashchange', async () => {
+    await read();
+    run();
+  });
+  await addEditor();
+  document.documentElement.dataset.complete = 'true';
+}
+
+begin().catch((error) => {
+  $('mistakes').replaceChildren(h('li', {}, `This page could not start: ${error.message}`));
+  document.documentElement.dataset.ready = 'true';
+});
