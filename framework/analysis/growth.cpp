@@ -15,7 +15,7 @@ namespace {
 
 using namespace carried;
 
-// Of the size of its generation: what is smaller is no new direction; of exact brackets.
+// Part of the size of its generation below which nothing is a new direction; of exact brackets.
 constexpr double kNew = 1e-6, kNewExact = 1e-10;
 // Times its estimated error, for a bracket that is too small to be a direction not to be zero. At
 // round-off the ratio was 0.1 to 3 on six systems and mechanisms, 10.4 on the snakeboard.

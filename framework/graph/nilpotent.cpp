@@ -12,7 +12,7 @@ using Series = std::array<double, kMostUnits + 1>;  // f^(j)(a)/j!
 
 bool is_known(Op op) { return op <= Op::log || op == Op::sin || op == Op::cos; }
 
-// Of x^p, p not an integer above 0.
+// Series of x^p, p not an integer above 0.
 Series power_series(double a, double p, int units) {
   Series out{};
   out[0] = std::pow(a, p);

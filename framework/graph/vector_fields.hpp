@@ -9,8 +9,8 @@
 namespace hamel::graph {
 
 /// Fields on a set of elements, each of N numbers, near one of them: field a is the velocity
-/// column a of E, of n components, and a velocity xi moves the numbers at T xi. Numbers that no
-/// formula depends on may stand for the element's own.
+/// column a of E, of n components, and a velocity xi moves the numbers at T xi. Numbers on
+/// which no formula depends may be others than the element's own, as an angle of a rotor.
 struct VectorFields {
   std::shared_ptr<const Recording> recording;  // its first inputs: the element
   std::vector<Number> velocities;              // E, n x m, column by column
