@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 namespace hamel::graph {
 namespace {
@@ -60,6 +61,37 @@ void compose(int units, const Series& series, const double* a, double* out) {
   std::ranges::copy(sum, out);
 }
 
+// out = op(a, b); out is 0.
+void apply(Op op, int units, const double* a, const double* b, double* out) {
+  const size_t size = size_t{1} << units;
+  switch (op) {
+    case Op::add: std::transform(a, a + size, b, out, std::plus<>()); return;
+    case Op::subtract: std::transform(a, a + size, b, out, std::minus<>()); return;
+    case Op::multiply: add_product(units, a, b, out); return;
+    case Op::divide: {
+      std::vector<double> inverse(size);
+      compose(units, series_of(op, *b, units), b, inverse.data());
+      add_product(units, a, inverse.data(), out);
+      return;
+    }
+    case Op::negate: std::transform(a, a + size, out, std::negate<>()); return;
+    case Op::abs:
+      if (*a < 0) std::transform(a, a + size, out, std::negate<>());
+      else std::copy_n(a, size, out);
+      return;
+    case Op::min: std::copy_n(*b < *a ? b : a, size, out); return;
+    case Op::max: std::copy_n(*a < *b ? b : a, size, out); return;
+    case Op::round: *out = std::rint(*a); return;
+    case Op::less: *out = *a < *b; return;
+    case Op::less_equal: *out = *a <= *b; return;
+    case Op::equal: *out = *a == *b; return;
+    case Op::both: *out = *a != 0 && *b != 0; return;
+    case Op::either: *out = *a != 0 || *b != 0; return;
+    case Op::opposite: *out = *a == 0; return;
+    default: compose(units, series_of(op, *a, units), a, out);
+  }
+}
+
 }  // namespace
 
 void add_product(int units, const double* a, const double* b, double* out) {
@@ -97,7 +129,7 @@ std::vector<double> NilpotentEvaluation::operator()(int units, std::span<const d
   const std::vector<Node>& nodes = recording_.nodes();
   const size_t size = size_t{1} << units;
   values_.assign(slot_count_ * size, 0.0);
-  std::vector<double> noisy_a(size), noisy_b(size), inverse(size);
+  std::vector<double> noisy_a(size), noisy_b(size);
   const auto value = [&](int node) {
     return values_.data() + static_cast<size_t>(slots_[static_cast<size_t>(node)]) * size;
   };
@@ -130,35 +162,7 @@ std::vector<double> NilpotentEvaluation::operator()(int units, std::span<const d
     }
     const double* const a = operand(node.a, noisy_a);
     const double* const b = node.b < 0 ? nullptr : operand(node.b, noisy_b);
-    switch (node.op) {
-      case Op::add:
-        for (size_t k = 0; k < size; ++k) out[k] = a[k] + b[k];
-        break;
-      case Op::subtract:
-        for (size_t k = 0; k < size; ++k) out[k] = a[k] - b[k];
-        break;
-      case Op::negate:
-        for (size_t k = 0; k < size; ++k) out[k] = -a[k];
-        break;
-      case Op::multiply: add_product(units, a, b, out); break;
-      case Op::divide:
-        compose(units, series_of(Op::divide, *b, units), b, inverse.data());
-        add_product(units, a, inverse.data(), out);
-        break;
-      case Op::min: std::copy_n(*b < *a ? b : a, size, out); break;
-      case Op::max: std::copy_n(*a < *b ? b : a, size, out); break;
-      case Op::abs:
-        for (size_t k = 0; k < size; ++k) out[k] = *a < 0 ? -a[k] : a[k];
-        break;
-      case Op::round: *out = std::rint(*a); break;
-      case Op::less: *out = *a < *b; break;
-      case Op::less_equal: *out = *a <= *b; break;
-      case Op::equal: *out = *a == *b; break;
-      case Op::both: *out = *a != 0 && *b != 0; break;
-      case Op::either: *out = *a != 0 || *b != 0; break;
-      case Op::opposite: *out = *a == 0; break;
-      default: compose(units, series_of(node.op, *a, units), a, out);
-    }
+    apply(node.op, units, a, b, out);
   }
   std::vector<double> results(outputs_.size() * size, 0.0);
   for (size_t k = 0; k < outputs_.size(); ++k) {
