@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -70,7 +71,7 @@ TEST(Nilpotent, SaysWhatItDoesNotKnow) {
   EXPECT_FALSE(NilpotentEvaluation(recording, unknown).possible());
 }
 
-// (1 + x) - x keeps 1, with the round-off of x = 1e8.
+// (1 + x^2) - x^2 keeps 1, with the round-off of x^2 = 1e8.
 TEST(Nilpotent, NoiseShowsRoundOff) {
   Recording recording;
   const Number x = recording.input("x");
@@ -78,7 +79,8 @@ TEST(Nilpotent, NoiseShowsRoundOff) {
   NilpotentEvaluation evaluation(recording, y);
   const std::vector<double> in = {1e4};
   EXPECT_EQ(evaluation(0, in)[0], 1);
-  const double moved = std::abs(evaluation(0, in, 0x1p-52)[0] - 1);
+  double moved = 0;
+  for (int i = 0; i < 8; ++i) moved = std::max(moved, std::abs(evaluation(0, in, 0x1p-52)[0] - 1));
   EXPECT_GT(moved, 1e-10);
   EXPECT_LT(moved, 1e-6);
 }
