@@ -28,8 +28,7 @@ std::vector<Vector> random_controls(std::mt19937& random, Eigen::Index fields, i
 
 ExactBrackets::ExactBrackets(const graph::VectorFields& fields, const Vector& g,
                              const Vector& units)
-    : fields_(fields),
-      n_(units.size()),
+    : n_(units.size()),
       m_(static_cast<Eigen::Index>(fields.velocities.size()) / units.size()),
       velocities_(*fields.recording, fields.velocities),
       moves_(*fields.recording, fields.moves),

@@ -19,8 +19,8 @@ namespace hamel::carried {
 
 class ExactBrackets {
  public:
-  /// At an element, in units of the n components: the fields are combined so that they are
-  /// orthonormal there.
+  /// fields: lives longer. At an element, in units of the n components: the fields are combined so
+  /// that they are orthonormal there.
   ExactBrackets(const graph::VectorFields& fields, const Vector& g, const Vector& units);
 
   /// Are all operations of the formulas known, and their values finite?
@@ -34,7 +34,6 @@ class ExactBrackets {
   void flow(const Vector& controls, int units, int unit, double sign, double noise, Numbers& x);
   std::vector<Matrix> brackets(const Vector& g, const std::vector<Vector>& controls, double noise);
 
-  const graph::VectorFields& fields_;
   Eigen::Index n_, m_;
   graph::NilpotentEvaluation velocities_, moves_, rates_;
   Vector units_;
