@@ -56,7 +56,9 @@ TEST_F(Sine, IsAccurateToUnitsInTheLastPlace) {
                         c = std::cos(static_cast<long double>(x));
       for (const auto& [found, exact] : {std::pair{y.s, s}, std::pair{y.c, c}}) {
         if (std::abs(exact) > 1e-3L) worst = std::max(worst, units(found, exact));
-        else near_zeros = std::max(near_zeros, static_cast<double>(std::abs(found - exact)));
+        else
+          near_zeros = std::max(
+              near_zeros, static_cast<double>(std::abs(static_cast<long double>(found) - exact)));
       }
     }
     std::printf("|x| <= %g: %.2f units in the last place, %.1e near zeros\n", range, worst,
