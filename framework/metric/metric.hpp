@@ -60,8 +60,11 @@ class Metric {
         factors_(has_chain(n) ? 0 : n, has_chain(n) ? 0 : k),
         lambda_(Multipliers::Zero(k)),
         none_(Multipliers::Zero(k)),
+        rows_(none_),
+        first_(none_),
         so_far_(none_),
-        work_(n) {
+        work_(n),
+        left_(n) {
     if constexpr (!fixed)
       if (has_chain(n)) chain_.emplace(n, k);
   }
@@ -150,15 +153,25 @@ class Metric {
       }
     return lambda_;
   }
-  /// The admissible velocity of mu, A xi = b: what is left of the rows stays in a motion, so that
-  /// it is refined. xi is not mu.
+  /// The admissible velocity of mu, A xi = b, refined once: Y^T Y squares the condition of the
+  /// rows, and the round-off of its factors is nearly the same in every step. xi is not mu.
   void admissible(const Vector& mu, Vector& xi) {
     if (on_chain() || k() == 0) return solve(mu, b, xi);
     project(mu, b, work_);
-    refine(b, work_);
     factors_.apply_root_transpose(work_, xi);
     if (massless_) [[unlikely]]
       lambda_ -= stiffness_ * b;
+    first_ = lambda_;
+    momentum(xi, left_);  // I xi = mu + A^T lambda but for round-off
+    left_ = mu - left_;
+    left_ += a.transpose().lazyProduct(first_);
+    rows_ = b - a.lazyProduct(xi);
+    project(left_, rows_, work_);
+    factors_.apply_root_transpose(work_, left_);
+    xi += left_;
+    if (massless_) [[unlikely]]
+      lambda_ -= stiffness_ * rows_;
+    lambda_ += first_;
   }
   /// The smallest velocity with A xi = c; returns xi . I xi.
   double smallest(const Multipliers& c, Vector& xi) {
@@ -224,7 +237,7 @@ class Metric {
   // Y^T z = c to the round-off of z, as of an orthogonal basis: Y^T Y squares the condition of the
   // rows. Source: Bjorck, Stability analysis of the method of seminormal equations for linear least
   // squares problems, Linear Algebra Appl. 88/89 (1987).
-  void refine(const Multipliers& c, Vector& z) {
+  [[gnu::noinline, gnu::cold]] void refine(const Multipliers& c, Vector& z) {
     so_far_ = lambda_;
     factors_.subtract_rows(c, z, lambda_);
     factors_.solve_gram(lambda_);
@@ -241,8 +254,8 @@ class Metric {
   using Factors = std::conditional_t<fixed, DenseFactors<N, K>, BranchedFactors>;
   Factors factors_;
   [[no_unique_address]] std::conditional_t<fixed, NoChain, std::optional<RunTimeFrame>> chain_;
-  Multipliers lambda_, none_, so_far_;
-  Vector work_;
+  Multipliers lambda_, none_, rows_, first_, so_far_;
+  Vector work_, left_;
   bool known_ = false, massless_ = false;
   double stiffness_ = 0;
 };
