@@ -11,12 +11,12 @@
 // along paths for others (carried_fields.hpp). Ranks nearby are generic: d stays closed from the
 // first generation on that adds nothing there, and no configuration has more directions than that.
 // At g itself brackets may pause and grow again (z' = y^2 x' at y = 0: 2, 2, 3). Tolerances: a
-// direction is new when it is above 1e-6 of its generation and ten times above the generation's
-// error, measured by computing it twice, along paths of the length over which the fields are smooth
-// at g. A generation whose error exceeds 1e-4 of it (from six or seven fields on) is not decided,
-// nor is any beyond it. Generations below 1e-6 of the fields are taken for zero. Where such a small
-// bracket is ten times above the errors of its own coordinates, nothing is decided: z' = 1e-12 y x'
-// is not integrable, and no more than that distinguishes it.
+// direction is new when it is above 1e-6 of its generation (1e-10 where brackets are exact) and
+// ten times above the generation's error, measured by computing it twice, along paths of the length
+// over which the fields are smooth at g. A generation whose error exceeds 1e-4 of it (from six or
+// seven fields on) is not decided, nor is any beyond it. Generations below 1e-6 of the fields are
+// taken for zero. Where such a small bracket is ten times above the errors of its own coordinates,
+// nothing is decided: z' = 1e-12 y x' is not integrable, and no more than that distinguishes it.
 #pragma once
 
 #include <vector>
