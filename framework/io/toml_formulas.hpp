@@ -59,17 +59,15 @@ class TomlFormulas {
   /// A number or a text, as a formula of these variables and the constants.
   std::optional<Expression> expression(const Node& node, const std::string& key,
                                        const std::vector<std::string>& variables) {
-    std::string text;
     if (node.is_number() && !std::isfinite(*node.value<double>()))
       return toml_.wrong(node, key, "a finite number"), std::nullopt;
-    if (node.is_number()) text = fmt::format("{}", *node.value<double>());
-    else if (const auto formula = node.value<std::string>()) text = *formula;
-    else return toml_.wrong(node, key, "a number or a formula"), std::nullopt;
+    if (!node.is_number() && !node.is_string())
+      return toml_.wrong(node, key, "a number or a formula"), std::nullopt;
     if (++count_ > kMostFormulas)
       throw ConfigError(
           {fmt::format("{}: more than {} formulas", toml_.place(node), kMostFormulas)});
     try {
-      return Expression(reader_ ? reader_(text) : text, variables, constants_);
+      return Expression(text(node), variables, constants_);
     } catch (const ExpressionError& error) {
       toml::source_position at = node.source().begin;
       if (node.source().end.line == at.line)  // behind the quote
@@ -77,6 +75,13 @@ class TomlFormulas {
       toml_.mistakes.push_back(fmt::format("{}: {}: {}", toml_.place(at), key, error.what()));
       return {};
     }
+  }
+
+  /// The formula of a node that is a number or a text.
+  std::string text(const Node& node) const {
+    const std::string out =
+        node.is_number() ? fmt::format("{}", *node.value<double>()) : node.value_or(std::string());
+    return reader_ ? reader_(out) : out;
   }
 
  private:

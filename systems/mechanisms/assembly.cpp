@@ -117,6 +117,7 @@ ConstraintRows Assembly::rows() {
         body_links_.contains(part.b))
       wrong(part, "loop", fmt::format("'{}' and '{}' are one body", part.a, part.b));
   }
+  out.couplings = couplings();
   for (const auto& part : parts_.rates_) {
     const auto rate = part.rate ? part.rate : [](double) { return 0.0; };
     for (const Prescribed& other : out.prescribed)

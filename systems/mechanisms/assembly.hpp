@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,10 @@ class Assembly {
   mechanisms::Vec3 direction(const Part& part, const std::string& kind, const std::string& what,
                              const Point& given);
   mechanisms::ConstraintRows rows();
+  /// With mistakes, none.
+  std::vector<mechanisms::Coupling> couplings();
+  std::optional<mechanisms::Coupling> coupling(const Mechanism::CouplingPart& part);
+  std::optional<mechanisms::Coupling> gear(const Mechanism::CouplingPart& part);
   mechanisms::Forces forces();
   void check_contacts(const mechanisms::Multibody& system);
   std::vector<mechanisms::RowLabel> rows_in_words(

@@ -37,6 +37,7 @@ void Assembly::check_names() {
   unique(parts_.joints_, "joint", joints);
   unique(parts_.contacts_, "contact", rows);
   unique(parts_.loops_, "loop", rows);
+  unique(parts_.couplings_, "coupling", rows);
   unique(parts_.springs_, "spring", springs);
   unique(parts_.forces_, "force", forces);
 }
@@ -101,7 +102,7 @@ void Assembly::check_contacts(const Multibody& system) {
   }
 }
 
-// Labels of all rows: contacts, loops, and one for each prescribed joint.
+// Labels of all rows: contacts, loops, couplings, and one for each prescribed joint.
 std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) const {
   std::vector<RowLabel> out;
   const size_t others = rows.size() - parts_.rates_.size();
@@ -117,6 +118,8 @@ std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) 
       if (part.name == row.part) say(part, part.kind);
     for (const auto& part : parts_.loops_)
       if (part.name == row.part) say(part, "loop");
+    for (const auto& part : parts_.couplings_)
+      if (part.name == row.part) say(part, "coupling");
   }
   return out;
 }

@@ -73,6 +73,10 @@ void Assembly::check_numbers() {
     numbers(part, "loop", "at", part.at);
     numbers(part, "loop", "axis", part.axis);
   }
+  for (const auto& part : parts_.couplings_) {
+    number(part, "coupling", "ratio", part.ratio);
+    number(part, "coupling", "offset", part.offset);
+  }
   for (const auto& part : parts_.forces_) numbers(part, "force", "at", part.at);
   for (const auto& part : parts_.start_) number(part, "start", "value", part.value);
   const auto of_all = [&](const char* what, std::span<const double> values) {

@@ -21,6 +21,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <hamel/framework/mechanics/drawing.hpp>
@@ -44,11 +45,13 @@ struct Ground {
   bool moves() const { return rate != 0 || !velocity.isZero(0); }
 };
 
-/// Row: a wrench on a link, and for loops the opposite one on another, or a unit row; b and phi.
+/// Row: a wrench on a link, and for loops the opposite one on another; or a unit row; or, of a
+/// coupling, coefficients of velocities; b and phi.
 struct Row {
   int link = kGround, other = kGround;
   Wrench wrench = Wrench::Zero(), other_wrench;  // this one where there is another link
   int dof = -1;
+  std::vector<std::pair<int, double>> coefficients = {};
   double drift = 0, phi = 0;
 };
 
@@ -62,7 +65,7 @@ struct Contact {
   int link = 0;
   Vec3 at = Vec3::Zero();  // as drawn
   // The link, or its parent where the link's own turning changes nothing: a wheel. Found by
-  // ConstraintRows::find_carriers.
+  // ConstraintRows::find_links.
   int carrier = 0;
 
   /// How many rows, the last of them its height.

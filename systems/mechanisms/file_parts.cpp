@@ -48,14 +48,18 @@ void FileParts::joints() {
   tables("joint", [&](const toml::table& table) {
     std::string name, kind, child, parent = kWorld;
     JointOptions o;
+    bool held = false;
     FileValues::Keys keys = {{"name", read_.read(name)},     {"kind", read_.read(kind)},
                              {"parent", read_.read(parent)}, {"child", read_.read(child)},
                              {"at", read_.read(o.at)},       {"axis", read_.read(o.axis)},
                              {"axis2", read_.read(o.axis2)}, {"stiffness", read_.read(o.stiffness)},
-                             {"rest", read_.read(o.rest)},   {"damping", read_.read(o.damping)}};
+                             {"rest", read_.read(o.rest)},   {"damping", read_.read(o.damping)},
+                             {"held", read_.read(held)}};
     for (const JointKind& any : joint_kinds()) add_fields(any.fields, o.values, keys);
     read_.entries(table, keys);
-    m_.joint(kind, name.empty() ? child : name, parent, child, o);
+    if (name.empty()) name = child;
+    m_.joint(kind, name, parent, child, o);
+    if (held) m_.hold(name);
   });
 }
 // A contact without a name is named as its body.
@@ -83,9 +87,26 @@ void FileParts::chains() {
                           {"axis", read_.read(o.axis)}});
     m_.loop(name, a, b, o);
   });
+  tables("coupling", [&](const toml::table& table) { coupling(table); });
   tables("prescribed", [&](const toml::table& table) {
     if (!is_input(table, {"rate", "angle"})) prescribed(table);
   });
+}
+void FileParts::coupling(const toml::table& table) {
+  std::string name;
+  CouplingOptions o;
+  const auto formula = [&](std::string& to) {
+    return [this, &to](const Node& node, const std::string& key) { to = read_.formula(node, key); };
+  };
+  read_.entries(table, {{"name", read_.read(name)},
+                        {"joint", read_.read(o.joint)},
+                        {"to", read_.read(o.to)},
+                        {"ratio", read_.read(o.ratio)},
+                        {"offset", read_.read(o.offset)},
+                        {"formula", formula(o.formula)},
+                        {"rates", formula(o.rates)}});
+  for (const auto& [constant, value] : read_.formulas.constants()) o.constants[constant] = {value};
+  m_.coupling(name.empty() ? o.joint : name, o);
 }
 void FileParts::prescribed(const toml::table& table) {
   std::string joint;

@@ -69,6 +69,12 @@ class FileValues {
       return formula(values);
     };
   }
+  /// The text of a formula of coordinates, velocities and parameters; empty where it is a mistake.
+  std::string formula(const Node& node, const std::string& key) {
+    std::vector<std::string> names(names_.begin() + 1, names_.end() - std::ssize(inputs_));
+    const bool read = formulas.expression(node, key, names).has_value();
+    return read ? formulas.text(node) : "";
+  }
   /// A formula of t and parameters; empty where it is a mistake.
   struct OfTime {
     std::function<double(double)> value, slope;

@@ -54,6 +54,9 @@ void Mechanism::loop(const std::string& name, const std::string& a, const std::s
                      const LoopOptions& options) {
   loops_.push_back({part(name), options, a, b});
 }
+void Mechanism::coupling(const std::string& name, const CouplingOptions& options) {
+  couplings_.push_back({part(name), options});
+}
 void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate,
                           std::function<double(double t)> angle,
                           std::function<double(double t)> slope) {

@@ -1,4 +1,4 @@
-// A mechanism: bodies, joints, wheels, blades and balls put together, with nothing derived by hand.
+// A mechanism: bodies, joints, contacts and couplings put together, with nothing derived by hand.
 //
 //   hamel::Mechanism m("scooter");
 //   const auto deck = m.body("deck", {.mass = 5, .at = {0.3, 0, 0.1}, .box = {0.8, 0.2, 0.05}});
@@ -81,6 +81,14 @@ struct LoopOptions {
   Point at = {0, 0, 0};    // m
   Point axis = {0, 0, 0};  // of a hinge; 0: a ball joint
 };
+/// An equation of joints, one of these three. Coordinates are those of hinges and sliders.
+struct CouplingOptions {
+  std::string joint = {}, to = {};  // joint = ratio * to + offset
+  double ratio = 1, offset = 0;
+  std::string formula = {};   // of coordinates, 0 where the equation holds
+  std::string rates = {};     // the same, linear in velocities, with coefficients of coordinates
+  Parameters constants = {};  // names that the formula may use
+};
 struct SpringOptions {
   Point from = {0, 0, 0}, to = {0, 0, 0};  // m, its ends as drawn
   double stiffness = 0;                    // N/m
@@ -148,6 +156,8 @@ class HAMEL_API Mechanism {
   /// A joint that closes a chain: its points, and axes, coincide.
   void loop(const std::string& name, const std::string& a, const std::string& b,
             const LoopOptions& options);
+  /// A gear, belt, linkage or differential.
+  void coupling(const std::string& name, const CouplingOptions& options);
   /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate".
   /// With the angle (of a slider the position) whose derivative it is, a run starts there. With the
   /// derivative of the rate the equations of motion are exact; without, they find it by
@@ -159,6 +169,11 @@ class HAMEL_API Mechanism {
   /// angle the joint is held there.
   void prescribe(const std::string& joint, double rate, std::function<double(double t)> angle = {});
   void prescribe(const std::string& joint, const Range& range = {});
+  /// Locks a hinge or slider where a run starts, or at an angle [rad] or position [m].
+  void hold(const std::string& joint) { prescribe(joint, 0.0); }
+  void hold(const std::string& joint, double at) {
+    prescribe(joint, 0.0, [at](double) { return at; });
+  }
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});
   /// "refuse", or "drop": policy for rows that are implied by others.
@@ -221,6 +236,7 @@ class HAMEL_API Mechanism {
   struct LoopPart : Part, LoopOptions {
     std::string a, b;
   };
+  struct CouplingPart : Part, CouplingOptions {};
   struct SpringPart : Part, SpringOptions {
     std::string a, b;
   };
@@ -256,6 +272,7 @@ class HAMEL_API Mechanism {
   std::vector<JointPart> joints_;
   std::vector<ContactPart> contacts_;
   std::vector<LoopPart> loops_;
+  std::vector<CouplingPart> couplings_;
   std::vector<SpringPart> springs_;
   std::vector<ForcePart> forces_;
   std::vector<RatePart> rates_;

@@ -12,10 +12,13 @@
 //   at = ["wheelbase/2", 0, 0.1]
 //   [[joint]]                # kind: free planar hinge slider ball universal weld
 //   kind = "planar"          # parent (left out: the ground), child, at, axis, axis2,
-//   child = "deck"           # stiffness, rest, damping
+//   child = "deck"           # stiffness, rest, damping; held = true: locked where it starts
 //   [[wheel]] [[roller]] [[blade]] [[ball]]
 //                            # name (left out: the body's), body, at; axle, radius, angle; along
 //   [[loop]]                 # name, a, b, at, axis
+//   [[coupling]]             # name (left out: the joint's); joint, to, ratio, offset: joint =
+//   joint = "left knuckle"   # ratio * to + offset; or formula = "...", of joint coordinates, or
+//   to = "steer"             # rates = "...", linear in velocities: 0 where the coupling holds
 //   [[prescribed]]           # joint; rate or angle = "0.3*sin(2*t)", where a run then starts;
 //                            # left out: an input, steer.rate
 //   [[spring]]               # name, a, b, from, to, stiffness, rest, damping

@@ -17,7 +17,7 @@ Multibody::Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
       geometry_(std::move(geometry)),
       coordinates_(static_cast<size_t>(geometry_->columns())),
       work_(2 * tree.dim() + static_cast<Eigen::Index>(row_info_.size())) {
-  rows_.find_carriers(tree);
+  rows_.find_links(tree);
   std::vector<int> all(row_info_.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   keep(all);
@@ -87,11 +87,12 @@ MechanismPrograms& Multibody::programs() const {
 
 const double* Multibody::state(const double* g) const {
   std::copy_n(g, tree_.size(), state_.data());
+  parts().find_coupled(state_);
   return state_.data();
 }
 
 const double* Multibody::state(const double* g, ConstVector xi) const {
-  std::copy_n(g, tree_.size(), state_.data());
+  state(g);
   std::copy_n(xi.data(), dim(), state_.data() + tree_.size());
   return state_.data();
 }
@@ -179,7 +180,9 @@ void Multibody::holonomic(const double* g, Vector out) const {
   for (const Prescribed& p : rows_.prescribed)
     *gap++ =
         p.held >= 0 ? ConstraintRows::beyond(p, tree_.joint(p.held), g + tree_.element(p.held)) : 0;
-  programs().holonomic(state(g), out.data());
+  state(g);
+  parts().find_closures(state_);
+  programs().holonomic(state_.data(), out.data());
 }
 
 void Multibody::force(double t, const double* g, ConstVector xi, Vector out) const {
@@ -235,6 +238,7 @@ void Multibody::accelerations(double t, const double* g, ConstVector xi, Vector 
   if (!recorded_motion_) {
     std::vector<double> drawn = tree_.drawn();
     drawn.resize(state_.size(), 0.0);
+    parts().find_coupled(drawn);
     motion_ = first_motion_ = record(drawn);
     recorded_motion_ = true;
   }
@@ -245,7 +249,8 @@ void Multibody::accelerations(double t, const double* g, ConstVector xi, Vector 
 }
 
 std::shared_ptr<const graph::VectorFields> Multibody::vector_fields(const double* g) const {
-  if (has_drift()) return nullptr;
+  const auto linear = [](const Coupling& coupling) { return coupling.formula.linear(); };
+  if (has_drift() || !std::ranges::all_of(rows_.couplings, linear)) return nullptr;
   std::vector<double> there(g, g + tree_.size());
   there.resize(state_.size(), 0.0);
   try {
@@ -297,6 +302,7 @@ HAMEL_FLATTEN void write(const Row& row, const Tree& tree, Mechanics::Matrix& a,
     a(to, row.dof) = 1;
     return;
   }
+  for (const auto& [dof, coefficient] : row.coefficients) a(to, dof) += coefficient;
   double* const out = a.data() + to;
   const Eigen::Index stride = a.outerStride();
   tree.each_effect(row.link, row.wrench, [&](int i, double effect) { out[i * stride] = effect; });

@@ -52,7 +52,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields {
   void begin() const override;
   bool has_accelerations() const override;
   void accelerations(double t, const double* g, ConstVector xi, Vector out) const override;
-  /// Null where b is not 0, or changes with time.
+  /// Null where b is not 0, or changes with time, and where couplings are not linear.
   std::shared_ptr<const graph::VectorFields> vector_fields(const double* g) const override;
   void motion(const Geometry& geometry, double t, const double* g, ConstVector xi, Matrix inertia,
               Matrix a, Vector b, Vector rows, Vector change) const override;

@@ -38,6 +38,11 @@ std::vector<RowInfo> ConstraintRows::info() const {
     for (int i = 4; i <= 5 && loop.is_hinge(); ++i)
       add(loop.name, i, "the axes of the joint coincide", true);
   }
+  for (const Coupling& coupling : couplings) {
+    add(coupling.name, 1, coupling.of_rates() ? "couples rates" : "couples joints",
+        !coupling.of_rates());
+    out.back().length = false;
+  }
   for (const Prescribed& p : prescribed) {  // whose name may be that of a contact, too
     const auto same = [&](const RowInfo& row) { return row.part == p.name; };
     add(p.name, 1 + static_cast<int>(std::ranges::count_if(out, same)), "moves as prescribed",
@@ -46,7 +51,11 @@ std::vector<RowInfo> ConstraintRows::info() const {
   return out;
 }
 
-void ConstraintRows::find_carriers(const Tree& tree) {
+void ConstraintRows::find_links(const Tree& tree) {
+  for (const Coupling& coupling : couplings)
+    for (const size_t i : coupling.formula.used())
+      if (i < coupling.links.size() && std::ranges::count(coupled_links, coupling.links[i]) == 0)
+        coupled_links.push_back(coupling.links[i]);
   for (Contact& contact : contacts) {
     contact.carrier = contact.link;
     if (!tree.rotor(contact.link)) continue;

@@ -1,5 +1,5 @@
 // The constraint rows of a mechanism: contacts with the ground (contact.hpp), closed chains
-// (closed_loop.hpp), prescribed rates.
+// (closed_loop.hpp), couplings of joints (coupling.hpp), prescribed rates.
 //
 //   prescribed  one velocity of a joint, xi_i = rate(t); of one that is held at an angle also that,
 //               coordinate = angle
@@ -13,6 +13,7 @@
 
 #include <hamel/systems/mechanisms/closed_loop.hpp>
 #include <hamel/systems/mechanisms/contact.hpp>
+#include <hamel/systems/mechanisms/coupling.hpp>
 
 namespace hamel::mechanisms {
 
@@ -32,18 +33,21 @@ struct RowInfo {
   std::string meaning;     // "rolls without slipping"
   bool holonomic = false;
   bool height = false;  // its multiplier is a normal reaction
+  bool length = true;   // is its phi in m, not of a formula?
 };
 
 struct ConstraintRows {
   std::vector<Contact> contacts;
   std::vector<Loop> loops;
+  std::vector<Coupling> couplings;
   std::vector<Prescribed> prescribed;
   Ground ground;
+  std::vector<int> coupled_links = {};  // on whose coordinates the couplings depend, each once
 
   /// Names and meanings, in the order of each().
   std::vector<RowInfo> info() const;
-  /// Finds the links in whose place the contacts are; before the rest.
-  void find_carriers(const Tree& tree);
+  /// Finds the links in whose place the contacts are, and those that are coupled; before the rest.
+  void find_links(const Tree& tree);
   /// f(i, row) of all rows, at a tree that was placed.
   template <class F>
   void each(const Tree& tree, double t, F&& f) const {
@@ -57,6 +61,11 @@ struct ConstraintRows {
       Row rows[Loop::most_rows];
       loop.rows(tree, rows);
       for (size_t k = 0; k < loop.row_count(); ++k) f(i++, rows[k]);
+    }
+    for (const Coupling& coupling : couplings) {
+      Row row;
+      coupling.row(tree, tree.placed(), row);
+      f(i++, row);
     }
     for (const Prescribed& p : prescribed) {
       Row given;

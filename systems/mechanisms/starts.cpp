@@ -127,12 +127,16 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
   if (const double off = satisfy(*system_, fixed, g); !(off < 1e-12)) {
     const VectorXd phi = RowValues(*system_, g).phi;
     std::vector<int> open;
-    for (int i = 0; i < phi.size(); ++i)
-      if (!(std::abs(phi[i]) < 1e-9)) open.push_back(i);
+    bool lengths = true;
+    for (int i = 0; i < phi.size(); ++i) {
+      if (std::abs(phi[i]) < 1e-9) continue;
+      open.push_back(i);
+      lengths = lengths && system_->row_info()[static_cast<size_t>(i)].length;
+    }
     refuse(open, stated, places,
-           fmt::format(" cannot be reached, {:.3g} m is left; leave out a coordinate: those that "
+           fmt::format(" cannot be reached, {:.3g}{} is left; leave out a coordinate: those that "
                        "are not given follow",
-                       off));
+                       off, lengths ? " m" : ""));
   }
   system_->geometry().coordinates(g.data(), coordinates.data());
   return coordinates;

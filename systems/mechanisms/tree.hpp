@@ -58,7 +58,8 @@ class Tree {
 
   /// Places all links; must come before what follows.
   void place(const double* g);
-  /// The element of a joint where it was placed.
+  /// The elements where it was placed; that of a joint.
+  const double* placed() const { return placed_.data(); }
   const double* placed(int link) const { return placed_.data() + element(link); }
   /// Link seen from its root (the ground: from the world), and its root in the world.
   const Rigid& from_root(int link) const { return link == kGround ? rest_ : at(link).place; }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <hamel/framework/check/laws.hpp>
 #include <hamel/framework/metric/equations_of_motion.hpp>
@@ -137,6 +138,21 @@ TEST(MechanismRates, AreThoseOfDifferences) {
     for (const bool loops : {true, false}) check_rates(contacts(space, false, loops).model());
   }
   check_rates(contacts(true, true, false).model());
+}
+
+// Gears, a cam that turns with its base, and rates with coefficients of coordinates and of the root.
+TEST(MechanismRates, OfCouplingsAreThoseOfDifferences) {
+  const std::vector<CouplingOptions> kinds = {
+      {.joint = "s", .to = "h", .ratio = 0.3, .offset = 0.1},
+      {.formula = "s.position - k*sin(h.angle)*exp(0.3*w.angle) + h.angle^2",
+       .constants = {{"k", {0.2}}}},
+      {.rates = "sin(s.position)*h.rate - w.rate*cos(w.angle) + 0.3*v1"},
+  };
+  for (const CouplingOptions& kind : kinds) {
+    Mechanism m = contacts(true, false, false);
+    m.coupling("coupling", kind);
+    check_rates(m.model());
+  }
 }
 
 // Values that each field of a kind may have.

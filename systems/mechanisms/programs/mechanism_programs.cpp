@@ -22,9 +22,26 @@ Numbers joined(Numbers a, const Numbers& b) {
 
 }  // namespace
 
+size_t MechanismParts::first_coupled() const {
+  return static_cast<size_t>(tree.size() + tree.dim()) + count_signals(forces);
+}
+
 size_t MechanismParts::state_size() const {
-  return static_cast<size_t>(tree.size() + tree.dim()) + count_signals(forces) +
+  return first_coupled() + rows.coupled_links.size() + rows.couplings.size() +
          3 * rows.prescribed.size();
+}
+
+void MechanismParts::find_coupled(std::span<double> state) const {
+  if (rows.couplings.empty()) return;
+  size_t next = first_coupled();
+  for (const int link : rows.coupled_links)
+    state[next++] = tree.joint(link).coordinate(state.data() + tree.element(link));
+}
+
+void MechanismParts::find_closures(std::span<double> state) const {
+  size_t next = state.size() - 3 * rows.prescribed.size() - rows.couplings.size();
+  for (const Coupling& coupling : rows.couplings)
+    state[next++] = coupling.beyond(tree, state.data());
 }
 
 FilledProgram::FilledProgram(std::shared_ptr<const graph::Recording> recording,

@@ -24,6 +24,7 @@ std::vector<Sample> samples_near(const MechanismParts& parts, std::span<const do
     for (size_t i = 0; i < n; ++i) eta[i] = side * std::sin(2.0 * static_cast<double>(i) + 1);
     geometry.tau(eta.data(), moved.data());
     geometry.compose(state.data(), moved.data(), there.data());
+    parts.find_coupled(there);
     out.emplace_back(std::move(there));
   }
   return out;

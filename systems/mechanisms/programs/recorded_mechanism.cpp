@@ -21,11 +21,14 @@ RecordedMechanism::RecordedMechanism(const MechanismParts& parts)
       g(inputs("g", static_cast<size_t>(parts.tree.size()))),
       xi(inputs("xi", static_cast<size_t>(parts.tree.dim()))),
       signals(inputs("signal", count_signals(parts.forces))),
+      coupled(inputs("coupled", parts.rows.coupled_links.size())),
+      closures(inputs("closure", parts.rows.couplings.size())),
       rates(inputs("rate", parts.rows.prescribed.size())),
       slopes(inputs("slope", rates.size())),
       gaps(inputs("gap", rates.size())),
       bodies(parts.tree, g, xi, parts.forces.gravity),
-      rows(kept_rows(parts, record_rows(parts.rows, bodies, xi, rates, gaps))) {}
+      rows(kept_rows(parts,
+                     record_rows(parts.rows, bodies, {xi, coupled, closures, rates, gaps}))) {}
 
 RecordedMechanism::Numbers RecordedMechanism::inputs(const char* name, size_t count) {
   Numbers out;
@@ -38,6 +41,9 @@ RecordedMechanism::Numbers RecordedMechanism::row_rates() const {
   for (const RecordedRow& row : rows) lacks.push_back(-row.value);
   moving.insert(moving.end(), rates.begin(), rates.end());
   moves.insert(moves.end(), slopes.begin(), slopes.end());
+  moving.insert(moving.end(), coupled.begin(), coupled.end());
+  for (const int link : parts_.rows.coupled_links)
+    moves.push_back(xi[static_cast<size_t>(parts_.tree.first(link))]);
   return graph::along(lacks, moving, moves);
 }
 

@@ -35,7 +35,7 @@ class RecordedMechanism {
 
  public:
   // In the order of a state.
-  const Numbers g, xi, signals, rates, slopes, gaps;
+  const Numbers g, xi, signals, coupled, closures, rates, slopes, gaps;
   const BodyFormulas bodies;
   const std::vector<RecordedRow> rows;  // those that are kept
 

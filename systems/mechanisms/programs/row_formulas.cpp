@@ -1,5 +1,6 @@
 #include <hamel/systems/mechanisms/programs/row_formulas.hpp>
 
+#include <hamel/framework/graph/derivatives.hpp>
 #include <hamel/systems/mechanisms/programs/contact_view.hpp>
 
 namespace hamel::mechanisms {
@@ -85,6 +86,28 @@ class RowRecorder {
     }
   }
 
+  // The derivatives of its formula by the coordinates, or by the velocities, as coefficients.
+  void add_coupling(const Coupling& coupling, const std::vector<int>& links,
+                    const RowInputs& inputs) {
+    std::vector<Number> variables(coupling.links.size());
+    for (size_t i = 0; i < variables.size(); ++i) {
+      const auto at = std::ranges::find(links, coupling.links[i]);
+      if (at != links.end()) variables[i] = inputs.coupled[static_cast<size_t>(at - links.begin())];
+    }
+    for (const int i : coupling.velocities) variables.push_back(inputs.xi[static_cast<size_t>(i)]);
+    const Number formula = coupling.formula.record(variables);
+    RecordedRow& row = add();
+    for (const size_t i : coupling.formula.used()) {
+      const bool of_coordinate = i < coupling.links.size();
+      if (of_coordinate && coupling.of_rates()) continue;
+      const Number slope = graph::gradient({formula}, {1}, {variables[i]}).front();
+      const int dof = of_coordinate ? bodies_.tree().first(coupling.links[i])
+                                    : coupling.velocities[i - coupling.links.size()];
+      row.coefficients[static_cast<size_t>(dof)] += slope;
+      row.value += slope * inputs.xi[static_cast<size_t>(dof)];
+    }
+  }
+
   std::vector<RecordedRow> rows;
 
  private:
@@ -98,18 +121,21 @@ class RowRecorder {
 }  // namespace
 
 std::vector<RecordedRow> record_rows(const ConstraintRows& rows, const BodyFormulas& bodies,
-                                     std::span<const Number> xi, std::span<const Number> rates,
-                                     std::span<const Number> gaps) {
+                                     const RowInputs& inputs) {
   RowRecorder out(bodies);
   for (const Contact& contact : rows.contacts) out.add_contact(contact, rows.ground);
   for (const Loop& loop : rows.loops) out.add_loop(loop);
+  for (size_t i = 0; i < rows.couplings.size(); ++i) {
+    out.add_coupling(rows.couplings[i], rows.coupled_links, inputs);
+    if (!rows.couplings[i].of_rates()) out.rows.back().phi = inputs.closures[i];
+  }
   for (size_t i = 0; i < rows.prescribed.size(); ++i) {
     RecordedRow& row = out.add();
     const auto dof = static_cast<size_t>(rows.prescribed[i].dof);
     row.coefficients[dof] = 1;
-    row.drift = rates[i];
-    row.value = xi[dof] - rates[i];
-    row.phi = gaps[i];
+    row.drift = inputs.rates[i];
+    row.value = inputs.xi[dof] - inputs.rates[i];
+    row.phi = inputs.gaps[i];
   }
   return std::move(out.rows);
 }

@@ -17,9 +17,16 @@ struct RecordedRow {
   Number phi = 0;
 };
 
-/// All rows, in the order of ConstraintRows::each(). rates, gaps: b and phi of the prescribed ones.
+/// Numbers of a state that rows depend on beside the element.
+struct RowInputs {
+  std::span<const Number> xi;
+  std::span<const Number> coupled;      // coordinates of ConstraintRows::coupled_links
+  std::span<const Number> closures;     // phi of couplings
+  std::span<const Number> rates, gaps;  // b and phi of prescribed rows
+};
+
+/// All rows, in the order of ConstraintRows::each().
 std::vector<RecordedRow> record_rows(const ConstraintRows& rows, const BodyFormulas& bodies,
-                                     std::span<const Number> xi, std::span<const Number> rates,
-                                     std::span<const Number> gaps);
+                                     const RowInputs& inputs);
 
 }  // namespace hamel::mechanisms

@@ -136,7 +136,26 @@ void bind_contacts(nb::class_<ByParts>& mechanism) {
             self.loop(name, a, b, {at, axis});
           },
           "name"_a, "a"_a, "b"_a, nb::kw_only(), "at"_a = kOrigin, "axis"_a = kOrigin,
-          "A joint that closes a chain; axis of a hinge, 0 of a ball joint.");
+          "A joint that closes a chain; axis of a hinge, 0 of a ball joint.")
+      .def(
+          "coupling",
+          [](ByParts& self, const std::string& name, const std::string& joint,
+             const std::string& to, double ratio, double offset, const std::string& formula,
+             const std::string& rates) {
+            self.coupling(name, {joint, to, ratio, offset, formula, rates, {}});
+          },
+          "name"_a, nb::kw_only(), "joint"_a = "", "to"_a = "", "ratio"_a = 1.0, "offset"_a = 0.0,
+          "formula"_a = "", "rates"_a = "",
+          "joint = ratio * to + offset (a gear); or a formula of joint coordinates, or one of "
+          "rates that is linear in them, which is 0.")
+      .def(
+          "hold",
+          [](ByParts& self, const std::string& joint, std::optional<double> at) {
+            if (at) self.hold(joint, *at);
+            else self.hold(joint);
+          },
+          "joint"_a, "at"_a = nb::none(),
+          "Locks a hinge or slider where a run starts, or at an angle [rad] or position [m].");
 }
 
 void bind_text(nb::module_& m) {
