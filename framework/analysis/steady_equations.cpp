@@ -10,6 +10,7 @@
 #include <hamel/framework/analysis/state_units.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/names/registry.hpp>
+#include <hamel/framework/run/run/start_names.hpp>
 
 namespace hamel::reduced {
 namespace {
@@ -46,11 +47,18 @@ Vector least_norm(const Matrix& a, const Vector& b, double least) {
 }
 
 Start guess_of(const Simulation& run, const Run& built) {
-  const std::optional<double>& speed = run.config().speed;
-  if (!speed) return built.config().start;
+  const Config& config = run.config();
+  if (!config.speed || (!config.start_values.empty() && !built.system().start_with))
+    return built.config().start;
   Simulation unpushed = run;
-  unpushed.with(&Config::speed, std::optional<double>{})
-      .start(built.system().start_at_speed(*speed, built.config().from));
+  unpushed.with(&Config::speed, std::optional<double>{}).with(&Config::start_values, {});
+  if (config.start_values.empty()) {
+    unpushed.start(built.system().start_at_speed(*config.speed, built.config().from));
+  } else {
+    std::map<std::string, double> values = values_by_name(built.system(), config.start_values);
+    values["speed"] = *config.speed;
+    unpushed.start(built.system().start_with(values, built.config().from, false));
+  }
   return unpushed.build().config().start;
 }
 

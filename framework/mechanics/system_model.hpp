@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,6 +40,17 @@ struct DrawnForce {
   /// The point where it acts [m], and the force [N].
   std::function<std::pair<Vec<3>, Vec<3>>(std::span<const double> coordinates,
                                           std::span<const double> reactions)>
+      value;
+};
+
+/// A sensor: numbers of a state beside coordinates and velocities, columns of every run.
+struct Sensor {
+  std::string name, meaning;
+  std::vector<std::string> columns, units;
+  std::size_t first_acceleration = 0;  // the columns from here on need the acceleration
+  /// At a place, velocity and acceleration xi', which may be left out for the columns before.
+  std::function<void(std::span<const double> coordinates, std::span<const double> velocity,
+                     std::span<const double> acceleration, std::span<double> out)>
       value;
 };
 
@@ -78,6 +90,8 @@ struct SystemModel {
   std::vector<std::string> notes;                             // shown with every run
   std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
   std::vector<DrawnForce> forces;
+  std::vector<Sensor> sensors;
+  bool rows_may_depend = false;  // on each other, at some places: a run watches them
 
   /// A start at time t from at most as many numbers as start_parameters has names; from none: the
   /// system's own start at that time. Throws ConfigError where no such motion exists.
@@ -85,6 +99,11 @@ struct SystemModel {
   std::vector<std::string> start_parameters;  // "speed", in m/s
   /// Straight ahead at a speed [m/s]; empty where no straight motion is defined.
   std::function<SystemStart(double speed, double t)> start_at_speed;
+  /// A start with these coordinates and velocities by name, and "speed", in place of the usual
+  /// ones; pushed: with the push of the file where a speed is given. Throws ConfigError where no
+  /// such motion exists. Empty: numbers of the usual start are replaced.
+  std::function<SystemStart(const std::map<std::string, double>& values, double t, bool pushed)>
+      start_with;
   /// The same with the push of the file, with which a run starts, and as text: "w1 = 0.1"; empty
   /// where there is none.
   std::function<SystemStart(double speed, double t)> start_pushed;

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <hamel/systems/mechanisms/poses.hpp>
-#include <hamel/systems/mechanisms/start_checks.hpp>
 
 namespace hamel {
 namespace {
@@ -66,7 +65,8 @@ int Assembly::link_of(const Part& part, const std::string& kind, const std::stri
   const auto it = body_links_.find(body);
   if (it != body_links_.end()) return it->second;
   std::vector<std::string> known = body_names();
-  if (kind == "loop" || kind == "spring") known.push_back(kWorld);  // may hang on the ground
+  if (kind == "loop" || kind == "spring" || kind == "sensor")
+    known.push_back(kWorld);  // may hang on the ground
   unknown(part, kind, "body", body, known);
   return mechanisms::kGround;
 }
@@ -219,22 +219,9 @@ SystemModel Assembly::model() {
     p.dof = tree.first(p.dof);
   }
   for (Motor& m : forces.motors) m.dof = tree.first(m.dof);
-  std::vector<std::shared_ptr<const Geometry>> factors;
-  for (const Link& link : links_) factors.push_back(link.joint->geometry());
-  const auto system = std::make_shared<Multibody>(tree, std::move(rows), std::move(forces),
-                                                  std::make_shared<ProductGeometry>(factors));
-  check_contacts(*system);
-  stop_at_mistakes();
-
-  const std::vector<RowInfo>& words = system->row_info();
-  const std::vector<RowLabel> said = rows_in_words(words);
-  const auto starts =
-      std::make_shared<Starts>(system, parts_.name_, model_.group.columns, model_.rates, said);
-  const Redundancy redundancy =
-      find_redundancy(*system, {system->drawn(), start_configuration(*system, *starts)});
-  look_at_redundant(redundancy, said, words);
-  system->keep(redundancy.rows);
+  const std::shared_ptr<Multibody> system = system_of(std::move(rows), std::move(forces));
   system->find_constants(poses_around(*system, system->drawn()));
+  const std::vector<RowInfo>& words = system->row_info();
   for (const int row : system->kept()) {
     const RowInfo& word = words[static_cast<size_t>(row)];
     if (word.height) model_.contacts.push_back(static_cast<int>(model_.reactions.size()));
@@ -242,30 +229,14 @@ SystemModel Assembly::model() {
   }
 
   model_.parts = body_names();
+  model_.rows_may_depend = !system->all_rows().agreements.empty();
   model_.events = parts_.events_;
-  start(starts);
-  check_motions(*system, said);
+  sense(*system);
+  start(starts_);
+  check_motions(*system, rows_said_);
   stop_at_mistakes();
-  note_what_stands(*system, redundancy);
+  note_what_stands(*system, redundancy_);
   draw(system);
-  StartChecks checks{said, {}, {}, {}};
-  for (const auto& [row, repeat] : redundancy.repeats) checks.dropped.push_back(row);
-  for (const auto& part : parts_.motors_)
-    checks.signals.push_back(
-        {fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});
-  for (const auto& part : parts_.forces_)
-    for (const Signal& along : part.along)
-      checks.signals.push_back({fmt::format("{}force '{}': along", part.where, part.name), along});
-  std::erase_if(checks.signals, [](const Watched& signal) { return !signal.value; });
-  for (const auto& part : parts_.rates_) {
-    if (!part.angle) continue;
-    const int link = joint_of(part, "prescribed");
-    size_t column = 0;
-    for (int j = 0; j < link; ++j) column += tree.joint(j).columns().size();
-    checks.held.push_back(
-        {fmt::format("{}prescribed '{}': {}", part.where, part.name, model_.group.columns[column]),
-         column, tree.joint(link).only_turns(), part.angle});
-  }
   const auto driven = [system,
                        drivers = drivers(tree)](const std::shared_ptr<const Inputs>& inputs) {
     const auto out = std::make_shared<Multibody>(*system);
@@ -275,8 +246,9 @@ SystemModel Assembly::model() {
   if (!model_.inputs.empty()) model_.drive = driven;
   model_.mechanics = invariant(*system);
   if (model_.mechanics == nullptr) model_.mechanics = driven(nullptr);
-  model_.start_mistakes = [driven, checks](double t, const double* g, std::span<const double> xi,
-                                           const std::shared_ptr<const Inputs>& inputs) {
+  model_.start_mistakes = [driven, checks = start_checks(tree)](
+                              double t, const double* g, std::span<const double> xi,
+                              const std::shared_ptr<const Inputs>& inputs) {
     return mistakes_at_start(*driven(inputs), checks, inputs.get(), t, g, xi);
   };
   if (!system->has_force() && !system->has_drift())

@@ -11,6 +11,7 @@
 #include <hamel/systems/mechanisms/mechanism.hpp>
 #include <hamel/systems/mechanisms/multibody.hpp>
 #include <hamel/systems/mechanisms/poses.hpp>
+#include <hamel/systems/mechanisms/start_checks.hpp>
 #include <hamel/systems/mechanisms/starts.hpp>
 
 namespace hamel {
@@ -74,11 +75,17 @@ class Assembly {
   std::optional<mechanisms::Coupling> coupling(const Mechanism::CouplingPart& part);
   std::optional<mechanisms::Coupling> gear(const Mechanism::CouplingPart& part);
   mechanisms::Forces forces();
+  /// The system of these parts, with the rows that are independent and, where wheels have to agree
+  /// on a turning centre, those of this agreement.
+  std::shared_ptr<mechanisms::Multibody> system_of(mechanisms::ConstraintRows rows,
+                                                   mechanisms::Forces forces);
+  /// giving_way: rows that are no rows of the system.
+  void find_rows(const std::shared_ptr<mechanisms::Multibody>& system,
+                 const std::vector<int>& giving_way);
   void check_contacts(const mechanisms::Multibody& system);
   std::vector<mechanisms::RowLabel> rows_in_words(
       const std::vector<mechanisms::RowInfo>& rows) const;
   void look_at_redundant(const mechanisms::Redundancy& redundancy,
-                         const std::vector<mechanisms::RowLabel>& rows,
                          const std::vector<mechanisms::RowInfo>& words);
   void look_at_repeat(int row, const mechanisms::Repeat& repeat,
                       const std::vector<mechanisms::RowLabel>& rows, bool drop);
@@ -88,6 +95,7 @@ class Assembly {
                                           const mechanisms::Starts& starts) const;
   void check_prescribed(const mechanisms::Starts& starts);
   void start(const std::shared_ptr<const mechanisms::Starts>& starts);
+  mechanisms::StartChecks start_checks(const mechanisms::Tree& tree);
   void check_motions(const mechanisms::Multibody& system,
                      const std::vector<mechanisms::RowLabel>& rows);
   /// Notes on wheels that cannot roll, a root that cannot move or turn, and supports without load.
@@ -96,6 +104,8 @@ class Assembly {
   std::vector<std::string> body_names() const;
   std::vector<mechanisms::Multibody::Driver> drivers(const mechanisms::Tree& tree);
 
+  /// The sensors of the model.
+  void sense(const mechanisms::Multibody& system);
   void draw(const std::shared_ptr<mechanisms::Multibody>& system);
   /// Shapes of a body by its data, of its contacts and rods to its joints, from its mass centre.
   std::vector<BodyShape> shapes_of(const Mechanism::BodyPart& body,
@@ -110,6 +120,10 @@ class Assembly {
   std::vector<std::string> link_names_;  // of their joints
   std::vector<const Mechanism::JointPart*> link_joints_;
   std::map<std::string, int> body_links_;  // the ground is kWorld
+  // Of the system:
+  std::vector<mechanisms::RowLabel> rows_said_;  // of all rows
+  std::shared_ptr<mechanisms::Starts> starts_;
+  mechanisms::Redundancy redundancy_;
 };
 
 }  // namespace hamel

@@ -32,7 +32,7 @@ void Assembly::check_names() {
         wrong(part, kind, "expected a name without commas, double quotes and control characters");
     }
   };
-  std::set<std::string> bodies, joints, rows, springs, forces;
+  std::set<std::string> bodies, joints, rows, springs, forces, sensors;
   unique(parts_.bodies_, "body", bodies);
   unique(parts_.joints_, "joint", joints);
   unique(parts_.contacts_, "contact", rows);
@@ -40,6 +40,7 @@ void Assembly::check_names() {
   unique(parts_.couplings_, "coupling", rows);
   unique(parts_.springs_, "spring", springs);
   unique(parts_.forces_, "force", forces);
+  unique(parts_.sensors_, "sensor", sensors);
 }
 
 void Assembly::check_body(const Mechanism::BodyPart& body) {
@@ -102,89 +103,6 @@ void Assembly::check_contacts(const Multibody& system) {
   }
 }
 
-// Labels of all rows: contacts, loops, couplings, and one for each prescribed joint.
-std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) const {
-  std::vector<RowLabel> out;
-  const size_t others = rows.size() - parts_.rates_.size();
-  for (const RowInfo& row : rows) {
-    const auto say = [&](const Part& part, const std::string& kind) {
-      out.push_back({part.where, fmt::format("{} '{}' ({})", kind, part.name, row.meaning)});
-    };
-    if (out.size() >= others) {
-      say(parts_.rates_[out.size() - others], "prescribed");
-      continue;
-    }
-    for (const auto& part : parts_.contacts_)
-      if (part.name == row.part) say(part, part.kind);
-    for (const auto& part : parts_.loops_)
-      if (part.name == row.part) say(part, "loop");
-    for (const auto& part : parts_.couplings_)
-      if (part.name == row.part) say(part, "coupling");
-  }
-  return out;
-}
-
-// Refuses a row that contradicts others, or is driven by an input; one that repeats others too, or
-// drops it with a note.
-void Assembly::look_at_repeat(int row, const Repeat& repeat, const std::vector<RowLabel>& rows,
-                              bool drop) {
-  const auto driven = [&](int one) {
-    const auto i = static_cast<size_t>(one) + parts_.rates_.size();
-    return i >= rows.size() && !parts_.rates_[i - rows.size()].rate;
-  };
-  const std::string list = in_words(repeat.others, rows);
-  const RowLabel& said = rows[static_cast<size_t>(row)];
-  const bool inputs = driven(row) || std::ranges::any_of(repeat.others, driven);
-  if (repeat.contradicts || inputs) {
-    mistakes_.push_back(said.where + contradiction(said, list) +
-                        (inputs ? " at most values of the inputs" : "") +
-                        (list.empty() ? "; leave it out" : "; leave one of them out"));
-    return;
-  }
-  const std::string text =
-      list.empty()
-          ? fmt::format("{} constrains nothing: no joint moves its body that way", said.what)
-          : fmt::format("{} is implied by {}", said.what, list);
-  if (drop)
-    model_.notes.push_back(
-        "row dropped: " + text +
-        (list.empty() ? "" : fmt::format("; the reactions there include that of {}", said.what)));
-  else
-    mistakes_.push_back(fmt::format(
-        "{}redundant row: {}; {}, or redundant = \"drop\"", said.where, text,
-        list.empty() ? "leave it out" : "take a part with fewer rows (a roller for a wheel)"));
-}
-
-// Rows of phi that are zero at all places are left out without notice, but not all of a loop:
-// refuses such a loop, or drops it with a note.
-void Assembly::look_at_idle_loops(const Redundancy& redundancy, const std::vector<RowInfo>& words,
-                                  bool drop) {
-  for (const auto& loop : parts_.loops_) {
-    const auto speaks = [&](size_t i) {
-      const int row = static_cast<int>(i);
-      return words[i].part == loop.name &&
-             (redundancy.repeats.contains(row) || std::ranges::count(redundancy.rows, row) > 0);
-    };
-    bool some = false;
-    for (size_t i = 0; i < words.size(); ++i) some = some || speaks(i);
-    if (some) continue;
-    const std::string text = "constrains nothing: the joints between its bodies hold it already";
-    if (drop) model_.notes.push_back(fmt::format("loop '{}' dropped: {}", loop.name, text));
-    else wrong(loop, "loop", text + "; leave it out");
-  }
-}
-
-void Assembly::look_at_redundant(const Redundancy& redundancy, const std::vector<RowLabel>& rows,
-                                 const std::vector<RowInfo>& words) {
-  const Part& policy = parts_.redundant_;
-  const bool drop = policy.name == "drop";
-  if (!drop && policy.name != "refuse")
-    mistakes_.push_back(policy.where + unknown_name("redundant", policy.name, {"drop", "refuse"}));
-  for (const auto& [row, repeat] : redundancy.repeats) look_at_repeat(row, repeat, rows, drop);
-  look_at_idle_loops(redundancy, words, drop);
-  stop_at_mistakes();
-}
-
 // The element at which it is stated to start.
 std::vector<double> Assembly::start_configuration(const Multibody& system,
                                                   const Starts& starts) const {
@@ -213,6 +131,28 @@ void Assembly::check_prescribed(const Starts& starts) {
       mistakes_.push_back(
           fmt::format("{}start_arguments: {} is prescribed", parts_.start_arguments_.where, name));
   }
+}
+
+StartChecks Assembly::start_checks(const Tree& tree) {
+  StartChecks out{rows_said_, {}, {}, {}};
+  for (const auto& [row, repeat] : redundancy_.repeats) out.dropped.push_back(row);
+  for (const auto& part : parts_.motors_)
+    out.signals.push_back(
+        {fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});
+  for (const auto& part : parts_.forces_)
+    for (const Signal& along : part.along)
+      out.signals.push_back({fmt::format("{}force '{}': along", part.where, part.name), along});
+  std::erase_if(out.signals, [](const Watched& signal) { return !signal.value; });
+  for (const auto& part : parts_.rates_) {
+    if (!part.angle) continue;
+    const int link = joint_of(part, "prescribed");
+    size_t column = 0;
+    for (int j = 0; j < link; ++j) column += tree.joint(j).columns().size();
+    out.held.push_back(
+        {fmt::format("{}prescribed '{}': {}", part.where, part.name, model_.group.columns[column]),
+         column, tree.joint(link).only_turns(), part.angle});
+  }
+  return out;
 }
 
 // The start as stated, and the starts given by numbers (start_arguments).
@@ -255,6 +195,13 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
     model_.start_at_speed = at_speed(usual);
     if (!parts_.push_.empty()) model_.start_pushed = at_speed(pushed);
   }
+  model_.start_with = [starts, stated, usual, pushed](const std::map<std::string, double>& given,
+                                                      double t, bool push) {
+    const bool with_speed = given.contains("speed");
+    std::map<std::string, double> values = !with_speed ? stated : push ? pushed : usual;
+    for (const auto& [name, value] : given) values[name] = value;
+    return starts->solve(values, t);
+  };
   model_.start_from = [starts, start_arguments, stated, pushed](std::span<const double> given,
                                                                 double t) {
     std::map<std::string, double> values = given.empty() ? stated : pushed;

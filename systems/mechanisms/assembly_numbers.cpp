@@ -73,6 +73,7 @@ void Assembly::check_numbers() {
     numbers(part, "loop", "at", part.at);
     numbers(part, "loop", "axis", part.axis);
   }
+  for (const auto& part : parts_.sensors_) numbers(part, "sensor", "at", part.at);
   for (const auto& part : parts_.couplings_) {
     number(part, "coupling", "ratio", part.ratio);
     number(part, "coupling", "offset", part.offset);

@@ -205,6 +205,15 @@ void FileParts::forces() {
     m_.force(name, body, o);
   });
 }
+void FileParts::sensors() {
+  tables("sensor", [&](const toml::table& table) {
+    std::string name, body;
+    Point at = {0, 0, 0};
+    read_.entries(table,
+                  {{"name", read_.read(name)}, {"body", read_.read(body)}, {"at", read_.read(at)}});
+    m_.sensor(name.empty() ? body : name, body, at);
+  });
+}
 void FileParts::surroundings() {
   Point gravity = {0, 0, -9.81};
   stated("gravity", [&](const Node& node) {

@@ -19,6 +19,7 @@ class FileParts {
   void contacts();
   void chains();
   void forces();
+  void sensors();
   void surroundings();
 
  private:

@@ -89,6 +89,10 @@ void Mechanism::force(const std::string& name, const std::string& body,
   forces_.push_back({part(name), options, body});
 }
 
+void Mechanism::sensor(const std::string& name, const std::string& body, Point at) {
+  sensors_.push_back({part(name), body, at});
+}
+
 void Mechanism::redundant(const std::string& policy) { redundant_ = part(policy); }
 void Mechanism::input(const InputField& field) { inputs_.push_back({part(field.name), field}); }
 void Mechanism::event(Event event) { events_.push_back(std::move(event)); }

@@ -194,6 +194,10 @@ class HAMEL_API Mechanism {
   /// prescribed joints.
   void input(const InputField& field);
 
+  /// A point of a body (or of the ground) whose place, velocity, acceleration and yaw are columns
+  /// of every run, "tip.x", "tip.vz", "tip.ax", "tip.yaw".
+  void sensor(const std::string& name, const std::string& body, Point at);
+
   /// An event of a run (--events, --stop-at), a function of time, coordinates and velocities.
   void event(Event event);
 
@@ -243,6 +247,10 @@ class HAMEL_API Mechanism {
   struct ForcePart : Part, ForceOptions {
     std::string body;
   };
+  struct SensorPart : Part {
+    std::string body;
+    Point at;
+  };
   struct RatePart : Part {
     std::function<double(double)> rate;   // empty: an input
     std::function<double(double)> angle;  // empty: that of the start
@@ -275,6 +283,7 @@ class HAMEL_API Mechanism {
   std::vector<CouplingPart> couplings_;
   std::vector<SpringPart> springs_;
   std::vector<ForcePart> forces_;
+  std::vector<SensorPart> sensors_;
   std::vector<RatePart> rates_;
   std::vector<MotorPart> motors_;
   std::vector<InputPart> inputs_;

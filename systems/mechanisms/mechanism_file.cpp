@@ -69,6 +69,7 @@ class File {
     parts.contacts();
     parts.chains();
     parts.forces();
+    parts.sensors();
     parts.surroundings();
     for (Event& event :
          read_events(read_.toml, read_.formulas, table_, outline.group.columns, outline.rates))

@@ -26,6 +26,8 @@
 //   joint = "steer"          # input, steer.torque, or lift.force of a slider, between `least`
 //                            # and `most`
 //   [[force]]                # name, body, at; along = ["1", 0, 0]; of_body = true
+//   [[sensor]]               # name (left out: the body's), body, at: columns tip.x .y .z .vx .vy
+//   body = "deck"            # .vz .yaw .ax .ay .az
 //   [inputs]                 # what a run may be driven by; efforts and forces may use them
 //   wind = { unit = "N", meaning = "...", least = -50, most = 50 }
 //   [events]                 # zero at the event; direction +1, -1, or 0 for both ways

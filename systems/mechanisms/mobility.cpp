@@ -54,6 +54,19 @@ int vehicle_root(const Tree& tree) {
   return -1;
 }
 
+bool moves_at_this_pose_alone(const Multibody& system, const std::vector<double>& g) {
+  const Tree& tree = system.tree(g.data());
+  const int root = vehicle_root(tree);
+  if (root < 0 || system.all_rows().ground.moves()) return false;
+  std::vector<int> own(static_cast<size_t>(tree.count(root)));
+  std::iota(own.begin(), own.end(), tree.first(root));
+  const std::vector<std::vector<double>> poses = poses_on_rows(system, g);
+  const auto moves = [&](const std::vector<double>& pose) {
+    return any_of(free_velocities(system, pose), own);
+  };
+  return poses.size() > 1 && moves(g) && std::none_of(poses.begin() + 1, poses.end(), moves);
+}
+
 Mobility mobility_at(const Multibody& system, const std::vector<double>& g) {
   Mobility out;
   out.any = system.all_rows().ground.moves() || free_velocities(system, g).cols() > 0;

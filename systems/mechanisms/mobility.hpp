@@ -17,6 +17,10 @@ struct Mobility {
 /// g: an element on phi = 0. On ground that moves everything does.
 Mobility mobility_at(const Multibody& system, const std::vector<double>& g);
 
+/// Is the first planar or free root joint free to move at a pose, but at none of those near it that
+/// the rows let it reach? The rank of the rows falls there.
+bool moves_at_this_pose_alone(const Multibody& system, const std::vector<double>& g);
+
 /// Contacts with an axle about which no joint that carries them turns, as drawn: counted as in
 /// all_rows().
 std::vector<size_t> wheels_that_cannot_roll(const Multibody& system);

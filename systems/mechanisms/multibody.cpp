@@ -4,7 +4,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/systems/mechanisms/programs/agreement_formulas.hpp>
 #include <hamel/systems/mechanisms/programs/force_formulas.hpp>
+#include <hamel/systems/mechanisms/programs/sensor_formulas.hpp>
 
 namespace hamel::mechanisms {
 
@@ -74,6 +77,7 @@ bool Multibody::autonomous() const {
 void Multibody::forget_programs() {
   programs_.reset();
   rates_.reset();
+  agreements_.reset();
   first_motion_.reset();
   motion_.reset();
   recorded_motion_ = false;
@@ -322,6 +326,46 @@ void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) 
     b[to] = row.drift;
     phi[to] = row.phi;
   });
+  if (!rows_.agreements.empty()) look_at_agreements(g, a, phi);
+}
+
+void Multibody::look_at_agreements(const double* g, Matrix a, Vector phi) const {
+  if (!agreements_) agreements_.emplace(record_agreements(parts()));
+  const auto count = static_cast<Eigen::Index>(rows_.agreements.size());
+  const Eigen::Index first =
+      phi.size() - count - static_cast<Eigen::Index>(rows_.prescribed.size());
+  Eigen::VectorXd values(count * (1 + dim()));
+  (*agreements_)(state(g), values.data());
+  phi.segment(first, count) = values.head(count);
+  a.middleRows(first, count) = values.tail(count * dim()).reshaped(dim(), count).transpose();
+}
+
+std::function<void(std::span<const double>, std::span<const double>, std::span<const double>,
+                   std::span<double>)>
+Multibody::sensor(int link, const Vec3& at) const {
+  return
+      [program = record_sensor(parts(), link, at), geometry = geometry_,
+       state = std::vector<double>(state_.size() + static_cast<size_t>(dim())),
+       first = tree_.size()](std::span<const double> coordinates, std::span<const double> velocity,
+                             std::span<const double> acceleration, std::span<double> out) mutable {
+        geometry->from_coordinates(coordinates, state.data());
+        std::ranges::copy(velocity, state.begin() + first);
+        std::ranges::copy(acceleration, state.end() - static_cast<std::ptrdiff_t>(velocity.size()));
+        program(state.data(), out.data());
+      };
+}
+
+std::vector<Agreement> Multibody::find_agreements(
+    const std::vector<int>& rows, const std::vector<std::vector<double>>& poses) const {
+  Eigen::MatrixXd inertia(dim(), dim());
+  this->inertia(poses.front().data(), inertia);
+  std::vector<std::vector<double>> states = poses;
+  for (std::vector<double>& state : states) {
+    state.resize(state_.size(), 0.0);
+    parts().find_coupled(state);
+  }
+  const MechanismParts some{tree_, rows_, forces_, rows, 0, *geometry_};
+  return mechanisms::find_agreements(some, states, velocity_units(inertia));
 }
 
 Vec3 Multibody::reaction(size_t contact, const double* g,

@@ -5,6 +5,7 @@
 // serves one run at a time.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -81,6 +82,14 @@ class Multibody final : public Mechanics, public graph::HasVectorFields {
   Vec3 reaction(size_t contact, const double* g, std::span<const double> multipliers) const;
   /// phi of all rows of each(), 0 where it is none, and their A.
   void look(double t, const double* g, Matrix a, Vector b, Vector phi) const;
+  /// What a sensor at a point of a link as drawn measures (programs/sensor_formulas.hpp).
+  std::function<void(std::span<const double> coordinates, std::span<const double> velocity,
+                     std::span<const double> acceleration, std::span<double> out)>
+  sensor(int link, const Vec3& at) const;
+  /// Agreements of these rows, whose rank falls at the first of the poses
+  /// (programs/agreement_formulas.hpp).
+  std::vector<Agreement> find_agreements(const std::vector<int>& rows,
+                                         const std::vector<std::vector<double>>& poses) const;
 
  private:
   MechanismParts parts() const { return {tree_, rows_, forces_, kept_, holonomic_, *geometry_}; }
@@ -91,6 +100,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields {
   const double* state(const double* g) const;
   const double* state(const double* g, ConstVector xi) const;
   const double* state(double t, const double* g, ConstVector xi) const;
+  void look_at_agreements(const double* g, Matrix a, Vector phi) const;
   void take_rates(double t) const;
   void take_signals(double t) const;
 
@@ -106,7 +116,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields {
   bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;
   Eigen::MatrixXd inertia_, fixed_rows_;  // where they are constant
   mutable std::optional<MechanismPrograms> programs_;
-  mutable std::optional<FilledProgram> rates_;
+  mutable std::optional<FilledProgram> rates_, agreements_;
   // The accelerations: the program with which each run begins, recorded at the drawn pose, and the
   // one in use.
   mutable std::optional<MotionProgram> first_motion_, motion_;

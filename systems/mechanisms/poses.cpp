@@ -50,12 +50,20 @@ std::vector<std::vector<double>> poses_around(const Multibody& system,
   return out;
 }
 
-double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g) {
+double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g,
+               int but_for) {
   const std::vector<RowInfo>& words = system.row_info();
+  const std::vector<Prescribed>& prescribed = system.all_rows().prescribed;
   for (int k = 0;; ++k) {
     RowValues looked(system, g);
     for (Eigen::Index i = 0; i < looked.a.rows(); ++i) {
       if (!words[static_cast<size_t>(i)].holonomic) looked.a.row(i).setZero();
+    }
+    for (size_t i = 0; i < prescribed.size(); ++i) {
+      if (prescribed[i].dof != but_for) continue;
+      const auto row = static_cast<Eigen::Index>(words.size() - prescribed.size() + i);
+      looked.a.row(row).setZero();
+      looked.phi[row] = 0;
     }
     const double off = looked.phi.size() == 0 ? 0 : looked.phi.lpNorm<Eigen::Infinity>();
     if (k == 30 || off < 1e-15 || !std::isfinite(off)) return off;
@@ -133,8 +141,8 @@ std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<d
   return out;
 }
 
-Redundancy find_redundancy(const Multibody& system,
-                           const std::vector<std::vector<double>>& places) {
+Redundancy find_redundancy(const Multibody& system, const std::vector<std::vector<double>>& places,
+                           const std::vector<int>& left_out) {
   const bool timed = !system.all_rows().prescribed.empty();  // are there rates b(t)?
   const std::vector<double> times =
       timed ? std::vector<double>{0, -1.3, 0.7, 1.9, 5.3, 14.1, 37.7, 101.3}  // s, of no period
@@ -146,6 +154,7 @@ Redundancy find_redundancy(const Multibody& system,
   const auto around = poses_around(system, places.front());
   for (size_t i = 0; i < words.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
+    if (std::ranges::count(left_out, static_cast<int>(i)) > 0) continue;
     if (!words[i].holonomic || std::ranges::any_of(around, [&](const auto& pose) {
           return RowValues(system, pose).a.row(row).norm() > 1e-11;
         }))

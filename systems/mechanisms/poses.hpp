@@ -30,8 +30,9 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
                                                const std::vector<double>& g);
 
 /// Moves g onto phi(g) = 0 of all rows by the least change of the velocities that are free to
-/// change; returns the largest |phi| left.
-double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g);
+/// change, but for the prescribed row of a velocity; returns the largest |phi| left.
+double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g,
+               int but_for = -1);
 
 /// The rows of which a row is a combination.
 struct Repeat {
@@ -48,7 +49,9 @@ struct Redundancy {
   std::vector<int> rows;          // independent at one of the poses at least
   std::map<int, Repeat> repeats;  // those that are not
 };
-/// RowValues for near these places, on phi = 0; the first is the drawn pose.
-Redundancy find_redundancy(const Multibody& system, const std::vector<std::vector<double>>& places);
+/// RowValues for near these places, on phi = 0; the first is the drawn pose. left_out: rows that
+/// are no part of it.
+Redundancy find_redundancy(const Multibody& system, const std::vector<std::vector<double>>& places,
+                           const std::vector<int>& left_out);
 
 }  // namespace hamel::mechanisms

@@ -43,6 +43,11 @@ std::vector<RowInfo> ConstraintRows::info() const {
         !coupling.of_rates());
     out.back().length = false;
   }
+  for (size_t i = 0; i < agreements.size(); ++i) {
+    add(std::string(kAgreement), 1 + static_cast<int>(i), "the axles of wheels meet in one point",
+        true);
+    out.back().length = false;
+  }
   for (const Prescribed& p : prescribed) {  // whose name may be that of a contact, too
     const auto same = [&](const RowInfo& row) { return row.part == p.name; };
     add(p.name, 1 + static_cast<int>(std::ranges::count_if(out, same)), "moves as prescribed",

@@ -1,5 +1,6 @@
 // The constraint rows of a mechanism: contacts with the ground (contact.hpp), closed chains
-// (closed_loop.hpp), couplings of joints (coupling.hpp), prescribed rates.
+// (closed_loop.hpp), couplings of joints (coupling.hpp), agreements of contacts (agreement.hpp),
+// prescribed rates.
 //
 //   prescribed  one velocity of a joint, xi_i = rate(t); of one that is held at an angle also that,
 //               coordinate = angle
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/systems/mechanisms/agreement.hpp>
 #include <hamel/systems/mechanisms/closed_loop.hpp>
 #include <hamel/systems/mechanisms/contact.hpp>
 #include <hamel/systems/mechanisms/coupling.hpp>
@@ -40,6 +42,7 @@ struct ConstraintRows {
   std::vector<Contact> contacts;
   std::vector<Loop> loops;
   std::vector<Coupling> couplings;
+  std::vector<Agreement> agreements = {};
   std::vector<Prescribed> prescribed;
   Ground ground;
   std::vector<int> coupled_links = {};  // on whose coordinates the couplings depend, each once
@@ -48,7 +51,7 @@ struct ConstraintRows {
   std::vector<RowInfo> info() const;
   /// Finds the links in whose place the contacts are, and those that are coupled; before the rest.
   void find_links(const Tree& tree);
-  /// f(i, row) of all rows, at a tree that was placed.
+  /// f(i, row) of all rows but agreements, which are recorded only, at a tree that was placed.
   template <class F>
   void each(const Tree& tree, double t, F&& f) const {
     size_t i = 0;
@@ -67,6 +70,7 @@ struct ConstraintRows {
       coupling.row(tree, tree.placed(), row);
       f(i++, row);
     }
+    i += agreements.size();
     for (const Prescribed& p : prescribed) {
       Row given;
       given.dof = p.dof;

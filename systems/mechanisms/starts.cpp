@@ -95,6 +95,23 @@ Starts::Values Starts::prescribed(double t) const {
   return out;
 }
 
+// "a.angle = 0.3 would do; ", for each stated coordinate that could make up for the rest.
+std::string Starts::would_do(const std::vector<Choice>& choices, const std::vector<double>& near,
+                             const std::vector<bool>& fixed) const {
+  std::string out;
+  std::vector<double> coordinates(columns_.size());
+  for (const Choice& choice : choices) {
+    std::vector<double> g = near;
+    std::vector<bool> others = fixed;
+    others[static_cast<size_t>(choice.velocity)] = false;
+    if (!(satisfy(*system_, others, g, choice.velocity) < 1e-12)) continue;
+    system_->geometry().coordinates(g.data(), coordinates.data());
+    out += fmt::format("{}{} = {:.6g}", out.empty() ? "" : " or ", columns_[choice.column],
+                       coordinates[choice.column]);
+  }
+  return out.empty() ? out : out + " would do; ";
+}
+
 // The given coordinates hold, before them the prescribed ones; the others follow from phi = 0.
 std::vector<double> Starts::configuration(const Values& given_values, double t,
                                           const Places& places) const {
@@ -105,6 +122,7 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
   system_->geometry().coordinates(g.data(), coordinates.data());
   std::vector<bool> fixed(rates_.size(), false);
   Values stated;
+  std::vector<Choice> choices;
   size_t column = 0;
   for (int link = 0; link < tree.links(); ++link) {
     for (const std::string& name : tree.joint(link).columns()) {
@@ -113,6 +131,7 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
       if (given != values.end()) {
         coordinates[column] = given->second;
         stated.insert(*given);
+        if (tree.count(link) == 1) choices.push_back({column, tree.first(link)});
         for (int i = 0; i < tree.count(link); ++i)
           fixed[static_cast<size_t>(tree.first(link) + i)] = true;
       }
@@ -124,6 +143,7 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
   } catch (const std::invalid_argument& error) {
     refuse({}, stated, places, fmt::format(": {}", error.what()));
   }
+  const std::vector<double> near = g;
   if (const double off = satisfy(*system_, fixed, g); !(off < 1e-12)) {
     const VectorXd phi = RowValues(*system_, g).phi;
     std::vector<int> open;
@@ -134,9 +154,9 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
       lengths = lengths && system_->row_info()[static_cast<size_t>(i)].length;
     }
     refuse(open, stated, places,
-           fmt::format(" cannot be reached, {:.3g}{} is left; leave out a coordinate: those that "
+           fmt::format(" cannot be reached, {:.3g}{} is left; {}leave out a coordinate: those that "
                        "are not given follow",
-                       off, lengths ? " m" : ""));
+                       off, lengths ? " m" : "", would_do(choices, near, fixed)));
   }
   system_->geometry().coordinates(g.data(), coordinates.data());
   return coordinates;

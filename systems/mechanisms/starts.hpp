@@ -50,6 +50,13 @@ class Starts {
   int rate(const std::string& name) const;  // -1: no velocity
   std::string unasked(const std::vector<int>& some, const Values& values,
                       const StartVelocity& found, const Eigen::VectorXd& xi) const;
+  // A stated coordinate of a joint with one velocity.
+  struct Choice {
+    size_t column;
+    int velocity;
+  };
+  std::string would_do(const std::vector<Choice>& choices, const std::vector<double>& near,
+                       const std::vector<bool>& fixed) const;
   /// Throws that these rows and values are inconsistent, and the text after them.
   [[noreturn]] void refuse(const std::vector<int>& rows, const Values& values, const Places& places,
                            const std::string& text) const;

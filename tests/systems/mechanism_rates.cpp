@@ -140,7 +140,7 @@ TEST(MechanismRates, AreThoseOfDifferences) {
   check_rates(contacts(true, true, false).model());
 }
 
-// Gears, a cam that turns with its base, and rates with coefficients of coordinates and of the root.
+// Couplings of every kind, beside all joints and contacts.
 TEST(MechanismRates, OfCouplingsAreThoseOfDifferences) {
   const std::vector<CouplingOptions> kinds = {
       {.joint = "s", .to = "h", .ratio = 0.3, .offset = 0.1},

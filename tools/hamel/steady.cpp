@@ -123,6 +123,7 @@ std::string command_line(const SteadyOptions& options) {
   for (const auto& [name, value] : options.config.parameters)
     out += fmt::format(" --set {}={}", name, join(value));
   if (options.config.speed) out += fmt::format(" --speed {}", *options.config.speed);
+  for (const std::string& value : options.config.start_values) out += " --start " + value;
   const Start& start = options.config.start;
   if (!start.configuration.empty())
     out += fmt::format(" --configuration {}", join(start.configuration));
@@ -146,6 +147,22 @@ void refuse_mistakes(const SteadyOptions& options, bool vary) {
     if (const auto mistakes = page_mistakes(options.report); !mistakes.empty())
       throw ConfigError(mistakes);
   }
+}
+
+// "" where the motion has the velocities that were asked for, else those that it has.
+std::string moved(const SystemModel& system, const Config& config, const SteadyMotion& motion) {
+  if (!config.speed || !motion.found || !system.start_at_speed) return "";
+  const std::vector<double> asked = system.start_at_speed(*config.speed, config.from).velocity;
+  double most = 0;
+  for (const double x : asked) most = std::max(most, std::abs(x));
+  std::string out;
+  for (size_t i = 0; i < asked.size(); ++i)
+    if (std::abs(motion.velocity[i] - asked[i]) > 1e-6 * most)
+      out += fmt::format("{}{} = {:.6g} for {:.6g}", out.empty() ? "" : ", ", system.rates[i],
+                         motion.velocity[i], asked[i]);
+  if (out.empty()) return out;
+  return fmt::format("straight ahead at {} is no steady motion; the nearest one found has {}",
+                     *config.speed, out);
 }
 
 void refuse_large(const SystemModel& system) {
@@ -174,8 +191,15 @@ int steady(const SteadyOptions& options) {
     sweep.parameter = vary->name;
     sweep.unit = figures::unit_of(vary->name, system);
   }
-  if (options.json) say_json(steady_json(options, first, system, motion, vary ? &sweep : nullptr));
-  else print(system, motion, vary ? &*vary : nullptr, sweep);
+  const std::string note = vary ? "" : moved(system, first.config(), motion);
+  if (options.json) {
+    auto out = steady_json(options, first, system, motion, vary ? &sweep : nullptr);
+    if (!note.empty()) out["notes"] = {note};
+    say_json(out);
+  } else {
+    print(system, motion, vary ? &*vary : nullptr, sweep);
+    if (!note.empty()) say("  note         {}\n", note);
+  }
   if (!options.report.empty())
     steady_page(system, sweep, command_line(options)).write(options.report);
   if (motion.found || std::any_of(sweep.motions.begin(), sweep.motions.end(),

@@ -34,8 +34,9 @@ struct HAMEL_API Config {
   Parameters parameters;
   InputSignals inputs;
   Start start;
-  std::optional<double> speed;  // in place of a start
-  std::string scheme;           // empty, and step, none: see completed()
+  std::optional<double> speed;            // in place of a start
+  std::vector<std::string> start_values;  // "steer.angle=0.1", in place of the usual ones
+  std::string scheme;                     // empty, and step, none: see completed()
   std::string retraction = "cayley";
   double s = 0.5;
   std::string solver = "newton";
@@ -109,6 +110,9 @@ struct HAMEL_API Config {
              "start, straight ahead at this speed, for systems that define a straight motion",
              false, [](double v) { return std::isfinite(v); }, "a finite number"},
       &Config::speed);
+    f(Option{"start", "",
+             "start, coordinates and velocities by name, NAME=VALUE; the others are as usual"},
+      &Config::start_values);
     f(Option{"from", "s", "start time", false, [](double x) { return std::isfinite(x); },
              "a finite number"},
       &Config::from);

@@ -78,9 +78,10 @@ Trajectory read_rows(const RunFile& file, std::size_t most, const SystemModel* s
 /// place, where it is none.
 void read_record(const std::string& record, const std::string& origin, Result& out);
 
-/// The key of an option in a record: its "events" are those that occurred.
+/// The key of an option in a record: its "events" are those that occurred, its "start" is whole.
 inline std::string key_in_record(const Option& option) {
-  return std::string(option.name) == "events" ? "watched" : option.name;
+  const std::string name = option.name;
+  return name == "events" ? "watched" : name == "start" ? "start_values" : name;
 }
 
 }  // namespace hamel

@@ -45,7 +45,7 @@ std::vector<std::string> units_of(const std::vector<Component>& components, bool
 
 }  // namespace
 
-StateColumns::StateColumns(const SystemModel& system, const Has& has) {
+StateColumns::StateColumns(const SystemModel& system, const Has& has) : sensors_(system.sensors) {
   const std::vector<Component> components = components_of(system);
   add(Of::time, kTime);
   add(Of::coordinate, element_columns(system), units_of_element(system.group));
@@ -75,10 +75,44 @@ StateColumns::StateColumns(const SystemModel& system, const Has& has) {
     add(Of::reaction, std::move(group), units, order);
   }
   if (has.reaction_power) add(Of::reaction_power, kReactionPower);
+  add_sensors(has.acceleration);
   if (has.exact) {
     add(Of::exact_error, kExactError);
     add(Of::exact_velocity_error, kExactVelocityError);
   }
+}
+
+void StateColumns::add_sensors(bool acceleration) {
+  std::size_t place = 0;
+  for (const Sensor& sensor : sensors_) {
+    ColumnGroup group{sensor.name, "", sensor.meaning, "", {}};
+    std::vector<std::string> units;
+    for (std::size_t i = 0; i < sensor.columns.size(); ++i, ++place) {
+      const bool of_acceleration = i >= sensor.first_acceleration;
+      if (of_acceleration && !acceleration) continue;
+      columns_.push_back({of_acceleration ? Of::acceleration : Of::sensor, place, sensor.columns[i],
+                          sensor.units[i]});
+      group.columns.push_back(sensor.columns[i]);
+      units.push_back(sensor.units[i]);
+    }
+    group.unit = fmt::format("{}", fmt::join(units, ","));
+    groups_.push_back(std::move(group));
+  }
+}
+
+double StateColumns::measured(std::size_t place, const Snapshot& state,
+                              const StateExtras& extras) const {
+  for (const Sensor& sensor : sensors_) {
+    const std::size_t count = sensor.columns.size();
+    if (place >= count) {
+      place -= count;
+      continue;
+    }
+    std::vector<double> values(count);
+    sensor.value(state.coordinates, state.velocity, extras.acceleration, values);
+    return values[place];
+  }
+  return 0;
 }
 
 void StateColumns::add(Of of, const Quantity& quantity) {
@@ -121,6 +155,8 @@ double StateColumns::value(std::size_t i, const Snapshot& state, const StateExtr
     case Of::work: return extras.work;
     case Of::reaction: return extras.reactions.empty() ? 0 : extras.reactions[column.place];
     case Of::reaction_power: return extras.reaction_power;
+    case Of::sensor:
+    case Of::acceleration: return measured(column.place, state, extras);
     case Of::exact_error: return extras.exact_error;
     case Of::exact_velocity_error: return extras.exact_velocity_error;
   }
@@ -129,7 +165,8 @@ double StateColumns::value(std::size_t i, const Snapshot& state, const StateExtr
 
 void StateColumns::require(Of of, StateParts& parts) {
   switch (of) {
-    case Of::coordinate: parts.coordinates = true; break;
+    case Of::coordinate:
+    case Of::sensor: parts.coordinates = true; break;
     case Of::momentum: parts.momentum = true; break;
     case Of::energy:
     case Of::energy_error: parts.energy = true; break;

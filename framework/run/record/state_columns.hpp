@@ -19,7 +19,8 @@ namespace hamel {
 /// Numbers that are known beside a state.
 struct StateExtras {
   double energy_start = 0;
-  std::span<const double> reactions = {};  // the multipliers of all rows
+  std::span<const double> reactions = {};     // the multipliers of all rows
+  std::span<const double> acceleration = {};  // xi'; left out where it is not known
   double reaction_power = 0;
   double work = 0;
   std::optional<double> balance_error = {};  // of the energy, where work is done
@@ -43,12 +44,15 @@ class StateColumns {
     work,
     reaction,
     reaction_power,
+    sensor,
+    acceleration,  // of a sensor
     exact_error,
     exact_velocity_error
   };
   /// Columns that not every system and every use has.
   struct Has {
     bool holonomic = false, work = false, reactions = false, reaction_power = false, exact = false;
+    bool acceleration = false;
   };
   StateColumns(const SystemModel& system, const Has& has);
 
@@ -73,7 +77,10 @@ class StateColumns {
   // The columns of a group, in the order of these places; the unit of all where one is known.
   void add(Of of, ColumnGroup group, const std::vector<std::string>& units,
            const std::vector<std::size_t>& places = {});
+  void add_sensors(bool acceleration);
+  double measured(std::size_t place, const Snapshot& state, const StateExtras& extras) const;
   std::vector<Column> columns_;
+  std::vector<Sensor> sensors_;  // whose numbers are counted one behind the other
   std::vector<ColumnGroup> groups_;
 };
 

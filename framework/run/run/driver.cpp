@@ -24,7 +24,8 @@ Driver::Driver(RunPlan plan, RunRequest request)
 void Driver::make_observers() {
   const Config& config = plan_.config;
   const auto& mechanics = plan_.setup.mechanics;
-  const bool rows_move = mechanics->has_drift() && mechanics->constraint_count() > 0;
+  const bool rows_move = (mechanics->has_drift() && mechanics->constraint_count() > 0) ||
+                         plan_.system->rows_may_depend;
   watching_ = plan_.recording || plan_.events->any();
   rows_watch_.reset();
   if (watching_ && rows_move && !plan_.compiled && plan_.geometry != nullptr && plan_.keeps_rows)
@@ -36,8 +37,8 @@ void Driver::make_observers() {
   times_ = plan_.recording ? config.recorded_times() : std::vector<double>();
   every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr;
   if (!plan_.recording) return;
-  recorder_ =
-      std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, balance(), plan_.reactions);
+  recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, balance(),
+                                            plan_.reactions, plan_.motion);
   every_node_ = every_node_ || recorder_->wants_nodes();
   for (const std::string& path : request_.records) sinks_.push_back(make_sink(path));
   if (request_.records.empty() || request_.rows_kept)

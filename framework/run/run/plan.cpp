@@ -250,6 +250,7 @@ Config resolved(Config config, const Method& method, const SystemModel& system,
   config.s = method.setup.s;
   config.start = start;
   config.speed.reset();
+  config.start_values.clear();
   for (const Field& field : system.fields) config.parameters[field.name] = field.value;
   return config;
 }
@@ -302,6 +303,10 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   plan.compiled = !method.erased;
   plan.unused = method.unused;
   plan.reactions = reactions_of(plan.geometry, system.mechanics, planned->inputs);
+  if (!system.sensors.empty() && plan.geometry != nullptr)
+    plan.motion = plan.reactions != nullptr ? plan.reactions
+                                            : std::make_shared<Reactions>(
+                                                  plan.geometry, system.mechanics, planned->inputs);
   plan.events = std::make_unique<Events>(system, plan.reactions, config.events, config.stop_at,
                                          mistakes.all());
   plan.events->begin(state_of(start.start, config.from), mistakes.all());

@@ -121,6 +121,7 @@ struct RunPlan {
   bool compiled = true;                  // the kernel, for the types of the system
   bool recording = false;                // rows of the trajectory are kept
   std::shared_ptr<Reactions> reactions;  // null where there are none
+  std::shared_ptr<Reactions> motion;     // of what sensors measure; null without
   std::unique_ptr<Events> events;
   KernelSetup setup;
   KernelFactory kernel;

@@ -24,6 +24,11 @@ class Reactions {
   /// The multipliers lambda of A xi = b, k entries, by the equations of motion at an admissible
   /// state. They stay until the next state.
   const Eigen::VectorXd& at(const Snapshot& state);
+  /// xi' there.
+  const Eigen::VectorXd& acceleration(const Snapshot& state) {
+    at(state);
+    return motion_.acceleration();
+  }
 
  private:
   std::shared_ptr<const Geometry> geometry_;

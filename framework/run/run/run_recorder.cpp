@@ -28,7 +28,7 @@ Reason flaw_of(const Snapshot& state) {
 }
 
 RunRecorder::RunRecorder(const SystemModel& system, const Start& start, EnergyBalance balance,
-                         std::shared_ptr<Reactions> reactions)
+                         std::shared_ptr<Reactions> reactions, std::shared_ptr<Reactions> motion)
     : system_(system),
       start_(start),
       balance_(std::move(balance)),
@@ -36,9 +36,11 @@ RunRecorder::RunRecorder(const SystemModel& system, const Start& start, EnergyBa
                         .work = balance_.active(),
                         .reactions = reactions != nullptr,
                         .reaction_power = reactions != nullptr,
-                        .exact = static_cast<bool>(system.exact)}),
+                        .exact = static_cast<bool>(system.exact),
+                        .acceleration = motion != nullptr}),
       pulls_(system.contacts.size()),
-      of_rows_(std::move(reactions)) {
+      of_rows_(std::move(reactions)),
+      motion_(std::move(motion)) {
   const auto& mechanics = system.mechanics;
   if (balance_.active()) {
     notes_.push_back(
@@ -87,6 +89,10 @@ void RunRecorder::compare(const Snapshot& state) {
     react(state);
     extras.reactions = {lambda_.data(), static_cast<std::size_t>(lambda_.size())};
     extras.reaction_power = power_;
+  }
+  if (motion_ != nullptr) {
+    const Eigen::VectorXd& rate = motion_->acceleration(state);
+    extras.acceleration = {rate.data(), static_cast<std::size_t>(rate.size())};
   }
   look_at_invariants(state);
   if (system_.exact)

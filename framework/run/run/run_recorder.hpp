@@ -24,9 +24,10 @@ Reason flaw_of(const Snapshot& state);
 
 class RunRecorder {
  public:
-  /// balance: of the run, followed or not. reactions: null without rows.
+  /// balance: of the run, followed or not. reactions: null without rows. motion: of what sensors
+  /// measure, null without.
   RunRecorder(const SystemModel& system, const Start& start, EnergyBalance balance,
-              std::shared_ptr<Reactions> reactions);
+              std::shared_ptr<Reactions> reactions, std::shared_ptr<Reactions> motion);
 
   /// Does it need every node, not the recorded states only?
   bool wants_nodes() const { return balance_.active(); }
@@ -98,6 +99,7 @@ class RunRecorder {
   // before the state: round-off where b = 0, the power that a moving constraint feeds in where it
   // is not.
   std::shared_ptr<Reactions> of_rows_;  // null without rows
+  std::shared_ptr<Reactions> motion_;   // null without sensors
   double time_ = 0, power_ = 0, power_time_ = 0;
   // Their work by every second state, up to that one.
   double second_work_ = 0, second_power_ = 0, second_time_ = 0;

@@ -85,6 +85,10 @@ Simulation& Simulation::input(const std::string& name, InputSignal signal) {
   request_.config.inputs[name] = std::move(signal);
   return *this;
 }
+Simulation& Simulation::start(const std::string& name, double value) {
+  request_.config.start_values.push_back(fmt::format("{}={}", name, value));
+  return *this;
+}
 Simulation& Simulation::on_event(const std::string& name, Impact impact) {
   request_.config.events.push_back(name);
   request_.impacts[name] = std::move(impact);

@@ -84,6 +84,8 @@ class HAMEL_API Simulation {
   /// The start. Velocity and momentum are projected onto d and d*, and a note states what was
   /// lost.
   Simulation& start(Start start) { return with(&Config::start, std::move(start)); }
+  /// A coordinate or velocity of the start by name; the others are as usual. Also beside speed().
+  Simulation& start(const std::string& name, double value);
   /// The start in its place: straight ahead at v m/s, upright, of systems that define a straight
   /// motion.
   Simulation& speed(double v) { return with(&Config::speed, v); }

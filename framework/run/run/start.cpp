@@ -10,6 +10,7 @@
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/start_names.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 
 namespace hamel {
@@ -26,7 +27,9 @@ SystemStart fill_from_few(const SystemModel& system, const Config& config, Mista
   const Start& start = config.start;
   const size_t given = start.velocity.size();
   try {
-    if (config.speed) {
+    if (!config.start_values.empty()) {
+      return start_by_name(system, config);
+    } else if (config.speed) {
       if (!start.configuration.empty() || given > 0 || !start.momentum.empty()) {
         mistakes.add("speed: give it alone, or configuration with velocity or momentum");
       } else if (system.start_at_speed) {

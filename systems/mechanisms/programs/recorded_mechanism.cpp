@@ -27,8 +27,7 @@ RecordedMechanism::RecordedMechanism(const MechanismParts& parts)
       slopes(inputs("slope", rates.size())),
       gaps(inputs("gap", rates.size())),
       bodies(parts.tree, g, xi, parts.forces.gravity),
-      rows(kept_rows(parts,
-                     record_rows(parts.rows, bodies, {xi, coupled, closures, rates, gaps}))) {}
+      rows(kept_rows(parts, record_rows(parts.rows, bodies, row_inputs()))) {}
 
 RecordedMechanism::Numbers RecordedMechanism::inputs(const char* name, size_t count) {
   Numbers out;

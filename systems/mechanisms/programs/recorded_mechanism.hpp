@@ -22,6 +22,7 @@ class RecordedMechanism {
   /// Current while this object lives; complete behind it.
   const std::shared_ptr<graph::Recording>& recording() const { return recording_; }
 
+  RowInputs row_inputs() const { return {g, xi, coupled, closures, rates, gaps}; }
   /// db/dt - (dA/dt) xi along the motion, xi held.
   Numbers row_rates() const;
   /// out += -dV of the springs; the forces beside the potential.

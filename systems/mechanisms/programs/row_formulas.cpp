@@ -1,6 +1,7 @@
 #include <hamel/systems/mechanisms/programs/row_formulas.hpp>
 
 #include <hamel/framework/graph/derivatives.hpp>
+#include <hamel/systems/mechanisms/programs/agreement_formulas.hpp>
 #include <hamel/systems/mechanisms/programs/contact_view.hpp>
 
 namespace hamel::mechanisms {
@@ -129,6 +130,7 @@ std::vector<RecordedRow> record_rows(const ConstraintRows& rows, const BodyFormu
     out.add_coupling(rows.couplings[i], rows.coupled_links, inputs);
     if (!rows.couplings[i].of_rates()) out.rows.back().phi = inputs.closures[i];
   }
+  const size_t before = out.rows.size();
   for (size_t i = 0; i < rows.prescribed.size(); ++i) {
     RecordedRow& row = out.add();
     const auto dof = static_cast<size_t>(rows.prescribed[i].dof);
@@ -137,6 +139,11 @@ std::vector<RecordedRow> record_rows(const ConstraintRows& rows, const BodyFormu
     row.value = inputs.xi[dof] - inputs.rates[i];
     row.phi = inputs.gaps[i];
   }
+  std::vector<RecordedRow> agreements;
+  for (const Agreement& agreement : rows.agreements)
+    agreements.push_back(agreement_row(agreement, out.rows, bodies, rows, inputs));
+  out.rows.insert(out.rows.begin() + static_cast<std::ptrdiff_t>(before), agreements.begin(),
+                  agreements.end());
   return std::move(out.rows);
 }
 

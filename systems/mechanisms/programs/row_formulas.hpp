@@ -19,7 +19,7 @@ struct RecordedRow {
 
 /// Numbers of a state that rows depend on beside the element.
 struct RowInputs {
-  std::span<const Number> xi;
+  std::span<const Number> g, xi;
   std::span<const Number> coupled;      // coordinates of ConstraintRows::coupled_links
   std::span<const Number> closures;     // phi of couplings
   std::span<const Number> rates, gaps;  // b and phi of prescribed rows

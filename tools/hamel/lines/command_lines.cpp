@@ -150,6 +150,9 @@ Action define_steady(CLI::App& app) {
   number_option(app, "--speed", options.config.speed,
                 "the guess: straight ahead at this speed, in m/s, for systems that define a "
                 "straight motion");
+  app.add_option("--start", options.config.start_values,
+                 "the guess by names, NAME=VALUE, also beside --speed (repeatable)")
+      ->allow_extra_args(false);
   app.add_option("--configuration", line->configuration, "the guess, as for hamel run")
       ->type_name("A,B,...");
   app.add_option("--velocity", line->velocity, "the guess, as for hamel run")->type_name("A,B,...");

@@ -90,7 +90,7 @@ void RunLine::define(CLI::App& app) {
   app.add_flag("--quiet", options.quiet, "print nothing but errors (and --json)");
   group_options(app, "Motion",
                 {"--config", "--continue", "--set", "--input", "--configuration", "--velocity",
-                 "--momentum", "--speed", "--from", "--until"});
+                 "--momentum", "--speed", "--start", "--from", "--until"});
   group_options(
       app, "Method",
       {"--scheme", "--retraction", "--s", "--step", "--rtol", "--atol", "--step-max", "--steps-max",
@@ -111,6 +111,7 @@ void RunLine::define(CLI::App& app) {
       "  hamel run suslov --set inertia=2,0.3,0.5,3,0.4,4 --velocity 1,0.5,0 --retraction exp\n"
       "  hamel run chaplygin_sleigh --scheme balance --step 0.05 -o sleigh.csv --json\n"
       "  hamel run bicycle --speed 5 --report bicycle.html\n"
+      "  hamel run bicycle --speed 5 --start steer.angle=0.1,w1=0.2 --until 5\n"
       "  hamel run bicycle --speed 5 --stop-at 'steer.angle<-0.02' -o bicycle.csv\n"
       "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv\n"
       "  hamel run robot.urdf --wheel left_wheel --wheel right_wheel --speed 0.5\n"

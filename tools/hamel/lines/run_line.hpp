@@ -65,7 +65,7 @@ struct RunLine {
       const auto read = [this, flag, member](const std::string& text) {
         overrides.emplace_back([=](Config& config) { read_text(flag, text, member(config)); });
       };
-      app.add_option_function<std::string>(flag, read, help)->type_name("A,B,...");
+      app.add_option_function<std::string>(flag, read, help)->type_name("A,B,...")->join(',');
     } else {
       number_option<Value>(app, flag, give, help);
     }

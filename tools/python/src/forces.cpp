@@ -207,6 +207,14 @@ void bind_forces(nb::class_<ByParts>& mechanism) {
           "An event of a run, where value(t, coordinates, velocity) is zero; direction +1, -1, or "
           "0 for both ways.")
       .def(
+          "sensor",
+          [](ByParts& self, const std::string& name, const std::string& body, const Point& at) {
+            self.sensor(name, body, at);
+          },
+          "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin,
+          "A point of a body whose place, velocity, yaw and acceleration are columns of every run: "
+          "tip.x, tip.vz, tip.ax.")
+      .def(
           "start",
           [](ByParts& self, const std::map<std::string, double>& values, const nb::kwargs& more) {
             std::map<std::string, double> all = values;
