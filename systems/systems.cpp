@@ -55,7 +55,7 @@ void add_solvers(Registry& registry) {
 void add_mechanisms(Registry& registry) {
   registry.add(
       FileKind{{"body", "joint", "wheel", "roller", "ball", "blade", "loop"}, mechanism_from});
-  registry.add(urdf_format());
+  for (const FileFormat& format : urdf_formats()) registry.add(format);
   for (const auto& [name, text] : mechanisms::library()) {
     registry.add_deferred(
         name, [&name = name, &text = text] { return mechanism_info(text, name + ".toml"); });

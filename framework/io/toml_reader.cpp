@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 
 #include <hamel/framework/io/text_file.hpp>
@@ -11,6 +12,7 @@
 namespace hamel {
 namespace {
 
+constexpr std::string_view kConverted = " as TOML";
 constexpr int kMaxDepth = 30;  // of brackets, and of the dots of one key
 
 // Walks through a text as far as brackets, dots, numbers, strings and comments are concerned.
@@ -82,11 +84,23 @@ class Scan {
 
 }  // namespace
 
+TomlReader::TomlReader(const std::string& origin)
+    : origin_(origin), converted_(origin.ends_with(kConverted)) {
+  if (converted_) origin_.resize(origin_.size() - kConverted.size());
+}
+
+std::string TomlReader::place(const toml::source_position& at) const {
+  return converted_ ? origin_ : fmt::format("{}:{}:{}", origin_, at.line, at.column);
+}
+
+std::string converted_origin(const std::string& file) { return file + std::string(kConverted); }
+
 toml::table TomlReader::parse(const std::string& text) const {
   const auto refuse = [&](size_t at, const std::string& why) {
     const auto begin = text.begin(), here = begin + static_cast<std::ptrdiff_t>(at);
     const auto line = static_cast<toml::source_index>(1 + std::count(begin, here, '\n'));
-    throw ConfigError({fmt::format("{}:{}:{}", origin_, line, why)});
+    throw ConfigError({converted_ ? fmt::format("{}:{}", origin_, why.substr(why.find(' ')))
+                                  : fmt::format("{}:{}:{}", origin_, line, why)});
   };
   if (text.size() > kMaxText)
     refuse(0, fmt::format(" {} characters, more than {}", text.size(), kMaxText));

@@ -17,7 +17,7 @@ namespace hamel {
 
 class TomlReader {
  public:
-  explicit TomlReader(const std::string& origin) : origin_(origin) {}
+  explicit TomlReader(const std::string& origin);
 
   /// ConfigError with its place when text is not TOML, longer than kMaxText, or nested so deep that
   /// toml++ and its tables, which work by recursion, would run out of stack.
@@ -71,11 +71,9 @@ class TomlReader {
     mistakes.push_back(fmt::format("{}: {}", place(node), unknown_name(kind, name, known)));
   }
 
-  /// "file:line:column".
+  /// "file:line:column"; "file" of a text that was converted.
   std::string place(const toml::node& node) const { return place(node.source().begin); }
-  std::string place(const toml::source_position& at) const {
-    return fmt::format("{}:{}:{}", origin_, at.line, at.column);
-  }
+  std::string place(const toml::source_position& at) const;
 
   std::vector<std::string> mistakes;
 
@@ -103,7 +101,11 @@ class TomlReader {
   }
 
   std::string origin_;
+  bool converted_ = false;
 };
+
+/// Origin of a text that was made of another file, whose lines nobody has seen.
+std::string converted_origin(const std::string& file);
 
 /// A text as TOML has it, in double quotes.
 std::string toml_string(const std::string& text);

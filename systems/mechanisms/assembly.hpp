@@ -41,7 +41,9 @@ class Assembly {
     return joint.stiffness != 0 || joint.damping != 0;
   }
   void check_body(const Mechanism::BodyPart& body);
-  mechanisms::Inertia inertia_of(const Mechanism::BodyPart& body);
+  Mat<3, 3> moments_of(const Mechanism::BodyPart& body);
+  /// Inertia of bodies that are welded together, of which the whole must be a rigid body.
+  mechanisms::Inertia inertia_of(const std::vector<const Mechanism::BodyPart*>& bodies);
   double extent() const;
   bool check_joint(const Mechanism::JointPart& joint);
   Joints joints_of_bodies();
@@ -117,6 +119,7 @@ class Assembly {
   double extent_ = 0;                                         // m
   SystemModel model_;
   std::vector<mechanisms::Link> links_;
+  std::map<int, std::vector<const Mechanism::BodyPart*>> link_bodies_;  // but of the ground
   std::vector<std::string> link_names_;  // of their joints
   std::vector<const Mechanism::JointPart*> link_joints_;
   std::map<std::string, int> body_links_;  // the ground is kWorld

@@ -8,14 +8,14 @@
 
 #include <hamel/systems/mechanisms/assembly.hpp>
 
-#include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
 
 namespace hamel {
 
 using namespace mechanisms;
 
-Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
+// Moments of inertia about the mass centre, along the axes of the drawn pose.
+Mat<3, 3> Assembly::moments_of(const Mechanism::BodyPart& body) {
   const std::vector<double>& given = body.inertia;
   Mat<3, 3> central = Mat<3, 3>::Zero();
   const Vec3 edges = vec(body.box);
@@ -41,27 +41,7 @@ Inertia Assembly::inertia_of(const Mechanism::BodyPart& body) {
     const Vec3 squares = edges.cwiseAbs2();
     central = (body.mass / 12 * (Vec3::Constant(squares.sum()) - squares)).asDiagonal();
   }
-  // Round-off of a moment: of the largest of the body, and of m L^2 of a body whose moments are all
-  // that, L the extent of the mechanism.
-  const Vec3 moments = dense::symmetric_eigenvalues(central);
-  const double size = moments.cwiseAbs().maxCoeff() + body.mass * extent_ * extent_;
-  const double round_off = 1e-12 * size;
-  if (!(moments[0] >= -round_off)) {
-    wrong(
-        body, "body",
-        fmt::format("inertia: a moment of {} about some axis, expected none below 0", moments[0]));
-  } else if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1]) + round_off) {
-    model_.notes.push_back(fmt::format(
-        "{}body '{}': no rigid body has the principal moments {}, since {} > {} + {}", body.where,
-        body.name, join(std::vector<double>(moments.begin(), moments.end())), moments[2],
-        moments[1], moments[0]));
-  }
-  if (moments[0] < 0) {  // to none below 0
-    const dense::SymmetricEigen principal = dense::symmetric_eigen(central);
-    const Eigen::VectorXd clipped = principal.values.cwiseMax(0);
-    central = principal.vectors * clipped.asDiagonal() * principal.vectors.transpose();
-  }
-  return inertia_at(body.mass, vec(body.at), central);
+  return central;
 }
 
 // Distance of the farthest mass centre or joint from the first joint, as drawn.
@@ -158,6 +138,8 @@ void Assembly::link_bodies() {
   stop_at_mistakes();
   link_from_ground(std::move(joints));
   check_hinge_names();
+  for (const auto& [link, bodies] : link_bodies_)
+    links_[static_cast<size_t>(link)].inertia = inertia_of(bodies);
   stop_at_mistakes();
 }
 
@@ -177,8 +159,7 @@ void Assembly::link(const Mechanism::JointPart& part) {
     here = static_cast<int>(links_.size()) - 1;
   }
   body_links_[part.child] = here;
-  if (here != mechanisms::kGround)
-    links_[static_cast<size_t>(here)].inertia += inertia_of(*bodies_.at(part.child));
+  if (here != mechanisms::kGround) link_bodies_[here].push_back(bodies_.at(part.child));
 }
 
 // The frame of a joint has its third axis along `axis`.

@@ -2,12 +2,15 @@
 //
 //   link                        a body: mass, inertia about its mass centre; visuals (where all
 //                               are meshes collisions) of boxes, cylinders, spheres are its shapes
-//   revolute, continuous        hinge, with its damping, and a motor within its effort limit
+//   revolute, continuous        hinge, with its damping
 //   prismatic                   slider, the same
 //   planar, floating, fixed     planar, free, weld
-//   wheel=LINK[:wheel|:ball]    rolls on the ground, several separated by commas: a cylinder about
-//                               its axis, or about that of its joint where the two are parallel; a
-//                               sphere as a ball, or, with LINK:wheel, about the axis of its joint
+//   wheel=LINK[:kind][,radius=r]
+//                               rolls on the ground, several separated by commas (urdf_wheels.hpp);
+//                               wheel=auto: the links that look like wheels (urdf_shapes.hpp)
+//   motor=JOINT                 has a motor, within its effort limit (urdf_joints.hpp)
+//   weld=JOINT, weld-all-but=JOINT
+//                               joints that are rigid in the drawn pose
 //   root=planar|free|fixed      how the root link hangs on the ground; a root link named "world" is
 //                               the ground
 // The drawn pose is that of zero joint angles, along the axes of the root link; its height is such
@@ -15,11 +18,13 @@
 // friction in joints, meshes. Mimicking joints are refused. Source: http://wiki.ros.org/urdf/XML.
 #pragma once
 
+#include <vector>
+
 #include <hamel/framework/run/names/registry.hpp>
 
 namespace hamel {
 
-/// The format; its conversion is null in a build without urdfdom.
-FileFormat urdf_format();
+/// The format by each of its extensions; its conversion is null in a build without urdfdom.
+std::vector<FileFormat> urdf_formats();
 
 }  // namespace hamel

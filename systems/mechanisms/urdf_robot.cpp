@@ -31,7 +31,6 @@ class Messages : public console_bridge::OutputHandler {
 };
 
 urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& path) {
-  check_urdf_text(text, path);
   static std::mutex one_at_a_time;  // the handler is the process's
   const std::lock_guard lock(one_at_a_time);
   Messages messages;
@@ -86,10 +85,13 @@ Mat<3, 3> rounded(const urdf::Rotation& q) {
 class Reader {
  public:
   Reader(const std::string& text, std::string path)
-      : path_(std::move(path)), model_(parse(text, path_)) {}
+      : path_(std::move(path)),
+        text_(read_urdf_text(text, path_)),
+        model_(parse(text_.text, path_)) {}
 
   Robot read() {
     robot_.name = model_->getName();
+    robot_.cleaned = text_.cleaned;
     struct Next {
       urdf::LinkConstSharedPtr link;
       int parent;
@@ -114,6 +116,7 @@ class Reader {
         pose = pose * rigid(joint.parent_to_joint_origin_transform, "joint", joint.name);
         link.joint = joint_of(joint, pose);
       }
+      link.origin = pose.position;
       fill(link, *next.link, pose);
       const auto index = static_cast<int>(robot_.links.size()) - 1;
       const auto& children = next.link->child_links;
@@ -159,21 +162,29 @@ class Reader {
     if (has_axis && !(out.axis.norm() > 0))
       wrong("joint", joint.name, "axis: got 0 0 0, expected a direction");
     else if (has_axis) out.axis.normalize();
-    if (joint.mimic != nullptr)
-      wrong("joint", joint.name,
-            fmt::format("mimic: follows joint '{}', which a mechanism does not have: take the "
-                        "element out, and couple the two by a [[force]] or an input",
-                        joint.mimic->joint_name));
+    if (joint.mimic != nullptr && out.turns_or_slides())
+      out.mimic = {joint.mimic->joint_name, joint.mimic->multiplier, joint.mimic->offset};
+    out.driven = text_.driven.contains(joint.name);
+    if (!out.moves()) {
+      out.idle = joint.dynamics != nullptr || joint.limits != nullptr;
+      return out;
+    }
     if (joint.dynamics != nullptr) {
       out.damping = joint.dynamics->damping;
       out.friction = joint.dynamics->friction != 0;
-      if (out.damping != 0 && out.kind != "hinge" && out.kind != "slider")
-        wrong("joint", joint.name, "damping: expected a revolute, continuous or prismatic joint");
+      if (out.damping != 0 && !out.turns_or_slides())
+        wrong("joint", joint.name,
+              "damping: expected a revolute, continuous or prismatic joint, got " +
+                  std::string(out.kind == "free" ? "a floating" : "a planar") +
+                  " one: take its <dynamics> out");
     }
     if (joint.limits != nullptr) {
       out.effort = joint.limits->effort;
       out.limited = joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::PRISMATIC;
     }
+    out.endless =
+        out.kind == "hinge" &&
+        (!out.limited || joint.limits->upper - joint.limits->lower > 2 * std::numbers::pi);
     return out;
   }
 
@@ -218,12 +229,39 @@ class Reader {
   }
 
   std::string path_;
+  UrdfText text_;
   urdf::ModelInterfaceSharedPtr model_;
   Robot robot_;
   std::vector<std::string> mistakes_;
 };
 
 }  // namespace
+
+const RobotShape* RobotLink::round_shape() const {
+  for (const auto* shapes : {&collisions, &visuals})
+    for (const RobotShape& shape : *shapes)
+      if (shape.round()) return &shape;
+  return nullptr;
+}
+
+std::vector<std::string> Robot::link_names() const {
+  std::vector<std::string> out;
+  for (const RobotLink& l : links) out.push_back(l.name);
+  return out;
+}
+
+std::vector<std::string> Robot::joint_names() const {
+  std::vector<std::string> out;
+  for (const RobotLink& l : links)
+    if (l.parent >= 0 && l.joint.moves()) out.push_back(l.joint.name);
+  return out;
+}
+
+int Robot::link_of_joint(const std::string& of) const {
+  for (int i = 0; i < count(); ++i)
+    if (link(i).parent >= 0 && link(i).joint.name == of) return i;
+  return -1;
+}
 
 Robot read_robot(const std::string& text, const std::string& path) {
   return Reader(text, path).read();

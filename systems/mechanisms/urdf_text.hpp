@@ -7,13 +7,25 @@
 //   start <name attribute="value" …> or />, values in " or '.
 // What does not fit it, or exceeds the limits, is refused with its line; TinyXML then sees the same
 // tags, as both end a quoted value at its quote and nowhere else.
+//
+// Macros of xacro are refused, but for those that change nothing here: properties and arguments
+// that no number uses, and ${namespace} in names, which is taken out. So are <material> elements
+// and scales of meshes, whose mistakes urdfdom would report though nothing here uses them.
 #pragma once
 
+#include <set>
 #include <string>
+#include <vector>
 
 namespace hamel::mechanisms {
 
+struct UrdfText {
+  std::string text;                  // for the parser
+  std::set<std::string> driven;      // joints of a <transmission>, or with a <command_interface>
+  std::vector<std::string> cleaned;  // macros that were taken out of names, or replaced by defaults
+};
+
 /// Throws ConfigError with the path and the line.
-void check_urdf_text(const std::string& text, const std::string& path);
+UrdfText read_urdf_text(const std::string& text, const std::string& path);
 
 }  // namespace hamel::mechanisms

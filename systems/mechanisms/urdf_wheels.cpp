@@ -1,108 +1,104 @@
 #include <hamel/systems/mechanisms/urdf_wheels.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/systems/mechanisms/urdf_shapes.hpp>
 
 namespace hamel::mechanisms {
 namespace {
 
-constexpr double kParallel = 2e-3;  // rad
+constexpr double kSameHeight = 1e-7;  // m
+constexpr double kNearHeight = 0.1;   // of the radius
 
-bool is_mesh(const RobotShape& shape) { return shape.kind == RobotShape::Kind::mesh; }
-
-const RobotShape* round_shape(const RobotLink& link) {
-  for (const auto* shapes : {&link.collisions, &link.visuals})
-    for (const RobotShape& shape : *shapes)
-      if (shape.round()) return &shape;
-  return nullptr;
-}
-
-// The joint that moves this link, across welds; null where it is a part of the root.
-const RobotJoint* carrying_joint(const Robot& robot, int i) {
-  while (true) {
-    const RobotLink& link = robot.links[static_cast<size_t>(i)];
-    if (link.parent < 0) return nullptr;
-    if (link.joint.moves()) return &link.joint;
-    i = link.parent;
-  }
+const std::vector<std::string>& wheel_kinds() {
+  static const std::vector<std::string> all = {"wheel", "ball", "omni", "mecanum"};
+  return all;
 }
 
 class Finder {
  public:
   Finder(const Robot& robot, const std::string& path, std::vector<std::string>& mistakes)
-      : robot_(robot), path_(path), mistakes_(mistakes) {
-    for (const RobotLink& link : robot.links) names_.push_back(link.name);
-  }
+      : robot_(robot), path_(path), mistakes_(mistakes), names_(robot.link_names()) {}
 
   void add(const std::string& given) {
-    std::string name = given, kind;
-    const size_t colon = given.rfind(':');
-    if (!knows(given) && colon != std::string::npos) {
-      name = given.substr(0, colon);
-      kind = given.substr(colon + 1);
-      if (kind != "wheel" && kind != "ball")
-        return wrong(given, unknown_name("kind of wheel", kind, {"wheel", "ball"}));
+    if (given == "auto" && !knows(given)) {
+      automatic = true;
+      return;
     }
-    if (!knows(name)) return wrong(given, unknown_name("link", name, names_));
-    const auto index = static_cast<int>(std::ranges::find(names_, name) - names_.begin());
-    const auto same = [&](const RobotWheel& wheel) { return wheel.link == index; };
-    if (std::ranges::any_of(wheels, same)) return wrong(name, "named twice");
-    add(index, name, kind);
+    WheelWords words;
+    if (!read(given, words)) return;
+    if (!knows(words.name)) return wrong(given, unknown_name("link", words.name, names_));
+    const auto index = static_cast<int>(std::ranges::find(names_, words.name) - names_.begin());
+    if (std::ranges::find(wheels, index, &RobotWheel::link) != wheels.end())
+      return wrong(words.name, "named twice");
+    std::vector<std::string> why;
+    if (auto wheel = wheel_of(robot_, index, words, why)) {
+      wheels.push_back(*wheel);
+      given_angle.push_back(words.angle.has_value());
+    }
+    for (const std::string& what : why) wrong(words.name, what);
+  }
+
+  void wrong(const std::string& wheel, const std::string& what) {
+    mistakes_.push_back(fmt::format("{}: wheel '{}': {}", path_, wheel, what));
   }
 
   std::vector<RobotWheel> wheels;
+  std::vector<bool> given_angle;  // of each wheel
+  bool automatic = false;
 
  private:
   bool knows(const std::string& name) const {
     return std::ranges::find(names_, name) != names_.end();
   }
-  void wrong(const std::string& wheel, const std::string& what) {
-    mistakes_.push_back(fmt::format("{}: wheel '{}': {}", path_, wheel, what));
-  }
 
-  void add(int index, const std::string& name, const std::string& kind) {
-    const RobotLink& link = robot_.links[static_cast<size_t>(index)];
-    const RobotShape* shape = round_shape(link);
-    if (shape == nullptr) return no_round_shape(link);
-    if (!(shape->radius() > 0))
-      return wrong(name, fmt::format("radius: got {}, expected above 0", shape->radius()));
-    const RobotJoint* joint = carrying_joint(robot_, index);
-    if (joint == nullptr)
-      return wrong(name, fmt::format("fixed to the root link '{}', it cannot roll; leave it out: a "
-                                     "root that is planar needs no support, which then slides "
-                                     "without friction",
-                                     robot_.links.front().name));
-    const bool sphere = shape->kind == RobotShape::Kind::sphere;
-    RobotWheel wheel;
-    wheel.link = index;
-    wheel.ball = kind.empty() ? sphere : kind == "ball";
-    wheel.radius = shape->radius();
-    wheel.centre = shape->pose.position;
-    if (wheel.ball && !sphere) return wrong(name, "a ball is a sphere, got a cylinder");
-    const bool hinge = joint->kind == "hinge";
-    if (sphere && !wheel.ball) {
-      if (!hinge)
-        return wrong(name, fmt::format("a sphere as a wheel turns about a hinge, but joint '{}' is "
-                                       "none",
-                                       joint->name));
-      wheel.axle = joint->axis;
-    } else if (!sphere) {
-      const bool same = hinge && joint->axis.cross(shape->axis()).norm() < kParallel;
-      wheel.axle = same ? joint->axis : shape->axis();
+  // The longest name of a link before a colon; the whole up to the first where there is none.
+  bool read(const std::string& given, WheelWords& out) {
+    size_t end = given.size();
+    while (!knows(given.substr(0, end)) && end != std::string::npos && end > 0)
+      end = given.rfind(':', end - 1);
+    if (end == std::string::npos || end == 0) end = given.find(':');
+    out.name = given.substr(0, end);
+    if (end == std::string::npos) return true;
+    for (size_t at = end; at < given.size(); at = end) {
+      end = std::min(given.find(':', at + 1), given.size());
+      const std::string word = given.substr(at + 1, end - at - 1);
+      if (!take(given, word, out)) return false;
     }
-    if (wheel.axle[1] < 0) wheel.axle = (-wheel.axle).eval();  // to the left
-    wheels.push_back(wheel);
+    return true;
   }
-  void no_round_shape(const RobotLink& link) {
-    const bool mesh =
-        std::ranges::any_of(link.collisions, is_mesh) || std::ranges::any_of(link.visuals, is_mesh);
-    wrong(link.name, fmt::format("{}; give it a <collision> with a cylinder or a sphere, whose "
-                                 "radius is that of the wheel",
-                                 mesh ? "its geometry is a mesh" : "it has no cylinder or sphere"));
+  bool take(const std::string& given, const std::string& word, WheelWords& out) {
+    const size_t equal = word.find('=');
+    const std::string key = word.substr(0, equal);
+    if (equal == std::string::npos) {
+      out.kind = word;
+      if (std::ranges::find(wheel_kinds(), word) != wheel_kinds().end()) return true;
+      wrong(given, unknown_name("kind of wheel", word, wheel_kinds()));
+      return false;
+    }
+    if (key != "radius" && key != "angle") {
+      wrong(given, unknown_name("value", key, {"radius", "angle"}));
+      return false;
+    }
+    double value = 0;
+    const char* last = word.data() + word.size();
+    const auto [behind, why] = std::from_chars(word.data() + equal + 1, last, value);
+    const bool number = why == std::errc() && behind == last && std::isfinite(value);
+    if (!number || (key == "radius" && !(value > 0))) {
+      wrong(given,
+            fmt::format("{}: got '{}', expected a {}number, in {}", key, word.substr(equal + 1),
+                        key == "radius" ? "positive " : "", key == "radius" ? "m" : "rad"));
+      return false;
+    }
+    (key == "radius" ? out.radius : out.angle) = value;
+    return true;
   }
 
   const Robot& robot_;
@@ -111,17 +107,105 @@ class Finder {
   std::vector<std::string> names_;
 };
 
+// radius=r and angle=a behind a comma belong to the wheel before them.
+std::vector<std::string> joined(const std::vector<std::string>& names) {
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    const bool more = name.starts_with("radius=") || name.starts_with("angle=");
+    if (more && !out.empty()) out.back() += ":" + name;
+    else out.push_back(name);
+  }
+  return out;
+}
+
+// The rollers of mecanum wheels mounted as usual: those in contact with the ground lie across the
+// diagonals, so that the direction without slip, cos(a) rolling + sin(a) sideways, of the wheel
+// ahead on the left is (1, -1), and that of its neighbours (1, 1). With the rates w of the wheels,
+// r w = vx -+ vy -+ (lx + ly) omega. Source: Muir, Neuman, Kinematic Modeling for Feedback Control
+// of an Omnidirectional Wheeled Mobile Robot (ICRA 1987).
+void turn_rollers(Finder& finder, const Robot& robot) {
+  Vec3 middle = Vec3::Zero();
+  int count = 0;
+  for (const RobotWheel& wheel : finder.wheels) {
+    if (wheel.kind != RobotWheel::Kind::mecanum) continue;
+    middle += wheel.centre;
+    ++count;
+  }
+  for (size_t i = 0; i < finder.wheels.size(); ++i) {
+    RobotWheel& wheel = finder.wheels[i];
+    if (wheel.kind != RobotWheel::Kind::mecanum || finder.given_angle[i]) continue;
+    const Vec3 from = wheel.centre - middle / count, ahead = wheel.axle.cross(Vec3::UnitZ());
+    const double along = from.dot(ahead), across = from.dot(wheel.axle);
+    if (std::min(std::abs(along), std::abs(across)) < 1e-3 * from.norm() || from.isZero(1e-9))
+      finder.wrong(robot.link(wheel.link).name,
+                   "the angle of its rollers follows from the corner of the base at which it is, "
+                   "but it is at none: give it, LINK:mecanum:angle=0.7853981633974483 (or with a "
+                   "minus)");
+    wheel.angle = along * across > 0 ? -std::numbers::pi / 4 : std::numbers::pi / 4;
+  }
+}
+
 }  // namespace
 
-double RobotWheel::lowest() const {
-  return centre[2] - radius * (ball ? 1 : std::sqrt(std::max(0.0, 1 - axle[2] * axle[2])));
+double RobotWheel::depth() const {
+  return radius * (kind == Kind::ball ? 1 : std::sqrt(std::max(0.0, 1 - axle[2] * axle[2])));
 }
 
 std::vector<RobotWheel> find_wheels(const Robot& robot, const std::vector<std::string>& names,
-                                    const std::string& path, std::vector<std::string>& mistakes) {
+                                    const std::string& path, std::vector<std::string>& mistakes,
+                                    std::vector<std::string>& notes) {
   Finder finder(robot, path, mistakes);
-  for (const std::string& name : names) finder.add(name);
+  for (const std::string& name : joined(names)) finder.add(name);
+  if (finder.automatic) {
+    std::vector<std::string> taken;
+    for (const RobotWheel& wheel : wheels_by_shape(robot)) {
+      if (std::ranges::find(finder.wheels, wheel.link, &RobotWheel::link) != finder.wheels.end())
+        continue;
+      finder.wheels.push_back(wheel);
+      finder.given_angle.push_back(false);
+      taken.push_back(robot.link(wheel.link).name);
+    }
+    const auto others = wheels_by_joint(robot, !taken.empty());
+    const std::string more = others.empty()
+                                 ? ""
+                                 : fmt::format(
+                                       "; on hinges without limits, without a cylinder or "
+                                       "sphere: --wheel {}",
+                                       fmt::join(others, " --wheel "));
+    if (!taken.empty())
+      notes.push_back(fmt::format("--wheel auto takes {}{}", quoted(taken), more));
+    if (finder.wheels.empty())
+      finder.wrong("auto", "no link with a cylinder or sphere on a hinge is at the lowest point" +
+                               (more.empty() ? "; name the wheels, --wheel LINK:radius=r" : more));
+  }
+  turn_rollers(finder, robot);
   return std::move(finder.wheels);
+}
+
+void level_wheels(const Robot& robot, std::vector<RobotWheel>& wheels, const std::string& path,
+                  std::vector<std::string>& mistakes, std::vector<std::string>& notes) {
+  if (wheels.empty()) return;
+  const RobotWheel lowest =
+      *std::ranges::min_element(wheels, {}, [](const RobotWheel& w) { return w.lowest(); });
+  for (RobotWheel& wheel : wheels) {
+    const double gap = wheel.lowest() - lowest.lowest(), radius = wheel.radius;
+    if (gap <= kSameHeight * 0.1) continue;
+    wheel.radius *= 1 + gap / wheel.depth();
+    if (gap <= kSameHeight) continue;
+    const std::string& name = robot.link(wheel.link).name;
+    const std::string where =
+        fmt::format("{:.4g} m above the lowest point of '{}'", gap, robot.link(lowest.link).name);
+    if (gap > kNearHeight * radius)
+      mistakes.push_back(fmt::format(
+          "{}: wheel '{}': does not touch the ground: its lowest point is {}; leave it out, or "
+          "give its radius, --wheel {}:radius={:.6g}",
+          path, name, where, name, wheel.radius));
+    else
+      notes.push_back(
+          fmt::format("wheel '{}': its lowest point is {}: radius {:.6g} m instead of "
+                      "{:.6g} m",
+                      name, where, wheel.radius, radius));
+  }
 }
 
 }  // namespace hamel::mechanisms

@@ -110,8 +110,9 @@ static const std::vector<std::string> kOfRows = {"every",   "output_step", "outp
 void SectionLine::define(CLI::App& app) {
   line_.define_run(app, {kOfRows.begin(), kOfRows.end()});
   for (const char* name : {"event", "direction", "count", "starts", "energy", "report", "axes",
-                           "output", "json", "quiet", "wheel", "root"})
+                           "output", "json", "quiet"})
     line_.own[name];
+  for (const std::string& name : RobotLine::keys()) line_.own[name];
   app.add_option("--event", options_.request.event,
                  "the event that is crossed: a name (hamel describe SYSTEM) or a formula, as for "
                  "--events of hamel run");

@@ -300,7 +300,7 @@ std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& 
   return [&registry, path, text](const Parameters& given) {
     if (format_of(registry, path) == nullptr) return read_toml(registry, path, text, given);
     const auto [toml, notes] = converted(registry, path, text);
-    SystemModel out = read_toml(registry, path_of_system(path) + " as TOML", toml, given);
+    SystemModel out = read_toml(registry, converted_origin(path_of_system(path)), toml, given);
     out.notes.insert(out.notes.end(), notes.begin(), notes.end());
     return out;
   };

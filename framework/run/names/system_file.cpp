@@ -1,5 +1,8 @@
 #include <hamel/framework/run/names/system_file.hpp>
 
+#include <hamel/framework/run/names/robot_file.hpp>
+
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -12,12 +15,12 @@
 namespace hamel {
 namespace {
 
-const std::string kUrdf = ".urdf";
-
 // Where the options begin, the end of the name where there are none.
 size_t end_of_path(const std::string& system) {
-  const size_t at = system.find(kUrdf + "?");
-  return at == std::string::npos ? system.size() : at + kUrdf.size();
+  for (const std::string& extension : robot_extensions())
+    if (const size_t at = system.find(extension + "?"); at != std::string::npos)
+      return at + extension.size();
+  return system.size();
 }
 
 std::vector<std::string> split(const std::string& text, char at) {
@@ -29,6 +32,11 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 }  // namespace
 
+const std::vector<std::string>& robot_extensions() {
+  static const std::vector<std::string> all = {".urdf", ".URDF", ".xacro", ".sdf", ".xml"};
+  return all;
+}
+
 std::string path_of_system(const std::string& system) {
   return system.substr(0, end_of_path(system));
 }
@@ -36,7 +44,11 @@ std::string extension_of_system(const std::string& system) {
   return std::filesystem::path(path_of_system(system)).extension().string();
 }
 bool names_file(const std::string& system) {
-  return system.ends_with(".toml") || path_of_system(system).ends_with(kUrdf);
+  return system.ends_with(".toml") || names_robot(system);
+}
+bool names_robot(const std::string& system) {
+  const auto& all = robot_extensions();
+  return std::ranges::find(all, extension_of_system(system)) != all.end();
 }
 
 FileOptions options_of_system(const std::string& system) {

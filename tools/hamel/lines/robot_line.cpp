@@ -3,34 +3,52 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/run/names/robot_file.hpp>
 #include <hamel/framework/run/names/system_file.hpp>
 
 #include "lines/help.hpp"
 
 namespace hamel::tools {
 
+const std::vector<std::string>& RobotLine::keys() {
+  static const std::vector<std::string> all = {"wheel", "motor", "weld", "weld_all_but", "root"};
+  return all;
+}
+
 void RobotLine::define(CLI::App& app) {
-  app.add_option(
-         "--wheel", wheels,
-         "a link of robot.urdf that rolls on the ground, with the radius of its cylinder or "
-         "sphere; LINK:wheel for a sphere that turns about its joint (repeatable)")
-      ->type_name("LINK")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  const auto list = [&](const char* flag, std::vector<std::string>& names, const char* type,
+                        const char* text) {
+    app.add_option(flag, names, text)->type_name(type)->delimiter(',')->allow_extra_args(false);
+  };
+  list("--wheel", wheels, "LINK[:kind][,radius=r]",
+       "a link of robot.urdf that rolls on the ground, with the radius of its cylinder or sphere, "
+       "or this one (m); kind: wheel, ball, omni, mecanum; auto: the links that look like wheels "
+       "(repeatable)");
+  list(
+      "--motor", motors, "JOINT",
+      "a joint with a motor [the wheels' joints, and those with a transmission or an effort limit] "
+      "(repeatable)");
+  list("--weld", welds, "JOINT", "a joint that is rigid in the drawn pose (repeatable)");
+  list("--weld-all-but", movable, "JOINT", "all other joints are rigid (repeatable)");
   app.add_option(
       "--root", root,
       "how the root link of robot.urdf hangs on the ground: planar, free or fixed [planar]");
-  group_options(app, "Robot", {"--wheel", "--root"});
+  group_options(app, "Robot", {"--wheel", "--motor", "--weld", "--weld-all-but", "--root"});
 }
 
 std::string RobotLine::resolve(const std::string& system) const {
   std::string out = system;
-  if (wheels.empty() && root.empty()) return out;
-  if (extension_of_system(system) != ".urdf")
-    throw ConfigError({fmt::format("{}: for a robot, FILE.urdf; got the system '{}'",
-                                   wheels.empty() ? "--root" : "--wheel", system)});
-  if (!wheels.empty()) out = with_file_option(out, "wheel", wheels);
-  if (!root.empty()) out = with_file_option(out, "root", {root});
+  const std::vector<std::string> roots =
+      root.empty() ? std::vector<std::string>{} : std::vector<std::string>{root};
+  for (const auto& [option, values] :
+       {std::pair{"wheel", &wheels}, std::pair{"motor", &motors}, std::pair{"weld", &welds},
+        std::pair{"weld-all-but", &movable}, std::pair{"root", &roots}}) {
+    if (values->empty()) continue;
+    if (!names_robot(system))
+      throw ConfigError(
+          {fmt::format("--{}: for a robot, FILE.urdf; got the system '{}'", option, system)});
+    out = with_file_option(out, option, *values);
+  }
   return out;
 }
 

@@ -1,4 +1,5 @@
-// --wheel and --root, of commands that take a system: what a robot in URDF leaves open.
+// --wheel, --motor, --weld, --weld-all-but and --root, of commands that take a system: what a robot
+// in URDF leaves open.
 #pragma once
 
 #include <string>
@@ -9,8 +10,11 @@
 namespace hamel::tools {
 
 struct RobotLine {
-  std::vector<std::string> wheels;
+  std::vector<std::string> wheels, motors, welds, movable;
   std::string root;
+
+  /// Keys of these in a file of --config.
+  static const std::vector<std::string>& keys();
 
   void define(CLI::App& app);
   /// The name of the system with these: robot.urdf?wheel=left,right&root=free. Throws ConfigError

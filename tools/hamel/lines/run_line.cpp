@@ -75,7 +75,8 @@ void RunLine::define_run(CLI::App& app, const std::set<std::string>& without) {
 
 void RunLine::define(CLI::App& app) {
   define_run(app, {});
-  for (const char* name : {"output", "report", "json", "quiet", "wheel", "root"}) own[name];
+  for (const char* name : {"output", "report", "json", "quiet"}) own[name];
+  for (const std::string& name : RobotLine::keys()) own[name];
   app.add_option(
          "--continue", record_file,
          "resume where the run of this record (-o x.json, x.h5) ended, as it was run, for as long "
@@ -130,6 +131,9 @@ RunOptions RunLine::resolve(const CLI::App& app) {
     take(app, "json", options.json);
     take(app, "quiet", options.quiet);
     take(app, "wheel", robot.wheels);
+    take(app, "motor", robot.motors);
+    take(app, "weld", robot.welds);
+    take(app, "weld_all_but", robot.movable);
     take(app, "root", robot.root);
   }
   if (!record_file.empty()) go_on(config);

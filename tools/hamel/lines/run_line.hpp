@@ -35,7 +35,9 @@ struct RunLine {
   template <class Value>
   void take(const CLI::App& app, const std::string& name, Value& to) const {
     const auto entry = own.find(name);
-    if (entry == own.end() || app.count("--" + name) > 0) return;
+    std::string flag = "--" + name;
+    std::ranges::replace(flag, '_', '-');
+    if (entry == own.end() || app.count(flag) > 0) return;
     const auto& [values, place] = entry->second;
     if (values.empty()) return;
     const std::string option = fmt::format("{}: {}", place, name);

@@ -1,0 +1,19 @@
+// Links that look like wheels. Not installed.
+#pragma once
+
+#include <vector>
+
+#include <hamel/systems/mechanisms/urdf_wheels.hpp>
+
+namespace hamel::mechanisms {
+
+/// Cylinders about the axis of a hinge and spheres on a hinge, both about a level axle, at the
+/// lowest point of the robot. A fixed sphere is a support without friction.
+std::vector<RobotWheel> wheels_by_shape(const Robot& robot);
+
+/// Links without a cylinder or sphere on a hinge without limits about a level axis, each as --wheel
+/// has it: LINK:radius=r, r the height of its axle above the origin of the root where that is above
+/// 0. Those called wheels; or else, but with `called`, the lowest.
+std::vector<std::string> wheels_by_joint(const Robot& robot, bool called = false);
+
+}  // namespace hamel::mechanisms
