@@ -88,7 +88,7 @@ class Writer {
       const bool moves = i == 0 ? root_ == "planar" || root_ == "free" : l.joint.moves();
       const auto [mass, moment] = carried_by(i);
       const bool turns = i > 0 && l.joint.kind == "hinge";
-      if (!moves || (mass > 0 && (!turns || moment > 0))) continue;
+      if (!moves || (mass > 0 && (!turns || moment != 0))) continue;
       wrong(fmt::format(
           "link '{}': it and all that it carries have no {}: give it an <inertial> "
           "with mass and inertia{}",
