@@ -12,8 +12,10 @@ namespace {
 
 using WheelKind = RobotWheel::Kind;
 
-constexpr double kParallel = 2e-3;  // rad
-constexpr double kAcross = 0.5;     // rad: an axle that leans so much is no axle of the joint
+constexpr double kParallel = 2e-3;  // rad, without notice
+constexpr double kAcross = 0.1;     // rad: an axle that leans so much is no axle of the joint
+constexpr double kCentred = 1e-6;   // m, without notice
+constexpr double kBeside = 0.25;    // of the radius: a wheel so far off the axis is not about it
 constexpr double kVertical = 0.9;   // of the third component of a direction
 
 WheelKind kind_of(const std::string& word, bool sphere) {
@@ -114,7 +116,7 @@ class Axle {
       const RobotJoint& joint = robot_.link(i).joint;
       if (joint.kind != "hinge") continue;
       const double off = (wheel_.centre - on_axis(wheel_.centre, joint)).norm();
-      if (placed_ && off > 0.5 * wheel_.radius) continue;
+      if (placed_ && off > kBeside * wheel_.radius) continue;
       const double angle = shape_ == nullptr
                                ? (std::abs(joint.axis[2]) < kVertical ? 0 : std::numbers::pi)
                                : std::asin(std::min(1.0, joint.axis.cross(shape_->axis()).norm()));
@@ -125,8 +127,14 @@ class Axle {
     }
     if (wheel_.turns >= 0) {
       const RobotJoint& joint = robot_.link(wheel_.turns).joint;
-      wheel_.axle = best < kParallel ? joint.axis : shape_->axis();
-      if (shape_ == nullptr) wheel_.centre = on_axis(wheel_.centre, joint);
+      const Vec3 centre = on_axis(wheel_.centre, joint);
+      const double off = (wheel_.centre - centre).norm();
+      if (best >= kParallel)
+        correct(fmt::format("its cylinder leans by {:.3g} rad against the axis", best));
+      if (placed_ && off > kCentred)
+        correct(fmt::format("its centre is {:.3g} m off the axis", off));
+      wheel_.axle = joint.axis;
+      wheel_.centre = centre;
     } else if (shape_ != nullptr && rolls_freely()) {
       wheel_.axle = shape_->axis();
     } else {
@@ -135,6 +143,11 @@ class Axle {
     if (std::abs(wheel_.axle[2]) >= kVertical)
       wrong(fmt::format("its axle {} is upright as drawn, expected a level one",
                         in_words(wheel_.axle)));
+  }
+  void correct(const std::string& what) {
+    const std::string& joint = robot_.link(wheel_.turns).joint.name;
+    wheel_.corrected.push_back(fmt::format(
+        "wheel '{}': {} of joint '{}', which is taken as its axle", link().name, what, joint));
   }
   void no_axle() {
     std::string text = "cannot roll: no joint turns about its axle";

@@ -36,9 +36,9 @@ struct RobotJoint {
   std::optional<RobotMimic> mimic = {};
   bool limited = false, friction = false;
   bool endless = false;  // a hinge that turns right round within its limits
-  bool driven = false;  // by a transmission
-  bool idle = false;    // fixed, with damping, friction or limits
-  bool welded = false;  // by --weld
+  bool driven = false;   // by a transmission
+  bool idle = false;     // fixed, with damping, friction or limits
+  bool welded = false;   // by --weld
   bool moves() const { return kind != "weld"; }
   /// Has a coordinate, which a motor may drive.
   bool turns_or_slides() const { return kind == "hinge" || kind == "slider"; }

@@ -36,6 +36,12 @@ double lowest_of(const Robot& robot) {
 
 }  // namespace
 
+bool is_called_wheel(const RobotLink& link) {
+  std::string name = link.name;
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name.find("wheel") != std::string::npos;
+}
+
 std::vector<RobotWheel> wheels_by_shape(const Robot& robot) {
   std::vector<RobotWheel> all;
   std::vector<std::string> unused;
@@ -67,16 +73,12 @@ std::vector<std::string> wheels_by_joint(const Robot& robot, bool called) {
     all.push_back(&link);
     lowest = std::min(lowest, link.origin[2]);
   }
-  const auto called_wheel = [](const RobotLink* link) {
-    std::string name = link->name;
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return name.find("wheel") != std::string::npos;
-  };
-  const bool some = called || std::ranges::any_of(all, called_wheel);
+  const bool some =
+      called || std::ranges::any_of(all, [](const RobotLink* l) { return is_called_wheel(*l); });
   std::vector<std::string> out;
   for (const RobotLink* link : all) {
     const double height = link->origin[2];
-    if (some ? !called_wheel(link) : height > lowest + kSameLevel) continue;
+    if (some ? !is_called_wheel(*link) : height > lowest + kSameLevel) continue;
     out.push_back(height > 0 ? fmt::format("{}:radius={:.4g}", link->name, height)
                              : link->name + ":radius=0.1");
   }

@@ -174,10 +174,16 @@ std::vector<RobotWheel> find_wheels(const Robot& robot, const std::vector<std::s
                                        fmt::join(others, " --wheel "));
     if (!taken.empty())
       notes.push_back(fmt::format("--wheel auto takes {}{}", quoted(taken), more));
-    if (finder.wheels.empty())
+    if (finder.wheels.empty()) {
+      for (int i = 1; i < robot.count(); ++i)
+        if (is_called_wheel(robot.link(i)) && robot.link(i).round_shape() != nullptr)
+          finder.add(robot.link(i).name);  // with what is wrong with it
       finder.wrong("auto", "no link with a cylinder or sphere on a hinge is at the lowest point" +
                                (more.empty() ? "; name the wheels, --wheel LINK:radius=r" : more));
+    }
   }
+  for (const RobotWheel& wheel : finder.wheels)
+    notes.insert(notes.end(), wheel.corrected.begin(), wheel.corrected.end());
   turn_rollers(finder, robot);
   return std::move(finder.wheels);
 }

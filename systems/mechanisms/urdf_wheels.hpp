@@ -22,8 +22,9 @@ struct RobotWheel {
   int link = 0;
   double radius = 0;
   Vec3 centre = Vec3::Zero(), axle = Vec3::UnitY();
-  double angle = 0;  // rad, of the rollers against the plane of the wheel
-  int turns = -1;    // the link on the hinge about the axle, of a ball on a hinge; -1: none
+  double angle = 0;                         // rad, of the rollers against the plane of the wheel
+  std::vector<std::string> corrected = {};  // notes on what is drawn otherwise
+  int turns = -1;  // the link on the hinge about the axle, of a ball on a hinge; -1: none
   /// Its lowest point as drawn, below its centre by this much.
   double depth() const;
   double lowest() const { return centre[2] - depth(); }

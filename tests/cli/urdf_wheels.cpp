@@ -107,6 +107,26 @@ TEST_F(UrdfWheels, WheelsThatCannotRoll) {
               HasSubstr("no joint turns about its axle: no hinge about a level axis carries it"));
 }
 
+/// A centre beside the axis of the joint by a millimetre, and an axle that leans by hundredths, are
+/// of the drawing: the wheel turns about its joint, as one that is drawn so.
+TEST_F(UrdfWheels, WheelsTurnAboutTheirJoints) {
+  const auto drawn = [&](const std::string& origin, const std::string& name) {
+    return robot(link("base", inertial(5)) +
+                     link("w", inertial(1) + "<collision><origin " + origin + "/><geometry>" +
+                                   kCylinder + "</geometry></collision>") +
+                     joint("continuous", "axle", "base", "w", "0 0.2 0.101"),
+                 name);
+  };
+  const std::string off = drawn("xyz=\"0 0 -0.001\" rpy=\"1.55 0 0\"", "off.urdf");
+  EXPECT_THAT(
+      toml({off, "--wheel", "w"}),
+      HasSubstr("# wheel 'w': its cylinder leans by 0.0208 rad against the axis of joint "
+                "'axle', which is taken as its axle\n# wheel 'w': its centre is 0.001 m off "
+                "the axis of joint 'axle'"));
+  same_end({off, "--wheel", "w"}, {drawn("rpy=\"1.5707963267948966 0 0\"", "on.urdf") + "?wheel=w"},
+           {"--input", "axle.torque=0.1", "--speed", "0.3"});
+}
+
 /// Heights that differ by a little more than round-off are of the drawing, others are mistakes.
 TEST_F(UrdfWheels, WheelsAtOtherHeights) {
   const auto at = [&](const std::string& height) {

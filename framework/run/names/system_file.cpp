@@ -1,7 +1,5 @@
 #include <hamel/framework/run/names/system_file.hpp>
 
-#include <hamel/framework/run/names/robot_file.hpp>
-
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
@@ -11,6 +9,7 @@
 
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/text_file.hpp>
+#include <hamel/framework/run/names/robot_file.hpp>
 
 namespace hamel {
 namespace {
