@@ -1,4 +1,4 @@
-// One wheel of a robot: its shape, its axle and the joint that lets it roll.
+// Wheel of a robot: its shape, its axle and the joint that lets it roll.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -14,7 +14,7 @@ std::string spelled(const Vec3& v);
 
 class RobotBodies {
  public:
-  /// Of a robot whose root link is the ground, or not. Renames a link named ground.
+  /// Takes a robot whose root link is the ground, or not; renames a link named ground.
   RobotBodies(Robot& robot, bool root_is_ground);
 
   /// The body of a link as a quoted name; of a frame, without mass and shape, the one that it is

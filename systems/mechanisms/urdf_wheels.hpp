@@ -1,8 +1,8 @@
 // The wheels of a robot: links that roll on the ground. Not installed.
 //
 //   LINK[:kind][:radius=r][:angle=a]   commas for the colons too: LINK:kind,radius=r
-//   kind   wheel, ball, omni (slips along its axle), mecanum (rollers at an angle, pi/4; the sign of
-//          each is that of the usual mounting, whose rollers in contact lie across the diagonals)
+//   kind   wheel, ball, omni (slips along its axle), mecanum (rollers at the angle pi/4, whose sign
+//          is that of the usual mounting: rollers in contact lie across the diagonals)
 //   radius left out, that of the link's first cylinder or sphere, of the collisions before the
 //          visuals
 //   auto   the links that look like wheels: wheels_by_shape

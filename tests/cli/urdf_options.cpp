@@ -29,7 +29,8 @@ TEST_F(UrdfOptions, FixedJointsHaveNeitherDampingNorLimits) {
   EXPECT_THAT(toml({with("", "b.urdf")}), Not(HasSubstr("fixed joints")));
 }
 
-/// Only the whole that is welded together must be a rigid body: -0.004 and 0.01 are as 0.006.
+/// Only the whole that is welded together must be a rigid body: -0.004 and 0.01 are as 0.006, and
+/// -0.4 is made up for by the distance of two masses.
 TEST_F(UrdfOptions, MomentsOfTheWeldedWhole) {
   const auto arm = [&](const std::string& part, const std::string& main, const std::string& name) {
     return robot(link("base") + link("arm", inertial(1, main)) +
@@ -50,6 +51,10 @@ TEST_F(UrdfOptions, MomentsOfTheWeldedWhole) {
   EXPECT_THAT(mistake({arm("-0.02", "0.01", "a.urdf")}),
               HasSubstr("a.urdf: body 'antenna': inertia: a moment of -0.01 about some axis, that "
                         "of all that it is welded to included, expected none below 0"));
+  const std::string apart = robot(
+      link("base") + link("arm") + joint("continuous", "hinge", "base", "arm", "0 0 0.5") +
+      link("antenna", inertial(1, "-0.4")) + joint("fixed", "mount", "arm", "antenna", "0 1 0"));
+  EXPECT_EQ(run({"run", apart, "--root", "fixed", "--until", "0.1", "--quiet"}).status, 0);
 }
 
 TEST_F(UrdfOptions, WeldedJointsAreRigid) {
@@ -165,7 +170,7 @@ TEST_F(UrdfOptions, NamesWithANamespace) {
   EXPECT_EQ(motors({path + "?wheel=left,right"}), (Words{"left_axle", "right_axle"}));
   EXPECT_THAT(toml({path}), HasSubstr("# macros are taken out of names, or replaced by their "
                                       "defaults: \"${namespace}\"\n"));
-  // One that has a value here is not taken out.
+  // Not with a value of its own.
   EXPECT_THAT(mistake({robot("<xacro:property name=\"namespace\" value=\"a_\"/>" + text)}),
               HasSubstr("'${namespace}' is a macro"));
 }

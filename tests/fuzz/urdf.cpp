@@ -24,7 +24,7 @@ bool is_toml(const std::string& text) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  static const FileFormat urdf = urdf_format();
+  static const FileFormat urdf = urdf_formats().front();
   fuzz::accept_or_refuse([&] {
     std::string text = fuzz::text_of(data, size);
     FileOptions options;

@@ -1,5 +1,5 @@
-// Extensions under which descriptions of robots are found. The reader decides by the text, and names
-// what it does not read (macros, SDF, MJCF).
+// Extensions under which descriptions of robots are found. The reader decides by the text, and
+// refuses by name macros, SDF and MJCF.
 #pragma once
 
 #include <string>
