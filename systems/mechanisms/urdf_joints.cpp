@@ -102,7 +102,7 @@ void weld_joints(Robot& robot, const std::vector<std::string>& weld,
   for (bool more = true; more;) {
     more = false;
     for (RobotLink& link : robot.links) {
-      if (!link.joint.mimic) continue;
+      if (!link.joint.mimic || link.joint.welded) continue;
       const int to = robot.link_of_joint(link.joint.mimic->to);
       if (to < 0 || !robot.link(to).joint.welded) continue;
       followers.push_back(link.joint.name);
