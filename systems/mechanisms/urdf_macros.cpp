@@ -13,6 +13,9 @@ namespace {
 constexpr std::string_view kXacro = "xacro:";
 constexpr std::string_view kDefault = "$(optenv ";
 constexpr const char* kExpand = "macros are expanded by `xacro robot.urdf.xacro -o robot.urdf`";
+// Elements of a file that xacro expands; others are calls of macros that such a file defines.
+constexpr std::array<std::string_view, 7> kWords = {"include", "macro",        "if",     "unless",
+                                                    "call",    "insert_block", "element"};
 // Attributes that name a link or a joint, and those with numbers and words that a mechanism has.
 constexpr std::array<std::string_view, 3> kNames = {"name", "link", "joint"};
 constexpr std::array<std::string_view, 24> kNumbers = {
@@ -44,7 +47,15 @@ std::string UrdfMacros::begin(std::string_view element) {
   property_.clear();
   if (!element.starts_with(kXacro) || element == "xacro:property" || element == "xacro:arg")
     return "";
-  return fmt::format("<{}> is a macro: {}", shortened(std::string(element)), kExpand);
+  const std::string tag = fmt::format("<{}>", shortened(std::string(element)));
+  if (among(kWords, element.substr(kXacro.size())))
+    return fmt::format("{} is of a macro file: {}", tag, kExpand);
+  note(tag);
+  return "";
+}
+
+void UrdfMacros::note(const std::string& macro) {
+  if (std::ranges::find(replaced_, macro) == replaced_.end()) replaced_.push_back(macro);
 }
 
 std::string UrdfMacros::replace(const std::vector<std::string_view>& open, std::string_view element,
@@ -67,7 +78,7 @@ std::string UrdfMacros::replace(const std::vector<std::string_view>& open, std::
     const size_t name = macro_there.find_first_not_of(' ', kDefault.size());
     const size_t begin = std::min(macro_there.find(' ', name), macro_there.size() - 1);
     value = macro_there.substr(begin, macro_there.size() - 1 - begin);
-    replaced_.push_back(macro_there);
+    note(macro_there);
     return "";
   }
   if (!among(kNames, attribute)) return "";  // colours, files
@@ -80,7 +91,7 @@ std::string UrdfMacros::replace(const std::vector<std::string_view>& open, std::
     if (!whole || !word || properties_.contains(found.substr(2, found.size() - 3)))
       return refused(found);
     const std::string text(found);
-    if (std::ranges::find(replaced_, text) == replaced_.end()) replaced_.push_back(text);
+    note(text);
     value.erase(value.find(text), text.size());
   }
   return "";

@@ -260,7 +260,7 @@ class Writer {
     note("damping, friction and limits of fixed joints mean nothing and are left out", idle);
     note("a link 'ground' goes by another name, as the ground has this one", bodies.renamed);
     note("angles within 0.002 rad of a right angle are taken as that", robot_.rounded);
-    note("macros are taken out of names, or replaced by their defaults", robot_.cleaned);
+    note("macros of xacro are taken out, or replaced by their defaults", robot_.cleaned);
     note("meshes are not drawn", bodies.undrawn);
     note("boxes that are turned against the axes are not drawn", bodies.turned);
   }

@@ -9,8 +9,9 @@
 // tags, as both end a quoted value at its quote and nowhere else.
 //
 // Macros of xacro are refused, but for those that change nothing here: properties and arguments
-// that no number uses, and ${namespace} in names, which is taken out. So are <material> elements
-// and scales of meshes, whose mistakes urdfdom would report though nothing here uses them.
+// that no number uses, calls of macros without a definition, and ${namespace} in names, which are
+// taken out. Left out too are <material> elements and scales of meshes: urdfdom would report their
+// mistakes, though nothing here uses them.
 #pragma once
 
 #include <set>

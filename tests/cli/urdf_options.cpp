@@ -168,8 +168,10 @@ TEST_F(UrdfOptions, NamesWithANamespace) {
   const std::string path =
       robot("<xacro:property name=\"namespace\" value=\"$(arg namespace)\"/>" + text);
   EXPECT_EQ(motors({path + "?wheel=left,right"}), (Words{"left_axle", "right_axle"}));
-  EXPECT_THAT(toml({path}), HasSubstr("# macros are taken out of names, or replaced by their "
-                                      "defaults: \"${namespace}\"\n"));
+  EXPECT_THAT(
+      toml({path}),
+      HasSubstr(
+          "# macros of xacro are taken out, or replaced by their defaults: \"${namespace}\"\n"));
   // Not with a value of its own.
   EXPECT_THAT(mistake({robot("<xacro:property name=\"namespace\" value=\"a_\"/>" + text)}),
               HasSubstr("'${namespace}' is a macro"));
@@ -182,10 +184,14 @@ TEST_F(UrdfOptions, LeftoversOfXacroAreNamed) {
               HasSubstr("robot.urdf:2: not a robot as URDF has it: "
                         "<cylinder radius>: '${wheel_radius}' is a macro: " +
                         expands));
-  EXPECT_THAT(mistake({robot("<xacro:include filename=\"a.xacro\"/>" + link("base"))}),
-              HasSubstr("<xacro:include> is a macro: " + expands));
-  EXPECT_THAT(mistake({robot("<xacro:wheel name=\"left\"/>" + link("base"), "robot.xacro")}),
-              HasSubstr("robot.xacro:2: not a robot as URDF has it: <xacro:wheel> is a macro"));
+  for (const char* word : {"include filename=\"a.xacro\"", "macro name=\"m\"", "if value=\"1\""})
+    EXPECT_THAT(
+        mistake({robot("<xacro:" + std::string(word) + "/>" + link("base"), "robot.xacro")}),
+        HasSubstr("is of a macro file: " + expands));
+  // A call that no definition is left of.
+  EXPECT_THAT(toml({robot("<xacro:imu_sensor/>" + two_wheels())}),
+              HasSubstr("# macros of xacro are taken out, or replaced by their defaults: "
+                        "\"<xacro:imu_sensor>\"\n"));
   // A default is the number; files, colours and what is Gazebo's may have any.
   const std::string harmless =
       "<link name=\"imu\"><visual><geometry><mesh filename=\"$(find a)/b.stl\" scale=\"1 1 1 1\"/>"
