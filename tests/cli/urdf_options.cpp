@@ -93,6 +93,16 @@ TEST_F(UrdfOptions, WeldedJointsAreRigid) {
                         "out of --weld, or add it to --weld-all-but"));
 }
 
+/// The same options in a file of --config.
+TEST_F(UrdfOptions, OptionsInAConfiguration) {
+  write("a.toml", "system = \"" + robot(two_wheels()) + "\"\nwheel = [\"left\"]\nuntil = 0\n" +
+                      "weld_all_but = [\"left_axle\"]\nmotor = [\"left_axle\"]\nroot = \"free\"\n");
+  const json record = answer({"run", "--config", file("a.toml")});
+  EXPECT_THAT(record["system_file"].get<std::string>(),
+              testing::EndsWith("?wheel=left&motor=left_axle&weld-all-but=left_axle&root=free"));
+  EXPECT_EQ(record["group"], "se3*so2");
+}
+
 /// Without couplings a joint that mimics is refused, unless it, or the one that it follows, is
 /// welded.
 TEST_F(UrdfOptions, MimickingJointsMayBeWelded) {
