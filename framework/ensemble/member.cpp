@@ -44,7 +44,9 @@ Config MemberRunner::parameters_of(long member) const {
     if (target.kind != Kind::parameter) continue;
     for (const Field& field : plan_.fields)
       if (field.name == target.field) out.parameters.try_emplace(field.name, field.value);
-    out.parameters[target.field][target.index] = value;
+    std::vector<double>& values = out.parameters[target.field];
+    if (values.empty()) values.resize(1);  // left out by the others
+    values[target.index] = value;
   }
   return out;
 }

@@ -61,8 +61,8 @@ class Resolver {
         components_(components_of(system)) {
     units_.resize(system.group.columns.size());
     for (const Field& field : system.fields)
-      for (size_t i = 0; i < field.value.size(); ++i)
-        known_.push_back(field.value.size() == 1 ? field.name
+      for (size_t i = 0; i < std::max<size_t>(field.value.size(), field.optional); ++i)
+        known_.push_back(field.value.size() <= 1 ? field.name
                                                  : fmt::format("{}{}", field.name, i + 1));
     for (const InputField& input : system.inputs) known_.push_back(input.name);
     for (const Component& c : components_) known_.push_back("start." + c.name);
@@ -123,8 +123,8 @@ class Resolver {
   }
   std::string field(const std::string& name, Target& out) const {
     for (const Field& f : system_.fields) {
-      for (size_t i = 0; i < f.value.size(); ++i) {
-        if (name != (f.value.size() == 1 ? f.name : fmt::format("{}{}", f.name, i + 1))) continue;
+      for (size_t i = 0; i < std::max<size_t>(f.value.size(), f.optional); ++i) {
+        if (name != (f.value.size() <= 1 ? f.name : fmt::format("{}{}", f.name, i + 1))) continue;
         out = {Kind::parameter, f.name, i, f.unit, f.meaning};
         return "";
       }

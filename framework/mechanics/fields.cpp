@@ -94,12 +94,14 @@ void check_parameters(const std::string& system, const std::vector<Field>& field
       mistakes.push_back(unknown_name("parameter of " + system, name, names));
       continue;
     }
-    const bool fits = field->any_length ? !value.empty() : value.size() == field->value.size();
+    const size_t expected = field->optional ? 1 : field->value.size();
+    const bool left_out = field->optional && value.empty();
+    const bool fits = field->any_length ? !value.empty() : left_out || value.size() == expected;
     if (!fits) {
       mistakes.push_back(fmt::format(
           "parameter '{}' of {}: got {} value{}, expected {}", name, system, value.size(),
           value.size() == 1 ? "" : "s",
-          field->any_length ? std::string("at least 1") : std::to_string(field->value.size())));
+          field->any_length ? std::string("at least 1") : std::to_string(expected)));
     }
     if (!all_of(value, [](double x) { return std::isfinite(x); }))
       mistakes.push_back(

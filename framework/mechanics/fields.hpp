@@ -2,9 +2,10 @@
 //
 //   f("radius", radius, "m", "radius of the disk", positive);   name, member, unit, meaning, range
 //
-// Meaning and range may be left out. A range holds for each entry; finite they must be in any case.
+// A std::optional<double> is a parameter that may be left out. Meaning and range may be left out. A range holds for each entry; finite they must be in any case.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,11 @@ struct FieldReader {
                   const Range& range = {}) {
     fields.push_back({name, {value}, unit, meaning, range});
   }
+  void operator()(const char* name, std::optional<double>& value, const char* unit,
+                  const char* meaning = "", const Range& range = {}) {
+    fields.push_back({name, {}, unit, meaning, range, false, true});
+    if (value) fields.back().value = {*value};
+  }
   void operator()(const char* name, std::vector<double>& value, const char* unit,
                   const char* meaning = "", const Range& range = {}) {
     fields.push_back({name, value, unit, meaning, range, true});
@@ -38,6 +44,12 @@ struct FieldWriter {
   void operator()(const char* name, double& value, const char*, const char* = "",
                   const Range& = {}) {
     if (auto it = given.find(name); it != given.end()) value = it->second.front();
+  }
+  void operator()(const char* name, std::optional<double>& value, const char*, const char* = "",
+                  const Range& = {}) {
+    if (auto it = given.find(name); it == given.end()) return;
+    else if (it->second.empty()) value.reset();
+    else value = it->second.front();
   }
   void operator()(const char* name, std::vector<double>& value, const char*, const char* = "",
                   const Range& = {}) {

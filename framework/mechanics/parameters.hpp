@@ -44,6 +44,7 @@ struct Field {
   std::string meaning;
   Range range;
   bool any_length = false;  // a list whose length the system itself checks
+  bool optional = false;    // may be left out: value is empty then
 };
 
 /// The values out of their range, one mistake each.

@@ -18,6 +18,10 @@
 //   std::vector<int> contacts() const;  the rows of A whose multiplier is a contact's normal
 //                                       reaction, which pushes where it is positive (differentials
 //                                       of a height, counted from 0)
+//   void contacts(auto& add) const;     contacts that may slide, open and strike (contact_law.hpp):
+//                                       add({.tangential = {0, 1}, .normal = 2, .friction = mu})
+//   auto released() const;              std::optional<Other>: the system with its contacts free to
+//                                       open, where that has another group
 //   void events(auto& add) const;       add("name", "what it is", direction,
 //                                           [](double t, const auto& g, const auto& xi) { ... }):
 //                                       zero at the event; direction +1, -1, or 0 for both ways
@@ -142,6 +146,29 @@ struct MechanicsOf {
                                                 std::shared_ptr<const Inputs> inputs);
 };
 
+namespace detail {
+
+/// The contacts of a system; those with a law are no rows that only watch a reaction.
+template <class S>
+void tell_contacts(const S& system, SystemModel& model) {
+  const auto add = [&model](ContactLaw law) { model.contact_laws.push_back(std::move(law)); };
+  constexpr bool states_rows = requires { system.contacts(); };
+  constexpr bool states_laws = requires { system.contacts(add); };
+  if constexpr (states_rows) model.contacts = system.contacts();
+  if constexpr (states_laws) system.contacts(add);
+  static_assert(states_rows || states_laws || !named::contacts<S>,
+                "contacts of this system cannot be called: expected a const member contacts(), or "
+                "contacts(add)");
+  for (const ContactLaw& law : model.contact_laws)
+    if (law.normal) std::erase(model.contacts, *law.normal);
+}
+
+/// The system whose contacts may open, where it is another one.
+template <class S>
+std::optional<SystemModel> release(const S& system);
+
+}  // namespace detail
+
 /// The name, group and fields of a system; nothing that its parameters could break.
 template <System S>
 SystemModel erase_words(const S& system) {
@@ -164,6 +191,7 @@ SystemModel erase(const S& system) {
   using G = typename S::Group;
   constexpr int n = G::dim;
   using Element = typename G::template Element<double>;
+  if (std::optional<SystemModel> released = detail::release(system)) return std::move(*released);
   SystemModel model = erase_words(system);
   if constexpr (is_left_invariant<S>()) {
     Eigen::MatrixXd rows(0, n);
@@ -224,18 +252,26 @@ SystemModel erase(const S& system) {
          }});
   };
   detail::tell_events(system, add_event);
-  if constexpr (requires { system.contacts(); }) {
-    model.contacts = system.contacts();
-  } else {
-    static_assert(!named::contacts<S>,
-                  "contacts of this system cannot be called: expected a const member contacts()");
-  }
+  detail::tell_contacts(system, model);
   model.shape = detail::shape_names(system);
   name_quantities(model);
   Scene<G> scene(model.drawing);
   detail::tell_drawing(system, scene);
   return model;
 }
+
+namespace detail {
+template <class S>
+std::optional<SystemModel> release([[maybe_unused]] const S& system) {
+  if constexpr (requires { system.released(); }) {
+    if (const auto other = system.released()) return erase(*other);
+  } else {
+    static_assert(!named::released<S>,
+                  "released of this system cannot be called: expected a const member released()");
+  }
+  return {};
+}
+}  // namespace detail
 
 /// A system whose dimension is one of its parameters: it names its group ("se2*so2^5") and gives
 /// its Mechanics itself. start() as for any system; invariants(add), events(add) and draw(scene)

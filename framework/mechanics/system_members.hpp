@@ -18,7 +18,7 @@ namespace named {
 struct Names {
   int constraints, drift, holonomic, potential, force, start, exact, has_exact, invariants, fields,
       draw, name, summary, formula, known, source, potential_differential, holonomic_differential,
-      inertia_differential, frame, frame_rate, contacts, events, inputs, shape, at_speed;
+      inertia_differential, frame, frame_rate, contacts, events, inputs, shape, at_speed, released;
 };
 template <class S, bool = std::is_final_v<S>>
 struct Both : S, Names {};
@@ -62,6 +62,7 @@ HAMEL_NAMED(events)
 HAMEL_NAMED(inputs)
 HAMEL_NAMED(shape)
 HAMEL_NAMED(at_speed)
+HAMEL_NAMED(released)
 #undef HAMEL_NAMED
 
 }  // namespace named

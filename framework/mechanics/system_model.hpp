@@ -14,6 +14,7 @@
 
 #include <hamel/framework/lie/group_info.hpp>
 #include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/contact_law.hpp>
 #include <hamel/framework/mechanics/drawing.hpp>
 #include <hamel/framework/mechanics/event.hpp>
 #include <hamel/framework/mechanics/fields.hpp>
@@ -73,6 +74,8 @@ struct SystemModel {
   std::vector<Invariant> invariants;
   std::vector<Event> events;
   std::vector<int> contacts;  // the rows whose multiplier is a normal reaction
+  /// Contacts that may slide and open; their rows are not in contacts.
+  std::vector<ContactLaw> contact_laws;
   // Stated names: of the coordinates of so2 and rn, and of all coordinates; empty: those of the
   // group. name_quantities() completes group.columns, rates and other_names (quantity_names.hpp).
   std::vector<std::string> shape, coordinates;

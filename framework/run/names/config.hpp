@@ -54,6 +54,7 @@ struct HAMEL_API Config {
   std::optional<double> output_step;
   std::vector<double> output_times;
   std::vector<std::string> events, stop_at;
+  bool slip = false;
   bool check = false;
   bool force = false;
   bool no_exact = false;
@@ -132,6 +133,9 @@ struct HAMEL_API Config {
     f(Option{"events", "", "events to locate and record (hamel describe SYSTEM), or COLUMN=VALUE"},
       &Config::events);
     f(Option{"stop_at", "", "the same, where the run ends"}, &Config::stop_at);
+    f(Option{"slip", "",
+             "the start may slip: it is not projected onto the rows of contacts that may slide"},
+      &Config::slip);
     f(Option{"check", "", "estimate the error by two finer runs: half the step, and a quarter"},
       &Config::check);
     f(Option{"force", "", "compose a step that is not reversible all the same"}, &Config::force);

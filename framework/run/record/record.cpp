@@ -66,6 +66,7 @@ Json fallbacks(const SolverStats& stats) {
 Json record_of(const Result& r) {
   Json parameters = Json::object();
   for (const Field& field : r.system->fields) {
+    if (field.value.empty()) continue;  // left out
     parameters[field.name] =
         field.value.size() == 1 ? json_of(field.value[0]) : json_of(field.value);
   }

@@ -251,7 +251,8 @@ Config resolved(Config config, const Method& method, const SystemModel& system,
   config.start = start;
   config.speed.reset();
   config.start_values.clear();
-  for (const Field& field : system.fields) config.parameters[field.name] = field.value;
+  for (const Field& field : system.fields)
+    if (!field.value.empty()) config.parameters[field.name] = field.value;
   return config;
 }
 

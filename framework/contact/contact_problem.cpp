@@ -1,0 +1,221 @@
+#include <hamel/framework/contact/contact_problem.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hamel {
+namespace {
+
+constexpr int kSweeps = 4000;
+
+double cross_of(double a0, double a1, double b0, double b1) { return a0 * b1 - a1 * b0; }
+
+}  // namespace
+
+ContactProblem::ContactProblem(int unknowns, int contacts)
+    : p_(unknowns),
+      before_(unknowns),
+      residual_(unknowns),
+      kept_(unknowns),
+      jacobian_(unknowns, unknowns),
+      column_(static_cast<size_t>(unknowns)) {
+  answers_.reserve(static_cast<size_t>(contacts));
+}
+
+// The block as the others leave it.
+void ContactProblem::look_at_block(const Matrix& g, const Vector& c, const ContactBlock& block) {
+  const int n = block.size(), first = block.first;
+  block_g_.topLeftCorner(n, n) = g.block(first, first, n, n);
+  for (int i = 0; i < n; ++i) {
+    double sum = c[first + i];
+    for (int j = 0; j < size_; ++j)
+      if (j < first || j >= first + n) sum += g(first + i, j) * p_[j];
+    block_c_[i] = sum;
+  }
+}
+
+// False where a contact has no solution.
+bool ContactProblem::sweep(const Matrix& g, const Vector& c, const Blocks& blocks) {
+  for (size_t k = 0; k < blocks.size(); ++k) {
+    look_at_block(g, c, blocks[k]);
+    solve_contact(block_g_, block_c_, blocks[k], solutions_);
+    if (solutions_.count() == 0) return false;
+    // Of several the nearest one: a contact does not leave its branch for a sweep's sake.
+    const int n = blocks[k].size(), first = blocks[k].first;
+    int best = 0;
+    const auto distance = [&](int i) {
+      return (solutions_[i].p.head(n) - p_.segment(first, n)).squaredNorm();
+    };
+    for (int i = 1; i < solutions_.count(); ++i)
+      if (distance(i) < distance(best)) best = i;
+    p_.segment(first, n) = solutions_[best].p.head(n);
+    answers_[k] = solutions_[best].answer;
+  }
+  return true;
+}
+
+// What the answers require of P, and its derivative: P = 0; gamma = 0; gamma_n = 0 with P_t on the
+// rim and along gamma_t.
+void ContactProblem::equations(const Matrix& g, const Vector& c, const Blocks& blocks) {
+  auto r = residual_.head(size_);
+  auto j = jacobian_.topLeftCorner(size_, size_);
+  r = c;
+  r.noalias() += g.lazyProduct(p_.head(size_));
+  j = g;
+  for (size_t k = 0; k < blocks.size(); ++k) {
+    const ContactBlock& block = blocks[k];
+    const int n = block.size(), first = block.first, t = first + (block.normal ? 1 : 0);
+    if (answers_[k] == ContactAnswer::sticks) continue;
+    if (answers_[k] == ContactAnswer::opens) {
+      r.segment(first, n) = p_.segment(first, n);
+      j.middleRows(first, n).setZero();
+      j.block(first, first, n, n).setIdentity();
+      continue;
+    }
+    const double most = block.normal ? block.friction * p_[first] : block.bound;
+    if (block.tangential == 1) {
+      const double sign = p_[t] < 0 ? -1 : 1;
+      r[t] = p_[t] - sign * most;
+      j.row(t).setZero();
+      j(t, t) = 1;
+      if (block.normal) j(t, first) = -sign * block.friction;
+    } else if (block.tangential == 2) {
+      const double p0 = p_[t], p1 = p_[t + 1], g0 = r[t], g1 = r[t + 1];
+      for (int i = 0; i < size_; ++i) j(t + 1, i) = cross_of(p0, p1, g(t, i), g(t + 1, i));
+      j(t + 1, t) += g1;
+      j(t + 1, t + 1) -= g0;
+      r[t + 1] = cross_of(p0, p1, g0, g1);
+      r[t] = (p0 * p0 + p1 * p1 - most * most) / 2;
+      j.row(t).setZero();
+      j(t, t) = p0;
+      j(t, t + 1) = p1;
+      if (block.normal) j(t, first) = -most * block.friction;
+    }
+  }
+}
+
+// Gauss with complete pivoting, in place, the correction of P into residual_. What the equations
+// leave open stays as it is.
+bool ContactProblem::eliminate() {
+  auto r = residual_.head(size_);
+  auto j = jacobian_.topLeftCorner(size_, size_);
+  for (int i = 0; i < size_; ++i) {
+    const double row = j.row(i).cwiseAbs().maxCoeff();
+    if (!(row > 0)) continue;
+    j.row(i) /= row;
+    r[i] /= row;
+    column_[static_cast<size_t>(i)] = i;
+  }
+  for (int i = 0; i < size_; ++i) column_[static_cast<size_t>(i)] = i;
+  int rank = 0;
+  for (; rank < size_; ++rank) {
+    int row = 0, column = 0;
+    const int left = size_ - rank;
+    if (!(j.bottomRightCorner(left, left).cwiseAbs().maxCoeff(&row, &column) > 1e-11)) break;
+    j.row(rank).swap(j.row(rank + row));
+    std::swap(r[rank], r[rank + row]);
+    j.col(rank).swap(j.col(rank + column));
+    std::swap(column_[static_cast<size_t>(rank)], column_[static_cast<size_t>(rank + column)]);
+    for (int i = rank + 1; i < size_; ++i) {
+      const double factor = j(i, rank) / j(rank, rank);
+      j.row(i).tail(left) -= factor * j.row(rank).tail(left);
+      r[i] -= factor * r[rank];
+    }
+  }
+  before_.head(size_).setZero();
+  for (int i = rank - 1; i >= 0; --i) {
+    double sum = r[i];
+    for (int k = i + 1; k < rank; ++k) sum -= j(i, k) * before_[column_[static_cast<size_t>(k)]];
+    before_[column_[static_cast<size_t>(i)]] = sum / j(i, i);
+  }
+  return before_.head(size_).allFinite();
+}
+
+// Newton on the equations of the active set; the better of before and after stays.
+bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blocks) {
+  kept_.head(size_) = p_.head(size_);
+  double best = contact_residual(g, c, blocks, p_.head(size_));
+  for (int k = 0; k < 20 && best > 1e-15; ++k) {
+    equations(g, c, blocks);
+    if (!eliminate()) break;
+    p_.head(size_) -= before_.head(size_);
+    const double now = contact_residual(g, c, blocks, p_.head(size_));
+    if (!(now < best)) {
+      if (k > 2) break;
+      continue;
+    }
+    best = now;
+    kept_.head(size_) = p_.head(size_);
+  }
+  p_.head(size_) = kept_.head(size_);
+  return best <= 1e-13;
+}
+
+ContactProblem::Outcome ContactProblem::solve(const Matrix& g, const Vector& c,
+                                              const Blocks& blocks) {
+  size_ = static_cast<int>(c.size());
+  p_.head(size_).setZero();
+  answers_.assign(blocks.size(), ContactAnswer::opens);
+  if (blocks.size() == 1) {
+    look_at_block(g, c, blocks[0]);
+    solve_contact(block_g_, block_c_, blocks[0], solutions_);
+    if (solutions_.count() == 0) return Outcome::none;
+    p_.head(size_) = solutions_[0].p.head(size_);
+    answers_[0] = solutions_[0].answer;
+    return solutions_.count() == 1 ? Outcome::one : Outcome::several;
+  }
+  solutions_.clear();
+  for (int k = 1; k <= kSweeps; ++k) {
+    kept_.head(size_) = p_.head(size_);
+    if (!sweep(g, c, blocks)) return Outcome::none;
+    const double moved = (p_ - kept_).head(size_).lpNorm<Eigen::Infinity>();
+    const bool settled = moved <= 1e-15 * p_.head(size_).lpNorm<Eigen::Infinity>();
+    if ((settled || k % 20 == 0) && improve(g, c, blocks)) return Outcome::one;
+    if (settled) break;
+  }
+  return Outcome::none;
+}
+
+double contact_residual(const ContactProblem::Matrix& g, const ContactProblem::Vector& c,
+                        const std::vector<ContactBlock>& blocks, const ContactProblem::Vector& p) {
+  double out = 0, size = 0, force = p.lpNorm<Eigen::Infinity>();
+  const auto gamma_of = [&](int i) {
+    double sum = c[i];
+    for (Eigen::Index j = 0; j < p.size(); ++j) sum += g(i, j) * p[j];
+    return sum;
+  };
+  for (Eigen::Index i = 0; i < c.size(); ++i) {
+    double sum = std::abs(c[i]);
+    for (Eigen::Index j = 0; j < p.size(); ++j) sum += std::abs(g(i, j) * p[j]);
+    size = std::max(size, sum);
+  }
+  if (!(size > 0)) size = 1;
+  if (!(force > 0)) force = 1;
+  for (const ContactBlock& block : blocks) {
+    const int t = block.first + (block.normal ? 1 : 0);
+    const double pn = block.normal ? p[block.first] / force : 0;
+    if (block.normal) {
+      const double gn = gamma_of(block.first) / size;
+      out = std::max({out, -pn, -gn, std::min(std::abs(pn), std::abs(gn))});
+    }
+    const double most = block.normal ? block.friction * pn : block.bound / force;
+    double pt = 0, gt = 0, along = 0;
+    for (int i = 0; i < block.tangential; ++i) {
+      const double one = p[t + i] / force, left = gamma_of(t + i) / size;
+      pt = std::hypot(pt, one);
+      gt = std::hypot(gt, left);
+      along += one * left;
+    }
+    out = std::max(out, pt - most);
+    // Within the cone no slip is left; on its rim the slip is opposite to P_t.
+    const double inside = std::min(gt, std::abs(most - pt));
+    if (block.normal && !(pn > 0)) continue;  // open: free to slip
+    if (!(most > 0)) continue;                // no friction
+    const double opposite = pt > 0 ? gt + along / pt : gt;
+    out = std::max({out, inside, std::min(opposite, gt)});
+  }
+  return out;
+}
+
+}  // namespace hamel

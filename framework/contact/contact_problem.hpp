@@ -1,0 +1,97 @@
+// The contact problem: impulses, or reactions, P of contacts with Coulomb's friction, with
+// gamma = G P + c the velocities, or accelerations, that they leave,
+//   0 <= P_n  _|_  gamma_n >= 0,   |P_t| <= mu P_n,   gamma_t = -k P_t, k >= 0,                  (1)
+// k > 0 only on the rim |P_t| = mu P_n of the cone.
+//
+// G need not be symmetric: in the columns of a contact that slides already its friction belongs to
+// the normal reaction (contact_dynamics.hpp). A contact without P_n has a given bound in place of
+// mu P_n. One contact is solved exactly, with all of its solutions; several by sweeps of
+// Gauss-Seidel over the exact ones of each, and by the equations of the active set at the end.
+// Nothing is to be tuned, and nothing is allocated behind the constructor.
+// Source: Leine, Glocker, A set-valued force law for spatial Coulomb-Contensou friction, Eur. J.
+// Mech. A 22 (2003); Klarbring, Mathematical programming and augmented Lagrangian methods for
+// frictional contact problems (1992), for the sweeps.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace hamel {
+
+/// The unknowns of a contact: P_n where it has a normal row, then P_t.
+struct ContactBlock {
+  int first = 0;        // of its unknowns in P
+  bool normal = true;   // has it P_n?
+  int tangential = 0;   // directions: 0, 1 or 2
+  double friction = 0;  // mu
+  double bound = 0;     // of |P_t|, without P_n
+  int size() const { return (normal ? 1 : 0) + tangential; }
+};
+
+enum class ContactAnswer { sticks, slides, opens };
+
+struct ContactSolution {
+  ContactAnswer answer = ContactAnswer::opens;
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  // the first size() of them
+};
+
+/// All solutions of one contact; those that differ by round-off are one.
+class ContactSolutions {
+ public:
+  int count() const { return count_; }
+  const ContactSolution& operator[](int i) const { return all_[static_cast<std::size_t>(i)]; }
+  void clear() { count_ = 0; }
+  /// scale: of P, whose round-off is no difference.
+  void add(const ContactSolution& one, double scale);
+
+ private:
+  std::array<ContactSolution, 8> all_;
+  int count_ = 0;
+};
+/// g and c: the first block.size() rows and columns.
+void solve_contact(const Eigen::Matrix3d& g, const Eigen::Vector3d& c, const ContactBlock& block,
+                   ContactSolutions& out);
+
+class ContactProblem {
+ public:
+  using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
+  using Vector = Eigen::Ref<const Eigen::VectorXd>;
+
+  /// unknowns: the most that a problem has.
+  explicit ContactProblem(int unknowns, int contacts);
+  /// several and none are exact of one contact; of several contacts none says that no solution was
+  /// found.
+  enum class Outcome { one, several, none };
+  Outcome solve(const Matrix& g, const Vector& c, const std::vector<ContactBlock>& blocks);
+
+  /// Behind solve(): P, and what each contact does.
+  auto p() const { return p_.head(size_); }
+  const std::vector<ContactAnswer>& answers() const { return answers_; }
+  /// The solutions of one contact.
+  int count() const { return solutions_.count(); }
+
+ private:
+  using Blocks = std::vector<ContactBlock>;
+  bool sweep(const Matrix& g, const Vector& c, const Blocks& blocks);
+  void look_at_block(const Matrix& g, const Vector& c, const ContactBlock& block);
+  void equations(const Matrix& g, const Vector& c, const Blocks& blocks);
+  bool improve(const Matrix& g, const Vector& c, const Blocks& blocks);
+  bool eliminate();
+
+  Eigen::VectorXd p_, before_, residual_, kept_;
+  Eigen::MatrixXd jacobian_;
+  std::vector<ContactAnswer> answers_;
+  std::vector<int> column_;
+  Eigen::Matrix3d block_g_;
+  Eigen::Vector3d block_c_;
+  ContactSolutions solutions_;
+  int size_ = 0;
+};
+
+/// The largest violation of (1), relative to the sizes of gamma and P.
+double contact_residual(const ContactProblem::Matrix& g, const ContactProblem::Vector& c,
+                        const std::vector<ContactBlock>& blocks, const ContactProblem::Vector& p);
+
+}  // namespace hamel

@@ -1,0 +1,29 @@
+// A contact that may slide, open and strike, as data: the rows that a system states for it are rows
+// of its A, on while the contact rolls.
+//
+// The gap is the holonomic row of `normal`, open where it is positive, whose multiplier is the
+// normal reaction; the slip is the velocity of the rows of `tangential`, orthonormal directions in
+// the tangent plane. Where a system has no height the normal reaction is a constant `load`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hamel {
+
+struct ContactLaw {
+  std::string name = "contact";
+  std::vector<int> tangential = {};  // rows of A, counted from 0: one (a blade) or two
+  std::optional<int> normal = {};    // row of A, one of the holonomic rows
+  double load = 0;                   // N, in place of a normal row
+  double friction = 0;               // mu, of Coulomb's law
+  double restitution = 0;            // e, of Newton's law
+
+  bool has_normal() const { return normal.has_value(); }
+};
+
+/// What a contact does; the numbers of the column <contact>.mode.
+enum class ContactMode { open = 0, rolls = 1, slides = 2 };
+
+}  // namespace hamel
