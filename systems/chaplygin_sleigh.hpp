@@ -7,11 +7,16 @@
 // -v1(0) U^-1 / (|omega(0)| W^-1):
 //   v1 = U tanh(kappa t + c),  omega = sign(omega(0)) W sech(kappa t + c),  c = -kappa t0;
 // the sleigh ends on a straight line at speed U, blade behind the mass centre.
+// With friction the blade slips sideways under the weight m g that it bears, constant: the plane is
+// level and the points slide freely. It never slips where mu >= J E/((J + m a^2)^(3/2) m^(1/2) g)
+// and its path passes equal shares of the energy E, where the force across it, m J v1 omega/(J + m
+// a^2), is largest.
 // Source: Chaplygin 1911; Bloch, Nonholonomic Mechanics and Control (2003), section 1.7.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -58,6 +63,8 @@ struct ChaplyginSleigh {
   double mass = 1.0;    // kg
   double moment = 0.1;  // kg m^2, J
   double offset = 0.2;  // m, a
+  std::optional<double> friction = {};  // mu, of the blade
+  double gravity = 9.81;                // m/s^2
 
   static std::string name() { return "chaplygin_sleigh"; }
   static std::string summary() { return "body on a plane with one blade"; }
@@ -74,6 +81,10 @@ struct ChaplyginSleigh {
     f("mass", mass, "kg", "total mass", positive);
     f("inertia", moment, "kg m^2", "moment about the mass centre", positive);
     f("offset", offset, "m", "blade to mass centre, along the blade");
+    f("friction", friction, "1", "coefficient of friction across the blade; not set: never slips",
+      non_negative);
+    f("gravity", gravity, "m/s^2", "acceleration of gravity, of the weight on the blade",
+      non_negative);
   }
   Mat<3, 3> inertia() const {
     const double m = mass, a = offset;
@@ -82,13 +93,20 @@ struct ChaplyginSleigh {
   Mat<1, 3> constraints() const { return Mat<1, 3>{0, 0, 1}; }
   Start start() const { return {.configuration = {}, .velocity = {0.9, -1, 0}, .momentum = {}}; }
 
+  void contacts(auto& add) const {
+    if (!friction) return;
+    add({.name = "blade", .tangential = {0}, .load = mass * gravity, .friction = *friction});
+  }
+  bool has_exact() const { return !friction; }
   template <class V = Vec<3>>
   auto exact(const SE2::Element<double>& g0, const std::type_identity_t<V>& xi0) const {
     const SleighRates rates(mass, moment + mass * offset * offset, mass * offset, xi0[0], xi0[1]);
     return rates.motion<SE2>(g0, xi0, [](double omega, double v) { return Vec<3>(omega, v, 0); });
   }
 
-  void invariants(auto& add) const { add("kinetic energy", energy_of(*this)); }
+  void invariants(auto& add) const {
+    if (!friction) add("kinetic energy", energy_of(*this));
+  }
   void events(auto& add) const {
     add("cusp", "the blade stops, and its path has a cusp", 0,
         [](double, const auto&, const auto& xi) { return xi[1]; });

@@ -11,6 +11,7 @@
 //   (C + m rho^2) w3 alpha sin(theta) = A alpha^2 sin(theta) cos(theta) - m g rho cos(theta).
 // Upright rolling is stable when w3^2 > A m g rho / (C (C + m rho^2)); upright spinning when
 // w^2 > m g rho / (A + m rho^2).
+// With friction the contact slides, opens and strikes (mechanics/contact_law.hpp).
 // Source: Neimark and Fufaev, Dynamics of Nonholonomic Systems (1972), ch. V; O'Reilly, Nonlinear
 // Dyn. 10 (1996).
 #pragma once
@@ -22,6 +23,7 @@
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/systems/body_on_plane.hpp>
 #include <hamel/systems/energy.hpp>
+#include <hamel/systems/friction.hpp>
 
 namespace hamel {
 
@@ -33,6 +35,7 @@ struct FallingDisk {
   double axial_inertia = 0.125;       // kg m^2, C
   double diametral_inertia = 0.0625;  // kg m^2, A
   double gravity = 9.81;              // m/s^2
+  ContactParameters ground = {};
 
   static std::string name() { return "falling_disk"; }
   static std::string summary() { return "thin disk that rolls on a plane and may fall"; }
@@ -52,6 +55,7 @@ struct FallingDisk {
       axial_moment(diametral_inertia));
     f("diametral_inertia", diametral_inertia, "kg m^2", "moment about a diameter", positive);
     f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
+    ground.fields(f);
   }
   Mat<6, 6> inertia() const {
     Vec<6> d;
@@ -116,6 +120,7 @@ struct FallingDisk {
   }
 
   static std::vector<int> contacts() { return {2}; }
+  void contacts(auto& add) const { ground.add_to(add, {.tangential = {0, 1}, .normal = 2}); }
 
   /// At x = y = 0 with the axis at theta from the vertical and rolling without slip with body rates
   /// omega.
@@ -127,7 +132,9 @@ struct FallingDisk {
   /// Upright.
   Start at_speed(double v) const { return rolling(0.5 * std::numbers::pi, {0, 0, v / radius}); }
 
-  void invariants(auto& add) const { add("energy", energy_of(*this)); }
+  void invariants(auto& add) const {
+    if (ground.ideal()) add("energy", energy_of(*this));
+  }
   void events(auto& add) const {
     add("fallen", "the centre is lower than a tenth of the radius", -1,
         [rho = radius](double, const auto& g, const auto&) {

@@ -23,6 +23,7 @@
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/systems/body_on_plane.hpp>
 #include <hamel/systems/energy.hpp>
+#include <hamel/systems/friction.hpp>
 
 namespace hamel {
 
@@ -35,6 +36,7 @@ struct Rattleback {
   Vec<3> moments = {0.012, 0.036, 0.040};  // kg m^2
   double skew = 0.4;                       // rad, delta
   double gravity = 9.81;                   // m/s^2
+  ContactParameters ground = {};
 
   static std::string name() { return "rattleback"; }
   static std::string summary() { return "half ellipsoid with skewed inertia: reverses its spin"; }
@@ -53,6 +55,7 @@ struct Rattleback {
     f("inertia", moments, "kg m^2", "principal moments about the mass centre", moments_of_inertia);
     f("skew", skew, "rad", "angle of the axes of inertia against those of the surface, about e3");
     f("gravity", gravity, "m/s^2", "acceleration of gravity", non_negative);
+    ground.fields(f);
   }
   Mat<6, 6> inertia() const {
     const double c = std::cos(skew), s = std::sin(skew);
@@ -114,6 +117,7 @@ struct Rattleback {
   }
 
   static std::vector<int> contacts() { return {2}; }
+  void contacts(auto& add) const { ground.add_to(add, {.tangential = {0, 1}, .normal = 2}); }
 
   /// Level but for a tilt about its long axis, spinning about the vertical.
   Start spinning(double spin, double tilt) const {
@@ -124,7 +128,9 @@ struct Rattleback {
   /// The sense of spin that reverses.
   Start start() const { return spinning(-1.5, 0.02); }
 
-  void invariants(auto& add) const { add("energy", energy_of(*this)); }
+  void invariants(auto& add) const {
+    if (ground.ideal()) add("energy", energy_of(*this));
+  }
   void events(auto& add) const {
     add("reversed", "the spin about the vertical changes its sign", 0,
         [](double, const auto& g, const auto& xi) {

@@ -4,15 +4,18 @@
 //   with w = R omega:  x' = rho w_y,  y' = -rho w_x.
 // omega is constant in the body and in space although the structure constants of d do not vanish,
 // and the centre moves on a straight line. A wrong sign in a scheme is therefore visible at once.
+// With friction it is the ball of released_ball.hpp, on SO(3) x R^3.
 // Source: Neimark and Fufaev 1972; Bloch, Krishnaprasad, Marsden and Murray 1996.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/systems/ball_on_plane.hpp>
 #include <hamel/systems/reconstruction.hpp>
+#include <hamel/systems/released_ball.hpp>
 
 namespace hamel {
 
@@ -22,6 +25,8 @@ struct RollingBall {
   double mass = 1.0;    // kg
   double radius = 0.5;  // m
   double moment = 0.1;  // kg m^2
+  ContactParameters ground = {};
+  double gravity = 9.81;  // m/s^2, where the contact is not ideal
 
   static std::string name() { return "rolling_ball"; }
   static std::string summary() { return "homogeneous ball that rolls on a plane"; }
@@ -36,6 +41,13 @@ struct RollingBall {
     f("mass", mass, "kg", "total mass", positive);
     f("radius", radius, "m", "radius of the ball", positive);
     f("inertia", moment, "kg m^2", "moment about the centre", positive);
+    ground.fields(f);
+    f("gravity", gravity, "m/s^2", "acceleration of gravity, with friction", non_negative);
+  }
+  /// With friction, on SO(3) x R^3.
+  std::optional<ReleasedBall> released() const {
+    if (ground.ideal()) return {};
+    return ReleasedBall{mass, radius, moment, gravity, ground};
   }
   Mat<5, 5> inertia() const { return ball_on_plane::inertia(Vec<3>::Constant(moment), mass); }
   auto constraints(const auto& g) const { return ball_on_plane::contact_velocity(g, radius); }

@@ -264,7 +264,12 @@ namespace detail {
 template <class S>
 std::optional<SystemModel> release([[maybe_unused]] const S& system) {
   if constexpr (requires { system.released(); }) {
-    if (const auto other = system.released()) return erase(*other);
+    if (const auto other = system.released()) {
+      SystemModel model = erase(*other);
+      model.name = erase_words(system).name;
+      model.fields = fields_of(system);
+      return model;
+    }
   } else {
     static_assert(!named::released<S>,
                   "released of this system cannot be called: expected a const member released()");

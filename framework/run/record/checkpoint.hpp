@@ -41,7 +41,7 @@ void serialize(Archive& archive, SolverStats& s) {
 }
 template <class Archive>
 void serialize(Archive& archive, EventMet& e) {
-  archive(e.name, e.time, e.coordinates, e.velocity);
+  archive(e.name, e.time, e.coordinates, e.velocity, e.velocity_after);
 }
 
 class CheckpointWriter {

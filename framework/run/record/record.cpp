@@ -83,6 +83,7 @@ Json record_of(const Result& r) {
                       {"element", element(r.system->group, e.coordinates)},
                       {"configuration", json_of(e.coordinates)},
                       {"velocity", json_of(e.velocity)}});
+    if (!e.velocity_after.empty()) events.back()["velocity_after"] = json_of(e.velocity_after);
   }
   const double steps = r.steps > 0 ? static_cast<double>(r.steps) : std::nan("");
   Json diagnostics;

@@ -236,6 +236,8 @@ void read_record(const std::string& record, const std::string& origin, Result& o
     out.events.push_back({event["name"].as<std::string>(), event["time"].as<double>(),
                           event["configuration"].as<std::vector<double>>(),
                           event["velocity"].as<std::vector<double>>()});
+    if (event.has("velocity_after"))
+      out.events.back().velocity_after = event["velocity_after"].as<std::vector<double>>();
   }
   const Entry stats = all["solver_stats"];
   if (out.steps > 0)  // (there is no mean of no steps)

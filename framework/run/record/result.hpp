@@ -61,6 +61,7 @@ struct EventMet {
   std::string name;
   double time = 0;
   std::vector<double> coordinates, velocity;
+  std::vector<double> velocity_after = {};  // where the event itself changes it, as an impact does
 };
 
 /// Without a run, made by default or moved from, record(), report() and write() throw

@@ -76,6 +76,16 @@ StateColumns::StateColumns(const SystemModel& system, const Has& has) : sensors_
   }
   if (has.reaction_power) add(Of::reaction_power, kReactionPower);
   add_sensors(has.acceleration);
+  if (has.modes) {
+    for (const ContactLaw& law : system.contact_laws) {
+      const std::string name = law.name + ".mode";
+      columns_.push_back({Of::mode, groups_.size(), name, "1"});
+      groups_.push_back({name, "1", "0 open, 1 rolling, 2 sliding", "", {name}});
+    }
+    std::size_t place = 0;
+    for (Column& column : columns_)
+      if (column.of == Of::mode) column.place = place++;
+  }
   if (has.exact) {
     add(Of::exact_error, kExactError);
     add(Of::exact_velocity_error, kExactVelocityError);
@@ -157,6 +167,7 @@ double StateColumns::value(std::size_t i, const Snapshot& state, const StateExtr
     case Of::reaction_power: return extras.reaction_power;
     case Of::sensor:
     case Of::acceleration: return measured(column.place, state, extras);
+    case Of::mode: return extras.modes.empty() ? 0 : extras.modes[column.place];
     case Of::exact_error: return extras.exact_error;
     case Of::exact_velocity_error: return extras.exact_velocity_error;
   }

@@ -22,6 +22,7 @@ struct StateExtras {
   std::span<const double> reactions = {};     // the multipliers of all rows
   std::span<const double> acceleration = {};  // xi'; left out where it is not known
   double reaction_power = 0;
+  std::span<const double> modes = {};  // of the contacts that may slide and open
   double work = 0;
   std::optional<double> balance_error = {};  // of the energy, where work is done
   double exact_error = 0, exact_velocity_error = 0;
@@ -46,6 +47,7 @@ class StateColumns {
     reaction_power,
     sensor,
     acceleration,  // of a sensor
+    mode,
     exact_error,
     exact_velocity_error
   };
@@ -53,6 +55,7 @@ class StateColumns {
   struct Has {
     bool holonomic = false, work = false, reactions = false, reaction_power = false, exact = false;
     bool acceleration = false;
+    bool modes = false;
   };
   StateColumns(const SystemModel& system, const Has& has);
 

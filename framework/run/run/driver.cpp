@@ -17,7 +17,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 Driver::Driver(RunPlan plan, RunRequest request)
     : plan_(std::move(plan)),
       request_(std::move(request)),
-      kernel_(std::make_unique<RestartedKernel>(plan_.kernel, plan_.setup)) {
+      kernel_(std::make_unique<RestartedKernel>(plan_.run_kernel(), plan_.setup)) {
   make_observers();
 }
 
@@ -26,16 +26,17 @@ void Driver::make_observers() {
   const auto& mechanics = plan_.setup.mechanics;
   const bool rows_move = (mechanics->has_drift() && mechanics->constraint_count() > 0) ||
                          plan_.system->rows_may_depend;
-  watching_ = plan_.recording || plan_.events->any();
+  watching_ = plan_.recording || plan_.events->any() || plan_.contacts != nullptr;
   rows_watch_.reset();
-  if (watching_ && rows_move && !plan_.compiled && plan_.geometry != nullptr && plan_.keeps_rows)
+  if (watching_ && rows_move && plan_.contacts == nullptr && !plan_.compiled && plan_.geometry != nullptr && plan_.keeps_rows)
     rows_watch_ = std::make_unique<RowsWatch>(plan_.geometry, *plan_.system, mechanics);
   steps_ = StepWatch(config.from, config.until - config.from);
   rejected_ = 0;
   steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
   if (!watching_) return;
   times_ = plan_.recording ? config.recorded_times() : std::vector<double>();
-  every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr;
+  every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr ||
+                plan_.contacts != nullptr;
   if (!plan_.recording) return;
   recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, balance(),
                                             plan_.reactions, plan_.motion);
@@ -52,6 +53,10 @@ std::shared_ptr<const Mechanics> Driver::acting() const {
 }
 
 EnergyBalance Driver::balance() const {
+  if (plan_.contacts != nullptr) {
+    return {plan_.geometry, plan_.contacts->balanced(plan_.contacts), plan_.setup.inputs,
+            plan_.reactions};
+  }
   return {plan_.geometry, acting(), plan_.setup.inputs, plan_.reactions};
 }
 
@@ -172,6 +177,7 @@ void Driver::begin() {
     if (recorder_->wants_nodes()) recorder_->node(node_);
     over_ = !(times_.empty() ? record_node() : output(plan_.config.from));
   }
+  if (const auto met = take_switch()) over_ = over_ || !observe_switch(*met);
   if (!over_ && plan_.events->any()) observe_start();
 }
 
@@ -200,7 +206,7 @@ void Driver::restart(const Start& start) {
   if (matrices_ && mistakes.none()) {
     static_cast<StartMatrices&>(planned) = *std::exchange(matrices_, std::nullopt);
   } else {
-    evaluate_start(*plan_.system, plan_.setup.inputs, plan_.geometry.get(), config.from, planned,
+    evaluate_start(*plan_.system, plan_.setup.inputs, plan_.geometry.get(), config, planned,
                    mistakes);
   }
   if (!mistakes.none()) {
@@ -214,6 +220,7 @@ void Driver::restart(const Start& start) {
   plan_.setup.configuration = planned.start.configuration;
   plan_.setup.velocity = planned.start.velocity;
   restarted_ = true;
+  if (plan_.contacts != nullptr) plan_.contacts->begin_anew();
   dense_.reset();
   over_ = finished_ = false;
   result_.status = {};

@@ -94,6 +94,9 @@ class Driver {
   bool observe_step(double begin);
   bool observe_steps(long before, double begin, bool at_end);
   bool observe_event(const Events::Found& event, double begin, bool& go_on);
+  // contact_observer: a switch of contacts that ended the last step.
+  std::optional<ContactSwitch> take_switch();
+  bool observe_switch(const ContactSwitch& met);
   void balance_step(double begin, const Snapshot& end);
   void observe_start();
   // Rows at the output times up to t.
@@ -122,6 +125,7 @@ class Driver {
   // All that a resumed run needs but the events that were met.
   template <class Archive>
   void serialize(Archive& archive) {
+    if (plan_.contacts != nullptr) plan_.contacts->serialize(archive);  // before its kernel is made
     archive(kernel(), steps_left_, next_, recorded_, seconds_.all, seconds_.recording,
             seconds_.comparing, *plan_.events, *recorder_);
   }

@@ -93,6 +93,9 @@ Result& Driver::end() {
     result_.inputs = std::move(shell.inputs);
     result_.unused = std::move(shell.unused);
     result_.notes = std::move(shell.notes);
+    if (plan_.contacts != nullptr)
+      result_.notes.insert(result_.notes.end(), plan_.contacts->notes.begin(),
+                           plan_.contacts->notes.end());
     result_.steps = flawed_ && plan_.recording ? result_.last.step : node_.step;
     result_.stats = kernel().stats();
     measure_all();

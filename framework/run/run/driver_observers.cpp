@@ -11,6 +11,9 @@
 namespace hamel {
 
 bool Driver::observe_step(double begin) {
+  const std::optional<ContactSwitch> met = take_switch();
+  const Snapshot& end = met ? met->before : node_;
+  if (met) plan_.contacts->look_back(true);
   if (rows_watch_ != nullptr) {
     if (const std::optional<std::string> reason = rows_watch_->node(node_)) {
       result_.status = {false, node_.step, result_.last.time, node_.residual, *reason};
@@ -19,7 +22,7 @@ bool Driver::observe_step(double begin) {
     }
   }
   if (plan_.events->any()) {
-    const Status status = plan_.events->look(node_, dense(), found_);
+    const Status status = plan_.events->look(end, dense(), found_);
     if (!status.ok) {
       result_.status = status;
       return false;
@@ -29,9 +32,10 @@ bool Driver::observe_step(double begin) {
     bool go_on = true;
     if (observe_event(event, begin, go_on)) return go_on;
   }
-  if (!plan_.recording) return true;
-  balance_step(begin, node_);
-  if (!times_.empty()) return output(node_.time);
+  if (plan_.recording) balance_step(begin, end);
+  if (!times_.empty() && !output(end.time)) return false;
+  if (met && !observe_switch(*met)) return false;
+  if (!plan_.recording || !times_.empty()) return true;
   return node_.step % plan_.config.every == 0 ? record_node() : true;
 }
 
@@ -85,10 +89,14 @@ bool Driver::output(double t) {
   const double slack = 1e-12 * std::abs(plan_.config.until - plan_.config.from);
   for (; next_ < times_.size() && sign * (times_[next_] - t) <= slack; ++next_) {
     const Clock::time_point begin = Clock::now();
-    if (const Status status = dense().at(times_[next_], row_); !status.ok) {
+    const double wanted = times_[next_];
+    // Behind a switch no motion is continued, not even by round-off.
+    const double at = plan_.contacts != nullptr ? std::min(wanted, kernel().time()) : wanted;
+    if (const Status status = dense().at(at, row_); !status.ok) {
       result_.status = status;
       return false;
     }
+    row_.time = wanted;
     if (!record(begin)) return false;
   }
   return true;
@@ -146,6 +154,7 @@ std::optional<EventState> Driver::impact(const Events::Found& event) const {
 
 void Driver::restart_behind(const EventState& state, const Events::Found& event) {
   ++impacts_met_;
+  if (plan_.contacts != nullptr) plan_.contacts->look_back(false);
   const Config& config = plan_.config;
   const std::vector<double> velocity = admissible(*plan_.system, plan_.geometry, state, event.name);
   const double h = kernel().next_step();

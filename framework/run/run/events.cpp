@@ -79,6 +79,16 @@ std::vector<Event> events_of(const SystemModel& system) {
     }
     out.push_back({name, "the normal reaction ceases to push", -1, {}});
   }
+  for (const ContactLaw& law : system.contact_laws) {
+    const auto add = [&](const char* what, const char* meaning) {
+      out.push_back({law.name + "." + what, meaning, 0, {}});
+    };
+    add("slides", "the contact begins to slide");
+    add("rolls", "the contact ceases to slide");
+    if (!law.normal) continue;
+    add("opens", "the contact opens");
+    add("strikes", "the contact closes with an impact");
+  }
   return out;
 }
 
@@ -99,6 +109,10 @@ Events::Events(const SystemModel& system, std::shared_ptr<Reactions> reactions,
       offered.push_back(known[i].name);
       if (known[i].name != name) continue;
       if (i < system.events.size()) return void(watched_.push_back({known[i], stop}));
+      if (i >= system.events.size() + contacts_.size()) {  // which the contacts of the run find
+        if (stop) switch_stops_.push_back(name);
+        return;
+      }
       if (reactions_ == nullptr) continue;
       return void(watched_.push_back({known[i], stop, contacts_[i - system.events.size()]}));
     }

@@ -7,6 +7,7 @@
 // Software 21 (1995).
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -28,6 +29,10 @@ class Events {
          const std::vector<std::string>& names, const std::vector<std::string>& stops,
          std::vector<std::string>& mistakes);
   bool any() const { return !watched_.empty(); }
+  /// Does the run end where a contact switches with this name?
+  bool stops_at_switch(const std::string& name) const {
+    return std::ranges::find(switch_stops_, name) != switch_stops_.end();
+  }
 
   /// At the start; adds to mistakes an event that is not finite there.
   void begin(const Snapshot& state, std::vector<std::string>& mistakes);
@@ -60,13 +65,14 @@ class Events {
   double value(const Watched& w, const Snapshot& state) const;
 
   std::vector<Watched> watched_;
+  std::vector<std::string> switch_stops_;
   std::vector<int> contacts_;             // rows of the system's, watched or not
   std::shared_ptr<Reactions> reactions_;  // null where there are none
   double time_ = 0;
 };
 
-/// The events of a system, its own and those of its contacts: "contact_lost", where a normal
-/// reaction ceases to push; these without a value.
+/// The events of a system, its own and those of its contacts, without a value: "contact_lost", where
+/// a normal reaction ceases to push; the switches of a contact with a law, "contact.slides".
 std::vector<Event> events_of(const SystemModel& system);
 
 }  // namespace hamel

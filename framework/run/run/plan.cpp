@@ -8,6 +8,7 @@
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/framework/run/run/contact_kernel.hpp>
 #include <hamel/framework/schemes/composition.hpp>
 
 namespace hamel {
@@ -177,7 +178,12 @@ KernelFactory plan_kernel(const Registry& registry, const Config& config, const 
                     scheme.name));
     return out;
   }
-  if (method.compiled) {
+  if (!planned.model->contact_laws.empty()) {
+    const SchemeInfo* registered = registry.scheme(scheme.name);
+    method.erased = true;
+    if (registered != nullptr) out = registered->erased;
+    else mistakes.add(fmt::format("scheme: {} is not registered, as contacts need it", scheme.name));
+  } else if (method.compiled) {
     out = planned.inputs == nullptr ? own->kernel : own->driven;
     if (!out) mistakes.add("inputs: the kernel of this run is compiled without them");
   } else if (geometry != nullptr) {
@@ -270,6 +276,10 @@ RunPlan plan_by_lift(const Registry& registry, RunRequest request, const OwnSyst
 
 }  // namespace
 
+KernelFactory RunPlan::run_kernel() const {
+  return contacts == nullptr ? kernel : contact_kernels(smooth, geometry, *system, contacts);
+}
+
 RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnSystem* own,
                  Rows rows, Mistakes& mistakes) {
   const bool left_to_us = request.config.leaves_method();
@@ -284,7 +294,8 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   SystemModel& system = *planned->model;
   PlannedStart start = plan_start(system, config, mistakes);
   plan.geometry = plan_geometry(registry, config, own, method, system.group.name, mistakes);
-  evaluate_start(system, planned->inputs, plan.geometry.get(), config.from, start, mistakes);
+  check_contacts(system, config, method.scheme, mistakes);
+  evaluate_start(system, planned->inputs, plan.geometry.get(), config, start, mistakes);
   if (planned->inputs != nullptr && plan.geometry != nullptr && mistakes.none())
     check_jumps_of_rates(system, *planned->inputs, *plan.geometry, config, start, mistakes);
   plan.kernel = plan_kernel(registry, config, own, *planned, plan.geometry, method, mistakes);
@@ -303,11 +314,18 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   plan.keeps_rows = method.scheme->adapted;
   plan.compiled = !method.erased;
   plan.unused = method.unused;
-  plan.reactions = reactions_of(plan.geometry, system.mechanics, planned->inputs);
+  if (!system.contact_laws.empty()) {
+    plan.contacts = std::make_shared<RunContacts>(plan.geometry, system);
+    plan.smooth = plan.kernel;
+    plan.kernel = contact_kernels(plan.smooth, plan.geometry, system, nullptr);
+    system.exact = nullptr;
+  }
+  plan.reactions = reactions_of(plan.geometry, system.mechanics, planned->inputs, plan.contacts);
   if (!system.sensors.empty() && plan.geometry != nullptr)
-    plan.motion = plan.reactions != nullptr ? plan.reactions
-                                            : std::make_shared<Reactions>(
-                                                  plan.geometry, system.mechanics, planned->inputs);
+    plan.motion = plan.reactions != nullptr
+                      ? plan.reactions
+                      : std::make_shared<Reactions>(plan.geometry, system.mechanics,
+                                                    planned->inputs, plan.contacts);
   plan.events = std::make_unique<Events>(system, plan.reactions, config.events, config.stop_at,
                                          mistakes.all());
   plan.events->begin(state_of(start.start, config.from), mistakes.all());

@@ -13,6 +13,7 @@
 #include <hamel/framework/run/run/events.hpp>
 #include <hamel/framework/run/run/own_system.hpp>
 #include <hamel/framework/run/run/reactions.hpp>
+#include <hamel/framework/run/run/run_contacts.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {
@@ -77,9 +78,14 @@ struct PlannedStart : StartMatrices {
 };
 PlannedStart plan_start(const SystemModel& system, const Config& config, Mistakes& mistakes);
 /// I, A, b at the start, checked, and the start moved onto the holonomic rows. geometry: null for a
-/// group that is not registered.
+/// group that is not registered. Rows of contacts that are open are no rows of the start, and with
+/// slip none of contacts that may slide.
 void evaluate_start(const SystemModel& system, const std::shared_ptr<const Inputs>& inputs,
-                    const Geometry* geometry, double t, PlannedStart& planned, Mistakes& mistakes);
+                    const Geometry* geometry, const Config& config, PlannedStart& planned,
+                    Mistakes& mistakes);
+/// Contacts that may slide or open: their numbers, their rows, and whether the run can follow them.
+void check_contacts(const SystemModel& system, const Config& config, const SchemeInfo* scheme,
+                    Mistakes& mistakes);
 /// A held table of an input that is a rate of the rows A xi = b, where it jumps within the run:
 /// that would be an impulse.
 void check_jumps_of_rates(const SystemModel& system, const Inputs& inputs, const Geometry& geometry,
@@ -122,9 +128,12 @@ struct RunPlan {
   bool recording = false;                // rows of the trajectory are kept
   std::shared_ptr<Reactions> reactions;  // null where there are none
   std::shared_ptr<Reactions> motion;     // of what sensors measure; null without
+  std::shared_ptr<RunContacts> contacts;  // null where none may slide or open
   std::unique_ptr<Events> events;
   KernelSetup setup;
-  KernelFactory kernel;
+  KernelFactory kernel, smooth;  // smooth: of a piece between switches of contacts
+  /// The kernel that takes the steps of the run.
+  KernelFactory run_kernel() const;
   Outputs outputs;
 };
 /// Complete where there are no mistakes.

@@ -23,9 +23,10 @@ void load_element(const Geometry& geometry, const Snapshot& state, Eigen::Vector
 
 Reactions::Reactions(std::shared_ptr<const Geometry> geometry,
                      std::shared_ptr<const Mechanics> mechanics,
-                     std::shared_ptr<const Inputs> inputs)
+                     std::shared_ptr<const Inputs> inputs, std::shared_ptr<RunContacts> contacts)
     : geometry_(std::move(geometry)),
       inputs_(std::move(inputs)),
+      contacts_(std::move(contacts)),
       motion_(DynamicProblem(geometry_, mechanics)),
       time_(std::numeric_limits<double>::quiet_NaN()),
       g_(Eigen::VectorXd::Zero(geometry_->size())),
@@ -34,6 +35,10 @@ Reactions::Reactions(std::shared_ptr<const Geometry> geometry,
 
 const Eigen::VectorXd& Reactions::at(const Snapshot& state) {
   load_element(*geometry_, state, other_);
+  if (contacts_ != nullptr) {
+    xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(), xi_.size());
+    return contacts_->reactions(state.time, other_.data(), xi_);
+  }
   const Eigen::Map<const Eigen::VectorXd> xi(state.velocity.data(), xi_.size());
   const long changes = inputs_ != nullptr ? inputs_->changes() : 0;
   if (lambda_ != nullptr && state.time == time_ && changes == changes_ && xi == xi_ &&
@@ -51,9 +56,10 @@ const Eigen::VectorXd& Reactions::at(const Snapshot& state) {
 
 std::shared_ptr<Reactions> reactions_of(const std::shared_ptr<const Geometry>& geometry,
                                         const std::shared_ptr<const Mechanics>& mechanics,
-                                        const std::shared_ptr<const Inputs>& inputs) {
+                                        const std::shared_ptr<const Inputs>& inputs,
+                                        const std::shared_ptr<RunContacts>& contacts) {
   if (geometry == nullptr || mechanics->constraint_count() == 0) return nullptr;
-  return std::make_shared<Reactions>(geometry, mechanics, inputs);
+  return std::make_shared<Reactions>(geometry, mechanics, inputs, contacts);
 }
 
 }  // namespace hamel

@@ -9,6 +9,7 @@
 #include <hamel/framework/loop/snapshot.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/metric/equations_of_motion.hpp>
+#include <hamel/framework/run/run/run_contacts.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 
 namespace hamel {
@@ -20,7 +21,9 @@ class Reactions {
  public:
   /// inputs: those of the run, null without.
   Reactions(std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
-            std::shared_ptr<const Inputs> inputs);
+            std::shared_ptr<const Inputs> inputs, std::shared_ptr<RunContacts> contacts = nullptr);
+  /// Of the run, whose modes decide; null where no contact may slide or open.
+  RunContacts* contacts() const { return contacts_.get(); }
   /// The multipliers lambda of A xi = b, k entries, by the equations of motion at an admissible
   /// state. They stay until the next state.
   const Eigen::VectorXd& at(const Snapshot& state);
@@ -33,6 +36,7 @@ class Reactions {
  private:
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Inputs> inputs_;
+  std::shared_ptr<RunContacts> contacts_;
   EquationsOfMotion<DynamicProblem> motion_;
   // The last state, and the changes of the inputs up to there.
   double time_;
@@ -45,6 +49,7 @@ class Reactions {
 /// Null where a run has no rows, or a group that is not registered.
 std::shared_ptr<Reactions> reactions_of(const std::shared_ptr<const Geometry>& geometry,
                                         const std::shared_ptr<const Mechanics>& mechanics,
-                                        const std::shared_ptr<const Inputs>& inputs);
+                                        const std::shared_ptr<const Inputs>& inputs,
+                                        const std::shared_ptr<RunContacts>& contacts = nullptr);
 
 }  // namespace hamel

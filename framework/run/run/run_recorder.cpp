@@ -38,6 +38,7 @@ RunRecorder::RunRecorder(const SystemModel& system, const Start& start, EnergyBa
                         .reaction_power = reactions != nullptr,
                         .exact = static_cast<bool>(system.exact),
                         .acceleration = motion != nullptr}),
+                        .modes = reactions != nullptr && reactions->contacts() != nullptr}),
       pulls_(system.contacts.size()),
       of_rows_(std::move(reactions)),
       motion_(std::move(motion)) {
@@ -93,6 +94,11 @@ void RunRecorder::compare(const Snapshot& state) {
   if (motion_ != nullptr) {
     const Eigen::VectorXd& rate = motion_->acceleration(state);
     extras.acceleration = {rate.data(), static_cast<std::size_t>(rate.size())};
+  }
+  std::vector<double> modes;
+  if (of_rows_ != nullptr && of_rows_->contacts() != nullptr) {
+    modes = of_rows_->contacts()->mode_numbers();
+    extras.modes = modes;
   }
   look_at_invariants(state);
   if (system_.exact)
@@ -161,8 +167,9 @@ void RunRecorder::react(const Snapshot& state, bool start) {
   if (!start && state.time == time_) return;
   const Eigen::VectorXd& now = of_rows_->at(state);
   const double part = start ? 0 : state.time_offset / (state.time - time_);
-  double power = 0;
-  for (Eigen::Index j = 0; j < now.size(); ++j) {
+  const bool modes = of_rows_->contacts() != nullptr;
+  double power = modes ? of_rows_->contacts()->reaction_power() : 0;
+  for (Eigen::Index j = 0; j < now.size() && !modes; ++j) {
     const double there = start ? now[j] : now[j] - part * (now[j] - lambda_[j]);
     power += there * state.constraint_rates[static_cast<size_t>(j)];
   }

@@ -89,6 +89,8 @@ class HAMEL_API Simulation {
   /// The start in its place: straight ahead at v m/s, upright, of systems that define a straight
   /// motion.
   Simulation& speed(double v) { return with(&Config::speed, v); }
+  /// The start may slip: it is not projected onto the rows of contacts that may slide.
+  Simulation& slip(bool slips = true) { return with(&Config::slip, slips); }
   /// Any option (Config::fields); below those that have a separate member.
   template <class Value>
   Simulation& with(Value Config::*option, std::type_identity_t<Value> value) {

@@ -234,11 +234,56 @@ void satisfy(const Mechanics& mechanics, const Geometry& geometry, double t, Eig
   }
 }
 
+// Gaps up to this are closed, m (contact_kernel.cpp).
+constexpr double kClosedStart = 1e-9;
+
+// The gap of a contact at the values of the holonomic rows; 0 without a height.
+double gap_of(const SystemModel& system, const ContactLaw& law, const Eigen::VectorXd& phi) {
+  if (!law.normal) return 0;
+  return phi[*law.normal - (system.mechanics->constraint_count() - phi.size())];
+}
+
+// Is a contact open? One that is below its ground is a mistake.
+bool look_at_gaps(const SystemModel& system, const Eigen::VectorXd& phi, Mistakes& mistakes) {
+  bool open = false;
+  for (const ContactLaw& law : system.contact_laws) {
+    const double gap = gap_of(system, law, phi);
+    open = open || gap > kClosedStart;
+    if (gap >= -kClosedStart) continue;
+    mistakes.add(
+        fmt::format("configuration: contact '{}' of {} is {:.6g} m below its ground, expected on "
+                    "it or above",
+                    law.name, system.name, -gap));
+  }
+  return open;
+}
+
+// Leaves out the rows of the start that a contact does not have there.
+void release_rows(const SystemModel& system, const Eigen::VectorXd& phi, bool slip,
+                  PlannedStart& planned) {
+  std::vector<bool> on(static_cast<size_t>(planned.constraints.rows()), true);
+  for (const ContactLaw& law : system.contact_laws) {
+    if (!slip && !(gap_of(system, law, phi) > kClosedStart)) continue;
+    if (law.normal) on[static_cast<size_t>(*law.normal)] = false;
+    for (const int row : law.tangential) on[static_cast<size_t>(row)] = false;
+  }
+  Eigen::Index kept = 0;
+  for (size_t row = 0; row < on.size(); ++row) {
+    if (!on[row]) continue;
+    planned.constraints.row(kept) = planned.constraints.row(static_cast<Eigen::Index>(row)).eval();
+    planned.drift[kept++] = planned.drift[static_cast<Eigen::Index>(row)];
+  }
+  planned.constraints.conservativeResize(kept, Eigen::NoChange);
+  planned.drift.conservativeResize(kept);
+}
+
 }  // namespace
 
 // I, A and b where the run starts, checked.
 void evaluate_start(const SystemModel& system, const std::shared_ptr<const Inputs>& inputs,
-                    const Geometry* geometry, double t, PlannedStart& planned, Mistakes& mistakes) {
+                    const Geometry* geometry, const Config& config, PlannedStart& planned,
+                    Mistakes& mistakes) {
+  const double t = config.from;
   const int n = system.group.dim;
   const Mechanics& mechanics = *system.mechanics;
   const Start& start = planned.start;
@@ -266,7 +311,8 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
   mechanics.constraints(t, g.data(), planned.constraints, planned.drift);
   Eigen::VectorXd phi(mechanics.holonomic_rows());
   mechanics.holonomic(g.data(), phi);
-  if (!planned.refused && phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13))
+  const bool open = !planned.refused && look_at_gaps(system, phi, mistakes);
+  if (!planned.refused && !open && phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13))
     satisfy(mechanics, *geometry, t, phi, g, planned, mistakes);
   if (said) return;
   if (planned.refused) planned.constraints.resize(0, n);
@@ -275,6 +321,8 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
   mistakes.add(wrong);
   if (wrong.empty() && !mechanics.constant_inertia())
     check_symmetry_beside(mechanics, *geometry, g, mistakes);
+  if (!planned.refused && !system.contact_laws.empty())
+    release_rows(system, phi, config.slip, planned);
 }
 
 // The admissible start, E^T I xi = E^T mu, and what the projection dropped.

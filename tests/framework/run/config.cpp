@@ -44,6 +44,7 @@ Config unusual() {
   c.from = 0.1;
   c.until = -1e5;
   c.every = 123456789012;
+  c.slip = true;
   c.no_exact = true;
   c.force_at = "base";
   c.check = c.force = true;
@@ -89,7 +90,7 @@ TEST(Config, EveryOptionIsInTheListAndGoesByName) {
                                           "compose", "on_failure", "tolerance", "step", "rtol",
                                           "atol", "step_max", "steps_max", "speed", "from", "until",
                                           "every", "output_step", "output_times", "events",
-                                          "stop_at", "check", "force", "no_exact"));
+                                          "stop_at", "slip", "check", "force", "no_exact"));
   EXPECT_THROW(copy.set("tolerence", "1"), ConfigError);
   EXPECT_THROW(copy.set("every", "1.5"), ConfigError);
   EXPECT_THROW(copy.set("step", "0.1x"), ConfigError);

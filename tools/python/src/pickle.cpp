@@ -99,7 +99,7 @@ nb::dict pack(const StoredResult& stored) {
                                 stats.residual_max, stats.rejected, stats.fallbacks);
   nb::list events;
   for (const EventMet& e : result.events)
-    events.append(nb::make_tuple(e.name, e.time, e.coordinates, e.velocity));
+    events.append(nb::make_tuple(e.name, e.time, e.coordinates, e.velocity, e.velocity_after));
   out["events"] = events;
   Packer packer;
   Measurements measured = result;
@@ -144,10 +144,11 @@ StoredResult read(const nb::dict& state) {
                   std::get<4>(stats),
                   std::get<5>(stats),
                   {}};
-  using EventState = std::tuple<std::string, double, std::vector<double>, std::vector<double>>;
-  for (const auto& [name, at, coordinates, velocity] :
+  using EventState = std::tuple<std::string, double, std::vector<double>, std::vector<double>,
+                                std::vector<double>>;
+  for (const auto& [name, at, coordinates, velocity, after] :
        get<std::vector<EventState>>(state, "events"))
-    result.events.push_back({name, at, coordinates, velocity});
+    result.events.push_back({name, at, coordinates, velocity, after});
   const auto [values, names] =
       get<std::pair<std::vector<double>, std::vector<std::string>>>(state, "measurements");
   Unpacker unpacker{values, names};

@@ -182,6 +182,10 @@ void bind_result(nb::module_& m) {
       .def_prop_ro(
           "velocity", [](const EventMet& e) { return array(e.velocity); },
           nb::sig("def velocity(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_prop_ro(
+          "velocity_after", [](const EventMet& e) { return array(e.velocity_after); },
+          nb::sig("def velocity_after(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Behind a switch of a contact; else empty.")
       .def("__repr__", [](const EventMet& e) {
         return "<hamel.EventMet " + e.name + " at t = " + text_of(e.time) + ">";
       });

@@ -1,0 +1,174 @@
+// The motion of a system in the modes of its contacts: accelerations and reactions, what a mode is
+// after a switch, and impacts.
+//
+// In W = [N; T] of a contact N is its normal row and T its tangential rows, s = T xi - b_T the slip.
+// With M_A the inverse inertia projected along the rows that are always on,
+//   I xi' = ad*_xi I xi + F + A^T l + sum C^T l_c,   A xi' = b' - A' xi,   R xi' = b_R' - R' xi,
+//   rolling: R = C = W;   sliding: R = N, C = N - mu (s/|s|)^T T,                               (2)
+// so that the friction of a sliding contact is implicit in its normal reaction: one linear system,
+// not symmetric, K l_c = b_R' - R' xi - R a, K = R M_A C^T, a the acceleration without contacts.
+// A contact with a given load in place of N has the force -mu load T^T s/|s| when it slides.
+//   Modes after a switch: the contact problem with G = W M_A C^T and c = W a + W' xi - b_W', of
+// contacts that slip N and C of (2) alone, of the others W.                                     (3)
+//   Impact: the contact problem with G = W M_A W^T, c = ((1 + e)(N xi - b_N), T xi - b_T), e = 0 of
+// contacts that already rest; then xi <- xi + M_A W^T P, and (3).                               (4)
+// Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts (1996); Leine, Nijmeijer,
+// Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hamel/framework/contact/contact_problem.hpp>
+#include <hamel/framework/lie/geometry.hpp>
+#include <hamel/framework/mechanics/contact_law.hpp>
+#include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/metric/metric.hpp>
+
+namespace hamel {
+
+/// A contact at a time.
+struct ContactState {
+  ContactMode mode = ContactMode::open;
+  Eigen::Vector2d direction = {1, 0};  // of the slip, where it is too small to have one
+  double no_slip = 0;                  // m/s: smaller slips have none
+};
+using ContactStates = std::vector<ContactState>;
+
+class ContactDynamics {
+ public:
+  using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
+
+  /// mechanics: with the rows of all contacts.
+  ContactDynamics(std::shared_ptr<const Geometry> geometry,
+                  std::shared_ptr<const Mechanics> mechanics, std::vector<ContactLaw> laws);
+
+  int count() const { return static_cast<int>(laws_.size()); }
+  const ContactLaw& law(int i) const { return laws_[static_cast<size_t>(i)]; }
+  const Mechanics& mechanics() const { return *mechanics_; }
+  const std::shared_ptr<const Geometry>& geometry() const { return geometry_; }
+  /// The rows that are on in these modes, ascending.
+  std::vector<int> rows(const ContactStates& states) const;
+
+  /// Everything that follows needs one: all at (t, g, xi).
+  void evaluate(double t, const double* g, const ConstVector& xi);
+  double gap(int i) const;
+  double gap_rate(int i) const;
+  Eigen::Vector2d slip(int i) const;
+  /// The largest slip that the kinetic energy could be that of.
+  double slip_scale(int i);
+
+  /// The acceleration in these modes, (2), into acceleration(). False where the system is singular.
+  bool accelerate(const ContactStates& states);
+  const Eigen::VectorXd& acceleration() const { return acceleration_; }
+  /// Behind accelerate(): the multipliers of all rows, those of open contacts 0.
+  const Eigen::VectorXd& reactions();
+  double normal_reaction(int i) const { return normal_[static_cast<size_t>(i)]; }
+  Eigen::Vector2d tangential_reaction(int i) const { return tangential_[static_cast<size_t>(i)]; }
+  /// N M_A C^T of a contact that slides.
+  double coefficient(int i) const { return coefficient_[static_cast<size_t>(i)]; }
+  /// The power of these reactions, l . (A xi - b): of friction.
+  double reaction_power();
+  /// The rates of gap_rate() and slip() at acceleration().
+  double gap_acceleration(int i) const;
+  Eigen::Vector2d slip_rate(int i) const;
+
+  /// Modes of the contacts that are closed, (3). slides: the one that begins to slide in its
+  /// direction, or -1. Returns why there are none, "" where there are.
+  std::string decide(ContactStates& states, int slides = -1);
+  /// The velocity after an impact, (4), in place of xi: of contacts that strike, and of those that
+  /// are closed already. Returns why there is none.
+  std::string strike(const ContactStates& states, const std::vector<char>& strikes,
+                     Eigen::VectorXd& xi);
+  /// Takes the slip of contact i, and what other rows that are on have gained, out of xi.
+  bool stop(const ContactStates& states, int i, Eigen::VectorXd& xi);
+  /// Takes the rate of its gap out of xi, along C of (2).
+  void rest(const ContactStates& states, int i, Eigen::VectorXd& xi);
+
+ private:
+  struct Row {
+    int row;      // of A
+    int contact;  // whose it is
+  };
+  // The direction of the slip that friction opposes.
+  Eigen::Vector2d direction(int i, const ContactState& state) const;
+  // M_A of column_, or of a row of A, into a column of responses_.
+  void respond(int column);
+  void respond_to(int row, int column);
+  void sliding_row(int i, const Eigen::Vector2d& d, Eigen::VectorXd& out) const;
+  void free_acceleration(const ContactStates& states, int slides);
+  double row_times(int row, const Eigen::VectorXd& v) const { return a_.row(row).dot(v); }
+  bool project(const std::vector<int>& rows, Eigen::VectorXd& xi);
+  // The contact of the next block, with its rows at the end of on_ and their responses.
+  void add_block(int i, bool slides, const Eigen::Vector2d& d);
+  std::string solve_problem(const char* level);
+  bool dependent() const;
+
+  std::shared_ptr<const Geometry> geometry_;
+  std::shared_ptr<const Mechanics> mechanics_;
+  std::vector<ContactLaw> laws_;
+  std::vector<int> always_;  // rows of no contact
+  Metric<> metric_;          // with the rows that are always on
+  Eigen::MatrixXd a_;        // all rows, and b, and the rates b' - A' xi
+  Eigen::VectorXd b_, rates_;
+  Eigen::VectorXd xi_, change_, force_, free_, acceleration_, gaps_, always_rates_, no_rates_;
+  Eigen::VectorXd reactions_, row_, column_, work_;
+  Eigen::MatrixXd responses_;  // M_A C^T, a column a row
+  Eigen::MatrixXd k_, k_work_;
+  Eigen::VectorXd multipliers_, c_;
+  std::vector<double> normal_, coefficient_;
+  std::vector<Eigen::Vector2d> tangential_;
+  std::vector<Row> on_;
+  std::vector<ContactBlock> blocks_;
+  std::vector<int> block_contacts_;
+  ContactProblem problem_;
+  double time_ = 0;
+};
+
+/// The system in one set of modes: its rows that are on, and (2). For one run, whose states it
+/// follows.
+class ModeMechanics final : public Mechanics {
+ public:
+  ModeMechanics(std::shared_ptr<ContactDynamics> dynamics,
+                std::shared_ptr<const ContactStates> states);
+  int dim() const override { return full().dim(); }
+  int constraint_count() const override { return static_cast<int>(rows_.size()); }
+  int holonomic_rows() const override { return static_cast<int>(gaps_.size()); }
+  bool constant_inertia() const override { return full().constant_inertia(); }
+  bool constant_constraints() const override { return full().constant_constraints(); }
+  bool autonomous() const override { return full().autonomous(); }
+  bool has_force() const override { return true; }
+  bool has_drift() const override { return full().has_drift(); }
+  void inertia(const double* g, Matrix out) const override { full().inertia(g, out); }
+  void momentum(const double* g, ConstVector xi, Vector out, Vector force) const override {
+    full().momentum(g, xi, out, force);
+  }
+  void constraints(double t, const double* g, Matrix a, Vector b) const override;
+  void holonomic(const double* g, Vector out) const override;
+  void begin() const override { full().begin(); }
+  bool has_accelerations() const override { return true; }
+  void accelerations(double t, const double* g, ConstVector xi, Vector out) const override;
+  void force(double t, const double* g, ConstVector xi, Vector out) const override {
+    full().force(t, g, xi, out);
+  }
+  void inertial_force(const double* g, ConstVector xi, Vector out) const override {
+    full().inertial_force(g, xi, out);
+  }
+  double power(double t, const double* g, ConstVector xi) const override {
+    return full().power(t, g, xi);
+  }
+  double potential(const double* g) const override { return full().potential(g); }
+
+ private:
+  const Mechanics& full() const { return dynamics_->mechanics(); }
+  std::shared_ptr<ContactDynamics> dynamics_;
+  std::shared_ptr<const ContactStates> states_;
+  std::vector<int> rows_, gaps_;      // of A; of phi
+  mutable Eigen::MatrixXd all_rows_;  // work space
+  mutable Eigen::VectorXd all_b_, all_gaps_;
+};
+
+}  // namespace hamel

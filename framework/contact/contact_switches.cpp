@@ -1,0 +1,220 @@
+// Modes after a switch, and impacts.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <hamel/framework/contact/contact_dynamics.hpp>
+#include <hamel/framework/lie/linear_solve.hpp>
+
+namespace hamel {
+namespace {
+
+int direction_count(const ContactLaw& law) { return static_cast<int>(law.tangential.size()); }
+
+}  // namespace
+
+void ContactDynamics::add_block(int i, bool slides, const Eigen::Vector2d& d) {
+  const ContactLaw& law = this->law(i);
+  ContactBlock block;
+  block.first = static_cast<int>(on_.size());
+  block.normal = law.normal.has_value();
+  block.friction = law.friction;
+  block.bound = law.friction * law.load;
+  block.tangential = slides ? 0 : direction_count(law);
+  if (block.size() == 0) return;  // a given load that slides is a force
+  if (law.normal) {
+    if (slides) sliding_row(i, d, column_);
+    else column_ = a_.row(*law.normal).transpose();
+    respond(static_cast<int>(on_.size()));
+    on_.push_back({*law.normal, i});
+  }
+  for (int j = 0; j < block.tangential; ++j) {
+    const int row = law.tangential[static_cast<size_t>(j)];
+    respond_to(row, static_cast<int>(on_.size()));
+    on_.push_back({row, i});
+  }
+  blocks_.push_back(block);
+  block_contacts_.push_back(i);
+}
+
+// Are rows of several contacts dependent? Then their reactions are not determined.
+bool ContactDynamics::dependent() const {
+  if (blocks_.size() < 2) return false;
+  const auto m = static_cast<Eigen::Index>(on_.size());
+  Eigen::FullPivLU<Eigen::MatrixXd> factors(k_.topLeftCorner(m, m));
+  factors.setThreshold(1e-10);
+  return factors.rank() < m;
+}
+
+// G of responses_ into k_, and the solution with c_.
+std::string ContactDynamics::solve_problem(const char* level) {
+  const auto m = static_cast<Eigen::Index>(on_.size());
+  for (Eigen::Index i = 0; i < m; ++i)
+    for (Eigen::Index j = 0; j < m; ++j)
+      k_(i, j) = row_times(on_[static_cast<size_t>(i)].row, responses_.col(j));
+  std::vector<std::string> names;
+  for (const int i : block_contacts_) names.push_back(law(i).name);
+  if (dependent()) {
+    return fmt::format(
+        "undetermined_reactions: the reactions of {} are not determined by the motion: their rows "
+        "are dependent; leave out a contact, or its friction",
+        fmt::join(names, ", "));
+  }
+  const auto outcome = problem_.solve(k_.topLeftCorner(m, m), c_.head(m), blocks_);
+  if (outcome == ContactProblem::Outcome::one) return "";
+  const ContactLaw& law = this->law(block_contacts_.front());
+  if (blocks_.size() > 1) {
+    return fmt::format(
+        "jammed: no {} of the contacts {} was found that satisfies Coulomb's law at t = {:.10g}",
+        level, fmt::join(names, ", "), time_);
+  }
+  const int count = problem_.count();
+  return fmt::format(
+      "painleve: {} {} of contact '{}' satisf{} Coulomb's law at t = {:.10g}, friction = {}, the "
+      "coefficient of its normal reaction is {:.4g}: rigid bodies have no unique motion here; a "
+      "smaller friction has",
+      count == 0 ? std::string("no") : std::to_string(count), level, law.name,
+      count == 1 ? "ies" : "y", time_, law.friction, k_(0, 0));
+}
+
+std::string ContactDynamics::decide(ContactStates& states, int slides) {
+  on_.clear();
+  blocks_.clear();
+  block_contacts_.clear();
+  std::vector<char> known(states.size(), 0);
+  for (int i = 0; i < count(); ++i) {
+    ContactState& state = states[static_cast<size_t>(i)];
+    if (state.mode == ContactMode::open) continue;
+    const Eigen::Vector2d s = slip(i);
+    const bool slips = s.norm() > 10 * state.no_slip;
+    if (slips) state.direction = s / s.norm();
+    const bool slides_on = slips || i == slides || law(i).friction == 0;
+    known[static_cast<size_t>(i)] = slides_on ? 1 : 0;
+    if (slides_on) state.mode = ContactMode::slides;
+  }
+  // Of loads that slide the friction is a force; of the others it is an unknown.
+  ContactStates forces = states;
+  for (size_t i = 0; i < forces.size(); ++i)
+    if (known[i] == 0) forces[i].mode = ContactMode::open;
+  free_acceleration(forces, slides);
+  for (int i = 0; i < count(); ++i) {
+    const ContactState& state = states[static_cast<size_t>(i)];
+    if (state.mode == ContactMode::open) continue;
+    add_block(i, known[static_cast<size_t>(i)] != 0, state.direction);
+  }
+  if (blocks_.empty()) return "";
+  for (size_t i = 0; i < on_.size(); ++i)
+    c_[static_cast<Eigen::Index>(i)] = row_times(on_[i].row, free_) - rates_[on_[i].row];
+  if (std::string why = solve_problem("acceleration"); !why.empty()) return why;
+  for (size_t k = 0; k < blocks_.size(); ++k) {
+    const ContactBlock& block = blocks_[k];
+    ContactState& state = states[static_cast<size_t>(block_contacts_[k])];
+    const ContactAnswer answer = problem_.answers()[k];
+    if (answer == ContactAnswer::opens) {
+      state.mode = ContactMode::open;
+    } else if (block.tangential == 0) {
+      state.mode = ContactMode::slides;
+    } else if (answer == ContactAnswer::sticks) {
+      state.mode = ContactMode::rolls;
+    } else {
+      state.mode = ContactMode::slides;
+      Eigen::Vector2d d(0, 0);
+      d.head(block.tangential) =
+          -problem_.p().segment(block.first + (block.normal ? 1 : 0), block.tangential);
+      state.direction = d / d.norm();
+    }
+  }
+  return "";
+}
+
+std::string ContactDynamics::strike(const ContactStates& states, const std::vector<char>& strikes,
+                                    Eigen::VectorXd& xi) {
+  on_.clear();
+  blocks_.clear();
+  block_contacts_.clear();
+  for (int i = 0; i < count(); ++i)
+    if (law(i).normal &&
+        (strikes[static_cast<size_t>(i)] != 0 ||
+         states[static_cast<size_t>(i)].mode != ContactMode::open))
+      add_block(i, false, {0, 0});
+  for (size_t k = 0; k < blocks_.size(); ++k) {
+    const auto i = static_cast<size_t>(block_contacts_[k]);
+    for (int j = 0; j < blocks_[k].size(); ++j) {
+      const int row = on_[static_cast<size_t>(blocks_[k].first + j)].row;
+      const double e = j == 0 && strikes[i] != 0 ? laws_[i].restitution : 0;
+      c_[blocks_[k].first + j] = (1 + e) * (row_times(row, xi_) - b_[row]);
+    }
+  }
+  if (blocks_.size() > 1) {
+    double coupling = 0, size = 0;
+    for (size_t i = 0; i < on_.size(); ++i)
+      for (size_t j = 0; j < on_.size(); ++j) {
+        const double entry =
+            std::abs(row_times(on_[i].row, responses_.col(static_cast<Eigen::Index>(j))));
+        double& most = on_[i].contact == on_[j].contact ? size : coupling;
+        most = std::max(most, entry);
+      }
+    std::vector<std::string> names;
+    for (const int i : block_contacts_) names.push_back(law(i).name);
+    if (coupling > 1e-12 * size) {
+      return fmt::format(
+          "simultaneous_impacts: {} are closed at once at t = {:.10g} and coupled ({:.3g} of {:.3g} "
+          "1/kg): the impact depends on their order, which rigid bodies do not have",
+          fmt::join(names, ", "), time_, coupling, size);
+    }
+  }
+  if (std::string why = solve_problem("impulse"); !why.empty()) return why;
+  xi = xi_;
+  for (size_t i = 0; i < on_.size(); ++i)
+    xi += problem_.p()[static_cast<Eigen::Index>(i)] *
+          responses_.col(static_cast<Eigen::Index>(i));
+  return "";
+}
+
+// xi <- xi - M_A R^T (R M_A R^T)^-1 (R xi - b).
+bool ContactDynamics::project(const std::vector<int>& rows, Eigen::VectorXd& xi) {
+  const auto m = static_cast<int>(rows.size());
+  for (int j = 0; j < m; ++j) respond_to(rows[static_cast<size_t>(j)], j);
+  for (int i = 0; i < m; ++i) {
+    const int row = rows[static_cast<size_t>(i)];
+    multipliers_[i] = row_times(row, xi) - b_[row];
+    for (int j = 0; j < m; ++j) k_work_.data()[i + j * m] = row_times(row, responses_.col(j));
+  }
+  if (m > 0) solve_linear(k_work_.data(), multipliers_.data(), m, 1);
+  if (!multipliers_.head(m).allFinite()) return false;
+  for (int j = 0; j < m; ++j) xi -= multipliers_[j] * responses_.col(j);
+  return true;
+}
+
+bool ContactDynamics::stop(const ContactStates& states, int i, Eigen::VectorXd& xi) {
+  std::vector<int> rows;
+  for (int j = 0; j < count(); ++j) {
+    const ContactMode mode = states[static_cast<size_t>(j)].mode;
+    if (mode == ContactMode::open) continue;
+    if (law(j).normal) rows.push_back(*law(j).normal);
+    if (mode == ContactMode::rolls || j == i)
+      rows.insert(rows.end(), law(j).tangential.begin(), law(j).tangential.end());
+  }
+  return project(rows, xi);
+}
+
+void ContactDynamics::rest(const ContactStates& states, int i, Eigen::VectorXd& xi) {
+  const ContactLaw& law = this->law(i);
+  const ContactState& state = states[static_cast<size_t>(i)];
+  const Eigen::Vector2d s = slip(i);
+  if (!(s.norm() > 10 * state.no_slip)) {
+    std::vector<int> rows = {*law.normal};
+    rows.insert(rows.end(), law.tangential.begin(), law.tangential.end());
+    project(rows, xi);
+    return;
+  }
+  sliding_row(i, s / s.norm(), column_);
+  respond(0);
+  const double rate = row_times(*law.normal, xi) - b_[*law.normal];
+  xi -= rate / row_times(*law.normal, responses_.col(0)) * responses_.col(0);
+}
+
+}  // namespace hamel

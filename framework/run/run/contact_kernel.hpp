@@ -1,0 +1,129 @@
+// A run with contacts, as one kernel: pieces of smooth motion, each a kernel of its own in one set
+// of modes, and between them the switches (contact_dynamics.hpp).
+//
+// A switch is a root of a gate on the dense output of a step, which ends there:
+//   open     gap                          strikes
+//   rolling  l_n                          opens
+//            mu l_n - |l_t|               slides, along -l_t
+//   sliding  l_n                          opens
+//            s . d - sigma V              ceases to slip: d the direction of s at the last node, V a
+//                                         scale of velocities, sigma = 1e-7; the slip that is left,
+//                                         and the time that it takes to end, are taken to first
+//                                         order, with an error of order sigma^2.
+// A gap that has just opened has a root at its beginning, which is divided out; the first step of a
+// flight takes at most half of it. A located switch is obeyed, not tested again.
+//   Impacts that accumulate: where the rest of their series, of ratio r, rises less than atol, the
+// contact stays closed from there on. Source: Studer, Leine, Glocker, Step size adjustment and
+// extrapolation for time-stepping schemes in non-smooth dynamics (2008). Not installed.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hamel/framework/run/run/run_contacts.hpp>
+
+namespace hamel {
+
+/// Kernels of the modes of a run from the kernel of any problem. contacts: those of the run; null:
+/// a kernel for itself, as dense output and measurements need one.
+KernelFactory contact_kernels(KernelFactory smooth, std::shared_ptr<const Geometry> geometry,
+                              const SystemModel& system, std::shared_ptr<RunContacts> contacts);
+
+class ContactKernel final : public Kernel {
+ public:
+  ContactKernel(KernelFactory smooth, KernelSetup setup, std::shared_ptr<RunContacts> contacts);
+
+  Status advance(long count) override;
+  long whole_steps() const override { return steps_; }
+  bool off_grid() const override { return false; }
+  using Kernel::state;
+  void state(Snapshot& out, const StateParts& parts) const override;
+  const SolverStats& stats() const override;
+  void node(Snapshot& out) const override { now_->node(out); }
+  void beginning(Snapshot& out) const override { of_last_step().beginning(out); }
+  double time() const override { return now_->time(); }
+  double beginning_time() const override { return of_last_step().beginning_time(); }
+  void set_end_time(double t) override;
+  double next_step() const override { return now_->next_step(); }
+  void turn_back() override;
+  void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
+               double step) override;
+  std::unique_ptr<Kernel> another(const KernelSetup& setup) const override;
+  void clear_history() override { now_->clear_history(); }
+  bool interpolate(double t, Snapshot& out) override;
+  bool motion_within(double t, Snapshot& out) override;
+
+ private:
+  enum class Switch { strikes, opens, slides, stops };
+  // Gates of a contact: the second is none where it is positive infinity.
+  using Gates = std::vector<std::array<double, 2>>;
+  struct Found {
+    double time;
+    int contact;
+    Switch what;
+  };
+
+  Kernel& of_last_step() const { return before_ != nullptr ? *before_ : *now_; }
+  ContactDynamics& dynamics() const { return *contacts_->dynamics(); }
+  int count() const { return dynamics().count(); }
+  ContactState& contact(int i) const { return contacts_->states()[static_cast<size_t>(i)]; }
+  FollowedContact& followed(int i) const { return contacts_->followed()[static_cast<size_t>(i)]; }
+
+  void begin();
+  // dynamics() at the state of now_, or of a snapshot.
+  void evaluate_node();
+  void evaluate(const Snapshot& state);
+  void follow_speeds();
+  Status fail(const std::string& reason) const;
+  std::string why_no_node();
+
+  // switch_search: gates along the last step.
+  Gates gates(double t);
+  std::optional<Found> find(double from, double to);
+  Switch switch_of(int contact, size_t gate) const;
+
+  // contact_switch: at the state in at_.
+  std::string apply(const Found& found);
+  std::string strike_all(int first);
+  void end_chatter(int i, double ratio);
+  std::string stop_slip(int i);
+  std::string decide(int slides);
+  void name_changes(const ContactStates& before);
+  void take_up(double step);
+  double first_step(double step);
+  bool too_many(double t);
+
+  KernelFactory smooth_;
+  KernelSetup setup_;
+  std::shared_ptr<RunContacts> contacts_;
+  // A kernel of one set of modes, which stays as it is when the run has others.
+  struct Piece {
+    std::shared_ptr<ContactStates> states;
+    std::unique_ptr<Kernel> kernel;
+  };
+  std::map<std::vector<int>, std::vector<Piece>> pieces_;  // by their modes
+  Kernel* now_ = nullptr;
+  Kernel* before_ = nullptr;  // of the last step, where a switch ended it
+  double limit_;
+  long steps_ = 0;
+  std::string failure_;  // of a start or a switch
+  std::vector<Eigen::Vector2d> references_;  // directions of slip at the last node
+  Gates at_node_;
+  // The state of a switch.
+  double time_ = 0;
+  Eigen::VectorXd g_, xi_, move_;
+  std::vector<double> coordinates_, velocity_;
+  std::vector<std::pair<std::string, double>> events_;
+  Snapshot snapshot_;
+  mutable Snapshot shown_;
+  mutable SolverStats all_;
+};
+
+}  // namespace hamel
