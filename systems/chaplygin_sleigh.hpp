@@ -60,9 +60,9 @@ struct SleighRates {
 
 struct ChaplyginSleigh {
   using Group = SE2;
-  double mass = 1.0;    // kg
-  double moment = 0.1;  // kg m^2, J
-  double offset = 0.2;  // m, a
+  double mass = 1.0;                    // kg
+  double moment = 0.1;                  // kg m^2, J
+  double offset = 0.2;                  // m, a
   std::optional<double> friction = {};  // mu, of the blade
   double gravity = 9.81;                // m/s^2
 

@@ -3,9 +3,9 @@
 //   SO(3) x R^3, xi = (omega in the body, x', y', z'), l = 1/2 I |omega|^2 + 1/2 m |x'|^2 - m g z;
 //   the contact at the lowest point moves at (x' - rho w_y, y' + rho w_x), w = R omega, its gap is
 //   phi = z - rho.
-// Sliding on the plane the slip keeps its direction, shrinks at (1 + 1/k) mu g, k = I/(m rho^2), and
-// ends after k/(1 + k) |s0|/(mu g) with the velocity v0 - k/(1 + k) s0 of the centre, whatever mu is.
-// Source: Coriolis, Theorie mathematique des effets du jeu de billard (1835).
+// Sliding on the plane the slip keeps its direction, shrinks at (1 + 1/k) mu g, k = I/(m rho^2),
+// and ends after k/(1 + k) |s0|/(mu g) with the velocity v0 - k/(1 + k) s0 of the centre, whatever
+// mu is. Source: Coriolis, Theorie mathematique des effets du jeu de billard (1835).
 #pragma once
 
 #include <string>

@@ -48,6 +48,8 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
   multipliers_.setZero(most);
   c_ = multipliers_;
   k_work_ = k_;
+  right_.setZero(most, 4);
+  directions_.resize(contacts, {1, 0});
   normal_.resize(contacts);
   coefficient_.resize(contacts);
   tangential_.resize(contacts);
@@ -125,10 +127,12 @@ double ContactDynamics::slip_scale(int i) {
   return std::sqrt(std::fmax(0, twice_energy * reach));
 }
 
-Eigen::Vector2d ContactDynamics::direction(int i, const ContactState& state) const {
+void ContactDynamics::find_direction(const ContactStates& states, int i) {
+  const ContactState& state = states[static_cast<size_t>(i)];
   const Eigen::Vector2d s = slip(i);
   const double size = s.norm();
-  return size > state.no_slip ? Eigen::Vector2d(s / size) : state.direction;
+  const bool slips = size > state.no_slip && !state.begins;
+  directions_[static_cast<size_t>(i)] = slips ? Eigen::Vector2d(s / size) : state.direction;
 }
 
 void ContactDynamics::respond(int column) {
@@ -151,39 +155,106 @@ void ContactDynamics::sliding_row(int i, const Eigen::Vector2d& d, Eigen::Vector
 }
 
 // Without the reactions of contacts, but with the friction of given loads that slide.
-void ContactDynamics::free_acceleration(const ContactStates& states, int slides) {
+void ContactDynamics::free_acceleration(const ContactStates& states) {
   force_ = change_;
   for (int i = 0; i < count(); ++i) {
     const ContactState& state = states[static_cast<size_t>(i)];
     if (law(i).normal || state.mode != ContactMode::slides) continue;
-    sliding_row(i, i == slides ? state.direction : direction(i, state), work_);
-    force_ += work_;
+    sliding_row(i, direction(i), column_);
+    force_ += column_;
   }
   metric_.solve(force_, always_rates_, free_);
 }
 
-bool ContactDynamics::accelerate(const ContactStates& states) {
+void ContactDynamics::add_rows(int i, ContactMode mode) {
+  if (mode == ContactMode::open) return;
+  if (law(i).normal) {
+    if (mode == ContactMode::slides) sliding_row(i, direction(i), column_);
+    else column_ = a_.row(*law(i).normal).transpose();
+    respond(static_cast<int>(on_.size()));
+    on_.push_back({*law(i).normal, i});
+  }
+  if (mode != ContactMode::rolls) return;
+  for (const int row : law(i).tangential) {
+    respond_to(row, static_cast<int>(on_.size()));
+    on_.push_back({row, i});
+  }
+}
+
+// The contact problem of contact i with the others as they are: their multipliers, the first `m`,
+// are eliminated.
+void ContactDynamics::find_first_direction(const ContactStates& states, int i) {
   on_.clear();
-  free_acceleration(states, -1);
+  for (int k = 0; k < count(); ++k)
+    if (k != i) add_rows(k, states[static_cast<size_t>(k)].mode);
+  const auto m = static_cast<int>(on_.size());
+  add_rows(i, ContactMode::rolls);
+  const int n = static_cast<int>(on_.size()) - m;
+  const auto row_of = [&](int k) { return on_[static_cast<size_t>(k)].row; };
+  for (int k = 0; k < m; ++k) {
+    for (int l = 0; l < m; ++l) k_work_.data()[k + l * m] = row_times(row_of(k), responses_.col(l));
+    for (int l = 0; l < n; ++l)
+      right_.data()[k + l * m] = row_times(row_of(k), responses_.col(m + l));
+    right_.data()[k + n * m] = row_times(row_of(k), free_) - rates_[row_of(k)];
+  }
+  if (m > 0) solve_linear(k_work_.data(), right_.data(), m, n + 1);
+  Eigen::Matrix3d g = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d c = Eigen::Vector3d::Zero();
+  for (int k = 0; k < n; ++k) {
+    const int row = row_of(m + k);
+    for (int l = 0; l <= n; ++l) {
+      double sum =
+          l < n ? row_times(row, responses_.col(m + l)) : row_times(row, free_) - rates_[row];
+      for (int j = 0; j < m; ++j)
+        sum -= row_times(row, responses_.col(j)) * right_.data()[j + l * m];
+      if (l < n) g(k, l) = sum;
+      else c[k] = sum;
+    }
+  }
+  const bool normal = law(i).normal.has_value();
+  solve_contact(g, c,
+                {.first = 0,
+                 .normal = normal,
+                 .tangential = tangential_count(law(i)),
+                 .friction = law(i).friction,
+                 .bound = law(i).friction * law(i).load},
+                solutions_);
+  Eigen::Vector2d& out = directions_[static_cast<size_t>(i)];
+  const Eigen::Vector2d known = out;
+  double nearest = 0;
+  for (int k = 0; k < solutions_.count(); ++k) {
+    if (solutions_[k].answer != ContactAnswer::slides) continue;
+    const Eigen::Vector3d& p = solutions_[k].p;
+    const Eigen::Vector2d d =
+        normal ? Eigen::Vector2d(-p[1], -p[2]) : Eigen::Vector2d(-p[0], -p[1]);
+    const double along = d.dot(known) / d.norm();
+    if (!(along > nearest)) continue;
+    nearest = along;
+    out = d / d.norm();
+  }
+}
+
+bool ContactDynamics::accelerate(const ContactStates& states) {
+  for (int i = 0; i < count(); ++i) find_direction(states, i);
+  free_acceleration(states);
   for (int i = 0; i < count(); ++i) {
     const ContactState& state = states[static_cast<size_t>(i)];
+    if (!state.begins || state.mode != ContactMode::slides) continue;
+    ContactStates others = states;
+    others[static_cast<size_t>(i)].mode = ContactMode::open;
+    if (!law(i).normal) free_acceleration(others);
+    find_first_direction(others, i);
+    if (!law(i).normal) free_acceleration(states);
+  }
+  on_.clear();
+  for (int i = 0; i < count(); ++i) {
     const auto at = static_cast<size_t>(i);
     normal_[at] = coefficient_[at] = 0;
     tangential_[at].setZero();
-    if (state.mode == ContactMode::open) continue;
-    if (law(i).normal) {
-      if (state.mode == ContactMode::slides) sliding_row(i, direction(i, state), column_);
-      else column_ = a_.row(*law(i).normal).transpose();
-      respond(static_cast<int>(on_.size()));
-      on_.push_back({*law(i).normal, i});
-      coefficient_[at] =
-          row_times(*law(i).normal, responses_.col(static_cast<int>(on_.size()) - 1));
-    }
-    if (state.mode != ContactMode::rolls) continue;
-    for (const int row : law(i).tangential) {
-      respond_to(row, static_cast<int>(on_.size()));
-      on_.push_back({row, i});
-    }
+    const auto first = static_cast<int>(on_.size());
+    add_rows(i, states[at].mode);
+    if (law(i).normal && states[at].mode != ContactMode::open)
+      coefficient_[at] = row_times(*law(i).normal, responses_.col(first));
   }
   const auto m = static_cast<int>(on_.size());
   for (int i = 0; i < m; ++i) {
@@ -207,7 +278,7 @@ bool ContactDynamics::accelerate(const ContactStates& states) {
     if (state.mode != ContactMode::slides) continue;
     const auto at = static_cast<size_t>(i);
     if (!law(i).normal) normal_[at] = law(i).load;
-    tangential_[at] = -law(i).friction * normal_[at] * direction(i, state);
+    tangential_[at] = -law(i).friction * normal_[at] * direction(i);
   }
   return acceleration_.allFinite();
 }
@@ -240,40 +311,6 @@ double ContactDynamics::reaction_power() {
   double out = 0;
   for (int i = 0; i < count(); ++i) out += tangential_[static_cast<size_t>(i)].dot(slip(i));
   return out;
-}
-
-// ---- one set of modes ---------------------------------------------------------------------------
-
-ModeMechanics::ModeMechanics(std::shared_ptr<ContactDynamics> dynamics,
-                             std::shared_ptr<const ContactStates> states)
-    : dynamics_(std::move(dynamics)), states_(std::move(states)), rows_(dynamics_->rows(*states_)) {
-  const int k = full().constraint_count(), first = k - full().holonomic_rows();
-  for (const int row : rows_)
-    if (row >= first) gaps_.push_back(row - first);
-  all_rows_.resize(k, dim());
-  all_b_.resize(k);
-  all_gaps_.resize(k - first);
-}
-
-void ModeMechanics::constraints(double t, const double* g, Matrix a, Vector b) const {
-  full().constraints(t, g, all_rows_, all_b_);
-  for (size_t i = 0; i < rows_.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    a.row(at) = all_rows_.row(rows_[i]);
-    b[at] = all_b_[rows_[i]];
-  }
-}
-
-void ModeMechanics::holonomic(const double* g, Vector out) const {
-  full().holonomic(g, all_gaps_);
-  for (size_t i = 0; i < gaps_.size(); ++i)
-    out[static_cast<Eigen::Index>(i)] = all_gaps_[gaps_[i]];
-}
-
-void ModeMechanics::accelerations(double t, const double* g, ConstVector xi, Vector out) const {
-  dynamics_->evaluate(t, g, xi);
-  dynamics_->accelerate(*states_);
-  out = dynamics_->acceleration();
 }
 
 }  // namespace hamel

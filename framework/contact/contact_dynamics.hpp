@@ -1,8 +1,8 @@
 // The motion of a system in the modes of its contacts: accelerations and reactions, what a mode is
 // after a switch, and impacts.
 //
-// In W = [N; T] of a contact N is its normal row and T its tangential rows, s = T xi - b_T the slip.
-// With M_A the inverse inertia projected along the rows that are always on,
+// In W = [N; T] of a contact N is its normal row and T its tangential rows, s = T xi - b_T the
+// slip. With M_A the inverse inertia projected along the rows that are always on,
 //   I xi' = ad*_xi I xi + F + A^T l + sum C^T l_c,   A xi' = b' - A' xi,   R xi' = b_R' - R' xi,
 //   rolling: R = C = W;   sliding: R = N, C = N - mu (s/|s|)^T T,                               (2)
 // so that the friction of a sliding contact is implicit in its normal reaction: one linear system,
@@ -12,8 +12,11 @@
 // contacts that slip N and C of (2) alone, of the others W.                                     (3)
 //   Impact: the contact problem with G = W M_A W^T, c = ((1 + e)(N xi - b_N), T xi - b_T), e = 0 of
 // contacts that already rest; then xi <- xi + M_A W^T P, and (3).                               (4)
-// Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts (1996); Leine, Nijmeijer,
-// Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004).
+//   Where a contact in space begins to slide its slip grows as t^2 and turns with its friction at a
+// rate of about mu g/|s|, without end as t -> 0; it follows the direction d of the contact problem,
+// gamma_t = k d, to order t^2. While |s| < 1e-6 V friction has that direction: an error of order
+// (1e-6)^(3/2) of V. (5) Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts
+// (1996); Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004).
 #pragma once
 
 #include <memory>
@@ -35,6 +38,7 @@ struct ContactState {
   ContactMode mode = ContactMode::open;
   Eigen::Vector2d direction = {1, 0};  // of the slip, where it is too small to have one
   double no_slip = 0;                  // m/s: smaller slips have none
+  bool begins = false;                 // it begins to slide, (5)
 };
 using ContactStates = std::vector<ContactState>;
 
@@ -93,13 +97,18 @@ class ContactDynamics {
     int row;      // of A
     int contact;  // whose it is
   };
-  // The direction of the slip that friction opposes.
-  Eigen::Vector2d direction(int i, const ContactState& state) const;
+  // The direction of the slip that friction opposes, as accelerate() finds it for all.
+  const Eigen::Vector2d& direction(int i) const { return directions_[static_cast<size_t>(i)]; }
+  void find_direction(const ContactStates& states, int i);
+  // That of (5), nearest to the one that it has.
+  void find_first_direction(const ContactStates& states, int i);
   // M_A of column_, or of a row of A, into a column of responses_.
   void respond(int column);
   void respond_to(int row, int column);
   void sliding_row(int i, const Eigen::Vector2d& d, Eigen::VectorXd& out) const;
-  void free_acceleration(const ContactStates& states, int slides);
+  void free_acceleration(const ContactStates& states);
+  // Rows of a contact that are on, C of (2) or W, and their responses.
+  void add_rows(int i, ContactMode mode);
   double row_times(int row, const Eigen::VectorXd& v) const { return a_.row(row).dot(v); }
   bool project(const std::vector<int>& rows, Eigen::VectorXd& xi);
   // The contact of the next block, with its rows at the end of on_ and their responses.
@@ -117,10 +126,11 @@ class ContactDynamics {
   Eigen::VectorXd xi_, change_, force_, free_, acceleration_, gaps_, always_rates_, no_rates_;
   Eigen::VectorXd reactions_, row_, column_, work_;
   Eigen::MatrixXd responses_;  // M_A C^T, a column a row
-  Eigen::MatrixXd k_, k_work_;
+  Eigen::MatrixXd k_, k_work_, right_;
+  ContactSolutions solutions_;
   Eigen::VectorXd multipliers_, c_;
   std::vector<double> normal_, coefficient_;
-  std::vector<Eigen::Vector2d> tangential_;
+  std::vector<Eigen::Vector2d> tangential_, directions_;
   std::vector<Row> on_;
   std::vector<ContactBlock> blocks_;
   std::vector<int> block_contacts_;
@@ -146,11 +156,15 @@ class ModeMechanics final : public Mechanics {
   void momentum(const double* g, ConstVector xi, Vector out, Vector force) const override {
     full().momentum(g, xi, out, force);
   }
-  void constraints(double t, const double* g, Matrix a, Vector b) const override;
-  void holonomic(const double* g, Vector out) const override;
+  void constraints(double t, const double* g, Matrix a, Vector b) const override {
+    rows_at(t, g, a, b);
+  }
+  void holonomic(const double* g, Vector out) const override { gaps_at(g, out); }
   void begin() const override { full().begin(); }
   bool has_accelerations() const override { return true; }
-  void accelerations(double t, const double* g, ConstVector xi, Vector out) const override;
+  void accelerations(double t, const double* g, ConstVector xi, Vector out) const override {
+    accelerate(t, g, xi, out);
+  }
   void force(double t, const double* g, ConstVector xi, Vector out) const override {
     full().force(t, g, xi, out);
   }
@@ -164,6 +178,11 @@ class ModeMechanics final : public Mechanics {
 
  private:
   const Mechanics& full() const { return dynamics_->mechanics(); }
+  // Out of line, as virtual functions cannot be (tools/cmake/localise).
+  void rows_at(double t, const double* g, Matrix a, Vector b) const;
+  void gaps_at(const double* g, Vector out) const;
+  void accelerate(double t, const double* g, ConstVector xi, Vector out) const;
+
   std::shared_ptr<ContactDynamics> dynamics_;
   std::shared_ptr<const ContactStates> states_;
   std::vector<int> rows_, gaps_;      // of A; of phi

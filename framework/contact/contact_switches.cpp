@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/LU>
 
 #include <hamel/framework/contact/contact_dynamics.hpp>
 #include <hamel/framework/lie/linear_solve.hpp>
@@ -90,8 +90,11 @@ std::string ContactDynamics::decide(ContactStates& states, int slides) {
     if (state.mode == ContactMode::open) continue;
     const Eigen::Vector2d s = slip(i);
     const bool slips = s.norm() > 10 * state.no_slip;
-    if (slips) state.direction = s / s.norm();
-    const bool slides_on = slips || i == slides || law(i).friction == 0;
+    if (state.begins && state.mode != ContactMode::slides) state.begins = false;
+    if (slips && !state.begins) state.direction = s / s.norm();
+    const bool slides_on = slips || state.begins || i == slides || law(i).friction == 0;
+    if (i == slides && !slips) state.begins = direction_count(law(i)) == 2;
+    directions_[static_cast<size_t>(i)] = state.direction;
     known[static_cast<size_t>(i)] = slides_on ? 1 : 0;
     if (slides_on) state.mode = ContactMode::slides;
   }
@@ -99,7 +102,7 @@ std::string ContactDynamics::decide(ContactStates& states, int slides) {
   ContactStates forces = states;
   for (size_t i = 0; i < forces.size(); ++i)
     if (known[i] == 0) forces[i].mode = ContactMode::open;
-  free_acceleration(forces, slides);
+  free_acceleration(forces);
   for (int i = 0; i < count(); ++i) {
     const ContactState& state = states[static_cast<size_t>(i)];
     if (state.mode == ContactMode::open) continue;
@@ -125,6 +128,7 @@ std::string ContactDynamics::decide(ContactStates& states, int slides) {
       d.head(block.tangential) =
           -problem_.p().segment(block.first + (block.normal ? 1 : 0), block.tangential);
       state.direction = d / d.norm();
+      state.begins = block.tangential == 2;
     }
   }
   return "";
@@ -136,9 +140,8 @@ std::string ContactDynamics::strike(const ContactStates& states, const std::vect
   blocks_.clear();
   block_contacts_.clear();
   for (int i = 0; i < count(); ++i)
-    if (law(i).normal &&
-        (strikes[static_cast<size_t>(i)] != 0 ||
-         states[static_cast<size_t>(i)].mode != ContactMode::open))
+    if (law(i).normal && (strikes[static_cast<size_t>(i)] != 0 ||
+                          states[static_cast<size_t>(i)].mode != ContactMode::open))
       add_block(i, false, {0, 0});
   for (size_t k = 0; k < blocks_.size(); ++k) {
     const auto i = static_cast<size_t>(block_contacts_[k]);
@@ -161,7 +164,8 @@ std::string ContactDynamics::strike(const ContactStates& states, const std::vect
     for (const int i : block_contacts_) names.push_back(law(i).name);
     if (coupling > 1e-12 * size) {
       return fmt::format(
-          "simultaneous_impacts: {} are closed at once at t = {:.10g} and coupled ({:.3g} of {:.3g} "
+          "simultaneous_impacts: {} are closed at once at t = {:.10g} and coupled ({:.3g} of "
+          "{:.3g} "
           "1/kg): the impact depends on their order, which rigid bodies do not have",
           fmt::join(names, ", "), time_, coupling, size);
     }
@@ -169,8 +173,7 @@ std::string ContactDynamics::strike(const ContactStates& states, const std::vect
   if (std::string why = solve_problem("impulse"); !why.empty()) return why;
   xi = xi_;
   for (size_t i = 0; i < on_.size(); ++i)
-    xi += problem_.p()[static_cast<Eigen::Index>(i)] *
-          responses_.col(static_cast<Eigen::Index>(i));
+    xi += problem_.p()[static_cast<Eigen::Index>(i)] * responses_.col(static_cast<Eigen::Index>(i));
   return "";
 }
 

@@ -107,8 +107,11 @@ class OneContact {
   OneContact(const Eigen::Matrix3d& g, const Eigen::Vector3d& c, const ContactBlock& block,
              ContactSolutions& out)
       : g_(g), c_(c), block_(block), n_(block.size()), out_(out) {
-    c_scale_ = c.head(n_).lpNorm<Eigen::Infinity>();
-    const double g_scale = g.topLeftCorner(n_, n_).cwiseAbs().maxCoeff();
+    double g_scale = 0;
+    for (int i = 0; i < n_; ++i) {
+      c_scale_ = std::max(c_scale_, std::abs(c[i]));
+      for (int j = 0; j < n_; ++j) g_scale = std::max(g_scale, std::abs(g(i, j)));
+    }
     p_scale_ = g_scale > 0 ? c_scale_ / g_scale : 0;
   }
   void solve() {
@@ -129,36 +132,38 @@ class OneContact {
   // gamma = 0 with P in the cone.
   void stick() {
     if (c_scale_ == 0) return out_.add({ContactAnswer::sticks}, p_scale_);
-    Eigen::Matrix3d g = Eigen::Matrix3d::Identity();
-    g.topLeftCorner(n_, n_) = g_.topLeftCorner(n_, n_);
-    Eigen::Vector3d c = Eigen::Vector3d::Zero();
-    c.head(n_) = -c_.head(n_);
+    Eigen::Matrix3d g = g_;  // padded by 0
+    for (int i = n_; i < 3; ++i) g(i, i) = 1;
     const Eigen::FullPivLU<Eigen::Matrix3d> factors(g);
     if (!factors.isInvertible()) return;
-    const Eigen::Vector3d p = factors.solve(c);
+    const Eigen::Vector3d p = factors.solve(-c_);
     if (block_.normal && p[0] < 0) return;
     const double most = block_.normal ? block_.friction * p[0] : block_.bound;
-    if (p.segment(block_.normal ? 1 : 0, block_.tangential).norm() <= most * (1 + kClosed))
+    if (tangential(p).norm() <= most * (1 + kClosed))
       out_.add({ContactAnswer::sticks, p}, p_scale_);
   }
   // On the rim of the cone, with the slip that is left along d.
   void slide(const Eigen::Vector2d& d) {
-    const int t = block_.normal ? 1 : 0, count = block_.tangential;
     Eigen::Vector3d p = Eigen::Vector3d::Zero();
     double most = block_.bound;
     if (block_.normal) {
-      const double along = g_.row(0).segment(1, count).dot(d.head(count)),
-                   held = g_(0, 0) - block_.friction * along;
+      const double held = g_(0, 0) - block_.friction * tangential(g_.row(0)).dot(d);
       if (held == 0) return;
       p[0] = -c_[0] / held;
       if (!(p[0] > 0) || !std::isfinite(p[0])) return;
       most = block_.friction * p[0];
     }
-    p.segment(t, count) = -most * d.head(count);
-    const Eigen::Vector3d reached = g_ * p;
-    const double left = (reached + c_).segment(t, count).dot(d.head(count));
-    const double size = c_scale_ + reached.head(n_).lpNorm<Eigen::Infinity>();
-    if (left >= -kClosed * size) out_.add({ContactAnswer::slides, p}, p_scale_);
+    const int first = block_.normal ? 1 : 0;
+    for (int i = 0; i < block_.tangential; ++i) p[first + i] = -most * d[i];
+    const Eigen::Vector3d reached = g_ * p, left = reached + c_;
+    const double size = c_scale_ + reached.lpNorm<Eigen::Infinity>();
+    if (tangential(left).dot(d) >= -kClosed * size) out_.add({ContactAnswer::slides, p}, p_scale_);
+  }
+  // The tangential entries, padded by 0.
+  Eigen::Vector2d tangential(const Eigen::Vector3d& v) const {
+    const Eigen::Vector2d all =
+        block_.normal ? Eigen::Vector2d(v[1], v[2]) : Eigen::Vector2d(v[0], v[1]);
+    return {block_.tangential > 0 ? all[0] : 0, block_.tangential > 1 ? all[1] : 0};
   }
 
   const Eigen::Matrix3d& g_;
@@ -183,10 +188,11 @@ void ContactSolutions::add(const ContactSolution& one, double scale) {
 void solve_contact(const Eigen::Matrix3d& g, const Eigen::Vector3d& c, const ContactBlock& block,
                    ContactSolutions& out) {
   Eigen::Matrix3d padded = Eigen::Matrix3d::Zero();
-  const int n = block.size();
-  padded.topLeftCorner(n, n) = g.topLeftCorner(n, n);
   Eigen::Vector3d free = Eigen::Vector3d::Zero();
-  free.head(n) = c.head(n);
+  for (int i = 0; i < block.size(); ++i) {
+    free[i] = c[i];
+    for (int j = 0; j < block.size(); ++j) padded(i, j) = g(i, j);
+  }
   OneContact(padded, free, block, out).solve();
 }
 

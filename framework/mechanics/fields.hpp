@@ -2,7 +2,8 @@
 //
 //   f("radius", radius, "m", "radius of the disk", positive);   name, member, unit, meaning, range
 //
-// A std::optional<double> is a parameter that may be left out. Meaning and range may be left out. A range holds for each entry; finite they must be in any case.
+// A std::optional<double> is a parameter that may be left out. Meaning and range may be left out. A
+// range holds for each entry; finite they must be in any case.
 #pragma once
 
 #include <optional>

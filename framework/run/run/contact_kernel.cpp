@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <boost/math/tools/toms748_solve.hpp>
 
 #include <hamel/framework/io/errors.hpp>
 
@@ -15,11 +14,9 @@ namespace hamel {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// A step is looked at in so many parts.
-constexpr int kParts = 5;
 // A gap of this size, m, is closed at a start; a slip of this size, relative to what the energy
-// allows, is none; and sigma.
-constexpr double kClosedGap = 1e-9, kNoSlip = 1e-10, kSigma = 1e-7;
+// allows, is none.
+constexpr double kClosedGap = 1e-9, kNoSlip = 1e-10;
 
 }  // namespace
 
@@ -140,6 +137,20 @@ const SolverStats& ContactKernel::stats() const {
   return all_;
 }
 
+// The step from the node before, to the end of a slip: friction behind that is another one, which
+// no stage should have, so that the error of the step is that of the motion before it.
+Status ContactKernel::take_again(double from, double end) {
+  if (std::abs(end - from) < 1e-12 * std::max(std::abs(from), std::abs(now_->time() - from)))
+    return {};
+  now_->beginning(snapshot_);
+  const std::vector<double> coordinates = snapshot_.coordinates, velocity = snapshot_.velocity;
+  now_->restart(from, coordinates, velocity, end - from);
+  stop_ = end;
+  now_->set_end_time(end);
+  evaluate_node();
+  return now_->advance(1);
+}
+
 Status ContactKernel::fail(const std::string& reason) const {
   return {false, steps_ + 1, now_->time(), 0, reason};
 }
@@ -151,130 +162,27 @@ Status ContactKernel::advance(long steps) {
     before_ = nullptr;
     contacts_->keep_modes();
     Status status = now_->advance(1);
+    std::optional<Found> found;
+    if (status.ok && now_->time() != from) found = find(from, now_->time());
+    if (status.ok && found && found->what == Switch::stops) {
+      status = take_again(from, found->time);
+      if (status.ok) found = find(from, now_->time());
+    }
     if (!status.ok) {
       status.step = steps_ + 1;
       return status;
     }
     if (now_->time() == from) return {};
     ++steps_;
-    if (const auto found = find(from, now_->time())) failure_ = apply(*found);
+    if (!found && now_->time() == stop_) found = stop_found();
+    if (now_->time() == stop_ || found) stop_ = kNever;
+    if (found) failure_ = apply(*found);
     else evaluate_node();
+    now_->set_end_time(limit_);
+    if (std::isfinite(stop_)) now_->set_end_time(stop_);
     if (failure_.empty()) failure_ = why_no_node();
   }
   return {};
-}
-
-// ---- gates along the last step ------------------------------------------------------------------
-
-void ContactKernel::evaluate(const Snapshot& state) {
-  std::copy(state.element.begin(), state.element.end(), g_.data());
-  xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
-                                          static_cast<Eigen::Index>(state.velocity.size()));
-  dynamics().evaluate(state.time, g_.data(), xi_);
-}
-
-// At the node: scales of velocities and directions of slip, and the gates.
-void ContactKernel::evaluate_node() {
-  at_node_ = gates(now_->time());
-  follow_speeds();
-}
-
-void ContactKernel::follow_speeds() {
-  for (int i = 0; i < count(); ++i) {
-    FollowedContact& follows = followed(i);
-    follows.speed = std::max(follows.speed, dynamics().slip_scale(i));
-    contact(i).no_slip = kNoSlip * follows.speed;
-    const Eigen::Vector2d s = dynamics().slip(i);
-    Eigen::Vector2d& reference = references_[static_cast<size_t>(i)];
-    reference = s.norm() > 10 * contact(i).no_slip ? Eigen::Vector2d(s / s.norm())
-                                                   : contact(i).direction;
-  }
-}
-
-// A contact that slides with a coefficient that is not positive has no motion, or several.
-std::string ContactKernel::why_no_node() {
-  for (int i = 0; i < count(); ++i) {
-    if (contact(i).mode != ContactMode::slides || !dynamics().law(i).normal) continue;
-    const double coefficient = dynamics().coefficient(i);
-    if (coefficient > 0) continue;
-    return fmt::format(
-        "painleve: contact '{}' slides at t = {:.10g} with a coefficient of its normal reaction of "
-        "{:.4g}, not positive, with friction = {}: rigid bodies have no unique motion here; a "
-        "smaller friction has",
-        dynamics().law(i).name, now_->time(), coefficient, dynamics().law(i).friction);
-  }
-  return "";
-}
-
-ContactKernel::Gates ContactKernel::gates(double t) {
-  static constexpr StateParts place = {.coordinates = false,
-                                       .momentum = false,
-                                       .energy = false,
-                                       .measures = false};
-  if (t == now_->time()) now_->state(snapshot_, place);
-  else now_->interpolate(t, snapshot_);
-  evaluate(snapshot_);
-  dynamics().accelerate(contacts_->states());
-  Gates out(static_cast<size_t>(count()), {kNever, kNever});
-  for (int i = 0; i < count(); ++i) {
-    auto& [first, second] = out[static_cast<size_t>(i)];
-    const ContactLaw& law = dynamics().law(i);
-    const ContactMode mode = contact(i).mode;
-    const double opened = followed(i).opened;
-    if (mode == ContactMode::open) {
-      if (!law.normal) continue;
-      first = dynamics().gap(i);
-      if (t == opened) first = std::max(dynamics().gap_rate(i), 1e-300);
-      else if (opened > -1e299) first /= std::abs(t - opened);
-      continue;
-    }
-    if (law.normal) first = dynamics().normal_reaction(i);
-    const double held = law.normal ? dynamics().normal_reaction(i) : law.load;
-    if (mode == ContactMode::rolls)
-      second = law.friction * held - dynamics().tangential_reaction(i).norm();
-    else if (law.friction > 0)
-      second = dynamics().slip(i).dot(references_[static_cast<size_t>(i)]) -
-               kSigma * followed(i).speed;
-  }
-  return out;
-}
-
-ContactKernel::Switch ContactKernel::switch_of(int i, size_t gate) const {
-  const ContactMode mode = contact(i).mode;
-  if (mode == ContactMode::open) return Switch::strikes;
-  if (gate == 0) return Switch::opens;
-  return mode == ContactMode::rolls ? Switch::slides : Switch::stops;
-}
-
-std::optional<ContactKernel::Found> ContactKernel::find(double from, double to) {
-  Gates last = at_node_;
-  std::optional<Found> out;
-  double begin = from;
-  for (int part = 1; part <= kParts && !out; ++part) {
-    const double end = part == kParts ? to : from + (to - from) * part / kParts;
-    Gates now = gates(end);
-    for (int i = 0; i < count(); ++i) {
-      for (size_t gate = 0; gate < 2; ++gate) {
-        const double before = last[static_cast<size_t>(i)][gate],
-                     value = now[static_cast<size_t>(i)][gate];
-        if (!(before >= 0 && value < 0)) continue;
-        const auto inside = [&](double t) {
-          if (t == begin) return before;
-          if (t == end) return value;
-          return gates(t)[static_cast<size_t>(i)][gate];
-        };
-        std::uintmax_t most = 200;
-        const double width = 4e-16 * std::max(std::abs(end), std::abs(end - begin));
-        const auto [a, b] = boost::math::tools::toms748_solve(
-            inside, begin, end, before, value,
-            [width](double x, double y) { return std::abs(y - x) <= width; }, most);
-        if (!out || b < out->time) out = Found{b, i, switch_of(i, gate)};
-      }
-    }
-    last = std::move(now);
-    begin = end;
-  }
-  return out;
 }
 
 }  // namespace hamel

@@ -10,6 +10,10 @@
 //                                         scale of velocities, sigma = 1e-7; the slip that is left,
 //                                         and the time that it takes to end, are taken to first
 //                                         order, with an error of order sigma^2.
+// The step at whose end a slip stops is taken again, up to there.
+//   begins   1e-6 V - |s|                 slides (its friction has the direction of the slip), no
+//                                         event
+//            s . d + sigma V              has not begun
 // A gap that has just opened has a root at its beginning, which is divided out; the first step of a
 // flight takes at most half of it. A located switch is obeyed, not tested again.
 //   Impacts that accumulate: where the rest of their series, of ratio r, rises less than atol, the
@@ -18,6 +22,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -61,9 +66,9 @@ class ContactKernel final : public Kernel {
   bool motion_within(double t, Snapshot& out) override;
 
  private:
-  enum class Switch { strikes, opens, slides, stops };
-  // Gates of a contact: the second is none where it is positive infinity.
-  using Gates = std::vector<std::array<double, 2>>;
+  enum class Switch { strikes, opens, slides, stops, grows };
+  // Gates of a contact; one that is infinite is none.
+  using Gates = std::vector<std::array<double, 3>>;
   struct Found {
     double time;
     int contact;
@@ -82,10 +87,18 @@ class ContactKernel final : public Kernel {
   void evaluate(const Snapshot& state);
   void follow_speeds();
   Status fail(const std::string& reason) const;
+  Status take_again(double from, double end);
   std::string why_no_node();
 
   // switch_search: gates along the last step.
   Gates gates(double t);
+  struct Sample {
+    double time, value;
+  };
+  std::optional<Found> stop_found();
+  double gate(int contact, size_t which, double t);
+  double locate(int contact, size_t which, Sample before, Sample after);
+  std::optional<Sample> dip(int contact, size_t which, Sample a, Sample b, Sample c);
   std::optional<Found> find(double from, double to);
   Switch switch_of(int contact, size_t gate) const;
 
@@ -112,12 +125,13 @@ class ContactKernel final : public Kernel {
   Kernel* now_ = nullptr;
   Kernel* before_ = nullptr;  // of the last step, where a switch ended it
   double limit_;
+  double stop_ = std::numeric_limits<double>::infinity();  // of a slip, where a step ends
   long steps_ = 0;
-  std::string failure_;  // of a start or a switch
+  std::string failure_;                      // of a start or a switch
   std::vector<Eigen::Vector2d> references_;  // directions of slip at the last node
   Gates at_node_;
   // The state of a switch.
-  double time_ = 0;
+  double time_ = 0, ends_ = 0;  // ends_: of its impacts, where they accumulate
   Eigen::VectorXd g_, xi_, move_;
   std::vector<double> coordinates_, velocity_;
   std::vector<std::pair<std::string, double>> events_;

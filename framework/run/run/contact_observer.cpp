@@ -18,8 +18,8 @@ bool Driver::observe_switch(const ContactSwitch& met) {
   plan_.contacts->look_back(false);
   bool stops = false;
   for (const auto& [name, time] : met.events) {
-    result_.events.push_back({name, time, met.before.coordinates, met.before.velocity,
-                              met.after.velocity});
+    result_.events.push_back(
+        {name, time, met.before.coordinates, met.before.velocity, met.after.velocity});
     if (!stops && plan_.events->stops_at_switch(name)) {
       stops = true;
       result_.status.reason = "stopped at " + name;

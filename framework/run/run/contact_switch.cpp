@@ -41,6 +41,7 @@ std::string ContactKernel::apply(const Found& found) {
   const ContactStates before = contacts_->states();
   const Eigen::VectorXd velocity = xi_;
   events_.clear();
+  ends_ = -1e300;
   std::string why;
   const int i = found.contact;
   switch (found.what) {
@@ -58,6 +59,7 @@ std::string ContactKernel::apply(const Found& found) {
       why = decide(i);
       break;
     }
+    case Switch::grows: contact(i).begins = false; break;
     case Switch::stops: why = stop_slip(i); break;
   }
   if (why.empty()) name_changes(before);
@@ -85,6 +87,8 @@ std::string ContactKernel::apply(const Found& found) {
 // Modes of the closed contacts at the state, which dynamics() has.
 std::string ContactKernel::decide(int slides) {
   const ContactStates before = contacts_->states();
+  for (ContactState& state : contacts_->states())
+    if (state.mode != ContactMode::slides) state.begins = false;
   std::string why = dynamics().decide(contacts_->states(), slides);
   for (int i = 0; i < count(); ++i)
     if (contact(i).mode == ContactMode::open &&
@@ -94,9 +98,10 @@ std::string ContactKernel::decide(int slides) {
 }
 
 void ContactKernel::name_changes(const ContactStates& before) {
+  if (ends_ < time_) ends_ = time_;
   for (int i = 0; i < count(); ++i) {
     if (contact(i).mode == before[static_cast<size_t>(i)].mode) continue;
-    events_.emplace_back(dynamics().law(i).name + "." + verb(contact(i).mode), time_);
+    events_.emplace_back(dynamics().law(i).name + "." + verb(contact(i).mode), ends_);
   }
 }
 
@@ -142,6 +147,7 @@ void ContactKernel::end_chatter(int i, double ratio) {
   if (!(a > 0)) return;
   const double rest = 2 * v / a / (1 - ratio);
   if (!(a * rest * rest / 2 < setup_.errors.at(0))) return;
+  ends_ = time_ + rest;
   dynamics().rest(contacts_->states(), i, xi_);
   dynamics().evaluate(time_, g_.data(), xi_);
   contact(i).mode = ContactMode::rolls;
@@ -172,6 +178,7 @@ std::string ContactKernel::stop_slip(int i) {
     time_ += more;
     dynamics().evaluate(time_, g_.data(), xi_);
   }
+  contact(i).begins = false;
   if (dynamics().stop(contacts_->states(), i, xi_)) dynamics().evaluate(time_, g_.data(), xi_);
   return decide(-1);
 }

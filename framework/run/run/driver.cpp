@@ -28,15 +28,16 @@ void Driver::make_observers() {
                          plan_.system->rows_may_depend;
   watching_ = plan_.recording || plan_.events->any() || plan_.contacts != nullptr;
   rows_watch_.reset();
-  if (watching_ && rows_move && plan_.contacts == nullptr && !plan_.compiled && plan_.geometry != nullptr && plan_.keeps_rows)
+  if (watching_ && rows_move && plan_.contacts == nullptr && !plan_.compiled &&
+      plan_.geometry != nullptr && plan_.keeps_rows)
     rows_watch_ = std::make_unique<RowsWatch>(plan_.geometry, *plan_.system, mechanics);
   steps_ = StepWatch(config.from, config.until - config.from);
   rejected_ = 0;
   steps_left_ = config.chooses_steps() ? std::numeric_limits<long>::max() : config.steps();
   if (!watching_) return;
   times_ = plan_.recording ? config.recorded_times() : std::vector<double>();
-  every_node_ = !times_.empty() || plan_.events->any() || rows_watch_ != nullptr ||
-                plan_.contacts != nullptr;
+  every_node_ =
+      !times_.empty() || plan_.events->any() || rows_watch_ != nullptr || plan_.contacts != nullptr;
   if (!plan_.recording) return;
   recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, balance(),
                                             plan_.reactions, plan_.motion);

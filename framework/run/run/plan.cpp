@@ -182,7 +182,8 @@ KernelFactory plan_kernel(const Registry& registry, const Config& config, const 
     const SchemeInfo* registered = registry.scheme(scheme.name);
     method.erased = true;
     if (registered != nullptr) out = registered->erased;
-    else mistakes.add(fmt::format("scheme: {} is not registered, as contacts need it", scheme.name));
+    else
+      mistakes.add(fmt::format("scheme: {} is not registered, as contacts need it", scheme.name));
   } else if (method.compiled) {
     out = planned.inputs == nullptr ? own->kernel : own->driven;
     if (!out) mistakes.add("inputs: the kernel of this run is compiled without them");

@@ -24,10 +24,11 @@ void check_law(const SystemModel& system, const ContactLaw& law, Mistakes& mista
             first = rows - system.mechanics->holonomic_rows();
   const auto is_row = [&](int row) { return row >= 0 && row < first; };
   if (law.tangential.size() > 2 || !std::ranges::all_of(law.tangential, is_row)) {
-    mistakes.add(fmt::format(
-        "contact '{}' of {}: tangential: expected at most two rows of A from 0 to {}, which are not "
-        "holonomic",
-        law.name, system.name, first - 1));
+    mistakes.add(
+        fmt::format("contact '{}' of {}: tangential: expected at most two rows of A from 0 to {}, "
+                    "which are not "
+                    "holonomic",
+                    law.name, system.name, first - 1));
   }
   if (law.normal && !(*law.normal >= first && *law.normal < rows)) {
     mistakes.add(fmt::format("contact '{}' of {}: normal: got {}, expected a holonomic row, {}",

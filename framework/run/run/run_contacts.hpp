@@ -70,7 +70,7 @@ class RunContacts {
   void serialize(Archive& archive) {
     for (ContactState& s : *states_) {
       int mode = static_cast<int>(s.mode);
-      archive(mode, s.direction[0], s.direction[1], s.no_slip);
+      archive(mode, s.direction[0], s.direction[1], s.no_slip, s.begins);
       s.mode = static_cast<ContactMode>(mode);
     }
     for (FollowedContact& f : followed_) f.serialize(archive);

@@ -37,7 +37,7 @@ RunRecorder::RunRecorder(const SystemModel& system, const Start& start, EnergyBa
                         .reactions = reactions != nullptr,
                         .reaction_power = reactions != nullptr,
                         .exact = static_cast<bool>(system.exact),
-                        .acceleration = motion != nullptr}),
+                        .acceleration = motion != nullptr,
                         .modes = reactions != nullptr && reactions->contacts() != nullptr}),
       pulls_(system.contacts.size()),
       of_rows_(std::move(reactions)),

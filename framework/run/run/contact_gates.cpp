@@ -1,0 +1,193 @@
+// Gates of contacts along the last step, and the first that crosses 0.
+//
+// A step is looked at in five parts; a crossing is located to round-off by the method of Alefeld,
+// Potra and Shi, as in events.hpp, and where a gate has a minimum between two looks a parabola
+// finds whether it dips below 0.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include <hamel/framework/run/run/contact_kernel.hpp>
+
+namespace hamel {
+namespace {
+
+constexpr double kNoGate = std::numeric_limits<double>::infinity();
+constexpr size_t kParts = 5;
+// A slip of this part of the velocities of the run is none; sigma, and where a slip has grown,
+// (5) of contact_dynamics.hpp.
+constexpr double kSmallSlip = 1e-10, kSigma = 1e-7, kGrown = 1e-6;
+
+}  // namespace
+
+void ContactKernel::evaluate(const Snapshot& state) {
+  std::copy(state.element.begin(), state.element.end(), g_.data());
+  xi_ = Eigen::Map<const Eigen::VectorXd>(state.velocity.data(),
+                                          static_cast<Eigen::Index>(state.velocity.size()));
+  dynamics().evaluate(state.time, g_.data(), xi_);
+}
+
+// At the node: scales of velocities and directions of slip, and the gates.
+void ContactKernel::evaluate_node() {
+  at_node_ = gates(now_->time());
+  follow_speeds();
+}
+
+void ContactKernel::follow_speeds() {
+  for (int i = 0; i < count(); ++i) {
+    FollowedContact& follows = followed(i);
+    follows.speed = std::max(follows.speed, dynamics().slip_scale(i));
+    contact(i).no_slip = kSmallSlip * follows.speed;
+    const Eigen::Vector2d s = dynamics().slip(i);
+    Eigen::Vector2d& reference = references_[static_cast<size_t>(i)];
+    reference =
+        s.norm() > 10 * contact(i).no_slip ? Eigen::Vector2d(s / s.norm()) : contact(i).direction;
+  }
+}
+
+// A contact that slides with a coefficient that is not positive has no motion, or several.
+std::string ContactKernel::why_no_node() {
+  for (int i = 0; i < count(); ++i) {
+    if (contact(i).mode != ContactMode::slides || !dynamics().law(i).normal) continue;
+    const double coefficient = dynamics().coefficient(i);
+    if (coefficient > 0) continue;
+    return fmt::format(
+        "painleve: contact '{}' slides at t = {:.10g} with a coefficient of its normal reaction of "
+        "{:.4g}, not positive, with friction = {}: rigid bodies have no unique motion here; a "
+        "smaller friction has",
+        dynamics().law(i).name, now_->time(), coefficient, dynamics().law(i).friction);
+  }
+  return "";
+}
+
+ContactKernel::Gates ContactKernel::gates(double t) {
+  static constexpr StateParts place = {
+      .coordinates = false, .momentum = false, .energy = false, .measures = false};
+  if (t == now_->time()) now_->state(snapshot_, place);
+  else now_->interpolate(t, snapshot_);
+  evaluate(snapshot_);
+  dynamics().accelerate(contacts_->states());
+  Gates out(static_cast<size_t>(count()), {kNoGate, kNoGate, kNoGate});
+  for (int i = 0; i < count(); ++i) {
+    auto& [first, second, third] = out[static_cast<size_t>(i)];
+    const ContactLaw& law = dynamics().law(i);
+    const ContactMode mode = contact(i).mode;
+    const double opened = followed(i).opened;
+    if (mode == ContactMode::open) {
+      if (!law.normal) continue;
+      first = dynamics().gap(i);
+      if (t == opened) first = std::max(dynamics().gap_rate(i), 1e-300);
+      else if (opened > -1e299) first /= std::abs(t - opened);
+      continue;
+    }
+    if (law.normal) first = dynamics().normal_reaction(i);
+    const double held = law.normal ? dynamics().normal_reaction(i) : law.load;
+    if (mode == ContactMode::rolls)
+      second = law.friction * held - dynamics().tangential_reaction(i).norm();
+    else if (contact(i).begins) {
+      second = kGrown * followed(i).speed - dynamics().slip(i).norm();
+      third = dynamics().slip(i).dot(contact(i).direction) + kSigma * followed(i).speed;
+    } else if (law.friction > 0)
+      second =
+          dynamics().slip(i).dot(references_[static_cast<size_t>(i)]) - kSigma * followed(i).speed;
+  }
+  return out;
+}
+
+ContactKernel::Switch ContactKernel::switch_of(int i, size_t gate) const {
+  const ContactMode mode = contact(i).mode;
+  if (mode == ContactMode::open) return Switch::strikes;
+  if (gate == 0) return Switch::opens;
+  if (mode == ContactMode::rolls) return Switch::slides;
+  return contact(i).begins && gate == 1 ? Switch::grows : Switch::stops;
+}
+
+// At the node, to which a step was taken again: a contact that has nearly ceased to slip.
+std::optional<ContactKernel::Found> ContactKernel::stop_found() {
+  const Gates here = gates(now_->time());
+  for (int i = 0; i < count(); ++i) {
+    if (contact(i).mode != ContactMode::slides || contact(i).begins) continue;
+    if (here[static_cast<size_t>(i)][1] <= kSigma * followed(i).speed)
+      return Found{now_->time(), i, Switch::stops};
+  }
+  return {};
+}
+
+double ContactKernel::gate(int contact, size_t which, double t) {
+  return gates(t)[static_cast<size_t>(contact)][which];
+}
+
+// Between two times with values of either sign.
+double ContactKernel::locate(int contact, size_t which, Sample before, Sample after) {
+  const auto inside = [&](double t) {
+    if (t == before.time) return before.value;
+    if (t == after.time) return after.value;
+    return gate(contact, which, t);
+  };
+  std::uintmax_t most = 200;
+  const double width = 4e-16 * std::max(std::abs(after.time), std::abs(after.time - before.time));
+  return boost::math::tools::toms748_solve(
+             inside, before.time, after.time, before.value, after.value,
+             [width](double x, double y) { return std::abs(y - x) <= width; }, most)
+      .second;
+}
+
+// The least value about the middle of three times, where a parabola through them has it nearly at 0
+// or below: a gate that dips below 0 between two looks.
+std::optional<ContactKernel::Sample> ContactKernel::dip(int contact, size_t which, Sample a,
+                                                        Sample b, Sample c) {
+  constexpr int tries = 12;
+  for (int k = 0; k < tries; ++k) {
+    const double left = b.time - a.time, right = c.time - b.time;
+    const double down = (a.value - b.value) / left, up = (c.value - b.value) / right;
+    if (!(down >= 0 && up >= 0 && down + up > 0)) return {};
+    const double curvature = (down + up) / (left + right),
+                 slope = (up * left - down * right) / (left + right);
+    const double move = -slope / (2 * curvature), least = b.value - slope * slope / (4 * curvature);
+    if (least > 0.3 * b.value && k > 0) return {};
+    if (std::abs(move) < 1e-9 * (left + right)) return {};
+    const Sample now = {b.time + move, gate(contact, which, b.time + move)};
+    if (now.value < 0) return now;
+    if (!(now.value < b.value)) return {};
+    (move < 0 ? c : a) = b;
+    b = now;
+  }
+  return {};
+}
+
+std::optional<ContactKernel::Found> ContactKernel::find(double from, double to) {
+  std::array<double, kParts + 1> times;
+  std::array<Gates, kParts + 1> values;
+  times[0] = from;
+  values[0] = at_node_;
+  std::optional<Found> out;
+  const auto take = [&](int i, size_t which, Sample before, Sample after) {
+    const double t = locate(i, which, before, after);
+    if (!out || t < out->time) out = Found{t, i, switch_of(i, which)};
+  };
+  for (size_t part = 1; part <= kParts && !out; ++part) {
+    times[part] = part == kParts ? to : from + (to - from) * static_cast<double>(part) / kParts;
+    values[part] = gates(times[part]);
+    for (int i = 0; i < count(); ++i) {
+      for (size_t which = 0; which < 3; ++which) {
+        const auto sample = [&](size_t k) {
+          return Sample{times[k], values[k][static_cast<size_t>(i)][which]};
+        };
+        const Sample before = sample(part - 1), now = sample(part);
+        if (!std::isfinite(before.value)) continue;
+        if (before.value >= 0 && now.value < 0) take(i, which, before, now);
+        else if (part > 1 && before.value > 0)
+          if (const auto least = dip(i, which, sample(part - 2), before, now))
+            take(i, which, least->time < before.time ? sample(part - 2) : before, *least);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace hamel
