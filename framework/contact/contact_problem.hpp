@@ -1,6 +1,6 @@
 // The contact problem: impulses, or reactions, P of contacts with Coulomb's friction, with
 // gamma = G P + c the velocities, or accelerations, that they leave,
-//   0 <= P_n  _|_  gamma_n >= 0,   |P_t| <= mu P_n,   gamma_t = -k P_t, k >= 0,                  (1)
+//   0 <= P_n  _|_  gamma_n >= 0,   |P_t| <= mu P_n,   gamma_t = -k P_t, k >= 0,                (1)
 // k > 0 only on the rim |P_t| = mu P_n of the cone.
 //
 // G need not be symmetric: in the columns of a contact that slides already its friction belongs to

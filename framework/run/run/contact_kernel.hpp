@@ -6,16 +6,16 @@
 //   rolling  l_n                          opens
 //            mu l_n - |l_t|               slides, along -l_t
 //   sliding  l_n                          opens
-//            s . d - sigma V              ceases to slip: d the direction of s at the last node, V a
-//                                         scale of velocities, sigma = 1e-7; the slip that is left,
-//                                         and the time that it takes to end, are taken to first
-//                                         order, with an error of order sigma^2.
-// The step at whose end a slip stops is taken again, up to there.
+//            s . d - sigma V              ceases to slip: d the direction of s at the last node,
+//                                         V a scale of velocities, sigma = 1e-7; the slip that is
+//                                         left, and the time that it takes to end, are taken to
+//                                         first order, with an error of order sigma^2.
 //   begins   1e-6 V - |s|                 slides (its friction has the direction of the slip), no
 //                                         event
 //            s . d + sigma V              has not begun
-// A gap that has just opened has a root at its beginning, which is divided out; the first step of a
-// flight takes at most half of it. A located switch is obeyed, not tested again.
+// The step at whose end a slip stops is taken again, up to there. A gap that has just opened has a
+// root at its beginning, which is divided out; the first step of a flight takes at most half of it.
+// A located switch is obeyed, not tested again.
 //   Impacts that accumulate: where the rest of their series, of ratio r, rises less than atol, the
 // contact stays closed from there on. Source: Studer, Leine, Glocker, Step size adjustment and
 // extrapolation for time-stepping schemes in non-smooth dynamics (2008). Not installed.

@@ -195,7 +195,7 @@ double ContactKernel::first_step(double step) {
   return out;
 }
 
-// The run goes on from time_, coordinates_ and xi_ in the modes of its contacts.
+// Continues from time_, coordinates_ and xi_ in the modes of the contacts.
 void ContactKernel::take_up(double step) {
   std::vector<int> key;
   for (int i = 0; i < count(); ++i) key.push_back(static_cast<int>(contact(i).mode));

@@ -33,6 +33,7 @@ std::string Driver::flaw(const Snapshot& state) {
 Result Driver::head() const {
   Result out;
   out.config = plan_.config;
+  if (plan_.contacts != nullptr) out.config.slip = true;  // its states are not to be projected
   out.system = plan_.system;
   out.inputs = plan_.setup.inputs;
   out.unused = plan_.unused;

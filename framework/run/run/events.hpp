@@ -71,8 +71,8 @@ class Events {
   double time_ = 0;
 };
 
-/// The events of a system, its own and those of its contacts, without a value: "contact_lost", where
-/// a normal reaction ceases to push; the switches of a contact with a law, "contact.slides".
+/// Events of a system, its own and those of its contacts, without a value: "contact_lost", where
+/// a normal reaction ceases to push; switches of a contact with a law, "contact.slides".
 std::vector<Event> events_of(const SystemModel& system);
 
 }  // namespace hamel

@@ -22,7 +22,7 @@ class Reactions {
   /// inputs: those of the run, null without.
   Reactions(std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
             std::shared_ptr<const Inputs> inputs, std::shared_ptr<RunContacts> contacts = nullptr);
-  /// Of the run, whose modes decide; null where no contact may slide or open.
+  /// The contacts of the run, whose modes decide; null where no contact may slide or open.
   RunContacts* contacts() const { return contacts_.get(); }
   /// The multipliers lambda of A xi = b, k entries, by the equations of motion at an admissible
   /// state. They stay until the next state.

@@ -46,7 +46,7 @@ class RunContacts {
   /// Another run: at another start.
   void begin_anew();
 
-  /// Of the last step, in order; the driver takes them.
+  /// Switches of the last step; the driver takes them.
   std::vector<ContactSwitch> switches;
   std::vector<std::string> notes;
   // Switches since a time, of those that never end.
