@@ -316,8 +316,10 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
     satisfy(mechanics, *geometry, t, phi, g, planned, mistakes);
   if (said) return;
   if (planned.refused) planned.constraints.resize(0, n);
+  // Where all rows leave no motion, a contact that slides does.
+  const bool moves = mechanics.has_drift() || !system.contact_laws.empty();
   const std::vector<std::string> wrong =
-      check_system_matrices(planned.inertia, planned.constraints, n, mechanics.has_drift());
+      check_system_matrices(planned.inertia, planned.constraints, n, moves);
   mistakes.add(wrong);
   if (wrong.empty() && !mechanics.constant_inertia())
     check_symmetry_beside(mechanics, *geometry, g, mistakes);
