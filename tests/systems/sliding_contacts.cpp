@@ -86,6 +86,16 @@ TEST(SlidingBall, EndVelocityWhateverTheGround) {
   }
 }
 
+// Dropped from rest the ground bears m g t in all, in bounces or not, so that the time is the same.
+TEST(SlidingBall, BouncesDoNotChangeTheTime) {
+  const Result r =
+      ball(0.2, 0.03, 0.5).start(at_height(0.05, {40, -60, 7, 2, 0, 0})).until(1).run();
+  EXPECT_TRUE(r.status.ok) << r.status.reason;
+  EXPECT_NEAR(r.events.back().time, 0.5803075242513841, 1e-10);
+  EXPECT_EQ(r.events.back().name, "contact.rolls");
+  EXPECT_EQ(r.events[r.events.size() - 2].name, "contact.slides");  // the impacts have ended
+}
+
 // Set sliding without spin the body ends with 1/(1 + k) of its velocity.
 TEST(SlidingBodies, SetSlidingWithoutSpin) {
   const Result r = ball(0.3, 0.1).start(at_height(0.1, {0, 0, 0, 2, 0, 0})).until(1).run();

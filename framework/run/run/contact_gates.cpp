@@ -65,11 +65,11 @@ std::string ContactKernel::why_no_node() {
   return "";
 }
 
-ContactKernel::Gates ContactKernel::gates(double t) {
+ContactKernel::Gates ContactKernel::gates(double t, bool near) {
   static constexpr StateParts place = {
       .coordinates = false, .momentum = false, .energy = false, .measures = false};
   if (t == now_->time()) now_->state(snapshot_, place);
-  else now_->interpolate(t, snapshot_);
+  else if (!near || !now_->motion_within(t, snapshot_)) now_->interpolate(t, snapshot_);
   evaluate(snapshot_);
   dynamics().accelerate(contacts_->states());
   Gates out(static_cast<size_t>(count()), {kNoGate, kNoGate, kNoGate});
@@ -122,8 +122,12 @@ double ContactKernel::gate(int contact, size_t which, double t) {
   return gates(t)[static_cast<size_t>(contact)][which];
 }
 
-// Between two times with values of either sign.
+// Between two times with values of either sign, which a look leaves open by the error of the step.
 double ContactKernel::locate(int contact, size_t which, Sample before, Sample after) {
+  if (before.time > now_->beginning_time()) before.value = gate(contact, which, before.time);
+  if (after.time < now_->time()) after.value = gate(contact, which, after.time);
+  if (!(before.value >= 0)) return before.time;
+  if (!(after.value < 0)) return after.time;
   const auto inside = [&](double t) {
     if (t == before.time) return before.value;
     if (t == after.time) return after.value;
@@ -172,7 +176,7 @@ std::optional<ContactKernel::Found> ContactKernel::find(double from, double to) 
   };
   for (size_t part = 1; part <= kParts && !out; ++part) {
     times[part] = part == kParts ? to : from + (to - from) * static_cast<double>(part) / kParts;
-    values[part] = gates(times[part]);
+    values[part] = gates(times[part], true);
     for (int i = 0; i < count(); ++i) {
       for (size_t which = 0; which < 3; ++which) {
         const auto sample = [&](size_t k) {

@@ -91,7 +91,8 @@ class ContactKernel final : public Kernel {
   std::string why_no_node();
 
   // switch_search: gates along the last step.
-  Gates gates(double t);
+  // near: off the constraints by about the error of a step, which costs less.
+  Gates gates(double t, bool near = false);
   struct Sample {
     double time, value;
   };
