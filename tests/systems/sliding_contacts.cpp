@@ -181,6 +181,24 @@ TEST(SleighWithWeight, LateralForceDecides) {
   EXPECT_NEAR(force, 0.1 * kGravity, 1e-9);
 }
 
+// While nothing slips the motion is that of the ideal contact.
+TEST(EnoughFriction, IsAnIdealContact) {
+  for (const char* name : {"falling_disk", "rattleback", "chaplygin_sleigh"}) {
+    auto ideal = simulate(name), rough = simulate(name);
+    ideal.tolerance({.relative = 1e-11}).until(0.5);
+    rough.set("friction", 20).tolerance({.relative = 1e-11}).until(0.5);
+    const Result a = ideal.run(), b = rough.run();
+    EXPECT_TRUE(b.status.ok) << name << ": " << b.status.reason;
+    EXPECT_TRUE(b.events.empty()) << name;
+    for (size_t i = 0; i < a.last.velocity.size(); ++i)
+      EXPECT_NEAR(a.last.velocity[i], b.last.velocity[i], 1e-9) << name << ' ' << i;
+    // Its reactions too.
+    for (const char* column : {"lambda1", "reaction_power"})
+      EXPECT_NEAR(a.trajectory.column(column).back(), b.trajectory.column(column).back(), 1e-7)
+          << name << ' ' << column;
+  }
+}
+
 // Turning the start about the vertical turns the motion.
 TEST(SlidingDisk, MovesTheSameInAllDirections) {
   const FallingDisk disk{.ground = {.friction = 0.3, .restitution = 0.2}};

@@ -12,7 +12,8 @@ namespace {
 
 // A member of an entry of a list, as the line of the entry shows it.
 std::string member_text(const std::string& name, const nlohmann::ordered_json& member) {
-  const std::string text = member.is_string() ? member.get<std::string>() : member.dump();
+  std::string text = member.is_string() ? member.get<std::string>() : member.dump();
+  if (member.is_null()) text = "not set";
   if (name == "name" || name == "group") return fmt::format("{:<14}", text);
   if (name == "default") return fmt::format(" = {:<12}", text);
   if (name == "unit") return fmt::format(" [{}]", text);

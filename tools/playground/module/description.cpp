@@ -39,6 +39,7 @@ std::string configuration_of(const SystemDescription& d) {
   std::string out = fmt::format("# {}\nsystem = \"{}\"\nuntil = 20  # s\n", d.summary, d.name);
   if (!d.parameters.empty()) out += "\n[set]\n";
   for (const Field& field : d.parameters) {
+    if (field.value.empty()) continue;  // left out
     const std::string unit = field.unit == "1" ? "" : field.unit;
     const char* const between = unit.empty() || field.meaning.empty() ? "" : ", ";
     const std::string comment = fmt::format("{}{}{}", unit, between, field.meaning);
