@@ -49,7 +49,8 @@ void check_contacts(const SystemModel& system, const Config& config, const Schem
                                system.name));
     return;
   }
-  for (const ContactLaw& law : laws) check_law(system, law, mistakes);
+  if (mistakes.none())  // else its parameters are refused already
+    for (const ContactLaw& law : laws) check_law(system, law, mistakes);
   if (scheme != nullptr && !scheme->estimates_error) {
     mistakes.add(
         fmt::format("scheme: {} has no dense output, on which contacts switch; with friction "
