@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <hamel/framework/lie/retraction_members.hpp>
 #include <hamel/framework/run/run/own_system.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/schemes/balance.hpp>
@@ -42,6 +43,10 @@ constexpr auto problem_of() {
 }
 }  // namespace detail
 
+/// In place of add_retraction (kernels.hpp) for what is no retraction.
+template <class Tau>
+requires(!Retraction<Tau>) void add_retraction(Registry&) { refuse_incomplete<Tau>(); }
+
 /// A system object with the scheme and the retraction named by type; nothing needs to be
 /// registered.
 ///   hamel::simulate<hamel::Lift, hamel::Cayley>(Sleigh{.a = 0.3})
@@ -50,12 +55,14 @@ Simulation simulate(const S& system) {
   static_assert(System<S>,
                 "this type does not satisfy hamel::System: Group, inertia(), constraints()");
   using R = Tau<typename S::Group>;
-  using P = typename decltype(detail::problem_of<Scheme, S, R>())::type;
-  OwnSystem own{.make = maker(system),
-                .kernel = compile<Scheme, P>(),
-                .scheme = scheme_info<Scheme>(),
-                .retraction = retraction_info<R>()};
-  if constexpr (has_inputs<S>()) own.driven = compile<Scheme, StaticProblem<WithInputs<S>, R>>();
+  refuse_incomplete<R>();
+  OwnSystem own{.make = maker(system), .scheme = scheme_info<Scheme>()};
+  if constexpr (Retraction<R>) {
+    using P = typename decltype(detail::problem_of<Scheme, S, R>())::type;
+    own.kernel = compile<Scheme, P>();
+    own.retraction = retraction_info<R>();
+    if constexpr (has_inputs<S>()) own.driven = compile<Scheme, StaticProblem<WithInputs<S>, R>>();
+  }
   return {registry(), erase_words(system).name, std::move(own)};
 }
 

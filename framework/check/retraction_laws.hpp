@@ -18,6 +18,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/check/group_laws.hpp>
+#include <hamel/framework/lie/retraction_members.hpp>
 
 namespace hamel {
 
@@ -123,6 +124,13 @@ LawReport check_retraction(unsigned long long seed = 1) {
   report.push_back(
       {"Newton derivative d[dR^-T p] against differences", newton.value, check::differentiated});
   return report;
+}
+
+/// Does not compile: the message names the member that R lacks.
+template <class R>
+requires(!Retraction<R>) LawReport check_retraction(unsigned long long /*seed*/ = 1) {
+  refuse_incomplete<R>();
+  return {};
 }
 
 }  // namespace hamel

@@ -1,6 +1,6 @@
 # cmake -DCOMPILER=c++ -DSOURCE=<file> -DINCLUDES=a;b -DMISTAKE=WITHOUT;WITH -P this
 # WITHOUT: passes when SOURCE compiles. WITH the macro MISTAKE: when it does not, and the compiler's first error, after
-# which it stops, matches SOURCE's line `// expect: <regex>`.
+# which it stops, matches SOURCE's line `// expect: <regex>`. With a line `// one error` it does not stop, and finds no other.
 cmake_minimum_required(VERSION 3.25)
 list(TRANSFORM INCLUDES PREPEND -I)
 list(TRANSFORM INCLUDES REPLACE "^-I(.*eigen3.*)$" "-isystem\\1")
@@ -20,9 +20,19 @@ if(WITH IN_LIST MISTAKE)
     message(FATAL_ERROR "${SOURCE} has no line `// expect: <regular expression>`")
   endif()
   string(REGEX REPLACE "^// expect: " "" expected "${expected}")
-  execute_process(COMMAND ${command} -Wfatal-errors -DMISTAKE ${SOURCE}
+  set(stop -Wfatal-errors)
+  file(STRINGS ${SOURCE} alone REGEX "^// one error$")
+  if(alone)
+    set(stop "")
+  endif()
+  execute_process(COMMAND ${command} ${stop} -DMISTAKE ${SOURCE}
                   RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   string(REGEX MATCH "[^\n]*error: [^\n]*" first_error "${output}")
+  string(REGEX MATCHALL "error: " errors "${output}")
+  list(LENGTH errors count)
+  if(alone AND NOT count EQUAL 1)
+    message(FATAL_ERROR "${count} errors, expected one:\n${output}")
+  endif()
   # clang's words, as g++ has them
   string(REGEX REPLACE "static_assert failed[^\"]*\"(.*)\"$" "static assertion failed: \\1" first_error "${first_error}")
   string(REGEX REPLACE "'([^']*)' file not found" "\\1: No such file" first_error "${first_error}")
