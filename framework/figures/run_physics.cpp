@@ -55,6 +55,14 @@ std::string part_of_reaction(const std::string& name) {
   return dot == std::string::npos ? "" : name.substr(0, dot);
 }
 
+// How many rows A xi = b there are; of a system that is only known by a recording how many have
+// multipliers there.
+int rows_with_reactions(const Result& r) {
+  const SystemModel& system = *r.system;
+  return system.mechanics != nullptr ? system.mechanics->constraint_count()
+                                     : static_cast<int>(system.reactions.size());
+}
+
 // The rows of each part, in the order in which the mechanism draws them; in one list where there
 // are more parts than figures help.
 std::vector<std::pair<std::string, std::vector<int>>> rows_by_part(const Result& r) {
@@ -67,7 +75,7 @@ std::vector<std::pair<std::string, std::vector<int>>> rows_by_part(const Result&
   };
   if (!names.empty())
     for (const DrawnForce& force : r.system->forces) rows_of(force.name);
-  for (int row = 0; row < r.system->mechanics->constraint_count(); ++row)
+  for (int row = 0; row < rows_with_reactions(r); ++row)
     rows_of(names.empty() ? "" : part_of_reaction(names[static_cast<size_t>(row)])).push_back(row);
   std::erase_if(out, [](const auto& part) { return part.second.empty(); });
   if (out.size() <= kMostParts) return out;
@@ -144,18 +152,19 @@ void add_reactions(std::vector<Figure>& out, const Result& r, const std::vector<
 }
 
 // Angles that the equations do not depend on: of wheels and rotors. They are as large as the way is
-// long.
+// long. Not found of a system that is only known by a recording.
 class Spins {
  public:
-  Spins(const Registry& registry, const Result& r)
-      : mechanics_(*r.system->mechanics),
-        geometry_(registry.geometry(r.system->group.name, r.config.retraction)) {
+  Spins(const Registry& registry, const Result& r) : mechanics_(r.system->mechanics.get()) {
+    const std::vector<std::string> maps = registry.retractions_or_common(r.system->group.name);
+    if (mechanics_ == nullptr || maps.empty()) return;
+    geometry_ = registry.geometry(r.system->group.name, maps.front());
     const std::span<const double> row = r.trajectory.row(r.trajectory.rows() - 1);
     const size_t columns = r.system->group.columns.size();
     time_ = row[0];
     coordinates_.assign(row.begin() + 1, row.begin() + 1 + static_cast<std::ptrdiff_t>(columns));
-    velocity_ = Eigen::Map<const Eigen::VectorXd>(row.data() + 1 + columns, mechanics_.dim());
-    if (geometry_ != nullptr) here_ = equations(coordinates_);
+    velocity_ = Eigen::Map<const Eigen::VectorXd>(row.data() + 1 + columns, mechanics_->dim());
+    here_ = equations(coordinates_);
   }
   bool has(const ShapeCoordinate& shape) const {
     if (geometry_ == nullptr || shape.unit != "rad") return false;
@@ -167,21 +176,21 @@ class Spins {
  private:
   // I, A, b, the force and V, one behind the other.
   Eigen::VectorXd equations(const std::vector<double>& coordinates) const {
-    const Eigen::Index n = mechanics_.dim(), k = mechanics_.constraint_count();
+    const Eigen::Index n = mechanics_->dim(), k = mechanics_->constraint_count();
     Eigen::VectorXd g(geometry_->size()), b = Eigen::VectorXd::Zero(k), force(n);
     Eigen::MatrixXd inertia(n, n), rows(k, n);
     geometry_->from_coordinates(coordinates, g.data());
-    mechanics_.inertia(g.data(), inertia);
-    mechanics_.constraints(time_, g.data(), rows, b);
-    mechanics_.force(time_, g.data(), velocity_, force);
+    mechanics_->inertia(g.data(), inertia);
+    mechanics_->constraints(time_, g.data(), rows, b);
+    mechanics_->force(time_, g.data(), velocity_, force);
     Eigen::VectorXd out(n * n + k * n + k + n + 1);
-    out << inertia.reshaped(), rows.reshaped(), b, force, mechanics_.potential(g.data());
+    out << inertia.reshaped(), rows.reshaped(), b, force, mechanics_->potential(g.data());
     return out;
   }
 
   static constexpr double kUnmoved = 1e-10;
-  const Mechanics& mechanics_;
-  std::shared_ptr<const Geometry> geometry_;  // null of a group that is not registered
+  const Mechanics* mechanics_;                // null where nothing is found
+  std::shared_ptr<const Geometry> geometry_;  // null where nothing is found
   double time_ = 0;
   std::vector<double> coordinates_;
   Eigen::VectorXd velocity_, here_;
@@ -231,7 +240,7 @@ void add_physics(std::vector<Figure>& out, const Registry& registry, const Resul
   spin.add_to(out, {{"rad/s", "Spin of wheels and rotors"}}, "", marks);
   shape.add_to(out, {{"rad", "Angles of the shape"}, {"m", "Places"}}, "Shape", marks);
   spun.add_to(out, {{"rad", "Angles of wheels and rotors"}}, "", marks);
-  if (r.system->mechanics->constraint_count() > 0) add_reactions(out, r, marks);
+  if (rows_with_reactions(r) > 0) add_reactions(out, r, marks);
   if (does_work(r)) add_energy_balance(out, r, marks);
   momentum.add_to(out, {{"N m s", "Angular momentum in the body"}, {"N s", "Momentum in the body"}},
                   "Body momentum mu", marks);

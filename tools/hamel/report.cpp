@@ -7,7 +7,7 @@
 
 #include <hamel/framework/figures/figures.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
-#include <hamel/framework/run/run/recorded_simulation.hpp>
+#include <hamel/framework/run/run/recorded_result.hpp>
 #include <hamel/systems/by_name.hpp>
 
 #include "commands.hpp"
@@ -20,11 +20,11 @@ namespace hamel::tools {
 namespace {
 
 struct ReadRun {
-  std::string file, name, record;
+  std::string file, name, record, lack;
   Result result;
 };
 
-// The file of a run that is done, with the system that it was of.
+// The file of a run that is done.
 ReadRun read_run(const std::string& path) {
   const RunFile file(path);
   if (!file.finished()) {
@@ -33,19 +33,8 @@ ReadRun read_run(const std::string& path) {
                      "its page",
                      file.path())});
   }
-  ReadRun out;
-  out.file = file.path();
-  out.record = file.record();
-  const Config config = file.config();
-  const Run run = recorded_simulation(file, registry()).build();
-  Result& r = out.result;
-  r.system = std::make_shared<const SystemModel>(run.system());
-  r.config = run.config();
-  r.config.inputs = config.inputs;  // by their names
-  r.inputs = run.inputs();
-  read_record(out.record, path, r);
-  r.trajectory = read_rows(file, kRowsOfPage, r.system.get());
-  return out;
+  RecordedResult recorded = recorded_result(file, registry(), kRowsOfPage);
+  return {file.path(), "", file.record(), std::move(recorded.lack), std::move(recorded.result)};
 }
 
 void name_apart(std::vector<ReadRun>& runs) {
@@ -100,6 +89,7 @@ Page compared(const std::vector<ReadRun>& runs) {
   }
   page.table("What was measured", columns, rows);
   for (const ReadRun& run : runs) {
+    if (!run.lack.empty()) page.text({fmt::format("{}: {}.", run.name, run.lack)});
     if (const size_t stride = run.result.trajectory.stride(); stride > 1)
       page.text({fmt::format("{}: one recorded state in {} is shown.", run.name, stride)});
   }
@@ -135,6 +125,7 @@ int report(const ReportOptions& options) {
   }
   if (!mistakes.empty()) throw ConfigError(mistakes);
   if (runs.size() > 1) name_apart(runs);
+  else if (!runs.front().lack.empty()) runs.front().result.notes.push_back(runs.front().lack);
   const Page page =
       runs.size() > 1 ? compared(runs) : run_page(runs.front().result, runs.front().record);
   if (alone) write_figure(page, options.figure, output, width);

@@ -167,15 +167,12 @@ constexpr bool MayBeNone<std::optional<Value>> = true;
 template <class Value>
 constexpr bool MayBeNone<std::vector<Value>> = true;
 
-}  // namespace
-
-Config Config::continued(const std::string& record, const std::string& origin) {
-  const Json json = parsed(record, origin);
-  const Entry all(json, origin);
+// The system and the options of a record, all but the start.
+Config options_of(const Entry& all, const std::string& origin) {
   Config config;
   const bool of_file = all.has("system_file") && !all["system_file"].null();
   config.system = all[of_file ? "system_file" : "system"].as<std::string>();
-  fields([&](const Option& option, auto member) {
+  Config::fields([&](const Option& option, auto member) {
     const std::string key = key_in_record(option);
     if (!all.has(key) || all[key].null() || all[key].text().empty()) return;
     try {
@@ -192,6 +189,25 @@ Config Config::continued(const std::string& record, const std::string& origin) {
       config.inputs[name] = signal.signal();
     });
   }
+  return config;
+}
+
+}  // namespace
+
+Config recorded_config(const std::string& record, const std::string& origin) {
+  const Json json = parsed(record, origin);
+  const Entry all(json, origin);
+  Config config = options_of(all, origin);
+  const Entry start = all["start"];
+  start["configuration"].get(config.start.configuration);
+  start["velocity"].get(config.start.velocity);
+  return config;
+}
+
+Config Config::continued(const std::string& record, const std::string& origin) {
+  const Json json = parsed(record, origin);
+  const Entry all(json, origin);
+  Config config = options_of(all, origin);
   const Entry last = all["final"];
   last["configuration"].get(config.start.configuration);
   last["velocity"].get(config.start.velocity);

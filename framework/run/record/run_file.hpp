@@ -74,6 +74,10 @@ class RunFile {
 /// given. ConfigError where they are not those that were written.
 Trajectory read_rows(const RunFile& file, std::size_t most, const SystemModel* system = nullptr);
 
+/// The run of a record as it was run: system, parameters, start and every option that was used.
+/// ConfigError, with the place, where it is none.
+Config recorded_config(const std::string& record, const std::string& origin);
+
 /// The contents of a record, into a Result that has its system and config. ConfigError, with the
 /// place, where it is none.
 void read_record(const std::string& record, const std::string& origin, Result& out);
