@@ -28,6 +28,12 @@ struct DescribeOptions {
 int describe(const DescribeOptions& options);
 int analyse(const DescribeOptions& options);
 
+struct NewOptions {
+  std::string kind;  // system, group, scheme, project
+  std::string name;
+};
+int new_project(const NewOptions& options);
+
 struct RunOptions {
   Config config;
   std::vector<std::string> outputs;  // -o, format by extension

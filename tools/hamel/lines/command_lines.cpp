@@ -188,6 +188,21 @@ Action define_section(CLI::App& app) {
   return [line, &app] { return section(line->resolve(app)); };
 }
 
+Action define_new(CLI::App& app) {
+  const auto options = std::make_shared<NewOptions>();
+  app.add_option("KIND", options->kind, "system, group, scheme or project (a mechanism by parts)")
+      ->required();
+  app.add_option("NAME", options->name, "its name and folder, which must not exist: my_sleigh")
+      ->required();
+  app.footer(
+      "The folder has CMakeLists.txt, the source, a program, a test with the laws of hamel, and a "
+      "file for CI.\n"
+      "Examples:\n"
+      "  hamel new system my_sleigh\n"
+      "  hamel new project my_cart");
+  return [options] { return new_project(*options); };
+}
+
 Action define_reproduce(CLI::App& app) {
   const auto options = std::make_shared<ReproduceOptions>();
   app.add_option("-o,--output", options->directory,
@@ -213,6 +228,8 @@ const std::vector<Command>& commands() {
        define_ensemble},
       {"steady", "A steady motion near a guess, its eigenvalues; along a parameter", define_steady},
       {"section", "A Poincare section: the states in which motions cross an event", define_section},
+      {"new", "A project of your own that compiles: a system, a group, a scheme, a mechanism",
+       define_new},
       {"reproduce", "The paper's two figures, all variants side by side", define_reproduce},
   };
   return all;
