@@ -36,6 +36,14 @@ if(TARGET hamel_program)
           DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
 endif()
 
+# What `cmake --install` and cpack take, without tests.
+add_custom_target(hamel_installed DEPENDS ${libraries} ${modules})
+foreach(target hamel_shared hamel_program hamel_manual hamel_schemas hamel_python hamel_python_stub)
+  if(TARGET ${target})
+    add_dependencies(hamel_installed ${target})
+  endif()
+endforeach()
+
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hamel)
 install(EXPORT hamelTargets NAMESPACE hamel:: DESTINATION ${package_dir} COMPONENT dev)
 configure_package_config_file(
