@@ -98,10 +98,10 @@ void check_parameters(const std::string& system, const std::vector<Field>& field
     const bool left_out = field->optional && value.empty();
     const bool fits = field->any_length ? !value.empty() : left_out || value.size() == expected;
     if (!fits) {
-      mistakes.push_back(fmt::format(
-          "parameter '{}' of {}: got {} value{}, expected {}", name, system, value.size(),
-          value.size() == 1 ? "" : "s",
-          field->any_length ? std::string("at least 1") : std::to_string(expected)));
+      mistakes.push_back(
+          fmt::format("parameter '{}' of {}: got {} value{}, expected {}", name, system,
+                      value.size(), value.size() == 1 ? "" : "s",
+                      field->any_length ? std::string("at least 1") : std::to_string(expected)));
     }
     if (!all_of(value, [](double x) { return std::isfinite(x); }))
       mistakes.push_back(

@@ -120,7 +120,7 @@ class Assembly {
   SystemModel model_;
   std::vector<mechanisms::Link> links_;
   std::map<int, std::vector<const Mechanism::BodyPart*>> link_bodies_;  // but of the ground
-  std::vector<std::string> link_names_;  // of their joints
+  std::vector<std::string> link_names_;                                 // of their joints
   std::vector<const Mechanism::JointPart*> link_joints_;
   std::map<std::string, int> body_links_;  // the ground is kWorld
   // Of the system:

@@ -27,7 +27,9 @@ Mechanism rotors(const std::vector<double>& moments) {
   return m;
 }
 
-double column(const Result& result, const std::string& name) { return result.trajectory.column(name).back(); }
+double column(const Result& result, const std::string& name) {
+  return result.trajectory.column(name).back();
+}
 
 // b = r a + c: (J_a + r^2 J_b) a'' = torque on a, the gear's torque on b is J_b b''.
 TEST(Couplings, GearAcceleratesAsOneBody) {

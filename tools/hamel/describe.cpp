@@ -52,12 +52,11 @@ Json parameters_of(const std::vector<Field>& fields) {
   for (const Field& field : fields) {
     Json value = field.value.size() == 1 ? Json(field.value[0]) : Json(field.value);
     if (field.value.empty()) value = nullptr;  // may be left out
-    parameters.push_back(
-        {{"name", field.name},
-         {"default", std::move(value)},
-         {"unit", field.unit},
-         {"range", words_of(field.range)},
-         {"meaning", field.meaning}});
+    parameters.push_back({{"name", field.name},
+                          {"default", std::move(value)},
+                          {"unit", field.unit},
+                          {"range", words_of(field.range)},
+                          {"meaning", field.meaning}});
   }
   return parameters;
 }

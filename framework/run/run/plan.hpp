@@ -123,11 +123,11 @@ struct RunPlan {
   std::shared_ptr<const SystemModel> system;
   std::shared_ptr<const Geometry> geometry;  // null for a group that is not registered
   std::vector<std::string> notes, unused;
-  bool keeps_rows = true;                // the scheme does
-  bool compiled = true;                  // the kernel, for the types of the system
-  bool recording = false;                // rows of the trajectory are kept
-  std::shared_ptr<Reactions> reactions;  // null where there are none
-  std::shared_ptr<Reactions> motion;     // of what sensors measure; null without
+  bool keeps_rows = true;                 // the scheme does
+  bool compiled = true;                   // the kernel, for the types of the system
+  bool recording = false;                 // rows of the trajectory are kept
+  std::shared_ptr<Reactions> reactions;   // null where there are none
+  std::shared_ptr<Reactions> motion;      // of what sensors measure; null without
   std::shared_ptr<RunContacts> contacts;  // null where none may slide or open
   std::unique_ptr<Events> events;
   KernelSetup setup;

@@ -116,7 +116,8 @@ void RunLine::define(CLI::App& app) {
       "  hamel run bicycle --speed 5 --stop-at 'steer.angle<-0.02' -o bicycle.csv\n"
       "  hamel run rolling_disk --compose suzuki4 --velocity 0.7,1,0,2 -o disk.csv\n"
       "  hamel run robot.urdf --wheel auto --speed 0.5\n"
-      "  hamel run robot.urdf --wheel left_wheel,radius=0.05 --wheel right_wheel --motor left_axle\n"
+      "  hamel run robot.urdf --wheel left_wheel,radius=0.05 --wheel right_wheel --motor "
+      "left_axle\n"
       "  hamel run segway --input right_torque=2 --input left_torque=torque.csv:hold\n"
       "  hamel run roller_racer -o first.json && hamel run --continue first.json --until 60\n"
       "  hamel run rolling_disk --until 1e5 -o disk.h5 || hamel run --continue disk.h5");
