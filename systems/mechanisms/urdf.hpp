@@ -15,7 +15,7 @@
 //                               the ground
 // The drawn pose is that of zero joint angles, along the axes of the root link; its height is such
 // that the lowest wheel touches the ground. Not kept, with a note: limits of position and velocity,
-// friction in joints, meshes. Mimicking joints are refused. Source: http://wiki.ros.org/urdf/XML.
+// friction in joints, meshes. Mimicking joints are coupled. Source: http://wiki.ros.org/urdf/XML.
 #pragma once
 
 #include <vector>

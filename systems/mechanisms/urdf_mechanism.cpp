@@ -17,10 +17,6 @@
 namespace hamel::mechanisms {
 namespace {
 
-// COUPLINGS: true once files of mechanisms have [[coupling]] tables; a joint that mimics another is
-// refused until then.
-constexpr bool kHasCouplings = false;
-
 class Writer {
  public:
   Writer(Robot robot, std::string path, const FileOptions& options)
@@ -50,7 +46,7 @@ class Writer {
     table("joint", joints(bodies), out.toml);
     write_wheels(bodies, out.toml);
     table("motor", motors(), out.toml);
-    if constexpr (kHasCouplings) table("coupling", couplings(), out.toml);
+    table("coupling", couplings(), out.toml);
     for (std::string& note : notes_) {
       std::ranges::replace(note, '\n', ' ');
       note = visible(note);
@@ -120,13 +116,8 @@ class Writer {
       if (other < 0 || !robot_.link(other).joint.turns_or_slides()) {
         wrong(fmt::format("joint '{}': mimic: {}", l.joint.name,
                           unknown_name("joint", to, robot_.joint_names())));
-      } else if (!kHasCouplings) {
-        welds_.push_back(l.joint.name);
-        wrong(
-            fmt::format("joint '{0}': mimic: follows joint '{1}', which a mechanism does not "
-                        "have: make it rigid, --weld {0}, or take the element out, and couple "
-                        "the two by a [[force]] or an input",
-                        l.joint.name, to));
+      } else if (to == l.joint.name) {
+        wrong(fmt::format("joint '{}': mimic: expected another joint, it follows itself", to));
       }
     }
   }
@@ -186,14 +177,15 @@ class Writer {
     return out;
   }
 
-  // COUPLINGS: joint = ratio * to + offset.
+  // joint = ratio * to + offset.
   std::vector<std::string> couplings() const {
     std::vector<std::string> out;
     for (const RobotLink& l : robot_.links)
       if (l.joint.mimic)
-        out.push_back(fmt::format("name = {0}, joint = {0}, to = {1}, ratio = {2}, offset = {3}",
-                                  toml_string(l.joint.name), toml_string(l.joint.mimic->to),
-                                  spelled(l.joint.mimic->ratio), spelled(l.joint.mimic->offset)));
+        out.push_back(fmt::format("name = {}, joint = {}, to = {}, ratio = {}, offset = {}",
+                                  toml_string(l.joint.name + "_mimic"), toml_string(l.joint.name),
+                                  toml_string(l.joint.mimic->to), spelled(l.joint.mimic->ratio),
+                                  spelled(l.joint.mimic->offset)));
     return out;
   }
 

@@ -76,7 +76,7 @@ TEST_F(Record, HasExactlyTheseKeys) {
                         "solver_stats", "timing", "version", "git", "host",
                         // later keys:
                         "tolerance", "on_failure", "from", "until", "every", "check", "force",
-                        "force_at", "no_exact", "slip", "speed", "rtol", "atol", "step_max",
+                        "force_at", "no_exact", "slip", "speed", "start_values", "rtol", "atol", "step_max",
                         "steps_max", "output_step", "output_times", "watched", "stop_at", "events",
                         "start", "inputs", "notes", "failure", "fallbacks", "system_file"));
 }

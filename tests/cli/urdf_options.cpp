@@ -103,9 +103,9 @@ TEST_F(UrdfOptions, OptionsInAConfiguration) {
   EXPECT_EQ(record["group"], "se3*so2");
 }
 
-/// Without couplings a joint that mimics is refused, unless it, or the one that it follows, is
+/// A joint that mimics is coupled, and needs no motor; it, or the one that it follows, may be
 /// welded.
-TEST_F(UrdfOptions, MimickingJointsMayBeWelded) {
+TEST_F(UrdfOptions, MimickingJointsAreCoupled) {
   const std::string path = robot(two_wheels() + link("f1") +
                                  joint("prismatic", "finger1", "base", "f1", "0.2 0 0", "0 1 0",
                                        R"(<limit lower="0" upper="1" effort="5" velocity="1"/>)") +
@@ -113,7 +113,13 @@ TEST_F(UrdfOptions, MimickingJointsMayBeWelded) {
                                  joint("prismatic", "finger2", "base", "f2", "0.2 0 0", "0 -1 0",
                                        R"(<limit lower="0" upper="1" effort="5" velocity="1"/><mimic
                      joint="finger1"/>)"));
-  EXPECT_THAT(mistake({path, "--wheel", "left"}), HasSubstr("make it rigid, --weld finger2"));
+  EXPECT_THAT(toml({path, "--wheel", "left"}),
+              HasSubstr("joint = \"finger2\", to = \"finger1\", ratio = 1"));
+  const json run = answer({"run", path, "--wheel", "left", "--wheel", "right", "--input",
+                           "finger1.force=0.5", "--until", "0.2"});
+  const auto& end = run["final"]["configuration"];
+  EXPECT_GT(std::abs(end[3].get<double>()), 1e-3);
+  EXPECT_NEAR(end[3].get<double>(), end[4].get<double>(), 1e-12);
   EXPECT_EQ(answer({"describe", path, "--weld", "finger2"})["group"], "se2*r1*so2^2");
   EXPECT_EQ(answer({"describe", path, "--weld", "finger1"})["group"], "se2*so2^2");
   EXPECT_THAT(toml({path, "--weld", "finger1"}),

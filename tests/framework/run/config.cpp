@@ -53,6 +53,7 @@ Config unusual() {
   c.step_max = 0.7;
   c.steps_max = 12345;
   c.speed = 1.0 / 3;
+  c.start_values = {"omega=1", "theta=0.5"};
   c.output_step = 0.1 / 7;
   c.output_times = {0.1, -1.0 / 3};
   c.events = {"x=1", "cusp"};
@@ -88,7 +89,7 @@ TEST(Config, EveryOptionIsInTheListAndGoesByName) {
   });
   EXPECT_THAT(names, testing::ElementsAre("scheme", "retraction", "s", "solver", "force_at",
                                           "compose", "on_failure", "tolerance", "step", "rtol",
-                                          "atol", "step_max", "steps_max", "speed", "from", "until",
+                                          "atol", "step_max", "steps_max", "speed", "start", "from", "until",
                                           "every", "output_step", "output_times", "events",
                                           "stop_at", "slip", "check", "force", "no_exact"));
   EXPECT_THROW(copy.set("tolerence", "1"), ConfigError);
