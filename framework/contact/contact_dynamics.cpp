@@ -115,15 +115,17 @@ Eigen::Vector2d ContactDynamics::slip(int i) const {
   return out;
 }
 
-// |s| <= sqrt(2 E T M_A T^T) of a direction, by Cauchy and Schwarz; of both directions.
-double ContactDynamics::slip_scale(int i) {
+// |W xi| <= sqrt(2 E W M_A W^T) of a row, by Cauchy and Schwarz; of all of them.
+double ContactDynamics::speed_scale(int i) {
   metric_.momentum(xi_, work_);
   const double twice_energy = work_.dot(xi_);
   double reach = 0;
-  for (const int row : law(i).tangential) {
+  const auto add = [&](int row) {
     respond_to(row, 0);
     reach += row_times(row, responses_.col(0));
-  }
+  };
+  for (const int row : law(i).tangential) add(row);
+  if (law(i).normal) add(*law(i).normal);
   return std::sqrt(std::fmax(0, twice_energy * reach));
 }
 
@@ -155,11 +157,11 @@ void ContactDynamics::sliding_row(int i, const Eigen::Vector2d& d, Eigen::Vector
 }
 
 // Without the reactions of contacts, but with the friction of given loads that slide.
-void ContactDynamics::free_acceleration(const ContactStates& states) {
+void ContactDynamics::free_acceleration(const ContactStates& states, int without) {
   force_ = change_;
   for (int i = 0; i < count(); ++i) {
     const ContactState& state = states[static_cast<size_t>(i)];
-    if (law(i).normal || state.mode != ContactMode::slides) continue;
+    if (law(i).normal || state.mode != ContactMode::slides || i == without) continue;
     sliding_row(i, direction(i), column_);
     force_ += column_;
   }
@@ -240,10 +242,8 @@ bool ContactDynamics::accelerate(const ContactStates& states) {
   for (int i = 0; i < count(); ++i) {
     const ContactState& state = states[static_cast<size_t>(i)];
     if (!state.begins || state.mode != ContactMode::slides) continue;
-    ContactStates others = states;
-    others[static_cast<size_t>(i)].mode = ContactMode::open;
-    if (!law(i).normal) free_acceleration(others);
-    find_first_direction(others, i);
+    if (!law(i).normal) free_acceleration(states, i);
+    find_first_direction(states, i);
     if (!law(i).normal) free_acceleration(states);
   }
   on_.clear();

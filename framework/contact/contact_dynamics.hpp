@@ -62,8 +62,8 @@ class ContactDynamics {
   double gap(int i) const;
   double gap_rate(int i) const;
   Eigen::Vector2d slip(int i) const;
-  /// The largest slip that the kinetic energy could be that of.
-  double slip_scale(int i);
+  /// The largest velocity that the kinetic energy could be that of at a contact.
+  double speed_scale(int i);
 
   /// The acceleration in these modes, (2), into acceleration(). False where the system is singular.
   bool accelerate(const ContactStates& states);
@@ -106,10 +106,14 @@ class ContactDynamics {
   void respond(int column);
   void respond_to(int row, int column);
   void sliding_row(int i, const Eigen::Vector2d& d, Eigen::VectorXd& out) const;
-  void free_acceleration(const ContactStates& states);
+  void free_acceleration(const ContactStates& states, int without = -1);
   // Rows of a contact that are on, C of (2) or W, and their responses.
   void add_rows(int i, ContactMode mode);
-  double row_times(int row, const Eigen::VectorXd& v) const { return a_.row(row).dot(v); }
+  double row_times(int row, const ConstVector& v) const {
+    double sum = 0;
+    for (Eigen::Index i = 0; i < v.size(); ++i) sum += a_(row, i) * v[i];
+    return sum;
+  }
   bool project(const std::vector<int>& rows, Eigen::VectorXd& xi);
   // The contact of the next block, with its rows at the end of on_ and their responses.
   void add_block(int i, bool slides, const Eigen::Vector2d& d);

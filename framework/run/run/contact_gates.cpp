@@ -41,7 +41,7 @@ void ContactKernel::evaluate_node() {
 void ContactKernel::follow_speeds() {
   for (int i = 0; i < count(); ++i) {
     FollowedContact& follows = followed(i);
-    follows.speed = std::max(follows.speed, dynamics().slip_scale(i));
+    follows.speed = std::max(follows.speed, dynamics().speed_scale(i));
     contact(i).no_slip = kSmallSlip * follows.speed;
     const Eigen::Vector2d s = dynamics().slip(i);
     Eigen::Vector2d& reference = references_[static_cast<size_t>(i)];

@@ -56,7 +56,7 @@ void ContactKernel::begin() {
   int strikes = -1;
   for (int i = 0; i < count() && !contacts_->known(); ++i) {
     FollowedContact& follows = followed(i) = {};
-    follows.speed = dynamics().slip_scale(i);
+    follows.speed = dynamics().speed_scale(i);
     contact(i) = {};
     contact(i).no_slip = kNoSlip * follows.speed;
     if (dynamics().gap(i) > kClosedGap) continue;

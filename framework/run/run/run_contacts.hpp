@@ -18,7 +18,7 @@ namespace hamel {
 struct FollowedContact {
   double opened = -1e300;  // when it left its gap of 0, which is a root of the gap then
   double struck = -1e300, between = 0;  // last strike, and the time before it since another
-  double speed = 0;                     // m/s: the largest slip_scale() so far
+  double speed = 0;                     // m/s: the largest speed_scale() so far
   template <class Archive>
   void serialize(Archive& archive) {
     archive(opened, struck, between, speed);
