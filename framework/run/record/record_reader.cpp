@@ -222,7 +222,8 @@ void read_record(const std::string& record, const std::string& origin, Result& o
   const Json json = parsed(record, origin);
   const Entry all(json, origin);
   Config::fields([&](const Option& option, auto member) {
-    const bool unused = all[key_in_record(option)].null();
+    const std::string key = key_in_record(option);
+    const bool unused = all.has(key) && all[key].null();  // an older record lacks newer options
     if (unused && !MayBeNone<std::remove_cvref_t<decltype(Config().*member)>>)
       out.unused.push_back(option.name);
   });
