@@ -108,7 +108,7 @@ TEST_F(Describe, ASystemSaysEverything) {
   const Json sleigh = answer({"describe", "chaplygin_sleigh"});
   names.clear();
   for (const Json& p : sleigh["parameters"]) names.push_back(p["name"]);
-  EXPECT_THAT(names, testing::ElementsAre("mass", "inertia", "offset"));
+  EXPECT_THAT(names, testing::ElementsAre("mass", "inertia", "offset", "friction", "gravity"));
 }
 
 /// dla, discrete Lagrange-d'Alembert, is lift: described as such, run as such, and the record has
