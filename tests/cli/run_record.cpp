@@ -70,15 +70,16 @@ TEST_F(Record, HasExactlyTheseKeys) {
   expect_contract(r);
   std::vector<std::string> keys;
   for (const auto& [key, value] : r.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::UnorderedElementsAre(
-                        "system", "group", "scheme", "s", "retraction", "solver", "compose", "step",
-                        "parameters", "status", "reason", "steps", "time", "final", "diagnostics",
-                        "solver_stats", "timing", "version", "git", "host",
-                        // later keys:
-                        "tolerance", "on_failure", "from", "until", "every", "check", "force",
-                        "force_at", "no_exact", "slip", "speed", "start_values", "rtol", "atol", "step_max",
-                        "steps_max", "output_step", "output_times", "watched", "stop_at", "events",
-                        "start", "inputs", "notes", "failure", "fallbacks", "system_file"));
+  EXPECT_THAT(
+      keys, testing::UnorderedElementsAre(
+                "system", "group", "scheme", "s", "retraction", "solver", "compose", "step",
+                "parameters", "status", "reason", "steps", "time", "final", "diagnostics",
+                "solver_stats", "timing", "version", "git", "host",
+                // later keys:
+                "tolerance", "on_failure", "from", "until", "every", "check", "force", "force_at",
+                "no_exact", "slip", "speed", "start_values", "rtol", "atol", "step_max",
+                "steps_max", "output_step", "output_times", "watched", "stop_at", "events", "start",
+                "inputs", "notes", "failure", "fallbacks", "system_file"));
 }
 
 TEST_F(Record, OfEverySystem) {

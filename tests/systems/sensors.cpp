@@ -56,7 +56,7 @@ TEST(Sensors, RatesAreThoseOfDifferences) {
   m.sensor("a", "deck", {0.1, 0.2, 0.9});
   m.sensor("b", "fork", {0.6, -0.3, 0.8});
   m.sensor("c", "wheel", {0.9, 0.1, 0.5});
-  m.start({{"v1", 1.2}, {"omega1", 0.3}, {"omega2", -0.2}, {"steer.rate", 0.5}});
+  m.start({{"v1", 1.2}, {"w1", 0.3}, {"w2", -0.2}, {"steer.rate", 0.5}});
   const double h = 1e-3, t = 0.25;
   const Result run = simulate(m)
                          .tolerance({.relative = 1e-13})
@@ -117,7 +117,7 @@ TEST(Starts, CoordinatesAndVelocitiesByName) {
   EXPECT_THAT(simulate("kick_scooter").start("steer.angel", 0.1).mistakes(),
               testing::ElementsAre(testing::HasSubstr("did you mean 'steer.angle'")));
   EXPECT_THAT(simulate("kick_scooter").start("v1", 1).start("xi2", 1).mistakes(),
-              testing::ElementsAre(testing::HasSubstr("start: v1 is given twice")));
+              testing::ElementsAre(testing::HasSubstr("is given twice")));
 }
 
 }  // namespace

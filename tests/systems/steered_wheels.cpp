@@ -123,9 +123,8 @@ TEST(SteeredWheels, FourTurnAboutAnyPoint) {
       std::vector<SteeredWheel> order = wheels;
       if (turned_round) std::swap(order[0], order[3]);
       Mechanism m = vehicle(order);
-      m.motor("fl", [](const SignalInput& now) { return 0.4 * std::cos(now.t); });
-      m.motor(
-          "rl", [](const SignalInput&) { return -0.1; }, false);
+      m.motor("fl", [](const SignalInput& now) { return 0.2 * std::cos(2 * now.t); });
+      m.motor("rl", [](const SignalInput& now) { return -0.1 * std::cos(2 * now.t); });
       m.start({{"speed", 1}, {"fl.angle", 0.3}, {"fr.angle", 0.2}});
       const Result run = simulate(m).tolerance({.relative = 1e-12}).until(4).run();
       expect_no_slip(run, wheels);
@@ -157,6 +156,18 @@ TEST(SteeredWheels, LiftKeepsTheAgreement) {
     errors.push_back(run.trajectory.column("x").back() - exact);
   }
   EXPECT_NEAR(errors[0] / errors[1], 4, 0.2);
+}
+
+// Where the axles of the kept rows, of two wheels, coincide, a run ends and names them.
+TEST(SteeredWheels, RunEndsWhereTheKeptAxlesCoincide) {
+  Mechanism m = vehicle(kFour);
+  m.motor("fl", [](const SignalInput& now) { return 0.4 * std::cos(now.t); });
+  m.motor(
+      "rl", [](const SignalInput&) { return -0.1; }, false);
+  m.start({{"speed", 1}, {"fl.angle", 0.3}, {"fr.angle", 0.2}});
+  const Result run = simulate(m).tolerance({.relative = 1e-10}).until(4).run();
+  EXPECT_FALSE(run.status.ok);
+  EXPECT_THAT(run.status.reason, testing::HasSubstr("fl wheel.reaction2, rl wheel.reaction2"));
 }
 
 TEST(SteeredWheels, AnglesThatDoNotAgreeAreNamed) {
