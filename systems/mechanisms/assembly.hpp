@@ -123,7 +123,7 @@ class Assembly {
   std::vector<std::string> link_names_;                                 // of their joints
   std::vector<const Mechanism::JointPart*> link_joints_;
   std::map<std::string, int> body_links_;  // the ground is kWorld
-  // Of the system:
+  // Rows and starts of the system.
   std::vector<mechanisms::RowLabel> rows_said_;  // of all rows
   std::shared_ptr<mechanisms::Starts> starts_;
   mechanisms::Redundancy redundancy_;

@@ -134,7 +134,7 @@ std::shared_ptr<Multibody> Assembly::system_of(ConstraintRows rows, Forces force
   out = std::make_shared<Multibody>(tree, std::move(rows), std::move(forces), geometry);
   find_rows(out, all);
   model_.notes.push_back(fmt::format(
-      "wheels are steered one by one: their axles meet in one point, which is a row of its own "
+      "wheels are steered one by one: their axles meet in one point, which is a holonomic row "
       "({}); rows that follow, whose reactions are those of the others: {}",
       kAgreement, in_words(kept, rows_said_)));
   return out;

@@ -82,7 +82,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields {
   Vec3 reaction(size_t contact, const double* g, std::span<const double> multipliers) const;
   /// phi of all rows of each(), 0 where it is none, and their A.
   void look(double t, const double* g, Matrix a, Vector b, Vector phi) const;
-  /// What a sensor at a point of a link as drawn measures (programs/sensor_formulas.hpp).
+  /// Measurement of a sensor at a point of a link as drawn (programs/sensor_formulas.hpp).
   std::function<void(std::span<const double> coordinates, std::span<const double> velocity,
                      std::span<const double> acceleration, std::span<double> out)>
   sensor(int link, const Vec3& at) const;

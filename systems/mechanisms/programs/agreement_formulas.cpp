@@ -55,7 +55,7 @@ Number determinant(std::span<const std::vector<Number>> rows, const std::vector<
   return out;
 }
 
-// What of a vector no orthonormal row covers.
+// Part of a vector that no orthonormal row covers.
 VectorXd beyond(const std::vector<VectorXd>& rows, VectorXd v) {
   for (int pass = 1; pass <= 2; ++pass)
     for (const VectorXd& row : rows) v -= row.dot(v) * row;

@@ -1,4 +1,4 @@
-// What a sensor at a point of a body measures, recorded: place and yaw, and by derivatives along
+// Measurements of a sensor at a point of a body, recorded: place and yaw, and by derivatives along
 // the motion its velocity and acceleration, in the world.
 #pragma once
 

@@ -89,8 +89,8 @@ TEST(Config, EveryOptionIsInTheListAndGoesByName) {
   });
   EXPECT_THAT(names, testing::ElementsAre("scheme", "retraction", "s", "solver", "force_at",
                                           "compose", "on_failure", "tolerance", "step", "rtol",
-                                          "atol", "step_max", "steps_max", "speed", "start", "from", "until",
-                                          "every", "output_step", "output_times", "events",
+                                          "atol", "step_max", "steps_max", "speed", "start", "from",
+                                          "until", "every", "output_step", "output_times", "events",
                                           "stop_at", "slip", "check", "force", "no_exact"));
   EXPECT_THROW(copy.set("tolerence", "1"), ConfigError);
   EXPECT_THROW(copy.set("every", "1.5"), ConfigError);
