@@ -80,11 +80,12 @@ class File {
 
   void check_keys() {
     std::vector<std::string> known = mechanisms::names_of(mechanisms::contact_kinds());
-    for (const char* key : {"asks",       "body",    "coupling",        "events", "force",
-                            "formula",    "gravity", "ground",          "inputs", "joint",
-                            "known",      "loop",    "motor",           "name",   "parameters",
-                            "prescribed", "push",    "redundant",       "slope",  "source",
-                            "spring",     "start",   "start_arguments", "summary"})
+    for (const char* key :
+         {"asks",    "body",   "coupling",   "events",     "force", "formula",
+          "gravity", "ground", "inputs",     "joint",      "known", "loop",
+          "motor",   "name",   "parameters", "prescribed", "push",  "redundant",
+          "sensor",  "slope",  "source",     "spring",     "start", "start_arguments",
+          "summary"})
       known.emplace_back(key);
     std::ranges::sort(known);
     for (const auto& [name, node] : table_) {

@@ -159,9 +159,10 @@ std::string moved(const SystemModel& system, const Config& config, const SteadyM
   for (size_t i = 0; i < asked.size(); ++i)
     if (std::abs(motion.velocity[i] - asked[i]) > 1e-6 * most)
       out += fmt::format("{}{} = {:.6g} for {:.6g}", out.empty() ? "" : ", ", system.rates[i],
-                         motion.velocity[i], asked[i]);
+                         std::abs(motion.velocity[i]) > 1e-9 * most ? motion.velocity[i] : 0,
+                         asked[i]);
   if (out.empty()) return out;
-  return fmt::format("straight ahead at {} is no steady motion; the nearest one found has {}",
+  return fmt::format("the start at the speed {} is no steady motion; the nearest one found has {}",
                      *config.speed, out);
 }
 
