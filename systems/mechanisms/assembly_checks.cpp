@@ -199,7 +199,11 @@ void Assembly::start(const std::shared_ptr<const Starts>& starts) {
                                                       double t, bool push) {
     const bool with_speed = given.contains("speed");
     std::map<std::string, double> values = !with_speed ? stated : push ? pushed : usual;
-    for (const auto& [name, value] : given) values[name] = value;
+    for (const auto& [name, value] : given) {
+      if (starts->is_speed(name))
+        std::erase_if(values, [&](const auto& other) { return starts->is_speed(other.first); });
+      values[name] = value;
+    }
     return starts->solve(values, t);
   };
   model_.start_from = [starts, start_arguments, stated, pushed](std::span<const double> given,

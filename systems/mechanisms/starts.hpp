@@ -32,6 +32,8 @@ class Starts {
   Starts(std::shared_ptr<const Multibody> system, std::string name,
          std::vector<std::string> columns, std::vector<std::string> rates,
          std::vector<RowLabel> rows);
+  /// Is this the name of the velocity that "speed" is?
+  bool is_speed(const std::string& name) const { return ahead() >= 0 && rate(name) == ahead(); }
   /// Mistakes in these names; "speed" is that of the first planar or free root joint ahead.
   std::vector<std::string> mistakes(const std::vector<std::string>& names) const;
   /// At a time, where prescribed angles hold. Velocities that are not given are those of the fewest

@@ -110,6 +110,9 @@ TEST(Starts, CoordinatesAndVelocitiesByName) {
       simulate("kick_scooter").speed(1.5).start("steer.angle", 0.1).until(0.1).run();
   EXPECT_NEAR(scooter.trajectory.column("steer.angle").front(), 0.1, 1e-14);
   EXPECT_NEAR(scooter.trajectory.column("v1").front(), 1.5, 1e-12);
+  EXPECT_NEAR(
+      simulate("kick_scooter").start("v1", 1.5).until(0.1).run().trajectory.column("v1").front(),
+      1.5, 1e-12);
   const Result sleigh =
       simulate("chaplygin_sleigh").start("omega", 0.7).start("theta", 0.3).until(0.1).run();
   EXPECT_NEAR(sleigh.trajectory.column("omega").front(), 0.7, 1e-14);

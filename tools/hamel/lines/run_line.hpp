@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <hamel/framework/run/names/config_file.hpp>
@@ -64,10 +65,13 @@ struct RunLine {
       app.add_option_function<Value>(flag, give, help);
     } else if constexpr (std::is_same_v<Value, std::vector<double>> ||
                          std::is_same_v<Value, std::vector<std::string>>) {
-      const auto read = [this, flag, member](const std::string& text) {
+      const auto read = [this, flag, member](const std::vector<std::string>& texts) {
+        const std::string text = fmt::format("{}", fmt::join(texts, ","));  // of all that repeat it
         overrides.emplace_back([=](Config& config) { read_text(flag, text, member(config)); });
       };
-      app.add_option_function<std::string>(flag, read, help)->type_name("A,B,...")->join(',');
+      app.add_option_function<std::vector<std::string>>(flag, read, help)
+          ->type_name("A,B,...")
+          ->allow_extra_args(false);
     } else {
       number_option<Value>(app, flag, give, help);
     }
