@@ -8,6 +8,7 @@
 // d'Andrea-Novel, IEEE Trans. Robotics and Automation 12 (1996), 2.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -29,6 +30,8 @@ struct Agreement {
   std::vector<std::pair<int, int>> pivots;  // rows and velocities, in the order of elimination
   int row = 0, velocity = 0;                // the entry
 
+  /// The first of the pivots that psi contains; those before divide.
+  std::size_t expanded() const;
   /// psi.
   graph::Number formula(std::span<const RecordedRow> rows) const;
 };

@@ -88,7 +88,7 @@ MechanismPrograms& Multibody::programs() const {
 
 const double* Multibody::state(const double* g) const {
   std::copy_n(g, tree_.size(), state_.data());
-  parts().find_coupled(state_);
+  if (!rows_.coupled_links.empty()) parts().find_coupled(state_);
   return state_.data();
 }
 
@@ -182,7 +182,7 @@ void Multibody::holonomic(const double* g, Vector out) const {
     *gap++ =
         p.held >= 0 ? ConstraintRows::beyond(p, tree_.joint(p.held), g + tree_.element(p.held)) : 0;
   state(g);
-  parts().find_closures(state_);
+  if (!rows_.couplings.empty()) parts().find_closures(state_);
   programs().holonomic(state_.data(), out.data());
 }
 

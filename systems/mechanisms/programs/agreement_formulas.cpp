@@ -13,9 +13,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNoEntry = 1e-9;  // of a row of length 1
-constexpr double kPivot = 0.3;     // of the largest entry of its row
-constexpr size_t kExpanded = 2;    // pivots: the velocities of a base but one
+constexpr double kNoEntry = 1e-9;      // of a row of length 1
+constexpr double kPivot = 0.3;         // of the largest entry of its row
+constexpr size_t kExpanded = 2;        // pivots: the velocities of a base but one
+constexpr double kIndependent = 1e-6;  // of a direction of length 1
 
 struct Entry {
   int row, velocity;
@@ -64,12 +65,14 @@ VectorXd beyond(const std::vector<VectorXd>& rows, VectorXd v) {
 
 }  // namespace
 
+size_t Agreement::expanded() const { return pivots.size() - std::min(pivots.size(), kExpanded); }
+
 // Pivots but the last ones divide: what is left is a determinant, in which none may vanish.
 Number Agreement::formula(std::span<const RecordedRow> rows) const {
   std::vector<std::vector<Number>> a;
   for (const auto& [i, j] : pivots) a.push_back(rows[static_cast<size_t>(i)].coefficients);
   a.push_back(rows[static_cast<size_t>(row)].coefficients);
-  const size_t divided = pivots.size() - std::min(pivots.size(), kExpanded);
+  const size_t divided = expanded();
   for (size_t k = 0; k < divided; ++k) {
     const auto column = static_cast<size_t>(pivots[k].second);
     for (size_t below = k + 1; below < a.size(); ++below) {
@@ -110,76 +113,108 @@ RecordedRow agreement_row(const Agreement& agreement, std::span<const RecordedRo
   return out;
 }
 
+namespace {
+
+class AgreementSearch {
+ public:
+  AgreementSearch(const MechanismParts& parts, const std::vector<std::vector<double>>& states,
+                  const VectorXd& units)
+      : parts_(parts), mechanism_(parts), units_(units) {
+    for (const std::vector<double>& state : states) samples_.emplace_back(state);
+    // As ConstraintRows::each() counts them.
+    for (size_t i = 0; i < parts.kept.size(); ++i) {
+      const auto at = static_cast<size_t>(parts.kept[i]);
+      if (rows_.size() <= at) rows_.resize(at + 1);
+      rows_[at] = mechanism_.rows[i];
+    }
+  }
+
+  std::vector<Agreement> operator()() {
+    find_base();
+    std::vector<Agreement> out;
+    for (const int row : others_) {
+      base_.row = row;
+      for (base_.velocity = 0; base_.velocity < units_.size(); ++base_.velocity)
+        if (adds()) out.push_back(base_);
+    }
+    return out;
+  }
+
+ private:
+  // Coefficients of a row at a sample, in units of the velocities.
+  VectorXd at(Sample& sample, const RecordedRow& row) const {
+    VectorXd out(units_.size());
+    for (Eigen::Index j = 0; j < out.size(); ++j)
+      out[j] = units_[j] * sample.value(row.coefficients[static_cast<size_t>(j)]);
+    return out;
+  }
+  const RecordedRow& row(int i) const { return rows_[static_cast<size_t>(i)]; }
+
+  // Pivots at the first sample; the rows that are left.
+  void find_base() {
+    others_ = parts_.kept;
+    MatrixXd a(static_cast<Eigen::Index>(others_.size()), units_.size());
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      const VectorXd here = at(samples_.front(), row(others_[static_cast<size_t>(i)]));
+      a.row(i) = here.transpose() / std::max(here.norm(), 1e-300);
+    }
+    std::vector<bool> taken(others_.size(), false);
+    while (const auto pivot = cheapest_pivot(a, taken)) {
+      const auto [i, column] = *pivot;
+      taken[static_cast<size_t>(i)] = true;
+      base_.pivots.emplace_back(parts_.kept[static_cast<size_t>(i)], column);
+      std::erase(others_, parts_.kept[static_cast<size_t>(i)]);
+      covered_.push_back(beyond(covered_, a.row(i).transpose()).normalized());
+      for (Eigen::Index k = 0; k < a.rows(); ++k) {
+        if (taken[static_cast<size_t>(k)]) continue;
+        a.row(k) -= a(k, column) / a(i, column) * a.row(i);
+        a(k, column) = 0;
+      }
+    }
+  }
+
+  // Is psi zero at a sample, beside the product of its rows?
+  bool vanishes(const Number& psi, Sample& sample) const {
+    double size = at(sample, row(base_.row)).lpNorm<1>();
+    double unit = units_[base_.velocity];
+    for (size_t k = base_.expanded(); k < base_.pivots.size(); ++k) {
+      size *= at(sample, row(base_.pivots[k].first)).lpNorm<1>();
+      unit *= units_[base_.pivots[k].second];
+    }
+    return std::abs(unit * sample.value(psi)) <= kNoEntry * size;
+  }
+
+  // Is psi an equation, independent of the rows and of those before?
+  bool adds() {
+    const RecordedRow psi =
+        agreement_row(base_, rows_, mechanism_.bodies, parts_.rows, mechanism_.row_inputs());
+    if (std::ranges::all_of(samples_, [&](Sample& sample) { return vanishes(psi.phi, sample); }))
+      return false;
+    const VectorXd slope = at(samples_.front(), psi);
+    const double size = slope.norm();
+    if (!(size > 0)) return false;
+    const VectorXd rest = beyond(covered_, slope / size);
+    if (rest.norm() < kIndependent) return false;
+    covered_.push_back(rest.normalized());
+    return true;
+  }
+
+  const MechanismParts& parts_;
+  const RecordedMechanism mechanism_;
+  const VectorXd& units_;
+  std::vector<RecordedRow> rows_;
+  std::vector<Sample> samples_;
+  Agreement base_;
+  std::vector<int> others_;
+  std::vector<VectorXd> covered_;  // orthonormal
+};
+
+}  // namespace
+
 std::vector<Agreement> find_agreements(const MechanismParts& parts,
                                        const std::vector<std::vector<double>>& states,
                                        const VectorXd& units) {
-  const RecordedMechanism mechanism(parts);
-  std::vector<Sample> samples;
-  for (const std::vector<double>& state : states) samples.emplace_back(state);
-  Sample& here = samples.front();
-  const auto k = static_cast<Eigen::Index>(mechanism.rows.size()), n = units.size();
-  MatrixXd a(k, n);
-  for (Eigen::Index i = 0; i < k; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      a(i, j) =
-          units[j] *
-          here.value(mechanism.rows[static_cast<size_t>(i)].coefficients[static_cast<size_t>(j)]);
-  for (Eigen::Index i = 0; i < k; ++i) a.row(i) /= std::max(a.row(i).norm(), 1e-300);
-
-  Agreement base;
-  std::vector<bool> taken(static_cast<size_t>(k), false);
-  std::vector<VectorXd> covered;
-  while (const auto pivot = cheapest_pivot(a, taken)) {
-    const auto [row, column] = *pivot;
-    base.pivots.emplace_back(parts.kept[static_cast<size_t>(row)], column);
-    taken[static_cast<size_t>(row)] = true;
-    covered.push_back(beyond(covered, a.row(row).transpose()).normalized());
-    for (Eigen::Index i = 0; i < k; ++i)
-      if (!taken[static_cast<size_t>(i)]) {
-        a.row(i) -= a(i, column) / a(row, column) * a.row(row);
-        a(i, column) = 0;
-      }
-  }
-
-  // The rows in the order of ConstraintRows::each().
-  std::vector<RecordedRow> rows;
-  for (size_t i = 0; i < parts.kept.size(); ++i) {
-    const auto at = static_cast<size_t>(parts.kept[i]);
-    if (rows.size() <= at) rows.resize(at + 1);
-    rows[at] = mechanism.rows[i];
-  }
-  std::vector<Agreement> out;
-  for (size_t i = 0; i < taken.size(); ++i) {
-    if (taken[i]) continue;
-    Agreement one = base;
-    one.row = parts.kept[i];
-    for (one.velocity = 0; one.velocity < n; ++one.velocity) {
-      const RecordedRow psi =
-          agreement_row(one, rows, mechanism.bodies, parts.rows, mechanism.row_inputs());
-      const auto size_of_row = [&](Sample& sample) {
-        double sum = 0;
-        for (Eigen::Index j = 0; j < n; ++j)
-          sum += std::abs(units[j] * sample.value(rows[static_cast<size_t>(one.row)]
-                                                      .coefficients[static_cast<size_t>(j)]));
-        return sum;
-      };
-      if (std::ranges::all_of(samples, [&](Sample& sample) {
-            return std::abs(units[one.velocity] * sample.value(psi.phi)) <=
-                   kNoEntry * size_of_row(sample);
-          }))
-        continue;
-      VectorXd slope(n);
-      for (Eigen::Index j = 0; j < n; ++j)
-        slope[j] = units[j] * here.value(psi.coefficients[static_cast<size_t>(j)]);
-      const double size = slope.norm();
-      if (!(size > 0)) continue;
-      const VectorXd rest = beyond(covered, slope / size);
-      if (rest.norm() < 1e-6) continue;
-      covered.push_back(rest.normalized());
-      out.push_back(one);
-    }
-  }
-  return out;
+  return AgreementSearch(parts, states, units)();
 }
 
 FilledProgram record_agreements(const MechanismParts& parts) {
