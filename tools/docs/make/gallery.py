@@ -48,6 +48,8 @@ def picture(program, folder, name):
 
 
 def number(value):
+    if value is None:
+        return "not set"
     return ", ".join(f"{x:.6g}" for x in value) if isinstance(value, list) else f"{value:.6g}"
 
 
