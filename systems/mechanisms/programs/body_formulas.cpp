@@ -28,12 +28,20 @@ Mat<3, 3> conjugated(const Mat<3, 3>& b, const Mat<3, 3>& t) {
   return without_dust(Mat<3, 3>(b * t * b.transpose()), 1);
 }
 
-// The motion of a joint, affine in the numbers of its element: constant + sum g_k terms_k.
+// The motion of a joint, affine in the numbers of its element: constant + sum g_k terms_k; of one
+// number x along which it turns, a screw, constant exp(S x).
 struct AffineMotion {
   Rigid constant;
   std::vector<Rigid> terms;
+  bool screw = false;
+  Vec3 turning = Vec3::Zero(), sliding = Vec3::Zero();  // S of a screw
 
   explicit AffineMotion(const Joint& joint) {
+    screw = joint.dim() == 1 && joint.geometry()->size() == 1 && !joint.turning().empty();
+    if (screw) {
+      turning = joint.directions().col(0).head<3>();
+      sliding = joint.directions().col(0).tail<3>();
+    }
     std::vector<double> element(static_cast<size_t>(joint.geometry()->size()), 0.0);
     constant = joint.motion(element.data());
     for (double& number : element) {
@@ -44,6 +52,7 @@ struct AffineMotion {
     }
   }
   Pose at(std::span<const Number> g) const {
+    if (screw) return along_screw(g[0]);
     Pose out = numbers(constant);
     for (size_t k = 0; k < terms.size(); ++k) {
       for (int i = 0; i < 9; ++i)
@@ -51,6 +60,21 @@ struct AffineMotion {
       for (int i = 0; i < 3; ++i) out.position[i] += terms[k].position[i] * g[k];
     }
     return out;
+  }
+  // exp by Rodrigues: 1 + sin u W + (1 - cos u) W^2, and (u + (1 - cos u) W + (u - sin u) W^2) v, W
+  // of length 1 and v per radian, u = |omega| x.
+  Pose along_screw(const Number& x) const {
+    const double size = turning.norm();
+    const Mat<3, 3> w = cross_matrix(Vec3(turning / size)), w2 = w * w;
+    const Vec3 v = sliding / size, wv = w * v, w2v = w2 * v;
+    const Number u = size * x, s = sin(u), c = 1 - cos(u);
+    Pose moved;
+    for (int i = 0; i < 9; ++i)
+      moved.rotation.reshaped()[i] =
+          (i % 4 == 0 ? 1.0 : 0.0) + w.reshaped()[i] * s + w2.reshaped()[i] * c;
+    for (int i = 0; i < 3; ++i) moved.position[i] = v[i] * u + wv[i] * c + w2v[i] * (u - s);
+    const Pose before = numbers(constant);
+    return {before.rotation.lazyProduct(moved.rotation), before.apply(moved.position)};
   }
   // Number k is an entry of the motion, or its negative: its rate is that of the entry.
   Number rate(size_t k, const Pose& rates) const {
@@ -110,7 +134,8 @@ Pose BodyFormulas::motion(int link, std::span<const Number> g) {
   }
   const Pose rates{out.rotation.lazyProduct(cross_numbers(omega)), out.turn(velocity)};
   for (size_t k = 0; k < motion.terms.size(); ++k)
-    element_rates_[first + k] = motion.rate(k, rates);
+    element_rates_[first + k] =
+        motion.screw ? xi_[static_cast<size_t>(tree_.first(link))] : motion.rate(k, rates);
   return out;
 }
 
@@ -120,7 +145,7 @@ void BodyFormulas::place(int link, std::span<const Number> g) {
   const Joint& joint = *drawn.joint;
   const Pose iota = motion(link, g);
   const Rigid &before = drawn.on_parent, &after = drawn.on_child;
-  const bool conjugates = before.rotation == after.rotation;
+  const bool conjugates = before.rotation == after.rotation && !AffineMotion(joint).screw;
   NumberMat3 turned = iota.rotation;  // P iota C^-1
   if (conjugates) {
     const AffineMotion motion(joint);
