@@ -236,7 +236,9 @@ void ContactDynamics::find_first_direction(const ContactStates& states, int i) {
   }
 }
 
-bool ContactDynamics::accelerate(const ContactStates& states) {
+// The rows that are on and their responses, with directions of slip found and the acceleration
+// without them in free_.
+void ContactDynamics::set_up(const ContactStates& states) {
   for (int i = 0; i < count(); ++i) find_direction(states, i);
   free_acceleration(states);
   for (int i = 0; i < count(); ++i) {
@@ -256,6 +258,28 @@ bool ContactDynamics::accelerate(const ContactStates& states) {
     if (law(i).normal && states[at].mode != ContactMode::open)
       coefficient_[at] = row_times(*law(i).normal, responses_.col(first));
   }
+}
+
+// Multipliers of the rows that are on as reactions of their contacts.
+void ContactDynamics::take_reactions(const ContactStates& states) {
+  for (size_t i = 0; i < on_.size(); ++i) {
+    const auto at = static_cast<size_t>(on_[i].contact);
+    const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];
+    const ContactLaw& law = laws_[at];
+    if (law.normal == on_[i].row) normal_[at] = multiplier;
+    for (int j = 0; j < tangential_count(law); ++j)
+      if (law.tangential[static_cast<size_t>(j)] == on_[i].row) tangential_[at][j] = multiplier;
+  }
+  for (int i = 0; i < count(); ++i) {
+    const auto at = static_cast<size_t>(i);
+    if (states[at].mode != ContactMode::slides) continue;
+    if (!law(i).normal) normal_[at] = law(i).load;
+    tangential_[at] = -law(i).friction * normal_[at] * direction(i);
+  }
+}
+
+bool ContactDynamics::accelerate(const ContactStates& states) {
+  set_up(states);
   const auto m = static_cast<int>(on_.size());
   for (int i = 0; i < m; ++i) {
     const int row = on_[static_cast<size_t>(i)].row;
@@ -265,21 +289,7 @@ bool ContactDynamics::accelerate(const ContactStates& states) {
   if (m > 0) solve_linear(k_work_.data(), multipliers_.data(), m, 1);
   acceleration_ = free_;
   for (int i = 0; i < m; ++i) acceleration_ += multipliers_[i] * responses_.col(i);
-  for (int i = 0; i < m; ++i) {
-    const auto at = static_cast<size_t>(on_[static_cast<size_t>(i)].contact);
-    const ContactLaw& law = laws_[at];
-    const int row = on_[static_cast<size_t>(i)].row;
-    if (law.normal == row) normal_[at] = multipliers_[i];
-    for (int j = 0; j < tangential_count(law); ++j)
-      if (law.tangential[static_cast<size_t>(j)] == row) tangential_[at][j] = multipliers_[i];
-  }
-  for (int i = 0; i < count(); ++i) {
-    const ContactState& state = states[static_cast<size_t>(i)];
-    if (state.mode != ContactMode::slides) continue;
-    const auto at = static_cast<size_t>(i);
-    if (!law(i).normal) normal_[at] = law(i).load;
-    tangential_[at] = -law(i).friction * normal_[at] * direction(i);
-  }
+  take_reactions(states);
   return acceleration_.allFinite();
 }
 

@@ -109,6 +109,8 @@ class ContactDynamics {
   void free_acceleration(const ContactStates& states, int without = -1);
   // Rows of a contact that are on, C of (2) or W, and their responses.
   void add_rows(int i, ContactMode mode);
+  void set_up(const ContactStates& states);
+  void take_reactions(const ContactStates& states);
   double row_times(int row, const ConstVector& v) const {
     double sum = 0;
     for (Eigen::Index i = 0; i < v.size(); ++i) sum += a_(row, i) * v[i];
@@ -117,6 +119,9 @@ class ContactDynamics {
   bool project(const std::vector<int>& rows, Eigen::VectorXd& xi);
   // The contact of the next block, with its rows at the end of on_ and their responses.
   void add_block(int i, bool slides, const Eigen::Vector2d& d);
+  // Does a contact that is closed slide already? Its direction is known then, and its friction.
+  bool slides_on(ContactState& state, int i, bool told);
+  void take_answer(ContactState& state, size_t block) const;
   std::string solve_problem(const char* level);
   bool dependent() const;
 

@@ -80,57 +80,57 @@ std::string ContactDynamics::solve_problem(const char* level) {
       count == 1 ? "ies" : "y", time_, law.friction, k_(0, 0));
 }
 
+bool ContactDynamics::slides_on(ContactState& state, int i, bool told) {
+  const Eigen::Vector2d s = slip(i);
+  const bool slips = s.norm() > 10 * state.no_slip;
+  if (state.begins && state.mode != ContactMode::slides) state.begins = false;
+  if (slips && !state.begins) state.direction = s / s.norm();
+  const bool slides = slips || state.begins || told || law(i).friction == 0;
+  if (told && !slips) state.begins = direction_count(law(i)) == 2;
+  directions_[static_cast<size_t>(i)] = state.direction;
+  if (slides) state.mode = ContactMode::slides;
+  return slides;
+}
+
+// The mode of a contact from the solution of its block.
+void ContactDynamics::take_answer(ContactState& state, size_t block) const {
+  const ContactBlock& of = blocks_[block];
+  const ContactAnswer answer = problem_.answers()[block];
+  state.mode = answer == ContactAnswer::opens                         ? ContactMode::open
+               : answer == ContactAnswer::sticks && of.tangential > 0 ? ContactMode::rolls
+                                                                      : ContactMode::slides;
+  if (state.mode != ContactMode::slides || of.tangential == 0) return;
+  Eigen::Vector2d d(0, 0);
+  d.head(of.tangential) = -problem_.p().segment(of.first + (of.normal ? 1 : 0), of.tangential);
+  state.direction = d / d.norm();
+  state.begins = of.tangential == 2;
+}
+
 std::string ContactDynamics::decide(ContactStates& states, int slides) {
   on_.clear();
   blocks_.clear();
   block_contacts_.clear();
-  std::vector<char> known(states.size(), 0);
-  for (int i = 0; i < count(); ++i) {
-    ContactState& state = states[static_cast<size_t>(i)];
-    if (state.mode == ContactMode::open) continue;
-    const Eigen::Vector2d s = slip(i);
-    const bool slips = s.norm() > 10 * state.no_slip;
-    if (state.begins && state.mode != ContactMode::slides) state.begins = false;
-    if (slips && !state.begins) state.direction = s / s.norm();
-    const bool slides_on = slips || state.begins || i == slides || law(i).friction == 0;
-    if (i == slides && !slips) state.begins = direction_count(law(i)) == 2;
-    directions_[static_cast<size_t>(i)] = state.direction;
-    known[static_cast<size_t>(i)] = slides_on ? 1 : 0;
-    if (slides_on) state.mode = ContactMode::slides;
-  }
   // Of loads that slide the friction is a force; of the others it is an unknown.
   ContactStates forces = states;
-  for (size_t i = 0; i < forces.size(); ++i)
-    if (known[i] == 0) forces[i].mode = ContactMode::open;
+  for (int i = 0; i < count(); ++i) {
+    const auto at = static_cast<size_t>(i);
+    if (states[at].mode == ContactMode::open) continue;
+    const bool known = slides_on(states[at], i, i == slides);
+    forces[at] = states[at];
+    if (!known) forces[at].mode = ContactMode::open;
+  }
   free_acceleration(forces);
   for (int i = 0; i < count(); ++i) {
-    const ContactState& state = states[static_cast<size_t>(i)];
-    if (state.mode == ContactMode::open) continue;
-    add_block(i, known[static_cast<size_t>(i)] != 0, state.direction);
+    const auto at = static_cast<size_t>(i);
+    if (states[at].mode == ContactMode::open) continue;
+    add_block(i, forces[at].mode != ContactMode::open, states[at].direction);
   }
   if (blocks_.empty()) return "";
   for (size_t i = 0; i < on_.size(); ++i)
     c_[static_cast<Eigen::Index>(i)] = row_times(on_[i].row, free_) - rates_[on_[i].row];
   if (std::string why = solve_problem("acceleration"); !why.empty()) return why;
-  for (size_t k = 0; k < blocks_.size(); ++k) {
-    const ContactBlock& block = blocks_[k];
-    ContactState& state = states[static_cast<size_t>(block_contacts_[k])];
-    const ContactAnswer answer = problem_.answers()[k];
-    if (answer == ContactAnswer::opens) {
-      state.mode = ContactMode::open;
-    } else if (block.tangential == 0) {
-      state.mode = ContactMode::slides;
-    } else if (answer == ContactAnswer::sticks) {
-      state.mode = ContactMode::rolls;
-    } else {
-      state.mode = ContactMode::slides;
-      Eigen::Vector2d d(0, 0);
-      d.head(block.tangential) =
-          -problem_.p().segment(block.first + (block.normal ? 1 : 0), block.tangential);
-      state.direction = d / d.norm();
-      state.begins = block.tangential == 2;
-    }
-  }
+  for (size_t k = 0; k < blocks_.size(); ++k)
+    take_answer(states[static_cast<size_t>(block_contacts_[k])], k);
   return "";
 }
 

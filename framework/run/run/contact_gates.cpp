@@ -18,6 +18,7 @@ namespace hamel {
 namespace {
 
 constexpr double kNoGate = std::numeric_limits<double>::infinity();
+constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
 constexpr size_t kParts = 5;
 // A slip of this part of the velocities of the run is none; sigma, and where a slip has grown,
 // (5) of contact_dynamics.hpp.
@@ -164,16 +165,23 @@ std::optional<ContactKernel::Sample> ContactKernel::dip(int contact, size_t whic
   return {};
 }
 
+// A gate's crossing between the last two of three looks, the first of them NaN where there are two:
+// a change of its sign, or a dip.
+std::optional<double> ContactKernel::crossing(int contact, size_t which, Sample first,
+                                              Sample before, Sample now) {
+  if (before.value >= 0 && now.value < 0) return locate(contact, which, before, now);
+  if (!std::isfinite(first.time) || !(before.value > 0)) return {};
+  const auto least = dip(contact, which, first, before, now);
+  if (!least) return {};
+  return locate(contact, which, least->time < before.time ? first : before, *least);
+}
+
 std::optional<ContactKernel::Found> ContactKernel::find(double from, double to) {
   std::array<double, kParts + 1> times;
   std::array<Gates, kParts + 1> values;
   times[0] = from;
   values[0] = at_node_;
   std::optional<Found> out;
-  const auto take = [&](int i, size_t which, Sample before, Sample after) {
-    const double t = locate(i, which, before, after);
-    if (!out || t < out->time) out = Found{t, i, switch_of(i, which)};
-  };
   for (size_t part = 1; part <= kParts && !out; ++part) {
     times[part] = part == kParts ? to : from + (to - from) * static_cast<double>(part) / kParts;
     values[part] = gates(times[part], true);
@@ -182,12 +190,10 @@ std::optional<ContactKernel::Found> ContactKernel::find(double from, double to) 
         const auto sample = [&](size_t k) {
           return Sample{times[k], values[k][static_cast<size_t>(i)][which]};
         };
-        const Sample before = sample(part - 1), now = sample(part);
-        if (!std::isfinite(before.value)) continue;
-        if (before.value >= 0 && now.value < 0) take(i, which, before, now);
-        else if (part > 1 && before.value > 0)
-          if (const auto least = dip(i, which, sample(part - 2), before, now))
-            take(i, which, least->time < before.time ? sample(part - 2) : before, *least);
+        if (!std::isfinite(sample(part - 1).value)) continue;
+        const Sample first = part > 1 ? sample(part - 2) : Sample{kNoTime, kNoTime};
+        const auto t = crossing(i, which, first, sample(part - 1), sample(part));
+        if (t && (!out || *t < out->time)) out = Found{*t, i, switch_of(i, which)};
       }
     }
   }

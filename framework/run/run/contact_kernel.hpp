@@ -100,6 +100,8 @@ class ContactKernel final : public Kernel {
   double gate(int contact, size_t which, double t);
   double locate(int contact, size_t which, Sample before, Sample after);
   std::optional<Sample> dip(int contact, size_t which, Sample a, Sample b, Sample c);
+  std::optional<double> crossing(int contact, size_t which, Sample first, Sample before,
+                                 Sample now);
   std::optional<Found> find(double from, double to);
   Switch switch_of(int contact, size_t gate) const;
 

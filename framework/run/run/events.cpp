@@ -97,35 +97,47 @@ Events::Events(const SystemModel& system, std::shared_ptr<Reactions> reactions,
                std::vector<std::string>& mistakes)
     : contacts_(system.contacts), reactions_(std::move(reactions)) {
   const std::vector<Event> known = events_of(system);
-  const auto watch = [&](const std::string& name, bool stop) {
-    for (Watched& w : watched_) {
-      if (w.event.name == name) {
-        w.stops = w.stops || stop;
-        return;
-      }
-    }
-    std::vector<std::string> offered;
-    for (size_t i = 0; i < known.size(); ++i) {
-      offered.push_back(known[i].name);
-      if (known[i].name != name) continue;
-      if (i < system.events.size()) return void(watched_.push_back({known[i], stop}));
-      if (i >= system.events.size() + contacts_.size()) {  // which the contacts of the run find
-        if (stop) switch_stops_.push_back(name);
-        return;
-      }
-      if (reactions_ == nullptr) continue;
-      return void(watched_.push_back({known[i], stop, contacts_[i - system.events.size()]}));
-    }
-    const size_t before = mistakes.size();
-    std::optional<Event> event = plane(system, name);
-    if (!event) event = event_of_formula(system, name, mistakes);
-    if (event) watched_.push_back({std::move(*event), stop});
-    if (event || mistakes.size() > before) return;
-    offered.emplace_back("FORMULA=FORMULA (or <, >)");
-    mistakes.push_back(unknown_name("event of " + system.name, name, offered));
-  };
-  for (const std::string& name : names) watch(name, false);
-  for (const std::string& name : stops) watch(name, true);
+  for (const std::string& name : names) watch(system, known, name, false, mistakes);
+  for (const std::string& name : stops) watch(system, known, name, true, mistakes);
+}
+
+// An event that is stated. False where the name is none's, or its reaction is not at hand.
+bool Events::watch_stated(const SystemModel& system, const std::vector<Event>& known,
+                          const std::string& name, bool stop) {
+  const auto found = std::ranges::find(known, name, &Event::name);
+  if (found == known.end()) return false;
+  const auto i = static_cast<size_t>(found - known.begin());
+  const size_t contacts_end = system.events.size() + contacts_.size();
+  if (i >= contacts_end) {  // which the contacts of the run find
+    if (stop) switch_stops_.push_back(name);
+  } else if (i < system.events.size()) {
+    watched_.push_back({known[i], stop});
+  } else if (reactions_ == nullptr) {
+    return false;
+  } else {
+    watched_.push_back({known[i], stop, contacts_[i - system.events.size()]});
+  }
+  return true;
+}
+
+void Events::watch(const SystemModel& system, const std::vector<Event>& known,
+                   const std::string& name, bool stop, std::vector<std::string>& mistakes) {
+  const auto same =
+      std::ranges::find_if(watched_, [&name](const Watched& w) { return w.event.name == name; });
+  if (same != watched_.end()) {
+    same->stops = same->stops || stop;
+    return;
+  }
+  if (watch_stated(system, known, name, stop)) return;
+  const size_t before = mistakes.size();
+  std::optional<Event> event = plane(system, name);
+  if (!event) event = event_of_formula(system, name, mistakes);
+  if (event) watched_.push_back({std::move(*event), stop});
+  if (event || mistakes.size() > before) return;
+  std::vector<std::string> offered;
+  for (const Event& e : known) offered.push_back(e.name);
+  offered.emplace_back("FORMULA=FORMULA (or <, >)");
+  mistakes.push_back(unknown_name("event of " + system.name, name, offered));
 }
 
 double Events::value(const Watched& w, const Snapshot& state) const {

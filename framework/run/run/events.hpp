@@ -63,6 +63,10 @@ class Events {
     bool contact() const { return row >= 0; }
   };
   double value(const Watched& w, const Snapshot& state) const;
+  bool watch_stated(const SystemModel& system, const std::vector<Event>& known,
+                    const std::string& name, bool stop);
+  void watch(const SystemModel& system, const std::vector<Event>& known, const std::string& name,
+             bool stop, std::vector<std::string>& mistakes);
 
   std::vector<Watched> watched_;
   std::vector<std::string> switch_stops_;
