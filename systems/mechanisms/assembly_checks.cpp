@@ -134,8 +134,7 @@ void Assembly::check_prescribed(const Starts& starts) {
 }
 
 StartChecks Assembly::start_checks(const Tree& tree) {
-  StartChecks out{rows_said_, {}, {}, {}};
-  for (const auto& [row, repeat] : redundancy_.repeats) out.dropped.push_back(row);
+  StartChecks out{rows_said_, redundancy_.repeats, {}, {}};
   for (const auto& part : parts_.motors_)
     out.signals.push_back(
         {fmt::format("{}motor '{}': effort", part.where, part.name), part.effort});

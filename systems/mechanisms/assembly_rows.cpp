@@ -35,8 +35,8 @@ std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) 
   return out;
 }
 
-// Refuses a row that contradicts others, or is driven by an input; one that repeats others too, or
-// drops it with a note.
+// Refuses a row that contradicts others, and one that repeats others, or drops it with a note;
+// always drops one that depends on inputs, since they may agree.
 void Assembly::look_at_repeat(int row, const Repeat& repeat, const std::vector<RowLabel>& rows,
                               bool drop) {
   const auto driven = [&](int one) {
@@ -46,9 +46,8 @@ void Assembly::look_at_repeat(int row, const Repeat& repeat, const std::vector<R
   const std::string list = in_words(repeat.others, rows);
   const RowLabel& said = rows[static_cast<size_t>(row)];
   const bool inputs = driven(row) || std::ranges::any_of(repeat.others, driven);
-  if (repeat.contradicts || inputs) {
+  if (repeat.contradicts && !inputs) {
     mistakes_.push_back(said.where + contradiction(said, list) +
-                        (inputs ? " at most values of the inputs" : "") +
                         (list.empty() ? "; leave it out" : "; leave one of them out"));
     return;
   }
@@ -56,7 +55,7 @@ void Assembly::look_at_repeat(int row, const Repeat& repeat, const std::vector<R
       list.empty()
           ? fmt::format("{} constrains nothing: no joint moves its body that way", said.what)
           : fmt::format("{} is implied by {}", said.what, list);
-  if (drop)
+  if (drop || inputs)
     model_.notes.push_back(
         "row dropped: " + text +
         (list.empty() ? "" : fmt::format("; the reactions there include that of {}", said.what)));
@@ -106,6 +105,14 @@ void Assembly::find_rows(const std::shared_ptr<Multibody>& system,
                                 giving_way);
   look_at_redundant(redundancy_, system->row_info());
   system->keep(redundancy_.rows);
+  std::vector<int> implied;
+  for (const auto& [row, repeat] : redundancy_.repeats) implied.push_back(row);
+  system->imply(implied);
+  if (std::ranges::all_of(parts_.rates_, [](const auto& part) { return bool(part.rate); })) return;
+  for (const ImpliedRow& row : system->implied_rows(0, system->drawn().data()))
+    if (!row.sum.empty())
+      model_.notes.push_back(
+          fmt::format("{} has to be {}: a run whose inputs say otherwise ends", row.name, row.sum));
 }
 
 std::shared_ptr<Multibody> Assembly::system_of(ConstraintRows rows, Forces forces) {

@@ -12,19 +12,35 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/mechanics/implied_rows.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/systems/mechanisms/programs/mechanism_programs.hpp>
 
 namespace hamel::mechanisms {
 
-class Multibody final : public Mechanics, public graph::HasVectorFields {
+/// A row that was dropped, at a place and time: b of A xi = b, and what the rows that are kept make
+/// it.
+struct ImpliedRow {
+  int row;
+  std::string name, sum;  // "rr.rate"; of prescribed rates, "fl.rate + fr.rate - rl.rate"
+  double is = 0, has_to_be = 0;
+  bool contradicts = false;
+  /// "rr.rate has to be fl.rate = 3: got 2"
+  std::string in_words() const;
+};
+
+class Multibody final : public Mechanics, public graph::HasVectorFields, public HasImpliedRows {
  public:
   /// All rows of `rows`; keep() drops some.
   Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
             std::shared_ptr<const Geometry> geometry);
   /// Only these rows of each(), of which the holonomic ones go last.
   void keep(const std::vector<int>& rows);
+  /// Rows that were dropped since those that are kept imply them.
+  void imply(std::vector<int> rows);
+  std::vector<ImpliedRow> implied_rows(double t, const double* g) const;
+  std::string contradiction(double t, const double* g) const override;
   /// An input as the effort on a velocity of a joint, or as the rate prescribed there.
   struct Driver {
     int dof;
@@ -96,6 +112,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields {
   MechanismPrograms& programs() const;
   std::optional<MotionProgram> record(std::span<const double> state) const;
   void forget_programs();
+  bool rates_may_contradict() const;
   // The state of programs: what of it depends on g; on xi too; on t and all.
   const double* state(const double* g) const;
   const double* state(const double* g, ConstVector xi) const;
@@ -111,6 +128,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields {
   std::shared_ptr<const Geometry> geometry_;
   std::vector<int> slots_;  // of each(): the row of A, or -1
   std::vector<int> kept_;   // their inverse
+  std::vector<int> implied_;
   std::shared_ptr<const Inputs> inputs_;
   int holonomic_ = 0;
   bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;

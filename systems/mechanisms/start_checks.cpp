@@ -15,15 +15,12 @@ namespace {
 // Contradictions of rows that were dropped, at this place and time.
 void add_contradictions(const Multibody& system, const StartChecks& checks, double t,
                         const std::vector<double>& place, std::vector<std::string>& out) {
-  if (checks.dropped.empty()) return;
-  std::vector<int> all = system.kept();
-  all.insert(all.end(), checks.dropped.begin(), checks.dropped.end());
-  std::sort(all.begin(), all.end());
-  for (const auto& [row, repeat] : repeated_rows(system, place, all, {t})) {
-    const RowLabel& said = checks.rows[static_cast<size_t>(row)];
-    if (repeat.contradicts && std::ranges::count(checks.dropped, row) > 0)
-      out.push_back(fmt::format("{}{} at t = {}; leave one of them out", said.where,
-                                contradiction(said, in_words(repeat.others, checks.rows)), t));
+  for (const ImpliedRow& row : system.implied_rows(t, place.data())) {
+    if (!row.contradicts) continue;
+    const RowLabel& said = checks.rows[static_cast<size_t>(row.row)];
+    const std::string others = in_words(checks.dropped.at(row.row).others, checks.rows);
+    out.push_back(fmt::format("{}{} at t = {}: {}; leave one of them out", said.where,
+                              contradiction(said, others), t, row.in_words()));
   }
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <hamel/systems/mechanisms/multibody.hpp>
+#include <hamel/systems/mechanisms/poses.hpp>
 #include <hamel/systems/mechanisms/starts.hpp>
 
 namespace hamel::mechanisms {
@@ -26,8 +28,8 @@ struct Held {
 };
 
 struct StartChecks {
-  std::vector<RowLabel> rows;  // of all_rows(): those that are kept independent
-  std::vector<int> dropped;    // of these: agree with those that are kept
+  std::vector<RowLabel> rows;     // of all_rows(): those that are kept independent
+  std::map<int, Repeat> dropped;  // of these: agree with those that are kept
   std::vector<Watched> signals;
   std::vector<Held> held;
 };

@@ -57,8 +57,15 @@ TEST_F(MechanismRows, ThatContradictOthers) {
       {prescribed(two, two, ""), "70:1: prescribed 'w-0.3' (moves as prescribed) contradicts "},
       {prescribed("", "", two), "73:1: " + wrong},
   });
-  EXPECT_THAT(run({"run", write(prescribed(two, two, "")), "--input", "w0.rate=5"}).err,
-              HasSubstr(" at most values of the inputs; leave one of them out"));
+  const auto driven = [&](const std::string& value) {
+    return run(
+        {"run", write(prescribed(two, two, "")), "--input", "w0.rate=" + value, "--until", "0.1"});
+  };
+  const std::string told = write("rate.csv", "t,value\n0,2\n0.05,2\n0.1,3\n");
+  EXPECT_EQ(driven("2").status, 0);
+  EXPECT_THAT(driven("5").err, HasSubstr(" at t = 0: w-0.3.rate has to be "));
+  EXPECT_THAT(driven(told).err, HasSubstr("failed in step "));
+  EXPECT_THAT(driven(told).err, HasSubstr("rows contradict each other at t = 0.1: "));
   const std::string jumps = write(prescribed(two, two, later));
   EXPECT_EQ(run({"run", jumps, "--until", "0.1"}).status, 0);
   EXPECT_THAT(run({"run", jumps, "--from", "600", "--until", "601"}).err,

@@ -7,6 +7,7 @@
 
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/mechanics/implied_rows.hpp>
 #include <hamel/framework/run/run/reactions.hpp>
 
 namespace hamel {
@@ -19,6 +20,7 @@ RowsWatch::RowsWatch(std::shared_ptr<const Geometry> geometry, const SystemModel
     : geometry_(std::move(geometry)),
       system_(system),
       mechanics_(std::move(mechanics)),
+      implied_(dynamic_cast<const HasImpliedRows*>(mechanics_.get())),
       g_(geometry_->size()),
       b_(mechanics_->constraint_count()),
       rows_(mechanics_->constraint_count(), mechanics_->dim()),
@@ -67,6 +69,8 @@ std::optional<std::string> RowsWatch::node(const Snapshot& state) {
     return fmt::format("the rows become dependent between t = {:.6g} and {:.6g}: {}", last_time_,
                        state.time, names());
   set_frame(state.time);
+  if (implied_ != nullptr)
+    if (std::string why = implied_->contradiction(state.time, g_.data()); !why.empty()) return why;
   return {};
 }
 

@@ -23,6 +23,8 @@
 
 namespace hamel {
 
+class HasImpliedRows;
+
 class RowsWatch {
  public:
   RowsWatch(std::shared_ptr<const Geometry> geometry, const SystemModel& system,
@@ -34,7 +36,8 @@ class RowsWatch {
 
   /// The first node, also behind an impact.
   void begin(const Snapshot& state);
-  /// The next node; where its rows are dependent, or became so since the last one, as text.
+  /// The next node; where its rows are dependent, or became so since the last one, or contradict
+  /// each other, as text.
   std::optional<std::string> node(const Snapshot& state);
   /// The condition of the rows at a state: the largest of their singular values over the smallest.
   double condition(const Snapshot& state);
@@ -52,6 +55,7 @@ class RowsWatch {
   std::shared_ptr<const Geometry> geometry_;
   const SystemModel& system_;
   std::shared_ptr<const Mechanics> mechanics_;
+  const HasImpliedRows* implied_;  // of mechanics_; null where there are none
   Eigen::VectorXd g_, b_;
   Eigen::MatrixXd rows_, columns_, inertia_, frame_, whole_;  // A, A^T, I, E, [A; E^T]
   Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
