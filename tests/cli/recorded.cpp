@@ -60,6 +60,9 @@ TEST_F(Recorded, GoesOnBitForBit) {
         "--events", "cusp", "--until", "400"}},
       {"rows of lift between", {"rolling_disk", "--output-step", "0.013", "--until", "200"}},
       {"seldom", {"suslov", "--every", "20", "--until", "4000"}},
+      {"short in a long run",
+       {"suslov_in_potential", "--scheme", "dop853", "--rtol", "1e-11", "--until", "1e8", "--every",
+        "1", "--stop-at", "t>2000"}},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);

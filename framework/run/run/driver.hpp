@@ -126,8 +126,8 @@ class Driver {
   template <class Archive>
   void serialize(Archive& archive) {
     if (plan_.contacts != nullptr) plan_.contacts->serialize(archive);  // before its kernel is made
-    archive(kernel(), steps_left_, next_, recorded_, seconds_.all, seconds_.recording,
-            seconds_.comparing, *plan_.events, *recorder_);
+    archive(kernel(), steps_, rejected_, steps_left_, next_, recorded_, seconds_.all,
+            seconds_.recording, seconds_.comparing, *plan_.events, *recorder_);
   }
 
   RunPlan plan_;

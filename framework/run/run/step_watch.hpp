@@ -45,6 +45,12 @@ class StepWatch {
     return small_ >= 4 * kWindow;
   }
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(last_, largest_, window_, since_, small_, shrunk_, rejected_, last_rejected_,
+            last_tries_);
+  }
+
  private:
   static constexpr long kWindow = 256, kFew = 32;
 
