@@ -9,6 +9,7 @@
 // Own systems, groups, retractions and schemes, compiled in the program's types: <hamel/hamel.hpp>.
 #pragma once
 
+#include <hamel/framework/analysis/equations.hpp>
 #include <hamel/framework/analysis/linearisation.hpp>
 #include <hamel/framework/analysis/section.hpp>
 #include <hamel/framework/analysis/steady.hpp>

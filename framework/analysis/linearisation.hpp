@@ -13,21 +13,11 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/analysis/number_matrix.hpp>
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/io/export.hpp>
 
 namespace hamel {
-
-/// Row after row.
-struct NumberMatrix {
-  int rows = 0, columns = 0;
-  std::vector<double> values = {};
-  NumberMatrix() = default;
-  NumberMatrix(int r, int c)
-      : rows(r), columns(c), values(static_cast<size_t>(r) * static_cast<size_t>(c)) {}
-  double& operator()(int i, int j) { return values[static_cast<size_t>(i * columns + j)]; }
-  double operator()(int i, int j) const { return values[static_cast<size_t>(i * columns + j)]; }
-};
 
 struct DiscretePair {
   NumberMatrix a, b;

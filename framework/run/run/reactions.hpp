@@ -30,7 +30,7 @@ class Reactions {
   /// xi' there.
   const Eigen::VectorXd& acceleration(const Snapshot& state) {
     at(state);
-    return motion_.acceleration();
+    return contacts_ != nullptr ? contacts_->acceleration() : motion_.acceleration();
   }
 
  private:

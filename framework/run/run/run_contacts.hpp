@@ -61,6 +61,8 @@ class RunContacts {
   const ContactStates& looked_at() const { return looks_back_ ? before_ : *states_; }
   /// The multipliers of all rows.
   const Eigen::VectorXd& reactions(double t, const double* g, const Eigen::VectorXd& xi);
+  /// Behind reactions(): xi'.
+  const Eigen::VectorXd& acceleration() const { return measured_->acceleration(); }
   /// Behind reactions(): their power, which is that of friction.
   double reaction_power() { return measured_->reaction_power(); }
   /// The system as its energy is followed: with the power of friction.

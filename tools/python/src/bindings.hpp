@@ -39,6 +39,8 @@ std::vector<double> numbers(const std::string& name, nb::handle value);
 double number(const std::string& name, nb::handle value);
 std::string text(const std::string& name, nb::handle value);
 nb::dict dict(const std::string& name, nb::handle value);
+/// A dict of configuration and velocity or momentum.
+Start start_of(const std::string& name, nb::handle value);
 std::vector<std::string> texts(const std::string& name, nb::handle value);  // one text too
 
 /// An array of its own memory.
@@ -157,6 +159,7 @@ constexpr Point kOrigin = {0, 0, 0};
 void bind_builder(nb::module_& m, nb::class_<Builder>& builder);
 void bind_config(nb::module_& m);
 void bind_ensemble(nb::module_& m);
+void bind_equations(nb::module_& m);
 void bind_forces(nb::class_<ByParts>& mechanism);
 void bind_mechanism(nb::module_& m);
 void bind_names(nb::module_& m);

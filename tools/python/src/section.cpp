@@ -9,18 +9,7 @@ std::vector<Start> starts_of(nb::handle given, const Config& config) {
   if (nb::isinstance<nb::str>(given) || nb::hasattr(given, "__fspath__"))
     return read_starts(text("starts", given), registry(), config);
   std::vector<Start> out;
-  for (const nb::handle one : given) {
-    Start& start = out.emplace_back();
-    for (const auto& [key, value] : dict("starts", one)) {
-      const auto name = key_of(key);
-      if (name == "configuration") start.configuration = numbers(name, value);
-      else if (name == "velocity") start.velocity = numbers(name, value);
-      else if (name == "momentum") start.momentum = numbers(name, value);
-      else
-        throw ConfigError(
-            {unknown_name("key of a start", name, {"configuration", "velocity", "momentum"})});
-    }
-  }
+  for (const nb::handle one : given) out.push_back(start_of("starts", one));
   return out;
 }
 

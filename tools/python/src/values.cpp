@@ -53,6 +53,20 @@ std::vector<double> numbers(const std::string& name, nb::handle value) {
   return out;
 }
 
+Start start_of(const std::string& name, nb::handle value) {
+  Start out;
+  for (const auto& [key, entry] : dict(name, value)) {
+    const auto part = key_of(key);
+    if (part == "configuration") out.configuration = numbers(part, entry);
+    else if (part == "velocity") out.velocity = numbers(part, entry);
+    else if (part == "momentum") out.momentum = numbers(part, entry);
+    else
+      throw ConfigError(
+          {unknown_name("key of a start", part, {"configuration", "velocity", "momentum"})});
+  }
+  return out;
+}
+
 std::string utf8(const std::string& name, nb::handle text) {
   Py_ssize_t size = 0;
   const char* const bytes = PyUnicode_AsUTF8AndSize(text.ptr(), &size);

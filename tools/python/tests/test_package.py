@@ -287,6 +287,28 @@ def test_import_loads_no_numpy():
     assert run_python(code).stdout.split() == ["False", "False"]
 
 
+def test_equations_at_a_state():
+    run = hamel.simulate("bicycle").speed(5).build()
+    run.step(3)
+    equations = hamel.equations("bicycle", speed=5)
+    state = run.state
+    rate = equations.rate(state.time, state)
+    rows = equations.rows(state)
+    assert rows.a.shape == (len(rows.names), len(equations.velocities))
+    np.testing.assert_allclose(rows.a @ state.velocity, rows.b, atol=1e-12)
+    np.testing.assert_allclose(
+        equations.inertia(state) @ state.velocity, equations.momentum(state), rtol=1e-13
+    )
+    assert equations.reactions(state).shape == rows.b.shape
+    jacobian = equations.jacobian("rate", "steer.torque", state)
+    pushed = hamel.equations("bicycle", speed=5, inputs={"steer.torque": 2.0})
+    np.testing.assert_allclose(
+        rate + 2 * np.asarray(jacobian)[:, 0], pushed.rate(state.time, state), atol=1e-9
+    )
+    with pytest.raises(hamel.ConfigError, match="did you mean 'velocity'"):
+        equations.jacobian("rate", "velocty")
+
+
 def test_names_of_earlier_releases():
     result = hamel.run("segway", step=0.01, until=0.1)
     assert result.columns[1:8] == ["theta", "x", "y", "right", "left", "pitch", "omega"]
