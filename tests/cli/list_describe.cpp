@@ -288,6 +288,19 @@ TEST_F(Help, VersionSaysHowFormulasRun) {
   const Outcome without = run({"--version", "--verbose"}, "HAMEL_NO_MACHINE_CODE=1 exec ");
   EXPECT_THAT(without.out,
               HasSubstr("formulas: interpreted, since HAMEL_NO_MACHINE_CODE is set\n"));
+  EXPECT_EQ(run({"--version", "--verbose", "--no-machine-code"}).out, without.out);
+}
+
+TEST_F(Help, FormulasInterpretedHaveTheSameBits) {
+  const std::vector<std::string> words = {"run", "kick_scooter", "--until", "1", "-o", "-"};
+  const Outcome code = run(words);
+  std::vector<std::string> interpreted = words;
+  interpreted.emplace_back("--no-machine-code");
+  ASSERT_EQ(code.status, 0) << code.err;
+  const auto rows = [](const Outcome& o) { return o.out.substr(0, o.out.find("\n#")); };
+  EXPECT_EQ(rows(run(interpreted)), rows(code));
+  EXPECT_THAT(run({"--help"}).out, HasSubstr("--no-machine-code"));
+  EXPECT_THAT(run({"run", "suslov", "--no-machine-cod"}).err, HasSubstr("unknown option"));
 }
 
 TEST_F(Help, NothingOrAnUnknownCommandIsBadInput) {

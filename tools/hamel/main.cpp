@@ -117,11 +117,28 @@ std::string version_text(bool verbose) {
                      : fmt::format("\nformulas: interpreted, since {}", refused));
 }
 
+constexpr const char* kNoMachineCode = "--no-machine-code";
+
+// Takes a flag that every command has out of the words before "--".
+int take_no_machine_code(int argc, char** argv) {
+  char** const last =
+      std::find_if(argv, argv + argc, [](const char* word) { return std::string(word) == "--"; });
+  char** const end = std::remove_if(argv + 1, std::max(argv + 1, last), [](const char* word) {
+    return std::string(word) == kNoMachineCode;
+  });
+  if (end == last) return argc;
+  setenv("HAMEL_NO_MACHINE_CODE", "1", 1);
+  return static_cast<int>(std::copy(last, argv + argc, end) - argv);
+}
+
 int program(int argc, char** argv) {
   begin_screen();
+  argc = take_no_machine_code(argc, argv);
   CLI::App app("Geometric integrators for nonholonomic systems on Lie groups.", "hamel");
   app.set_version_flag("--version", [&app] { return version_text(app.count("--verbose") > 0); });
   app.add_flag("--verbose")->description("With --version: the build, and how formulas run");
+  app.add_flag(kNoMachineCode)
+      ->description("Of every command: formulas are interpreted, not machine code; the same bits");
   app.require_subcommand(1);
   app.footer(
       "Examples:\n"
