@@ -9,6 +9,9 @@
 namespace hamel {
 namespace {
 
+// What is left of a row beside others, relative to it, that is round-off.
+constexpr double kDependent = 1e-9;
+
 std::vector<int> rows_of_none(const Mechanics& mechanics, const std::vector<ContactLaw>& laws) {
   std::vector<int> out;
   for (int row = 0; row < mechanics.constraint_count(); ++row) {
@@ -49,6 +52,9 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
   c_ = multipliers_;
   k_work_ = k_;
   right_.setZero(most, 4);
+  null_.setZero(most, most + 1);
+  normal_equations_.setZero(most, most);
+  order_.resize(static_cast<size_t>(most));
   directions_.resize(contacts, {1, 0});
   normal_.resize(contacts);
   coefficient_.resize(contacts);
@@ -67,7 +73,24 @@ std::vector<int> ContactDynamics::rows(const ContactStates& states) const {
     out.insert(out.end(), law(i).tangential.begin(), law(i).tangential.end());
   }
   std::sort(out.begin(), out.end());
-  return out;
+  const size_t wanted = out.size();
+  std::vector<int> kept;
+  Eigen::MatrixXd basis(a_.cols(), static_cast<Eigen::Index>(wanted));
+  const auto add = [&](int row) {
+    const auto at = static_cast<Eigen::Index>(kept.size());
+    Eigen::VectorXd rest = a_.row(row).transpose();
+    const double length = rest.norm();
+    for (int pass = 1; pass <= 2; ++pass)
+      for (Eigen::Index j = 0; j < at; ++j) rest -= basis.col(j).dot(rest) * basis.col(j);
+    if (!(rest.norm() > kDependent * length)) return;
+    basis.col(at) = rest.normalized();
+    kept.push_back(row);
+  };
+  for (const int row : always_) add(row);
+  for (const int row : out)
+    if (std::ranges::count(always_, row) == 0) add(row);
+  std::sort(kept.begin(), kept.end());
+  return kept;
 }
 
 void ContactDynamics::evaluate(double t, const double* g, const ConstVector& xi) {
@@ -286,7 +309,9 @@ bool ContactDynamics::accelerate(const ContactStates& states) {
     multipliers_[i] = rates_[row] - row_times(row, free_);
     for (int j = 0; j < m; ++j) k_work_.data()[i + j * m] = row_times(row, responses_.col(j));
   }
-  if (m > 0) solve_linear(k_work_.data(), multipliers_.data(), m, 1);
+  const bool several = m > 0 && on_.front().contact != on_.back().contact;
+  if (several) solve_rows(m);
+  else if (m > 0) solve_linear(k_work_.data(), multipliers_.data(), m, 1);
   acceleration_ = free_;
   for (int i = 0; i < m; ++i) acceleration_ += multipliers_[i] * responses_.col(i);
   take_reactions(states);

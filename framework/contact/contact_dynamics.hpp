@@ -7,7 +7,9 @@
 //   rolling: R = C = W;   sliding: R = N, C = N - mu (s/|s|)^T T,                               (2)
 // so that the friction of a sliding contact is implicit in its normal reaction: one linear system,
 // not symmetric, K l_c = b_R' - R' xi - R a, K = R M_A C^T, a the acceleration without contacts.
-// A contact with a given load in place of N has the force -mu load T^T s/|s| when it slides.
+// A contact with a given load in place of N has the force -mu load T^T s/|s| when it slides. Where
+// rows of contacts that roll depend on each other (four wheels of a cart) the motion is unique, and
+// their reactions are those of the least sum of (l/(mu load))^2: contacts of equal compliance.
 //   Modes after a switch: the contact problem with G = W M_A C^T and c = W a + W' xi - b_W', of
 // contacts that slip N and C of (2) alone, of the others W.                                     (3)
 //   Impact: the contact problem with G = W M_A W^T, c = ((1 + e)(N xi - b_N), T xi - b_T), e = 0 of
@@ -54,7 +56,8 @@ class ContactDynamics {
   const ContactLaw& law(int i) const { return laws_[static_cast<size_t>(i)]; }
   const Mechanics& mechanics() const { return *mechanics_; }
   const std::shared_ptr<const Geometry>& geometry() const { return geometry_; }
-  /// The rows that are on in these modes, ascending.
+  /// The rows that are on in these modes, ascending, without those that follow from others where
+  /// evaluate() was.
   std::vector<int> rows(const ContactStates& states) const;
 
   /// Everything that follows needs one: all at (t, g, xi).
@@ -80,9 +83,9 @@ class ContactDynamics {
   double gap_acceleration(int i) const;
   Eigen::Vector2d slip_rate(int i) const;
 
-  /// Modes of the contacts that are closed, (3). slides: the one that begins to slide in its
-  /// direction, or -1. Returns why there are none, "" where there are.
-  std::string decide(ContactStates& states, int slides = -1);
+  /// Modes of the contacts that are closed, (3). slides: those that begin to slide in their
+  /// direction. Returns why there are none, "" where there are.
+  std::string decide(ContactStates& states, const std::vector<char>& slides = {});
   /// The velocity after an impact, (4), in place of xi: of contacts that strike, and of those that
   /// are closed already. Returns why there is none.
   std::string strike(const ContactStates& states, const std::vector<char>& strikes,
@@ -124,6 +127,10 @@ class ContactDynamics {
   void take_answer(ContactState& state, size_t block) const;
   std::string solve_problem(const char* level);
   bool dependent() const;
+  // K l = right side, in k_work_ and multipliers_, of m rows; where they depend on each other the
+  // reactions are those of the least sum of squares, each in units of its bound.
+  void solve_rows(int m);
+  void share(int m, int rank);
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
@@ -141,6 +148,8 @@ class ContactDynamics {
   std::vector<double> normal_, coefficient_;
   std::vector<Eigen::Vector2d> tangential_, directions_;
   std::vector<Row> on_;
+  std::vector<int> order_;  // of the pivots of solve_rows()
+  Eigen::MatrixXd null_, normal_equations_;
   std::vector<ContactBlock> blocks_;
   std::vector<int> block_contacts_;
   ContactProblem problem_;

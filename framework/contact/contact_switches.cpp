@@ -40,13 +40,22 @@ void ContactDynamics::add_block(int i, bool slides, const Eigen::Vector2d& d) {
   block_contacts_.push_back(i);
 }
 
-// Are rows of several contacts dependent? Then their reactions are not determined.
+// Are rows of several contacts dependent? Then their reactions are not determined. Those of given
+// loads may be: their problem is that of a convex function, and the motion is unique.
 bool ContactDynamics::dependent() const {
   if (blocks_.size() < 2) return false;
-  const auto m = static_cast<Eigen::Index>(on_.size());
-  Eigen::FullPivLU<Eigen::MatrixXd> factors(k_.topLeftCorner(m, m));
-  factors.setThreshold(1e-10);
-  return factors.rank() < m;
+  const auto missing = [this](const std::vector<int>& rows) {
+    if (rows.empty()) return Eigen::Index(0);
+    Eigen::FullPivLU<Eigen::MatrixXd> factors(k_(rows, rows));
+    factors.setThreshold(1e-10);
+    return std::ssize(rows) - factors.rank();
+  };
+  std::vector<int> all, loads;
+  for (int i = 0; i < static_cast<int>(on_.size()); ++i) {
+    all.push_back(i);
+    if (!law(on_[static_cast<size_t>(i)].contact).normal) loads.push_back(i);
+  }
+  return missing(all) > missing(loads);
 }
 
 // G of responses_ into k_, and the solution with c_.
@@ -81,6 +90,10 @@ std::string ContactDynamics::solve_problem(const char* level) {
 }
 
 bool ContactDynamics::slides_on(ContactState& state, int i, bool told) {
+  if (direction_count(law(i)) == 0) {  // a stop: closed, no more
+    state.mode = ContactMode::rolls;
+    return false;
+  }
   const Eigen::Vector2d s = slip(i);
   const bool slips = s.norm() > 10 * state.no_slip;
   if (state.begins && state.mode != ContactMode::slides) state.begins = false;
@@ -96,6 +109,7 @@ bool ContactDynamics::slides_on(ContactState& state, int i, bool told) {
 void ContactDynamics::take_answer(ContactState& state, size_t block) const {
   const ContactBlock& of = blocks_[block];
   const ContactAnswer answer = problem_.answers()[block];
+  if (direction_count(law(block_contacts_[block])) == 0 && answer != ContactAnswer::opens) return;
   state.mode = answer == ContactAnswer::opens                         ? ContactMode::open
                : answer == ContactAnswer::sticks && of.tangential > 0 ? ContactMode::rolls
                                                                       : ContactMode::slides;
@@ -106,7 +120,7 @@ void ContactDynamics::take_answer(ContactState& state, size_t block) const {
   state.begins = of.tangential == 2;
 }
 
-std::string ContactDynamics::decide(ContactStates& states, int slides) {
+std::string ContactDynamics::decide(ContactStates& states, const std::vector<char>& slides) {
   on_.clear();
   blocks_.clear();
   block_contacts_.clear();
@@ -115,7 +129,7 @@ std::string ContactDynamics::decide(ContactStates& states, int slides) {
   for (int i = 0; i < count(); ++i) {
     const auto at = static_cast<size_t>(i);
     if (states[at].mode == ContactMode::open) continue;
-    const bool known = slides_on(states[at], i, i == slides);
+    const bool known = slides_on(states[at], i, at < slides.size() && slides[at] != 0);
     forces[at] = states[at];
     if (!known) forces[at].mode = ContactMode::open;
   }

@@ -19,8 +19,12 @@ struct ContactLaw {
   double load = 0;                   // N, in place of a normal row
   double friction = 0;               // mu, of Coulomb's law
   double restitution = 0;            // e, of Newton's law
+  bool of_joint = false;             // dry friction of a joint, which slips and sticks
 
   bool has_normal() const { return normal.has_value(); }
+  /// Names of the events in which it begins and ceases to slide.
+  const char* slides_name() const { return of_joint ? "slips" : "slides"; }
+  const char* rolls_name() const { return of_joint ? "sticks" : "rolls"; }
 };
 
 /// What a contact does; the numbers of the column <contact>.mode.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -107,7 +108,9 @@ ConstraintRows Assembly::rows() {
     if (kind == nullptr) unknown(part, "contact", "kind", part.kind, names_of(contact_kinds()));
     else if (check_values(part, part.kind, kind->fields, part.values) &&
              check_level(part, kind->fields))
-      out.contacts.push_back({part.name, kind->make(part.values), link, vec(part.at)});
+      out.contacts.push_back(
+          {part.name, kind->make(part.values), link, vec(part.at), 0, part.friction.has_value()});
+    check_friction(part);
   }
   for (const auto& part : parts_.loops_) {
     const Vec3 axis = vec(part.axis);
@@ -118,6 +121,7 @@ ConstraintRows Assembly::rows() {
       wrong(part, "loop", fmt::format("'{}' and '{}' are one body", part.a, part.b));
   }
   out.couplings = couplings();
+  std::ranges::move(slipping_couplings(), std::back_inserter(out.couplings));
   for (const auto& part : parts_.rates_) {
     const auto rate = part.rate ? part.rate : [](double) { return 0.0; };
     for (const Prescribed& other : out.prescribed)
@@ -224,7 +228,7 @@ SystemModel Assembly::model() {
   const std::vector<RowInfo>& words = system->row_info();
   for (const int row : system->kept()) {
     const RowInfo& word = words[static_cast<size_t>(row)];
-    if (word.height) model_.contacts.push_back(static_cast<int>(model_.reactions.size()));
+    if (word.height && !word.slips) model_.contacts.push_back(static_cast<int>(model_.reactions.size()));
     model_.reactions.push_back(word.name);
   }
 
@@ -232,6 +236,8 @@ SystemModel Assembly::model() {
   model_.rows_may_depend = !system->all_rows().agreements.empty();
   model_.events = parts_.events_;
   sense(*system);
+  state_contacts(*system);
+  stop_at_mistakes();
   start(starts_);
   check_motions(*system, rows_said_);
   stop_at_mistakes();
@@ -244,7 +250,7 @@ SystemModel Assembly::model() {
     return out;
   };
   if (!model_.inputs.empty()) model_.drive = driven;
-  model_.mechanics = invariant(*system);
+  if (model_.contact_laws.empty()) model_.mechanics = invariant(*system);
   if (model_.mechanics == nullptr) model_.mechanics = driven(nullptr);
   model_.start_mistakes = [driven, checks = start_checks(tree)](
                               double t, const double* g, std::span<const double> xi,

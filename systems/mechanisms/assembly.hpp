@@ -74,9 +74,23 @@ class Assembly {
   mechanisms::ConstraintRows rows();
   /// With mistakes, none.
   std::vector<mechanisms::Coupling> couplings();
-  std::optional<mechanisms::Coupling> coupling(const Mechanism::CouplingPart& part);
+  std::optional<mechanisms::Coupling> coupling(const Mechanism::CouplingPart& part,
+                                               const std::string& kind, const std::string& key);
   std::optional<mechanisms::Coupling> gear(const Mechanism::CouplingPart& part);
   mechanisms::Forces forces();
+  // Contacts that slide and open (assembly_contacts.cpp).
+  void check_friction(const Mechanism::ContactPart& part);
+  void check_joint_friction(const Mechanism::JointPart& part);
+  /// Dry friction and stops of joints, and walls, as couplings that do not always hold.
+  std::vector<mechanisms::Coupling> slipping_couplings();
+  std::optional<mechanisms::Coupling> wall(const Mechanism::WallPart& part);
+  /// Is this the name of a row of the friction or of a stop of a joint?
+  static bool is_of_joint(const std::string& row, const Mechanism::JointPart& part);
+  /// The laws of the kept rows.
+  void state_contacts(const mechanisms::Multibody& system);
+  /// Normal forces of contacts without a height, N: given, or of statics in the drawn pose.
+  std::vector<double> loads(const mechanisms::Multibody& system);
+  void find_loads(const mechanisms::Multibody& system, int root, std::vector<double>& loads);
   /// The system of these parts, with the rows that are independent and, where wheels have to agree
   /// on a turning centre, those of this agreement.
   std::shared_ptr<mechanisms::Multibody> system_of(mechanisms::ConstraintRows rows,

@@ -23,7 +23,8 @@ std::vector<Coupling> Assembly::couplings() {
       wrong(part, "coupling", "ratio and offset: expected joint and to beside them");
       continue;
     }
-    if (auto found = related ? gear(part) : coupling(part)) out.push_back(std::move(*found));
+    const char* const key = part.rates.empty() ? "formula" : "rates";
+    if (auto found = related ? gear(part) : coupling(part, "coupling", key)) out.push_back(std::move(*found));
   }
   return out;
 }
@@ -53,9 +54,9 @@ std::optional<Coupling> Assembly::gear(const Mechanism::CouplingPart& part) {
                   {}};
 }
 
-std::optional<Coupling> Assembly::coupling(const Mechanism::CouplingPart& part) {
+std::optional<Coupling> Assembly::coupling(const Mechanism::CouplingPart& part,
+                                           const std::string& kind, const std::string& key) {
   const bool of_rates = !part.rates.empty();
-  const std::string key = of_rates ? "rates" : "formula";
   std::map<std::string, double> constants;
   for (const auto& [name, value] : part.constants)
     if (value.size() == 1) constants[name] = value.front();
@@ -91,9 +92,9 @@ std::optional<Coupling> Assembly::coupling(const Mechanism::CouplingPart& part) 
       if (!of_rates) out.velocities.clear();
       return out;
     }
-    wrong(part, "coupling", fmt::format("{}: {}", key, mistake));
+    wrong(part, kind, fmt::format("{}: {}", key, mistake));
   } catch (const ExpressionError& error) {
-    wrong(part, "coupling", fmt::format("{}: {}", key, error.what()));
+    wrong(part, kind, fmt::format("{}: {}", key, error.what()));
   }
   return std::nullopt;
 }

@@ -19,11 +19,11 @@ using namespace mechanisms;
 void Assembly::check_motions(const Multibody& system, const std::vector<RowLabel>& rows) {
   std::vector<double> g(system.drawn().size());
   system.geometry().from_coordinates(model_.start.configuration, g.data());
-  const int n = system.dim(), k = system.constraint_count();
-  Eigen::MatrixXd inertia(n, n), a(k, n), free = Eigen::MatrixXd::Identity(n, n);
-  Eigen::VectorXd b(k);
+  const std::vector<int> holding = system.holding();
+  const int n = system.dim(), k = static_cast<int>(holding.size());
+  Eigen::MatrixXd inertia(n, n), free = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd a = RowValues(system, g).a(holding, Eigen::all);
   system.inertia(g.data(), inertia);
-  system.constraints(0, g.data(), a, b);
   // Each velocity in units of its inertia: that of a needle on a ship is not none.
   const Eigen::VectorXd unit = velocity_units(inertia);
   if (k > 0) {
@@ -32,10 +32,10 @@ void Assembly::check_motions(const Multibody& system, const std::vector<RowLabel
     free = dense::kernel(a);
   }
   if (free.isZero(0)) {
-    if (mobility_at(system, g).any) return;  // what is prescribed decides the motion alone
-    const RowLabel& last = rows[static_cast<size_t>(system.kept().back())];
+    if (mobility_at(system, g).any && model_.contact_laws.empty()) return;  // what is prescribed decides the motion alone
+    const RowLabel& last = rows[static_cast<size_t>(holding.back())];
     std::vector<std::string> others;
-    for (const int i : system.kept()) {
+    for (const int i : holding) {
       const std::string& what = rows[static_cast<size_t>(i)].what;
       if (what != last.what && std::ranges::count(others, what) == 0) others.push_back(what);
     }
@@ -84,15 +84,23 @@ void Assembly::note_what_stands(const Multibody& system, const Redundancy& redun
         fmt::format("{}: cannot roll, since no joint turns about the axle", stuck));
 
   const std::string all = names([](size_t) { return true; });
-  const Mobility mobility = mobility_at(system, g);
+  const std::string slipping = names([&](size_t i) { return rows.contacts[i].slips; });
+  const bool slips = !model_.contact_laws.empty();
+  const Mobility mobility = mobility_at(system, g), sticks = mobility_at(system, g, true);
   const int root = vehicle_root(system.tree(g.data()));
   if (!mobility.root)
     model_.notes.push_back(fmt::format("joint '{}' cannot move: {} and what is prescribed hold it",
                                        link_names_[static_cast<size_t>(root)], all));
+  else if (slips && !sticks.root && mobility.root)
+    model_.notes.push_back(fmt::format("joint '{}' moves only by slipping of {}",
+                                       link_names_[static_cast<size_t>(root)], slipping));
+  else if (slips && !sticks.turns && mobility.turns)
+    model_.notes.push_back(fmt::format("joint '{}' turns only by slipping of {}",
+                                       link_names_[static_cast<size_t>(root)], slipping));
   else if (!mobility.turns && !rows.contacts.empty())
     model_.notes.push_back(fmt::format(
         "joint '{}' cannot turn: {} allow straight motion only; a vehicle that turns by "
-        "skidding slips, which rows without friction exclude",
+        "skidding slips, which contacts without `friction` exclude",
         link_names_[static_cast<size_t>(root)], all));
 
   // The height of a dropped row is kept by the other supports, and its multiplier is theirs.

@@ -28,7 +28,11 @@ std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) 
     for (const auto& part : parts_.loops_)
       if (part.name == row.part) say(part, "loop");
     for (const auto& part : parts_.couplings_)
-      if (part.name == row.part) say(part, "coupling");
+      if (part.name == row.part && !row.slips) say(part, "coupling");
+    for (const auto& part : parts_.walls_)
+      if (part.name == row.part) say(part, "wall");
+    for (const auto& part : parts_.joints_)
+      if (row.slips && is_of_joint(row.part, part)) say(part, "joint");
     if (row.part == kAgreement)
       out.push_back({"", fmt::format("{} ({})", kAgreement, row.meaning)});
   }
@@ -101,10 +105,17 @@ void Assembly::find_rows(const std::shared_ptr<Multibody>& system,
   rows_said_ = rows_in_words(system->row_info());
   starts_ = std::make_shared<Starts>(system, parts_.name_, model_.group.columns, model_.rates,
                                      rows_said_);
-  redundancy_ = find_redundancy(*system, {system->drawn(), start_configuration(*system, *starts_)},
-                                giving_way);
+  std::vector<int> others = giving_way, kept;
+  for (const int row : rows_that_constrain(*system, system->drawn()))
+    if (system->row_info()[static_cast<size_t>(row)].slips) kept.push_back(row);
+  for (size_t row = 0; row < system->row_info().size(); ++row)
+    if (system->row_info()[row].slips) others.push_back(static_cast<int>(row));
+  redundancy_ =
+      find_redundancy(*system, {system->drawn(), start_configuration(*system, *starts_)}, others);
   look_at_redundant(redundancy_, system->row_info());
-  system->keep(redundancy_.rows);
+  kept.insert(kept.end(), redundancy_.rows.begin(), redundancy_.rows.end());
+  std::ranges::sort(kept);
+  system->keep(kept);
   std::vector<int> implied;
   for (const auto& [row, repeat] : redundancy_.repeats) implied.push_back(row);
   system->imply(implied);
@@ -126,7 +137,7 @@ std::shared_ptr<Multibody> Assembly::system_of(ConstraintRows rows, Forces force
   find_rows(out, {});
   if (!moves_at_this_pose_alone(*out, out->drawn())) return out;
   const auto others = static_cast<int>(rows_said_.size() - rows.prescribed.size());
-  std::vector<int> kept = out->kept(), all = kept;
+  std::vector<int> kept = out->holding(), all = kept;
   for (const auto& [row, repeat] : redundancy_.repeats) all.push_back(row);
   for (std::vector<int>* some : {&kept, &all}) {
     std::ranges::sort(*some);

@@ -67,6 +67,7 @@ struct Contact {
   // The link, or its parent where the link's own turning changes nothing: a wheel. Found by
   // ConstraintRows::find_links.
   int carrier = 0;
+  bool slips = false;  // may it slide, and open?
 
   /// How many rows, the last of them its height.
   size_t row_count() const;

@@ -1,6 +1,7 @@
 // The kinds of contacts by name, and their rows from one formula each.
 #include <hamel/systems/mechanisms/contacts/ball_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/blade_contact.hpp>
+#include <hamel/systems/mechanisms/contacts/point_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/roller_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/wheel_contact.hpp>
 #include <hamel/systems/mechanisms/programs/contact_view.hpp>
@@ -91,6 +92,7 @@ const std::vector<ContactKind>& contact_kinds() {
   static const std::vector<ContactKind> all = {
       kind<BallContact>(),
       kind<BladeContact>(),
+      kind<PointContact>(),
       kind<RollerContact>(),
       kind<WheelContact>(),
   };

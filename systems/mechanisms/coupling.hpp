@@ -21,6 +21,7 @@ struct Coupling {
   std::vector<int> links;       // whose joints have the coordinates
   std::vector<int> velocities;  // of xi; empty: an equation of coordinates
   mutable std::vector<double> work = {};
+  bool slips = false;  // dry friction; or a stop or wall, where phi is not negative
 
   bool of_rates() const { return !velocities.empty(); }
   /// phi at the elements of a tree, as it lays them out; 0 of an equation of velocities.

@@ -54,7 +54,12 @@ void FileParts::joints() {
                              {"at", read_.read(o.at)},       {"axis", read_.read(o.axis)},
                              {"axis2", read_.read(o.axis2)}, {"stiffness", read_.read(o.stiffness)},
                              {"rest", read_.read(o.rest)},   {"damping", read_.read(o.damping)},
-                             {"held", read_.read(held)}};
+                             {"held", read_.read(held)},
+                             {"friction", read_.read(o.friction)},
+                             {"restitution", read_.read(o.restitution)},
+                             {"stop", [&](const Node& node, const std::string& key) {
+                                o.stop = read_.formulas.numbers(node, key, 2);
+                              }}};
     for (const JointKind& any : joint_kinds()) add_fields(any.fields, o.values, keys);
     read_.entries(table, keys);
     if (name.empty()) name = child;
@@ -69,7 +74,13 @@ void FileParts::contacts() {
       std::string name, body;
       ContactOptions o;
       FileValues::Keys keys = {
-          {"name", read_.read(name)}, {"body", read_.read(body)}, {"at", read_.read(o.at)}};
+          {"name", read_.read(name)},
+          {"body", read_.read(body)},
+          {"at", read_.read(o.at)},
+          {"friction", read_.read(o.friction)},
+          {"restitution", read_.read(o.restitution)},
+          {"load", read_.read(o.load)},
+          {"unilateral", read_.read(o.unilateral)}};
       add_fields(kind.fields, o.values, keys);
       read_.entries(table, keys);
       m_.contact(kind.name, name.empty() ? body : name, body, o);
@@ -88,9 +99,22 @@ void FileParts::chains() {
     m_.loop(name, a, b, o);
   });
   tables("coupling", [&](const toml::table& table) { coupling(table); });
+  tables("wall", [&](const toml::table& table) { wall(table); });
   tables("prescribed", [&](const toml::table& table) {
     if (!is_input(table, {"rate", "angle"})) prescribed(table);
   });
+}
+void FileParts::wall(const toml::table& table) {
+  std::string name;
+  WallOptions o;
+  read_.entries(table, {{"name", read_.read(name)},
+                        {"distance",
+                         [&](const Node& node, const std::string& key) {
+                           o.distance = read_.formula(node, key);
+                         }},
+                        {"restitution", read_.read(o.restitution)}});
+  for (const auto& [constant, value] : read_.formulas.constants()) o.constants[constant] = {value};
+  m_.wall(name, o);
 }
 void FileParts::coupling(const toml::table& table) {
   std::string name;

@@ -48,6 +48,7 @@ class FileParts {
   }
   void add_fields(const std::vector<Field>& fields, Parameters& to, FileValues::Keys& keys);
   void coupling(const toml::table& table);
+  void wall(const toml::table& table);
   void prescribed(const toml::table& table);
   void motor(const toml::table& table);
   void no_range(const toml::table& table);

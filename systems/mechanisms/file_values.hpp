@@ -30,6 +30,8 @@ class FileValues {
   void set_names(const std::vector<std::string>& coordinates, const std::vector<std::string>& rates,
                  const std::vector<InputField>& inputs) {
     names_ = {"t"};
+    first_rate_ = 1 + coordinates.size();
+    rates_ = rates.size();
     names_.insert(names_.end(), coordinates.begin(), coordinates.end());
     names_.insert(names_.end(), rates.begin(), rates.end());
     for (size_t i = 0; i < inputs.size(); ++i) {  // the rate of a prescribed joint is there already
@@ -60,6 +62,7 @@ class FileValues {
     const auto formula = formulas.expression(node, key, names_);
     if (!formula) return {};
     for (const size_t i : formula->used()) time_dependent |= i == 0;
+    if (formula->may_jump()) note_jump(node, key, *formula);
     return [formula = *formula, inputs = inputs_,
             values = std::vector<double>(names_.size())](const SignalInput& now) mutable {
       values[0] = now.t;
@@ -123,6 +126,11 @@ class FileValues {
   Reader read(std::optional<double>& to) {
     return [this, &to](const Node& node, const std::string& key) { to = number(node, key); };
   }
+  Reader read(std::optional<bool>& to) {
+    return [this, &to](const Node& node, const std::string& key) {
+      toml.value(node, key, to.emplace());
+    };
+  }
   Reader read(std::vector<double>& to) {
     return
         [this, &to](const Node& node, const std::string& key) { to = formulas.numbers(node, key); };
@@ -152,8 +160,30 @@ class FileValues {
 
   TomlReader toml;
   TomlFormulas formulas{toml};
+  std::vector<std::string> notes;
 
  private:
+  /// A note where a formula jumps as a velocity changes its sign, tried at scattered values.
+  void note_jump(const Node& node, const std::string& key, const Expression& formula) {
+    std::vector<double> at(names_.size());
+    for (size_t i = 0; i < at.size(); ++i) at[i] = std::sin(12.9898 * (static_cast<double>(i) + 1));
+    for (const size_t i : formula.used()) {
+      if (i < first_rate_ || i >= first_rate_ + rates_) continue;
+      const auto beside = [&](double rate) {
+        std::vector<double> values = at;
+        values[i] = rate;
+        return formula(values);
+      };
+      const double before = beside(-1e-9), after = beside(1e-9);
+      if (!(std::abs(after - before) > 1e-6 * (std::abs(after) + std::abs(before)))) continue;
+      notes.push_back(fmt::format(
+          "{}: {}: jumps where {} changes its sign: steps shrink there without end; dry friction is "
+          "`friction` of a joint or contact",
+          toml.place(node), key, names_[i]));
+    }
+  }
+
+  size_t first_rate_ = 0, rates_ = 0;
   std::vector<std::string> names_;
   std::vector<size_t> inputs_;  // of those of the system, that names_ ends with
 };

@@ -35,7 +35,8 @@ std::vector<ImpliedRow> Multibody::implied_rows(double t, const double* g) const
   std::vector<ImpliedRow> out;
   if (implied_.empty()) return out;
   const RowValues at(*this, std::vector<double>(g, g + drawn().size()), t);
-  const Eigen::MatrixXd kept = at.a(kept_, Eigen::all).transpose();
+  const std::vector<int> holding = this->holding();
+  const Eigen::MatrixXd kept = at.a(holding, Eigen::all).transpose();
   const Eigen::Index first =
       at.b.size() - static_cast<Eigen::Index>(rows_.prescribed.size());  // of the prescribed
   const auto name = [&](int row) {
@@ -49,7 +50,7 @@ std::vector<ImpliedRow> Multibody::implied_rows(double t, const double* g) const
     ImpliedRow implied{row, name(row), "", at.b[row], 0, false};
     double size = std::abs(implied.is);
     for (Eigen::Index j = 0; j < parts.size(); ++j) {
-      const int other = kept_[static_cast<size_t>(j)];
+      const int other = holding[static_cast<size_t>(j)];
       const double part = parts[j] * at.b[other];
       implied.has_to_be += part;
       size += std::abs(part);

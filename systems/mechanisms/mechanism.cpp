@@ -11,6 +11,11 @@ namespace {
 
 std::vector<double> values_of(const Point& p) { return {p.begin(), p.end()}; }
 
+template <class Options>
+ContactOptions contact_options(const Options& o, Parameters values) {
+  return {o.at, std::move(values), o.friction, o.restitution, o.load, o.unilateral};
+}
+
 }  // namespace
 
 Mechanism::Mechanism(std::string name) : name_(std::move(name)) {}
@@ -37,17 +42,22 @@ void Mechanism::contact(const std::string& kind, const std::string& name, const 
   contacts_.push_back({part(name), options, kind, body});
 }
 void Mechanism::wheel(const std::string& name, const std::string& body, const WheelOptions& o) {
-  contact("wheel", name, body, {o.at, {{"axle", values_of(o.axle)}, {"radius", {o.radius}}}});
+  contact("wheel", name, body,
+          contact_options(o, {{"axle", values_of(o.axle)}, {"radius", {o.radius}}}));
 }
 void Mechanism::roller(const std::string& name, const std::string& body, const WheelOptions& o) {
   contact("roller", name, body,
-          {o.at, {{"axle", values_of(o.axle)}, {"radius", {o.radius}}, {"angle", {o.angle}}}});
+          contact_options(
+              o, {{"axle", values_of(o.axle)}, {"radius", {o.radius}}, {"angle", {o.angle}}}));
 }
 void Mechanism::blade(const std::string& name, const std::string& body, const BladeOptions& o) {
-  contact("blade", name, body, {o.at, {{"along", values_of(o.along)}}});
+  contact("blade", name, body, contact_options(o, {{"along", values_of(o.along)}}));
 }
 void Mechanism::ball(const std::string& name, const std::string& body, const WheelOptions& o) {
-  contact("ball", name, body, {o.at, {{"radius", {o.radius}}}});
+  contact("ball", name, body, contact_options(o, {{"radius", {o.radius}}}));
+}
+void Mechanism::point(const std::string& name, const std::string& body, const PointOptions& o) {
+  contact("point", name, body, contact_options(o, {}));
 }
 
 void Mechanism::loop(const std::string& name, const std::string& a, const std::string& b,
@@ -56,6 +66,9 @@ void Mechanism::loop(const std::string& name, const std::string& a, const std::s
 }
 void Mechanism::coupling(const std::string& name, const CouplingOptions& options) {
   couplings_.push_back({part(name), options});
+}
+void Mechanism::wall(const std::string& name, const WallOptions& options) {
+  walls_.push_back({part(name), options});
 }
 void Mechanism::prescribe(const std::string& joint, std::function<double(double t)> rate,
                           std::function<double(double t)> angle,

@@ -59,23 +59,50 @@ struct JointOptions {
   Point axis = {0, 0, 1};
   Point axis2 = {0, 1, 0};  // of a universal joint, on the child
   double stiffness = 0, rest = 0,
-         damping = 0;      // N m/rad, rad, N m s/rad; of a slider N/m, m, N s/m
+         damping = 0;  // N m/rad, rad, N m s/rad; of a slider N/m, m, N s/m
+  // Of a hinge or slider: dry friction, N m or N, with which it sticks; ends of its motion, rad or
+  // m, with the restitution of the impacts there.
+  std::optional<double> friction = {}, restitution = {};
+  std::vector<double> stop = {};  // low, high
   Parameters values = {};  // what this kind of joint has beside them, by name
 };
 /// A contact of any kind (mechanisms/README.md).
 struct ContactOptions {
   Point at = {0, 0, 0};    // m, its centre or point
   Parameters values = {};  // of its fields, by name: {{"radius", {0.3}}}
+  // Coulomb's friction, with which it may slide, and open where its height may change; without, it
+  // is ideal.
+  std::optional<double> friction = {}, restitution = {};
+  std::optional<double> load = {};      // N, where its height cannot change; left out: of statics
+  std::optional<bool> unilateral = {};  // may it open? As its friction and height have it
 };
 struct WheelOptions {
   Point at = {0, 0, 0};    // m, its centre
   Point axle = {0, 1, 0};  // to the left, so that it rolls ahead at positive rates
   double radius = 0;       // m
   double angle = 0;        // rad, of a roller's rollers against the plane of the wheel
+  // As in ContactOptions.
+  std::optional<double> friction = {}, restitution = {}, load = {};
+  std::optional<bool> unilateral = {};
 };
 struct BladeOptions {
   Point at = {0, 0, 0};     // m
   Point along = {1, 0, 0};  // the direction in which it slides
+  // As in ContactOptions.
+  std::optional<double> friction = {}, restitution = {}, load = {};
+  std::optional<bool> unilateral = {};
+};
+struct PointOptions {
+  Point at = {0, 0, 0};  // m
+  // As in ContactOptions.
+  std::optional<double> friction = {}, restitution = {}, load = {};
+  std::optional<bool> unilateral = {};
+};
+/// A wall that coordinates of hinges and sliders run against.
+struct WallOptions {
+  std::string distance = {};  // a formula of coordinates, not negative
+  double restitution = 0;
+  Parameters constants = {};  // names that the formula may use
 };
 struct LoopOptions {
   Point at = {0, 0, 0};    // m
@@ -150,6 +177,8 @@ class HAMEL_API Mechanism {
   void roller(const std::string& name, const std::string& body, const WheelOptions& options);
   void blade(const std::string& name, const std::string& body, const BladeOptions& options);
   void ball(const std::string& name, const std::string& body, const WheelOptions& options);
+  /// A point of a body above the ground: a skid, a leg, a caster without its wheel.
+  void point(const std::string& name, const std::string& body, const PointOptions& options);
   /// By the name of its kind, one of those above or another one.
   void contact(const std::string& kind, const std::string& name, const std::string& body,
                const ContactOptions& options);
@@ -158,6 +187,7 @@ class HAMEL_API Mechanism {
             const LoopOptions& options);
   /// A gear, belt, linkage or differential.
   void coupling(const std::string& name, const CouplingOptions& options);
+  void wall(const std::string& name, const WallOptions& options);
   /// The rate of a hinge or slider, as a function of time, or as an input of the run, "steer.rate".
   /// With the angle (of a slider the position) whose derivative it is, a run starts there. With the
   /// derivative of the rate the equations of motion are exact; without, they find it by
@@ -241,6 +271,7 @@ class HAMEL_API Mechanism {
     std::string a, b;
   };
   struct CouplingPart : Part, CouplingOptions {};
+  struct WallPart : Part, WallOptions {};
   struct SpringPart : Part, SpringOptions {
     std::string a, b;
   };
@@ -281,6 +312,7 @@ class HAMEL_API Mechanism {
   std::vector<ContactPart> contacts_;
   std::vector<LoopPart> loops_;
   std::vector<CouplingPart> couplings_;
+  std::vector<WallPart> walls_;
   std::vector<SpringPart> springs_;
   std::vector<ForcePart> forces_;
   std::vector<SensorPart> sensors_;

@@ -28,6 +28,7 @@ class File {
     Mechanism m = parts();
     SystemModel out = m.model();
     out.fields = fields_;
+    out.notes.insert(out.notes.end(), read_.notes.begin(), read_.notes.end());
     return out;
   }
   SystemModel outline() {
@@ -85,7 +86,7 @@ class File {
           "gravity", "ground", "inputs",     "joint",      "known", "loop",
           "motor",   "name",   "parameters", "prescribed", "push",  "redundant",
           "sensor",  "slope",  "source",     "spring",     "start", "start_arguments",
-          "summary"})
+          "summary", "wall"})
       known.emplace_back(key);
     std::ranges::sort(known);
     for (const auto& [name, node] : table_) {

@@ -12,9 +12,12 @@
 //   at = ["wheelbase/2", 0, 0.1]
 //   [[joint]]                # kind: free planar hinge slider ball universal weld
 //   kind = "planar"          # parent (left out: the ground), child, at, axis, axis2,
-//   child = "deck"           # stiffness, rest, damping; held = true: locked where it starts
-//   [[wheel]] [[roller]] [[blade]] [[ball]]
-//                            # name (left out: the body's), body, at; axle, radius, angle; along
+//   child = "deck"           # stiffness, rest, damping; held = true: locked where it starts;
+//                            # friction [N m, N], stop = [low, high], restitution
+//   [[wall]]                 # name; distance = "1 - way.position", not negative; restitution
+//   [[wheel]] [[roller]] [[blade]] [[ball]] [[point]]
+//                            # name (left out: the body's), body, at; axle, radius, angle; along;
+//                            # friction, restitution, load [N], unilateral
 //   [[loop]]                 # name, a, b, at, axis
 //   [[coupling]]             # name (left out: the joint's); joint, to, ratio, offset: joint =
 //   joint = "left knuckle"   # ratio * to + offset; or formula = "...", of joint coordinates, or

@@ -23,10 +23,14 @@ bool moves_by_itself(const Prescribed& p) {
 
 // A basis of the velocities that contacts, loops and joints that are held allow, in units of the
 // energy that each velocity has alone.
-MatrixXd free_velocities(const Multibody& system, const std::vector<double>& g) {
+MatrixXd free_velocities(const Multibody& system, const std::vector<double>& g, bool sticking) {
   MatrixXd inertia(system.dim(), system.dim());
   system.inertia(g.data(), inertia);
   MatrixXd a = RowValues(system, g).a;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    const RowInfo& row = system.row_info()[static_cast<size_t>(i)];
+    if (row.slips && (!sticking || row.holonomic)) a.row(i).setZero();
+  }
   const std::vector<Prescribed>& prescribed = system.all_rows().prescribed;
   const Eigen::Index others = a.rows() - static_cast<Eigen::Index>(prescribed.size());
   for (size_t i = 0; i < prescribed.size(); ++i)
@@ -62,14 +66,14 @@ bool moves_at_this_pose_alone(const Multibody& system, const std::vector<double>
   std::iota(own.begin(), own.end(), tree.first(root));
   const std::vector<std::vector<double>> poses = poses_on_rows(system, g);
   const auto moves = [&](const std::vector<double>& pose) {
-    return any_of(free_velocities(system, pose), own);
+    return any_of(free_velocities(system, pose, false), own);
   };
   return poses.size() > 1 && moves(g) && std::none_of(poses.begin() + 1, poses.end(), moves);
 }
 
-Mobility mobility_at(const Multibody& system, const std::vector<double>& g) {
+Mobility mobility_at(const Multibody& system, const std::vector<double>& g, bool sticking) {
   Mobility out;
-  out.any = system.all_rows().ground.moves() || free_velocities(system, g).cols() > 0;
+  out.any = system.all_rows().ground.moves() || free_velocities(system, g, sticking).cols() > 0;
   const Tree& tree = system.tree(g.data());
   const int root = vehicle_root(tree);
   if (root < 0 || system.all_rows().ground.moves()) return out;
@@ -78,7 +82,7 @@ Mobility mobility_at(const Multibody& system, const std::vector<double>& g) {
   for (int& velocity : turning) velocity += tree.first(root);
   out.root = out.turns = false;
   for (const std::vector<double>& pose : poses_on_rows(system, g)) {
-    const MatrixXd free = free_velocities(system, pose);
+    const MatrixXd free = free_velocities(system, pose, sticking);
     out.root = out.root || any_of(free, own);
     out.turns = out.turns || any_of(free, turning);
   }

@@ -14,8 +14,9 @@ struct Mobility {
   bool root = true;   // the first planar or free root joint
   bool turns = true;  // that joint, by its angular velocities
 };
-/// g: an element on phi = 0. On ground that moves everything does.
-Mobility mobility_at(const Multibody& system, const std::vector<double>& g);
+/// g: an element on phi = 0. On ground that moves everything does. sticking: with contacts that may
+/// slide not sliding.
+Mobility mobility_at(const Multibody& system, const std::vector<double>& g, bool sticking = false);
 
 /// Is the first planar or free root joint free to move at a pose, but at none of those near it that
 /// the rows let it reach? The rank of the rows falls there.

@@ -28,6 +28,12 @@ HAMEL_FLATTEN void write(const Row& row, const Tree& tree, Mechanics::Matrix& a,
 
 }  // namespace
 
+std::vector<int> Multibody::holding() const {
+  std::vector<int> out = kept_;
+  std::erase_if(out, [this](int row) { return row_info_[static_cast<size_t>(row)].slips; });
+  return out;
+}
+
 void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) const {
   const Tree& at = tree(g);
   a.setZero();

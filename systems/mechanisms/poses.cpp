@@ -51,13 +51,22 @@ std::vector<std::vector<double>> poses_around(const Multibody& system,
 }
 
 double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vector<double>& g,
-               int but_for) {
+               int but_for, bool touching) {
   const std::vector<RowInfo>& words = system.row_info();
   const std::vector<Prescribed>& prescribed = system.all_rows().prescribed;
+  std::vector<bool> on_ground(words.size());
+  if (touching) {
+    const VectorXd drawn = RowValues(system, system.drawn()).phi;
+    for (size_t i = 0; i < words.size(); ++i)
+      on_ground[i] = words[i].height && std::abs(drawn[static_cast<Eigen::Index>(i)]) < 1e-6;
+  }
   for (int k = 0;; ++k) {
     RowValues looked(system, g);
     for (Eigen::Index i = 0; i < looked.a.rows(); ++i) {
-      if (!words[static_cast<size_t>(i)].holonomic) looked.a.row(i).setZero();
+      const RowInfo& word = words[static_cast<size_t>(i)];
+      const bool open = word.slips && !on_ground[static_cast<size_t>(i)];
+      if (!word.holonomic || open) looked.a.row(i).setZero();
+      if (open) looked.phi[i] = 0;
     }
     for (size_t i = 0; i < prescribed.size(); ++i) {
       if (prescribed[i].dof != but_for) continue;
@@ -84,6 +93,8 @@ std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
     const VectorXd any = 0.2 * scattered(system.dim(), seed);
     MatrixXd a = RowValues(system, g).a;
     a.bottomRows(static_cast<Eigen::Index>(system.all_rows().prescribed.size())).setZero();
+    for (Eigen::Index i = 0; i < a.rows(); ++i)
+      if (system.row_info()[static_cast<size_t>(i)].slips) a.row(i).setZero();
     std::vector<double> pose = move(system, g, any - least(a, VectorXd(a * any)));
     if (satisfy(system, fixed, pose) < 1e-12) out.push_back(std::move(pose));
   }
@@ -141,25 +152,29 @@ std::map<int, Repeat> repeated_rows(const Multibody& system, const std::vector<d
   return out;
 }
 
+std::vector<int> rows_that_constrain(const Multibody& system, const std::vector<double>& drawn) {
+  const std::vector<RowInfo>& words = system.row_info();
+  const auto around = poses_around(system, drawn);
+  std::vector<int> out;
+  for (size_t i = 0; i < words.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if ((!words[i].holonomic && !words[i].slips) ||
+        std::ranges::any_of(around, [&](const auto& pose) {
+          return RowValues(system, pose).a.row(row).norm() > 1e-11;
+        }))
+      out.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
 Redundancy find_redundancy(const Multibody& system, const std::vector<std::vector<double>>& places,
                            const std::vector<int>& left_out) {
   const bool timed = !system.all_rows().prescribed.empty();  // are there rates b(t)?
   const std::vector<double> times =
       timed ? std::vector<double>{0, -1.3, 0.7, 1.9, 5.3, 14.1, 37.7, 101.3}  // s, of no period
             : std::vector<double>{0};
-  const std::vector<RowInfo>& words = system.row_info();
-  // A row of phi that is zero in all poses constrains nothing: in the plane no contact changes its
-  // height.
-  std::vector<int> speaking;
-  const auto around = poses_around(system, places.front());
-  for (size_t i = 0; i < words.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (std::ranges::count(left_out, static_cast<int>(i)) > 0) continue;
-    if (!words[i].holonomic || std::ranges::any_of(around, [&](const auto& pose) {
-          return RowValues(system, pose).a.row(row).norm() > 1e-11;
-        }))
-      speaking.push_back(static_cast<int>(i));
-  }
+  std::vector<int> speaking = rows_that_constrain(system, places.front());
+  std::erase_if(speaking, [&](int row) { return std::ranges::count(left_out, row) > 0; });
   Redundancy out;
   std::map<int, size_t> dependent;
   std::vector<std::vector<double>> poses;

@@ -32,6 +32,7 @@ std::vector<RowInfo> ConstraintRows::info() const {
     for (const std::string& meaning : contact.model->meanings())
       add(contact.name, ++number, meaning, false);
     add(contact.name, ++number, "touches the ground", true, true);
+    for (int i = 1; i <= number; ++i) out[out.size() - static_cast<size_t>(i)].slips = contact.slips;
   }
   for (const Loop& loop : loops) {
     for (int i = 1; i <= 3; ++i) add(loop.name, i, "the points of the joint coincide", true);
@@ -39,9 +40,11 @@ std::vector<RowInfo> ConstraintRows::info() const {
       add(loop.name, i, "the axes of the joint coincide", true);
   }
   for (const Coupling& coupling : couplings) {
-    add(coupling.name, 1, coupling.of_rates() ? "couples rates" : "couples joints",
-        !coupling.of_rates());
+    const char* const rates = coupling.slips ? "sticks" : "couples rates";
+    const char* const joints = coupling.slips ? "stops" : "couples joints";
+    add(coupling.name, 1, coupling.of_rates() ? rates : joints, !coupling.of_rates());
     out.back().length = false;
+    out.back().slips = coupling.slips;
   }
   for (size_t i = 0; i < agreements.size(); ++i) {
     add(std::string(kAgreement), 1 + static_cast<int>(i), "the axles of wheels meet in one point",

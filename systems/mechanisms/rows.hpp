@@ -36,6 +36,7 @@ struct RowInfo {
   bool holonomic = false;
   bool height = false;  // its multiplier is a normal reaction
   bool length = true;   // is its phi in m, not of a formula?
+  bool slips = false;   // of a part that may slide or open: it does not always hold
 };
 
 struct ConstraintRows {

@@ -46,7 +46,7 @@ std::vector<std::string> mistakes_at_start(const Multibody& system, const StartC
                                 value, t, x[held.column]));
   }
   const std::vector<double> place(g, g + system.drawn().size());
-  for (const auto& [row, repeat] : repeated_rows(system, place, system.kept(), {t})) {
+  for (const auto& [row, repeat] : repeated_rows(system, place, system.holding(), {t})) {
     const std::string beyond = in_words(repeat.others, checks.rows);
     const RowLabel& said = checks.rows[static_cast<size_t>(row)];
     if (repeat.contradicts)

@@ -144,12 +144,17 @@ std::vector<double> Starts::configuration(const Values& given_values, double t,
     refuse({}, stated, places, fmt::format(": {}", error.what()));
   }
   const std::vector<double> near = g;
-  if (const double off = satisfy(*system_, fixed, g); !(off < 1e-12)) {
+  double off = satisfy(*system_, fixed, g, -1, true);
+  if (!(off < 1e-12) && std::ranges::any_of(system_->row_info(), &RowInfo::slips)) {
+    g = near;
+    off = satisfy(*system_, fixed, g);
+  }
+  if (!(off < 1e-12)) {
     const VectorXd phi = RowValues(*system_, g).phi;
     std::vector<int> open;
     bool lengths = true;
     for (int i = 0; i < phi.size(); ++i) {
-      if (std::abs(phi[i]) < 1e-9) continue;
+      if (std::abs(phi[i]) < 1e-9 || system_->row_info()[static_cast<size_t>(i)].slips) continue;
       open.push_back(i);
       lengths = lengths && system_->row_info()[static_cast<size_t>(i)].length;
     }
@@ -181,6 +186,60 @@ std::string Starts::unasked(const std::vector<int>& some, const Values& values,
   return out;
 }
 
+VectorXd Starts::Equations::solution() const { return least(a, b); }
+bool Starts::Equations::solved() const {
+  return (a * solution() - b).norm() <= 1e-9 * (1 + b.norm());
+}
+
+Starts::Equations Starts::equations(
+    const std::vector<double>& g, double t,
+    const std::vector<std::pair<int, Values::value_type>>& stated,
+    const std::vector<int>& rows) const {
+  const RowValues values(*system_, g, t);
+  const auto k = static_cast<Eigen::Index>(rows.size()), more = std::ssize(stated);
+  Equations out{MatrixXd::Zero(k + more, system_->dim()), VectorXd::Zero(k + more), rows};
+  out.a.topRows(k) = values.a(rows, Eigen::all);
+  out.b.head(k) = values.b(rows);
+  for (Eigen::Index i = 0; i < more; ++i) {
+    out.a(k + i, stated[static_cast<size_t>(i)].first) = 1;
+    out.b[k + i] = stated[static_cast<size_t>(i)].second.second;
+  }
+  return out;
+}
+
+std::vector<std::string> Starts::add_slipping(
+    const std::vector<double>& g, double t,
+    const std::vector<std::pair<int, Values::value_type>>& stated, Equations& to) const {
+  const std::vector<RowInfo>& words = system_->row_info();
+  const VectorXd phi = RowValues(*system_, g, t).phi;
+  std::vector<std::pair<std::string, std::vector<int>>> parts;
+  for (const int row : system_->kept()) {
+    const RowInfo& word = words[static_cast<size_t>(row)];
+    if (!word.slips) continue;
+    const auto part = std::ranges::find(parts, word.part, [](const auto& p) { return p.first; });
+    if (part != parts.end()) part->second.push_back(row);
+    else parts.push_back({word.part, {row}});
+  }
+  std::erase_if(parts, [&](const auto& part) {  // those that are open
+    return std::ranges::any_of(part.second, [&](int row) { return phi[row] > 1e-9; });
+  });
+  std::vector<int> all = to.rows;
+  for (const auto& [name, rows] : parts) all.insert(all.end(), rows.begin(), rows.end());
+  if (all.size() == to.rows.size()) return {};
+  std::vector<std::string> out;
+  if (Equations every = equations(g, t, stated, all); every.solved()) {
+    to = std::move(every);
+    return out;
+  }
+  for (const auto& [name, rows] : parts) {
+    std::vector<int> more = to.rows;
+    more.insert(more.end(), rows.begin(), rows.end());
+    if (Equations with = equations(g, t, stated, more); with.solved()) to = std::move(with);
+    else out.push_back("'" + name + "'");
+  }
+  return out;
+}
+
 SystemStart Starts::solve(const Values& values, double t, const Places& places) const {
   std::vector<std::string> wrong;
   for (const auto& [name, value] : values) {
@@ -193,38 +252,32 @@ SystemStart Starts::solve(const Values& values, double t, const Places& places) 
   start.configuration = configuration(values, t, places);
   std::vector<double> g(system_->drawn().size());
   system_->geometry().from_coordinates(start.configuration, g.data());
-  const int n = system_->dim(), k = system_->constraint_count();
   std::vector<std::pair<int, Values::value_type>> stated;
   for (const auto& entry : values) {
     if (const int i = rate(entry.first); i >= 0) stated.emplace_back(i, entry);
   }
-  MatrixXd a = MatrixXd::Zero(k + static_cast<int>(stated.size()), n);
-  VectorXd b = VectorXd::Zero(a.rows()), b_rows(k);
-  MatrixXd a_rows(k, n);
-  system_->constraints(t, g.data(), a_rows, b_rows);
-  a.topRows(k) = a_rows;
-  b.head(k) = b_rows;
-  for (size_t i = 0; i < stated.size(); ++i) {
-    const Eigen::Index row = k + static_cast<Eigen::Index>(i);
-    a(row, stated[i].first) = 1;
-    b[row] = stated[i].second.second;
-  }
-  VectorXd some = least(a, b);
-  const VectorXd left = a * some - b;  // where rows contradict others
-  if (const double size = 1e-9 * (1 + b.norm()); !(left.norm() <= size)) {
+  Equations equations = this->equations(g, t, stated, system_->holding());
+  if (!equations.solved()) {  // rows contradict others
+    const VectorXd left = equations.a * equations.solution() - equations.b;
+    const auto k = static_cast<Eigen::Index>(equations.rows.size());
     std::vector<int> rows;
     Values against;
     for (int i = 0; i < left.size(); ++i) {
       if (std::abs(left[i]) <= 1e-3 * left.norm()) continue;
-      if (i < k) rows.push_back(system_->kept()[static_cast<size_t>(i)]);
+      if (i < k) rows.push_back(equations.rows[static_cast<size_t>(i)]);
       else against.insert(stated[static_cast<size_t>(i - k)].second);
     }
     refuse(rows, against, places,
            " are inconsistent; leave out a velocity: those that are not given follow");
   }
+  const std::vector<std::string> slipping = add_slipping(g, t, stated, equations);
   const StartVelocity found(*system_, g);
-  const VectorXd velocity = found(a, some);
+  const VectorXd velocity = found(equations.a, equations.solution());
   start.velocity.assign(velocity.begin(), velocity.end());
+  if (!slipping.empty())
+    start.notes.push_back(fmt::format(
+        "the start requires that {} slip{}: --slip starts so, without it they roll", join(slipping),
+        slipping.size() > 1 ? "" : "s"));
   if (const std::string joints = unasked(found.of_joints(), values, found, velocity);
       !joints.empty())
     start.notes.push_back(

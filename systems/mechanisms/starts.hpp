@@ -52,6 +52,22 @@ class Starts {
   int rate(const std::string& name) const;  // -1: no velocity
   std::string unasked(const std::vector<int>& some, const Values& values,
                       const StartVelocity& found, const Eigen::VectorXd& xi) const;
+  // Equations of the velocity of a start: rows, then velocities that are stated.
+  struct Equations {
+    Eigen::MatrixXd a;
+    Eigen::VectorXd b;
+    std::vector<int> rows;  // of each()
+    Eigen::VectorXd solution() const;
+    bool solved() const;
+  };
+  Equations equations(const std::vector<double>& g, double t,
+                      const std::vector<std::pair<int, Values::value_type>>& stated,
+                      const std::vector<int>& rows) const;
+  /// Adds those of parts that may slide or open, one after the other as long as they agree with the
+  /// others; returns the names of those that do not.
+  std::vector<std::string> add_slipping(
+      const std::vector<double>& g, double t,
+      const std::vector<std::pair<int, Values::value_type>>& stated, Equations& to) const;
   // A stated coordinate of a joint with one velocity.
   struct Choice {
     size_t column;

@@ -198,6 +198,7 @@ class Writer {
       if (w.kind != Kind::ball) line += ", axle = " + spelled(w.axle);
       const bool rolls = w.kind == Kind::omni || w.kind == Kind::mecanum;
       if (rolls) line += ", angle = " + spelled(w.angle);
+      if (w.friction) line += ", friction = " + spelled(*w.friction);
       (w.kind == Kind::ball ? balls : rolls ? rollers : wheels).push_back(line);
     }
     table("wheel", wheels, out);

@@ -28,12 +28,14 @@ class Finder {
       : robot_(robot), path_(path), mistakes_(mistakes), names_(robot.link_names()) {}
 
   void add(const std::string& given) {
-    if (given == "auto" && !knows(given)) {
-      automatic = true;
-      return;
-    }
     WheelWords words;
     if (!read(given, words)) return;
+    if (words.name == "auto" && !knows("auto") && words.kind.empty() && !words.radius &&
+        !words.angle) {
+      automatic = true;
+      friction_of_all = words.friction;
+      return;
+    }
     if (!knows(words.name)) return wrong(given, unknown_name("link", words.name, names_));
     const auto index = static_cast<int>(std::ranges::find(names_, words.name) - names_.begin());
     if (std::ranges::find(wheels, index, &RobotWheel::link) != wheels.end())
@@ -41,6 +43,7 @@ class Finder {
     std::vector<std::string> why;
     if (auto wheel = wheel_of(robot_, index, words, why)) {
       wheels.push_back(*wheel);
+      wheels.back().friction = words.friction;
       given_angle.push_back(words.angle.has_value());
     }
     for (const std::string& what : why) wrong(words.name, what);
@@ -53,6 +56,7 @@ class Finder {
   std::vector<RobotWheel> wheels;
   std::vector<bool> given_angle;  // of each wheel
   bool automatic = false;
+  std::optional<double> friction_of_all;  // of wheels found by auto
 
  private:
   bool knows(const std::string& name) const {
@@ -83,21 +87,23 @@ class Finder {
       wrong(given, unknown_name("kind of wheel", word, wheel_kinds()));
       return false;
     }
-    if (key != "radius" && key != "angle") {
-      wrong(given, unknown_name("value", key, {"radius", "angle"}));
+    if (key != "radius" && key != "angle" && key != "friction") {
+      wrong(given, unknown_name("value", key, {"angle", "friction", "radius"}));
       return false;
     }
     double value = 0;
     const char* last = word.data() + word.size();
     const auto [behind, why] = std::from_chars(word.data() + equal + 1, last, value);
     const bool number = why == std::errc() && behind == last && std::isfinite(value);
-    if (!number || (key == "radius" && !(value > 0))) {
+    if (!number || (key == "radius" && !(value > 0)) || (key == "friction" && !(value >= 0))) {
+      const char* const expected = key == "radius"  ? "a positive number, in m"
+                                   : key == "angle" ? "a number, in rad"
+                                                    : "a number of at least 0";
       wrong(given,
-            fmt::format("{}: got '{}', expected a {}number, in {}", key, word.substr(equal + 1),
-                        key == "radius" ? "positive " : "", key == "radius" ? "m" : "rad"));
+            fmt::format("{}: got '{}', expected {}", key, word.substr(equal + 1), expected));
       return false;
     }
-    (key == "radius" ? out.radius : out.angle) = value;
+    (key == "radius" ? out.radius : key == "angle" ? out.angle : out.friction) = value;
     return true;
   }
 
@@ -107,11 +113,12 @@ class Finder {
   std::vector<std::string> names_;
 };
 
-// radius=r and angle=a behind a comma belong to the wheel before them.
+// radius=r, angle=a and friction=mu behind a comma belong to the wheel before them.
 std::vector<std::string> joined(const std::vector<std::string>& names) {
   std::vector<std::string> out;
   for (const std::string& name : names) {
-    const bool more = name.starts_with("radius=") || name.starts_with("angle=");
+    const bool more = name.starts_with("radius=") || name.starts_with("angle=") ||
+                      name.starts_with("friction=");
     if (more && !out.empty()) out.back() += ":" + name;
     else out.push_back(name);
   }
@@ -162,6 +169,7 @@ std::vector<RobotWheel> find_wheels(const Robot& robot, const std::vector<std::s
       if (std::ranges::find(finder.wheels, wheel.link, &RobotWheel::link) != finder.wheels.end())
         continue;
       finder.wheels.push_back(wheel);
+      finder.wheels.back().friction = finder.friction_of_all;
       finder.given_angle.push_back(false);
       taken.push_back(robot.link(wheel.link).name);
     }

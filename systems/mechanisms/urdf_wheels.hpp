@@ -5,7 +5,8 @@
 //          is that of the usual mounting: rollers in contact lie across the diagonals)
 //   radius left out, that of the link's first cylinder or sphere, of the collisions before the
 //          visuals
-//   auto   the links that look like wheels: wheels_by_shape
+//   friction=mu   it slides at that, [:friction=mu] (left out: it never slides)
+//   auto   the links that look like wheels: wheels_by_shape; auto[:friction=mu]
 // A wheel turns about the axis of a hinge between it and the root, or with a free root.
 #pragma once
 
@@ -23,6 +24,7 @@ struct RobotWheel {
   double radius = 0;
   Vec3 centre = Vec3::Zero(), axle = Vec3::UnitY();
   double angle = 0;                         // rad, of the rollers against the plane of the wheel
+  std::optional<double> friction = {};      // with the ground
   std::vector<std::string> corrected = {};  // notes on what is drawn otherwise
   int turns = -1;  // the link on the hinge about the axle, of a ball on a hinge; -1: none
   /// Its lowest point as drawn, below its centre by this much.
@@ -34,7 +36,7 @@ struct RobotWheel {
 struct WheelWords {
   std::string name;  // of the link
   std::string kind = {};
-  std::optional<double> radius = {}, angle = {};
+  std::optional<double> radius = {}, angle = {}, friction = {};
 };
 std::optional<RobotWheel> wheel_of(const Robot& robot, int link, const WheelWords& words,
                                    std::vector<std::string>& mistakes);

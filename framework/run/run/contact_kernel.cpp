@@ -71,7 +71,7 @@ void ContactKernel::begin() {
     start.coordinates = coordinates_;
     start.velocity = velocity_;
     const ContactStates before = contacts_->states();
-    failure_ = strikes >= 0 ? strike_all(strikes) : decide(-1);
+    failure_ = strikes >= 0 ? strike_all(strikes) : decide({});
     if (!failure_.empty()) contacts_->states() = before;
     if (!events_.empty()) contacts_->switches.push_back({events_, start, start});
     contacts_->set_known(true);

@@ -110,7 +110,8 @@ class ContactKernel final : public Kernel {
   std::string strike_all(int first);
   void end_chatter(int i, double ratio);
   std::string stop_slip(int i);
-  std::string decide(int slides);
+  std::string decide(const std::vector<char>& slides);
+  std::vector<char> at_rims(int first);
   void name_changes(const ContactStates& before);
   void take_up(double step);
   double first_step(double step);

@@ -16,12 +16,14 @@ constexpr long kMostSwitches = 1000;
 constexpr double kTogether = 1e-9;
 // A slip above this many sigma V has turned, and not stopped.
 constexpr double kSlow = 1e-6;
+// Reactions this near to the rims of their cones, relative to these, are on them at once.
+constexpr double kOnRim = 1e-9;
 
-const char* verb(ContactMode mode) {
+const char* verb(const ContactLaw& law, ContactMode mode) {
   switch (mode) {
     case ContactMode::open: return "opens";
-    case ContactMode::rolls: return "rolls";
-    case ContactMode::slides: return "slides";
+    case ContactMode::rolls: return law.rolls_name();
+    case ContactMode::slides: return law.slides_name();
   }
   return "";
 }
@@ -49,14 +51,11 @@ std::string ContactKernel::apply(const Found& found) {
     case Switch::opens:
       contact(i).mode = ContactMode::open;
       followed(i).opened = time_;
-      why = decide(-1);
+      why = decide({});
       break;
     case Switch::slides: {
       dynamics().accelerate(before);
-      const Eigen::Vector2d l = dynamics().tangential_reaction(i);
-      contact(i).direction = -l / l.norm();
-      contact(i).mode = ContactMode::slides;
-      why = decide(i);
+      why = decide(at_rims(i));
       break;
     }
     case Switch::grows: contact(i).begins = false; break;
@@ -84,8 +83,26 @@ std::string ContactKernel::apply(const Found& found) {
   return why;
 }
 
+// Contact `first`, and others that roll and whose reactions are on the rims of their cones with it,
+// begin to slide against these.
+std::vector<char> ContactKernel::at_rims(int first) {
+  std::vector<char> out(static_cast<size_t>(count()), 0);
+  for (int i = 0; i < count(); ++i) {
+    if (contact(i).mode != ContactMode::rolls || dynamics().law(i).tangential.empty()) continue;
+    const ContactLaw& law = dynamics().law(i);
+    const Eigen::Vector2d l = dynamics().tangential_reaction(i);
+    const double most = law.friction * (law.normal ? dynamics().normal_reaction(i) : law.load);
+    if (i != first && !(most - l.norm() <= kOnRim * most)) continue;
+    out[static_cast<size_t>(i)] = 1;
+    if (!(l.norm() > 0)) continue;
+    contact(i).direction = -l / l.norm();
+    contact(i).mode = ContactMode::slides;
+  }
+  return out;
+}
+
 // Modes of the closed contacts at the state, which dynamics() has.
-std::string ContactKernel::decide(int slides) {
+std::string ContactKernel::decide(const std::vector<char>& slides) {
   const ContactStates before = contacts_->states();
   for (ContactState& state : contacts_->states())
     if (state.mode != ContactMode::slides) state.begins = false;
@@ -101,7 +118,8 @@ void ContactKernel::name_changes(const ContactStates& before) {
   if (ends_ < time_) ends_ = time_;
   for (int i = 0; i < count(); ++i) {
     if (contact(i).mode == before[static_cast<size_t>(i)].mode) continue;
-    events_.emplace_back(dynamics().law(i).name + "." + verb(contact(i).mode), ends_);
+    if (contact(i).mode != ContactMode::open && dynamics().law(i).tangential.empty()) continue;
+    events_.emplace_back(dynamics().law(i).name + "." + verb(dynamics().law(i), contact(i).mode), ends_);
   }
 }
 
@@ -136,7 +154,7 @@ std::string ContactKernel::strike_all(int first) {
     follows.between = between;
     if (leaves && ratio > 0 && ratio < 1) end_chatter(i, ratio);
   }
-  return decide(-1);
+  return decide({});
 }
 
 // Impacts with intervals in a ratio r last R = t_1/(1 - r) more, t_1 = 2 v/a the next flight, and
@@ -180,7 +198,7 @@ std::string ContactKernel::stop_slip(int i) {
   }
   contact(i).begins = false;
   if (dynamics().stop(contacts_->states(), i, xi_)) dynamics().evaluate(time_, g_.data(), xi_);
-  return decide(-1);
+  return decide({});
 }
 
 // The first step of a flight takes at most half of it.

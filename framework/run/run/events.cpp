@@ -83,11 +83,13 @@ std::vector<Event> events_of(const SystemModel& system) {
     const auto add = [&](const char* what, const char* meaning) {
       out.push_back({law.name + "." + what, meaning, 0, {}});
     };
-    add("slides", "the contact begins to slide");
-    add("rolls", "the contact ceases to slide");
+    if (law.friction > 0 || !law.of_joint) {
+      add(law.slides_name(), law.of_joint ? "the joint begins to move" : "it begins to slide");
+      add(law.rolls_name(), law.of_joint ? "the joint ceases to move" : "it ceases to slide");
+    }
     if (!law.normal) continue;
-    add("opens", "the contact opens");
-    add("strikes", "the contact closes with an impact");
+    add("opens", "it opens");
+    add("strikes", "it closes with an impact");
   }
   return out;
 }

@@ -250,15 +250,33 @@ bool look_at_gaps(const SystemModel& system, const Eigen::VectorXd& phi, Mistake
     const double gap = gap_of(system, law, phi);
     open = open || gap > kClosedStart;
     if (gap >= -kClosedStart) continue;
-    mistakes.add(
-        fmt::format("configuration: contact '{}' of {} is {:.6g} m below its ground, expected on "
-                    "it or above",
-                    law.name, system.name, -gap));
+    const char* const text =
+        law.of_joint ? "configuration: '{}' of {} is passed by {:.6g}, expected at it or before"
+                     : "configuration: contact '{}' of {} is {:.6g} m below its ground, expected on "
+                       "it or above";
+    mistakes.add(fmt::format(fmt::runtime(text), law.name, system.name, -gap));
   }
   return open;
 }
 
-// Leaves out the rows of the start that a contact does not have there.
+// Is a row a combination of those before it?
+class IndependentRows {
+ public:
+  bool add(Eigen::VectorXd row) {
+    const double length = row.norm();
+    for (int pass = 1; pass <= 2; ++pass)
+      for (const Eigen::VectorXd& e : basis_) row -= e.dot(row) * e;
+    if (!(row.norm() > 1e-9 * length)) return false;
+    basis_.push_back(row.normalized());
+    return true;
+  }
+
+ private:
+  std::vector<Eigen::VectorXd> basis_;
+};
+
+// Leaves out the rows of the start that a contact does not have there, and those of contacts that
+// follow from others.
 void release_rows(const SystemModel& system, const Eigen::VectorXd& phi, bool slip,
                   PlannedStart& planned) {
   std::vector<bool> on(static_cast<size_t>(planned.constraints.rows()), true);
@@ -267,6 +285,18 @@ void release_rows(const SystemModel& system, const Eigen::VectorXd& phi, bool sl
     if (law.normal) on[static_cast<size_t>(*law.normal)] = false;
     for (const int row : law.tangential) on[static_cast<size_t>(row)] = false;
   }
+  std::vector<bool> of_contact(on.size(), false);
+  for (const ContactLaw& law : system.contact_laws) {
+    if (law.normal) of_contact[static_cast<size_t>(*law.normal)] = true;
+    for (const int row : law.tangential) of_contact[static_cast<size_t>(row)] = true;
+  }
+  IndependentRows rows;
+  for (const bool slips : {false, true})
+    for (size_t row = 0; row < on.size(); ++row) {
+      if (!on[row] || of_contact[row] != slips) continue;
+      const bool adds = rows.add(planned.constraints.row(static_cast<Eigen::Index>(row)));
+      on[row] = adds || !slips;
+    }
   Eigen::Index kept = 0;
   for (size_t row = 0; row < on.size(); ++row) {
     if (!on[row]) continue;
@@ -315,6 +345,8 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
   if (!planned.refused && !open && phi.size() > 0 && !(phi.lpNorm<Eigen::Infinity>() < 1e-13))
     satisfy(mechanics, *geometry, t, phi, g, planned, mistakes);
   if (said) return;
+  if (!planned.refused && !system.contact_laws.empty())
+    release_rows(system, phi, config.slip, planned);
   if (planned.refused) planned.constraints.resize(0, n);
   // Where all rows leave no motion, a contact that slides does.
   const bool moves = mechanics.has_drift() || !system.contact_laws.empty();
@@ -323,8 +355,6 @@ void evaluate_start(const SystemModel& system, const std::shared_ptr<const Input
   mistakes.add(wrong);
   if (wrong.empty() && !mechanics.constant_inertia())
     check_symmetry_beside(mechanics, *geometry, g, mistakes);
-  if (!planned.refused && !system.contact_laws.empty())
-    release_rows(system, phi, config.slip, planned);
 }
 
 // The admissible start, E^T I xi = E^T mu, and what the projection dropped.
