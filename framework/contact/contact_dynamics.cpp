@@ -52,7 +52,8 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
   c_ = multipliers_;
   k_work_ = k_;
   right_.setZero(most, 4);
-  null_.setZero(most, most + 1);
+  null_.setZero(most, most);
+  work_m_.setZero(most);
   normal_equations_.setZero(most, most);
   order_.resize(static_cast<size_t>(most));
   directions_.resize(contacts, {1, 0});
@@ -222,7 +223,7 @@ void ContactDynamics::find_first_direction(const ContactStates& states, int i) {
       right_.data()[k + l * m] = row_times(row_of(k), responses_.col(m + l));
     right_.data()[k + n * m] = row_times(row_of(k), free_) - rates_[row_of(k)];
   }
-  if (m > 0) solve_linear(k_work_.data(), right_.data(), m, n + 1);
+  if (m > 0) eliminate(m, right_.data(), n + 1);
   Eigen::Matrix3d g = Eigen::Matrix3d::Zero();
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   for (int k = 0; k < n; ++k) {

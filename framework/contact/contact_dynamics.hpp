@@ -130,6 +130,7 @@ class ContactDynamics {
   // K l = right side, in k_work_ and multipliers_, of m rows; where they depend on each other the
   // reactions are those of the least sum of squares, each in units of its bound.
   void solve_rows(int m);
+  int eliminate(int m, double* b, int columns);
   void share(int m, int rank);
 
   std::shared_ptr<const Geometry> geometry_;
@@ -150,6 +151,7 @@ class ContactDynamics {
   std::vector<Row> on_;
   std::vector<int> order_;  // of the pivots of solve_rows()
   Eigen::MatrixXd null_, normal_equations_;
+  Eigen::VectorXd work_m_;
   std::vector<ContactBlock> blocks_;
   std::vector<int> block_contacts_;
   ContactProblem problem_;

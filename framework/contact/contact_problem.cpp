@@ -170,7 +170,10 @@ ContactProblem::Outcome ContactProblem::solve(const Matrix& g, const Vector& c,
     kept_.head(size_) = p_.head(size_);
     if (!sweep(g, c, blocks)) return Outcome::none;
     const double moved = (p_ - kept_).head(size_).lpNorm<Eigen::Infinity>();
-    const bool settled = moved <= 1e-15 * p_.head(size_).lpNorm<Eigen::Infinity>();
+    double most = p_.head(size_).lpNorm<Eigen::Infinity>();
+    for (const ContactBlock& block : blocks)
+      if (!block.normal) most = std::max(most, block.bound);
+    const bool settled = moved <= 1e-15 * most;
     if ((settled || k % 20 == 0) && improve(g, c, blocks)) return Outcome::one;
     if (settled) break;
   }
@@ -189,6 +192,11 @@ double contact_residual(const ContactProblem::Matrix& g, const ContactProblem::V
     double sum = std::abs(c[i]);
     for (Eigen::Index j = 0; j < p.size(); ++j) sum += std::abs(g(i, j) * p[j]);
     size = std::max(size, sum);
+  }
+  for (const ContactBlock& block : blocks) {  // a given bound has a size of its own
+    if (block.normal || block.tangential == 0) continue;
+    force = std::max(force, block.bound);
+    size = std::max(size, std::abs(g(block.first, block.first)) * block.bound);
   }
   if (!(size > 0)) size = 1;
   if (!(force > 0)) force = 1;

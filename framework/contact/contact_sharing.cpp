@@ -13,10 +13,10 @@ constexpr double kNoPivot = 1e-11;
 
 }  // namespace
 
-// Gauss with complete pivoting; unknowns without a pivot are 0 at first.
-void ContactDynamics::solve_rows(int m) {
-  Eigen::Map<Eigen::MatrixXd> k(k_work_.data(), m, m);
-  auto x = multipliers_.head(m);
+// Gauss with complete pivoting of the first m rows of k_work_, which stay as U in the order of
+// order_; b, m x columns, becomes the solution whose unknowns without a pivot are 0.
+int ContactDynamics::eliminate(int m, double* b, int columns) {
+  Eigen::Map<Eigen::MatrixXd> k(k_work_.data(), m, m), x(b, m, columns);
   for (int i = 0; i < m; ++i) order_[static_cast<size_t>(i)] = i;
   int rank = 0;
   double first = 0;
@@ -27,57 +27,62 @@ void ContactDynamics::solve_rows(int m) {
     if (rank == 0) first = pivot;
     if (!(pivot > kNoPivot * first)) break;
     k.row(rank).swap(k.row(rank + row));
-    std::swap(x[rank], x[rank + row]);
+    x.row(rank).swap(x.row(rank + row));
     k.col(rank).swap(k.col(rank + column));
     std::swap(order_[static_cast<size_t>(rank)], order_[static_cast<size_t>(rank + column)]);
     for (int i = rank + 1; i < m; ++i) {
       const double factor = k(i, rank) / k(rank, rank);
       for (int j = rank; j < m; ++j) k(i, j) -= factor * k(rank, j);
-      x[i] -= factor * x[rank];
+      x.row(i) -= factor * x.row(rank);
     }
   }
-  for (int i = rank; i < m; ++i) x[i] = 0;
-  for (int i = rank - 1; i >= 0; --i) {
-    for (int j = i + 1; j < rank; ++j) x[i] -= k(i, j) * x[j];
-    x[i] /= k(i, i);
+  for (int c = 0; c < columns; ++c) {
+    work_m_.setZero();
+    for (int i = rank - 1; i >= 0; --i) {
+      double sum = x(i, c);
+      for (int j = i + 1; j < rank; ++j) sum -= k(i, j) * work_m_[order_[static_cast<size_t>(j)]];
+      work_m_[order_[static_cast<size_t>(i)]] = sum / k(i, i);
+    }
+    for (int i = 0; i < m; ++i) x(i, c) = work_m_[i];
   }
-  if (rank < m) share(m, rank);
-  for (int i = 0; i < m; ++i) c_[order_[static_cast<size_t>(i)]] = x[i];
-  x = c_.head(m);
+  return rank;
 }
 
-// In the order of the pivots: x + Z y, Z = [-U_1^-1 U_2; 1] the reactions without effect, with the
-// least sum of squares of its entries in units of their bounds: Z^T B^-2 Z y = -Z^T B^-2 x.
+void ContactDynamics::solve_rows(int m) {
+  const int rank = eliminate(m, multipliers_.data(), 1);
+  if (rank < m) share(m, rank);
+}
+
+// l + Z y, Z = [-U_1^-1 U_2; 1] the reactions without effect in the order of the pivots, with the
+// least sum of squares of the entries in units of their bounds: Z^T B^-2 Z y = -Z^T B^-2 l.
 void ContactDynamics::share(int m, int rank) {
-  Eigen::Map<Eigen::MatrixXd> k(k_work_.data(), m, m);
-  auto x = multipliers_.head(m);
+  const Eigen::Map<Eigen::MatrixXd> k(k_work_.data(), m, m);
   const int open = m - rank;
   for (int c = 0; c < open; ++c) {
-    for (int i = 0; i < m; ++i) null_(i, c) = i == rank + c ? 1 : 0;
+    for (int i = rank; i < m; ++i) null_(i, c) = i == rank + c ? 1 : 0;
     for (int i = rank - 1; i >= 0; --i) {
       double sum = -k(i, rank + c);
       for (int j = i + 1; j < rank; ++j) sum -= k(i, j) * null_(j, c);
       null_(i, c) = sum / k(i, i);
     }
   }
-  const auto weight = [this](int i) {
-    const ContactLaw& law = this->law(on_[static_cast<size_t>(order_[static_cast<size_t>(i)])].contact);
-    const double bound = law.normal ? 1 : law.friction * law.load;
-    return bound > 0 ? 1 / (bound * bound) : 1;
-  };
   Eigen::Map<Eigen::MatrixXd> equations(normal_equations_.data(), open, open);
-  for (int c = 0; c < open; ++c) {
-    right_.data()[c] = 0;
-    for (int d = 0; d < open; ++d) equations(c, d) = 0;
-    for (int i = 0; i < m; ++i) {
-      const double part = null_(i, c) * weight(i);
-      right_.data()[c] -= part * x[i];
-      for (int d = 0; d < open; ++d) equations(c, d) += part * null_(i, d);
+  equations.setZero();
+  work_m_.setZero();
+  for (int i = 0; i < m; ++i) {
+    const int row = order_[static_cast<size_t>(i)];
+    const ContactLaw& law = this->law(on_[static_cast<size_t>(row)].contact);
+    const double bound = law.normal ? 1 : law.friction * law.load;
+    const double weight = bound > 0 ? 1 / (bound * bound) : 1;
+    for (int c = 0; c < open; ++c) {
+      work_m_[c] -= weight * null_(i, c) * multipliers_[row];
+      for (int d = 0; d < open; ++d) equations(c, d) += weight * null_(i, c) * null_(i, d);
     }
   }
-  solve_linear(equations.data(), right_.data(), open, 1);
-  for (int c = 0; c < open; ++c)
-    for (int i = 0; i < m; ++i) x[i] += right_.data()[c] * null_(i, c);
+  solve_linear(equations.data(), work_m_.data(), open, 1);
+  for (int i = 0; i < m; ++i)
+    for (int c = 0; c < open; ++c)
+      multipliers_[order_[static_cast<size_t>(i)]] += work_m_[c] * null_(i, c);
 }
 
 }  // namespace hamel

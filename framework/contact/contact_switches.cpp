@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 
 #include <hamel/framework/contact/contact_dynamics.hpp>
-#include <hamel/framework/lie/linear_solve.hpp>
 
 namespace hamel {
 namespace {
@@ -200,7 +199,7 @@ bool ContactDynamics::project(const std::vector<int>& rows, Eigen::VectorXd& xi)
     multipliers_[i] = row_times(row, xi) - b_[row];
     for (int j = 0; j < m; ++j) k_work_.data()[i + j * m] = row_times(row, responses_.col(j));
   }
-  if (m > 0) solve_linear(k_work_.data(), multipliers_.data(), m, 1);
+  if (m > 0) eliminate(m, multipliers_.data(), 1);
   if (!multipliers_.head(m).allFinite()) return false;
   for (int j = 0; j < m; ++j) xi -= multipliers_[j] * responses_.col(j);
   return true;

@@ -257,7 +257,7 @@ SystemModel Assembly::model() {
                               const std::shared_ptr<const Inputs>& inputs) {
     return mistakes_at_start(*driven(inputs), checks, inputs.get(), t, g, xi);
   };
-  if (!system->has_force() && !system->has_drift())
+  if (!system->has_force() && !system->has_drift() && model_.contact_laws.empty())
     model_.invariants.push_back({"energy", energy_of(system), true});
   return std::move(model_);
 }

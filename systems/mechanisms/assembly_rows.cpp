@@ -32,7 +32,7 @@ std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) 
     for (const auto& part : parts_.walls_)
       if (part.name == row.part) say(part, "wall");
     for (const auto& part : parts_.joints_)
-      if (row.slips && is_of_joint(row.part, part)) say(part, "joint");
+      if (row.slips && !row.length && is_of_joint(row.part, part)) say(part, "joint");
     if (row.part == kAgreement)
       out.push_back({"", fmt::format("{} ({})", kAgreement, row.meaning)});
   }

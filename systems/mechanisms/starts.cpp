@@ -215,7 +215,7 @@ std::vector<std::string> Starts::add_slipping(
   std::vector<std::pair<std::string, std::vector<int>>> parts;
   for (const int row : system_->kept()) {
     const RowInfo& word = words[static_cast<size_t>(row)];
-    if (!word.slips) continue;
+    if (!word.slips || (word.holonomic && !word.height)) continue;  // stops and walls only push
     const auto part = std::ranges::find(parts, word.part, [](const auto& p) { return p.first; });
     if (part != parts.end()) part->second.push_back(row);
     else parts.push_back({word.part, {row}});
@@ -235,7 +235,7 @@ std::vector<std::string> Starts::add_slipping(
     std::vector<int> more = to.rows;
     more.insert(more.end(), rows.begin(), rows.end());
     if (Equations with = equations(g, t, stated, more); with.solved()) to = std::move(with);
-    else out.push_back("'" + name + "'");
+    else if (words[static_cast<size_t>(rows.front())].length) out.push_back("'" + name + "'");
   }
   return out;
 }

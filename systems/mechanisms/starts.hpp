@@ -64,7 +64,7 @@ class Starts {
                       const std::vector<std::pair<int, Values::value_type>>& stated,
                       const std::vector<int>& rows) const;
   /// Adds those of parts that may slide or open, one after the other as long as they agree with the
-  /// others; returns the names of those that do not.
+  /// others; returns the names of contacts that do not.
   std::vector<std::string> add_slipping(
       const std::vector<double>& g, double t,
       const std::vector<std::pair<int, Values::value_type>>& stated, Equations& to) const;

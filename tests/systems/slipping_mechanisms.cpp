@@ -225,7 +225,7 @@ Mechanism dry_slider(double friction) {
   Mechanism m("block");
   m.body("block", {.mass = 1, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
   m.slider("way", kWorld, "block", {.axis = {1, 0, 0}, .friction = friction});
-  m.start("way.speed", 1);
+  m.start("way.rate", 1);
   return m;
 }
 TEST(DryFriction, ABlockStopsAndRests) {
@@ -234,7 +234,7 @@ TEST(DryFriction, ABlockStopsAndRests) {
   ASSERT_THAT(names(r), ElementsAre("way.sticks"));
   EXPECT_NEAR(time_of(r, "way.sticks"), 0.5, 1e-13);
   EXPECT_NEAR(last(r, "way.position"), 0.25, 1e-13);
-  EXPECT_EQ(last(r, "way.speed"), 0);
+  EXPECT_EQ(last(r, "way.rate"), 0);
   EXPECT_LE(r.steps, 25);
 }
 
@@ -243,13 +243,13 @@ TEST(Stops, AJointStrikesItsEnds) {
   m.body("block", {.mass = 1, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
   m.slider("way", kWorld, "block",
            {.axis = {1, 0, 0}, .restitution = 0.5, .stop = {-0.5, 1}});
-  m.start("way.speed", 2);
+  m.start("way.rate", 2);
   const Result r = slipping(m).until(3).run();
   ASSERT_TRUE(r.status.ok) << r.status.reason;
   ASSERT_THAT(names(r), ElementsAre("way.high.strikes", "way.low.strikes"));
   EXPECT_NEAR(r.events[0].time, 0.5, 1e-13);
   EXPECT_NEAR(r.events[1].time, 0.5 + 1.5, 1e-13);
-  EXPECT_NEAR(last(r, "way.speed"), 0.5, 1e-13);
+  EXPECT_NEAR(last(r, "way.rate"), 0.5, 1e-13);
 }
 
 // Two masses on one rail, of which neither passes the other: e = 1 exchanges equal ones' speeds.
@@ -261,13 +261,13 @@ TEST(Walls, TwoBlocksOnARail) {
   }
   m.wall("buffer", {.distance = "b.position - a.position - width", .restitution = 1,
                     .constants = {{"width", {0.2}}}});
-  m.start({{"b.position", 1}, {"a.speed", 2}});
+  m.start({{"b.position", 1}, {"a.rate", 2}});
   const Result r = slipping(m).until(1).run();
   ASSERT_TRUE(r.status.ok) << r.status.reason;
   ASSERT_THAT(names(r), ElementsAre("buffer.strikes"));
   EXPECT_NEAR(r.events[0].time, 0.4, 1e-13);
-  EXPECT_NEAR(last(r, "a.speed"), 0, 1e-13);
-  EXPECT_NEAR(last(r, "b.speed"), 2, 1e-13);
+  EXPECT_NEAR(last(r, "a.rate"), 0, 1e-13);
+  EXPECT_NEAR(last(r, "b.rate"), 2, 1e-13);
 }
 
 // ---- mistakes ---------------------------------------------------------------------------------

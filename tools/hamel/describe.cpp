@@ -69,7 +69,8 @@ void add_parts(Json& out, const SystemModel& model) {
   out["reactions"] = model.reactions;
   out["dimension"] = mechanics.dim();
   out["holonomic_rows"] = mechanics.holonomic_rows();
-  out["directions"] = mechanics.dim() - mechanics.constraint_count();
+  if (model.contact_laws.empty())  // with friction they are not the same all the time
+    out["directions"] = mechanics.dim() - mechanics.constraint_count();
   out["start_parameters"] = model.start_parameters;
   if (!model.notes.empty()) out["notes"] = model.notes;
 }

@@ -112,6 +112,7 @@ class ContactKernel final : public Kernel {
   std::string stop_slip(int i);
   std::string decide(const std::vector<char>& slides);
   std::vector<char> at_rims(int first);
+  void grow(int first);
   void name_changes(const ContactStates& before);
   void take_up(double step);
   double first_step(double step);

@@ -18,6 +18,8 @@ constexpr double kTogether = 1e-9;
 constexpr double kSlow = 1e-6;
 // Reactions this near to the rims of their cones, relative to these, are on them at once.
 constexpr double kOnRim = 1e-9;
+// A slip that is this part of one that has grown has grown too.
+constexpr double kGrownToo = 0.5;
 
 const char* verb(const ContactLaw& law, ContactMode mode) {
   switch (mode) {
@@ -58,7 +60,7 @@ std::string ContactKernel::apply(const Found& found) {
       why = decide(at_rims(i));
       break;
     }
-    case Switch::grows: contact(i).begins = false; break;
+    case Switch::grows: grow(i); break;
     case Switch::stops: why = stop_slip(i); break;
   }
   if (why.empty()) name_changes(before);
@@ -81,6 +83,16 @@ std::string ContactKernel::apply(const Found& found) {
   last.events = events_;
   state(last.after, {});
   return why;
+}
+
+// The slip of contact `first`, and of others that began with it, has grown.
+void ContactKernel::grow(int first) {
+  const double slip = dynamics().slip(first).norm();
+  for (int i = 0; i < count(); ++i) {
+    ContactState& state = contact(i);
+    if (i == first || (state.begins && dynamics().slip(i).norm() > kGrownToo * slip))
+      state.begins = false;
+  }
 }
 
 // Contact `first`, and others that roll and whose reactions are on the rims of their cones with it,

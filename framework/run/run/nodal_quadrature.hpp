@@ -16,6 +16,7 @@ class NodalQuadrature {
   static constexpr std::size_t kNodes = 8;
 
   void add(double t, double value) {
+    if (count_ > 0 && t == times_[0]) return;  // two switches at one time
     const bool shares = joins(t);
     std::array<double, kNodes> differences{value}, times{t};
     for (std::size_t k = 1; k < kNodes && k <= count_; ++k) {

@@ -24,7 +24,7 @@ Eigen::VectorXd vector_of(const std::vector<double>& x) {
 
 std::optional<std::string> dependent_rows(const SystemModel& system, const KernelSetup& setup,
                                           const Snapshot& now) {
-  if (setup.mechanics->constraint_count() == 0) return {};
+  if (setup.mechanics->constraint_count() == 0 || !system.contact_laws.empty()) return {};
   RowsWatch rows(setup.geometry, system, setup.mechanics);
   const double condition = rows.condition(now);
   if (!(condition > RowsWatch::kNearlyDependent)) return {};

@@ -281,7 +281,7 @@ void release_rows(const SystemModel& system, const Eigen::VectorXd& phi, bool sl
                   PlannedStart& planned) {
   std::vector<bool> on(static_cast<size_t>(planned.constraints.rows()), true);
   for (const ContactLaw& law : system.contact_laws) {
-    if (!slip && !(gap_of(system, law, phi) > kClosedStart)) continue;
+    if (!slip && !law.of_joint && !(gap_of(system, law, phi) > kClosedStart)) continue;
     if (law.normal) on[static_cast<size_t>(*law.normal)] = false;
     for (const int row : law.tangential) on[static_cast<size_t>(row)] = false;
   }
