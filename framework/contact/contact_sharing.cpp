@@ -1,4 +1,5 @@
-// Reactions of rows that are on, where these may depend on each other.
+// The rows that are on and their reactions, where rows may depend on each other.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,8 +11,39 @@ namespace {
 
 // A pivot below this part of the largest one is round-off.
 constexpr double kNoPivot = 1e-11;
+// What is left of a row beside others, relative to it, that is round-off.
+constexpr double kDependent = 1e-9;
 
 }  // namespace
+
+std::vector<int> ContactDynamics::rows(const ContactStates& states) const {
+  std::vector<int> out = always_;
+  for (int i = 0; i < count(); ++i) {
+    const ContactMode mode = states[static_cast<size_t>(i)].mode;
+    if (mode != ContactMode::open && law(i).normal) out.push_back(*law(i).normal);
+    if (mode != ContactMode::rolls) continue;
+    out.insert(out.end(), law(i).tangential.begin(), law(i).tangential.end());
+  }
+  std::sort(out.begin(), out.end());
+  const size_t wanted = out.size();
+  std::vector<int> kept;
+  Eigen::MatrixXd basis(a_.cols(), static_cast<Eigen::Index>(wanted));
+  const auto add = [&](int row) {
+    const auto at = static_cast<Eigen::Index>(kept.size());
+    Eigen::VectorXd rest = a_.row(row).transpose();
+    const double length = rest.norm();
+    for (int pass = 1; pass <= 2; ++pass)
+      for (Eigen::Index j = 0; j < at; ++j) rest -= basis.col(j).dot(rest) * basis.col(j);
+    if (!(rest.norm() > kDependent * length)) return;
+    basis.col(at) = rest.normalized();
+    kept.push_back(row);
+  };
+  for (const int row : always_) add(row);
+  for (const int row : out)
+    if (std::ranges::count(always_, row) == 0) add(row);
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
 
 // Gauss with complete pivoting of the first m rows of k_work_, which stay as U in the order of
 // order_; b, m x columns, becomes the solution whose unknowns without a pivot are 0.

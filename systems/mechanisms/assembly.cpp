@@ -228,7 +228,8 @@ SystemModel Assembly::model() {
   const std::vector<RowInfo>& words = system->row_info();
   for (const int row : system->kept()) {
     const RowInfo& word = words[static_cast<size_t>(row)];
-    if (word.height && !word.slips) model_.contacts.push_back(static_cast<int>(model_.reactions.size()));
+    if (word.height && !word.slips)
+      model_.contacts.push_back(static_cast<int>(model_.reactions.size()));
     model_.reactions.push_back(word.name);
   }
 

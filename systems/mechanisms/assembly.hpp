@@ -88,6 +88,9 @@ class Assembly {
   static bool is_of_joint(const std::string& row, const Mechanism::JointPart& part);
   /// The laws of the kept rows.
   void state_contacts(const mechanisms::Multibody& system);
+  static int kept_place(const mechanisms::Multibody& system, size_t row);
+  void add_law(const mechanisms::Multibody& system, size_t contact, size_t row, double load);
+  void add_law(const mechanisms::Coupling& coupling, int place);
   /// Normal forces of contacts without a height, N: given, or of statics in the drawn pose.
   std::vector<double> loads(const mechanisms::Multibody& system);
   void find_loads(const mechanisms::Multibody& system, int root, std::vector<double>& loads);

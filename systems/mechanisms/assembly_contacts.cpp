@@ -62,12 +62,11 @@ void Assembly::check_joint_friction(const Mechanism::JointPart& part) {
   }
   if (!is_size(part.friction))
     wrong(part, "joint", fmt::format("friction: got {}, expected at least 0", *part.friction));
-  if (!part.stop.empty() &&
-      !(part.stop.size() == 2 && part.stop[0] < part.stop[1] &&
-        std::isfinite(part.stop[1] - part.stop[0])))
-    wrong(part, "joint",
-          fmt::format("stop: got [{}], expected two numbers, the lower one first",
-                      join(part.stop)));
+  if (!part.stop.empty() && !(part.stop.size() == 2 && part.stop[0] < part.stop[1] &&
+                              std::isfinite(part.stop[1] - part.stop[0])))
+    wrong(
+        part, "joint",
+        fmt::format("stop: got [{}], expected two numbers, the lower one first", join(part.stop)));
   if (!part.restitution) return;
   if (part.stop.empty()) wrong(part, "joint", "restitution: expected a stop beside it");
   else if (!(*part.restitution >= 0 && *part.restitution <= 1))
@@ -128,7 +127,7 @@ std::optional<Coupling> Assembly::wall(const Mechanism::WallPart& part) {
   return out;
 }
 
-// Those of the contacts on what a root carries that have no height.
+// Loads of the contacts without a height on what a root carries.
 void Assembly::find_loads(const Multibody& system, int root, std::vector<double>& loads) {
   const Tree& tree = system.tree(system.drawn().data());
   const std::vector<Contact>& contacts = system.all_rows().contacts;
@@ -197,8 +196,8 @@ std::vector<double> Assembly::loads(const Multibody& system) {
     row += contact.row_count();
     if (!contact.slips) continue;
     const int height = static_cast<int>(row) - 1;
-    const bool changes = std::ranges::count(system.kept(), height) > 0 &&
-                         words[static_cast<size_t>(height)].height;
+    const bool changes =
+        std::ranges::count(system.kept(), height) > 0 && words[static_cast<size_t>(height)].height;
     if (changes && part.load)
       wrong(part, part.kind,
             "load: the height of this contact may change, so that its load is a reaction; leave it "
@@ -217,55 +216,61 @@ std::vector<double> Assembly::loads(const Multibody& system) {
     else if (!tree.joint(root).turns_and_slides())
       wrong(part, part.kind,
             "load: not given, and its joints, not the ground, may bear the weight; give it in N");
-    else if (std::ranges::count(roots, root) == 0)
-      roots.push_back(root);
+    else if (std::ranges::count(roots, root) == 0) roots.push_back(root);
   }
   for (const int root : roots) find_loads(system, root, out);
   return out;
 }
 
+// Place of a row among the kept ones, or -1.
+int Assembly::kept_place(const Multibody& system, size_t row) {
+  const auto at = std::ranges::find(system.kept(), static_cast<int>(row));
+  return at == system.kept().end() ? -1 : static_cast<int>(at - system.kept().begin());
+}
+
+void Assembly::add_law(const Multibody& system, size_t contact, size_t row, double load) {
+  const Mechanism::ContactPart& part = parts_.contacts_[contact];
+  const size_t height = row + system.all_rows().contacts[contact].row_count() - 1;
+  ContactLaw law;
+  law.name = part.name;
+  law.friction = *part.friction;
+  law.restitution = part.restitution.value_or(0);
+  for (; row < height; ++row)
+    if (const int place = kept_place(system, row); place >= 0) law.tangential.push_back(place);
+  if (const int place = kept_place(system, height); place >= 0) law.normal = place;
+  else law.load = load;
+  model_.contact_laws.push_back(std::move(law));
+}
+
+void Assembly::add_law(const Coupling& coupling, int place) {
+  ContactLaw law;
+  law.name = coupling.name;
+  law.of_joint = true;
+  if (coupling.of_rates()) law.tangential = {place};
+  else law.normal = place;
+  law.friction = coupling.of_rates() ? 1 : 0;
+  for (const auto& part : parts_.joints_) {
+    if (!is_of_joint(coupling.name, part)) continue;
+    law.restitution = part.restitution.value_or(0);
+    if (coupling.of_rates()) law.load = *part.friction;
+  }
+  for (const auto& part : parts_.walls_)
+    if (part.name == coupling.name) law.restitution = part.restitution;
+  model_.contact_laws.push_back(std::move(law));
+}
+
 void Assembly::state_contacts(const Multibody& system) {
   const std::vector<double> loads = this->loads(system);
-  const auto slot = [&](size_t row) {
-    const auto at = std::ranges::find(system.kept(), static_cast<int>(row));
-    return at == system.kept().end() ? -1 : static_cast<int>(at - system.kept().begin());
-  };
+  const ConstraintRows& rows = system.all_rows();
   size_t row = 0;
-  for (size_t i = 0; i < parts_.contacts_.size(); ++i) {
-    const Contact& contact = system.all_rows().contacts[i];
-    const size_t first = row;
-    row += contact.row_count();
-    if (!contact.slips) continue;
-    const Mechanism::ContactPart& part = parts_.contacts_[i];
-    ContactLaw law;
-    law.name = part.name;
-    law.friction = *part.friction;
-    law.restitution = part.restitution.value_or(0);
-    law.load = loads[i];
-    for (size_t k = first; k + 1 < row; ++k)
-      if (slot(k) >= 0) law.tangential.push_back(slot(k));
-    if (slot(row - 1) >= 0) law.normal = slot(row - 1);
-    if (law.normal) law.load = 0;
-    model_.contact_laws.push_back(std::move(law));
+  for (size_t i = 0; i < rows.contacts.size(); ++i) {
+    if (rows.contacts[i].slips) add_law(system, i, row, loads[i]);
+    row += rows.contacts[i].row_count();
   }
-  for (const Loop& loop : system.all_rows().loops) row += loop.row_count();
-  for (const Coupling& coupling : system.all_rows().couplings) {
-    const int at = slot(row++);
-    if (!coupling.slips || at < 0) continue;
-    ContactLaw law;
-    law.name = coupling.name;
-    law.of_joint = true;
-    if (coupling.of_rates()) law.tangential = {at};
-    else law.normal = at;
-    law.friction = coupling.of_rates() ? 1 : 0;
-    for (const auto& part : parts_.joints_) {
-      if (!is_of_joint(coupling.name, part)) continue;
-      law.restitution = part.restitution.value_or(0);
-      if (coupling.of_rates()) law.load = *part.friction;
-    }
-    for (const auto& part : parts_.walls_)
-      if (part.name == coupling.name) law.restitution = part.restitution;
-    model_.contact_laws.push_back(std::move(law));
+  for (const Loop& loop : rows.loops) row += loop.row_count();
+  for (const Coupling& coupling : rows.couplings) {
+    const int place = kept_place(system, row++);
+    if (coupling.slips && place >= 0) add_law(coupling, place);
   }
 }
 

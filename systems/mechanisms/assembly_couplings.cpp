@@ -24,7 +24,8 @@ std::vector<Coupling> Assembly::couplings() {
       continue;
     }
     const char* const key = part.rates.empty() ? "formula" : "rates";
-    if (auto found = related ? gear(part) : coupling(part, "coupling", key)) out.push_back(std::move(*found));
+    if (auto found = related ? gear(part) : coupling(part, "coupling", key))
+      out.push_back(std::move(*found));
   }
   return out;
 }

@@ -32,7 +32,8 @@ void Assembly::check_motions(const Multibody& system, const std::vector<RowLabel
     free = dense::kernel(a);
   }
   if (free.isZero(0)) {
-    if (mobility_at(system, g).any && model_.contact_laws.empty()) return;  // what is prescribed decides the motion alone
+    if (mobility_at(system, g).any && model_.contact_laws.empty())
+      return;  // what is prescribed decides the motion alone
     const RowLabel& last = rows[static_cast<size_t>(holding.back())];
     std::vector<std::string> others;
     for (const int i : holding) {

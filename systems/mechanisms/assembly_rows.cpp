@@ -23,16 +23,20 @@ std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) 
       say(parts_.rates_[out.size() - others], "prescribed");
       continue;
     }
+    const auto find = [&](const auto& parts, const std::string& kind) {
+      for (const auto& part : parts)
+        if (part.name == row.part) say(part, kind);
+    };
     for (const auto& part : parts_.contacts_)
       if (part.name == row.part) say(part, part.kind);
-    for (const auto& part : parts_.loops_)
-      if (part.name == row.part) say(part, "loop");
-    for (const auto& part : parts_.couplings_)
-      if (part.name == row.part && !row.slips) say(part, "coupling");
-    for (const auto& part : parts_.walls_)
-      if (part.name == row.part) say(part, "wall");
-    for (const auto& part : parts_.joints_)
-      if (row.slips && !row.length && is_of_joint(row.part, part)) say(part, "joint");
+    find(parts_.loops_, "loop");
+    if (row.slips && !row.length) {
+      find(parts_.walls_, "wall");
+      for (const auto& part : parts_.joints_)
+        if (is_of_joint(row.part, part)) say(part, "joint");
+      continue;
+    }
+    find(parts_.couplings_, "coupling");
     if (row.part == kAgreement)
       out.push_back({"", fmt::format("{} ({})", kAgreement, row.meaning)});
   }

@@ -90,11 +90,8 @@ ContactKind kind() {
 
 const std::vector<ContactKind>& contact_kinds() {
   static const std::vector<ContactKind> all = {
-      kind<BallContact>(),
-      kind<BladeContact>(),
-      kind<PointContact>(),
-      kind<RollerContact>(),
-      kind<WheelContact>(),
+      kind<BallContact>(),   kind<BladeContact>(), kind<PointContact>(),
+      kind<RollerContact>(), kind<WheelContact>(),
   };
   return all;
 }

@@ -49,11 +49,16 @@ void FileParts::joints() {
     std::string name, kind, child, parent = kWorld;
     JointOptions o;
     bool held = false;
-    FileValues::Keys keys = {{"name", read_.read(name)},     {"kind", read_.read(kind)},
-                             {"parent", read_.read(parent)}, {"child", read_.read(child)},
-                             {"at", read_.read(o.at)},       {"axis", read_.read(o.axis)},
-                             {"axis2", read_.read(o.axis2)}, {"stiffness", read_.read(o.stiffness)},
-                             {"rest", read_.read(o.rest)},   {"damping", read_.read(o.damping)},
+    FileValues::Keys keys = {{"name", read_.read(name)},
+                             {"kind", read_.read(kind)},
+                             {"parent", read_.read(parent)},
+                             {"child", read_.read(child)},
+                             {"at", read_.read(o.at)},
+                             {"axis", read_.read(o.axis)},
+                             {"axis2", read_.read(o.axis2)},
+                             {"stiffness", read_.read(o.stiffness)},
+                             {"rest", read_.read(o.rest)},
+                             {"damping", read_.read(o.damping)},
                              {"held", read_.read(held)},
                              {"friction", read_.read(o.friction)},
                              {"restitution", read_.read(o.restitution)},
@@ -73,14 +78,13 @@ void FileParts::contacts() {
     tables(kind.name, [&](const toml::table& table) {
       std::string name, body;
       ContactOptions o;
-      FileValues::Keys keys = {
-          {"name", read_.read(name)},
-          {"body", read_.read(body)},
-          {"at", read_.read(o.at)},
-          {"friction", read_.read(o.friction)},
-          {"restitution", read_.read(o.restitution)},
-          {"load", read_.read(o.load)},
-          {"unilateral", read_.read(o.unilateral)}};
+      FileValues::Keys keys = {{"name", read_.read(name)},
+                               {"body", read_.read(body)},
+                               {"at", read_.read(o.at)},
+                               {"friction", read_.read(o.friction)},
+                               {"restitution", read_.read(o.restitution)},
+                               {"load", read_.read(o.load)},
+                               {"unilateral", read_.read(o.unilateral)}};
       add_fields(kind.fields, o.values, keys);
       read_.entries(table, keys);
       m_.contact(kind.name, name.empty() ? body : name, body, o);
@@ -107,12 +111,11 @@ void FileParts::chains() {
 void FileParts::wall(const toml::table& table) {
   std::string name;
   WallOptions o;
-  read_.entries(table, {{"name", read_.read(name)},
-                        {"distance",
-                         [&](const Node& node, const std::string& key) {
-                           o.distance = read_.formula(node, key);
-                         }},
-                        {"restitution", read_.read(o.restitution)}});
+  read_.entries(
+      table, {{"name", read_.read(name)},
+              {"distance", [&](const Node& node,
+                               const std::string& key) { o.distance = read_.formula(node, key); }},
+              {"restitution", read_.read(o.restitution)}});
   for (const auto& [constant, value] : read_.formulas.constants()) o.constants[constant] = {value};
   m_.wall(name, o);
 }

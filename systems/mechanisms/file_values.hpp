@@ -176,10 +176,11 @@ class FileValues {
       };
       const double before = beside(-1e-9), after = beside(1e-9);
       if (!(std::abs(after - before) > 1e-6 * (std::abs(after) + std::abs(before)))) continue;
-      notes.push_back(fmt::format(
-          "{}: {}: jumps where {} changes its sign: steps shrink there without end; dry friction is "
-          "`friction` of a joint or contact",
-          toml.place(node), key, names_[i]));
+      notes.push_back(
+          fmt::format("{}: {}: jumps where {} changes its sign: steps shrink there without end; "
+                      "dry friction is "
+                      "`friction` of a joint or contact",
+                      toml.place(node), key, names_[i]));
     }
   }
 

@@ -85,7 +85,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   /// Meanings of all rows, in the order of each().
   const std::vector<RowInfo>& row_info() const { return row_info_; }
   const std::vector<int>& kept() const { return kept_; }
-  /// Those of them that always hold, without contacts that may slide or open.
+  /// The kept rows that always hold, without contacts that may slide or open.
   std::vector<int> holding() const;
   const Geometry& geometry() const { return *geometry_; }
   /// The element of the drawn pose.

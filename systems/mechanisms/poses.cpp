@@ -27,6 +27,17 @@ std::vector<double> move(const Multibody& system, const std::vector<double>& g,
   return out;
 }
 
+// Marks the heights of contacts that are drawn on the ground.
+std::vector<bool> drawn_on_ground(const Multibody& system, bool wanted) {
+  const std::vector<RowInfo>& words = system.row_info();
+  std::vector<bool> out(words.size());
+  if (!wanted) return out;
+  const VectorXd drawn = RowValues(system, system.drawn()).phi;
+  for (size_t i = 0; i < words.size(); ++i)
+    out[i] = words[i].height && std::abs(drawn[static_cast<Eigen::Index>(i)]) < 1e-6;
+  return out;
+}
+
 }  // namespace
 
 RowValues::RowValues(const Multibody& system, const std::vector<double>& g, double t) {
@@ -54,12 +65,7 @@ double satisfy(const Multibody& system, const std::vector<bool>& fixed, std::vec
                int but_for, bool touching) {
   const std::vector<RowInfo>& words = system.row_info();
   const std::vector<Prescribed>& prescribed = system.all_rows().prescribed;
-  std::vector<bool> on_ground(words.size());
-  if (touching) {
-    const VectorXd drawn = RowValues(system, system.drawn()).phi;
-    for (size_t i = 0; i < words.size(); ++i)
-      on_ground[i] = words[i].height && std::abs(drawn[static_cast<Eigen::Index>(i)]) < 1e-6;
-  }
+  const std::vector<bool> on_ground = drawn_on_ground(system, touching);
   for (int k = 0;; ++k) {
     RowValues looked(system, g);
     for (Eigen::Index i = 0; i < looked.a.rows(); ++i) {

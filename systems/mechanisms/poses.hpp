@@ -24,8 +24,9 @@ Eigen::VectorXd least(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 /// Poses that share nothing, near g: g tau(eta), the rows left aside.
 std::vector<std::vector<double>> poses_around(const Multibody& system,
                                               const std::vector<double>& g);
-/// Poses near g on phi = 0 of all rows that always hold, reached by moves that satisfy the rows, but for prescribed
-/// rates: these move to where the joint is at other times. g first. Rows may be dependent.
+/// Poses near g on phi = 0 of all rows that always hold, reached by moves that satisfy the rows,
+/// but for prescribed rates: these move to where the joint is at other times. g first. Rows may be
+/// dependent.
 std::vector<std::vector<double>> poses_on_rows(const Multibody& system,
                                                const std::vector<double>& g);
 

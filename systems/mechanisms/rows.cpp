@@ -32,7 +32,8 @@ std::vector<RowInfo> ConstraintRows::info() const {
     for (const std::string& meaning : contact.model->meanings())
       add(contact.name, ++number, meaning, false);
     add(contact.name, ++number, "touches the ground", true, true);
-    for (int i = 1; i <= number; ++i) out[out.size() - static_cast<size_t>(i)].slips = contact.slips;
+    for (int i = 1; i <= number; ++i)
+      out[out.size() - static_cast<size_t>(i)].slips = contact.slips;
   }
   for (const Loop& loop : loops) {
     for (int i = 1; i <= 3; ++i) add(loop.name, i, "the points of the joint coincide", true);

@@ -191,10 +191,9 @@ bool Starts::Equations::solved() const {
   return (a * solution() - b).norm() <= 1e-9 * (1 + b.norm());
 }
 
-Starts::Equations Starts::equations(
-    const std::vector<double>& g, double t,
-    const std::vector<std::pair<int, Values::value_type>>& stated,
-    const std::vector<int>& rows) const {
+Starts::Equations Starts::equations(const std::vector<double>& g, double t,
+                                    const std::vector<std::pair<int, Values::value_type>>& stated,
+                                    const std::vector<int>& rows) const {
   const RowValues values(*system_, g, t);
   const auto k = static_cast<Eigen::Index>(rows.size()), more = std::ssize(stated);
   Equations out{MatrixXd::Zero(k + more, system_->dim()), VectorXd::Zero(k + more), rows};
@@ -275,9 +274,9 @@ SystemStart Starts::solve(const Values& values, double t, const Places& places) 
   const VectorXd velocity = found(equations.a, equations.solution());
   start.velocity.assign(velocity.begin(), velocity.end());
   if (!slipping.empty())
-    start.notes.push_back(fmt::format(
-        "the start requires that {} slip{}: --slip starts so, without it they roll", join(slipping),
-        slipping.size() > 1 ? "" : "s"));
+    start.notes.push_back(
+        fmt::format("the start requires that {} slip{}: --slip starts so, without it they roll",
+                    join(slipping), slipping.size() > 1 ? "" : "s"));
   if (const std::string joints = unasked(found.of_joints(), values, found, velocity);
       !joints.empty())
     start.notes.push_back(

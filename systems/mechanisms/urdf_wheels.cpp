@@ -99,8 +99,7 @@ class Finder {
       const char* const expected = key == "radius"  ? "a positive number, in m"
                                    : key == "angle" ? "a number, in rad"
                                                     : "a number of at least 0";
-      wrong(given,
-            fmt::format("{}: got '{}', expected {}", key, word.substr(equal + 1), expected));
+      wrong(given, fmt::format("{}: got '{}', expected {}", key, word.substr(equal + 1), expected));
       return false;
     }
     (key == "radius" ? out.radius : key == "angle" ? out.angle : out.friction) = value;
@@ -117,8 +116,8 @@ class Finder {
 std::vector<std::string> joined(const std::vector<std::string>& names) {
   std::vector<std::string> out;
   for (const std::string& name : names) {
-    const bool more = name.starts_with("radius=") || name.starts_with("angle=") ||
-                      name.starts_with("friction=");
+    const bool more =
+        name.starts_with("radius=") || name.starts_with("angle=") || name.starts_with("friction=");
     if (more && !out.empty()) out.back() += ":" + name;
     else out.push_back(name);
   }

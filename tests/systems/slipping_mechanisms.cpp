@@ -67,21 +67,21 @@ TEST(SlippingBall, ByPartsAsByHand) {
   Mechanism m("ball");
   m.body("ball", {.mass = 1, .at = {0, 0, radius}, .sphere = radius});
   m.free("space", "ball", {.at = {0, 0, radius}});
-  m.ball("contact", "ball", {.at = {0, 0, radius}, .radius = radius, .friction = 0.2,
-                             .restitution = 0.5});
+  m.ball("contact", "ball",
+         {.at = {0, 0, radius}, .radius = radius, .friction = 0.2, .restitution = 0.5});
   const std::vector<double> velocity = {40, -60, 7, 2, 0, 0};
   const Result parts = slipping(m).start({.velocity = velocity}).until(1).run();
-  const Result hand = simulate("rolling_ball")
-                          .set("radius", radius)
-                          .set("inertia", 0.4 * radius * radius)
-                          .set("friction", 0.2)
-                          .set("restitution", 0.5)
-                          .tolerance({.relative = 1e-10})
-                          .slip()
-                          .start({.configuration = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, radius},
-                                  .velocity = velocity})
-                          .until(1)
-                          .run();
+  const Result hand =
+      simulate("rolling_ball")
+          .set("radius", radius)
+          .set("inertia", 0.4 * radius * radius)
+          .set("friction", 0.2)
+          .set("restitution", 0.5)
+          .tolerance({.relative = 1e-10})
+          .slip()
+          .start({.configuration = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, radius}, .velocity = velocity})
+          .until(1)
+          .run();
   ASSERT_TRUE(parts.status.ok) << parts.status.reason;
   ASSERT_EQ(names(parts), names(hand));
   EXPECT_NEAR(time_of(parts, "contact.rolls"), 0.5803075242513841, 1e-9);
@@ -145,7 +145,7 @@ Mechanism locked_cart() {
   return m;
 }
 TEST(LockedCart, SlidesTurnsAndRests) {
-  const Result r = slipping(locked_cart()).until(3).run();
+  const Result r = simulate(locked_cart()).slip().until(3).run();
   ASSERT_TRUE(r.status.ok) << r.status.reason;
   for (const char* name : {"v1", "v2", "omega"}) EXPECT_LT(std::abs(last(r, name)), 1e-14) << name;
   for (const char* name : {"rear left.mode", "front right.mode"}) EXPECT_EQ(last(r, name), 1);
@@ -157,10 +157,10 @@ TEST(LockedCart, SlidesTurnsAndRests) {
                              HasSubstr("'front left' 32.7 N"))));
 }
 
-// A cart whose four wheels turn, half track b, half wheelbase a, as many loads N = m g/4: turning in
-// place with the rates -+w of its wheels the slips are (-+(r w - b W), -+a W), and its friction has
-// no moment where a^2 W = b (r w - b W): W = b r w/(a^2 + b^2), whatever mu and N. The torque of a
-// wheel is then r mu N a/sqrt(a^2 + b^2).
+// A cart whose four wheels turn, half track b, half wheelbase a, as many loads N = m g/4: turning
+// in place with the rates -+w of its wheels the slips are (-+(r w - b W), -+a W), and its friction
+// has no moment where a^2 W = b (r w - b W): W = b r w/(a^2 + b^2), whatever mu and N. The torque
+// of a wheel is then r mu N a/sqrt(a^2 + b^2).
 struct SkidSteered {
   double a = 0.25, b = 0.2, r = 0.1, mu = 0.6, mass = 20, damping = 0.5;
   double load() const { return mass * kGravity / 4; }
@@ -171,8 +171,8 @@ struct SkidSteered {
     m.planar("floor", "base");
     for (const double x : {-a, a})
       for (const double y : {-b, b}) {
-        const std::string name = fmt::format("{}{}", x > 0 ? "front " : "rear ",
-                                             y > 0 ? "left" : "right");
+        const std::string name =
+            fmt::format("{}{}", x > 0 ? "front " : "rear ", y > 0 ? "left" : "right");
         m.body(name, {.mass = 0, .at = {x, y, r}, .inertia = {0, 0.01, 0}});
         m.hinge(name, "base", name, {.at = {x, y, r}, .axis = {0, 1, 0}, .damping = damping});
         m.wheel(name, name, {.at = {x, y, r}, .radius = r, .friction = mu});
@@ -241,8 +241,7 @@ TEST(DryFriction, ABlockStopsAndRests) {
 TEST(Stops, AJointStrikesItsEnds) {
   Mechanism m("block");
   m.body("block", {.mass = 1, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
-  m.slider("way", kWorld, "block",
-           {.axis = {1, 0, 0}, .restitution = 0.5, .stop = {-0.5, 1}});
+  m.slider("way", kWorld, "block", {.axis = {1, 0, 0}, .restitution = 0.5, .stop = {-0.5, 1}});
   m.start("way.rate", 2);
   const Result r = slipping(m).until(3).run();
   ASSERT_TRUE(r.status.ok) << r.status.reason;
@@ -259,7 +258,8 @@ TEST(Walls, TwoBlocksOnARail) {
     m.body(name, {.mass = 1, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
     m.slider(name, kWorld, name, {.axis = {1, 0, 0}});
   }
-  m.wall("buffer", {.distance = "b.position - a.position - width", .restitution = 1,
+  m.wall("buffer", {.distance = "b.position - a.position - width",
+                    .restitution = 1,
                     .constants = {{"width", {0.2}}}});
   m.start({{"b.position", 1}, {"a.rate", 2}});
   const Result r = slipping(m).until(1).run();

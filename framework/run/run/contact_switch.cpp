@@ -131,7 +131,8 @@ void ContactKernel::name_changes(const ContactStates& before) {
   for (int i = 0; i < count(); ++i) {
     if (contact(i).mode == before[static_cast<size_t>(i)].mode) continue;
     if (contact(i).mode != ContactMode::open && dynamics().law(i).tangential.empty()) continue;
-    events_.emplace_back(dynamics().law(i).name + "." + verb(dynamics().law(i), contact(i).mode), ends_);
+    events_.emplace_back(dynamics().law(i).name + "." + verb(dynamics().law(i), contact(i).mode),
+                         ends_);
   }
 }
 

@@ -251,9 +251,10 @@ bool look_at_gaps(const SystemModel& system, const Eigen::VectorXd& phi, Mistake
     open = open || gap > kClosedStart;
     if (gap >= -kClosedStart) continue;
     const char* const text =
-        law.of_joint ? "configuration: '{}' of {} is passed by {:.6g}, expected at it or before"
-                     : "configuration: contact '{}' of {} is {:.6g} m below its ground, expected on "
-                       "it or above";
+        law.of_joint
+            ? "configuration: '{}' of {} is passed by {:.6g}, expected at it or before"
+            : "configuration: contact '{}' of {} is {:.6g} m below its ground, expected on "
+              "it or above";
     mistakes.add(fmt::format(fmt::runtime(text), law.name, system.name, -gap));
   }
   return open;
