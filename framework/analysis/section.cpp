@@ -51,6 +51,7 @@ class Points {
     for (const OtherName& other : system.other_names)
       table.other_names.emplace(other.name, names.all()[other.place]);
     table.columns.push_back({"energy", "J", "at the crossing", std::vector<double>()});
+    add_formulas(system);
   }
   void add(long long start, long long n, double t, const std::vector<double>& coordinates,
            const std::vector<double>& velocity, double energy) {
@@ -64,8 +65,29 @@ class Points {
     for (const double x : coordinates) next(x);
     for (const double x : velocity) next(x);
     next(energy);
+    for (const auto& value : values_) next(value(t, coordinates, velocity));
   }
   Table table;
+
+ private:
+  // Columns of sensors and outputs that are functions of a state.
+  void add_formulas(const SystemModel& system) {
+    const StateVariables variables(system, QuantityNames(system).variables());
+    const auto add_column = [&](const std::string& name, const std::string& unit,
+                                const std::string& meaning) {
+      const std::vector<std::string>& names = variables.names();
+      if (std::ranges::find(names, name) == names.end()) return;
+      table.columns.push_back({name, unit, meaning, std::vector<double>()});
+      values_.push_back(variables.value(Expression(name, names)));
+    };
+    for (const Sensor& sensor : system.sensors)
+      for (size_t i = 0; i < sensor.columns.size(); ++i)
+        add_column(sensor.columns[i], sensor.units[i], sensor.meaning);
+    for (const OutputFormula& output : system.outputs)
+      add_column(output.name, output.unit,
+                 output.meaning.empty() ? output.formula : output.meaning);
+  }
+  std::vector<StateVariables::Value> values_;
 };
 
 class Sections {

@@ -117,7 +117,7 @@ const LaneInfo* Plan::find_lanes(const Run& run) {
   const bool plain = !resolved.chooses_steps() && setup.composition.size() == 1 &&
                      setup.solver == nullptr && setup.inputs == nullptr;
   const bool nodes = kept->times().empty() && kept->events().empty() && base.events.empty() &&
-                     !kept->wants_solver() && !kept->wants_reactions() && !kept->wants_balance() &&
+                     !kept->wants_solver() && !kept->wants().any() &&
                      !(kept->wants_peaks() && !rows.empty());
   if (!plain || !nodes || feedback->any()) return nullptr;
   const std::string& group = run.system().group.name;

@@ -18,9 +18,14 @@ StateNames::StateNames(const SystemModel& system, bool measures)
     : state_(system),
       columns_(system, {.holonomic = true,
                         .work = measures && works(*system.mechanics),
-                        .reactions = measures}) {
+                        .reactions = measures,
+                        .acceleration = measures && !system.sensors.empty(),
+                        .paths = measures}) {
   for (size_t i = 0; i < columns_.size(); ++i) {
-    const bool left_out = !measures && columns_.of(i) == StateColumns::Of::energy_error;
+    bool left_out = false;
+    columns_.each_source(i, [&](size_t j) {
+      left_out |= !measures && columns_.of(j) == StateColumns::Of::energy_error;
+    });
     const std::string name = left_out ? "" : name_in_formula(columns_.name(i));
     names_.push_back(std::ranges::find(names_, name) == names_.end() ? name : "");
   }
@@ -42,7 +47,7 @@ double StateNumber::operator()(const StateColumns& columns, const Snapshot& stat
 
 void StateNumber::require(const StateColumns& columns, StateParts& parts) const {
   for (const size_t i : used_)
-    if (i < columns.size()) StateColumns::require(columns.of(i), parts);
+    if (i < columns.size()) columns.require(i, parts);
 }
 
 MemberConstants::MemberConstants(const EnsembleConfig& config, const SystemModel& system,

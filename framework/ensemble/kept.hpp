@@ -85,6 +85,15 @@ class StateNumber {
 /// A number that a member has not.
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
+/// Numbers that a state does not carry itself.
+struct WantedPhysics {
+  bool reactions = false, accelerations = false;
+  bool balance = false;  // work, or the energy error where work is done: every node is to be seen
+  bool paths = false;    // of sensors: the same
+  bool nodes() const { return balance || paths; }
+  bool any() const { return reactions || accelerations || nodes(); }
+};
+
 /// A column of what is kept.
 struct KeptColumn {
   std::string name, unit, meaning;
@@ -112,9 +121,7 @@ class KeptFormulas {
   bool wants_peaks() const { return wants_peaks_; }
   /// Iterations and residuals of steps?
   bool wants_solver() const { return wants_solver_; }
-  bool wants_reactions() const { return wants_reactions_; }
-  /// Work, or the energy error where work is done: every node is to be seen.
-  bool wants_balance() const { return wants_balance_; }
+  const WantedPhysics& wants() const { return wants_; }
   /// The name of a function of the run among them; "" for none.
   std::string function() const;
 
@@ -179,7 +186,7 @@ class KeptFormulas {
   std::vector<std::string> events_, quantities_;
   size_t kept_ = 0, classes_ = 0;
   bool wants_start_ = false, wants_peaks_ = false, wants_solver_ = false;
-  bool wants_reactions_ = false, wants_balance_ = false;
+  WantedPhysics wants_;
   StateParts parts_ = kNoParts, peak_parts_ = kNoParts;
   StateExtras alone_;  // with the energy at the start
 };

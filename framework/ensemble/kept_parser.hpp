@@ -192,14 +192,17 @@ class KeptFormulas::Parser {
     const StateColumns& columns = out_.states_.columns();
     const auto want = [](bool& wanted, bool now) { wanted = wanted || now; };
     const bool works = StateNames::works(*system_.mechanics);
-    for (const size_t i : number.used()) {
-      if (i >= columns.size()) continue;
+    const auto note_column = [&](size_t i) {
       const Of of = columns.of(i);
       want(out_.wants_start_, of == Of::energy_error);  // against that of the start
       want(out_.wants_solver_, of == Of::iterations || of == Of::residual);
-      want(out_.wants_reactions_, of == Of::reaction);
-      want(out_.wants_balance_, works && (of == Of::work || of == Of::energy_error));
-    }
+      want(out_.wants_.reactions, of == Of::reaction);
+      want(out_.wants_.accelerations, of == Of::acceleration);
+      want(out_.wants_.paths, of == Of::path);
+      want(out_.wants_.balance, works && (of == Of::work || of == Of::energy_error));
+    };
+    for (const size_t i : number.used())
+      if (i < columns.size()) columns.each_source(i, note_column);
   }
   static std::vector<std::string> words_of(const std::string& text) {
     std::vector<std::string> out;

@@ -25,7 +25,7 @@ MemberRunner::MemberRunner(const Plan& plan, const std::atomic<bool>* stop)
       stop_(stop),
       kept_(*plan.kept),
       feedback_(*plan.feedback),
-      physics_(plan.kept->wants_reactions(), plan.kept->wants_balance()) {
+      physics_(plan.kept->wants()) {
   const std::vector<Target>& targets = plan.variations->targets();
   for (size_t i = 0; i < targets.size(); ++i)
     if (targets[i].kind == Kind::velocity) given_.push_back(i);

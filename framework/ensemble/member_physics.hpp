@@ -1,6 +1,6 @@
-// Numbers that a member's states do not carry themselves: the reactions of the constraints, and the
-// energy balance, for which every node is needed. As a run's rows have them (run_recorder.hpp). Not
-// installed.
+// Numbers that a member's states do not carry themselves: reactions, accelerations, the energy
+// balance and paths, for which every node is needed. As a run's rows have them
+// (run_recorder.hpp). Not installed.
 #pragma once
 
 #include <deque>
@@ -10,6 +10,7 @@
 
 #include <hamel/framework/ensemble/kept.hpp>
 #include <hamel/framework/run/run/energy_balance.hpp>
+#include <hamel/framework/run/run/path_lengths.hpp>
 #include <hamel/framework/run/run/run.hpp>
 
 namespace hamel::ensemble {
@@ -17,9 +18,9 @@ namespace hamel::ensemble {
 class MemberPhysics {
  public:
   /// Where nothing of this is wanted it costs nothing.
-  MemberPhysics(bool reactions, bool balance) : reactions_(reactions), balanced_(balance) {}
-  bool any() const { return reactions_ || balanced_; }
-  bool wants_nodes() const { return balanced_; }
+  explicit MemberPhysics(const WantedPhysics& wanted) : wanted_(wanted) {}
+  bool any() const { return wanted_.any(); }
+  bool wants_nodes() const { return wanted_.nodes(); }
 
   /// A member at its start.
   void begin(const Run& run);
@@ -36,16 +37,19 @@ class MemberPhysics {
  private:
   struct Waiting {
     Snapshot state;
-    std::vector<double> reactions;
+    std::vector<double> reactions, acceleration;
     Use use;
   };
+  bool follows() const { return balance_ != nullptr || paths_.active(); }
   void settle();
 
-  bool reactions_, balanced_;
-  std::shared_ptr<Reactions> of_rows_;
+  WantedPhysics wanted_;
+  std::shared_ptr<Reactions> of_rows_, motion_;
   std::unique_ptr<EnergyBalance> balance_;
+  PathLengths paths_;
   std::deque<Waiting> waiting_;
   std::vector<BalancedState> settled_;
+  std::vector<double> lengths_;
 };
 
 }  // namespace hamel::ensemble

@@ -49,10 +49,17 @@ struct Sensor {
   std::string name, meaning;
   std::vector<std::string> columns, units;
   std::size_t first_acceleration = 0;  // the columns from here on need the acceleration
+  int velocity = -1;  // the first of three columns, whose path is one more, name.path; -1: none
   /// At a place, velocity and acceleration xi', which may be left out for the columns before.
   std::function<void(std::span<const double> coordinates, std::span<const double> velocity,
                      std::span<const double> acceleration, std::span<double> out)>
       value;
+};
+
+/// A column of every run by a formula of t, parameters and other columns.
+struct OutputFormula {
+  std::string name, formula, unit, meaning;
+  std::string where = {};  // in a file, in front of messages
 };
 
 /// A further name by which a coordinate or velocity is read; place counts the coordinates, then the
@@ -94,6 +101,7 @@ struct SystemModel {
   std::vector<std::pair<std::string, std::string>> formulas;  // "potential", "m*g*x"
   std::vector<DrawnForce> forces;
   std::vector<Sensor> sensors;
+  std::vector<OutputFormula> outputs;
   bool rows_may_depend = false;  // on each other, at some places: a run watches them
 
   /// A start at time t from at most as many numbers as start_parameters has names; from none: the

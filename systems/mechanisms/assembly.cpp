@@ -107,9 +107,11 @@ ConstraintRows Assembly::rows() {
     const ContactKind* kind = find_contact_kind(part.kind);
     if (kind == nullptr) unknown(part, "contact", "kind", part.kind, names_of(contact_kinds()));
     else if (check_values(part, part.kind, kind->fields, part.values) &&
-             check_level(part, kind->fields))
-      out.contacts.push_back(
-          {part.name, kind->make(part.values), link, vec(part.at), 0, part.friction.has_value()});
+             check_level(part, kind->fields)) {
+      const auto model = kind->make(part.values);
+      if (const std::string flaw = model->flaw(); !flaw.empty()) wrong(part, part.kind, flaw);
+      out.contacts.push_back({part.name, model, link, vec(part.at), 0, part.friction.has_value()});
+    }
     check_friction(part);
   }
   for (const auto& part : parts_.loops_) {
@@ -173,11 +175,16 @@ Forces Assembly::forces() {
       out.motors.push_back({part.name, link, part.effort, part.time_dependent});
   }
   for (const auto& part : parts_.forces_) {
-    Force force{part.name,           link_of(part, "force", part.body),
-                vec(part.at),        part.of_body,
-                part.time_dependent, {}};
+    const std::string kind = part.couple ? "torque" : "force";
+    Force force{part.name,
+                link_of(part, kind, part.body),
+                vec(part.at),
+                part.couple,
+                part.of_body,
+                part.time_dependent,
+                {}};
     for (int i = 0; i < 3; ++i) force.along[i] = part.along[i];
-    check_moves(part, "force", part.body);
+    check_moves(part, kind, part.body);
     out.forces.push_back(std::move(force));
   }
   return out;
@@ -253,6 +260,8 @@ SystemModel Assembly::model() {
   if (!model_.inputs.empty()) model_.drive = driven;
   if (model_.contact_laws.empty()) model_.mechanics = invariant(*system);
   if (model_.mechanics == nullptr) model_.mechanics = driven(nullptr);
+  add_outputs();
+  stop_at_mistakes();
   model_.start_mistakes = [driven, checks = start_checks(tree)](
                               double t, const double* g, std::span<const double> xi,
                               const std::shared_ptr<const Inputs>& inputs) {

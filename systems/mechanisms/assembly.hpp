@@ -123,8 +123,9 @@ class Assembly {
   std::vector<std::string> body_names() const;
   std::vector<mechanisms::Multibody::Driver> drivers(const mechanisms::Tree& tree);
 
-  /// The sensors of the model.
+  /// The sensors of the model, and its outputs.
   void sense(const mechanisms::Multibody& system);
+  void add_outputs();
   void draw(const std::shared_ptr<mechanisms::Multibody>& system);
   /// Shapes of a body by its data, of its contacts and rods to its joints, from its mass centre.
   std::vector<BodyShape> shapes_of(const Mechanism::BodyPart& body,

@@ -28,9 +28,11 @@ std::string mistake(const Field& field, const std::vector<double>& value) {
     if (length > 0 && std::isfinite(length)) return "";
     return fmt::format("got ({}), expected a direction", join(value));
   }
-  if (finite(value) && field.range.allows(value[0])) return "";
+  const auto wrong = std::ranges::find_if(
+      value, [&](double x) { return !std::isfinite(x) || !field.range.allows(x); });
+  if (wrong == value.end()) return "";
   const std::string range = field.range.words();
-  return fmt::format("got {}, expected a {}", value[0],
+  return fmt::format("got {}, expected a {}", *wrong,
                      range.empty()         ? "finite number"
                      : range == "positive" ? "positive number"
                                            : "number " + range);
@@ -78,7 +80,8 @@ void Assembly::check_numbers() {
     number(part, "coupling", "ratio", part.ratio);
     number(part, "coupling", "offset", part.offset);
   }
-  for (const auto& part : parts_.forces_) numbers(part, "force", "at", part.at);
+  for (const auto& part : parts_.forces_)
+    if (!part.couple) numbers(part, "force", "at", part.at);
   for (const auto& part : parts_.start_) number(part, "start", "value", part.value);
   const auto of_all = [&](const char* what, std::span<const double> values) {
     if (!finite(values))

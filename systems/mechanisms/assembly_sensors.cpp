@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/mechanics/output_formulas.hpp>
 #include <hamel/systems/mechanisms/assembly.hpp>
 
 namespace hamel {
@@ -17,6 +18,7 @@ constexpr std::pair<const char*, const char*> kMeasured[] = {
     {"x", "m"},    {"y", "m"},     {"z", "m"},      {"vx", "m/s"},   {"vy", "m/s"},
     {"vz", "m/s"}, {"yaw", "rad"}, {"ax", "m/s^2"}, {"ay", "m/s^2"}, {"az", "m/s^2"}};
 constexpr size_t kFirstAcceleration = 7;
+constexpr int kFirstVelocity = 3;
 
 }  // namespace
 
@@ -28,10 +30,11 @@ void Assembly::sense(const Multibody& system) {
     const int link = link_of(part, "sensor", part.body);
     Sensor sensor{
         part.name,
-        fmt::format("place, velocity, yaw and acceleration of a point of '{}'", part.body),
+        fmt::format("place, velocity, yaw, acceleration and path of a point of '{}'", part.body),
         {},
         {},
         kFirstAcceleration,
+        kFirstVelocity,
         {}};
     for (const auto& [name, unit] : kMeasured) {
       sensor.columns.push_back(part.name + "." + name);
@@ -39,9 +42,18 @@ void Assembly::sense(const Multibody& system) {
       if (!taken.insert(sensor.columns.back()).second)
         wrong(part, "sensor", fmt::format("the name '{}' is taken", sensor.columns.back()));
     }
+    if (!taken.insert(path_column(sensor)).second)
+      wrong(part, "sensor", fmt::format("the name '{}' is taken", path_column(sensor)));
     sensor.value = system.sensor(link, vec(part.at));
     model_.sensors.push_back(std::move(sensor));
   }
+}
+
+void Assembly::add_outputs() {
+  for (const auto& part : parts_.outputs_)
+    model_.outputs.push_back({part.name, part.formula, part.unit, part.meaning, part.where});
+  const std::vector<std::string> wrong = output_mistakes(model_);
+  mistakes_.insert(mistakes_.end(), wrong.begin(), wrong.end());
 }
 
 }  // namespace hamel

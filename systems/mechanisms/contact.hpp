@@ -16,6 +16,10 @@
 //   };
 // and, where its directions are those of the world instead of following the body,
 //   static constexpr bool of_world = true;
+// or where its formula depends on directions of the body that are no members,
+//   std::vector<Vec3> axes() const;
+// and, where its values may not fit together, a message for that,
+//   std::string flaw() const;
 #pragma once
 
 #include <array>
@@ -86,6 +90,8 @@ class ContactModel {
   /// 0 where it is not round.
   virtual double radius() const = 0;
   virtual std::vector<BodyShape> shapes(const Point& at) const = 0;
+  /// Its values, each within its range, that do not fit together; "" for none.
+  virtual std::string flaw() const = 0;
 
   /// At a tree that was placed.
   virtual void rows(const Contact& contact, const Tree& tree, const Ground& ground,

@@ -1,8 +1,10 @@
 // The kinds of contacts by name, and their rows from one formula each.
 #include <hamel/systems/mechanisms/contacts/ball_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/blade_contact.hpp>
+#include <hamel/systems/mechanisms/contacts/ellipsoid_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/point_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/roller_contact.hpp>
+#include <hamel/systems/mechanisms/contacts/tube_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/wheel_contact.hpp>
 #include <hamel/systems/mechanisms/programs/contact_view.hpp>
 
@@ -33,6 +35,7 @@ class ContactOf final : public ContactModel {
     else return false;
   }
   std::vector<Vec3> axes() const override {
+    if constexpr (requires { kind_.axes(); }) return kind_.axes();
     std::vector<Vec3> out;
     for (const Field& field : fields_of<Kind>(kind_))
       if (is_direction(field)) out.emplace_back(field.value.data());
@@ -41,6 +44,10 @@ class ContactOf final : public ContactModel {
   double radius() const override {
     if constexpr (requires { kind_.radius; }) return kind_.radius;
     else return 0;
+  }
+  std::string flaw() const override {
+    if constexpr (requires { kind_.flaw(); }) return kind_.flaw();
+    else return "";
   }
   std::vector<BodyShape> shapes(const Point& at) const override { return kind_.shapes(at); }
 
@@ -90,8 +97,8 @@ ContactKind kind() {
 
 const std::vector<ContactKind>& contact_kinds() {
   static const std::vector<ContactKind> all = {
-      kind<BallContact>(),   kind<BladeContact>(), kind<PointContact>(),
-      kind<RollerContact>(), kind<WheelContact>(),
+      kind<BallContact>(),   kind<BladeContact>(), kind<EllipsoidContact>(), kind<PointContact>(),
+      kind<RollerContact>(), kind<TubeContact>(),  kind<WheelContact>(),
   };
   return all;
 }

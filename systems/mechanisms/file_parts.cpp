@@ -34,12 +34,12 @@ void FileParts::bodies() {
     m_.body(name, o);
   });
 }
-// Values of the fields of a kind, numbers or directions.
+// Values of the fields of a kind, numbers or three of them.
 void FileParts::add_fields(const std::vector<Field>& fields, Parameters& to,
                            FileValues::Keys& keys) {
   for (const Field& field : fields) {
     keys.emplace_back(field.name, [&](const Node& node, const std::string& key) {
-      if (is_direction(field)) to[key] = read_.formulas.numbers(node, key, 3);
+      if (field.value.size() == 3) to[key] = read_.formulas.numbers(node, key, 3);
       else to[key] = {read_.number(node, key)};
     });
   }
@@ -214,22 +214,33 @@ void FileParts::forces() {
   tables("motor", [&](const toml::table& table) {
     if (!is_input(table, {"effort"})) motor(table);
   });
-  tables("force", [&](const toml::table& table) {
-    std::string name, body;
-    ForceOptions o;
+  const auto along = [this](auto& o) {
     o.time_dependent = false;
-    const auto along = [&](const Node& node, const std::string& key) {
+    return [this, &o](const Node& node, const std::string& key) {
       const toml::array* array = node.as_array();
       if (array == nullptr || array->size() != 3)
         return read_.toml.wrong(node, key, "3 numbers or formulas");
       for (size_t i = 0; i < 3; ++i) o.along[i] = read_.signal((*array)[i], key, o.time_dependent);
     };
+  };
+  tables("force", [&](const toml::table& table) {
+    std::string name, body;
+    ForceOptions o;
     read_.entries(table, {{"name", read_.read(name)},
                           {"body", read_.read(body)},
                           {"at", read_.read(o.at)},
-                          {"along", along},
+                          {"along", along(o)},
                           {"of_body", read_.read(o.of_body)}});
     m_.force(name, body, o);
+  });
+  tables("torque", [&](const toml::table& table) {
+    std::string name, body;
+    TorqueOptions o;
+    read_.entries(table, {{"name", read_.read(name)},
+                          {"body", read_.read(body)},
+                          {"along", along(o)},
+                          {"of_body", read_.read(o.of_body)}});
+    m_.torque(name.empty() ? body : name, body, o);
   });
 }
 void FileParts::sensors() {

@@ -6,6 +6,7 @@
 //   motor     f on one velocity of a joint, a signal
 //   force     three signals, at a point of a body, along the axes of the world or of the body as
 //             drawn
+//   torque    the same, a couple on a body
 #pragma once
 
 #include <string>
@@ -33,9 +34,10 @@ struct Force {
   std::string name;
   int link = 0;
   Vec3 at = Vec3::Zero();       // as drawn
+  bool couple = false;          // a torque [N m], at no point
   bool of_body = false;         // along the axes of the body
   bool time_dependent = false;  // may along use t?
-  Signal along[3];              // N
+  Signal along[3];              // N or N m
 };
 
 struct Forces {

@@ -1,6 +1,7 @@
 // Kinds of joints and contacts state their data as systems do (framework/mechanics/fields.hpp):
 //   void fields(auto& f) { f("radius", radius, "m", "of the disk", positive); }
-// A member of type Vec3 is a direction, of length 1 in the kind.
+// A member of type Vec3 is a direction, of length 1 in the kind; three numbers with a unit are a
+// list.
 #pragma once
 
 #include <string>
@@ -18,7 +19,9 @@ std::vector<std::string> names_of(const std::vector<Named>& all) {
   return out;
 }
 
-inline bool is_direction(const Field& field) { return field.value.size() == 3; }
+inline bool is_direction(const Field& field) {
+  return field.value.size() == 3 && field.unit.empty();
+}
 
 template <class Kind>
 std::vector<Field> fields_of(Kind kind = {}) {

@@ -2,6 +2,8 @@
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/systems/mechanisms/mechanism.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <hamel/systems/mechanisms/assembly.hpp>
@@ -101,9 +103,21 @@ void Mechanism::force(const std::string& name, const std::string& body,
                       const ForceOptions& options) {
   forces_.push_back({part(name), options, body});
 }
+void Mechanism::torque(const std::string& name, const std::string& body,
+                       const TorqueOptions& options) {
+  ForceOptions force;
+  std::copy(std::begin(options.along), std::end(options.along), std::begin(force.along));
+  force.of_body = options.of_body;
+  force.time_dependent = options.time_dependent;
+  forces_.push_back({part(name), force, body, true});
+}
 
 void Mechanism::sensor(const std::string& name, const std::string& body, Point at) {
   sensors_.push_back({part(name), body, at});
+}
+void Mechanism::output(const std::string& name, const std::string& formula,
+                       const OutputOptions& options) {
+  outputs_.push_back({part(name), options, formula});
 }
 
 void Mechanism::redundant(const std::string& policy) { redundant_ = part(policy); }

@@ -128,6 +128,14 @@ struct ForceOptions {
   bool of_body = false;        // along those of the body as drawn
   bool time_dependent = true;  // may `along` use t? If not, there are steady motions
 };
+struct TorqueOptions {
+  Signal along[3] = {};        // N m, about x, y, z of the world
+  bool of_body = false;        // about those of the body as drawn
+  bool time_dependent = true;  // as of a force
+};
+struct OutputOptions {
+  std::string unit = {}, meaning = {};
+};
 
 class HAMEL_API Mechanism {
  public:
@@ -220,13 +228,17 @@ class HAMEL_API Mechanism {
   void motor(const std::string& joint, Signal effort, bool time_dependent = true);
   void motor(const std::string& joint, const Range& range = {});
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
+  /// A couple.
+  void torque(const std::string& name, const std::string& body, const TorqueOptions& options);
   /// An input of the run that signals may use: SignalInput::inputs, behind those of motors and
   /// prescribed joints.
   void input(const InputField& field);
 
-  /// A point of a body (or of the ground) whose place, velocity, acceleration and yaw are columns
-  /// of every run, "tip.x", "tip.vz", "tip.ax", "tip.yaw".
+  /// A point of a body (or of the ground) whose place, velocity, acceleration, yaw and length of
+  /// path are columns of every run, "tip.x", "tip.vz", "tip.ax", "tip.yaw", "tip.path".
   void sensor(const std::string& name, const std::string& body, Point at);
+  /// A column of every run by a formula of columns: "abs(tip.vz)".
+  void output(const std::string& name, const std::string& formula, const OutputOptions& o = {});
 
   /// An event of a run (--events, --stop-at), a function of time, coordinates and velocities.
   void event(Event event);
@@ -277,10 +289,14 @@ class HAMEL_API Mechanism {
   };
   struct ForcePart : Part, ForceOptions {
     std::string body;
+    bool couple = false;  // a torque
   };
   struct SensorPart : Part {
     std::string body;
     Point at;
+  };
+  struct OutputPart : Part, OutputOptions {
+    std::string formula;
   };
   struct RatePart : Part {
     std::function<double(double)> rate;   // empty: an input
@@ -316,6 +332,7 @@ class HAMEL_API Mechanism {
   std::vector<SpringPart> springs_;
   std::vector<ForcePart> forces_;
   std::vector<SensorPart> sensors_;
+  std::vector<OutputPart> outputs_;
   std::vector<RatePart> rates_;
   std::vector<MotorPart> motors_;
   std::vector<InputPart> inputs_;

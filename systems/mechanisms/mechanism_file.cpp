@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <hamel/framework/run/data/toml_events.hpp>
+#include <hamel/framework/run/data/toml_outputs.hpp>
 #include <hamel/framework/run/data/toml_parameters.hpp>
 #include <hamel/systems/mechanisms/contact.hpp>
 #include <hamel/systems/mechanisms/file_parts.hpp>
@@ -29,6 +30,12 @@ class File {
     SystemModel out = m.model();
     out.fields = fields_;
     out.notes.insert(out.notes.end(), read_.notes.begin(), read_.notes.end());
+    out.outputs = read_outputs(read_.toml, read_.formulas, table_);
+    stop_at_mistakes();
+    read_.toml.mistakes = output_mistakes(out);
+    stop_at_mistakes();
+    out.events = read_events(read_.toml, read_.formulas, table_, out, out.group.columns, out.rates);
+    stop_at_mistakes();
     return out;
   }
   SystemModel outline() {
@@ -72,21 +79,18 @@ class File {
     parts.forces();
     parts.sensors();
     parts.surroundings();
-    for (Event& event :
-         read_events(read_.toml, read_.formulas, table_, outline.group.columns, outline.rates))
-      m.event(std::move(event));
     stop_at_mistakes();
     return m;
   }
 
   void check_keys() {
     std::vector<std::string> known = mechanisms::names_of(mechanisms::contact_kinds());
-    for (const char* key :
-         {"asks",    "body",   "coupling",   "events",     "force", "formula",
-          "gravity", "ground", "inputs",     "joint",      "known", "loop",
-          "motor",   "name",   "parameters", "prescribed", "push",  "redundant",
-          "sensor",  "slope",  "source",     "spring",     "start", "start_arguments",
-          "summary", "wall"})
+    for (const char* key : {"asks",       "body",       "coupling", "events",    "force",
+                            "formula",    "gravity",    "ground",   "inputs",    "joint",
+                            "known",      "loop",       "motor",    "name",      "outputs",
+                            "parameters", "prescribed", "push",     "redundant", "sensor",
+                            "slope",      "source",     "spring",   "start",     "start_arguments",
+                            "summary",    "torque",     "wall"})
       known.emplace_back(key);
     std::ranges::sort(known);
     for (const auto& [name, node] : table_) {

@@ -15,9 +15,9 @@
 //   child = "deck"           # stiffness, rest, damping; held = true: locked where it starts;
 //                            # friction [N m, N], stop = [low, high], restitution
 //   [[wall]]                 # name; distance = "1 - way.position", not negative; restitution
-//   [[wheel]] [[roller]] [[blade]] [[ball]] [[point]]
-//                            # name (left out: the body's), body, at; axle, radius, angle; along;
-//                            # friction, restitution, load [N], unilateral
+//   [[wheel]] [[roller]] [[blade]] [[ball]] [[point]] [[tube]] [[ellipsoid]]
+//                            # name (left out: the body's), body, at; axle, radius, angle, crown;
+//                            # along; semi_axes; friction, restitution, load [N], unilateral
 //   [[loop]]                 # name, a, b, at, axis
 //   [[coupling]]             # name (left out: the joint's); joint, to, ratio, offset: joint =
 //   joint = "left knuckle"   # ratio * to + offset; or formula = "...", of joint coordinates, or
@@ -29,8 +29,11 @@
 //   joint = "steer"          # input, steer.torque, or lift.force of a slider, between `least`
 //                            # and `most`
 //   [[force]]                # name, body, at; along = ["1", 0, 0]; of_body = true
+//   [[torque]]               # name (left out: the body's), body; along, of_body as of a force
 //   [[sensor]]               # name (left out: the body's), body, at: columns tip.x .y .z .vx .vy
-//   body = "deck"            # .vz .yaw .ax .ay .az
+//   body = "deck"            # .vz .yaw .ax .ay .az .path
+//   [outputs]                # columns by formulas of columns, parameters and each other
+//   speed = { value = "sqrt(tip.vx^2 + tip.vy^2)", unit = "m/s", meaning = "..." }
 //   [inputs]                 # what a run may be driven by; efforts and forces may use them
 //   wind = { unit = "N", meaning = "...", least = -50, most = 50 }
 //   [events]                 # zero at the event; direction +1, -1, or 0 for both ways
@@ -43,7 +46,7 @@
 //                            # the numbers of --velocity, fewer than velocities
 //
 // Numbers may be formulas (io/expression.hpp) of the parameters; effort, along, rate and angle also
-// of t, those of events, motors and forces of coordinates (steer.angle, x) and velocities
+// of t, those of events, motors, forces and torques of coordinates (steer.angle, x) and velocities
 // (steer.rate, v1), the latter two of inputs (wind, steer.torque). Parts may have any name; one
 // with a blank, for example, is not allowed in a formula.
 #pragma once

@@ -225,7 +225,7 @@ Json described(const char* definition, const Field& field) {
 }
 void add_fields(const std::vector<Field>& fields, Json& to) {
   for (const Field& field : fields)
-    to[field.name] = described(mechanisms::is_direction(field) ? "point" : "formula", field);
+    to[field.name] = described(field.value.size() == 3 ? "point" : "formula", field);
 }
 
 // From what no kind of joint or contact decides.

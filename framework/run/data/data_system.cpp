@@ -11,6 +11,7 @@
 #include <hamel/framework/run/data/data_mechanics.hpp>
 #include <hamel/framework/run/data/formula_programs.hpp>
 #include <hamel/framework/run/data/toml_events.hpp>
+#include <hamel/framework/run/data/toml_outputs.hpp>
 #include <hamel/framework/run/data/toml_parameters.hpp>
 #include <hamel/framework/run/names/toml_config.hpp>
 
@@ -160,8 +161,8 @@ class File {
     static const Names known = {
         "configuration", "constraints", "contacts",   "coordinates", "draw",  "drift",
         "events",        "floor",       "force",      "from_above",  "group", "holonomic",
-        "inertia",       "inputs",      "invariants", "momentum",    "name",  "parameters",
-        "potential",     "rates",       "velocity"};
+        "inertia",       "inputs",      "invariants", "momentum",    "name",  "outputs",
+        "parameters",    "potential",   "rates",      "velocity"};
     for (const auto& [name, node] : table_) {
       const std::string key(name.str());
       if (std::find(known.begin(), known.end(), key) == known.end())
@@ -183,7 +184,11 @@ class File {
     start("momentum", names_.rates.size(), model_.start.momentum);
     if (const Node* both = table_.get("momentum"); both != nullptr && table_.contains("velocity"))
       read_.wrong(*both, "momentum", "velocity or momentum, not both");
-    model_.events = read_events(read_, formulas_, table_, names_.coordinates, names_.rates);
+    model_.outputs = read_outputs(read_, formulas_, table_);
+    stop_at_mistakes();
+    const std::vector<std::string> flaws = output_mistakes(model_);
+    read_.mistakes.insert(read_.mistakes.end(), flaws.begin(), flaws.end());
+    model_.events = read_events(read_, formulas_, table_, model_, names_.coordinates, names_.rates);
     each("invariants", [&](const std::string& name, const Node& node) {
       if (auto f =
               formulas_.expression(node, "invariants." + name, names_.coordinates + names_.rates))

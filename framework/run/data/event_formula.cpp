@@ -1,7 +1,7 @@
 #include <hamel/framework/run/data/event_formula.hpp>
 
 #include <algorithm>
-#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,22 +30,67 @@ size_t sign_of(const std::string& text) {
   return std::string::npos;
 }
 
-// A variable hides a parameter of its name.
-std::map<std::string, double> constants_of(const SystemModel& system,
-                                           const std::vector<std::string>& variables) {
-  std::map<std::string, double> out;
-  for (const Field& field : system.fields) {
-    for (size_t i = 0; i < field.value.size(); ++i) {
-      const std::string name =
-          field.value.size() == 1 ? field.name : fmt::format("{}{}", field.name, i + 1);
-      if (std::find(variables.begin(), variables.end(), name) == variables.end())
-        out.emplace(name, field.value[i]);
-    }
+}  // namespace
+
+StateVariables::StateVariables(const SystemModel& system, std::vector<std::string> names)
+    : names_(std::move(names)), own_(names_.size()) {
+  for (const Sensor& sensor : system.sensors) {
+    const std::size_t count = std::min(sensor.first_acceleration, sensor.columns.size());
+    sensors_.push_back({sensor, names_.size(), count});
+    names_.insert(names_.end(), sensor.columns.begin(),
+                  sensor.columns.begin() + static_cast<std::ptrdiff_t>(count));
   }
-  return out;
+  outputs_ = ready_outputs(system, names_, [&](const OutputFormula& output, const std::string&) {
+    left_out_.push_back(output.name);
+  });
 }
 
-}  // namespace
+StateVariables::Value StateVariables::value(Expression formula) const {
+  // What the formula depends on, in order.
+  std::vector<bool> wanted(names_.size());
+  const auto want = [&](const Expression& of) {
+    for (const std::size_t i : of.used()) wanted[i] = true;
+  };
+  want(formula);
+  std::vector<ReadyOutput> outputs;
+  for (std::size_t i = outputs_.size(); i-- > 0;) {
+    if (!wanted[outputs_[i].place]) continue;
+    want(outputs_[i].formula);
+    outputs.insert(outputs.begin(), outputs_[i]);
+  }
+  std::vector<Measured> sensors;
+  for (const Measured& measured : sensors_)
+    for (std::size_t i = 0; i < measured.count; ++i)
+      if (wanted[measured.first + i]) {
+        sensors.push_back(measured);
+        break;
+      }
+  return [formula = std::move(formula), outputs = std::move(outputs), sensors = std::move(sensors),
+          values = std::vector<double>(names_.size()), measured = std::vector<double>()](
+             double t, std::span<const double> g, std::span<const double> xi) mutable {
+    values[0] = t;
+    std::copy(g.begin(), g.end(), values.begin() + 1);
+    std::copy(xi.begin(), xi.end(), values.begin() + 1 + static_cast<std::ptrdiff_t>(g.size()));
+    for (const Measured& from : sensors) {
+      measured.resize(from.sensor.columns.size());
+      from.sensor.value(g, xi, {}, measured);
+      std::copy_n(measured.begin(), from.count,
+                  values.begin() + static_cast<std::ptrdiff_t>(from.first));
+    }
+    for (const ReadyOutput& output : outputs) values[output.place] = output.formula(values);
+    return formula(values);
+  };
+}
+
+std::string StateVariables::explain(const std::string& message) const {
+  for (const std::string& name : left_out_)
+    if (message.find("'" + name + "'") != std::string::npos)
+      return fmt::format(
+          "the output '{}' depends on columns that are no function of t, coordinates and "
+          "velocities, as accelerations, reactions and energies",
+          name);
+  return message;
+}
 
 std::optional<Event> event_of_formula(const SystemModel& system, const std::string& text,
                                       std::vector<std::string>& mistakes) {
@@ -56,12 +101,14 @@ std::optional<Event> event_of_formula(const SystemModel& system, const std::stri
   if (text[at] == '>') out.meaning = "the left side becomes larger", out.direction = 1;
   if (text[at] == '<') out.meaning = "the left side becomes smaller", out.direction = -1;
   const QuantityNames names(system);
+  const StateVariables variables(system, names.variables());
   try {
-    out.value = value_of_state(Expression(names.in_formula(formula), names.variables(),
-                                          constants_of(system, names.variables())));
+    out.value = variables.value(Expression(names.in_formula(formula), variables.names(),
+                                           constants_in_formulas(system, variables.names())));
     return out;
   } catch (const ExpressionError& error) {
-    mistakes.push_back(fmt::format("events: '{}': {}", text, names.in_words(error.what())));
+    mistakes.push_back(
+        fmt::format("events: '{}': {}", text, names.in_words(variables.explain(error.what()))));
     return {};
   }
 }

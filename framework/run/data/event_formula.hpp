@@ -4,6 +4,7 @@
 //   "theta > 1.5"            where the left one becomes larger;  "theta < 1.5", smaller
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,25 +12,41 @@
 #include <vector>
 
 #include <hamel/framework/io/expression.hpp>
+#include <hamel/framework/mechanics/output_formulas.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 
 namespace hamel {
 
-/// The value of a formula over t, the coordinates and the velocity, in this order.
-inline auto value_of_state(Expression formula) {
-  return [formula = std::move(formula), values = std::vector<double>()](
-             double t, std::span<const double> g, std::span<const double> xi) mutable {
-    values.assign(1, t);
-    values.insert(values.end(), g.begin(), g.end());
-    values.insert(values.end(), xi.begin(), xi.end());
-    return formula(values);
+/// The numbers of a state that formulas of events may use: t, the coordinates and the velocity
+/// under these names, the columns of sensors but accelerations, and outputs of all these.
+class StateVariables {
+ public:
+  using Value = std::function<double(double t, std::span<const double> coordinates,
+                                     std::span<const double> velocity)>;
+
+  StateVariables(const SystemModel& system, std::vector<std::string> names);
+  const std::vector<std::string>& names() const { return names_; }
+  /// The value of a formula over names().
+  Value value(Expression formula) const;
+  /// The message of a mistake in a formula: of an output which is no function of a state, why.
+  std::string explain(const std::string& message) const;
+
+ private:
+  struct Measured {  // by a sensor
+    Sensor sensor;
+    std::size_t first, count;  // among the names
   };
-}
+  std::vector<std::string> names_;
+  std::size_t own_;  // the first of them, of t, coordinates and velocity
+  std::vector<Measured> sensors_;
+  std::vector<ReadyOutput> outputs_;
+  std::vector<std::string> left_out_;  // outputs
+};
 
 /// The event of a text with =, < or > between two formulas of t, the system's coordinates and
-/// velocities (quantity_names.hpp), and its parameters (those of several numbers with the number
-/// behind: inertia1). None where the text has no such sign, or where something is wrong with
-/// it, which goes to mistakes.
+/// velocities (quantity_names.hpp), sensors, outputs, and its parameters (those of several numbers
+/// with the number behind: inertia1). None where the text has no such sign, or where something is
+/// wrong with it, which goes to mistakes.
 std::optional<Event> event_of_formula(const SystemModel& system, const std::string& text,
                                       std::vector<std::string>& mistakes);
 

@@ -17,9 +17,10 @@
 
 namespace hamel {
 
-/// Formulas of t, and of these names of coordinates and rates. Mistakes are those of `read`.
+/// Formulas of t, of these names of coordinates and rates, and of sensors and outputs of a system
+/// that is complete. Mistakes are those of `read`.
 inline std::vector<Event> read_events(TomlReader& read, TomlFormulas& formulas,
-                                      const toml::table& file,
+                                      const toml::table& file, const SystemModel& system,
                                       const std::vector<std::string>& coordinates,
                                       const std::vector<std::string>& rates) {
   std::vector<Event> out;
@@ -29,6 +30,7 @@ inline std::vector<Event> read_events(TomlReader& read, TomlFormulas& formulas,
   std::vector<std::string> names = {"t"};
   names.insert(names.end(), coordinates.begin(), coordinates.end());
   names.insert(names.end(), rates.begin(), rates.end());
+  const StateVariables variables(system, std::move(names));
   for (const auto& [name, node] : *entries->as_table()) {
     Event event{std::string(name.str()), "", 0, {}};
     const std::string key = "events." + event.name;
@@ -47,9 +49,12 @@ inline std::vector<Event> read_events(TomlReader& read, TomlFormulas& formulas,
       }
     }
     if (std::abs(event.direction) > 1) read.wrong(node, key + ".direction", "-1, 0 or 1");
-    auto formula = formulas.expression(*value, key, names);
+    const size_t before = read.mistakes.size();
+    auto formula = formulas.expression(*value, key, variables.names());
+    for (size_t i = before; i < read.mistakes.size(); ++i)
+      read.mistakes[i] = variables.explain(read.mistakes[i]);
     if (!formula) continue;
-    event.value = value_of_state(std::move(*formula));
+    event.value = variables.value(std::move(*formula));
     out.push_back(std::move(event));
   }
   return out;

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <hamel/framework/mechanics/components.hpp>
+#include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system.hpp>
 #include <hamel/framework/run/record/measures.hpp>
 #include <hamel/framework/run/record/named_columns.hpp>
@@ -75,7 +76,7 @@ StateColumns::StateColumns(const SystemModel& system, const Has& has) : sensors_
     add(Of::reaction, std::move(group), units, order);
   }
   if (has.reaction_power) add(Of::reaction_power, kReactionPower);
-  add_sensors(has.acceleration);
+  add_sensors(has);
   if (has.modes) {
     for (const ContactLaw& law : system.contact_laws) {
       const std::string name = law.name + ".mode";
@@ -90,20 +91,49 @@ StateColumns::StateColumns(const SystemModel& system, const Has& has) : sensors_
     add(Of::exact_error, kExactError);
     add(Of::exact_velocity_error, kExactVelocityError);
   }
+  add_outputs(system);
 }
 
-void StateColumns::add_sensors(bool acceleration) {
-  std::size_t place = 0;
+void StateColumns::add_outputs(const SystemModel& system) {
+  std::vector<std::string> variables;
+  for (const Column& column : columns_) variables.push_back(name_in_formula(column.name));
+  outputs_ = ready_outputs(
+      system, variables, [&](const OutputFormula& output, const std::string& message) {
+        missing_.push_back(fmt::format("{}outputs.{}: {}", output.where, output.name, message));
+      });
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const OutputFormula& output = system.outputs[outputs_[i].output];
+    columns_.push_back({Of::output, i, output.name, output.unit});
+    groups_.push_back({output.name,
+                       output.unit,
+                       output.meaning.empty() ? output.formula : output.meaning,
+                       "",
+                       {output.name}});
+  }
+  values_.resize(columns_.size());
+}
+
+void StateColumns::complete(std::span<double> row) const {
+  for (const ReadyOutput& output : outputs_) row[output.place] = output.formula(row);
+}
+
+void StateColumns::add_sensors(const Has& has) {
+  std::size_t place = 0, path = 0;
   for (const Sensor& sensor : sensors_) {
     ColumnGroup group{sensor.name, "", sensor.meaning, "", {}};
     std::vector<std::string> units;
     for (std::size_t i = 0; i < sensor.columns.size(); ++i, ++place) {
       const bool of_acceleration = i >= sensor.first_acceleration;
-      if (of_acceleration && !acceleration) continue;
+      if (of_acceleration && !has.acceleration) continue;
       columns_.push_back({of_acceleration ? Of::acceleration : Of::sensor, place, sensor.columns[i],
                           sensor.units[i]});
       group.columns.push_back(sensor.columns[i]);
       units.push_back(sensor.units[i]);
+    }
+    if (has.paths && sensor.velocity >= 0) {
+      columns_.push_back({Of::path, path++, path_column(sensor), "m"});
+      group.columns.push_back(columns_.back().name);
+      units.emplace_back("m");
     }
     group.unit = fmt::format("{}", fmt::join(units, ","));
     groups_.push_back(std::move(group));
@@ -167,17 +197,28 @@ double StateColumns::value(std::size_t i, const Snapshot& state, const StateExtr
     case Of::reaction_power: return extras.reaction_power;
     case Of::sensor:
     case Of::acceleration: return measured(column.place, state, extras);
+    case Of::path: return extras.paths.empty() ? 0 : extras.paths[column.place];
     case Of::mode: return extras.modes.empty() ? 0 : extras.modes[column.place];
     case Of::exact_error: return extras.exact_error;
     case Of::exact_velocity_error: return extras.exact_velocity_error;
+    case Of::output: {
+      const Expression& formula = outputs_[column.place].formula;
+      for (const std::size_t j : formula.used()) values_[j] = value(j, state, extras);
+      return formula(values_);
+    }
   }
   return 0;
+}
+
+void StateColumns::require(std::size_t i, StateParts& parts) const {
+  each_source(i, [&](std::size_t j) { require(columns_[j].of, parts); });
 }
 
 void StateColumns::require(Of of, StateParts& parts) {
   switch (of) {
     case Of::coordinate:
-    case Of::sensor: parts.coordinates = true; break;
+    case Of::sensor:
+    case Of::acceleration: parts.coordinates = true; break;
     case Of::momentum: parts.momentum = true; break;
     case Of::energy:
     case Of::energy_error: parts.energy = true; break;

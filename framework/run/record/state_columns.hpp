@@ -11,6 +11,7 @@
 
 #include <hamel/framework/io/row_file.hpp>
 #include <hamel/framework/loop/snapshot.hpp>
+#include <hamel/framework/mechanics/output_formulas.hpp>
 #include <hamel/framework/mechanics/quantities.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 
@@ -23,6 +24,7 @@ struct StateExtras {
   std::span<const double> acceleration = {};  // xi'; left out where it is not known
   double reaction_power = 0;
   std::span<const double> modes = {};  // of the contacts that may slide and open
+  std::span<const double> paths = {};  // of the sensors that have one
   double work = 0;
   std::optional<double> balance_error = {};  // of the energy, where work is done
   double exact_error = 0, exact_velocity_error = 0;
@@ -47,15 +49,18 @@ class StateColumns {
     reaction_power,
     sensor,
     acceleration,  // of a sensor
+    path,          // of a sensor
     mode,
     exact_error,
-    exact_velocity_error
+    exact_velocity_error,
+    output
   };
   /// Columns that not every system and every use has.
   struct Has {
     bool holonomic = false, work = false, reactions = false, reaction_power = false, exact = false;
     bool acceleration = false;
     bool modes = false;
+    bool paths = false;
   };
   StateColumns(const SystemModel& system, const Has& has);
 
@@ -67,8 +72,18 @@ class StateColumns {
   /// The first column of that kind; none.
   std::optional<std::size_t> find(Of of) const;
   double value(std::size_t i, const Snapshot& state, const StateExtras& extras) const;
-  /// Adds the parts of a state that it needs.
-  static void require(Of of, StateParts& parts);
+  /// The outputs of a row whose other columns are there.
+  void complete(std::span<double> row) const;
+  /// Calls visit(j) for the columns that column i depends on, or i alone.
+  template <class Visit>
+  void each_source(std::size_t i, const Visit& visit) const {
+    if (columns_[i].of != Of::output) return visit(i);
+    for (const std::size_t j : outputs_[columns_[i].place].formula.used()) each_source(j, visit);
+  }
+  /// Outputs that depend on columns which are not here.
+  const std::vector<std::string>& missing() const { return missing_; }
+  /// Adds the parts of a state that column i needs.
+  void require(std::size_t i, StateParts& parts) const;
 
  private:
   struct Column {
@@ -80,9 +95,14 @@ class StateColumns {
   // The columns of a group, in the order of these places; the unit of all where one is known.
   void add(Of of, ColumnGroup group, const std::vector<std::string>& units,
            const std::vector<std::size_t>& places = {});
-  void add_sensors(bool acceleration);
+  void add_sensors(const Has& has);
+  void add_outputs(const SystemModel& system);
+  static void require(Of of, StateParts& parts);
   double measured(std::size_t place, const Snapshot& state, const StateExtras& extras) const;
   std::vector<Column> columns_;
+  std::vector<ReadyOutput> outputs_;
+  mutable std::vector<double> values_;  // of the columns that an output depends on
+  std::vector<std::string> missing_;
   std::vector<Sensor> sensors_;  // whose numbers are counted one behind the other
   std::vector<ColumnGroup> groups_;
 };

@@ -40,7 +40,8 @@ void Driver::make_observers() {
       !times_.empty() || plan_.events->any() || rows_watch_ != nullptr || plan_.contacts != nullptr;
   if (!plan_.recording) return;
   recorder_ = std::make_unique<RunRecorder>(*plan_.system, plan_.config.start, balance(),
-                                            plan_.reactions, plan_.motion);
+                                            plan_.reactions, plan_.motion, paths());
+  if (!recorder_->missing_outputs().empty()) throw ConfigError(recorder_->missing_outputs());
   every_node_ = every_node_ || recorder_->wants_nodes();
   for (const std::string& path : request_.records) sinks_.push_back(make_sink(path));
   if (request_.records.empty() || request_.rows_kept)

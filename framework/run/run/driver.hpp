@@ -54,6 +54,8 @@ class Driver {
   std::shared_ptr<const Mechanics> acting() const;
   /// The balance of its energy, from its start on.
   EnergyBalance balance() const;
+  /// The paths of its sensors, from its start on.
+  PathLengths paths() const { return {plan_.geometry, *plan_.system, plan_.setup.inputs}; }
   /// Place and velocity within the last step (Kernel::motion_within).
   bool motion_within(double t, Snapshot& out) const { return kernel().motion_within(t, out); }
 

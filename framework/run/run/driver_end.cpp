@@ -48,7 +48,8 @@ void Driver::measure_ends_only() {
         Measurements::kNone;
     return;
   }
-  RunRecorder meter(*plan_.system, plan_.config.start, balance(), plan_.reactions, plan_.motion);
+  RunRecorder meter(*plan_.system, plan_.config.start, balance(), plan_.reactions, plan_.motion,
+                    {});
   if (meter.wants_nodes()) {
     result_.energy_error_max = Measurements::kNone;
     result_.notes.emplace_back(

@@ -12,9 +12,8 @@ EnergyBalance::EnergyBalance(std::shared_ptr<const Geometry> geometry,
     : geometry_(std::move(geometry)),
       mechanics_(mechanics),
       active_(geometry_ != nullptr && (mechanics->has_force() || mechanics->has_drift())),
-      inputs_(std::move(inputs)) {
+      work_(std::move(inputs)) {
   if (!active_) return;
-  if (inputs_ != nullptr) changes_ = inputs_->changes();
   g_.resize(geometry_->size());
   if (!mechanics->has_drift()) return;
   reactions_ = std::move(reactions);
@@ -34,50 +33,34 @@ double EnergyBalance::power(const Snapshot& state) {
   return out;
 }
 
-void EnergyBalance::add_power(const Snapshot& state) {
-  if (inputs_ != nullptr) {
-    if (inputs_->changes() != changes_ && started_) break_off(last_);
-    changes_ = inputs_->changes();
-  }
-  const double now = power(state);
-  if (started_ && !work_.joins(state.time)) settle();
-  work_.add(state.time, now);
-}
-
 void EnergyBalance::node(const Snapshot& state) {
-  add_power(state);
-  if (inputs_ != nullptr) last_ = state;
+  work_.node(state, rate());
   if (!started_) energy_start_ = state.energy;
   started_ = true;
   update_max_abs(energy_max_, state.energy);
-  if (work_.settled()) settle();
+  settle();
 }
 
 void EnergyBalance::row(const Snapshot& state) {
   waiting_.push_back({state.time, state.energy});
-  if (work_.settled()) settle();
+  work_.row(state.time);
+  settle();
 }
 
 void EnergyBalance::settle() {
-  for (const Recorded& r : waiting_) {
-    work_done_ = done_ + work_.value(r.time);
-    const double defect = r.energy - energy_start_ - work_done_;
+  work_.settled(works_);
+  for (size_t i = 0; i < works_.size(); ++i) {
+    work_done_ = works_[i];
+    const double defect = waiting_[i].energy - energy_start_ - work_done_;
     update_max_abs(defect_max_, defect);
     settled_.push_back({work_done_, defect, scale()});
   }
-  waiting_.clear();
-}
-
-void EnergyBalance::break_off(const Snapshot& at) {
-  settle();
-  done_ += work_.value(at.time);
-  work_ = NodalQuadrature();
-  work_.add(at.time, power(at));
+  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(works_.size()));
 }
 
 void EnergyBalance::impact(const Snapshot& before, const Snapshot& after) {
-  break_off(after);
-  last_ = after;
+  work_.impact(after, rate());
+  settle();
   energy_start_ += after.energy - before.energy;
   update_max_abs(energy_max_, after.energy);
 }

@@ -7,8 +7,8 @@
 
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/run/record/measures.hpp>
-#include <hamel/framework/run/run/nodal_quadrature.hpp>
 #include <hamel/framework/run/run/reactions.hpp>
+#include <hamel/framework/run/run/run_integral.hpp>
 
 namespace hamel {
 
@@ -30,8 +30,8 @@ class EnergyBalance {
   void step(double begin, const Snapshot& end, const Within& motion_within) {
     for (const double part : {0.25, 0.5, 0.75}) {
       if (!motion_within(begin + part * (end.time - begin), within_)) break;
-      add_power(within_);
-      if (work_.settled()) settle();
+      work_.within(within_, rate());
+      settle();
     }
     node(end);
   }
@@ -45,7 +45,10 @@ class EnergyBalance {
   /// one waits for the first nodes of the quadrature.
   void settled(std::vector<BalancedState>& out);
   /// After the last node: none waits.
-  void finish() { settle(); }
+  void finish() {
+    work_.finish();
+    settle();
+  }
   /// Over the recorded states that are settled, relative to the largest energy.
   double error_max() const { return defect_max_ / scale(); }
   /// The largest energy at the nodes so far.
@@ -55,35 +58,25 @@ class EnergyBalance {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    // After a resume Inputs::changes() restarts from zero; only whether a change is pending is
-    // saved.
-    bool changed = inputs_ != nullptr && inputs_->changes() != changes_;
-    archive(changed, last_, work_, done_, started_, energy_start_, energy_max_, defect_max_,
-            work_done_, waiting_, settled_);
-    if (inputs_ != nullptr) changes_ = inputs_->changes() - (changed ? 1 : 0);
+    archive(work_, started_, energy_start_, energy_max_, defect_max_, work_done_, waiting_,
+            settled_);
   }
 
  private:
   // <f, xi> + lambda . b.
   double power(const Snapshot& state);
-  void add_power(const Snapshot& state);
+  auto rate() {
+    return [this](const Snapshot& state) { return power(state); };
+  }
+  // The work at the recorded states that wait.
+  void settle();
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
   std::shared_ptr<Reactions> reactions_;  // null without a drift
   bool active_;
-  // The work at the recorded states that wait.
-  void settle();
-  // The quadrature begins anew at a node: an input jumps or has a kink there, and so has the power,
-  // or the state does.
-  void break_off(const Snapshot& at);
-
-  std::shared_ptr<const Inputs> inputs_;
-  long changes_ = 0;      // of the inputs, seen
-  Snapshot last_;         // node, where there are inputs
-  Snapshot within_;       // a step, place and velocity
-  NodalQuadrature work_;  // since the quadrature began, when done_ was done
-  double done_ = 0;
+  Snapshot within_;   // a step, place and velocity
+  RunIntegral work_;  // of the power
   bool started_ = false;
   double energy_start_ = 0, energy_max_ = 0;
   double defect_max_ = 0, work_done_ = 0;
@@ -96,6 +89,7 @@ class EnergyBalance {
   };
   std::vector<Recorded> waiting_;
   std::vector<BalancedState> settled_;
+  std::vector<double> works_;
   Eigen::VectorXd g_, xi_, b_;
   Eigen::MatrixXd a_;
 };

@@ -28,17 +28,20 @@ Reason flaw_of(const Snapshot& state) {
 }
 
 RunRecorder::RunRecorder(const SystemModel& system, const Start& start, EnergyBalance balance,
-                         std::shared_ptr<Reactions> reactions, std::shared_ptr<Reactions> motion)
+                         std::shared_ptr<Reactions> reactions, std::shared_ptr<Reactions> motion,
+                         PathLengths paths)
     : system_(system),
       start_(start),
       balance_(std::move(balance)),
+      paths_(std::move(paths)),
       columns_(system, {.holonomic = system.mechanics->holonomic_rows() > 0,
                         .work = balance_.active(),
                         .reactions = reactions != nullptr,
                         .reaction_power = reactions != nullptr,
                         .exact = static_cast<bool>(system.exact),
                         .acceleration = motion != nullptr,
-                        .modes = reactions != nullptr && reactions->contacts() != nullptr}),
+                        .modes = reactions != nullptr && reactions->contacts() != nullptr,
+                        .paths = paths_.active()}),
       pulls_(system.contacts.size()),
       of_rows_(std::move(reactions)),
       motion_(std::move(motion)) {
@@ -76,6 +79,7 @@ void RunRecorder::impact(const Snapshot& before, const Snapshot& after) {
     all_.invariants[i].start +=
         value_of(system_.invariants[i], after) - value_of(system_.invariants[i], before);
   if (balance_.active()) balance_.impact(before, after);
+  if (paths_.active()) paths_.impact(after);
 }
 
 void RunRecorder::take(const Snapshot& state) {
@@ -84,7 +88,9 @@ void RunRecorder::take(const Snapshot& state) {
 }
 
 void RunRecorder::compare(const Snapshot& state) {
-  if (balance_.active()) balance_.row(state);  // work and error are known when it is settled
+  // Work, error and paths are known when they are settled.
+  if (balance_.active()) balance_.row(state);
+  if (paths_.active()) paths_.row(state);
   StateExtras extras{.energy_start = energy_start_};
   if (of_rows_ != nullptr) {
     react(state);
@@ -106,7 +112,8 @@ void RunRecorder::compare(const Snapshot& state) {
   const std::size_t at = rows_.size();
   rows_.resize(at + columns_.size());
   for (std::size_t i = 0; i < columns_.size(); ++i)
-    rows_[at + i] = columns_.value(i, state, extras);
+    if (columns_.of(i) != StateColumns::Of::output)
+      rows_[at + i] = columns_.value(i, state, extras);
   settle();
 }
 
@@ -129,26 +136,44 @@ std::pair<double, double> RunRecorder::look_at_exact(const Snapshot& state) {
   return errors;
 }
 
-// Completes rows whose work is known; the end of a run may be none.
+// Completes rows whose work and paths are known; the end of a run may be none.
 void RunRecorder::settle() {
-  if (!balance_.active()) {
-    complete_ = rows_.size() / columns_.size();
-    return;
-  }
+  const std::size_t width = columns_.size(), all = rows_.size() / width, before = complete_;
+  if (balance_.active()) settle_work(all);
+  if (paths_.active()) settle_paths(all);
+  complete_ = std::min(balance_.active() ? balanced_ : all, paths_.active() ? measured_ : all);
+  for (std::size_t row = before; row < complete_; ++row)
+    columns_.complete(std::span(rows_).subspan(row * width, width));
+}
+
+void RunRecorder::settle_work(std::size_t all) {
   const std::size_t energy_error = *columns_.find(StateColumns::Of::energy_error),
                     work = *columns_.find(StateColumns::Of::work);
   balance_.settled(settled_);
   for (const BalancedState& state : settled_) {
-    if (complete_ * columns_.size() == rows_.size()) break;
-    double* row = rows_.data() + columns_.size() * complete_++;
+    if (balanced_ == all) break;
+    double* row = rows_.data() + columns_.size() * balanced_++;
     row[energy_error] = state.defect / state.scale;
     row[work] = state.work;
+  }
+}
+
+void RunRecorder::settle_paths(std::size_t all) {
+  paths_.settled(lengths_);
+  const std::size_t count = paths_.count();
+  for (std::size_t at = 0; at < lengths_.size() && measured_ < all; at += count) {
+    double* row = rows_.data() + columns_.size() * measured_++;
+    std::size_t next = at;
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      if (columns_.of(i) == StateColumns::Of::path) row[i] = lengths_[next++];
   }
 }
 
 void RunRecorder::drop_rows() {
   rows_.erase(rows_.begin(),
               rows_.begin() + static_cast<std::ptrdiff_t>(complete_ * columns_.size()));
+  balanced_ -= std::min(balanced_, complete_);
+  measured_ -= std::min(measured_, complete_);
   complete_ = 0;
 }
 
@@ -227,6 +252,7 @@ void RunRecorder::finish_rows(const Snapshot& last) {
   if (last.time != last_row_) {
     all_.take(last, energy_start_);
     if (balance_.active()) balance_.row(last);
+    if (paths_.active()) paths_.row(last);
     if (of_rows_ != nullptr) react(last);
     look_at_invariants(last);
     if (system_.exact) look_at_exact(last);
@@ -235,9 +261,10 @@ void RunRecorder::finish_rows(const Snapshot& last) {
     look_at_reaction_work();
     all_.reaction_work += power_ * (time_ - power_time_);
   }
-  if (!balance_.active()) return;
-  balance_.finish();
+  if (paths_.active()) paths_.finish();
+  if (balance_.active()) balance_.finish();
   settle();
+  if (!balance_.active()) return;
   all_.balance(balance_.error_max(), balance_.work());
 }
 

@@ -13,6 +13,7 @@
 #include <hamel/framework/run/record/result.hpp>
 #include <hamel/framework/run/record/state_columns.hpp>
 #include <hamel/framework/run/run/energy_balance.hpp>
+#include <hamel/framework/run/run/path_lengths.hpp>
 #include <hamel/framework/run/run/reactions.hpp>
 
 namespace hamel {
@@ -25,16 +26,21 @@ Reason flaw_of(const Snapshot& state);
 class RunRecorder {
  public:
   /// balance: of the run, followed or not. reactions: null without rows. motion: of what sensors
-  /// measure, null without.
+  /// measure, null without. paths: of sensors.
   RunRecorder(const SystemModel& system, const Start& start, EnergyBalance balance,
-              std::shared_ptr<Reactions> reactions, std::shared_ptr<Reactions> motion);
+              std::shared_ptr<Reactions> reactions, std::shared_ptr<Reactions> motion,
+              PathLengths paths);
 
   /// Does it need every node, not the recorded states only?
-  bool wants_nodes() const { return balance_.active(); }
-  void node(const Snapshot& state) { balance_.node(state); }
+  bool wants_nodes() const { return balance_.active() || paths_.active(); }
+  void node(const Snapshot& state) {
+    if (balance_.active()) balance_.node(state);
+    if (paths_.active()) paths_.node(state);
+  }
   template <class Within>
   void step(double begin, const Snapshot& end, const Within& motion_within) {
-    balance_.step(begin, end, motion_within);
+    if (balance_.active()) balance_.step(begin, end, motion_within);
+    if (paths_.active()) paths_.step(begin, end, motion_within);
   }
   /// The start, from which energy, invariants and the exact motion are followed, before any row.
   void begin(const Snapshot& start);
@@ -45,6 +51,8 @@ class RunRecorder {
   /// Measurements by the equations of motion, the invariants and the exact motion, and the state's
   /// row (the columns of tools/README.md).
   void compare(const Snapshot& state);
+  /// Outputs that depend on columns which the run has not.
+  const std::vector<std::string>& missing_outputs() const { return columns_.missing(); }
   /// The columns of a row.
   const std::vector<ColumnGroup>& columns() const { return columns_.groups(); }
   /// The rows that are complete and were not dropped, one after the other. Where work is done the
@@ -63,7 +71,7 @@ class RunRecorder {
   void serialize(Archive& archive) {
     archive(all_, energy_start_, time_start_, last_row_, rows_, exact_lost_, notes_, pulls_, time_,
             power_, power_time_, second_work_, second_power_, second_time_, odd_,
-            start_configuration_, lambda_, balance_);
+            start_configuration_, lambda_, balance_, paths_, balanced_, measured_);
   }
   /// A resumed run: the exact motion is followed to here through the times of the rows before.
   void follow_exact(double time);
@@ -76,18 +84,23 @@ class RunRecorder {
   std::pair<double, double> look_at_exact(const Snapshot& state);
   void finish_rows(const Snapshot& last);
   void settle();
+  void settle_work(std::size_t all);
+  void settle_paths(std::size_t all);
   ExactFlow exact_from_start() const;
 
   const SystemModel& system_;
   Start start_;
   std::vector<double> rows_;
-  std::size_t complete_ = 0;  // rows
+  std::size_t complete_ = 0;                 // rows
+  std::size_t balanced_ = 0, measured_ = 0;  // rows, with their work; with their paths
   std::vector<BalancedState> settled_;
+  std::vector<double> lengths_;
   std::vector<double> start_configuration_;
   Measurements all_;
   bool all_holonomic_ = false;
   double energy_start_ = 0, time_start_ = 0, last_row_ = 0;
   EnergyBalance balance_;
+  PathLengths paths_;
   StateColumns columns_;
   ExactFlow exact_;
   bool exact_lost_ = false;  // noted already

@@ -10,6 +10,12 @@ void pull(const BodyFormulas& bodies, int link, const NumberVec3& q, const Numbe
                      [&](int i, const Number& effect) { out[static_cast<size_t>(i)] += effect; });
 }
 
+void twist(const BodyFormulas& bodies, int link, const NumberVec3& torque,
+           std::vector<Number>& out) {
+  bodies.each_turning(link, torque,
+                      [&](int i, const Number& effect) { out[static_cast<size_t>(i)] += effect; });
+}
+
 // The line between the ends of a spring, from a to b: seen from their root where it is one, else
 // from the world.
 class SpringLine {
@@ -103,10 +109,10 @@ void add_given(const Forces& forces, const BodyFormulas& bodies, std::span<const
   for (const Force& force : forces.forces) {
     const NumberVec3 f{signals[next], signals[next + 1], signals[next + 2]};
     next += 3;
-    pull(bodies, force.link, bodies.point(force.link, force.at),
-         force.of_body ? bodies.turned(force.link, f)
-                       : bodies.root_in_world(force.link).turn_back(f),
-         out);
+    const NumberVec3 seen = force.of_body ? bodies.turned(force.link, f)
+                                          : bodies.root_in_world(force.link).turn_back(f);
+    if (force.couple) twist(bodies, force.link, seen, out);
+    else pull(bodies, force.link, bodies.point(force.link, force.at), seen, out);
   }
 }
 

@@ -181,6 +181,26 @@ void bind_forces(nb::class_<ByParts>& mechanism) {
                   "-> None"),
           "Three components [N], numbers or functions, of the world or of the body as drawn.")
       .def(
+          "torque",
+          [](ByParts& self, const std::string& name, const std::string& body, nb::sequence along,
+             bool of_body, bool time_dependent) {
+            if (nb::len(along) != 3)
+              throw ConfigError({"torque '" + name + "': along has " +
+                                 std::to_string(nb::len(along)) + " entries, expected 3"});
+            self.torque(name, body,
+                        {{signal("along", along[0], self.functions),
+                          signal("along", along[1], self.functions),
+                          signal("along", along[2], self.functions)},
+                         of_body,
+                         time_dependent});
+          },
+          "name"_a, "body"_a, "along"_a, nb::kw_only(), "of_body"_a = false,
+          "time_dependent"_a = true,
+          nb::sig("def torque(self, name: str, body: str, along: "
+                  "collections.abc.Sequence[_SignalFunction | float], "
+                  "*, of_body: bool = False, time_dependent: bool = True) -> None"),
+          "A couple on a body, three components [N m] as of a force.")
+      .def(
           "input",
           [](ByParts& self, const std::string& name, const std::string& unit,
              const std::string& meaning, std::optional<double> least, std::optional<double> most) {
@@ -212,8 +232,17 @@ void bind_forces(nb::class_<ByParts>& mechanism) {
             self.sensor(name, body, at);
           },
           "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin,
-          "A point of a body whose place, velocity, yaw and acceleration are columns of every run: "
-          "tip.x, tip.vz, tip.ax.")
+          "A point of a body whose place, velocity, yaw, acceleration and path are columns of "
+          "every "
+          "run: tip.x, tip.vz, tip.ax, tip.path.")
+      .def(
+          "output",
+          [](ByParts& self, const std::string& name, const std::string& formula,
+             const std::string& unit, const std::string& meaning) {
+            self.output(name, formula, {unit, meaning});
+          },
+          "name"_a, "formula"_a, nb::kw_only(), "unit"_a = "", "meaning"_a = "",
+          "A column of every run by a formula of other columns: 'hypot(tip.vx, tip.vy)'.")
       .def(
           "start",
           [](ByParts& self, const std::map<std::string, double>& values, const nb::kwargs& more) {
