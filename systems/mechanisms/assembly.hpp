@@ -72,6 +72,9 @@ class Assembly {
   mechanisms::Vec3 direction(const Part& part, const std::string& kind, const std::string& what,
                              const Point& given);
   mechanisms::ConstraintRows rows();
+  mechanisms::Ground ground();
+  /// Refuses a ground on which a contact has no single point where it is drawn.
+  void check_feet(mechanisms::ConstraintRows rows, mechanisms::Tree tree);
   /// With mistakes, none.
   std::vector<mechanisms::Coupling> couplings();
   std::optional<mechanisms::Coupling> coupling(const Mechanism::CouplingPart& part,
@@ -127,6 +130,7 @@ class Assembly {
   void sense(const mechanisms::Multibody& system);
   void add_outputs();
   void draw(const std::shared_ptr<mechanisms::Multibody>& system);
+  void draw_ground(const Expression& height);
   /// Shapes of a body by its data, of its contacts and rods to its joints, from its mass centre.
   std::vector<BodyShape> shapes_of(const Mechanism::BodyPart& body,
                                    const std::vector<mechanisms::Contact>& contacts) const;

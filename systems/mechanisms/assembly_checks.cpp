@@ -82,13 +82,13 @@ void Assembly::check_masses(const Tree& tree) {
   }
 }
 
-// Contacts touch the ground as drawn, loops are closed.
+// Contacts touch level ground as drawn (that of a height is found at the start), loops are closed.
 void Assembly::check_contacts(const Multibody& system) {
   const ConstraintRows& rows = system.all_rows();
   const Tree& tree = system.tree(system.drawn().data());
   for (size_t i = 0; i < rows.contacts.size(); ++i) {
     const auto& part = parts_.contacts_[i];
-    const double height = ConstraintRows::touch(rows.contacts[i], tree)[2];
+    const double height = rows.ground.height ? 0 : rows.touch(rows.contacts[i], tree)[2];
     if (!(std::abs(height) < kTouching) && !(rows.contacts[i].slips && height > 0)) {
       wrong(part, part.kind,
             fmt::format("does not touch the ground z = 0 as drawn: its lowest point is at {:.6g} m",

@@ -1,5 +1,7 @@
 // Assembly: every part has a shape from its data.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 
 #include <hamel/systems/mechanisms/assembly.hpp>
@@ -46,10 +48,34 @@ std::vector<BodyShape> Assembly::shapes_of(const Mechanism::BodyPart& body,
   return out;
 }
 
+// Lines along x and y, several times as far as the mechanism is large.
+void Assembly::draw_ground(const Expression& height) {
+  constexpr int lines = 24, points = 96;
+  const double far = 6 * extent_;
+  std::vector<BodyShape> out;
+  for (const bool along_x : {true, false}) {
+    for (int i = 0; i <= lines; ++i) {
+      std::vector<Point> line;
+      for (int k = 0; k <= points; ++k) {
+        const double u = far * (2.0 * k / points - 1), v = far * (2.0 * i / lines - 1),
+                     x = along_x ? u : v, y = along_x ? v : u, z = height(std::array{x, y});
+        if (std::isfinite(z)) line.push_back({x, y, z});
+      }
+      if (line.size() > 1) out.push_back(shapes::line(line));
+    }
+  }
+  model_.drawing.bodies.push_back({"ground",
+                                   [](std::span<const double>) {
+                                     return Placement{Vec3::Zero(), Mat<3, 3>::Identity()};
+                                   },
+                                   std::move(out)});
+}
+
 // Bodies are seen in the axes of the drawn pose, their mass centres as origins.
 void Assembly::draw(const std::shared_ptr<Multibody>& system) {
   Drawing& drawing = model_.drawing;
-  drawing.has_floor = true;
+  drawing.has_floor = !parts_.ground_height_;
+  if (parts_.ground_height_) draw_ground(*system->all_rows().ground.height);
   const std::vector<Contact>& contacts = system->all_rows().contacts;
   for (const auto& body : parts_.bodies_) {
     const int link = body_links_.at(body.name);
@@ -71,7 +97,7 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
            std::vector<double> g(system->drawn().size());
            system->geometry().from_coordinates(coordinates, g.data());
            const Contact& contact = system->all_rows().contacts[i];
-           const Vec3 at = ConstraintRows::touch(contact, system->tree(g.data()));
+           const Vec3 at = system->all_rows().touch(contact, system->tree(g.data()));
            return std::pair{at, system->reaction(i, g.data(), reactions)};
          }});
   }

@@ -24,10 +24,12 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/io/expression.hpp>
 #include <hamel/framework/mechanics/drawing.hpp>
 #include <hamel/systems/mechanisms/kind.hpp>
 #include <hamel/systems/mechanisms/tree.hpp>
@@ -42,10 +44,12 @@ struct RecordedContact;  // programs/contact_view.hpp
 template <class T>
 class ContactView;
 
-/// The ground moves with this velocity, and turns about the world's origin.
+/// The ground moves with this velocity, and turns about the world's origin; or is a surface at
+/// rest, z = height(x, y) (ground_contact.hpp).
 struct Ground {
   double rate = 0;               // rad/s
   Vec3 velocity = Vec3::Zero();  // m/s
+  std::optional<Expression> height = {};
   bool moves() const { return rate != 0 || !velocity.isZero(0); }
 };
 
@@ -97,7 +101,9 @@ class ContactModel {
   virtual void rows(const Contact& contact, const Tree& tree, const Ground& ground,
                     Row* out) const = 0;
   /// The point of contact with the ground, in the world.
-  virtual Vec3 touch(const Contact& contact, const Tree& tree) const = 0;
+  virtual Vec3 touch(const Contact& contact, const Tree& tree, const Ground& ground) const = 0;
+  /// x and y of the point of a ground with a height that is next to it; NaN where there is none.
+  virtual Vec<2> foot(const Contact& contact, const Tree& tree, const Ground& ground) const = 0;
   virtual RecordedContact record(const ContactView<graph::Number>& view,
                                  const Ground& ground) const = 0;
 
@@ -134,8 +140,9 @@ class ContactView<double> {
     vertical = world_axis(2);
   }
 
-  Vector at;        // the contact's point of the body
-  Vector vertical;  // upwards
+  Vector at;             // the contact's point of the body
+  Vector vertical;       // upwards, across the ground
+  bool sloping = false;  // is that another direction than the world's z?
 
   /// A direction of the body, as drawn.
   Vector turned(const Vec3& direction) const { return body_.rotation.lazyProduct(direction); }
@@ -147,6 +154,16 @@ class ContactView<double> {
  private:
   const Rigid &body_, &root_;  // the carrier; the root in the world
 };
+
+/// The world's x, or on sloping ground the direction along it that is next to it.
+template <class T>
+VecT<T, 3> level_axis(const ContactView<T>& view) {
+  const VecT<T, 3> x = view.world_axis(0);
+  if (!view.sloping) return x;
+  const VecT<T, 3> along = x - x.dot(view.vertical) * view.vertical;
+  using std::sqrt;
+  return (T(1.0) / sqrt(along.squaredNorm())) * along;
+}
 
 /// The point of contact, and the horizontal directions in which it does not slip.
 template <class T, size_t n>

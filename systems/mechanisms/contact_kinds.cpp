@@ -6,6 +6,7 @@
 #include <hamel/systems/mechanisms/contacts/roller_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/tube_contact.hpp>
 #include <hamel/systems/mechanisms/contacts/wheel_contact.hpp>
+#include <hamel/systems/mechanisms/ground_contact.hpp>
 #include <hamel/systems/mechanisms/programs/contact_view.hpp>
 
 namespace hamel::mechanisms {
@@ -53,7 +54,7 @@ class ContactOf final : public ContactModel {
 
   void rows(const Contact& contact, const Tree& tree, const Ground& ground,
             Row* out) const override {
-    const ContactView<double> view(contact, tree);
+    const ContactView<double> view = seen(contact, tree, ground);
     const auto touch = kind_.touch(view);
     const auto set = [&](const Vec3& u) {
       out->link = contact.link;
@@ -65,7 +66,11 @@ class ContactOf final : public ContactModel {
       ++out;
     }
     set(view.vertical);
-    out->phi = view.point_in_world(touch.point)[2];
+    const Vec3 x = view.point_in_world(touch.point);
+    out->phi = x[2];
+    if (!ground.height) return;
+    const GroundPoint at = ground_at(*ground.height, foot(contact, tree, ground));
+    out->phi = at.normal.dot(x - at.point);
   }
 
   RecordedContact record(const ContactView<Number>& view, const Ground& ground) const override {
@@ -76,12 +81,22 @@ class ContactOf final : public ContactModel {
     return out;
   }
 
-  Vec3 touch(const Contact& contact, const Tree& tree) const override {
-    const ContactView<double> view(contact, tree);
+  Vec3 touch(const Contact& contact, const Tree& tree, const Ground& ground) const override {
+    const ContactView<double> view = seen(contact, tree, ground);
     return view.point_in_world(kind_.touch(view).point);
+  }
+  Vec<2> foot(const Contact& contact, const Tree& tree, const Ground& ground) const override {
+    return find_foot(*ground.height, ContactView<double>(contact, tree),
+                     [this](const ContactView<double>& view) { return kind_.touch(view).point; });
   }
 
  private:
+  ContactView<double> seen(const Contact& contact, const Tree& tree, const Ground& ground) const {
+    ContactView<double> view(contact, tree);
+    if (ground.height)
+      stand_on(ground_at(*ground.height, foot(contact, tree, ground)).normal, view);
+    return view;
+  }
   Kind kind_;
 };
 

@@ -270,7 +270,19 @@ void FileParts::surroundings() {
     if (table == nullptr) return read_.toml.wrong(node, "ground", "a table");
     double rate = 0;
     Point velocity = {0, 0, 0};
-    read_.entries(*table, {{"rate", read_.read(rate)}, {"velocity", read_.read(velocity)}});
+    const auto height = [&](const Node& entry, const std::string& key) {
+      if (!entry.is_string() && !entry.is_number())
+        return read_.toml.wrong(entry, key, "a formula of x and y");
+      Parameters constants;
+      for (const auto& [name, value] : read_.formulas.constants()) constants[name] = {value};
+      m_.place(read_.toml.place(entry) + ": ");
+      m_.ground_height(entry.is_number() ? fmt::format("{}", *entry.value<double>())
+                                         : entry.value_or(std::string()),
+                       constants);
+    };
+    read_.entries(
+        *table,
+        {{"rate", read_.read(rate)}, {"velocity", read_.read(velocity)}, {"height", height}});
     m_.ground(rate, velocity);
   });
   stated("redundant", [&](const Node& node) {

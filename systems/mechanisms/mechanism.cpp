@@ -88,6 +88,9 @@ void Mechanism::ground(double rate, Point velocity) {
   ground_rate_ = rate;
   ground_velocity_ = velocity;
 }
+void Mechanism::ground_height(const std::string& formula, const Parameters& constants) {
+  ground_height_ = {part(formula), constants};
+}
 
 void Mechanism::spring(const std::string& name, const std::string& a, const std::string& b,
                        const SpringOptions& options) {

@@ -214,6 +214,8 @@ class HAMEL_API Mechanism {
   }
   /// The ground turns about the origin [rad/s] and moves [m/s].
   void ground(double rate, Point velocity = {0, 0, 0});
+  /// The ground is z = height(x, y), a formula; constants: names that it may use.
+  void ground_height(const std::string& formula, const Parameters& constants = {});
   /// "refuse", or "drop": policy for rows that are implied by others.
   void redundant(const std::string& policy);
 
@@ -298,6 +300,9 @@ class HAMEL_API Mechanism {
   struct OutputPart : Part, OutputOptions {
     std::string formula;
   };
+  struct HeightPart : Part {  // its name is the formula
+    Parameters constants;
+  };
   struct RatePart : Part {
     std::function<double(double)> rate;   // empty: an input
     std::function<double(double)> angle;  // empty: that of the start
@@ -339,6 +344,7 @@ class HAMEL_API Mechanism {
   std::vector<Event> events_;
   Point gravity_ = {0, 0, -9.81}, ground_velocity_ = {0, 0, 0};
   double ground_rate_ = 0;
+  std::optional<HeightPart> ground_height_;
   std::vector<StartPart> start_, push_;
   StartArguments start_arguments_;
 };

@@ -38,7 +38,8 @@
 //   wind = { unit = "N", meaning = "...", least = -50, most = 50 }
 //   [events]                 # zero at the event; direction +1, -1, or 0 for both ways
 //   straight = { value = "steer.angle", meaning = "the fork is straight", direction = 0 }
-//   [ground]                 # rate [rad/s], velocity [m/s]: the ground turns and moves
+//   [ground]                 # rate [rad/s], velocity [m/s]: the ground turns and moves; or
+//   height = "0.1*sin(x)"    # z of the ground at rest, of x and y of the world
 //   [start]                  # coordinates and velocities by name, and speed
 //   speed = 2
 //   [push]                   # velocities beside the speed of --speed: w1 = 0.1

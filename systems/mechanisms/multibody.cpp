@@ -86,9 +86,17 @@ MechanismPrograms& Multibody::programs() const {
   return *programs_;
 }
 
+// Feet of contacts and coordinates of couplings.
+void Multibody::find_places(std::span<double> state) const {
+  if (!rows_.coupled_links.empty()) parts().find_coupled(state);
+  if (!rows_.ground.height) return;
+  tree_.place(state.data());
+  parts().find_feet(state);
+}
+
 const double* Multibody::state(const double* g) const {
   std::copy_n(g, tree_.size(), state_.data());
-  if (!rows_.coupled_links.empty()) parts().find_coupled(state_);
+  find_places(state_);
   return state_.data();
 }
 
@@ -239,7 +247,7 @@ void Multibody::accelerations(double t, const double* g, ConstVector xi, Vector 
   if (!recorded_motion_) {
     std::vector<double> drawn = tree_.drawn();
     drawn.resize(state_.size(), 0.0);
-    parts().find_coupled(drawn);
+    find_places(drawn);
     motion_ = first_motion_ = record(drawn);
     recorded_motion_ = true;
   }
@@ -251,7 +259,8 @@ void Multibody::accelerations(double t, const double* g, ConstVector xi, Vector 
 
 std::shared_ptr<const graph::VectorFields> Multibody::vector_fields(const double* g) const {
   const auto linear = [](const Coupling& coupling) { return coupling.formula.linear(); };
-  if (has_drift() || !std::ranges::all_of(rows_.couplings, linear)) return nullptr;
+  if (has_drift() || rows_.ground.height || !std::ranges::all_of(rows_.couplings, linear))
+    return nullptr;
   std::vector<double> there(g, g + tree_.size());
   there.resize(state_.size(), 0.0);
   try {

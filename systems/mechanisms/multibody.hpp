@@ -120,6 +120,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   const double* state(const double* g, ConstVector xi) const;
   const double* state(double t, const double* g, ConstVector xi) const;
   void look_at_agreements(const double* g, Matrix a, Vector phi) const;
+  void find_places(std::span<double> state) const;
   void take_rates(double t) const;
   void take_signals(double t) const;
 

@@ -74,12 +74,13 @@ Multibody::sensor(int link, const Vec3& at) const {
 
 std::vector<Agreement> Multibody::find_agreements(
     const std::vector<int>& rows, const std::vector<std::vector<double>>& poses) const {
+  if (rows_.ground.height) return {};  // not on uneven ground
   Eigen::MatrixXd inertia(dim(), dim());
   this->inertia(poses.front().data(), inertia);
   std::vector<std::vector<double>> states = poses;
   for (std::vector<double>& state : states) {
     state.resize(state_.size(), 0.0);
-    parts().find_coupled(state);
+    find_places(state);
   }
   const MechanismParts some{tree_, rows_, forces_, rows, 0, *geometry_};
   return mechanisms::find_agreements(some, states, velocity_units(inertia));

@@ -81,9 +81,11 @@ struct ConstraintRows {
     }
   }
   /// The point of contact with the ground, in the world.
-  static Vec3 touch(const Contact& contact, const Tree& tree) {
-    return contact.model->touch(contact, tree);
+  Vec3 touch(const Contact& contact, const Tree& tree) const {
+    return contact.model->touch(contact, tree, ground);
   }
+  /// Numbers of feet (ground_contact.hpp): two for each contact with a ground that has a height.
+  size_t foot_count() const { return ground.height ? 2 * contacts.size() : 0; }
   /// The coordinate of a joint that is held, from where it is held.
   static double beyond(const Prescribed& p, const Joint& joint, const double* element);
   /// Derivative of a prescribed rate, at t.

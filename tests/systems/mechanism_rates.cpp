@@ -159,7 +159,7 @@ TEST(MechanismRates, OfCouplingsAreThoseOfDifferences) {
 Parameters some_values(const std::vector<Field>& fields) {
   Parameters out;
   for (const Field& field : fields)
-    if (field.range.least == 0) out[field.name] = {0.35};
+    if (field.range.least == 0) out[field.name] = std::vector<double>(field.value.size(), 0.35);
   return out;
 }
 
@@ -182,15 +182,18 @@ TEST(MechanismRates, OfEveryKindOfJointAreThoseOfDifferences) {
 TEST(MechanismRates, OfEveryKindOfContactAreThoseOfDifferences) {
   for (const mechanisms::ContactKind& kind : mechanisms::contact_kinds()) {
     const Parameters values = some_values(kind.fields);
-    const double height = kind.make(values)->radius();
-    for (const bool ground_moves : {false, true}) {
-      Mechanism m(kind.name + (ground_moves ? ", on a turntable" : ""));
+    const bool is_round = values.contains("radius") || values.contains("semi_axes");
+    const double height = is_round ? 0.35 : 0;
+    for (const char* ground : {"at rest", "on a turntable", "on hills"}) {
+      Mechanism m(kind.name + ", " + ground);
       m.body("a", {.mass = 2, .at = {0.1, 0.2, 0.6}, .inertia = {0.3, 0.4, 0.5}});
       m.body("b", {.mass = 1, .at = {0.5, 0.1, 0.7}, .inertia = {0.1, 0.02, 0, 0.2, 0.01, 0.15}});
       m.free("root", "a", {.at = {0, 0, 0.5}});
       m.hinge("h", "a", "b", {.at = {0.3, 0, 0.5}, .axis = {0.6, 0, 0.8}});
       m.contact(kind.name, "c", "b", {.at = {0.4, 0.1, height}, .values = values});
-      if (ground_moves) m.ground(0.7, {0.2, -0.1, 0});
+      if (ground == std::string("on a turntable")) m.ground(0.7, {0.2, -0.1, 0});
+      if (ground == std::string("on hills"))
+        m.ground_height("0.2*sin(x + k)*cos(0.7*y) - k*x", {{"k", {0.3}}});
       check_rates(m.model());
     }
   }

@@ -17,7 +17,7 @@ struct BallContact {
   void fields(auto& f) { f("radius", radius, "m", "of the sphere", positive); }
   template <class T>
   ContactPoint<T, 2> touch(const ContactView<T>& view) const {
-    const VecT<T, 3> x = view.world_axis(0);
+    const VecT<T, 3> x = level_axis(view);
     return {view.at - T(radius) * view.vertical, {x, view.vertical.cross(x)}};
   }
   std::vector<BodyShape> shapes(const Point& at) const {

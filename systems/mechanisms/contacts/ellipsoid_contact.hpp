@@ -34,7 +34,7 @@ struct EllipsoidContact {
       sum += (T(a * a) * along) * e;
       square += T(a * a) * (along * along);
     }
-    const VecT<T, 3> x = view.world_axis(0);
+    const VecT<T, 3> x = level_axis(view);
     return {view.at - (T(1.0) / sqrt(square)) * sum, {x, view.vertical.cross(x)}};
   }
   std::vector<BodyShape> shapes(const Point& at) const {

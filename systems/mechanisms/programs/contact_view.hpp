@@ -20,6 +20,7 @@ class ContactView<Number> {
   }
 
   Vector at, vertical;
+  bool sloping = false;
 
   Vector turned(const Vec3& direction) const { return bodies_.direction(carrier_, direction); }
   Vector world_axis(int i) const { return root_.rotation.row(i).transpose(); }

@@ -22,8 +22,17 @@ Numbers joined(Numbers a, const Numbers& b) {
 
 }  // namespace
 
-size_t MechanismParts::first_coupled() const {
+size_t MechanismParts::first_foot() const {
   return static_cast<size_t>(tree.size() + tree.dim()) + count_signals(forces);
+}
+
+size_t MechanismParts::first_coupled() const { return first_foot() + rows.foot_count(); }
+
+void MechanismParts::find_feet(std::span<double> state) const {
+  if (!rows.ground.height) return;
+  size_t next = first_foot();
+  for (const Contact& contact : rows.contacts)
+    for (const double x : contact.model->foot(contact, tree, rows.ground)) state[next++] = x;
 }
 
 size_t MechanismParts::state_size() const {

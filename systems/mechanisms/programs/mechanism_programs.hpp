@@ -3,8 +3,8 @@
 // Each function of a state is a program of its own, of which entries that are constant are no part.
 // All take one block of numbers, MechanismState: the element, xi, and what is known outside of the
 // formulas at that time: coordinates of joints with springs, efforts of motors and of forces
-// (force_formulas.hpp), coordinates and closures of couplings, rates, slopes and gaps of prescribed
-// rows.
+// (force_formulas.hpp), feet of contacts, coordinates and closures of couplings, rates, slopes and
+// gaps of prescribed rows.
 //
 // The accelerations are solved in a frame of the admissible velocities (elimination.hpp): xi' = E
 // y'
@@ -41,10 +41,13 @@ struct MechanismParts {
   size_t state_size() const;
   /// Writes the coordinates that couplings depend on into a state whose element is there.
   void find_coupled(std::span<double> state) const;
+  /// Writes the feet of contacts (ground_contact.hpp) at a tree that was placed.
+  void find_feet(std::span<double> state) const;
   /// Writes the closures of couplings.
   void find_closures(std::span<double> state) const;
 
  private:
+  size_t first_foot() const;
   size_t first_coupled() const;
 };
 

@@ -21,6 +21,7 @@ RecordedMechanism::RecordedMechanism(const MechanismParts& parts)
       g(inputs("g", static_cast<size_t>(parts.tree.size()))),
       xi(inputs("xi", static_cast<size_t>(parts.tree.dim()))),
       signals(inputs("signal", count_signals(parts.forces))),
+      feet(inputs("foot", parts.rows.foot_count())),
       coupled(inputs("coupled", parts.rows.coupled_links.size())),
       closures(inputs("closure", parts.rows.couplings.size())),
       rates(inputs("rate", parts.rows.prescribed.size())),
@@ -40,10 +41,29 @@ RecordedMechanism::Numbers RecordedMechanism::row_rates() const {
   for (const RecordedRow& row : rows) lacks.push_back(-row.value);
   moving.insert(moving.end(), rates.begin(), rates.end());
   moves.insert(moves.end(), slopes.begin(), slopes.end());
+  const Numbers moves_of_feet = foot_rates();
+  moving.insert(moving.end(), feet.begin(), feet.end());
+  moves.insert(moves.end(), moves_of_feet.begin(), moves_of_feet.end());
   moving.insert(moving.end(), coupled.begin(), coupled.end());
   for (const int link : parts_.rows.coupled_links)
     moves.push_back(xi[static_cast<size_t>(parts_.tree.first(link))]);
   return graph::along(lacks, moving, moves);
+}
+
+// The equations of each foot stay 0.
+RecordedMechanism::Numbers RecordedMechanism::foot_rates() const {
+  Numbers out;
+  if (feet.empty()) return out;
+  const Numbers zero = record_feet(parts_.rows, bodies, feet);
+  const Numbers change = graph::along(zero, g, bodies.element_rates());
+  for (size_t i = 0; i < feet.size(); i += 2) {
+    const Numbers own = {zero[i], zero[i + 1]}, foot = {feet[i], feet[i + 1]};
+    const Numbers by_x = graph::along(own, foot, {1, 0}), by_y = graph::along(own, foot, {0, 1});
+    const Number determinant = by_x[0] * by_y[1] - by_x[1] * by_y[0];
+    out.push_back((by_y[0] * change[i + 1] - by_y[1] * change[i]) / determinant);
+    out.push_back((by_x[1] * change[i] - by_x[0] * change[i + 1]) / determinant);
+  }
+  return out;
 }
 
 void RecordedMechanism::add_spring_forces(Numbers& out) const {

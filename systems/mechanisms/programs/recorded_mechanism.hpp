@@ -22,7 +22,7 @@ class RecordedMechanism {
   /// Current while this object lives; complete behind it.
   const std::shared_ptr<graph::Recording>& recording() const { return recording_; }
 
-  RowInputs row_inputs() const { return {g, xi, coupled, closures, rates, gaps}; }
+  RowInputs row_inputs() const { return {g, xi, feet, coupled, closures, rates, gaps}; }
   /// db/dt - (dA/dt) xi along the motion, xi held.
   Numbers row_rates() const;
   /// out += -dV of the springs; the forces beside the potential.
@@ -36,12 +36,13 @@ class RecordedMechanism {
 
  public:
   // In the order of a state.
-  const Numbers g, xi, signals, coupled, closures, rates, slopes, gaps;
+  const Numbers g, xi, signals, feet, coupled, closures, rates, slopes, gaps;
   const BodyFormulas bodies;
   const std::vector<RecordedRow> rows;  // those that are kept
 
  private:
   Numbers inputs(const char* name, size_t count);
+  Numbers foot_rates() const;
 };
 
 /// A frame of A xi' = c near a state. Throws std::domain_error where the rows depend on each other.

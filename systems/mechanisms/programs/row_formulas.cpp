@@ -1,11 +1,35 @@
 #include <hamel/systems/mechanisms/programs/row_formulas.hpp>
 
+#include <optional>
+
 #include <hamel/framework/graph/derivatives.hpp>
 #include <hamel/systems/mechanisms/programs/agreement_formulas.hpp>
 #include <hamel/systems/mechanisms/programs/contact_view.hpp>
 
 namespace hamel::mechanisms {
 namespace {
+
+// A ground z = h(x, y) at a foot, recorded.
+struct RecordedGround {
+  NumberVec3 point, normal, along_x, along_y;
+
+  RecordedGround(const Expression& height, const Number& x, const Number& y) {
+    const std::vector<Number> at = {x, y};
+    const Number h = height.record(at);
+    const std::vector<Number> slope = graph::gradient({h}, {1}, at);
+    point = {x, y, h};
+    along_x = {1, 0, slope[0]};
+    along_y = {0, 1, slope[1]};
+    normal = {-slope[0], -slope[1], 1};
+    normal *= 1 / sqrt(normal.squaredNorm());
+  }
+};
+
+void stand_on(const NumberVec3& normal, ContactView<Number>& view) {
+  view.sloping = true;
+  view.vertical = normal[0] * view.world_axis(0) + normal[1] * view.world_axis(1) +
+                  normal[2] * view.world_axis(2);
+}
 
 class RowRecorder {
  public:
@@ -30,8 +54,14 @@ class RowRecorder {
     });
     row.value += side * dot(u, bodies_.turning(link));
   }
-  void add_contact(const Contact& contact, const Ground& ground) {
-    const ContactView<Number> view(contact, bodies_);
+  // foot: of a ground that has a height.
+  void add_contact(const Contact& contact, const Ground& ground, std::span<const Number> foot) {
+    ContactView<Number> view(contact, bodies_);
+    std::optional<RecordedGround> surface;
+    if (ground.height) {
+      surface.emplace(*ground.height, foot[0], foot[1]);
+      stand_on(surface->normal, view);
+    }
     const RecordedContact touch = contact.model->record(view, ground);
     for (size_t i = 0; i < touch.directions.size(); ++i) {
       RecordedRow& row = add();
@@ -41,7 +71,8 @@ class RowRecorder {
     }
     RecordedRow& height = add();
     add_velocity(contact.link, touch.point, view.vertical, 1, height);
-    height.phi = view.point_in_world(touch.point)[2];
+    const NumberVec3 x = view.point_in_world(touch.point);
+    height.phi = surface ? dot(surface->normal, x - surface->point) : x[2];
   }
   // The formulas of closed_loop.hpp, seen from the one root of both links, else from the world.
   void add_loop(const Loop& loop) {
@@ -124,7 +155,9 @@ class RowRecorder {
 std::vector<RecordedRow> record_rows(const ConstraintRows& rows, const BodyFormulas& bodies,
                                      const RowInputs& inputs) {
   RowRecorder out(bodies);
-  for (const Contact& contact : rows.contacts) out.add_contact(contact, rows.ground);
+  for (size_t i = 0; i < rows.contacts.size(); ++i)
+    out.add_contact(rows.contacts[i], rows.ground,
+                    rows.ground.height ? inputs.feet.subspan(2 * i, 2) : inputs.feet);
   for (const Loop& loop : rows.loops) out.add_loop(loop);
   for (size_t i = 0; i < rows.couplings.size(); ++i) {
     out.add_coupling(rows.couplings[i], rows.coupled_links, inputs);
@@ -145,6 +178,21 @@ std::vector<RecordedRow> record_rows(const ConstraintRows& rows, const BodyFormu
   out.rows.insert(out.rows.begin() + static_cast<std::ptrdiff_t>(before), agreements.begin(),
                   agreements.end());
   return std::move(out.rows);
+}
+
+std::vector<Number> record_feet(const ConstraintRows& rows, const BodyFormulas& bodies,
+                                std::span<const Number> feet) {
+  std::vector<Number> out;
+  for (size_t i = 0; i < feet.size() / 2; ++i) {
+    const RecordedGround ground(*rows.ground.height, feet[2 * i], feet[2 * i + 1]);
+    ContactView<Number> view(rows.contacts[i], bodies);
+    stand_on(ground.normal, view);
+    const RecordedContact touch = rows.contacts[i].model->record(view, rows.ground);
+    const NumberVec3 gap = view.point_in_world(touch.point) - ground.point;
+    out.push_back(dot(gap, ground.along_x));
+    out.push_back(dot(gap, ground.along_y));
+  }
+  return out;
 }
 
 }  // namespace hamel::mechanisms

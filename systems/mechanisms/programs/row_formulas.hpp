@@ -20,6 +20,7 @@ struct RecordedRow {
 /// Numbers of a state that rows depend on beside the element.
 struct RowInputs {
   std::span<const Number> g, xi;
+  std::span<const Number> feet;         // x and y of each contact with a ground that has a height
   std::span<const Number> coupled;      // coordinates of ConstraintRows::coupled_links
   std::span<const Number> closures;     // phi of couplings
   std::span<const Number> rates, gaps;  // b and phi of prescribed rows
@@ -28,5 +29,9 @@ struct RowInputs {
 /// All rows, in the order of ConstraintRows::each().
 std::vector<RecordedRow> record_rows(const ConstraintRows& rows, const BodyFormulas& bodies,
                                      const RowInputs& inputs);
+
+/// The equations of feet (ground_contact.hpp), two for each contact.
+std::vector<Number> record_feet(const ConstraintRows& rows, const BodyFormulas& bodies,
+                                std::span<const Number> feet);
 
 }  // namespace hamel::mechanisms

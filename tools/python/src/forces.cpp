@@ -124,6 +124,13 @@ void bind_forces(nb::class_<ByParts>& mechanism) {
           "The rate of a hinge or slider: a function of t, a constant, or (without one) an input "
           "of the run, 'steer.rate', between least and most.")
       .def(
+          "ground_height",
+          [](ByParts& self, const std::string& formula, const Parameters& constants) {
+            self.ground_height(formula, constants);
+          },
+          "formula"_a, nb::kw_only(), "constants"_a = Parameters(),
+          "The ground at rest is z = height(x, y), a formula; constants: names that it may use.")
+      .def(
           "ground",
           [](ByParts& self, double rate, const Point& velocity) { self.ground(rate, velocity); },
           "rate"_a, "velocity"_a = kOrigin,
