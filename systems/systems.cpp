@@ -4,6 +4,7 @@
 #include <hamel/solvers/hybrid.hpp>
 #include <hamel/solvers/nlopt.hpp>
 #include <hamel/systems/by_name.hpp>
+#include <hamel/systems/kernels/mechanisms.hpp>
 #include <hamel/systems/kernels/units.hpp>
 #ifdef HAMEL_HAS_XSIMD
 #include <hamel/systems/lanes/lane_tables.hpp>
@@ -76,6 +77,7 @@ Registry make_registry() {
   add_vehicles(registry);
   add_system<NTrailer>(registry);
   add_mechanisms(registry);
+  add_mechanism_kernels(registry);
 #ifdef HAMEL_HAS_XSIMD
   add_library_lanes(registry);
 #endif

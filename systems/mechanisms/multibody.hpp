@@ -10,11 +10,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 #include <hamel/framework/mechanics/implied_rows.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/systems/mechanisms/programs/lift_programs.hpp>
 #include <hamel/systems/mechanisms/programs/mechanism_programs.hpp>
 
 namespace hamel::mechanisms {
@@ -35,6 +37,9 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   /// All rows of `rows`; keep() drops some.
   Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
             std::shared_ptr<const Geometry> geometry);
+  /// Its type, and a system as one, or null: for other libraries, which lack the type.
+  static const std::type_info& type();
+  static std::shared_ptr<const Multibody> of(const std::shared_ptr<const Mechanics>& system);
   /// Only these rows of each(), of which the holonomic ones go last.
   void keep(const std::vector<int>& rows);
   /// Rows that were dropped since those that are kept imply them.
@@ -81,7 +86,15 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   double power(double t, const double* g, ConstVector xi) const override;
   double potential(const double* g) const override;
 
+  /// Layout of the programs of lift; null where they do not cover the system.
+  std::shared_ptr<const LiftLayout> lift_layout() const;
+  /// Those of the drawn pose, with which each run begins; near a state, with so many unknowns.
+  std::shared_ptr<const LiftPrograms> lift_programs() const;
+  std::shared_ptr<const LiftPrograms> lift_programs(const double* g, ConstVector xi,
+                                                    size_t unknowns) const;
+
   const ConstraintRows& all_rows() const { return rows_; }
+  const Forces& forces() const { return forces_; }
   /// Meanings of all rows, in the order of each().
   const std::vector<RowInfo>& row_info() const { return row_info_; }
   const std::vector<int>& kept() const { return kept_; }
@@ -133,6 +146,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   std::vector<int> kept_;   // their inverse
   std::vector<int> implied_;
   std::shared_ptr<const Inputs> inputs_;
+  size_t driven_motors_ = 0;
   int holonomic_ = 0;
   bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;
   Eigen::MatrixXd inertia_, fixed_rows_;  // where they are constant
@@ -142,6 +156,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   // one in use.
   mutable std::optional<MotionProgram> first_motion_, motion_;
   mutable bool recorded_motion_ = false;
+  mutable std::shared_ptr<const LiftPrograms> first_lift_;
   mutable std::vector<double> state_, coordinates_;
   mutable Eigen::VectorXd work_;
 };

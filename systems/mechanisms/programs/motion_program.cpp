@@ -14,42 +14,6 @@ using Numbers = std::vector<Number>;
 
 constexpr double kLostPivot = 0.1;  // of its first value
 
-// The state, and places to either side of it: entries that vanish at one of them are no pivots.
-std::vector<Sample> samples_near(const MechanismParts& parts, std::span<const double> state) {
-  const Geometry& geometry = parts.geometry;
-  const auto size = static_cast<size_t>(geometry.size()), n = static_cast<size_t>(geometry.dim());
-  std::vector<Sample> out{Sample({state.begin(), state.end()})};
-  for (const double side : {0.1, -0.1}) {
-    std::vector<double> eta(n), moved(size), there(state.begin(), state.end());
-    for (size_t i = 0; i < n; ++i) eta[i] = side * std::sin(2.0 * static_cast<double>(i) + 1);
-    geometry.tau(eta.data(), moved.data());
-    geometry.compose(state.data(), moved.data(), there.data());
-    parts.find_coupled(there);
-    out.emplace_back(std::move(there));
-  }
-  return out;
-}
-
-// M y = r, y in place of r, by L D L^T.
-void solve_symmetric(std::vector<Numbers> m, Numbers& r) {
-  const size_t n = r.size();
-  Numbers inverse(n);
-  for (size_t j = 0; j < n; ++j) {
-    for (size_t k = 0; k < j; ++k) {  // m_jk = L_jk D_k so far
-      const Number scaled = m[j][k];
-      m[j][k] *= inverse[k];
-      m[j][j] -= m[j][k] * scaled;
-      r[j] -= m[j][k] * r[k];
-    }
-    inverse[j] = 1 / m[j][j];
-    for (size_t i = j + 1; i < n; ++i)
-      for (size_t k = 0; k < j; ++k) m[i][j] -= m[i][k] * m[j][k];
-  }
-  for (size_t j = 0; j < n; ++j) r[j] *= inverse[j];
-  for (size_t j = n; j-- > 0;)
-    for (size_t i = j + 1; i < n; ++i) r[j] -= m[i][j] * r[i];
-}
-
 Number product(const Numbers& a, const Numbers& b) {
   Number out = 0;
   for (size_t i = 0; i < a.size(); ++i) out += a[i] * b[i];
@@ -58,12 +22,29 @@ Number product(const Numbers& a, const Numbers& b) {
 
 }  // namespace
 
+std::vector<std::vector<double>> states_near(const MechanismParts& parts,
+                                             std::span<const double> state) {
+  const Geometry& geometry = parts.geometry;
+  const auto size = static_cast<size_t>(geometry.size()), n = static_cast<size_t>(geometry.dim());
+  std::vector<std::vector<double>> out{{state.begin(), state.end()}};
+  for (const double side : {0.1, -0.1}) {
+    std::vector<double> eta(n), moved(size), there(state.begin(), state.end());
+    for (size_t i = 0; i < n; ++i) eta[i] = side * std::sin(2.0 * static_cast<double>(i) + 1);
+    geometry.tau(eta.data(), moved.data());
+    geometry.compose(state.data(), moved.data(), there.data());
+    parts.find_coupled(there);
+    out.push_back(std::move(there));
+  }
+  return out;
+}
+
 Frame find_frame(const MechanismParts& parts, const RecordedMechanism& mechanism,
                  std::span<const double> state, std::vector<Number> c) {
   if (mechanism.rows.empty()) return free_frame(mechanism.xi.size());
   std::vector<Numbers> a;
   for (const RecordedRow& row : mechanism.rows) a.push_back(row.coefficients);
-  std::vector<Sample> samples = samples_near(parts, state);
+  std::vector<Sample> samples;
+  for (std::vector<double>& place : states_near(parts, state)) samples.emplace_back(std::move(place));
   return eliminate(std::move(a), std::move(c), samples);
 }
 

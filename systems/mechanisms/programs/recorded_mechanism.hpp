@@ -45,6 +45,10 @@ class RecordedMechanism {
   Numbers foot_rates() const;
 };
 
+/// The state, and places to either side of it: entries that vanish at one of them are no pivots.
+std::vector<std::vector<double>> states_near(const MechanismParts& parts,
+                                             std::span<const double> state);
+
 /// A frame of A xi' = c near a state. Throws std::domain_error where the rows depend on each other.
 Frame find_frame(const MechanismParts& parts, const RecordedMechanism& mechanism,
                  std::span<const double> state, std::vector<Number> c);

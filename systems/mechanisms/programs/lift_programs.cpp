@@ -1,0 +1,426 @@
+#include <hamel/systems/mechanisms/programs/lift_programs.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <hamel/framework/graph/number.hpp>
+#include <hamel/systems/mechanisms/programs/force_formulas.hpp>
+#include <hamel/systems/mechanisms/programs/recorded_mechanism.hpp>
+#include <hamel/systems/mechanisms/programs/step_motion.hpp>
+
+namespace hamel::mechanisms {
+namespace {
+
+using Numbers = std::vector<Number>;
+using Rows = std::vector<RecordedRow>;
+
+constexpr size_t kLongLift = 20'000;  // instructions: machine code of more takes seconds to make
+
+Numbers add_inputs(graph::Recording& recording, size_t count) {
+  Numbers out;
+  for (size_t i = 0; i < count; ++i)
+    out.push_back(recording.input("x" + std::to_string(recording.inputs().size())));
+  return out;
+}
+
+void append(const Numbers& from, Numbers& to) { to.insert(to.end(), from.begin(), from.end()); }
+
+Number sum_of_products(const Numbers& a, const Numbers& b) {
+  Number out = 0;
+  for (size_t i = 0; i < a.size(); ++i) out += a[i] * b[i];
+  return out;
+}
+
+std::shared_ptr<const graph::Program> program_of(const graph::Recording& recording,
+                                                 const Numbers& outputs) {
+  graph::Program::Outputs named;
+  for (const Number& x : outputs) named.emplace_back("y" + std::to_string(named.size()), x);
+  return std::make_shared<graph::Program>(recording, named);
+}
+
+// Which inputs do these numbers depend on?
+std::vector<bool> inputs_of(const Numbers& numbers) {
+  const graph::Recording& recording = graph::Recording::current();
+  const std::vector<graph::Node>& nodes = recording.nodes();
+  std::vector<bool> out(recording.inputs().size()), reached(nodes.size());
+  for (const Number& x : numbers)
+    if (!x.constant()) reached[static_cast<size_t>(x.node())] = true;
+  for (size_t i = nodes.size(); i-- > 0;) {
+    if (!reached[i]) continue;
+    const graph::Node& node = nodes[i];
+    if (node.op == graph::Op::input) {
+      out[static_cast<size_t>(node.a)] = true;
+    } else if (node.op != graph::Op::constant) {
+      for (const int k : {node.a, node.b, node.c})
+        if (k >= 0) reached[static_cast<size_t>(k)] = true;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+bool has_lift_programs(const MechanismParts& parts, size_t drivers) {
+  return !parts.rows.ground.moves() && parts.rows.agreements.empty() &&
+         parts.forces.forces.empty() && parts.forces.motors.size() == drivers;
+}
+
+// Records the three programs; each in a recording of its own.
+class LiftRecorder {
+ public:
+  LiftRecorder(const MechanismParts& parts, std::shared_ptr<const LiftLayout> layout,
+               std::span<const double> state)
+      : parts_(parts), layout_(*layout) {
+    programs_.layout_ = std::move(layout);
+    sizes().element = layout_.size();
+    sizes().turning = layout_.turning_count();
+    sizes().velocities = n();
+    sizes().motors = parts.forces.motors.size();
+    sizes().rates = parts.rows.prescribed.size();
+    for (const Prescribed& p : parts.rows.prescribed) sizes().held += p.held >= 0;
+    sizes().holonomic = static_cast<size_t>(parts.holonomic);
+    for (const auto& place : states_near(parts, state)) {
+      std::vector<double>& numbers = places_.emplace_back(layout_.size());
+      layout_.unpack(place.data(), numbers.data());
+      numbers.insert(numbers.end(), state.begin() + parts.tree.size(),
+                     state.begin() + parts.tree.size() + parts.tree.dim());
+    }
+  }
+
+  bool run(size_t unknowns) { return record_start() && record_residual(unknowns) && record_end(); }
+  std::shared_ptr<const LiftPrograms> programs() const {
+    return std::make_shared<LiftPrograms>(programs_);
+  }
+
+ private:
+  LiftSizes& sizes() { return programs_.sizes_; }
+  size_t n() const { return static_cast<size_t>(parts_.tree.dim()); }
+  const LiftLayout::Part& part(int link) const {
+    return layout_.parts()[static_cast<size_t>(link)];
+  }
+  size_t phi_from() const { return parts_.kept.size() - static_cast<size_t>(parts_.holonomic); }
+
+  // Values of the inputs at the places: the element and v where they are, else 0.
+  std::vector<Sample> samples(size_t inputs, size_t element_at, size_t v_at) const {
+    std::vector<Sample> out;
+    for (const std::vector<double>& place : places_) {
+      std::vector<double> values(inputs);
+      const auto element = place.begin() + static_cast<std::ptrdiff_t>(layout_.size());
+      std::copy(place.begin(), element, values.begin() + static_cast<std::ptrdiff_t>(element_at));
+      std::copy(element, place.end(), values.begin() + static_cast<std::ptrdiff_t>(v_at));
+      out.emplace_back(std::move(values));
+    }
+    return out;
+  }
+  BodyFormulas bodies(const Numbers& numbers, const Numbers& xi) const {
+    return {parts_.tree, tree_element(layout_, parts_.tree, numbers), xi, parts_.forces.gravity};
+  }
+  // The rows kept at a place. any: velocities for rows whose coefficients are slopes by them.
+  Rows rows(const BodyFormulas& bodies, const Numbers& numbers, const Numbers& any,
+            const Numbers& rates, const Numbers& held) const {
+    const Numbers g = tree_element(layout_, parts_.tree, numbers);
+    Numbers coupled, closures, gaps;
+    for (const int link : parts_.rows.coupled_links)
+      coupled.push_back(coordinate_of(part(link), numbers));
+    for (const Coupling& coupling : parts_.rows.couplings) {
+      Numbers variables;
+      for (const int link : coupling.links) variables.push_back(coordinate_of(part(link), numbers));
+      closures.push_back(coupling.of_rates() ? Number(0) : coupling.formula.record(variables));
+    }
+    size_t next = 0;
+    for (const Prescribed& p : parts_.rows.prescribed)
+      gaps.push_back(p.held < 0 || held.empty()
+                         ? Number(0)
+                         : coordinate_of(part(p.held), numbers) - held[next++]);
+    Rows all = record_rows(parts_.rows, bodies, {g, any, coupled, closures, rates, gaps});
+    Rows out;
+    for (const int i : parts_.kept) out.push_back(std::move(all[static_cast<size_t>(i)]));
+    return out;
+  }
+  Numbers signals(const Numbers& numbers, const Numbers& motors) const {
+    Numbers out;
+    for (const Spring& spring : parts_.forces.springs)
+      out.push_back(spring.joint < 0 ? Number(0) : coordinate_of(part(spring.joint), numbers));
+    append(motors, out);
+    return out;
+  }
+  // f without dampers.
+  Numbers still_force(const BodyFormulas& bodies, const Numbers& numbers,
+                      const Numbers& motors) const {
+    const Numbers given = signals(numbers, motors);
+    Numbers out = bodies.weight();
+    add_springs(parts_.forces, bodies, given, out);
+    add_given(parts_.forces, bodies, Numbers(n()), given, out);
+    return out;
+  }
+  // That of dampers.
+  Numbers damping(const Numbers& numbers, const Numbers& v) const {
+    Numbers out(n());
+    if (parts_.forces.damped())
+      add_given(parts_.forces, bodies(numbers, v), v, signals(numbers, Numbers(sizes_motors())),
+                out);
+    return out;
+  }
+  size_t sizes_motors() const { return programs_.sizes_.motors; }
+
+  // What a node carries.
+  struct Carried {
+    Numbers xi, moving, momentum, force, diagonal;
+    Number energy, force_size;
+  };
+  // E^T I E of a frame.
+  struct Reduced {
+    std::vector<Numbers> columns, momenta, matrix;  // of E, I E
+    Reduced(const Frame& frame, const BodyFormulas::Matrix& inertia) {
+      const size_t m = frame.independent.size(), n = inertia.size();
+      columns.assign(m, Numbers(n));
+      momenta = columns;
+      for (size_t j = 0; j < m; ++j) {
+        for (size_t i = 0; i < n; ++i) columns[j][i] = frame.e[i][j];
+        for (size_t i = 0; i < n; ++i) momenta[j][i] = sum_of_products(inertia[i], columns[j]);
+      }
+      matrix.assign(m, Numbers(m));
+      for (size_t i = 0; i < m; ++i)
+        for (size_t j = i; j < m; ++j)
+          matrix[i][j] = matrix[j][i] = sum_of_products(columns[i], momenta[j]);
+    }
+  };
+  // mu: the momentum at the node; xi: its velocity where that is known.
+  Carried carry(const BodyFormulas& bodies, const Frame& frame, const Numbers& mu,
+                const Numbers& force, const Numbers* xi) const {
+    const BodyFormulas::Matrix inertia = bodies.inertia();
+    const Reduced reduced(frame, inertia);
+    Carried out;
+    for (const Numbers& column : reduced.columns) {
+      out.momentum.push_back(sum_of_products(column, mu));
+      out.force.push_back(sum_of_products(column, force));
+    }
+    for (const auto& [row, column] : moving_) out.moving.push_back(frame.e[row][column]);
+    for (size_t i = 0; i < reduced.matrix.size(); ++i) out.diagonal.push_back(reduced.matrix[i][i]);
+    for (size_t i = 0; i < n(); ++i) {
+      if (inertia[i][i].is(0) || force[i].is(0)) continue;
+      out.force_size += force[i] * force[i] * (1 / inertia[i][i]);
+    }
+    const bool at_rest =
+        std::ranges::all_of(frame.particular, [](const Number& x) { return x.is(0); });
+    Numbers beside(n());  // I times the particular velocity
+    if (!at_rest)
+      for (size_t i = 0; i < n(); ++i) beside[i] = sum_of_products(inertia[i], frame.particular);
+    if (xi != nullptr) {
+      out.xi = *xi;
+    } else {
+      Numbers y = out.momentum;
+      for (size_t j = 0; j < y.size(); ++j) y[j] -= sum_of_products(reduced.columns[j], beside);
+      solve_symmetric(reduced.matrix, y);
+      for (size_t i = 0; i < n(); ++i)
+        out.xi.push_back(frame.particular[i] + sum_of_products(frame.e[i], y));
+      if (at_rest) {
+        out.energy = sum_of_products(out.momentum, y);
+        return out;
+      }
+    }
+    for (size_t i = 0; i < n(); ++i) out.energy += out.xi[i] * sum_of_products(inertia[i], out.xi);
+    return out;
+  }
+  static void append_carried(const Carried& carried, Numbers& out) {
+    append(carried.momentum, out);
+    append(carried.force, out);
+    out.push_back(carried.energy);
+    out.push_back(carried.force_size);
+    append(carried.moving, out);
+  }
+  static std::vector<Numbers> coefficients(const Rows& rows) {
+    std::vector<Numbers> out;
+    for (const RecordedRow& row : rows) out.push_back(row.coefficients);
+    return out;
+  }
+  static Numbers drifts(const Rows& rows) {
+    Numbers out;
+    for (const RecordedRow& row : rows) out.push_back(row.drift);
+    return out;
+  }
+  std::shared_ptr<const graph::Code> code_of(const graph::Recording& recording,
+                                             const Numbers& outputs) const {
+    const auto program = program_of(recording, outputs);
+    if (program->instructions().size() > kLongLift) return nullptr;
+    return std::make_shared<graph::Code>(program);
+  }
+
+  bool record_start() {
+    graph::Recording recording;
+    const Numbers g = add_inputs(recording, layout_.size()), xi = add_inputs(recording, n()),
+                  motors = add_inputs(recording, sizes().motors),
+                  rates = add_inputs(recording, sizes().rates);
+    const BodyFormulas here = bodies(g, Numbers(n()));
+    const Rows at = rows(here, g, xi, rates, {});
+    Frame frame = free_frame(n());
+    if (!at.empty()) {
+      std::vector<Sample> places = samples(recording.inputs().size(), 0, layout_.size());
+      frame = eliminate(coefficients(at), drifts(at), places);
+    }
+    order_ = frame.order;
+    pattern_ = frame.e;
+    for (size_t column = 0; column < frame.independent.size(); ++column)
+      for (size_t row = 0; row < n(); ++row)
+        if (!frame.e[row][column].constant()) moving_.emplace_back(row, column);
+    sizes().independent = frame.independent.size();
+    sizes().moving = moving_.size();
+    sizes().node_pivots = frame.pivots.size();
+    const BodyFormulas::Matrix inertia = here.inertia();
+    Numbers mu;
+    for (const Numbers& row : inertia) mu.push_back(sum_of_products(row, xi));
+    const Carried carried = carry(here, frame, mu, still_force(here, g, motors), &xi);
+    Numbers out;
+    append_carried(carried, out);
+    append(carried.diagonal, out);
+    append(frame.pivots, out);
+    programs_.start_ = code_of(recording, out);
+    return programs_.start_ != nullptr;
+  }
+
+  bool record_residual(size_t unknowns) {
+    graph::Recording recording;
+    const Numbers g = add_inputs(recording, layout_.size());
+    const Number h = add_inputs(recording, 1)[0];
+    add_inputs(recording, sizes().motors + sizes().rates);  // of the end
+    const Numbers moving = add_inputs(recording, moving_.size()),
+                  target = add_inputs(recording, sizes().independent),
+                  rates = add_inputs(recording, sizes().rates),
+                  held = add_inputs(recording, sizes().held);
+    const size_t first = recording.inputs().size();
+    const Numbers x = add_inputs(recording, n()), any = add_inputs(recording, n());
+    const Eliminated middle = eliminate_middle(g, h, x, any, rates, first, unknowns);
+    const size_t pivots = middle.order.size();
+    sizes().unknowns = n() - pivots;
+    sizes().rows = middle.left.size();
+    sizes().middle_pivots = middle.pivots.size();
+    if (unknowns != 0 && sizes().unknowns != unknowns) return false;
+    if (sizes().unknowns > LiftPrograms::kMostUnknowns ||
+        sizes().unknowns != sizes().independent + sizes().rows + sizes().holonomic)
+      return false;
+    Numbers v = x;
+    middle.complete(v);
+    programs_.unknowns_.clear();
+    for (size_t i = 0; i < n(); ++i)
+      if (std::ranges::none_of(middle.order, [i](const Pivot& p) { return p.second == i; }))
+        programs_.unknowns_.push_back(static_cast<int>(i));
+
+    StepMotion step(layout_, g, v, h);
+    auto [p, nu] = bodies(step.middle(), v).momentum();
+    for (Number& effort : nu) effort *= h;
+    auto [mu0, mu1] = step.momenta(p, nu);
+    const Numbers damped = damping(g, v);
+    for (size_t i = 0; i < n(); ++i) mu0[i] -= 0.5 * h * damped[i];
+    Numbers out;
+    for (size_t j = 0; j < sizes().independent; ++j) {
+      Number sum = -target[j];
+      for (size_t i = 0; i < n(); ++i) {
+        const auto at = std::ranges::find(moving_, std::pair(i, j));
+        const Number e = at == moving_.end() ? pattern_[i][j]
+                                             : moving[static_cast<size_t>(at - moving_.begin())];
+        sum += e * mu0[i];
+      }
+      out.push_back(sum);
+    }
+    for (const size_t i : middle.left) {
+      Number sum = -middle.c[i];
+      for (const int k : programs_.unknowns_)
+        sum += middle.a[i][static_cast<size_t>(k)] * v[static_cast<size_t>(k)];
+      out.push_back(sum);
+    }
+    if (sizes().holonomic > 0) {
+      const BodyFormulas there = bodies(step.end(), Numbers(n()));
+      const Rows at = rows(there, step.end(), any, rates, held);
+      for (size_t i = phi_from(); i < at.size(); ++i) out.push_back(at[i].phi);
+    }
+    append(middle.pivots, out);
+    for (const LiftLayout::Part& one : layout_.parts()) {
+      if (one.kind != LiftLayout::Kind::turning) continue;
+      out.push_back(step.end()[static_cast<size_t>(one.first) + 1]);
+      out.push_back(step.end()[static_cast<size_t>(one.first) + 2]);
+    }
+    append(mu1, out);
+    append(v, out);
+    programs_.residual_ = code_of(recording, out);
+    return programs_.residual_ != nullptr;
+  }
+
+  // The rows of velocities at the middle, eliminated with pivots among those velocities that no
+  // coefficient depends on. first: of v among the inputs.
+  Eliminated eliminate_middle(const Numbers& g, const Number& h, const Numbers& x,
+                              const Numbers& any, const Numbers& rates, size_t first,
+                              size_t unknowns) const {
+    const StepMotion step(layout_, g, x, h);
+    Rows at = rows(bodies(step.middle(), Numbers(n())), step.middle(), any, rates, {});
+    at.resize(phi_from());
+    Numbers depends = drifts(at);
+    for (const RecordedRow& row : at) append(row.coefficients, depends);
+    const std::vector<bool> shapes = inputs_of(depends);
+    std::vector<bool> allowed(n());
+    for (size_t i = 0; i < n(); ++i) allowed[i] = !shapes[first + i];
+    std::vector<Sample> places = samples(graph::Recording::current().inputs().size(), 0, first);
+    const size_t most = unknowns == 0 ? at.size() : n() - std::min(unknowns, n()),
+                 least = unknowns == 0 ? 0 : most;
+    return eliminate_some(coefficients(at), drifts(at), places, allowed, least, most);
+  }
+
+  bool record_end() {
+    graph::Recording recording;
+    const Numbers turned = add_inputs(recording, 2 * sizes().turning),
+                  mu1 = add_inputs(recording, n()), v = add_inputs(recording, n()),
+                  g = add_inputs(recording, layout_.size());
+    const Number h = add_inputs(recording, 1)[0];
+    const Numbers motors = add_inputs(recording, sizes().motors),
+                  rates = add_inputs(recording, sizes().rates);
+    StepMotion step(layout_, g, v, h);
+    Numbers& end = step.end();
+    size_t next = 0;
+    for (const LiftLayout::Part& one : layout_.parts()) {
+      if (one.kind != LiftLayout::Kind::turning) continue;
+      end[static_cast<size_t>(one.first) + 1] = turned[next++];
+      end[static_cast<size_t>(one.first) + 2] = turned[next++];
+    }
+    const BodyFormulas there = bodies(end, Numbers(n()));
+    const Rows at = rows(there, end, v, rates, {});
+    const Frame frame =
+        at.empty() ? free_frame(n()) : eliminate(coefficients(at), drifts(at), order_);
+    if (frame.pivots.size() != sizes().node_pivots) return false;
+    for (size_t i = 0; i < n(); ++i)  // as at the start
+      for (size_t j = 0; j < sizes().independent; ++j)
+        if (pattern_[i][j].constant() && !frame.e[i][j].is(pattern_[i][j].value())) return false;
+    const Numbers still = still_force(there, end, motors), damped = damping(end, v);
+    Numbers mu = mu1;
+    for (size_t i = 0; i < n(); ++i) mu[i] += 0.5 * h * (still[i] + damped[i]);
+    const Carried carried = carry(there, frame, mu, still, nullptr);
+    Numbers out = end;
+    append(carried.xi, out);
+    append_carried(carried, out);
+    append(frame.pivots, out);
+    programs_.end_ = code_of(recording, out);
+    return programs_.end_ != nullptr;
+  }
+
+  const MechanismParts& parts_;
+  const LiftLayout& layout_;
+  LiftPrograms programs_;
+  std::vector<std::vector<double>> places_;  // element and xi
+  std::vector<Pivot> order_;                 // of the frame at nodes
+  std::vector<Numbers> pattern_;             // E, of which constants are read alone
+  std::vector<std::pair<size_t, size_t>> moving_;
+};
+
+std::shared_ptr<const LiftPrograms> LiftPrograms::record(const MechanismParts& parts,
+                                                         std::shared_ptr<const LiftLayout> layout,
+                                                         std::span<const double> state,
+                                                         size_t unknowns) {
+  try {
+    LiftRecorder recorder(parts, std::move(layout), state);
+    return recorder.run(unknowns) ? recorder.programs() : nullptr;
+  } catch (const std::domain_error&) {
+    return nullptr;
+  }
+}
+
+}  // namespace hamel::mechanisms

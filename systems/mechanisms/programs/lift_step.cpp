@@ -1,0 +1,182 @@
+#include <hamel/systems/mechanisms/programs/lift_step.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace hamel::mechanisms {
+namespace {
+constexpr double kLostPivotOfStep = 0.1;  // of its first value
+}  // namespace
+
+LiftWork::LiftWork(LiftProblem problem, std::shared_ptr<const Multibody> system,
+                   std::shared_ptr<const LiftPrograms> programs)
+    : problem_(std::move(problem)),
+      system_(std::move(system)),
+      carried_(static_cast<size_t>(problem_.state_size())),
+      constant_inputs_(system_->autonomous()),
+      a_(problem_.constraint_count(), problem_.dim()),
+      b_(problem_.constraint_count()) {
+  use(std::move(programs));
+}
+
+void LiftWork::use(std::shared_ptr<const LiftPrograms> programs) {
+  programs_ = std::move(programs);
+  const LiftSizes& size = sizes();
+  given_ = size.independent + size.rows + size.holonomic + size.middle_pivots;
+  element_ = given_ + size.given();
+  moving_ = element_ + size.element + 1 + size.motors + size.rates;
+  target_ = moving_ + size.moving;
+  middle_rates_ = target_ + size.independent;
+  held_ = middle_rates_ + size.rates;
+  v_ = held_ + size.held;
+  block_.assign(v_ + 2 * size.velocities, 0.0);
+  out_.assign(size.element + size.velocities + size.carried() + size.node_pivots, 0.0);
+  start_.assign(size.element + size.velocities + size.motors + size.rates, 0.0);
+  start_.resize(start_.size() + size.carried() + size.independent + size.node_pivots);
+  work_.resize(std::max({programs_->start().work_size(), programs_->residual().work_size(),
+                         programs_->end().work_size(), work_.size()}));
+  fresh_ = stale_ = true;
+}
+
+// Inputs of the run at the end and the middle of the step.
+void LiftWork::find_inputs(double t, double h) {
+  double* out = block_.data() + element_ + sizes().element + 1;
+  for (const Motor& motor : system_->forces().motors) *out++ = motor.effort({t + h, {}, {}, {}});
+  double* middle = block_.data() + middle_rates_;
+  for (const Prescribed& p : system_->all_rows().prescribed) {
+    *out++ = p.rate(t + h);
+    *middle++ = p.rate(t + h / 2);
+  }
+}
+
+// What the node carries, where it does not know: from its velocity.
+void LiftWork::find_carried(const Node& node) const {
+  const LiftSizes& size = sizes();
+  std::copy_n(node.g.data(), size.element, start_.data());
+  std::copy_n(node.x.data(), size.velocities, start_.data() + size.element);
+  double* given = start_.data() + size.element + size.velocities;
+  for (const Motor& motor : system_->forces().motors) *given++ = motor.effort({node.t, {}, {}, {}});
+  for (const Prescribed& p : system_->all_rows().prescribed) *given++ = p.rate(node.t);
+  programs_->start()(start_.data(), given, work_.data());
+  std::copy_n(given, size.carried(), carried_.data());
+}
+
+bool LiftWork::holds(const double* pivots, const std::vector<double>& first) const {
+  for (size_t i = 0; i < first.size(); ++i)
+    if (!(pivots[i] * first[i] >= kLostPivotOfStep * first[i] * first[i])) return false;
+  return true;
+}
+
+// Scales of the residuals at a node, and the pivots there.
+void LiftWork::find_weights(const Node& node) {
+  const LiftSizes& size = sizes();
+  const double* diagonal =
+      start_.data() + size.element + size.velocities + size.motors + size.rates + size.carried();
+  weights_.assign(size.unknowns, 1.0);
+  for (size_t i = 0; i < size.independent; ++i)
+    weights_[i] = diagonal[i] > 0 ? 1 / std::sqrt(diagonal[i]) : 1;
+  node_first_.assign(diagonal + size.independent, diagonal + size.independent + size.node_pivots);
+  if (size.rows + size.holonomic == 0) return;
+  Metric<> place(problem_);
+  place.set(problem_, node.t, node.g);
+  Eigen::VectorXd unit = Eigen::VectorXd::Zero(problem_.constraint_count()), xi(problem_.dim());
+  const auto weight = [&](Eigen::Index row) {
+    unit.setZero();
+    unit[row] = 1;
+    return std::sqrt(place.smallest(unit, xi));
+  };
+  const Eigen::Index held = problem_.holonomic_rows(), before = unit.size() - held;
+  const size_t first = size.independent + size.rows;
+  double largest = 0;
+  for (Eigen::Index i = 0; i < before; ++i) largest = std::max(largest, weight(i));
+  for (size_t i = size.independent; i < first; ++i) weights_[i] = largest;
+  for (Eigen::Index i = 0; i < held; ++i)
+    weights_[first + static_cast<size_t>(i)] = weight(before + i);
+}
+
+// Other programs, at a node where a pivot is lost.
+void LiftWork::record_near(const Node& node) {
+  lost_ = false;
+  auto programs = system_->lift_programs(problem_.packed(node.g).data(),
+                                         node.x.head(problem_.dim()), sizes().unknowns);
+  if (programs == nullptr) return;
+  use(std::move(programs));
+  if (changed_) changed_();
+}
+
+void LiftWork::take_up(const Node& node, double h) {
+  if (lost_) [[unlikely]]
+    record_near(node);
+  from_ = &node;
+  h_ = h;
+  const LiftSizes& size = sizes();
+  const double* carried = node.x.data() + size.velocities;
+  if (fresh_ || stale_ || std::isnan(*carried)) [[unlikely]] {
+    find_carried(node);
+    carried = carried_.data();
+    find_inputs(node.t, h);
+    double* held = block_.data() + held_;
+    const Eigen::VectorXd g = problem_.packed(node.g);
+    for (const Prescribed& p : system_->all_rows().prescribed) {
+      if (p.held < 0) continue;
+      const Tree& tree = system_->tree(g.data());
+      const Joint& joint = tree.joint(p.held);
+      const double* element = tree.placed(p.held);
+      *held++ = joint.coordinate(element) - ConstraintRows::beyond(p, joint, element);
+    }
+  } else if (!constant_inputs_) {
+    find_inputs(node.t, h);
+  }
+  double* b = block_.data();
+  std::copy_n(node.g.data(), size.element, b + element_);
+  b[element_ + size.element] = h;
+  const double *momentum = carried, *force = momentum + size.independent,
+               *rest = force + size.independent;
+  for (size_t i = 0; i < size.independent; ++i) b[target_ + i] = momentum[i] + 0.5 * h * force[i];
+  two_energy_ = rest[0];
+  force_size_ = rest[1];
+  std::copy_n(rest + 2, size.moving, b + moving_);
+  if (!fresh_) [[likely]]
+    return;
+  fresh_ = false;
+  find_weights(node);
+  std::copy_n(node.x.data(), size.velocities, b + v_);
+  programs_->residual()(b + element_, b, work_.data());
+  middle_first_.assign(b + given_ - size.middle_pivots, b + given_);
+}
+
+double LiftWork::scale_of_step() const {
+  const double size =
+      2 * std::sqrt(std::max(two_energy_, 0.0)) + std::abs(h_) * std::sqrt(force_size_);
+  return size > 0 ? size * size : problem_.dim();
+}
+
+void LiftWork::evaluate(const double* x) const {
+  double* v = block_.data() + v_;
+  for (const int i : programs_->unknowns()) v[i] = *x++;
+  programs_->residual()(block_.data() + element_, block_.data(), work_.data());
+}
+
+bool LiftWork::reach(Node& next) const {
+  const LiftSizes& size = sizes();
+  programs_->end()(block_.data() + given_, out_.data(), work_.data());
+  const double* out = out_.data();
+  std::copy_n(out, size.element, next.g.data());
+  problem_.layout().count_turns(from_->g.data(), block_.data() + element_ - size.velocities, h_,
+                                next.g.data());
+  out += size.element;
+  const size_t kept = size.velocities + size.carried();
+  std::copy_n(out, kept, next.x.data());
+  next.t = from_->t + h_;
+  if (!holds(block_.data() + given_ - size.middle_pivots, middle_first_) ||
+      !holds(out + kept, node_first_)) [[unlikely]]
+    lost_ = true;
+  return true;
+}
+
+double LiftWork::row_size(size_t i) const {
+  if (i == 0) problem_.constraints(from_->t, from_->g, a_, b_);
+  return a_.row(a_.rows() - problem_.holonomic_rows() + static_cast<Eigen::Index>(i)).lpNorm<1>();
+}
+
+}  // namespace hamel::mechanisms
