@@ -26,9 +26,21 @@ MachineCode::MachineCode(EmittedCode code, int width)
     : code_(std::move(code)),
       memory_(code_.bytes),
       width_(static_cast<size_t>(width)),
-      lanes_(std::min<size_t>(width_, 4)) {}
+      lanes_(std::min<size_t>(width_, 4)) {
+  if (memory_.data() && width_ == 1 && code_.segments.size() == 1 &&
+      code_.segments.front().calls.empty())
+    whole_ = at(code_.segments.front().begin);
+}
+
+MachineCode::Function MachineCode::at(std::size_t byte) const {
+  return reinterpret_cast<Function>(reinterpret_cast<std::uintptr_t>(memory_.data() + byte));
+}
 
 bool MachineCode::run(const double* x, double* y, double* work) const {
+  if (whole_) {
+    whole_(x, y, work, code_.table.data());
+    return !code_.has_angles || *work <= kLargestAngle;
+  }
   for (size_t first = 0; first < width_; first += lanes_) {
     // No addresses behind null, of programs without inputs or outputs.
     if (!run_lanes(x ? x + first : x, y ? y + first : y, work)) return false;
@@ -37,16 +49,14 @@ bool MachineCode::run(const double* x, double* y, double* work) const {
 }
 
 bool MachineCode::run_lanes(const double* x, double* y, double* work) const {
-  using Function = void (*)(const double* x, double* y, double* work, const double* table);
   const double* const bases[] = {x, work, code_.table.data()};
-  const auto at = [&](const LaneAddress& a) {
+  const auto place = [&](const LaneAddress& a) {
     return bases[static_cast<size_t>(a.base)] + a.offset;
   };
   for (const Segment& segment : code_.segments) {
-    const auto address = reinterpret_cast<std::uintptr_t>(memory_.data() + segment.begin);
-    reinterpret_cast<Function>(address)(x, y, work, code_.table.data());
+    at(segment.begin)(x, y, work, code_.table.data());
     for (const LibraryCall& call : segment.calls) {
-      const double *a = at(call.a), *b = at(call.b);
+      const double *a = place(call.a), *b = place(call.b);
       double* const to = work + call.to;
       for (size_t j = 0; j < lanes_; ++j) to[j] = evaluate(call.op, a[j], b[j]);
     }

@@ -63,11 +63,14 @@ class MachineCode {
 
  private:
   MachineCode(EmittedCode code, int width);
+  using Function = void (*)(const double* x, double* y, double* work, const double* table);
   bool run_lanes(const double* x, double* y, double* work) const;
+  Function at(std::size_t byte) const;
 
   EmittedCode code_;
   ExecutableMemory memory_;
   size_t width_, lanes_;
+  Function whole_ = nullptr;  // of all bodies, where it calls nothing
 };
 
 }  // namespace hamel::graph

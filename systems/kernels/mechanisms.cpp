@@ -37,8 +37,21 @@ std::unique_ptr<Kernel> make_mechanism_lift(const KernelSetup& setup,
                                             const KernelFactory& general) {
   const auto system = Multibody::of(setup.mechanics);
   if (system == nullptr || !is_covered(setup)) return general(setup);
+  const auto layout = system->lift_layout();
+  if (layout == nullptr || !layout->moves_by(*setup.geometry)) return general(setup);
   const Programs programs = system->lift_programs();
   if (programs == nullptr) return general(setup);
+  if (getenv("LIFTDBG"))
+    fprintf(stderr,
+            "K %zu m %zu rows %zu hol %zu moving %zu midpiv %zu nodepiv %zu start %zu residual %zu "
+            "end %zu in %zu out %zu\n",
+            programs->sizes().unknowns, programs->sizes().independent, programs->sizes().rows,
+            programs->sizes().holonomic, programs->sizes().moving, programs->sizes().middle_pivots,
+            programs->sizes().node_pivots, programs->start().program().instructions().size(),
+            programs->residual().program().instructions().size(),
+            programs->end().program().instructions().size(),
+            programs->residual().program().inputs().size(),
+            programs->end().program().outputs().size());
   switch (programs->sizes().unknowns) {
     case 1: return program_loop<1>(setup, system, programs);
     case 2: return program_loop<2>(setup, system, programs);
@@ -52,10 +65,11 @@ std::unique_ptr<Kernel> make_mechanism_lift(const KernelSetup& setup,
 }  // namespace
 
 void add_mechanism_kernels(Registry& registry) {
-  registry.add_kernel(problem_key(Multibody::type()), Cayley<SO3>::name(), Lift::name(),
-                      [general = registry.scheme(Lift::name())->erased](const KernelSetup& setup) {
-                        return make_mechanism_lift(setup, general);
-                      });
+  SchemeInfo lift = *registry.scheme(Lift::name());
+  lift.erased = [general = lift.erased](const KernelSetup& setup) {
+    return make_mechanism_lift(setup, general);
+  };
+  registry.add(std::move(lift));
 }
 
 }  // namespace hamel

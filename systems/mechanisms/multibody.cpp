@@ -23,8 +23,6 @@ Multibody::Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
   keep(all);
 }
 
-const std::type_info& Multibody::type() { return typeid(Multibody); }
-
 std::shared_ptr<const Multibody> Multibody::of(const std::shared_ptr<const Mechanics>& system) {
   return std::dynamic_pointer_cast<const Multibody>(system);
 }

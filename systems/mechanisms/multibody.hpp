@@ -10,7 +10,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <typeinfo>
 #include <vector>
 
 #include <hamel/framework/mechanics/implied_rows.hpp>
@@ -37,8 +36,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   /// All rows of `rows`; keep() drops some.
   Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
             std::shared_ptr<const Geometry> geometry);
-  /// Its type, and a system as one, or null: for other libraries, which lack the type.
-  static const std::type_info& type();
+  /// A system as one, or null: for other libraries, which lack the type.
   static std::shared_ptr<const Multibody> of(const std::shared_ptr<const Mechanics>& system);
   /// Only these rows of each(), of which the holonomic ones go last.
   void keep(const std::vector<int>& rows);

@@ -13,7 +13,8 @@ using graph::Node;
 using graph::Op;
 using graph::Recording;
 
-constexpr double kLeastPivot = 0.05;     // of the largest entry of its row
+constexpr double kLeastPivot = 0.05;  // of the largest entry of its row
+constexpr double kLastingPivot = 0.3;
 constexpr double kSmallestPivot = 1e-6;  // where there has to be one
 
 double value_of_condition(Op op, double a, double b) {
@@ -45,7 +46,8 @@ class Elimination {
   std::vector<Pivot> run(std::vector<Number>& pivots, size_t most, size_t least = 0) {
     std::vector<Pivot> out;
     while (out.size() < most) {
-      std::optional<Pivot> best = cheapest(kLeastPivot);
+      std::optional<Pivot> best = lasting_ ? cheapest(kLastingPivot) : std::nullopt;
+      if (!best) best = cheapest(kLeastPivot);
       if (!best && out.size() < least) best = cheapest(kSmallestPivot);
       if (!best) break;
       take(*best, pivots);
@@ -53,6 +55,8 @@ class Elimination {
     }
     return out;
   }
+  // Larger pivots first, which last longer along a motion.
+  void prefer_lasting() { lasting_ = true; }
   // A pivot that was chosen before.
   void take(const Pivot& pivot, std::vector<Number>& pivots) {
     const auto [row, column] = pivot;
@@ -128,6 +132,7 @@ class Elimination {
   std::vector<Number>& c_;
   std::vector<Sample>& samples_;
   std::vector<bool> allowed_;
+  bool lasting_ = false;
   std::vector<bool> row_done_, column_done_;
 };
 
@@ -183,9 +188,11 @@ Frame free_frame(size_t n) {
 }
 
 Frame eliminate(std::vector<std::vector<Number>> a, std::vector<Number> c,
-                std::vector<Sample>& samples) {
+                std::vector<Sample>& samples, bool lasting) {
   Frame out;
-  out.order = Elimination(a, c, samples).run(out.pivots, a.size());
+  Elimination elimination(a, c, samples);
+  if (lasting) elimination.prefer_lasting();
+  out.order = elimination.run(out.pivots, a.size());
   if (out.order.size() < a.size())
     throw std::domain_error("elimination: the rows depend on each other");
   complete(a, c, out);
@@ -209,6 +216,7 @@ Eliminated eliminate_some(std::vector<std::vector<Number>> a, std::vector<Number
   Eliminated out{std::move(a), std::move(c), {}, {}, {}};
   if (out.a.empty()) return out;
   Elimination elimination(out.a, out.c, samples, allowed);
+  elimination.prefer_lasting();
   out.order = elimination.run(out.pivots, most, least);
   for (size_t i = 0; i < out.a.size(); ++i)
     if (elimination.is_left(i)) out.left.push_back(i);

@@ -52,10 +52,10 @@ struct Eliminated {
   void complete(std::vector<Number>& x) const;
 };
 
-/// Rows and right-hand sides of A xi' = c, independent at the samples. Throws std::domain_error
-/// where no pivot is left.
+/// Rows and right-hand sides of A xi' = c, independent at the samples. lasting: large pivots go
+/// before cheap ones. Throws std::domain_error where no pivot is left.
 Frame eliminate(std::vector<std::vector<Number>> a, std::vector<Number> c,
-                std::vector<Sample>& samples);
+                std::vector<Sample>& samples, bool lasting = false);
 
 /// With the pivots of another elimination.
 Frame eliminate(std::vector<std::vector<Number>> a, std::vector<Number> c,

@@ -57,6 +57,14 @@ SO2Element<double> plane_turn(double angle, double turns) {
   return out;
 }
 
+// Full turns of an angle whose cosine and sine are these.
+std::int64_t turns_of(double angle, double c, double s) {
+  const double turns = std::rint(angle / kTurn);
+  if (std::abs(angle - kTurn * turns) < 3) [[likely]]  // far from half a turn
+    return static_cast<std::int64_t>(turns);
+  return std::llround((angle - SO2Element<double>{c, s, 0}.angle()) / kTurn);
+}
+
 }  // namespace
 
 std::shared_ptr<const LiftLayout> LiftLayout::of(const MechanismParts& parts) {
@@ -79,9 +87,7 @@ void LiftLayout::pack(const double* numbers, double* element) const {
     switch (part.kind) {
       case Kind::wheel: Packing<SO2>::store(plane_turn(x[0], x[1]), to); break;
       case Kind::turning: {
-        SO2Element<double> turned{x[1], x[2], 0};
-        turned.turns = std::llround((x[0] - turned.angle()) / kTurn);
-        Packing<SO2>::store(turned, to);
+        Packing<SO2>::store({x[1], x[2], turns_of(x[0], x[1], x[2])}, to);
         break;
       }
       case Kind::planar:
@@ -124,6 +130,25 @@ void LiftLayout::unpack(const double* element, double* numbers) const {
   }
 }
 
+void LiftLayout::coordinates(const double* numbers, double* out) const {
+  const auto put = [&out](const auto& values) {
+    out = std::copy(values.begin(), values.end(), out);
+  };
+  for (const Part& part : parts_) {
+    const double* x = numbers + part.first;
+    switch (part.kind) {
+      case Kind::added:
+      case Kind::turning: *out++ = x[0]; break;
+      case Kind::wheel: *out++ = x[0] + kTurn * x[1]; break;
+      case Kind::ball: put(SO3::coordinates(Packing<SO3>::load(x))); break;
+      case Kind::planar:
+        put(SE2::coordinates(SE2Element<double>{{x[0], x[1], std::llround(x[4])}, {x[2], x[3]}}));
+        break;
+      case Kind::free: put(SE3::coordinates(Packing<SE3>::load(x))); break;
+    }
+  }
+}
+
 void LiftLayout::normalise(double* numbers) const {
   for (const Part& part : parts_) {
     double* x = numbers + part.first;
@@ -154,6 +179,28 @@ void LiftLayout::normalise(double* numbers) const {
       }
     }
   }
+}
+
+bool LiftLayout::moves_by(const Geometry& geometry) const {
+  std::vector<double> xi(static_cast<size_t>(geometry.dim())),
+      moved(static_cast<size_t>(geometry.size())), numbers(size_), expected(moved.size());
+  for (size_t i = 0; i < xi.size(); ++i) xi[i] = 0.3 * std::sin(2.0 * static_cast<double>(i) + 1);
+  geometry.tau(xi.data(), moved.data());
+  for (const Part& part : parts_) {
+    const double* v = xi.data() + part.dof;
+    double* to = expected.data() + part.element;
+    switch (part.kind) {
+      case Kind::added: *to = *v; break;
+      case Kind::wheel:
+      case Kind::turning: Packing<SO2>::store(SO2::from_angle(*v), to); break;
+      case Kind::ball: Packing<SO3>::store(Cayley<SO3>::tau(Vec<3>(v)), to); break;
+      case Kind::planar: Packing<SE2>::store(Cayley<SE2>::tau(Vec<3>(v)), to); break;
+      case Kind::free: Packing<SE3>::store(Cayley<SE3>::tau(Vec<6>(v)), to); break;
+    }
+  }
+  for (size_t i = 0; i < moved.size(); ++i)
+    if (!(std::abs(moved[i] - expected[i]) <= 1e-14)) return false;
+  return true;
 }
 
 // Between two places on one side of the cut there is no turn, in less than half a one.

@@ -35,9 +35,12 @@ class LiftLayout {
   const std::vector<Part>& parts() const { return parts_; }  // of each link
   size_t size() const { return size_; }
   size_t turning_count() const { return turning_; }
+  /// Is tau of a geometry Cayley's map, and addition on axes? Seen from what it does.
+  bool moves_by(const Geometry& geometry) const;
   /// To an element of the tree, and back.
   void pack(const double* numbers, double* element) const;
   void unpack(const double* element, double* numbers) const;
+  void coordinates(const double* numbers, double* out) const;
   /// Without round-off of the products behind it.
   void normalise(double* numbers) const;
   /// The turns of planar parts behind a step h v.

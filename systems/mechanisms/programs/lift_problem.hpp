@@ -17,28 +17,34 @@ class LiftProblem : public DynamicProblem {
  public:
   LiftProblem(std::shared_ptr<const Geometry> geometry, std::shared_ptr<const Mechanics> mechanics,
               std::shared_ptr<const LiftLayout> layout)
-      : DynamicProblem(std::move(geometry), std::move(mechanics)), layout_(std::move(layout)) {}
+      : DynamicProblem(std::move(geometry), std::move(mechanics)),
+        layout_(std::move(layout)),
+        seen_(element()),
+        packed_(DynamicProblem::element()) {
+    seen_.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
 
   const LiftLayout& layout() const { return *layout_; }
-  /// xi, and the most that is carried in any frame.
+  /// xi, what is carried is known of (0: nothing), and the most that is carried in any frame.
   int state_size() const {
     const int n = dim(), m = n - constraint_count();
-    return n + 2 * m + 2 + n * m;
+    return n + 1 + 2 * m + 2 + n * m;
   }
   void velocity(const State& x, Vector& xi) const { xi = x.head(dim()); }
   /// Nothing is carried yet.
   void to_state(const Vector& xi, State& x) const {
     x.setZero();
     x.head(dim()) = xi;
-    x[dim()] = std::numeric_limits<double>::quiet_NaN();
   }
 
   Element element() const { return Element::Zero(static_cast<Eigen::Index>(layout_->size())); }
-  /// The element of the group.
-  Element packed(const Element& g) const {
-    Element out = DynamicProblem::element();
-    layout_->pack(g.data(), out.data());
-    return out;
+  /// The element of the group, until the next call.
+  const Element& packed(const Element& g) const {
+    if (seen_ != g) {
+      layout_->pack(g.data(), packed_.data());
+      seen_ = g;
+    }
+    return packed_;
   }
   void unpack(const Element& packed, Element& out) const {
     layout_->unpack(packed.data(), out.data());
@@ -71,9 +77,7 @@ class LiftProblem : public DynamicProblem {
     return DynamicProblem::recover_step(packed(delta), s, xi);
   }
   void store(const Element& g, double* out) const { layout_->pack(g.data(), out); }
-  void coordinates(const Element& g, double* out) const {
-    DynamicProblem::coordinates(packed(g), out);
-  }
+  void coordinates(const Element& g, double* out) const { layout_->coordinates(g.data(), out); }
   void from_coordinates(std::span<const double> values, Element& out) const {
     Element there = DynamicProblem::element();
     DynamicProblem::from_coordinates(values, there);
@@ -105,6 +109,7 @@ class LiftProblem : public DynamicProblem {
 
  private:
   std::shared_ptr<const LiftLayout> layout_;
+  mutable Element seen_, packed_;
 };
 
 }  // namespace hamel::mechanisms

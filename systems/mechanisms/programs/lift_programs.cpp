@@ -258,7 +258,7 @@ class LiftRecorder {
     Frame frame = free_frame(n());
     if (!at.empty()) {
       std::vector<Sample> places = samples(recording.inputs().size(), 0, layout_.size());
-      frame = eliminate(coefficients(at), drifts(at), places);
+      frame = eliminate(coefficients(at), drifts(at), places, /*lasting=*/true);
     }
     order_ = frame.order;
     pattern_ = frame.e;

@@ -35,7 +35,8 @@ void LiftWork::use(std::shared_ptr<const LiftPrograms> programs) {
   start_.resize(start_.size() + size.carried() + size.independent + size.node_pivots);
   work_.resize(std::max({programs_->start().work_size(), programs_->residual().work_size(),
                          programs_->end().work_size(), work_.size()}));
-  fresh_ = stale_ = true;
+  fresh_ = true;
+  known_ += 1;
 }
 
 // Inputs of the run at the end and the middle of the step.
@@ -110,8 +111,8 @@ void LiftWork::take_up(const Node& node, double h) {
   from_ = &node;
   h_ = h;
   const LiftSizes& size = sizes();
-  const double* carried = node.x.data() + size.velocities;
-  if (fresh_ || stale_ || std::isnan(*carried)) [[unlikely]] {
+  const double* carried = node.x.data() + size.velocities + 1;
+  if (fresh_ || carried[-1] != known_) [[unlikely]] {
     find_carried(node);
     carried = carried_.data();
     find_inputs(node.t, h);
@@ -165,11 +166,14 @@ bool LiftWork::reach(Node& next) const {
   problem_.layout().count_turns(from_->g.data(), block_.data() + element_ - size.velocities, h_,
                                 next.g.data());
   out += size.element;
-  const size_t kept = size.velocities + size.carried();
-  std::copy_n(out, kept, next.x.data());
+  double* x = next.x.data();
+  std::copy_n(out, size.velocities, x);
+  x[size.velocities] = known_;
+  out += size.velocities;
+  std::copy_n(out, size.carried(), x + size.velocities + 1);
   next.t = from_->t + h_;
   if (!holds(block_.data() + given_ - size.middle_pivots, middle_first_) ||
-      !holds(out + kept, node_first_)) [[unlikely]]
+      !holds(out + size.carried(), node_first_)) [[unlikely]]
     lost_ = true;
   return true;
 }

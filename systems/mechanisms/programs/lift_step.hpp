@@ -37,7 +37,8 @@ class LiftWork {
   /// |row of phi|, sum of its coefficients at the node.
   double row_size(size_t i) const;
   double scale_of_step() const;
-  void forget_forces() { stale_ = true; }
+  /// What nodes carry is known no longer.
+  void forget_forces() { known_ += 1; }
 
   LiftProblem problem_;
   std::shared_ptr<const LiftPrograms> programs_;
@@ -62,7 +63,8 @@ class LiftWork {
   mutable std::vector<double> carried_;  // where the node has none
   std::vector<double> weights_, middle_first_, node_first_;
   mutable bool lost_ = false;
-  bool fresh_ = true, stale_ = true, constant_inputs_;
+  bool fresh_ = true, constant_inputs_;
+  double known_ = 1;  // marks nodes that carry what belongs to these programs and forces
   mutable Eigen::MatrixXd a_;
   mutable Eigen::VectorXd b_;
   double two_energy_ = 0, force_size_ = 0;
