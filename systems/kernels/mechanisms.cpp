@@ -41,9 +41,6 @@ std::unique_ptr<Kernel> make_mechanism_lift(const KernelSetup& setup,
   if (layout == nullptr || !layout->moves_by(*setup.geometry)) return general(setup);
   const Programs programs = system->lift_programs();
   if (programs == nullptr) return general(setup);
-  if (getenv("LIFTDBG"))
-    fprintf(stderr,
-            "K %zu m %zu rows %zu hol %zu moving %zu midpiv %zu nodepiv %zu start %zu residual %zu "
             "end %zu in %zu out %zu\n",
             programs->sizes().unknowns, programs->sizes().independent, programs->sizes().rows,
             programs->sizes().holonomic, programs->sizes().moving, programs->sizes().middle_pivots,

@@ -343,8 +343,11 @@ class LiftRecorder {
     }
     append(mu1, out);
     append(v, out);
-    programs_.residual_ = code_of(recording, out);
-    return programs_.residual_ != nullptr;
+    const auto program = program_of(recording, out);
+    if (program->instructions().size() > kLongLift) return false;
+    programs_.residual_ = std::make_shared<graph::Code>(program);
+    programs_.lanes_ = std::make_shared<graph::Code>(program, LiftPrograms::kLanes);
+    return true;
   }
 
   // The rows of velocities at the middle, eliminated with pivots among those velocities that no

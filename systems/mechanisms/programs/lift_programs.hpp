@@ -66,6 +66,9 @@ class LiftPrograms {
   /// element, h, motors, rates at the end, moving entries of E, target, rates at the middle,
   /// coordinates held, v -> residuals; pivots; c, s of turning joints at the end, mu1, v.
   const graph::Code& residual() const { return *residual_; }
+  /// The same for kLanes states at once.
+  const graph::Code& lanes() const { return *lanes_; }
+  static constexpr int kLanes = 8;
   /// c, s at the end, mu1, v; element, h, motors, rates -> element, xi, carried; pivots.
   const graph::Code& end() const { return *end_; }
 
@@ -74,7 +77,7 @@ class LiftPrograms {
   std::shared_ptr<const LiftLayout> layout_;
   LiftSizes sizes_ = {};
   std::vector<int> unknowns_;
-  std::shared_ptr<const graph::Code> start_, residual_, end_;
+  std::shared_ptr<const graph::Code> start_, residual_, lanes_, end_;
 };
 
 /// Does it cover these parts, but for joints?

@@ -31,9 +31,12 @@ class LiftWork {
   void take_up(const Node& node, double h);
   /// Residuals at the unknowns, into residuals().
   void evaluate(const double* x) const;
+  /// Residuals of all lanes, the last one at the unknowns, the others with one of them shifted.
+  const double* shift(const double* x, Eigen::Index first, Eigen::Index count,
+                      double* shifts) const;
   bool reach(Node& next) const;
   const double* residuals() const { return block_.data(); }
-  const double* weights() const { return weights_.data(); }
+  const double* weights() const { return now_.weights.data(); }
   /// |row of phi|, sum of its coefficients at the node.
   double row_size(size_t i) const;
   double scale_of_step() const;
@@ -47,12 +50,21 @@ class LiftWork {
 
  private:
   const LiftSizes& sizes() const { return programs_->sizes(); }
-  void use(std::shared_ptr<const LiftPrograms> programs);
-  void record_near(const Node& node);
+  // Programs with the scales of their residuals, and their pivots where they were recorded.
+  struct Recorded {
+    std::shared_ptr<const LiftPrograms> programs;
+    std::vector<double> weights, middle_pivots, node_pivots;
+  };
+  void use(Recorded recorded);
+  void change_programs(const Node& node);
+  void measure(const Node& node, double h);
+  void put_in(const Node& node, const double* carried, double h);
+  void find_held(const Node& node);
+  const double* node_pivots() const;
+  const double* middle_pivots() const;
   void find_carried(const Node& node) const;
   void find_weights(const Node& node);
   void find_inputs(double t, double h);
-  bool holds(const double* pivots, const std::vector<double>& first) const;
 
   std::shared_ptr<const Multibody> system_;
   std::function<void()> changed_;
@@ -61,7 +73,9 @@ class LiftWork {
   mutable std::vector<double> block_, out_, work_, start_;
   size_t given_ = 0, element_ = 0, moving_ = 0, target_ = 0, middle_rates_ = 0, held_ = 0, v_ = 0;
   mutable std::vector<double> carried_;  // where the node has none
-  std::vector<double> weights_, middle_first_, node_first_;
+  Recorded now_;
+  std::vector<Recorded> before_;  // of this run, in their order
+  mutable std::vector<double> lanes_in_, lanes_out_, lanes_work_;
   mutable bool lost_ = false;
   bool fresh_ = true, constant_inputs_;
   double known_ = 1;  // marks nodes that carry what belongs to these programs and forces
@@ -94,6 +108,24 @@ class LiftStep : public LiftWork {
   void residual(const Unknown& x, Unknown& f) const {
     see(x);
     for (Eigen::Index i = 0; i < x.size(); ++i) f[i] = residuals()[i] * weights()[i];
+  }
+  /// By forward differences, a direction in each lane: it only steers.
+  void linearise(const Unknown& x, Unknown& f, Jacobian& j) const {
+    const Eigen::Index n = x.size();
+    f.resize(n);
+    j.resize(n, n);
+    double shifts[LiftPrograms::kLanes];
+    constexpr Eigen::Index at_once = LiftPrograms::kLanes - 1;
+    for (Eigen::Index first = 0; first < n; first += at_once) {
+      const Eigen::Index count = std::min(at_once, n - first);
+      const double* out = shift(x.data(), first, count, shifts);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const double *row = out + LiftPrograms::kLanes * i, here = row[at_once];
+        f[i] = here * weights()[i];
+        for (Eigen::Index k = 0; k < count; ++k)
+          j(i, first + k) = (row[k] - here) * weights()[i] / shifts[k];
+      }
+    }
   }
   /// F but for what the round-off of a configuration does to its rows (held_rows.hpp).
   void residual_of_places(const Unknown& x, Unknown& f) const {
