@@ -1,4 +1,5 @@
 // Kernels of mechanisms: lift on recorded programs, else the scheme's own kernel.
+#include <hamel/systems/kernels/lift_newton.hpp>
 #include <hamel/systems/kernels/mechanisms.hpp>
 #include <hamel/systems/kernels/units.hpp>
 #include <hamel/systems/mechanisms/programs/lift_step.hpp>
@@ -17,7 +18,7 @@ std::unique_ptr<Kernel> program_loop(const KernelSetup& setup,
   using Whole = LiftProblem;
   const Whole whole(setup.geometry, setup.mechanics, system->lift_layout());
   auto changes = std::make_shared<Kernel*>(nullptr);
-  auto out = std::make_unique<hamel::Loop<ProgramLift<K>, Whole, Newton>>(
+  auto out = std::make_unique<hamel::Loop<ProgramLift<K>, Whole, LiftNewton>>(
       setup, whole, [&](const Whole& problem) {
         LiftStep<K> step(problem, system, programs);
         step.when_changed([changes] { (*changes)->clear_history(); });
@@ -41,14 +42,6 @@ std::unique_ptr<Kernel> make_mechanism_lift(const KernelSetup& setup,
   if (layout == nullptr || !layout->moves_by(*setup.geometry)) return general(setup);
   const Programs programs = system->lift_programs();
   if (programs == nullptr) return general(setup);
-            "end %zu in %zu out %zu\n",
-            programs->sizes().unknowns, programs->sizes().independent, programs->sizes().rows,
-            programs->sizes().holonomic, programs->sizes().moving, programs->sizes().middle_pivots,
-            programs->sizes().node_pivots, programs->start().program().instructions().size(),
-            programs->residual().program().instructions().size(),
-            programs->end().program().instructions().size(),
-            programs->residual().program().inputs().size(),
-            programs->end().program().outputs().size());
   switch (programs->sizes().unknowns) {
     case 1: return program_loop<1>(setup, system, programs);
     case 2: return program_loop<2>(setup, system, programs);
