@@ -144,7 +144,7 @@ void Assembly::find_loads(const Multibody& system, int root, std::vector<double>
   bool wanted = false;
   for (size_t i = 0; i < contacts.size(); ++i) {
     if (root_of(tree, contacts[i].link) != root) continue;
-    const Vec3 at = ConstraintRows::touch(contacts[i], tree);
+    const Vec3 at = system.all_rows().touch(contacts[i], tree);
     if (parts_.contacts_[i].load) {
       loads[i] = *parts_.contacts_[i].load;
       right -= loads[i] * Vec3(1, at[1], at[0]);
@@ -156,7 +156,7 @@ void Assembly::find_loads(const Multibody& system, int root, std::vector<double>
   if (!wanted) return;
   Eigen::MatrixXd a(3, static_cast<Eigen::Index>(open.size()));
   for (size_t k = 0; k < open.size(); ++k) {
-    const Vec3 at = ConstraintRows::touch(contacts[open[k]], tree);
+    const Vec3 at = system.all_rows().touch(contacts[open[k]], tree);
     a.col(static_cast<Eigen::Index>(k)) = Vec3(1, at[1], at[0]);
   }
   const Eigen::VectorXd found = least(a, right);
