@@ -24,6 +24,11 @@ Vector to_vector(const std::vector<double>& v) {
 std::shared_ptr<const Geometry> geometry_of(const Registry& registry, const SystemModel& model) {
   if (!model.mechanics->autonomous())
     throw ConfigError({fmt::format("{}: depends on time: it has no steady motion", model.name)});
+  if (!model.contact_laws.empty())
+    throw ConfigError(
+        {fmt::format("{}: its contacts may slide: steady motions are those of the system without "
+                     "friction, leave it out",
+                     model.name)});
   auto geometry = registry.geometry(model.group.name, "exp");
   if (geometry == nullptr)
     throw ConfigError(

@@ -108,9 +108,9 @@ Eigen::Vector2d ContactDynamics::slip(int i) const {
 }
 
 // |W xi| <= sqrt(2 E W M_A W^T) of a row, by Cauchy and Schwarz; of all of them.
-double ContactDynamics::speed_scale(int i) {
-  metric_.momentum(xi_, work_);
-  const double twice_energy = work_.dot(xi_);
+double ContactDynamics::scale_at(int i, const Eigen::VectorXd& velocity) {
+  metric_.momentum(velocity, work_);
+  const double twice_energy = work_.dot(velocity);
   double reach = 0;
   const auto add = [&](int row) {
     respond_to(row, 0);
@@ -126,7 +126,9 @@ void ContactDynamics::find_direction(const ContactStates& states, int i) {
   const Eigen::Vector2d s = slip(i);
   const double size = s.norm();
   const bool slips = size > state.no_slip && !state.begins;
-  directions_[static_cast<size_t>(i)] = slips ? Eigen::Vector2d(s / size) : state.direction;
+  Eigen::Vector2d& out = directions_[static_cast<size_t>(i)];
+  out = state.direction;
+  if (slips) out = s.dot(state.direction) < 0 ? Eigen::Vector2d(-s / size) : s / size;
 }
 
 void ContactDynamics::respond(int column) {

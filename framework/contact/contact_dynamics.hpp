@@ -7,9 +7,12 @@
 //   rolling: R = C = W;   sliding: R = N, C = N - mu (s/|s|)^T T,                               (2)
 // so that the friction of a sliding contact is implicit in its normal reaction: one linear system,
 // not symmetric, K l_c = b_R' - R' xi - R a, K = R M_A C^T, a the acceleration without contacts.
-// A contact with a given load in place of N has the force -mu load T^T s/|s| when it slides. Where
-// rows of contacts that roll depend on each other (four wheels of a cart) the motion is unique, and
-// their reactions are those of the least sum of (l/(mu load))^2: contacts of equal compliance.
+// Behind a slip that ends friction continues smoothly, against s/|s| or -s/|s|, whichever is along
+// the slip at the last node: no stage of a step that passes the end has a jump; the step ends
+// there. A contact with a given load in place of N has the force -mu load T^T s/|s| when it slides.
+// Where rows of contacts that roll depend on each other (four wheels of a cart) the motion is
+// unique, and their reactions are those of the least sum of (l/(mu load))^2: contacts of equal
+// compliance.
 //   Modes after a switch: the contact problem with G = W M_A C^T and c = W a + W' xi - b_W', of
 // contacts that slip N and C of (2) alone, of the others W.                                     (3)
 //   Impact: the contact problem with G = W M_A W^T, c = ((1 + e)(N xi - b_N), T xi - b_T), e = 0 of
@@ -66,7 +69,9 @@ class ContactDynamics {
   double gap_rate(int i) const;
   Eigen::Vector2d slip(int i) const;
   /// The largest velocity that the kinetic energy could be that of at a contact.
-  double speed_scale(int i);
+  double speed_scale(int i) { return scale_at(i, xi_); }
+  /// The same of an acceleration, behind accelerate(): of that without the contacts' reactions.
+  double acceleration_scale(int i) { return scale_at(i, free_); }
 
   /// The acceleration in these modes, (2), into acceleration(). False where the system is singular.
   bool accelerate(const ContactStates& states);
@@ -96,6 +101,7 @@ class ContactDynamics {
   void rest(const ContactStates& states, int i, Eigen::VectorXd& xi);
 
  private:
+  double scale_at(int i, const Eigen::VectorXd& velocity);
   struct Row {
     int row;      // of A
     int contact;  // whose it is

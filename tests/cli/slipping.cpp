@@ -31,7 +31,7 @@ class Slipping : public CommandLine {
     return write("block.toml", kBlock + more + "\n" + behind);
   }
   json run_of(const std::string& system, const Words& more = {}) {
-    Words words = {"run", system};
+    Words words = {system};
     words.insert(words.end(), more.begin(), more.end());
     return record(words);
   }
@@ -49,7 +49,7 @@ TEST_F(Slipping, ABlockWithDryFrictionRests) {
   ASSERT_EQ(out["events"].size(), 1U);
   EXPECT_EQ(out["events"][0]["name"], "way.sticks");
   EXPECT_NEAR(out["events"][0]["time"].get<double>(), 0.5, 1e-13);
-  EXPECT_LE(out["steps"].get<long>(), 25);
+  EXPECT_LE(out["steps"].get<long>(), 12);
 }
 
 TEST_F(Slipping, StopsAndWalls) {
@@ -68,10 +68,10 @@ TEST_F(Slipping, StopsAndWalls) {
 TEST_F(Slipping, MistakesAreNamed) {
   EXPECT_THAT(refused(block("friction = -2")),
               HasSubstr("block.toml:6:1: joint 'way': friction: got -2, expected at least 0"));
-  EXPECT_THAT(refused(block("stop = [1, -1]")), HasSubstr("joint 'way': stop: got [1, -1]"));
+  EXPECT_THAT(refused(block("stop = [1, -1]")), HasSubstr("joint 'way': stop: got [1,-1]"));
   EXPECT_THAT(refused(block("restitution = 0.5")), HasSubstr("restitution: expected a stop"));
   EXPECT_THAT(refused(block("stop = [0, 1]", "[start]\nway.position = 1.5")),
-              HasSubstr("configuration: 'way.high' of block is passed by 0.5"));
+              AllOf(HasSubstr("configuration: 'way.high' of "), HasSubstr("is passed by 0.5")));
   EXPECT_THAT(refused(block("", "[[wall]]\nname = \"w\"\ndistance = \"1 - way.rate\"")),
               HasSubstr("wall 'w': distance: 'way.rate' is a velocity"));
   EXPECT_THAT(refused(block("", "[[point]]\nbody = \"block\"\nfriction = 0.1")),
@@ -83,9 +83,8 @@ TEST_F(Slipping, MistakesAreNamed) {
 // An effort that jumps is noted, with what to take.
 TEST_F(Slipping, JumpsAreNoted) {
   const auto with = [&](const std::string& effort) {
-    return run_of(block("", "[[motor]]\njoint = \"way\"\neffort = \"" + effort + "\"\n"),
-                  {"--until", "0.1"})["notes"]
-        .dump();
+    return run({"describe", block("", "[[motor]]\njoint = \"way\"\neffort = \"" + effort + "\"\n")})
+        .out;
   };
   for (const char* effort : {"-2*sign(way.rate)", "way.rate > 0 ? -1 : 1"})
     EXPECT_THAT(with(effort),

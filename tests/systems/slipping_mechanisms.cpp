@@ -235,7 +235,7 @@ TEST(DryFriction, ABlockStopsAndRests) {
   EXPECT_NEAR(time_of(r, "way.sticks"), 0.5, 1e-13);
   EXPECT_NEAR(last(r, "way.position"), 0.25, 1e-13);
   EXPECT_EQ(last(r, "way.rate"), 0);
-  EXPECT_LE(r.steps, 25);
+  EXPECT_LE(r.steps, 12);
 }
 
 TEST(Stops, AJointStrikesItsEnds) {

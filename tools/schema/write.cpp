@@ -238,7 +238,14 @@ Json mechanism(std::istream& from) {
   for (const ContactKind& kind : contact_kinds()) {
     Json keys = {{"name", {{"type", "string"}, {"description", "left out: the body's"}}},
                  {"body", type_of(std::string())},
-                 {"at", {{"$ref", "#/definitions/point"}, {"description", "m"}}}};
+                 {"at", {{"$ref", "#/definitions/point"}, {"description", "m"}}},
+                 {"unilateral", {{"type", "boolean"}, {"description", "may it open?"}}}};
+    const auto number = [&](const char* name, const char* meaning) {
+      keys[name] = {{"$ref", "#/definitions/formula"}, {"description", meaning}};
+    };
+    number("friction", "coefficient; left out: the contact is ideal");
+    number("restitution", "coefficient, of impacts");
+    number("load", "normal force, N, where its height cannot change; left out: of statics");
     add_fields(kind.fields, keys);
     out["properties"][kind.name] = list_of({{"type", "object"},
                                             {"required", {"body"}},

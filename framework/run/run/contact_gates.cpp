@@ -35,7 +35,8 @@ void ContactKernel::evaluate(const Snapshot& state) {
 
 // At the node: scales of velocities and directions of slip, and the gates.
 void ContactKernel::evaluate_node() {
-  at_node_ = gates(now_->time());
+  if (!knows_node_) at_node_ = gates(now_->time());
+  knows_node_ = false;
   follow_speeds();
 }
 
@@ -43,11 +44,16 @@ void ContactKernel::follow_speeds() {
   for (int i = 0; i < count(); ++i) {
     FollowedContact& follows = followed(i);
     follows.speed = std::max(follows.speed, dynamics().speed_scale(i));
+    if (follows.speed == 0)  // at rest from the start on: that of a step
+      follows.speed = dynamics().acceleration_scale(i) * std::abs(now_->next_step());
     contact(i).no_slip = kSmallSlip * follows.speed;
     const Eigen::Vector2d s = dynamics().slip(i);
     Eigen::Vector2d& reference = references_[static_cast<size_t>(i)];
-    reference =
-        s.norm() > 10 * contact(i).no_slip ? Eigen::Vector2d(s / s.norm()) : contact(i).direction;
+    const bool slips = s.norm() > 10 * contact(i).no_slip;
+    reference = slips ? Eigen::Vector2d(s / s.norm()) : contact(i).direction;
+    if (!slips || contact(i).begins || contact(i).mode != ContactMode::slides) continue;
+    contact(i).direction = reference;
+    (*now_states_)[static_cast<size_t>(i)].direction = reference;
   }
 }
 
@@ -87,6 +93,7 @@ ContactKernel::Gates ContactKernel::gates(double t, bool near) {
       continue;
     }
     if (law.normal) first = dynamics().normal_reaction(i);
+    if (law.tangential.empty()) continue;
     const double held = law.normal ? dynamics().normal_reaction(i) : law.load;
     if (mode == ContactMode::rolls)
       second = law.friction * held - dynamics().tangential_reaction(i).norm();
@@ -176,7 +183,23 @@ std::optional<double> ContactKernel::crossing(int contact, size_t which, Sample 
   return locate(contact, which, least->time < before.time ? first : before, *least);
 }
 
+// By looks at its middle and its end: all values are larger than three times their change. A step
+// is far shorter than a period of what it resolves, so that nothing dips to 0 between them.
+bool ContactKernel::stays(double from, double to) {
+  const Gates middle = gates(from + (to - from) / 2, true), end = gates(to);
+  for (size_t i = 0; i < end.size(); ++i) {
+    for (size_t which = 0; which < 3; ++which) {
+      const auto [least, most] = std::minmax({at_node_[i][which], middle[i][which], end[i][which]});
+      if (std::isfinite(least) && !(least > 3 * (most - least))) return false;
+    }
+  }
+  at_node_ = end;
+  return true;
+}
+
 std::optional<ContactKernel::Found> ContactKernel::find(double from, double to) {
+  knows_node_ = all_roll() && stays(from, to);
+  if (knows_node_) return {};
   std::array<double, kParts + 1> times;
   std::array<Gates, kParts + 1> values;
   times[0] = from;

@@ -164,6 +164,7 @@ Status ContactKernel::advance(long steps) {
     Status status = now_->advance(1);
     std::optional<Found> found;
     if (status.ok && now_->time() != from) found = find(from, now_->time());
+    usual_step_ = now_->next_step();
     if (status.ok && found && found->what == Switch::stops) {
       status = take_again(from, found->time);
       if (status.ok) found = find(from, now_->time());

@@ -103,6 +103,8 @@ class ContactKernel final : public Kernel {
   std::optional<double> crossing(int contact, size_t which, Sample first, Sample before,
                                  Sample now);
   std::optional<Found> find(double from, double to);
+  // At the end of a step in which all contacts roll: are their gates far from 0 all along?
+  bool stays(double from, double to);
   Switch switch_of(int contact, size_t gate) const;
 
   // contact_switch: at the state in at_.
@@ -115,6 +117,9 @@ class ContactKernel final : public Kernel {
   void grow(int first);
   void name_changes(const ContactStates& before);
   void take_up(double step);
+  std::shared_ptr<const Mechanics> mechanics_of(
+      const std::shared_ptr<const ContactStates>& states) const;
+  bool all_roll() const;
   double first_step(double step);
   bool too_many(double t);
 
@@ -128,13 +133,16 @@ class ContactKernel final : public Kernel {
   };
   std::map<std::vector<int>, std::vector<Piece>> pieces_;  // by their modes
   Kernel* now_ = nullptr;
-  Kernel* before_ = nullptr;  // of the last step, where a switch ended it
+  std::shared_ptr<ContactStates> now_states_;  // of its piece
+  Kernel* before_ = nullptr;                   // of the last step, where a switch ended it
   double limit_;
+  double usual_step_ = 0;  // that a step would have been followed by, had it not been taken again
   double stop_ = std::numeric_limits<double>::infinity();  // of a slip, where a step ends
   long steps_ = 0;
   std::string failure_;                      // of a start or a switch
   std::vector<Eigen::Vector2d> references_;  // directions of slip at the last node
   Gates at_node_;
+  bool knows_node_ = false;  // at_node_ is of now_, where dynamics() is
   // The state of a switch.
   double time_ = 0, ends_ = 0;  // ends_: of its impacts, where they accumulate
   Eigen::VectorXd g_, xi_, move_;

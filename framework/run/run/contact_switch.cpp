@@ -35,7 +35,7 @@ const char* verb(const ContactLaw& law, ContactMode mode) {
 // At the switch: the modes behind it, and the events. Where there are none the state before it is
 // the last one.
 std::string ContactKernel::apply(const Found& found) {
-  const double step = now_->next_step();
+  const double step = std::max(now_->next_step(), usual_step_);
   interpolate(found.time, snapshot_);
   time_ = found.time;
   coordinates_ = snapshot_.coordinates;
@@ -90,8 +90,10 @@ void ContactKernel::grow(int first) {
   const double slip = dynamics().slip(first).norm();
   for (int i = 0; i < count(); ++i) {
     ContactState& state = contact(i);
-    if (i == first || (state.begins && dynamics().slip(i).norm() > kGrownToo * slip))
-      state.begins = false;
+    const Eigen::Vector2d s = dynamics().slip(i);
+    if (i != first && !(state.begins && s.norm() > kGrownToo * slip)) continue;
+    state.begins = false;
+    if (s.norm() > 0) state.direction = s / s.norm();
   }
 }
 
@@ -193,7 +195,10 @@ void ContactKernel::end_chatter(int i, double ratio) {
 // The slip that is left takes the time |s|/|s|' to end.
 std::string ContactKernel::stop_slip(int i) {
   const Eigen::Vector2d s = dynamics().slip(i);
-  if (s.norm() > kSlow * followed(i).speed) return "";  // the direction of the slip has turned
+  if (s.norm() > kSlow * followed(i).speed) {  // the direction of the slip has turned
+    contact(i).direction = s / s.norm();
+    return "";
+  }
   dynamics().accelerate(contacts_->states());
   const double rate = dynamics().slip_rate(i).dot(s) / s.norm();
   const double left = std::abs(limit_ - time_);
@@ -226,6 +231,22 @@ double ContactKernel::first_step(double step) {
   return out;
 }
 
+// Where all contacts roll, by rows that are independent, the system itself, whose kernel takes the
+// steps of an ideal one.
+std::shared_ptr<const Mechanics> ContactKernel::mechanics_of(
+    const std::shared_ptr<const ContactStates>& states) const {
+  const auto& system = contacts_->system().mechanics;
+  const auto rows = static_cast<int>(dynamics().rows(*states).size());
+  if (all_roll() && rows == system->constraint_count()) return system;
+  return std::make_shared<ModeMechanics>(contacts_->dynamics(), states);
+}
+
+bool ContactKernel::all_roll() const {
+  return std::ranges::all_of(contacts_->states(), [](const ContactState& state) {
+    return state.mode == ContactMode::rolls;
+  });
+}
+
 // Continues from time_, coordinates_ and xi_ in the modes of the contacts.
 void ContactKernel::take_up(double step) {
   std::vector<int> key;
@@ -238,7 +259,7 @@ void ContactKernel::take_up(double step) {
     Piece one;
     one.states = std::make_shared<ContactStates>(contacts_->states());
     KernelSetup setup = setup_;
-    setup.mechanics = std::make_shared<ModeMechanics>(contacts_->dynamics(), one.states);
+    setup.mechanics = mechanics_of(one.states);
     setup.first_chosen = setup_.first_chosen && now_ == nullptr;
     setup.from = time_;
     setup.step = step;
@@ -251,6 +272,7 @@ void ContactKernel::take_up(double step) {
     piece->kernel->restart(time_, coordinates_, velocity_, step);
   }
   now_ = piece->kernel.get();
+  now_states_ = piece->states;
   now_->set_end_time(limit_);
   evaluate_node();
 }
