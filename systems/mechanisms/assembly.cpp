@@ -242,6 +242,7 @@ void Assembly::make_tree() {
   for (const auto& body : parts_.bodies_) check_body(body);
   if (parts_.bodies_.empty()) mistakes_.push_back(fmt::format("{}: no body", parts_.name_));
   link_bodies();
+  link_states();
   check_dimension();
   name_columns();
   state_inputs();

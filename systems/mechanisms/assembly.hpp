@@ -1,6 +1,7 @@
 // From the parts of a mechanism to a system, all of them checked. Not installed: the builder's own.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,6 +49,10 @@ class Assembly {
   bool check_joint(const Mechanism::JointPart& joint);
   Joints joints_of_bodies();
   void link_bodies();
+  /// A link without a body for each state, behind all others.
+  void link_states();
+  /// Adds the rows of states.
+  void add_state_rates(std::vector<mechanisms::Coupling>& out);
   void link_from_ground(Joints waiting);
   void check_hinge_names();
   void link(const Mechanism::JointPart& part);
@@ -144,6 +149,7 @@ class Assembly {
   std::map<int, std::vector<const Mechanism::BodyPart*>> link_bodies_;  // but of the ground
   std::vector<std::string> link_names_;                                 // of their joints
   std::vector<const Mechanism::JointPart*> link_joints_;
+  std::deque<Mechanism::JointPart> state_joints_;
   std::map<std::string, int> body_links_;  // the ground is kWorld
   // Rows and starts of the system.
   std::vector<mechanisms::RowLabel> rows_said_;  // of all rows

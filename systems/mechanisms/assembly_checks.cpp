@@ -37,6 +37,11 @@ void Assembly::check_names() {
   unique(parts_.joints_, "joint", joints);
   unique(parts_.contacts_, "contact", rows);
   unique(parts_.loops_, "loop", rows);
+  unique(parts_.states_, "state", joints);
+  unique(parts_.states_, "state", rows);
+  for (const auto& part : parts_.states_)
+    if (!Expression::allows(part.name))
+      wrong(part, "state", "expected a name allowed in a formula");
   unique(parts_.couplings_, "coupling", rows);
   unique(parts_.walls_, "wall", rows);
   unique(parts_.springs_, "spring", springs);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/systems/mechanisms/assembly.hpp>
 
 namespace hamel {
@@ -27,7 +28,25 @@ std::vector<Coupling> Assembly::couplings() {
     if (auto found = related ? gear(part) : coupling(part, "coupling", key))
       out.push_back(std::move(*found));
   }
+  add_state_rates(out);
   return out;
+}
+
+void Assembly::add_state_rates(std::vector<Coupling>& out) {
+  for (const auto& part : parts_.states_) {
+    if (part.rate.empty()) {
+      wrong(part, "state", "rate: not given, expected a formula");
+      continue;
+    }
+    Mechanism::CouplingPart row;
+    row.name = part.name;
+    row.where = part.where;
+    row.constants = part.constants;
+    QuantityNames names(model_);
+    for (const auto& [constant, value] : part.constants) names.forget(constant);
+    row.rates = names.in_formula(part.rate);
+    if (auto found = coupling(row, "state", "rate")) out.push_back(std::move(*found));
+  }
 }
 
 // joint - (ratio * to + offset).
@@ -55,9 +74,10 @@ std::optional<Coupling> Assembly::gear(const Mechanism::CouplingPart& part) {
                   {}};
 }
 
+// The text of a state's rate is first judged by itself, then subtracted from its velocity.
 std::optional<Coupling> Assembly::coupling(const Mechanism::CouplingPart& part,
                                            const std::string& kind, const std::string& key) {
-  const bool of_rates = !part.rates.empty();
+  const bool of_rates = !part.rates.empty(), of_state = kind == "state";
   std::map<std::string, double> constants;
   for (const auto& [name, value] : part.constants)
     if (value.size() == 1) constants[name] = value.front();
@@ -82,15 +102,19 @@ std::optional<Coupling> Assembly::coupling(const Mechanism::CouplingPart& part,
     std::string mistake;
     if (out.formula.may_jump())
       mistake = "expected a formula without comparisons, a ? b : c, sign and rint";
-    else if (used.empty() || (of_rates && rate == used.end()))
+    else if (!of_state && (used.empty() || (of_rates && rate == used.end())))
       mistake = fmt::format("expected a formula of {}",
                             of_rates ? "rates of joints" : "coordinates of joints");
     else if (!of_rates && rate != used.end())
       mistake = fmt::format("'{}' is a velocity; an equation of velocities is stated as `rates`",
                             names[*rate]);
-    else if (of_rates) mistake = not_linear(out);
+    out.affine = of_state;
+    if (mistake.empty() && of_rates) mistake = not_linear(out);
     if (mistake.empty()) {
       if (!of_rates) out.velocities.clear();
+      if (of_state)
+        out.formula =
+            Expression(fmt::format("{}.rate - ({})", part.name, part.rates), names, constants);
       return out;
     }
     wrong(part, kind, fmt::format("{}: {}", key, mistake));

@@ -143,6 +143,17 @@ void Assembly::link_bodies() {
   stop_at_mistakes();
 }
 
+void Assembly::link_states() {
+  const std::shared_ptr<const Joint> joint = find_joint_kind("slider")->make({}).front();
+  for (const auto& part : parts_.states_) {
+    Mechanism::JointPart& stated = state_joints_.emplace_back();
+    stated.name = part.name;
+    stated.where = part.where;
+    add_link(mechanisms::kGround, joint, stated, stated.axis, "");
+    links_.back().is_state = true;
+  }
+}
+
 void Assembly::link(const Mechanism::JointPart& part) {
   const int parent = body_links_.at(part.parent);
   const JointKind& kind = *find_joint_kind(part.kind);
@@ -175,8 +186,9 @@ void Assembly::add_link(int parent, const std::shared_ptr<const Joint>& joint,
 
 // A lone root joint's numbers go by their own names: x, theta, v1.
 void Assembly::name_columns() {
-  const auto roots = std::count_if(links_.begin(), links_.end(),
-                                   [](const Link& l) { return l.parent == mechanisms::kGround; });
+  const auto roots = std::count_if(links_.begin(), links_.end(), [](const Link& l) {
+    return l.parent == mechanisms::kGround && !l.is_state;
+  });
   std::vector<GroupInfo> factors;
   std::string group, last;
   int power = 0;
@@ -193,6 +205,15 @@ void Assembly::name_columns() {
       last = joint.group().name;
     }
     ++power;
+    if (links_[j].is_state) {
+      const std::string& unit = parts_.states_[j + parts_.states_.size() - links_.size()].unit;
+      GroupFactor& factor = factors.back().factors.front();
+      factor.units = {unit};
+      factor.components = {{"rate", unit == "1" ? "1/s" : unit + "/s"}};
+      model_.coordinates.push_back(link_names_[j]);
+      model_.rates.push_back(link_names_[j] + ".rate");
+      continue;
+    }
     const bool alone =
         joint.turns_and_slides() && roots == 1 && links_[j].parent == mechanisms::kGround;
     const std::string front = alone ? "" : link_names_[j] + ".";

@@ -20,6 +20,7 @@ void Coupling::row(const Tree& tree, const double* g, Row& out) const {
   std::vector<double> slopes(values.size(), 0.0);
   const double phi = formula.differentiate(values, 1, slopes);
   out.phi = of_rates() ? 0 : phi;
+  if (affine) out.drift = -phi;  // at xi = 0
   for (const size_t i : formula.used()) {
     if (i >= links.size()) out.coefficients.emplace_back(velocities[i - links.size()], slopes[i]);
     else if (!of_rates()) out.coefficients.emplace_back(tree.first(links[i]), slopes[i]);
@@ -37,12 +38,12 @@ std::string not_linear(const Coupling& coupling) {
       for (size_t i = coordinates; i < at.size(); ++i) values[i] *= factor;
       return coupling.formula(values);
     };
-    const double none = along(0), one = along(1), three = along(3);
+    const double none = along(0), one = along(1) - none, three = along(3) - none;
     if (!std::isfinite(none + one + three)) continue;
-    if (none != 0) return "has a term without a rate";
+    if (none != 0 && !coupling.affine) return "has a term without a rate";
     std::vector<double> slopes(at.size(), 0.0);
     coupling.formula.differentiate(at, 1, slopes);
-    double linear = 0, size = std::abs(one);
+    double linear = 0, size = std::abs(one) + std::abs(none);
     for (size_t i = coordinates; i < at.size(); ++i) {
       linear += slopes[i] * at[i];
       size += std::abs(slopes[i] * at[i]);

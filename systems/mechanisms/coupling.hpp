@@ -3,6 +3,8 @@
 //   of coordinates   phi(q) = 0, with the row (dphi/dq) q' = 0: gears, belts, mimicking joints,
 //                    joint = ratio * to + offset; steering linkages, cams
 //   of rates         sum c_i(q) xi_i = 0: differentials
+//   of a state       z' - (sum c_i(q, z) xi_i + c(q, z)) = 0: its multiplier is 0, since z has no
+//                    inertia and no force
 // q are the coordinates of joints with one velocity, which is the rate of the coordinate.
 #pragma once
 
@@ -20,6 +22,7 @@ struct Coupling {
   Expression formula;           // of the coordinates, then of the velocities
   std::vector<int> links;       // whose joints have the coordinates
   std::vector<int> velocities;  // of xi; empty: an equation of coordinates
+  bool affine = false;          // of a state: with a term c without velocities
   mutable std::vector<double> work = {};
   bool slips = false;  // dry friction; or a stop or wall, where phi is not negative
 
@@ -33,7 +36,8 @@ struct Coupling {
   std::span<const double> variables(const Tree& tree, const double* g) const;
 };
 
-/// "" where the formula is linear in the velocities, else how it is not; tried at scattered values.
+/// "" where the formula is linear in the velocities, affine where it may be, else how it is not;
+/// tried at scattered values.
 std::string not_linear(const Coupling& coupling);
 
 }  // namespace hamel::mechanisms

@@ -243,6 +243,24 @@ void FileParts::forces() {
     m_.torque(name.empty() ? body : name, body, o);
   });
 }
+// States are read before the formulas that may use their names; their rates are judged where all
+// names are known.
+void FileParts::states() {
+  tables("state", [&](const toml::table& table) {
+    std::string name;
+    StateOptions o;
+    const auto rate = [&](const Node& node, const std::string& key) {
+      if (!node.is_string() && !node.is_number())
+        return read_.toml.wrong(node, key, "a number or a formula");
+      o.rate = read_.formulas.text(node);
+    };
+    read_.entries(table,
+                  {{"name", read_.read(name)}, {"rate", rate}, {"unit", read_.read(o.unit)}});
+    for (const auto& [constant, value] : read_.formulas.constants())
+      o.constants[constant] = {value};
+    m_.state(name, o);
+  });
+}
 void FileParts::sensors() {
   tables("sensor", [&](const toml::table& table) {
     std::string name, body;

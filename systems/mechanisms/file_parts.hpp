@@ -20,6 +20,7 @@ class FileParts {
   void chains();
   void forces();
   void sensors();
+  void states();
   void surroundings();
 
  private:

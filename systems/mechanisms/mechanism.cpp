@@ -115,6 +115,10 @@ void Mechanism::torque(const std::string& name, const std::string& body,
   forces_.push_back({part(name), force, body, true});
 }
 
+void Mechanism::state(const std::string& name, const StateOptions& options) {
+  states_.push_back({part(name), options});
+}
+
 void Mechanism::sensor(const std::string& name, const std::string& body, Point at) {
   sensors_.push_back({part(name), body, at});
 }

@@ -133,6 +133,13 @@ struct TorqueOptions {
   bool of_body = false;        // about those of the body as drawn
   bool time_dependent = true;  // as of a force
 };
+/// A scalar whose rate is a formula linear in velocities, with coefficients of coordinates and
+/// states: a lag, the integral of a controller. It has no inertia and acts on nothing by itself.
+struct StateOptions {
+  std::string rate = {};      // "(sideslip - lag)*v1/0.3"; terms without a velocity are allowed
+  std::string unit = "1";     // of the state
+  Parameters constants = {};  // names that the formula may use
+};
 struct OutputOptions {
   std::string unit = {}, meaning = {};
 };
@@ -236,6 +243,9 @@ class HAMEL_API Mechanism {
   /// prescribed joints.
   void input(const InputField& field);
 
+  /// A coordinate "lag" with the velocity "lag.rate", which formulas may use.
+  void state(const std::string& name, const StateOptions& options);
+
   /// A point of a body (or of the ground) whose place, velocity, acceleration, yaw and length of
   /// path are columns of every run, "tip.x", "tip.vz", "tip.ax", "tip.yaw", "tip.path".
   void sensor(const std::string& name, const std::string& body, Point at);
@@ -293,6 +303,7 @@ class HAMEL_API Mechanism {
     std::string body;
     bool couple = false;  // a torque
   };
+  struct StateOfRate : Part, StateOptions {};
   struct SensorPart : Part {
     std::string body;
     Point at;
@@ -336,6 +347,7 @@ class HAMEL_API Mechanism {
   std::vector<WallPart> walls_;
   std::vector<SpringPart> springs_;
   std::vector<ForcePart> forces_;
+  std::vector<StateOfRate> states_;
   std::vector<SensorPart> sensors_;
   std::vector<OutputPart> outputs_;
   std::vector<RatePart> rates_;

@@ -31,7 +31,6 @@ class File {
     out.fields = fields_;
     out.notes.insert(out.notes.end(), read_.notes.begin(), read_.notes.end());
     out.outputs = read_outputs(read_.toml, read_.formulas, table_);
-    stop_at_mistakes();
     read_.toml.mistakes = output_mistakes(out);
     stop_at_mistakes();
     out.events = read_events(read_.toml, read_.formulas, table_, out, out.group.columns, out.rates);
@@ -67,6 +66,7 @@ class File {
     parts.bodies();
     parts.joints();
     parts.inputs();
+    parts.states();
     stop_at_mistakes();
     const SystemModel outline = m.outline();
     read_.set_names(outline.group.columns, outline.rates, outline.inputs);
@@ -79,6 +79,8 @@ class File {
     parts.forces();
     parts.sensors();
     parts.surroundings();
+    stated_events(read_.toml, table_);
+    read_outputs(read_.toml, read_.formulas, table_);
     stop_at_mistakes();
     return m;
   }
@@ -90,7 +92,7 @@ class File {
                             "known",      "loop",       "motor",    "name",      "outputs",
                             "parameters", "prescribed", "push",     "redundant", "sensor",
                             "slope",      "source",     "spring",   "start",     "start_arguments",
-                            "summary",    "torque",     "wall"})
+                            "state",      "summary",    "torque",   "wall"})
       known.emplace_back(key);
     std::ranges::sort(known);
     for (const auto& [name, node] : table_) {

@@ -32,6 +32,9 @@
 //   [[torque]]               # name (left out: the body's), body; along, of_body as of a force
 //   [[sensor]]               # name (left out: the body's), body, at: columns tip.x .y .z .vx .vy
 //   body = "deck"            # .vz .yaw .ax .ay .az .path
+//   [[state]]                # name, rate: a scalar with this rate, linear in velocities with
+//   name = "lag"             # coefficients of coordinates and states; unit
+//   rate = "(v2/v1 - lag)*v1/0.3"
 //   [outputs]                # columns by formulas of columns, parameters and each other
 //   speed = { value = "sqrt(tip.vx^2 + tip.vy^2)", unit = "m/s", meaning = "..." }
 //   [inputs]                 # what a run may be driven by; efforts and forces may use them

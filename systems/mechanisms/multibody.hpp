@@ -61,7 +61,9 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   bool constant_constraints() const override { return constant_rows_; }
   bool autonomous() const override;
   bool has_force() const override { return forces_.any(); }
-  bool has_drift() const override { return rows_.ground.moves() || !rows_.prescribed.empty(); }
+  bool has_drift() const override {
+    return rows_.ground.moves() || !rows_.prescribed.empty() || rows_.has_states();
+  }
   bool constant_potential() const { return constant_potential_; }
 
   void inertia(const double* g, Matrix out) const override;

@@ -41,7 +41,9 @@ std::vector<RowInfo> ConstraintRows::info() const {
       add(loop.name, i, "the axes of the joint coincide", true);
   }
   for (const Coupling& coupling : couplings) {
-    const char* const rates = coupling.slips ? "sticks" : "couples rates";
+    const char* const rates = coupling.slips    ? "sticks"
+                              : coupling.affine ? "is the rate of a state"
+                                                : "couples rates";
     const char* const joints = coupling.slips ? "stops" : "couples joints";
     add(coupling.name, 1, coupling.of_rates() ? rates : joints, !coupling.of_rates());
     out.back().length = false;

@@ -8,6 +8,7 @@
 // d'Andrea-Novel, IEEE Trans. Robotics and Automation 12 (1996).
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ struct ConstraintRows {
   Ground ground;
   std::vector<int> coupled_links = {};  // on whose coordinates the couplings depend, each once
 
+  bool has_states() const {
+    return std::ranges::any_of(couplings, [](const Coupling& c) { return c.affine; });
+  }
   /// Names and meanings, in the order of each().
   std::vector<RowInfo> info() const;
   /// Finds the links in whose place the contacts are, and those that are coupled; before the rest.

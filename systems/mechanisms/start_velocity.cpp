@@ -63,6 +63,7 @@ StartVelocity::StartVelocity(const Multibody& system, const std::vector<double>&
   for (int link = 0; link < tree.links(); ++link) {
     const Joint& joint = tree.joint(link);
     const auto at = static_cast<size_t>(link);
+    if (tree.link(link).is_state) continue;
     if (tree.parent(link) == kGround && joint.turns_and_slides()) {
       for (const int i : joint.turning()) turning_.push_back(tree.first(link) + i);
       continue;

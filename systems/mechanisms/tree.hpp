@@ -30,6 +30,7 @@ struct Link {
   std::shared_ptr<const Joint> joint = {};
   Rigid on_parent = {}, on_child = {};  // P and C
   Inertia inertia = {};                 // of the body, in the drawn pose's axes about its origin
+  bool is_state = false;                // a scalar (Mechanism::state), which carries no body
 };
 
 class Tree {

@@ -191,6 +191,8 @@ TEST(Schemas, HaveTheKeysOfTheReaders) {
       {"system", system + "[inputs]\nu = { zzz = 1 }", "/properties/inputs/additionalProperties"},
       {"system", system + "[events]\ne = { value = 'x', zzz = 1 }",
        "/properties/events/additionalProperties/anyOf/1"},
+      {"system", system + "[outputs]\ne = { value = 'x', zzz = 1 }",
+       "/properties/outputs/additionalProperties/anyOf/1"},
       {"system", system + "[[draw]]\nzzz = 1", "/properties/draw/items"},
       {"system", system + "[[draw]]\nshapes = [{ zzz = 1 }]",
        "/properties/draw/items/properties/shapes/items"},
@@ -201,9 +203,12 @@ TEST(Schemas, HaveTheKeysOfTheReaders) {
        "/properties/parameters/additionalProperties/anyOf/1"},
       {"mechanism", body + joint + "[events]\ne = { value = 'x', zzz = 1 }",
        "/properties/events/additionalProperties/anyOf/1"},
+      {"mechanism", body + joint + "[outputs]\ne = { value = 'x', zzz = 1 }",
+       "/properties/outputs/additionalProperties/anyOf/1"},
       {"mechanism", body + joint + "[ground]\nzzz = 1", "/properties/ground"}};
   std::vector<std::string> parts = hamel::mechanisms::names_of(hamel::mechanisms::contact_kinds());
-  for (const char* part : {"loop", "prescribed", "spring", "motor", "force"})
+  for (const char* part :
+       {"loop", "prescribed", "spring", "motor", "force", "torque", "coupling", "sensor", "state"})
     parts.emplace_back(part);
   for (const std::string& part : parts)
     cases.emplace_back("mechanism", body + joint + "[[" + part + "]]\nzzz = 1",

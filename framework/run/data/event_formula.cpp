@@ -46,7 +46,7 @@ StateVariables::StateVariables(const SystemModel& system, std::vector<std::strin
 }
 
 StateVariables::Value StateVariables::value(Expression formula) const {
-  // What the formula depends on, in order.
+  // Dependences of the formula, in order.
   std::vector<bool> wanted(names_.size());
   const auto want = [&](const Expression& of) {
     for (const std::size_t i : of.used()) wanted[i] = true;

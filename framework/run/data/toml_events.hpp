@@ -17,20 +17,19 @@
 
 namespace hamel {
 
-/// Formulas of t, of these names of coordinates and rates, and of sensors and outputs of a system
-/// that is complete. Mistakes are those of `read`.
-inline std::vector<Event> read_events(TomlReader& read, TomlFormulas& formulas,
-                                      const toml::table& file, const SystemModel& system,
-                                      const std::vector<std::string>& coordinates,
-                                      const std::vector<std::string>& rates) {
-  std::vector<Event> out;
+/// An event as stated, whose function is a formula.
+struct StatedEvent {
+  Event event;
+  std::string key;
+  const toml::node* value;
+};
+
+/// Events of the file; their formulas are read where the system is complete.
+inline std::vector<StatedEvent> stated_events(TomlReader& read, const toml::table& file) {
+  std::vector<StatedEvent> out;
   const toml::node* entries = file.get("events");
   if (entries == nullptr) return out;
   if (!entries->is_table()) return read.wrong(*entries, "events", "a table"), out;
-  std::vector<std::string> names = {"t"};
-  names.insert(names.end(), coordinates.begin(), coordinates.end());
-  names.insert(names.end(), rates.begin(), rates.end());
-  const StateVariables variables(system, std::move(names));
   for (const auto& [name, node] : *entries->as_table()) {
     Event event{std::string(name.str()), "", 0, {}};
     const std::string key = "events." + event.name;
@@ -49,13 +48,30 @@ inline std::vector<Event> read_events(TomlReader& read, TomlFormulas& formulas,
       }
     }
     if (std::abs(event.direction) > 1) read.wrong(node, key + ".direction", "-1, 0 or 1");
+    out.push_back({std::move(event), key, value});
+  }
+  return out;
+}
+
+/// Formulas of t, of these names of coordinates and rates, and of sensors and outputs of a system
+/// that is complete. Mistakes are those of `read`.
+inline std::vector<Event> read_events(TomlReader& read, TomlFormulas& formulas,
+                                      const toml::table& file, const SystemModel& system,
+                                      const std::vector<std::string>& coordinates,
+                                      const std::vector<std::string>& rates) {
+  std::vector<Event> out;
+  std::vector<std::string> names = {"t"};
+  names.insert(names.end(), coordinates.begin(), coordinates.end());
+  names.insert(names.end(), rates.begin(), rates.end());
+  const StateVariables variables(system, std::move(names));
+  for (StatedEvent& stated : stated_events(read, file)) {
     const size_t before = read.mistakes.size();
-    auto formula = formulas.expression(*value, key, variables.names());
+    auto formula = formulas.expression(*stated.value, stated.key, variables.names());
     for (size_t i = before; i < read.mistakes.size(); ++i)
       read.mistakes[i] = variables.explain(read.mistakes[i]);
     if (!formula) continue;
-    event.value = variables.value(std::move(*formula));
-    out.push_back(std::move(event));
+    stated.event.value = variables.value(std::move(*formula));
+    out.push_back(std::move(stated.event));
   }
   return out;
 }

@@ -14,7 +14,7 @@
 
 namespace hamel {
 
-/// What is wrong with names and formulas is found where the system is complete (output_mistakes).
+/// Mistakes of names and formulas are found where the system is complete (output_mistakes).
 inline std::vector<OutputFormula> read_outputs(TomlReader& read, TomlFormulas& formulas,
                                                const toml::table& file) {
   std::vector<OutputFormula> out;

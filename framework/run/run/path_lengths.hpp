@@ -36,7 +36,7 @@ class PathLengths {
   void row(const Snapshot& state);
   void impact(const Snapshot& after);
   void finish();
-  /// Those of the recorded states that are complete and were not taken before, count() for each.
+  /// Lengths at the recorded states that are complete and were not taken before, count() for each.
   void settled(std::vector<double>& out);
 
   template <class Archive>

@@ -129,6 +129,13 @@ class RowRecorder {
     for (const int i : coupling.velocities) variables.push_back(inputs.xi[static_cast<size_t>(i)]);
     const Number formula = coupling.formula.record(variables);
     RecordedRow& row = add();
+    if (coupling.affine) {
+      std::vector<Number> at_rest = variables;
+      std::fill(at_rest.begin() + static_cast<std::ptrdiff_t>(coupling.links.size()), at_rest.end(),
+                Number(0));
+      row.drift = -coupling.formula.record(at_rest);
+      row.value -= row.drift;
+    }
     for (const size_t i : coupling.formula.used()) {
       const bool of_coordinate = i < coupling.links.size();
       if (of_coordinate && coupling.of_rates()) continue;

@@ -243,6 +243,15 @@ void bind_forces(nb::class_<ByParts>& mechanism) {
           "every "
           "run: tip.x, tip.vz, tip.ax, tip.path.")
       .def(
+          "state",
+          [](ByParts& self, const std::string& name, const std::string& rate,
+             const std::string& unit, const Parameters& constants) {
+            self.state(name, {rate, unit, constants});
+          },
+          "name"_a, "rate"_a, nb::kw_only(), "unit"_a = "1", "constants"_a = Parameters(),
+          "A scalar whose rate is a formula linear in velocities, with coefficients of coordinates "
+          "and states.")
+      .def(
           "output",
           [](ByParts& self, const std::string& name, const std::string& formula,
              const std::string& unit, const std::string& meaning) {
