@@ -77,6 +77,30 @@ def test_a_mechanism_by_parts_is_that_of_the_text(tmp_path):
         hamel.run(wrong)
 
 
+def test_outputs_states_torques_and_ground():
+    m = hamel.Mechanism("ball")
+    m.body("ball", mass=2, at=(0, 0, 0.1), sphere=0.1)
+    m.free("root", "ball", at=(0, 0, 0.1))
+    m.ball("contact", "ball", at=(0, 0, 0.1), radius=0.1)
+    m.sensor("centre", "ball", at=(0, 0, 0.1))
+    m.output("fallen", "-centre.z", unit="m")
+    m.ground_height("-slope*x", constants={"slope": [0.2]})
+    run = hamel.run(m, until=1, rtol=1e-11)
+    distance = 0.5 * 5 / 7 * 9.81 * 0.2 / np.hypot(1, 0.2)
+    assert abs(run["centre.path"][-1] - distance) < 1e-7
+    np.testing.assert_array_equal(run["fallen"], -run["centre.z"])
+
+    arm = hamel.Mechanism("arm")
+    arm.gravity((0, 0, 0))
+    arm.body("arm", mass=1, at=(1, 0, 0), inertia=[0.1, 0.1, 0.1])
+    arm.hinge("turn", "ground", "arm")
+    arm.state("lag", "(turn.angle - lag)/T", constants={"T": [0.3]})
+    arm.torque("push", "arm", (0, 0, 1.1), time_dependent=False)
+    run = hamel.run(arm, until=1, step=1e-3)
+    assert abs(run["turn.rate"][-1] - 1) < 1e-9
+    assert abs(run["lag"][-1] - (0.5 - 0.3 + 0.09 * (1 - np.exp(-1 / 0.3)))) < 1e-5
+
+
 def test_signals_of_python_and_compiled():
     compiled = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, *[ctypes.c_void_p] * 3)
 
