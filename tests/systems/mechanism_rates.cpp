@@ -155,6 +155,13 @@ TEST(MechanismRates, OfCouplingsAreThoseOfDifferences) {
   }
 }
 
+// A state beside all joints and contacts, with terms of a coordinate, velocities, itself and none.
+TEST(MechanismRates, OfStatesAreThoseOfDifferences) {
+  Mechanism m = contacts(true, false, false);
+  m.state("state", {.rate = "sin(s.position)*h.rate - 2*state + 0.3*v1*cos(h.angle) + 0.7"});
+  check_rates(m.model());
+}
+
 // Values that each field of a kind may have.
 Parameters some_values(const std::vector<Field>& fields) {
   Parameters out;
