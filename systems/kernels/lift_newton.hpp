@@ -66,7 +66,7 @@ struct LiftNewton : Newton {
   }
 
  private:
-  static constexpr int kYoung = 10;
+  static constexpr int kYoung = 30;
 };
 
 }  // namespace hamel

@@ -28,7 +28,7 @@ class LiftProblem : public DynamicProblem {
   /// xi, what is carried is known of (0: nothing), and the most that is carried in any frame.
   int state_size() const {
     const int n = dim(), m = n - constraint_count();
-    return n + 1 + 2 * m + 2 + n * m;
+    return n + 1 + 2 * m + 2 + (n - m) * m;
   }
   void velocity(const State& x, Vector& xi) const { xi = x.head(dim()); }
   /// Nothing is carried yet.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <hamel/framework/graph/number.hpp>
-#include <hamel/systems/mechanisms/programs/force_formulas.hpp>
+#include <hamel/systems/mechanisms/programs/lift_formulas.hpp>
 #include <hamel/systems/mechanisms/programs/recorded_mechanism.hpp>
 #include <hamel/systems/mechanisms/programs/step_motion.hpp>
 
@@ -14,7 +14,8 @@ namespace hamel::mechanisms {
 namespace {
 
 using Numbers = std::vector<Number>;
-using Rows = std::vector<RecordedRow>;
+using Rows = LiftFormulas::Rows;
+using Carried = LiftFormulas::Carried;
 
 constexpr size_t kLongLift = 20'000;  // instructions: machine code of more takes seconds to make
 
@@ -26,12 +27,6 @@ Numbers add_inputs(graph::Recording& recording, size_t count) {
 }
 
 void append(const Numbers& from, Numbers& to) { to.insert(to.end(), from.begin(), from.end()); }
-
-Number sum_of_products(const Numbers& a, const Numbers& b) {
-  Number out = 0;
-  for (size_t i = 0; i < a.size(); ++i) out += a[i] * b[i];
-  return out;
-}
 
 std::shared_ptr<const graph::Program> program_of(const graph::Recording& recording,
                                                  const Numbers& outputs) {
@@ -72,7 +67,7 @@ class LiftRecorder {
  public:
   LiftRecorder(const MechanismParts& parts, std::shared_ptr<const LiftLayout> layout,
                std::span<const double> state)
-      : parts_(parts), layout_(*layout) {
+      : parts_(parts), layout_(*layout), at_(parts, layout_) {
     programs_.layout_ = std::move(layout);
     sizes().element = layout_.size();
     sizes().turning = layout_.turning_count();
@@ -97,9 +92,6 @@ class LiftRecorder {
  private:
   LiftSizes& sizes() { return programs_.sizes_; }
   size_t n() const { return static_cast<size_t>(parts_.tree.dim()); }
-  const LiftLayout::Part& part(int link) const {
-    return layout_.parts()[static_cast<size_t>(link)];
-  }
   size_t phi_from() const { return parts_.kept.size() - static_cast<size_t>(parts_.holonomic); }
 
   // Values of the inputs at the places: the element and v where they are, else 0.
@@ -114,122 +106,12 @@ class LiftRecorder {
     }
     return out;
   }
-  BodyFormulas bodies(const Numbers& numbers, const Numbers& xi) const {
-    return {parts_.tree, tree_element(layout_, parts_.tree, numbers), xi, parts_.forces.gravity};
-  }
-  // The rows kept at a place. any: velocities for rows whose coefficients are slopes by them.
-  Rows rows(const BodyFormulas& bodies, const Numbers& numbers, const Numbers& any,
-            const Numbers& rates, const Numbers& held) const {
-    const Numbers g = tree_element(layout_, parts_.tree, numbers);
-    Numbers coupled, closures, gaps;
-    for (const int link : parts_.rows.coupled_links)
-      coupled.push_back(coordinate_of(part(link), numbers));
-    for (const Coupling& coupling : parts_.rows.couplings) {
-      Numbers variables;
-      for (const int link : coupling.links) variables.push_back(coordinate_of(part(link), numbers));
-      closures.push_back(coupling.of_rates() ? Number(0) : coupling.formula.record(variables));
-    }
-    size_t next = 0;
-    for (const Prescribed& p : parts_.rows.prescribed)
-      gaps.push_back(p.held < 0 || held.empty()
-                         ? Number(0)
-                         : coordinate_of(part(p.held), numbers) - held[next++]);
-    Rows all = record_rows(parts_.rows, bodies, {g, any, coupled, closures, rates, gaps});
-    Rows out;
-    for (const int i : parts_.kept) out.push_back(std::move(all[static_cast<size_t>(i)]));
-    return out;
-  }
-  Numbers signals(const Numbers& numbers, const Numbers& motors) const {
-    Numbers out;
-    for (const Spring& spring : parts_.forces.springs)
-      out.push_back(spring.joint < 0 ? Number(0) : coordinate_of(part(spring.joint), numbers));
-    append(motors, out);
-    return out;
-  }
-  // f without dampers.
-  Numbers still_force(const BodyFormulas& bodies, const Numbers& numbers,
-                      const Numbers& motors) const {
-    const Numbers given = signals(numbers, motors);
-    Numbers out = bodies.weight();
-    add_springs(parts_.forces, bodies, given, out);
-    add_given(parts_.forces, bodies, Numbers(n()), given, out);
-    return out;
-  }
-  // That of dampers.
-  Numbers damping(const Numbers& numbers, const Numbers& v) const {
-    Numbers out(n());
-    if (parts_.forces.damped())
-      add_given(parts_.forces, bodies(numbers, v), v, signals(numbers, Numbers(sizes_motors())),
-                out);
-    return out;
-  }
-  size_t sizes_motors() const { return programs_.sizes_.motors; }
-
-  // What a node carries.
-  struct Carried {
-    Numbers xi, moving, momentum, force, diagonal;
-    Number energy, force_size;
-  };
-  // E^T I E of a frame.
-  struct Reduced {
-    std::vector<Numbers> columns, momenta, matrix;  // of E, I E
-    Reduced(const Frame& frame, const BodyFormulas::Matrix& inertia) {
-      const size_t m = frame.independent.size(), n = inertia.size();
-      columns.assign(m, Numbers(n));
-      momenta = columns;
-      for (size_t j = 0; j < m; ++j) {
-        for (size_t i = 0; i < n; ++i) columns[j][i] = frame.e[i][j];
-        for (size_t i = 0; i < n; ++i) momenta[j][i] = sum_of_products(inertia[i], columns[j]);
-      }
-      matrix.assign(m, Numbers(m));
-      for (size_t i = 0; i < m; ++i)
-        for (size_t j = i; j < m; ++j)
-          matrix[i][j] = matrix[j][i] = sum_of_products(columns[i], momenta[j]);
-    }
-  };
-  // mu: the momentum at the node; xi: its velocity where that is known.
-  Carried carry(const BodyFormulas& bodies, const Frame& frame, const Numbers& mu,
-                const Numbers& force, const Numbers* xi) const {
-    const BodyFormulas::Matrix inertia = bodies.inertia();
-    const Reduced reduced(frame, inertia);
-    Carried out;
-    for (const Numbers& column : reduced.columns) {
-      out.momentum.push_back(sum_of_products(column, mu));
-      out.force.push_back(sum_of_products(column, force));
-    }
-    for (const auto& [row, column] : moving_) out.moving.push_back(frame.e[row][column]);
-    for (size_t i = 0; i < reduced.matrix.size(); ++i) out.diagonal.push_back(reduced.matrix[i][i]);
-    for (size_t i = 0; i < n(); ++i) {
-      if (inertia[i][i].is(0) || force[i].is(0)) continue;
-      out.force_size += force[i] * force[i] * (1 / inertia[i][i]);
-    }
-    const bool at_rest =
-        std::ranges::all_of(frame.particular, [](const Number& x) { return x.is(0); });
-    Numbers beside(n());  // I times the particular velocity
-    if (!at_rest)
-      for (size_t i = 0; i < n(); ++i) beside[i] = sum_of_products(inertia[i], frame.particular);
-    if (xi != nullptr) {
-      out.xi = *xi;
-    } else {
-      Numbers y = out.momentum;
-      for (size_t j = 0; j < y.size(); ++j) y[j] -= sum_of_products(reduced.columns[j], beside);
-      solve_symmetric(reduced.matrix, y);
-      for (size_t i = 0; i < n(); ++i)
-        out.xi.push_back(frame.particular[i] + sum_of_products(frame.e[i], y));
-      if (at_rest) {
-        out.energy = sum_of_products(out.momentum, y);
-        return out;
-      }
-    }
-    for (size_t i = 0; i < n(); ++i) out.energy += out.xi[i] * sum_of_products(inertia[i], out.xi);
-    return out;
-  }
-  static void append_carried(const Carried& carried, Numbers& out) {
+  void append_carried(const Carried& carried, const Frame& frame, Numbers& out) const {
     append(carried.momentum, out);
     append(carried.force, out);
     out.push_back(carried.energy);
     out.push_back(carried.force_size);
-    append(carried.moving, out);
+    for (const auto& [row, column] : moving_) out.push_back(frame.e[row][column]);
   }
   static std::vector<Numbers> coefficients(const Rows& rows) {
     std::vector<Numbers> out;
@@ -253,8 +135,8 @@ class LiftRecorder {
     const Numbers g = add_inputs(recording, layout_.size()), xi = add_inputs(recording, n()),
                   motors = add_inputs(recording, sizes().motors),
                   rates = add_inputs(recording, sizes().rates);
-    const BodyFormulas here = bodies(g, Numbers(n()));
-    const Rows at = rows(here, g, xi, rates, {});
+    const BodyFormulas here = at_.bodies(g, Numbers(n()));
+    const Rows at = at_.rows(here, g, xi, rates, {});
     Frame frame = free_frame(n());
     if (!at.empty()) {
       std::vector<Sample> places = samples(recording.inputs().size(), 0, layout_.size());
@@ -271,9 +153,9 @@ class LiftRecorder {
     const BodyFormulas::Matrix inertia = here.inertia();
     Numbers mu;
     for (const Numbers& row : inertia) mu.push_back(sum_of_products(row, xi));
-    const Carried carried = carry(here, frame, mu, still_force(here, g, motors), &xi);
+    const Carried carried = at_.carry(here, frame, mu, at_.still_force(here, g, motors), &xi);
     Numbers out;
-    append_carried(carried, out);
+    append_carried(carried, frame, out);
     append(carried.diagonal, out);
     append(frame.pivots, out);
     programs_.start_ = code_of(recording, out);
@@ -308,10 +190,10 @@ class LiftRecorder {
         programs_.unknowns_.push_back(static_cast<int>(i));
 
     StepMotion step(layout_, g, v, h);
-    auto [p, nu] = bodies(step.middle(), v).momentum();
+    auto [p, nu] = at_.bodies(step.middle(), v).momentum();
     for (Number& effort : nu) effort *= h;
     auto [mu0, mu1] = step.momenta(p, nu);
-    const Numbers damped = damping(g, v);
+    const Numbers damped = at_.damping(g, v);
     for (size_t i = 0; i < n(); ++i) mu0[i] -= 0.5 * h * damped[i];
     Numbers out;
     for (size_t j = 0; j < sizes().independent; ++j) {
@@ -331,8 +213,8 @@ class LiftRecorder {
       out.push_back(sum);
     }
     if (sizes().holonomic > 0) {
-      const BodyFormulas there = bodies(step.end(), Numbers(n()));
-      const Rows at = rows(there, step.end(), any, rates, held);
+      const BodyFormulas there = at_.bodies(step.end(), Numbers(n()));
+      const Rows at = at_.rows(there, step.end(), any, rates, held);
       for (size_t i = phi_from(); i < at.size(); ++i) out.push_back(at[i].phi);
     }
     append(middle.pivots, out);
@@ -356,7 +238,7 @@ class LiftRecorder {
                               const Numbers& any, const Numbers& rates, size_t first,
                               size_t unknowns) const {
     const StepMotion step(layout_, g, x, h);
-    Rows at = rows(bodies(step.middle(), Numbers(n())), step.middle(), any, rates, {});
+    Rows at = at_.rows(at_.bodies(step.middle(), Numbers(n())), step.middle(), any, rates, {});
     at.resize(phi_from());
     Numbers depends = drifts(at);
     for (const RecordedRow& row : at) append(row.coefficients, depends);
@@ -385,21 +267,21 @@ class LiftRecorder {
       end[static_cast<size_t>(one.first) + 1] = turned[next++];
       end[static_cast<size_t>(one.first) + 2] = turned[next++];
     }
-    const BodyFormulas there = bodies(end, Numbers(n()));
-    const Rows at = rows(there, end, v, rates, {});
+    const BodyFormulas there = at_.bodies(end, Numbers(n()));
+    const Rows at = at_.rows(there, end, v, rates, {});
     const Frame frame =
         at.empty() ? free_frame(n()) : eliminate(coefficients(at), drifts(at), order_);
     if (frame.pivots.size() != sizes().node_pivots) return false;
     for (size_t i = 0; i < n(); ++i)  // as at the start
       for (size_t j = 0; j < sizes().independent; ++j)
         if (pattern_[i][j].constant() && !frame.e[i][j].is(pattern_[i][j].value())) return false;
-    const Numbers still = still_force(there, end, motors), damped = damping(end, v);
+    const Numbers still = at_.still_force(there, end, motors), damped = at_.damping(end, v);
     Numbers mu = mu1;
     for (size_t i = 0; i < n(); ++i) mu[i] += 0.5 * h * (still[i] + damped[i]);
-    const Carried carried = carry(there, frame, mu, still, nullptr);
+    const Carried carried = at_.carry(there, frame, mu, still, nullptr);
     Numbers out = end;
     append(carried.xi, out);
-    append_carried(carried, out);
+    append_carried(carried, frame, out);
     append(frame.pivots, out);
     programs_.end_ = code_of(recording, out);
     return programs_.end_ != nullptr;
@@ -407,6 +289,7 @@ class LiftRecorder {
 
   const MechanismParts& parts_;
   const LiftLayout& layout_;
+  LiftFormulas at_;
   LiftPrograms programs_;
   std::vector<std::vector<double>> places_;  // element and xi
   std::vector<Pivot> order_;                 // of the frame at nodes
