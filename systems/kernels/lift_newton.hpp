@@ -1,9 +1,8 @@
 // Newton's method (solvers/newton.hpp) for steps whose Jacobian costs about two residuals, and
 // whose first guess is often within round-off: there no correction tells how good the Jacobian is.
 //
-// It is kept for as long as one correction reaches the aim, made anew behind a second one where it
-// is older than kYoung steps, and at once where two do not reach the aim: from there on the solve
-// is Newton's own.
+// It is kept for as long as two corrections reach the aim; what the first of them has left changes
+// it (inverse.hpp). Where they do not, the solve is Newton's own from there on.
 #pragma once
 
 #include <cmath>
@@ -13,11 +12,6 @@
 namespace hamel {
 
 struct LiftNewton : Newton {
-  template <class Unknown>
-  struct Memory : Newton::Memory<Unknown> {
-    using Newton::Memory<Unknown>::Memory;
-    int age = 0;  // of the Jacobian, in steps
-  };
   using Newton::solve;
 
   template <class Step>
@@ -34,7 +28,6 @@ struct LiftNewton : Newton {
       step.linearise(x, memory.f, memory.jacobian);
       memory.factors.compute(memory.jacobian);
       memory.valid = true;
-      memory.age = 0;
       evaluations = 2;
     }
     double before = memory.f.squaredNorm();
@@ -46,12 +39,11 @@ struct LiftNewton : Newton {
       const double size = memory.trial_f.squaredNorm();
       if (size <= aimed) [[likely]] {
         x = memory.trial;
-        memory.valid = corrections == 1 || memory.age <= kYoung;
-        ++memory.age;
         report = {Reason::converged, std::sqrt(size / scale), corrections, evaluations};
         return;
       }
       if (!(size <= 0.25 * before)) break;
+      memory.factors.update(memory.correction, memory.trial_f);
       x = memory.trial;
       memory.f = memory.trial_f;
       before = size;
@@ -62,11 +54,7 @@ struct LiftNewton : Newton {
     ++report.iterations;
     report.evaluations += evaluations;
     memory.valid = report.ok();
-    memory.age = 0;
   }
-
- private:
-  static constexpr int kYoung = 30;
 };
 
 }  // namespace hamel
