@@ -86,6 +86,7 @@ std::vector<Coupling> Assembly::slipping_couplings() {
                    Expression(formula, {"q", "rate"}, {{"limit", limit}}),
                    {link},
                    std::move(velocities),
+                   false,
                    {},
                    true});
   };

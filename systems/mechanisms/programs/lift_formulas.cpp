@@ -56,7 +56,7 @@ LiftFormulas::Rows LiftFormulas::rows(const BodyFormulas& bodies, const Numbers&
   size_t next = 0;
   for (const Prescribed& p : parts_.rows.prescribed)
     gaps.push_back(p.held < 0 || held.empty() ? Number(0) : coordinate(p.held) - held[next++]);
-  Rows all = record_rows(parts_.rows, bodies, {g, any, coupled, closures, rates, gaps});
+  Rows all = record_rows(parts_.rows, bodies, {g, any, {}, coupled, closures, rates, gaps});
   Rows out;
   for (const int i : parts_.kept) out.push_back(std::move(all[static_cast<size_t>(i)]));
   return out;

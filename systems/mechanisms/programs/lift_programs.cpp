@@ -58,8 +58,11 @@ std::vector<bool> inputs_of(const Numbers& numbers) {
 }  // namespace
 
 bool has_lift_programs(const MechanismParts& parts, size_t drivers) {
-  return !parts.rows.ground.moves() && parts.rows.agreements.empty() &&
-         parts.forces.forces.empty() && parts.forces.motors.size() == drivers;
+  const bool affine =
+      std::ranges::any_of(parts.rows.couplings, [](const Coupling& c) { return c.affine; });
+  return !parts.rows.ground.moves() && !parts.rows.ground.height && !affine &&
+         parts.rows.agreements.empty() && parts.forces.forces.empty() &&
+         parts.forces.motors.size() == drivers;
 }
 
 // Records the three programs; each in a recording of its own.
