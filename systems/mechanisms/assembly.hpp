@@ -136,6 +136,7 @@ class Assembly {
   void add_outputs();
   void draw(const std::shared_ptr<mechanisms::Multibody>& system);
   void draw_ground(const Expression& height);
+  void draw_couplings(const std::shared_ptr<mechanisms::Multibody>& system);
   /// Shapes of a body by its data, of its contacts and rods to its joints, from its mass centre.
   std::vector<BodyShape> shapes_of(const Mechanism::BodyPart& body,
                                    const std::vector<mechanisms::Contact>& contacts) const;

@@ -48,6 +48,37 @@ std::vector<BodyShape> Assembly::shapes_of(const Mechanism::BodyPart& body,
   return out;
 }
 
+// A coupling of joints that one body carries: a line through them.
+void Assembly::draw_couplings(const std::shared_ptr<Multibody>& system) {
+  const Tree& tree = system->tree(system->drawn().data());
+  for (const Coupling& coupling : system->all_rows().couplings) {
+    std::vector<Point> points;
+    int carrier = kGround;
+    bool one_carrier = true;
+    for (const size_t i : coupling.formula.used()) {
+      int link = 0;
+      if (i < coupling.links.size()) link = coupling.links[i];
+      else
+        while (tree.first(link) + tree.count(link) <=
+               coupling.velocities[i - coupling.links.size()])
+          ++link;
+      if (tree.joint(link).dim() != 1 || tree.link(link).is_state) continue;
+      if (!points.empty()) one_carrier = one_carrier && tree.parent(link) == carrier;
+      carrier = tree.parent(link);
+      points.push_back(point(tree.link(link).on_child.position));
+    }
+    if (coupling.affine || points.size() < 2 || !one_carrier) continue;
+    model_.drawing.bodies.push_back({coupling.name,
+                                     [system, carrier](std::span<const double> coordinates) {
+                                       std::vector<double> g(system->drawn().size());
+                                       system->geometry().from_coordinates(coordinates, g.data());
+                                       const Rigid place = system->tree(g.data()).in_world(carrier);
+                                       return Placement{place.position, place.rotation};
+                                     },
+                                     {shapes::line(points, {.color = "accent"})}});
+  }
+}
+
 // Lines along x and y, several times as far as the mechanism is large.
 void Assembly::draw_ground(const Expression& height) {
   constexpr int lines = 24, points = 96;
@@ -90,6 +121,7 @@ void Assembly::draw(const std::shared_ptr<Multibody>& system) {
     if (link >= 0 && links_[static_cast<size_t>(link)].parent == mechanisms::kGround) drawn.trail();
     drawing.bodies.push_back(std::move(drawn));
   }
+  draw_couplings(system);
   for (size_t i = 0; i < parts_.contacts_.size(); ++i) {
     model_.forces.push_back(
         {parts_.contacts_[i].name,

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -25,6 +26,26 @@ Mechanism rotors(const std::vector<double>& moments) {
     m.hinge(names[i], kWorld, names[i], {.at = at});
   }
   return m;
+}
+
+// A line through the joints on the body that carries them.
+TEST(Couplings, AreDrawn) {
+  Mechanism m("cart");
+  m.body("cart", {.mass = 2, .at = {0, 0, 0.5}, .inertia = {1, 1, 1}});
+  m.planar("road", "cart");
+  for (const double x : {0.3, -0.4}) {
+    const std::string name = x > 0 ? "front" : "rear";
+    m.body(name, {.mass = 1, .at = {x, 0, 0.5}, .inertia = {0.1, 0.1, 0.1}});
+    m.hinge(name, "cart", name, {.at = {x, 0, 0.5}});
+  }
+  m.coupling("belt", {.joint = "front", .to = "rear"});
+  const SystemModel model = m.model();
+  const auto belt = std::ranges::find(model.drawing.bodies, "belt", &DrawnBody::name);
+  ASSERT_NE(belt, model.drawing.bodies.end());
+  const Placement turned = belt->place(std::vector<double>{std::acos(-1) / 2, 5, 7, 0, 0});
+  EXPECT_NEAR(turned.position[0], 5, 1e-12);
+  EXPECT_NEAR(turned.position[1], 7, 1e-12);
+  EXPECT_NEAR(turned.rotation(1, 0), 1, 1e-12);
 }
 
 double column(const Result& result, const std::string& name) {

@@ -67,6 +67,8 @@ void add_parts(Json& out, const SystemModel& model) {
   const Mechanics& mechanics = *model.mechanics;
   out["parts"] = model.parts;
   out["reactions"] = model.reactions;
+  for (const Sensor& sensor : model.sensors) out["sensors"].push_back(sensor.name);
+  for (const OutputFormula& output : model.outputs) out["outputs"][output.name] = output.formula;
   out["dimension"] = mechanics.dim();
   out["holonomic_rows"] = mechanics.holonomic_rows();
   if (model.contact_laws.empty())  // with friction they are not the same all the time
