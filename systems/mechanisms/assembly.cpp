@@ -98,41 +98,6 @@ Vec3 Assembly::direction(const Part& part, const std::string& kind, const std::s
   return Vec3::UnitX();  // of a part that is refused
 }
 
-Ground Assembly::ground() {
-  Ground out{parts_.ground_rate_, vec(parts_.ground_velocity_)};
-  if (!parts_.ground_height_) return out;
-  const auto& part = *parts_.ground_height_;
-  if (out.moves())
-    wrong(part, "ground", "height: expected a ground at rest, without rate, velocity");
-  std::map<std::string, double> constants;
-  for (const auto& [name, value] : part.constants)
-    if (name != "x" && name != "y") constants.emplace(name, value.front());
-  try {
-    out.height.emplace(part.name, std::vector<std::string>{"x", "y"}, constants);
-    if (out.height->may_jump())
-      wrong(part, "ground", "height: expected a formula that cannot jump");
-  } catch (const ExpressionError& error) {
-    wrong(part, "ground", fmt::format("height: {}", error.what()));
-  }
-  return out;
-}
-
-void Assembly::check_feet(ConstraintRows rows, Tree tree) {
-  if (!rows.ground.height) return;
-  rows.find_links(tree);
-  tree.place(tree.drawn().data());
-  for (size_t i = 0; i < rows.contacts.size(); ++i) {
-    const Contact& contact = rows.contacts[i];
-    if (contact.model->foot(contact, tree, rows.ground).allFinite()) continue;
-    const auto& part = parts_.contacts_[i];
-    wrong(
-        part, part.kind,
-        fmt::format("the ground below ({}) is steeper or more sharply curved than this contact can "
-                    "touch at one point",
-                    join(part.at)));
-  }
-}
-
 ConstraintRows Assembly::rows() {
   ConstraintRows out;
   out.ground = ground();

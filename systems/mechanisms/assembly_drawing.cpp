@@ -1,7 +1,5 @@
 // Assembly: every part has a shape from its data.
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <iterator>
 
 #include <hamel/systems/mechanisms/assembly.hpp>
@@ -77,29 +75,6 @@ void Assembly::draw_couplings(const std::shared_ptr<Multibody>& system) {
                                      },
                                      {shapes::line(points, {.color = "accent"})}});
   }
-}
-
-// Lines along x and y, several times as far as the mechanism is large.
-void Assembly::draw_ground(const Expression& height) {
-  constexpr int lines = 24, points = 96;
-  const double far = 6 * extent_;
-  std::vector<BodyShape> out;
-  for (const bool along_x : {true, false}) {
-    for (int i = 0; i <= lines; ++i) {
-      std::vector<Point> line;
-      for (int k = 0; k <= points; ++k) {
-        const double u = far * (2.0 * k / points - 1), v = far * (2.0 * i / lines - 1),
-                     x = along_x ? u : v, y = along_x ? v : u, z = height(std::array{x, y});
-        if (std::isfinite(z)) line.push_back({x, y, z});
-      }
-      if (line.size() > 1) out.push_back(shapes::line(line));
-    }
-  }
-  model_.drawing.bodies.push_back({"ground",
-                                   [](std::span<const double>) {
-                                     return Placement{Vec3::Zero(), Mat<3, 3>::Identity()};
-                                   },
-                                   std::move(out)});
 }
 
 // Bodies are seen in the axes of the drawn pose, their mass centres as origins.

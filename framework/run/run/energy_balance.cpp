@@ -34,7 +34,7 @@ double EnergyBalance::power(const Snapshot& state) {
 }
 
 void EnergyBalance::node(const Snapshot& state) {
-  work_.node(state, rate());
+  work_.node(state, [this](const Snapshot& now) { return power(now); });
   if (!started_) energy_start_ = state.energy;
   started_ = true;
   update_max_abs(energy_max_, state.energy);
@@ -59,7 +59,7 @@ void EnergyBalance::settle() {
 }
 
 void EnergyBalance::impact(const Snapshot& before, const Snapshot& after) {
-  work_.impact(after, rate());
+  work_.impact(after, [this](const Snapshot& now) { return power(now); });
   settle();
   energy_start_ += after.energy - before.energy;
   update_max_abs(energy_max_, after.energy);

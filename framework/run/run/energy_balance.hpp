@@ -30,7 +30,7 @@ class EnergyBalance {
   void step(double begin, const Snapshot& end, const Within& motion_within) {
     for (const double part : {0.25, 0.5, 0.75}) {
       if (!motion_within(begin + part * (end.time - begin), within_)) break;
-      work_.within(within_, rate());
+      work_.within(within_, [this](const Snapshot& state) { return power(state); });
       settle();
     }
     node(end);
@@ -65,9 +65,6 @@ class EnergyBalance {
  private:
   // <f, xi> + lambda . b.
   double power(const Snapshot& state);
-  auto rate() {
-    return [this](const Snapshot& state) { return power(state); };
-  }
   // The work at the recorded states that wait.
   void settle();
 
