@@ -157,6 +157,33 @@ TEST(LockedCart, SlidesTurnsAndRests) {
                              HasSubstr("'front left' 32.7 N"))));
 }
 
+// Pushed at its middle by less than its friction each of four feet bears a quarter, whatever an
+// order; the turning moment 0.3 of a push beside it adds a couple, across the way to the middle.
+TEST(LockedCart, FeetOfEqualLoadsShareAPush) {
+  Mechanism m("table");
+  m.body("table", {.mass = 10, .at = {0, 0, 0.2}, .box = {0.8, 0.5, 0.2}});
+  m.planar("floor", "table");
+  const double x = 0.4, y = 0.3;
+  for (const double sx : {-1.0, 1.0})
+    for (const double sy : {-1.0, 1.0})
+      m.point(fmt::format("{}{}", sx, sy), "table", {.at = {sx * x, sy * y, 0}, .friction = 0.5});
+  m.force("push", "table",
+          {.at = {0, -0.1, 0},
+           .along = {[](const SignalInput&) { return 4.0; }, [](const SignalInput&) { return 0.0; },
+                     [](const SignalInput&) { return 0.0; }},
+           .time_dependent = false});
+  const Result r = slipping(m).until(1).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  EXPECT_EQ(last(r, "omega"), 0);
+  const double couple = -0.4 / (4 * (x * x + y * y));  // rotating about the middle, per length
+  for (const double sx : {-1.0, 1.0})
+    for (const double sy : {-1.0, 1.0}) {
+      const std::string name = fmt::format("{}{}", sx, sy);
+      EXPECT_NEAR(last(r, name + ".reaction1"), -1 - couple * sy * y, 1e-12) << name;
+      EXPECT_NEAR(last(r, name + ".reaction2"), couple * sx * x, 1e-12) << name;
+    }
+}
+
 // A cart whose four wheels turn, half track b, half wheelbase a, as many loads N = m g/4: turning
 // in place with the rates -+w of its wheels the slips are (-+(r w - b W), -+a W), and its friction
 // has no moment where a^2 W = b (r w - b W): W = b r w/(a^2 + b^2), whatever mu and N. The torque

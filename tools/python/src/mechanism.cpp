@@ -55,18 +55,25 @@ void bind_joints(nb::class_<ByParts>& mechanism) {
         name,
         [member](ByParts& self, const std::string& joint, const std::string& parent,
                  const std::string& child, const Point& at, const Point& axis, const Point& axis2,
-                 double stiffness, double rest, double damping) {
-          (self.*member)(joint, parent, child,
-                         joint_options(at, axis, axis2, stiffness, rest, damping));
+                 double stiffness, double rest, double damping, std::optional<double> friction,
+                 std::optional<double> restitution, const std::vector<double>& stop) {
+          JointOptions options = joint_options(at, axis, axis2, stiffness, rest, damping);
+          options.friction = friction;
+          options.restitution = restitution;
+          options.stop = stop;
+          (self.*member)(joint, parent, child, options);
         },
         "name"_a, "parent"_a, "child"_a, nb::kw_only(), "at"_a = kOrigin, "axis"_a = kUp,
-        "axis2"_a = kLeft, "stiffness"_a = 0.0, "rest"_a = 0.0, "damping"_a = 0.0, help);
+        "axis2"_a = kLeft, "stiffness"_a = 0.0, "rest"_a = 0.0, "damping"_a = 0.0,
+        "friction"_a = nb::none(), "restitution"_a = nb::none(), "stop"_a = std::vector<double>(),
+        help);
   };
   between("hinge", &Mechanism::hinge,
           "Turns about an axis through a point [m]; stiffness [N m/rad], rest [rad], damping "
-          "[N m s/rad].");
+          "[N m s/rad]; dry friction [N m]; stop: low, high [rad], with restitution.");
   between("slider", &Mechanism::slider,
-          "Slides along an axis; stiffness [N/m], rest [m], damping [N s/m].");
+          "Slides along an axis; stiffness [N/m], rest [m], damping [N s/m]; dry friction [N]; "
+          "stop: low, high [m], with restitution.");
   between("ball_joint", &Mechanism::ball_joint, "Turns about a point.");
   between("universal", &Mechanism::universal,
           "Two hinges, axis on the parent and axis2 on the child, that meet at a point.");
@@ -95,17 +102,22 @@ void bind_joints(nb::class_<ByParts>& mechanism) {
           "By the name of its kind; values: what this kind has beside them.");
 }
 
+using Maybe = std::optional<double>;
+
 void bind_contacts(nb::class_<ByParts>& mechanism) {
   using Rolls = void (Mechanism::*)(const std::string&, const std::string&, const WheelOptions&);
   const auto rolls = [&](const char* name, Rolls member, const char* help) {
     mechanism.def(
         name,
         [member](ByParts& self, const std::string& contact, const std::string& body,
-                 const Point& at, const Point& axle, double radius, double angle) {
-          (self.*member)(contact, body, {at, axle, radius, angle});
+                 const Point& at, const Point& axle, double radius, double angle, Maybe friction,
+                 Maybe restitution, Maybe load, std::optional<bool> unilateral) {
+          (self.*member)(contact, body,
+                         {at, axle, radius, angle, friction, restitution, load, unilateral});
         },
         "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "axle"_a = kLeft, "radius"_a = 0.0,
-        "angle"_a = 0.0, help);
+        "angle"_a = 0.0, "friction"_a = nb::none(), "restitution"_a = nb::none(),
+        "load"_a = nb::none(), "unilateral"_a = nb::none(), help);
   };
   rolls("wheel", &Mechanism::wheel, "at: its centre [m]; axle to the left; radius [m].");
   rolls("roller", &Mechanism::roller, "A wheel with rollers at an angle [rad] to its plane.");
@@ -114,11 +126,31 @@ void bind_contacts(nb::class_<ByParts>& mechanism) {
       .def(
           "blade",
           [](ByParts& self, const std::string& name, const std::string& body, const Point& at,
-             const Point& along) {
-            self.blade(name, body, {at, along});
+             const Point& along, Maybe friction, Maybe restitution, Maybe load,
+             std::optional<bool> unilateral) {
+            self.blade(name, body, {at, along, friction, restitution, load, unilateral});
           },
           "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "along"_a = kAhead,
-          "Slides along a direction, not across it.")
+          "friction"_a = nb::none(), "restitution"_a = nb::none(), "load"_a = nb::none(),
+          "unilateral"_a = nb::none(),
+          "Slides along a direction, not across it; with friction also across.")
+      .def(
+          "point",
+          [](ByParts& self, const std::string& name, const std::string& body, const Point& at,
+             Maybe friction, Maybe restitution, Maybe load, std::optional<bool> unilateral) {
+            self.point(name, body, {at, friction, restitution, load, unilateral});
+          },
+          "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "friction"_a = nb::none(),
+          "restitution"_a = nb::none(), "load"_a = nb::none(), "unilateral"_a = nb::none(),
+          "A point of a body on the ground, or above it with friction on a free root.")
+      .def(
+          "wall",
+          [](ByParts& self, const std::string& name, const std::string& distance,
+             double restitution) {
+            self.wall(name, {distance, restitution, {}});
+          },
+          "name"_a, nb::kw_only(), "distance"_a, "restitution"_a = 0.0,
+          "What joint coordinates run against: distance, a formula of them, is not negative.")
       .def(
           "contact",
           [](ByParts& self, const std::string& kind, const std::string& name,

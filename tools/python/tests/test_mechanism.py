@@ -120,3 +120,27 @@ def test_signals_of_python_and_compiled():
     broken.motor("steer", lambda t, q, v, u: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         hamel.run(broken, until=1)
+
+
+def test_friction_stops_and_walls():
+    block = hamel.Mechanism("block")
+    block.body("block", mass=1, at=[0, 0, 0.1], box=[0.2, 0.2, 0.2])
+    block.slider("way", "ground", "block", axis=[1, 0, 0], friction=2, stop=[-1, 1], restitution=0.5)
+    block.wall("wall", distance="0.3 - way.position", restitution=1)
+    block.start({"way.rate": 1})
+    result = hamel.run(block, until=10, rtol=1e-10)
+    assert [event.name for event in result.events] == ["way.sticks"]
+    assert abs(result.events[0].time - 0.5) < 1e-12
+    assert result["way.position"][-1] == pytest.approx(0.25, abs=1e-12)
+
+    sled = hamel.Mechanism("sled")
+    sled.body("sled", mass=2, at=[0, 0, 0.1], box=[0.2, 0.2, 0.2])
+    sled.planar("floor", "sled")
+    sled.point("skid", "sled", friction=0.3)
+    sled.start({"v1": 3})
+    result = hamel.run(sled, until=3, slip=True, rtol=1e-10)
+    assert abs(result.events[0].time - 3 / (0.3 * 9.81)) < 1e-10
+    assert result["skid.mode"][0] == 2 and result["skid.mode"][-1] == 1
+    with pytest.raises(hamel.ConfigError, match="friction: got -1"):
+        sled.point("other", "sled", friction=-1)
+        hamel.run(sled, until=1)
