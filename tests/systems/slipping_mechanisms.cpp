@@ -105,7 +105,7 @@ TEST(SlippingBall, StrikesByParts) {
   EXPECT_NEAR(r.events[0].time, std::sqrt(2 / kGravity), 1e-13);
 }
 
-// Source: hybrid.md, 6. With the mass centre c behind the front axle, N_r = m g c/w, the turning
+// With the mass centre c behind the front axle, N_r = m g c/w, the turning
 // about the front axle is J omega' = (m c V - mu N_r w^2/V) omega: it grows above V^2 = mu g w.
 Mechanism braked_car(double speed) {
   Mechanism m("car");
