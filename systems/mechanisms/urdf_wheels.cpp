@@ -88,7 +88,7 @@ class Finder {
       return false;
     }
     if (key != "radius" && key != "angle" && key != "friction") {
-      wrong(given, unknown_name("value", key, {"angle", "friction", "radius"}));
+      wrong(given, unknown_name("value", key, {"radius", "angle", "friction"}));
       return false;
     }
     double value = 0;
