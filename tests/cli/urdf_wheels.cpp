@@ -34,7 +34,7 @@ TEST_F(UrdfWheels, WheelsOfGivenRadius) {
            {"left:radius=-1", "radius: got '-1', expected a positive number, in m"},
            {"left:radius=1m", "radius: got '1m', expected a positive number, in m"},
            {"left:raduis=1",
-            "unknown value 'raduis': expected one of radius, angle; did you mean "
+            "unknown value 'raduis': expected one of radius, angle, friction; did you mean "
             "'radius'?"},
            {"left:omny",
             "unknown kind of wheel 'omny': expected one of wheel, ball, omni, mecanum"},
