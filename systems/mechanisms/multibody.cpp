@@ -23,10 +23,6 @@ Multibody::Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
   keep(all);
 }
 
-std::shared_ptr<const Multibody> Multibody::of(const std::shared_ptr<const Mechanics>& system) {
-  return std::dynamic_pointer_cast<const Multibody>(system);
-}
-
 void Multibody::keep(const std::vector<int>& rows) {
   slots_.assign(row_info_.size(), -1);
   kept_.clear();
@@ -262,26 +258,6 @@ void Multibody::accelerations(double t, const double* g, ConstVector xi, Vector 
   motion_ = record(state_);
   if (motion_ && (*motion_)(state_.data(), out.data())) return;
   out.setConstant(std::numeric_limits<double>::quiet_NaN());  // the rows depend on each other
-}
-
-std::shared_ptr<const LiftLayout> Multibody::lift_layout() const {
-  return has_lift_programs(parts(), driven_motors_) ? LiftLayout::of(parts()) : nullptr;
-}
-
-std::shared_ptr<const LiftPrograms> Multibody::lift_programs() const {
-  if (first_lift_ == nullptr)
-    first_lift_ = lift_programs(tree_.drawn().data(), Eigen::VectorXd::Zero(dim()), 0);
-  return first_lift_;
-}
-
-std::shared_ptr<const LiftPrograms> Multibody::lift_programs(const double* g, ConstVector xi,
-                                                             size_t unknowns) const {
-  auto layout = lift_layout();
-  if (layout == nullptr) return nullptr;
-  std::vector<double> there(state_.size());
-  std::copy_n(g, tree_.size(), there.data());
-  std::copy_n(xi.data(), dim(), there.data() + tree_.size());
-  return LiftPrograms::record(parts(), std::move(layout), there, unknowns);
 }
 
 std::shared_ptr<const graph::VectorFields> Multibody::vector_fields(const double* g) const {

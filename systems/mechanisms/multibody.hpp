@@ -88,7 +88,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
 
   /// Layout of the programs of lift; null where they do not cover the system.
   std::shared_ptr<const LiftLayout> lift_layout() const;
-  /// Those of the drawn pose, with which each run begins; near a state, with so many unknowns.
+  /// Programs of the drawn pose, with which each run begins; near a state, with so many unknowns.
   std::shared_ptr<const LiftPrograms> lift_programs() const;
   std::shared_ptr<const LiftPrograms> lift_programs(const double* g, ConstVector xi,
                                                     size_t unknowns) const;

@@ -33,12 +33,12 @@ struct JointOptions {
   Point axis = {0, 0, 1};
   Point axis2 = {0, 1, 0};  // of a universal joint, on the child
   double stiffness = 0, rest = 0,
-         damping = 0;  // N m/rad, rad, N m s/rad; of a slider N/m, m, N s/m
+         damping = 0;      // N m/rad, rad, N m s/rad; of a slider N/m, m, N s/m
+  Parameters values = {};  // what this kind of joint has beside them, by name
   // Dry friction of a hinge or slider, N m or N, with which it sticks; ends of its motion, rad or
   // m, with the restitution of the impacts there.
   std::optional<double> friction = {}, restitution = {};
   std::vector<double> stop = {};  // low, high
-  Parameters values = {};         // what this kind of joint has beside them, by name
 };
 /// A contact of any kind (mechanisms/README.md).
 struct ContactOptions {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -187,6 +188,21 @@ TEST_F(LiftPrograms, AgreeWherePivotsAreLost) {
   m.blade("blade", "arm", {.at = {0, 0, 0}});
   m.start({{"spin.rate", 6}, {"speed", 1}, {"omega", 0.3}});
   compare(simulate(m).step(0.005).until(5), 1e-10, "spinning blade");
+  // Another pivot than as drawn, from the start on.
+  m.start({{"spin.angle", std::numbers::pi / 2}, {"spin.rate", 6}, {"v2", 1}, {"omega", 0.3}});
+  compare(simulate(m).step(0.005).until(1), 1e-10, "blade across");
+  Mechanism driven("driven blade");
+  driven.body("body", {.mass = 4, .at = {0, 0, 0.1}, .box = {0.5, 0.5, 0.2}});
+  driven.body("arm", {.mass = 1, .at = {0, 0, 0.1}, .box = {0.4, 0.1, 0.1}});
+  driven.planar("ice", "body");
+  driven.hinge("spin", "body", "arm", {.at = {0, 0, 0.1}});
+  driven.blade("blade", "arm", {.at = {0, 0, 0}});
+  driven.prescribe("spin", 2 * std::numbers::pi);
+  driven.start({{"speed", 1}, {"omega", 0.3}});
+  EXPECT_TRUE(is_covered(driven.model()));
+  // Nodes, and with the other step middles, at quarters of a turn.
+  for (const double h : {0.005, 0.5 / 75})
+    compare(simulate(driven).step(h).until(2), 1e-10, "driven blade");
 }
 
 }  // namespace

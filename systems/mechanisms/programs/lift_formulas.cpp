@@ -37,6 +37,25 @@ Number sum_of_products(const Numbers& a, const Numbers& b) {
   return out;
 }
 
+std::vector<bool> inputs_of(const Numbers& numbers) {
+  const graph::Recording& recording = graph::Recording::current();
+  const std::vector<graph::Node>& nodes = recording.nodes();
+  std::vector<bool> out(recording.inputs().size()), reached(nodes.size());
+  for (const Number& x : numbers)
+    if (!x.constant()) reached[static_cast<size_t>(x.node())] = true;
+  for (size_t i = nodes.size(); i-- > 0;) {
+    if (!reached[i]) continue;
+    const graph::Node& node = nodes[i];
+    if (node.op == graph::Op::input) {
+      out[static_cast<size_t>(node.a)] = true;
+    } else if (node.op != graph::Op::constant) {
+      for (const int k : {node.a, node.b, node.c})
+        if (k >= 0) reached[static_cast<size_t>(k)] = true;
+    }
+  }
+  return out;
+}
+
 BodyFormulas LiftFormulas::bodies(const Numbers& element, const Numbers& xi) const {
   return {parts_.tree, tree_element(layout_, parts_.tree, element), xi, parts_.forces.gravity};
 }

@@ -1,5 +1,5 @@
-// What lift records at a place of a mechanism (lift_programs.hpp): rows, forces, and what a node
-// carries.
+// Formulas that lift records at a place of a mechanism (lift_programs.hpp): rows, forces, and those
+// of the numbers that a node carries.
 #pragma once
 
 #include <utility>
@@ -30,7 +30,7 @@ class LiftFormulas {
                       const Numbers& motors) const;
   Numbers damping(const Numbers& element, const Numbers& v) const;
 
-  /// What a node carries, and its velocity.
+  /// Numbers that a node carries, and its velocity.
   struct Carried {
     Numbers xi;
     Numbers momentum, force;  // E^T mu, E^T f
@@ -50,6 +50,9 @@ class LiftFormulas {
   const MechanismParts& parts_;
   const LiftLayout& layout_;
 };
+
+/// Which inputs of the current recording do these numbers depend on?
+std::vector<bool> inputs_of(const std::vector<Number>& numbers);
 
 /// a . b.
 Number sum_of_products(const std::vector<Number>& a, const std::vector<Number>& b);

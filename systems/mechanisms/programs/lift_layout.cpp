@@ -52,6 +52,8 @@ std::optional<Kind> kind_of(const MechanismParts& parts, int link) {
 }
 
 SO2Element<double> plane_turn(double angle, double turns) {
+  if (std::abs(angle) < 3) [[likely]]  // far from half a turn
+    return {std::cos(angle), std::sin(angle), std::llround(turns)};
   SO2Element<double> out = SO2::from_angle(angle);
   out.turns += std::llround(turns);
   return out;

@@ -41,6 +41,12 @@ class LiftLayout {
   void pack(const double* numbers, double* element) const;
   void unpack(const double* element, double* numbers) const;
   void coordinates(const double* numbers, double* out) const;
+  // The group and its tau, Cayley's map; out may be an argument.
+  void compose(const double* g, const double* h, double* out) const;
+  void inverse(const double* g, double* out) const;
+  void tau(const double* xi, double* out) const;
+  /// xi of a whole step (lie/recover_step.hpp); false where there is none.
+  bool recover_step(const double* delta, double s, double* xi) const;
   /// Without round-off of the products behind it.
   void normalise(double* numbers) const;
   /// The turns of planar parts behind a step h v.

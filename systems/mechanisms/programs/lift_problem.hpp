@@ -46,20 +46,11 @@ class LiftProblem : public DynamicProblem {
     }
     return packed_;
   }
-  void unpack(const Element& packed, Element& out) const {
-    layout_->unpack(packed.data(), out.data());
-  }
 
   void compose(const Element& g, const Element& h, Element& out) const {
-    Element both = packed(g);
-    DynamicProblem::compose(both, packed(h), both);
-    unpack(both, out);
+    layout_->compose(g.data(), h.data(), out.data());
   }
-  void inverse(const Element& g, Element& out) const {
-    Element back = packed(g);
-    DynamicProblem::inverse(back, back);
-    unpack(back, out);
-  }
+  void inverse(const Element& g, Element& out) const { layout_->inverse(g.data(), out.data()); }
   void normalise(Element& g) const { layout_->normalise(g.data()); }
   double defect(const Element& g) const { return DynamicProblem::defect(packed(g)); }
   double rotation_angle(const Element& g) const {
@@ -68,20 +59,16 @@ class LiftProblem : public DynamicProblem {
   void Ad_transpose(const Element& g, const Vector& mu, Vector& out) const {
     DynamicProblem::Ad_transpose(packed(g), mu, out);
   }
-  void tau(const Vector& xi, Element& out) const {
-    Element moved = DynamicProblem::element();
-    DynamicProblem::tau(xi, moved);
-    unpack(moved, out);
-  }
+  void tau(const Vector& xi, Element& out) const { layout_->tau(xi.data(), out.data()); }
   bool recover_step(const Element& delta, double s, Vector& xi) const {
-    return DynamicProblem::recover_step(packed(delta), s, xi);
+    return layout_->recover_step(delta.data(), s, xi.data());
   }
   void store(const Element& g, double* out) const { layout_->pack(g.data(), out); }
   void coordinates(const Element& g, double* out) const { layout_->coordinates(g.data(), out); }
   void from_coordinates(std::span<const double> values, Element& out) const {
     Element there = DynamicProblem::element();
     DynamicProblem::from_coordinates(values, there);
-    unpack(there, out);
+    layout_->unpack(there.data(), out.data());
   }
   void inertia(const Element& g, Matrix& out) const { DynamicProblem::inertia(packed(g), out); }
   void momentum_at(const Element& g, const Vector& xi, Vector& out, Vector& inertial_force) const {

@@ -35,26 +35,6 @@ std::shared_ptr<const graph::Program> program_of(const graph::Recording& recordi
   return std::make_shared<graph::Program>(recording, named);
 }
 
-// Which inputs do these numbers depend on?
-std::vector<bool> inputs_of(const Numbers& numbers) {
-  const graph::Recording& recording = graph::Recording::current();
-  const std::vector<graph::Node>& nodes = recording.nodes();
-  std::vector<bool> out(recording.inputs().size()), reached(nodes.size());
-  for (const Number& x : numbers)
-    if (!x.constant()) reached[static_cast<size_t>(x.node())] = true;
-  for (size_t i = nodes.size(); i-- > 0;) {
-    if (!reached[i]) continue;
-    const graph::Node& node = nodes[i];
-    if (node.op == graph::Op::input) {
-      out[static_cast<size_t>(node.a)] = true;
-    } else if (node.op != graph::Op::constant) {
-      for (const int k : {node.a, node.b, node.c})
-        if (k >= 0) reached[static_cast<size_t>(k)] = true;
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 bool has_lift_programs(const MechanismParts& parts, size_t drivers) {
@@ -87,7 +67,11 @@ class LiftRecorder {
     }
   }
 
-  bool run(size_t unknowns) { return record_start() && record_residual(unknowns) && record_end(); }
+  bool run(size_t unknowns) {
+    if (!record_start() || !record_residual(unknowns) || !record_end()) return false;
+    find_pivots();
+    return true;
+  }
   std::shared_ptr<const LiftPrograms> programs() const {
     return std::make_shared<LiftPrograms>(programs_);
   }
@@ -96,6 +80,28 @@ class LiftRecorder {
   LiftSizes& sizes() { return programs_.sizes_; }
   size_t n() const { return static_cast<size_t>(parts_.tree.dim()); }
   size_t phi_from() const { return parts_.kept.size() - static_cast<size_t>(parts_.holonomic); }
+
+  // Pivots of a program at the first place.
+  std::vector<double> pivots_of(const graph::Code& code, size_t v_at, size_t first,
+                                size_t count) const {
+    std::vector<double> x(code.program().inputs().size()), work(code.work_size()),
+        y(code.program().outputs().size());
+    const std::vector<double>& place = places_.front();
+    const auto element = place.begin() + static_cast<std::ptrdiff_t>(layout_.size());
+    std::copy(place.begin(), element, x.begin());
+    std::copy(element, place.end(), x.begin() + static_cast<std::ptrdiff_t>(v_at));
+    code(x.data(), y.data(), work.data());
+    const auto at = y.begin() + static_cast<std::ptrdiff_t>(first);
+    return {at, at + static_cast<std::ptrdiff_t>(count)};
+  }
+  void find_pivots() {
+    const LiftSizes& size = programs_.sizes_;
+    programs_.node_pivots_ = pivots_of(*programs_.start_, size.element,
+                                       size.carried() + size.independent, size.node_pivots);
+    programs_.middle_pivots_ =
+        pivots_of(*programs_.residual_, size.residual_inputs() - size.velocities,
+                  size.independent + size.rows + size.holonomic, size.middle_pivots);
+  }
 
   // Values of the inputs at the places: the element and v where they are, else 0.
   std::vector<Sample> samples(size_t inputs, size_t element_at, size_t v_at) const {

@@ -35,7 +35,7 @@ struct LiftSizes {
   size_t unknowns, rows, holonomic;  // residuals: momenta, rows, phi
   size_t middle_pivots, node_pivots;
 
-  /// What a node carries behind xi.
+  /// Numbers that a node carries behind xi.
   size_t carried() const { return 2 * independent + 2 + moving; }
   // Inputs of the residual from the element on, and of the end, which begins with what the residual
   // gives.
@@ -61,12 +61,16 @@ class LiftPrograms {
   /// The velocities that are unknowns.
   const std::vector<int>& unknowns() const { return unknowns_; }
 
+  /// Pivots where they were recorded.
+  const std::vector<double>& node_pivots() const { return node_pivots_; }
+  const std::vector<double>& middle_pivots() const { return middle_pivots_; }
+
   /// element, xi, motors, rates -> carried; diagonal of E^T I E; pivots.
   const graph::Code& start() const { return *start_; }
   /// element, h, motors, rates at the end, moving entries of E, target, rates at the middle,
   /// coordinates held, v -> residuals; pivots; c, s of turning joints at the end, mu1, v.
   const graph::Code& residual() const { return *residual_; }
-  /// The same for kLanes states at once.
+  /// Residuals of kLanes states at once.
   const graph::Code& lanes() const { return *lanes_; }
   static constexpr int kLanes = 8;
   /// c, s at the end, mu1, v; element, h, motors, rates -> element, xi, carried; pivots.
@@ -77,6 +81,7 @@ class LiftPrograms {
   std::shared_ptr<const LiftLayout> layout_;
   LiftSizes sizes_ = {};
   std::vector<int> unknowns_;
+  std::vector<double> node_pivots_, middle_pivots_;
   std::shared_ptr<const graph::Code> start_, residual_, lanes_, end_;
 };
 

@@ -14,6 +14,16 @@ bool holds(const double* pivots, const std::vector<double>& first) {
     if (!(pivots[i] * first[i] >= kLostPivotOfStep * first[i] * first[i])) return false;
   return true;
 }
+// Tests their sizes alone.
+bool hold(const double* pivots, const std::vector<double>& first) {
+  for (size_t i = 0; i < first.size(); ++i)
+    if (!(std::abs(pivots[i]) >= kLostPivotOfStep * std::abs(first[i]))) return false;
+  return true;
+}
+std::vector<double> sized_as(std::vector<double> sizes, const double* signs) {
+  for (double& x : sizes) x = std::copysign(x, *signs++);
+  return sizes;
+}
 bool are_good(const double* pivots, const std::vector<double>& first) {
   for (size_t i = 0; i < first.size(); ++i)
     if (!(std::abs(pivots[i]) >= kGoodPivotOfStep * std::abs(first[i]))) return false;
@@ -68,7 +78,7 @@ void LiftWork::find_inputs(double t, double h) {
   }
 }
 
-// What the node carries, where it does not know: from its velocity.
+// Finds what the node carries from its velocity, where it does not know.
 void LiftWork::find_carried(const Node& node) const {
   const LiftSizes& size = sizes();
   std::copy_n(node.g.data(), size.element, start_.data());
@@ -123,8 +133,8 @@ void LiftWork::change_programs(const Node& node) {
     use(one);
     measure(node, 0);
     if (are_good(node_pivots(), one.node_pivots) && are_good(middle_pivots(), one.middle_pivots)) {
-      now_.node_pivots.assign(node_pivots(), node_pivots() + sizes().node_pivots);
-      now_.middle_pivots.assign(middle_pivots(), middle_pivots() + sizes().middle_pivots);
+      now_.node_pivots = sized_as(one.node_pivots, node_pivots());
+      now_.middle_pivots = sized_as(one.middle_pivots, middle_pivots());
       fresh_ = false;
       if (changed_) changed_();
       return;
@@ -180,9 +190,18 @@ void LiftWork::take_up(const Node& node, double h) {
   h_ = h;
   if (fresh_) [[unlikely]] {
     measure(node, h);
+    if (!hold(node_pivots(), programs_->node_pivots()) ||
+        !hold(middle_pivots(), programs_->middle_pivots())) {  // of another place
+      auto programs = system_->lift_programs(problem_.packed(node.g).data(),
+                                             node.x.head(problem_.dim()), sizes().unknowns);
+      if (programs != nullptr) {
+        use({std::move(programs), {}, {}, {}});
+        measure(node, h);
+      }
+    }
     find_weights(node);
-    now_.node_pivots.assign(node_pivots(), node_pivots() + sizes().node_pivots);
-    now_.middle_pivots.assign(middle_pivots(), middle_pivots() + sizes().middle_pivots);
+    now_.node_pivots = sized_as(programs_->node_pivots(), node_pivots());
+    now_.middle_pivots = sized_as(programs_->middle_pivots(), middle_pivots());
     if (before_.size() < kMostRecorded) before_.push_back(now_);
     fresh_ = false;
   }

@@ -17,7 +17,7 @@
 
 namespace hamel::mechanisms {
 
-/// What does not depend on the number of unknowns.
+/// Part of a step that does not depend on the number of unknowns.
 class LiftWork {
  public:
   using Node = hamel::Node<LiftProblem>;
@@ -40,7 +40,7 @@ class LiftWork {
   /// |row of phi|, sum of its coefficients at the node.
   double row_size(size_t i) const;
   double scale_of_step() const;
-  /// What nodes carry is known no longer.
+  /// Nodes know no longer what they carry.
   void forget_forces() { known_ += 1; }
 
   LiftProblem problem_;
