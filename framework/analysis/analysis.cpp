@@ -117,10 +117,11 @@ Analysis analyse(const Registry& registry, const std::string& system, const Para
   if (const auto& laws = run.system().contact_laws;
       out.rank < out.rows || std::ranges::any_of(laws, &ContactLaw::of_joint))
     if (!laws.empty())
-      throw ConfigError({fmt::format(
-          "{}: the rows of its contacts and joints with friction do not always hold, {} of rank {}: "
-          "analyse it without `friction` and `stop`",
-          system, out.rows, out.rank)});
+      throw ConfigError(
+          {fmt::format("{}: the rows of its contacts and joints with friction do not always hold, "
+                       "{} of rank {}: "
+                       "analyse it without `friction` and `stop`",
+                       system, out.rows, out.rank)});
   out.m = out.n - out.rank;
   out.holonomic_rows = mechanics->holonomic_rows();
   out.frame = hamel_frame(inertia, a);

@@ -40,7 +40,7 @@ struct JacobianOfState {
 
 class HAMEL_API Equations {
  public:
-  /// Of the system of a run, with its parameters and inputs. ConfigError as from its build(), and
+  /// Equations of the system of a run, with its inputs. ConfigError as from its build(), and
   /// for a group that is not registered.
   explicit Equations(const Simulation& run);
 

@@ -95,6 +95,7 @@ std::vector<Coupling> Assembly::slipping_couplings() {
     const Mechanism::JointPart& part = *link_joints_[j];
     const int link = static_cast<int>(j), dof = first;
     first += links_[j].joint->dim();
+    if (links_[j].is_state) continue;
     check_joint_friction(part);
     if (links_[j].joint->dim() != 1 || !find_joint_kind(part.kind)->has_coordinate) continue;
     if (part.friction) add(part.name, "rate", 0, link, {dof});

@@ -14,7 +14,7 @@ struct PointContact {
   }
   template <class T>
   ContactPoint<T, 2> touch(const ContactView<T>& view) const {
-    const VecT<T, 3> x = view.world_axis(0);
+    const VecT<T, 3> x = level_axis(view);
     return {view.at, {x, view.vertical.cross(x)}};
   }
   std::vector<BodyShape> shapes(const Point& at) const {
