@@ -49,7 +49,7 @@ TEST(SlippingBlock, SlidesAndStops) {
   m.planar("floor", "block");
   m.point("skid", "block", {.friction = 0.3});
   m.start({{"v1", 3}, {"v2", 4}});
-  m.sensor("eye", "block");
+  m.sensor("eye", "block", {0, 0, 0.1});
   const Result r = slipping(m).until(3).run();
   ASSERT_TRUE(r.status.ok) << r.status.reason;
   EXPECT_THAT(r.system->notes, Contains(HasSubstr("point 'skid' 19.62 N")));
