@@ -37,6 +37,7 @@ std::vector<int> Multibody::holding() const {
 void Multibody::look(double t, const double* g, Matrix a, Vector b, Vector phi) const {
   const Tree& at = tree(g);
   a.setZero();
+  b.setZero();  // of agreements too
   rows_.each(at, t, [&](size_t i, const Row& row) {
     const auto to = static_cast<Eigen::Index>(i);
     write(row, at, a, static_cast<int>(i));

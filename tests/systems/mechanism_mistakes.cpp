@@ -137,9 +137,10 @@ TEST(Mechanisms, RefuseNumbersThatAreNone) {
   const auto contact = [&](const std::string& kind, const Parameters& values) {
     return fault([&](Mechanism& m) { m.contact(kind, "c", "b", {.values = values}); });
   };
-  EXPECT_THAT(contact("weel", {}),
-              HasSubstr("contact 'c': unknown kind 'weel': expected one of ball, blade, ellipsoid, "
-                        "roller, tube, wheel; did you mean 'wheel'?"));
+  EXPECT_THAT(
+      contact("weel", {}),
+      HasSubstr("contact 'c': unknown kind 'weel': expected one of ball, blade, ellipsoid, point, "
+                "roller, tube, wheel; did you mean 'wheel'?"));
   EXPECT_THAT(contact("wheel", {}),
               HasSubstr("wheel 'c': radius: got 0, expected a positive number"));
   EXPECT_THAT(contact("roller", {{"radius", {1}}, {"angle", {nan}}}),
