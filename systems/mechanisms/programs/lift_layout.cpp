@@ -13,17 +13,17 @@
 namespace hamel::mechanisms {
 namespace {
 
-using Kind = LiftLayout::Kind;
+using LinkKind = LiftLayout::Kind;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-size_t count_of(Kind kind) {
+size_t count_of(LinkKind kind) {
   switch (kind) {
-    case Kind::added: return 1;
-    case Kind::wheel: return 2;
-    case Kind::turning: return 3;
-    case Kind::ball: return 9;
-    case Kind::planar: return 5;
+    case LinkKind::added: return 1;
+    case LinkKind::wheel: return 2;
+    case LinkKind::turning: return 3;
+    case LinkKind::ball: return 9;
+    case LinkKind::planar: return 5;
     default: return 12;
   }
 }
@@ -39,15 +39,15 @@ bool is_idle(const MechanismParts& parts, int link) {
          std::ranges::none_of(forces.forces, [link](const Force& f) { return f.link == link; });
 }
 
-std::optional<Kind> kind_of(const MechanismParts& parts, int link) {
+std::optional<LinkKind> kind_of(const MechanismParts& parts, int link) {
   const Joint& joint = parts.tree.joint(link);
   const std::string& group = joint.group().name;
   const bool root = parts.tree.parent(link) == kGround;
-  if (group == "r1") return Kind::added;
-  if (group == "so2") return is_idle(parts, link) ? Kind::wheel : Kind::turning;
-  if (group == "so3") return Kind::ball;
-  if (group == "se2" && root) return Kind::planar;
-  if (group == "se3" && root) return Kind::free;
+  if (group == "r1") return LinkKind::added;
+  if (group == "so2") return is_idle(parts, link) ? LinkKind::wheel : LinkKind::turning;
+  if (group == "so3") return LinkKind::ball;
+  if (group == "se2" && root) return LinkKind::planar;
+  if (group == "se3" && root) return LinkKind::free;
   return std::nullopt;
 }
 
@@ -72,12 +72,12 @@ std::int64_t turns_of(double angle, double c, double s) {
 std::shared_ptr<const LiftLayout> LiftLayout::of(const MechanismParts& parts) {
   auto out = std::make_shared<LiftLayout>();
   for (int link = 0; link < parts.tree.links(); ++link) {
-    const std::optional<Kind> kind = kind_of(parts, link);
+    const std::optional<LinkKind> kind = kind_of(parts, link);
     if (!kind) return nullptr;
     out->parts_.push_back(
         {*kind, static_cast<int>(out->size_), parts.tree.element(link), parts.tree.first(link)});
     out->size_ += count_of(*kind);
-    out->turning_ += *kind == Kind::turning;
+    out->turning_ += *kind == LinkKind::turning;
   }
   return out;
 }
@@ -87,12 +87,12 @@ void LiftLayout::pack(const double* numbers, double* element) const {
     const double* x = numbers + part.first;
     double* to = element + part.element;
     switch (part.kind) {
-      case Kind::wheel: Packing<SO2>::store(plane_turn(x[0], x[1]), to); break;
-      case Kind::turning: {
+      case LinkKind::wheel: Packing<SO2>::store(plane_turn(x[0], x[1]), to); break;
+      case LinkKind::turning: {
         Packing<SO2>::store({x[1], x[2], turns_of(x[0], x[1], x[2])}, to);
         break;
       }
-      case Kind::planar:
+      case LinkKind::planar:
         Packing<SE2>::store({{x[0], x[1], std::llround(x[4])}, {x[2], x[3]}}, to);
         break;
       default: std::copy_n(x, count_of(part.kind), to);
@@ -105,20 +105,20 @@ void LiftLayout::unpack(const double* element, double* numbers) const {
     const double* from = element + part.element;
     double* x = numbers + part.first;
     switch (part.kind) {
-      case Kind::wheel: {
+      case LinkKind::wheel: {
         const SO2Element<double> g = Packing<SO2>::load(from);
         x[0] = SO2Element<double>{g.c, g.s, 0}.angle();
         x[1] = static_cast<double>(g.turns);
         break;
       }
-      case Kind::turning: {
+      case LinkKind::turning: {
         const SO2Element<double> g = Packing<SO2>::load(from);
         x[0] = g.angle();
         x[1] = g.c;
         x[2] = g.s;
         break;
       }
-      case Kind::planar: {
+      case LinkKind::planar: {
         const SE2Element<double> g = Packing<SE2>::load(from);
         x[0] = g.rotation.c;
         x[1] = g.rotation.s;
@@ -139,14 +139,14 @@ void LiftLayout::coordinates(const double* numbers, double* out) const {
   for (const Part& part : parts_) {
     const double* x = numbers + part.first;
     switch (part.kind) {
-      case Kind::added:
-      case Kind::turning: *out++ = x[0]; break;
-      case Kind::wheel: *out++ = x[0] + kTurn * x[1]; break;
-      case Kind::ball: put(SO3::coordinates(Packing<SO3>::load(x))); break;
-      case Kind::planar:
+      case LinkKind::added:
+      case LinkKind::turning: *out++ = x[0]; break;
+      case LinkKind::wheel: *out++ = x[0] + kTurn * x[1]; break;
+      case LinkKind::ball: put(SO3::coordinates(Packing<SO3>::load(x))); break;
+      case LinkKind::planar:
         put(SE2::coordinates(SE2Element<double>{{x[0], x[1], std::llround(x[4])}, {x[2], x[3]}}));
         break;
-      case Kind::free: put(SE3::coordinates(Packing<SE3>::load(x))); break;
+      case LinkKind::free: put(SE3::coordinates(Packing<SE3>::load(x))); break;
     }
   }
 }
@@ -160,21 +160,21 @@ void LiftLayout::normalise(double* numbers) const {
       s *= by;
     };
     switch (part.kind) {
-      case Kind::added: break;
-      case Kind::wheel:
+      case LinkKind::added: break;
+      case LinkKind::wheel:
         if (std::abs(x[0]) > std::numbers::pi) {
           const double turns = std::rint(x[0] / kTurn);
           x[0] -= kTurn * turns;
           x[1] += turns;
         }
         break;
-      case Kind::turning: {
+      case LinkKind::turning: {
         scale(x[1], x[2]);
         const double angle = std::atan2(x[2], x[1]);
         x[0] = angle + kTurn * std::rint((x[0] - angle) / kTurn);
         break;
       }
-      case Kind::planar: scale(x[0], x[1]); break;
+      case LinkKind::planar: scale(x[0], x[1]); break;
       default: {
         Eigen::Map<Mat<3, 3>> rotation(x);
         rotation = SO3::normalise(Mat<3, 3>(rotation));
@@ -192,12 +192,12 @@ bool LiftLayout::moves_by(const Geometry& geometry) const {
     const double* v = xi.data() + part.dof;
     double* to = expected.data() + part.element;
     switch (part.kind) {
-      case Kind::added: *to = *v; break;
-      case Kind::wheel:
-      case Kind::turning: Packing<SO2>::store(SO2::from_angle(*v), to); break;
-      case Kind::ball: Packing<SO3>::store(Cayley<SO3>::tau(Vec<3>(v)), to); break;
-      case Kind::planar: Packing<SE2>::store(Cayley<SE2>::tau(Vec<3>(v)), to); break;
-      case Kind::free: Packing<SE3>::store(Cayley<SE3>::tau(Vec<6>(v)), to); break;
+      case LinkKind::added: *to = *v; break;
+      case LinkKind::wheel:
+      case LinkKind::turning: Packing<SO2>::store(SO2::from_angle(*v), to); break;
+      case LinkKind::ball: Packing<SO3>::store(Cayley<SO3>::tau(Vec<3>(v)), to); break;
+      case LinkKind::planar: Packing<SE2>::store(Cayley<SE2>::tau(Vec<3>(v)), to); break;
+      case LinkKind::free: Packing<SE3>::store(Cayley<SE3>::tau(Vec<6>(v)), to); break;
     }
   }
   for (size_t i = 0; i < moved.size(); ++i)

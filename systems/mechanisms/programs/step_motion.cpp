@@ -9,7 +9,7 @@
 namespace hamel::mechanisms {
 namespace {
 
-using Kind = LiftLayout::Kind;
+using StepKind = LiftLayout::Kind;
 
 template <int N>
 VecT<Number, N> part_of(std::span<const Number> all, int first) {
@@ -61,12 +61,12 @@ void StepMotion::move(const LiftLayout::Part& part, std::span<const Number> from
     end_[at] = from[at] + h_ * rate;
   };
   switch (part.kind) {
-    case Kind::added: add(); break;
-    case Kind::wheel:
+    case StepKind::added: add(); break;
+    case StepKind::wheel:
       add();
       middle_[at + 1] = end_[at + 1] = from[at + 1];
       break;
-    case Kind::turning: {
+    case StepKind::turning: {
       add();
       const VecT<Number, 2> by{cos(half * rate), sin(half * rate)};
       const VecT<Number, 2> here = complex_product(part_of<2>(from, part.first + 1), by);
@@ -74,14 +74,14 @@ void StepMotion::move(const LiftLayout::Part& part, std::span<const Number> from
       put(complex_product(here, by), part.first + 1, end_);
       break;
     }
-    case Kind::ball: {
+    case StepKind::ball: {
       const NumberMat3 by = Cayley<SO3>::tau(VecT<Number, 3>(half * part_of<3>(v_, part.dof)));
       const NumberMat3 here = rotation_of(from, part.first).lazyProduct(by);
       put(here, part.first, middle_);
       put(NumberMat3(here.lazyProduct(by)), part.first, end_);
       break;
     }
-    case Kind::planar: {
+    case StepKind::planar: {
       const SE2Element<Number> by =
           Cayley<SE2>::tau(VecT<Number, 3>(half * part_of<3>(v_, part.dof)));
       const VecT<Number, 2> once{by.rotation.c, by.rotation.s},
@@ -95,7 +95,7 @@ void StepMotion::move(const LiftLayout::Part& part, std::span<const Number> from
       middle_[at + 4] = end_[at + 4] = from[at + 4];
       break;
     }
-    case Kind::free: {
+    case StepKind::free: {
       const SE3Element<Number> by =
           Cayley<SE3>::tau(VecT<Number, 6>(half * part_of<6>(v_, part.dof)));
       const NumberMat3 start = rotation_of(from, part.first), here = start.lazyProduct(by.rotation);
@@ -114,7 +114,7 @@ std::pair<StepMotion::Numbers, StepMotion::Numbers> StepMotion::momenta(const Nu
   Numbers start = p, end = p;
   for (const LiftLayout::Part& part : layout_.parts()) {
     switch (part.kind) {
-      case Kind::ball: {
+      case StepKind::ball: {
         const VecT<Number, 3> step = h_ * part_of<3>(v_, part.dof), n = part_of<3>(nu, part.dof),
                               a = 0.25 * step, turned = cross(a, n);
         VecT<Number, 3> mu0, mu1;
@@ -126,7 +126,7 @@ std::pair<StepMotion::Numbers, StepMotion::Numbers> StepMotion::momenta(const Nu
         put(mu1, part.dof, end);
         break;
       }
-      case Kind::planar: {
+      case StepKind::planar: {
         VecT<Number, 3> mu0, mu1;
         end_momenta<Cayley<SE2>, 3>(h_ * part_of<3>(v_, part.dof), part_of<3>(p, part.dof), mu0,
                                     mu1);
@@ -134,7 +134,7 @@ std::pair<StepMotion::Numbers, StepMotion::Numbers> StepMotion::momenta(const Nu
         put(mu1, part.dof, end);
         break;
       }
-      case Kind::free: {
+      case StepKind::free: {
         VecT<Number, 6> mu0, mu1;
         end_momenta<Cayley<SE3>, 6>(h_ * part_of<6>(v_, part.dof), part_of<6>(p, part.dof), mu0,
                                     mu1);
@@ -158,19 +158,21 @@ std::vector<Number> tree_element(const LiftLayout& layout, const Tree& tree,
   for (const LiftLayout::Part& part : layout.parts()) {
     const auto from = static_cast<size_t>(part.first), to = static_cast<size_t>(part.element);
     switch (part.kind) {
-      case Kind::wheel: out[to] = 1; break;
-      case Kind::turning:
+      case StepKind::wheel: out[to] = 1; break;
+      case StepKind::turning:
         out[to] = numbers[from + 1];
         out[to + 1] = numbers[from + 2];
         break;
-      case Kind::planar:
+      case StepKind::planar:
         out[to] = numbers[from];
         out[to + 1] = numbers[from + 1];
         out[to + 3] = numbers[from + 2];
         out[to + 4] = numbers[from + 3];
         break;
       default: {
-        const size_t count = part.kind == Kind::added ? 1 : part.kind == Kind::ball ? 9 : 12;
+        const size_t count = part.kind == StepKind::added  ? 1
+                             : part.kind == StepKind::ball ? 9
+                                                           : 12;
         for (size_t i = 0; i < count; ++i) out[to + i] = numbers[from + i];
       }
     }
@@ -180,7 +182,7 @@ std::vector<Number> tree_element(const LiftLayout& layout, const Tree& tree,
 
 Number coordinate_of(const LiftLayout::Part& part, std::span<const Number> numbers) {
   const auto at = static_cast<size_t>(part.first);
-  if (part.kind != Kind::wheel) return numbers[at];
+  if (part.kind != StepKind::wheel) return numbers[at];
   return numbers[at] + 2 * std::numbers::pi * numbers[at + 1];
 }
 
