@@ -177,6 +177,13 @@ std::optional<std::size_t> StateColumns::find(Of of) const {
   return static_cast<std::size_t>(it - columns_.begin());
 }
 
+double StateColumns::output(std::size_t place, const Snapshot& state,
+                            const StateExtras& extras) const {
+  const Expression& formula = outputs_[place].formula;
+  for (const std::size_t j : formula.used()) values_[j] = value(j, state, extras);
+  return formula(values_);
+}
+
 double StateColumns::value(std::size_t i, const Snapshot& state, const StateExtras& extras) const {
   const Column& column = columns_[i];
   switch (column.of) {
@@ -201,11 +208,7 @@ double StateColumns::value(std::size_t i, const Snapshot& state, const StateExtr
     case Of::mode: return extras.modes.empty() ? 0 : extras.modes[column.place];
     case Of::exact_error: return extras.exact_error;
     case Of::exact_velocity_error: return extras.exact_velocity_error;
-    case Of::output: {
-      const Expression& formula = outputs_[column.place].formula;
-      for (const std::size_t j : formula.used()) values_[j] = value(j, state, extras);
-      return formula(values_);
-    }
+    case Of::output: return output(column.place, state, extras);
   }
   return 0;
 }

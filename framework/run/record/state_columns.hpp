@@ -72,6 +72,8 @@ class StateColumns {
   /// The first column of that kind; none.
   std::optional<std::size_t> find(Of of) const;
   double value(std::size_t i, const Snapshot& state, const StateExtras& extras) const;
+  /// Outputs, which are the last columns.
+  std::size_t output_count() const { return outputs_.size(); }
   /// The outputs of a row whose other columns are there.
   void complete(std::span<double> row) const;
   /// Calls visit(j) for the columns that column i depends on, or i alone.
@@ -99,6 +101,9 @@ class StateColumns {
   void add_outputs(const SystemModel& system);
   static void require(Of of, StateParts& parts);
   double measured(std::size_t place, const Snapshot& state, const StateExtras& extras) const;
+  // Apart: what few columns need is no part of the others' calls.
+  [[gnu::noinline]] double output(std::size_t place, const Snapshot& state,
+                                  const StateExtras& extras) const;
   std::vector<Column> columns_;
   std::vector<ReadyOutput> outputs_;
   mutable std::vector<double> values_;  // of the columns that an output depends on

@@ -111,9 +111,8 @@ void RunRecorder::compare(const Snapshot& state) {
     std::tie(extras.exact_error, extras.exact_velocity_error) = look_at_exact(state);
   const std::size_t at = rows_.size();
   rows_.resize(at + columns_.size());
-  for (std::size_t i = 0; i < columns_.size(); ++i)
-    if (columns_.of(i) != StateColumns::Of::output)
-      rows_[at + i] = columns_.value(i, state, extras);
+  const std::size_t count = columns_.size() - columns_.output_count();
+  for (std::size_t i = 0; i < count; ++i) rows_[at + i] = columns_.value(i, state, extras);
   settle();
 }
 
