@@ -44,7 +44,8 @@ Frame find_frame(const MechanismParts& parts, const RecordedMechanism& mechanism
   std::vector<Numbers> a;
   for (const RecordedRow& row : mechanism.rows) a.push_back(row.coefficients);
   std::vector<Sample> samples;
-  for (std::vector<double>& place : states_near(parts, state)) samples.emplace_back(std::move(place));
+  for (std::vector<double>& place : states_near(parts, state))
+    samples.emplace_back(std::move(place));
   return eliminate(std::move(a), std::move(c), samples);
 }
 
