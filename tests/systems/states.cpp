@@ -33,7 +33,8 @@ Mechanism arm(double rate) {
 // y' = (z - y) angle'/L, y = exp(-a/L) int z exp(a/L) da/L.
 TEST(States, LagsFollowClosedForms) {
   const double w = 1.3, lag = 0.4;
-  for (const char* scheme : {"lift", "balance"}) {
+  for (const char* scheme :
+       {"lift", "balance", "rk4_projected", "rkmk4", "dopri5", "tsit5", "dop853"}) {
     SCOPED_TRACE(scheme);
     Mechanism m = arm(w);
     m.state("z", {.rate = "(turn.angle - z)/T", .unit = "rad", .constants = {{"T", {lag}}}});
@@ -70,7 +71,7 @@ TEST(States, ActInForces) {
 
 // Beside a state that acts on nothing a vehicle moves as without it.
 TEST(States, ChangeNoOtherMotion) {
-  const auto scooter = [](bool with) {
+  const auto scooter = [](bool with, const char* scheme) {
     Mechanism m("scooter");
     m.body("deck", {.mass = 5, .at = {0.3, 0, 0.1}, .inertia = {0.3, 0.4, 0.5}});
     m.body("fork", {.mass = 2, .at = {0.7, 0, 0.4}, .inertia = {0.1, 0.1, 0.01}});
@@ -80,13 +81,15 @@ TEST(States, ChangeNoOtherMotion) {
     m.blade("front", "fork", {.at = {0.7, 0, 0}});
     if (with) m.state("s", {.rate = "v1*cos(steer.angle) + 0.3 - s"});
     m.start({{"v1", 2}, {"steer.angle", 0.3}, {"steer.rate", -0.2}});
-    return simulate(m).scheme("lift").step(1e-3).until(2).run();
+    return simulate(m).scheme(scheme).step(1e-3).until(2).run();
   };
-  const Result with = scooter(true), without = scooter(false);
-  ASSERT_TRUE(with.status.ok) << with.status.reason;
-  for (const char* name : {"x", "y", "theta", "steer.angle", "v1", "rear.reaction1"})
-    EXPECT_NEAR(column(with, name).back(), column(without, name).back(), 1e-9) << name;
-  for (const std::string& note : with.notes) EXPECT_THAT(note, Not(HasSubstr("s.rate")));
+  for (const char* scheme : {"lift", "dop853", "rkmk4"}) {
+    const Result with = scooter(true, scheme), without = scooter(false, scheme);
+    ASSERT_TRUE(with.status.ok) << with.status.reason;
+    for (const char* name : {"x", "y", "theta", "steer.angle", "v1", "rear.reaction1"})
+      EXPECT_NEAR(column(with, name).back(), column(without, name).back(), 1e-9) << name;
+    for (const std::string& note : with.notes) EXPECT_THAT(note, Not(HasSubstr("s.rate")));
+  }
 }
 
 // A single-track car on tyres with a relaxation length: the rate of a steady turn is that without

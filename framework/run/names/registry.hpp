@@ -51,6 +51,8 @@ struct SchemeInfo {
   KernelFactory erased = {};
 
   bool defined(bool left_invariant) const { return left_invariant || !left_invariant_only; }
+  /// Does a step need I on ker A only, not its inverse?
+  bool takes_massless_links() const { return adapted && (steps_admissible || explicit_step); }
   /// The order claimed for a run; 0 where the scheme is not defined.
   ClaimedOrder claim(double s, TauTraits tau, bool left_invariant) const;
   /// Order on a system. With forces at the nodes only (lift), constant inertia and rows A xi = 0

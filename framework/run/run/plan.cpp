@@ -263,18 +263,6 @@ Config resolved(Config config, const Method& method, const SystemModel& system,
   return config;
 }
 
-// Plans a system with massless links, whose scheme and step were left open.
-RunPlan plan_by_lift(const Registry& registry, RunRequest request, const OwnSystem* own, Rows rows,
-                     Mistakes& mistakes) {
-  request.config.scheme = "lift";
-  RunPlan plan = plan_run(registry, request, own, rows, mistakes);
-  plan.notes.push_back(fmt::format(
-      "neither scheme nor step given, and the system has massless links: lift, h = {:g}{}",
-      plan.config.step_or_usual(),
-      plan.config.check ? "" : "; the error of the run is not known without --check"));
-  return plan;
-}
-
 }  // namespace
 
 KernelFactory RunPlan::run_kernel() const {
@@ -283,7 +271,6 @@ KernelFactory RunPlan::run_kernel() const {
 
 RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnSystem* own,
                  Rows rows, Mistakes& mistakes) {
-  const bool left_to_us = request.config.leaves_method();
   const Config config = request.config.completed();
   RunPlan plan;
   plan.recording = keeps_rows(request, rows);
@@ -301,11 +288,11 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
     check_jumps_of_rates(system, *planned->inputs, *plan.geometry, config, start, mistakes);
   plan.kernel = plan_kernel(registry, config, own, *planned, plan.geometry, method, mistakes);
   if (plan.recording) check_rows(request, system.group, mistakes);
-  if (method.scheme != nullptr && !method.scheme->steps_admissible && mistakes.none() &&
+  if (method.scheme != nullptr && !method.scheme->takes_massless_links() && mistakes.none() &&
       !is_definite(start.inertia)) {
-    if (left_to_us) return plan_by_lift(registry, request, own, rows, mistakes);
     mistakes.add(fmt::format(
-        "scheme: {} needs a definite inertia; with massless links lift and balance are offered",
+        "scheme: {} needs a definite inertia; with massless links lift, balance and the "
+        "explicit schemes are offered",
         method.scheme->name));
   }
   if (!mistakes.none()) return plan;
@@ -334,7 +321,7 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   plan.notes.insert(plan.notes.end(), start.notes.begin(), start.notes.end());
   note_end_and_unused(config, method, plan.notes);
   restrict_exact(request, system, plan.notes);
-  if (left_to_us) {
+  if (request.config.leaves_method()) {
     plan.notes.push_back(fmt::format(
         "neither scheme nor step given: {}, steps chosen at rtol = {:g}{}", config.scheme,
         *config.rtol,
