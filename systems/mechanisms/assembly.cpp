@@ -116,11 +116,13 @@ ConstraintRows Assembly::rows() {
   }
   for (const auto& part : parts_.loops_) {
     const Vec3 axis = vec(part.axis);
-    out.loops.push_back({part.name, link_of(part, "loop", part.a), link_of(part, "loop", part.b),
-                         vec(part.at), axis.isZero(0) ? axis : Vec3(axis.normalized())});
+    out.loops.push_back({part.name, link_of(part, part.kind, part.a),
+                         link_of(part, part.kind, part.b), vec(part.at),
+                         axis.isZero(0) ? axis : Vec3(axis.normalized())});
     if (out.loops.back().a == out.loops.back().b && body_links_.contains(part.a) &&
         body_links_.contains(part.b))
-      wrong(part, "loop", fmt::format("'{}' and '{}' are one body", part.a, part.b));
+      wrong(part, part.kind, fmt::format("'{}' and '{}' are one body", part.a, part.b));
+    if (part.kind != "loop") out.loops.back().surface = surface(part);
   }
   out.couplings = couplings();
   std::ranges::move(slipping_couplings(), std::back_inserter(out.couplings));

@@ -78,6 +78,7 @@ class Assembly {
                              const Point& given);
   mechanisms::ConstraintRows rows();
   mechanisms::Ground ground();
+  mechanisms::RollingSurface surface(const Mechanism::LoopPart& part);
   /// Refuses a ground on which a contact has no single point where it is drawn.
   void check_feet(mechanisms::ConstraintRows rows, mechanisms::Tree tree);
   /// With mistakes, none.

@@ -102,10 +102,13 @@ void Assembly::check_contacts(const Multibody& system) {
   }
   for (size_t i = 0; i < rows.loops.size(); ++i) {
     const Loop& loop = rows.loops[i];
-    const double apart =
-        (tree.in_world(loop.b).apply(loop.at) - tree.in_world(loop.a).apply(loop.at)).norm();
-    if (!(apart < kTouching))
-      wrong(parts_.loops_[i], "loop", fmt::format("is open as drawn by {:.6g} m", apart));
+    const double apart = loop.open_by(tree);
+    if (std::abs(apart) < kTouching) continue;
+    const auto& part = parts_.loops_[i];
+    wrong(part, part.kind,
+          loop.surface
+              ? fmt::format("does not touch '{}' as drawn: its gap is {:.6g} m", part.a, apart)
+              : fmt::format("is open as drawn by {:.6g} m", apart));
   }
 }
 

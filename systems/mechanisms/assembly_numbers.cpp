@@ -72,8 +72,8 @@ void Assembly::check_numbers() {
     numbers(part, part.kind, "at", part.at);
   }
   for (const auto& part : parts_.loops_) {
-    numbers(part, "loop", "at", part.at);
-    numbers(part, "loop", "axis", part.axis);
+    numbers(part, part.kind, "at", part.at);
+    numbers(part, part.kind, "axis", part.axis);
   }
   for (const auto& part : parts_.sensors_) numbers(part, "sensor", "at", part.at);
   for (const auto& part : parts_.couplings_) {

@@ -29,7 +29,8 @@ std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) 
     };
     for (const auto& part : parts_.contacts_)
       if (part.name == row.part) say(part, part.kind);
-    find(parts_.loops_, "loop");
+    for (const auto& part : parts_.loops_)
+      if (part.name == row.part) say(part, part.kind);
     if (row.slips && !row.length) {
       find(parts_.walls_, "wall");
       for (const auto& part : parts_.joints_)
@@ -87,8 +88,9 @@ void Assembly::look_at_idle_loops(const Redundancy& redundancy, const std::vecto
     for (size_t i = 0; i < words.size(); ++i) some = some || speaks(i);
     if (some) continue;
     const std::string text = "constrains nothing: the joints between its bodies hold it already";
-    if (drop) model_.notes.push_back(fmt::format("loop '{}' dropped: {}", loop.name, text));
-    else wrong(loop, "loop", text + "; leave it out");
+    if (drop)
+      model_.notes.push_back(fmt::format("{} '{}' dropped: {}", loop.kind, loop.name, text));
+    else wrong(loop, loop.kind, text + "; leave it out");
   }
 }
 

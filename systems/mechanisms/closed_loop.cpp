@@ -3,6 +3,23 @@
 
 namespace hamel::mechanisms {
 
+namespace {
+
+PairPoint<double> pair_point(const Loop& loop, const Tree& tree) {
+  const Rigid place = tree.in_world(loop.a);
+  return find_pair_point<double>(
+      *loop.surface, loop.at, tree.in_world(loop.b).apply(loop.at),
+      [&](const Vec3& x) { return place.apply(x); },
+      [&](const Vec3& u) -> Vec3 { return place.rotation * u; });
+}
+
+}  // namespace
+
+double Loop::open_by(const Tree& tree) const {
+  if (surface) return pair_point(*this, tree).gap;
+  return (tree.in_world(b).apply(at) - tree.in_world(a).apply(at)).norm();
+}
+
 void Loop::rows(const Tree& tree, Row* out) const {
   const auto seen = [&](int link, const Vec3& u) -> Vec3 {
     return tree.root_in_world(link).rotation.transpose() * u;
@@ -15,6 +32,17 @@ void Loop::rows(const Tree& tree, Row* out) const {
     row.other_wrench = wrench(a);
     row.phi = phi;
   };
+  if (surface) {
+    const PairPoint<double> touch = pair_point(*this, tree);
+    for (int i = 0; i < 3; ++i) {
+      const auto wrench = [&](int link) {
+        return force_at(tree.root_in_world(link).inverse().apply(touch.point),
+                        seen(link, touch.directions[static_cast<size_t>(i)]));
+      };
+      set(i, wrench, i == 2 ? touch.gap : 0);
+    }
+    return;
+  }
   const Vec3 x = tree.in_world(b).apply(at), apart = x - tree.in_world(a).apply(at);
   const Mat<3, 3> drawn = is_hinge() ? frame_along(axis) : Mat<3, 3>::Identity();
   const Mat<3, 3> e = tree.in_world(a).rotation * drawn;

@@ -41,7 +41,17 @@ void Mechanism::joint(const std::string& kind, const std::string& name, const st
 
 void Mechanism::contact(const std::string& kind, const std::string& name, const std::string& body,
                         const ContactOptions& options) {
-  contacts_.push_back({part(name), options, kind, body});
+  if (options.on.empty() && options.inside.empty()) {
+    contacts_.push_back({part(name), options, kind, body});
+    return;
+  }
+  const auto radius = options.values.find("radius");
+  LoopPart pair{part(name), LoopOptions{options.at}, options.on + options.inside, body, kind};
+  if (radius != options.values.end() && radius->second.size() == 1) pair.radius = radius->second[0];
+  pair.inside = !options.inside.empty();
+  pair.both = pair.inside && !options.on.empty();
+  pair.slips = options.friction || options.restitution || options.load || options.unilateral;
+  loops_.push_back(std::move(pair));
 }
 void Mechanism::wheel(const std::string& name, const std::string& body, const WheelOptions& o) {
   contact("wheel", name, body,
@@ -56,7 +66,10 @@ void Mechanism::blade(const std::string& name, const std::string& body, const Bl
   contact("blade", name, body, contact_options(o, {{"along", values_of(o.along)}}));
 }
 void Mechanism::ball(const std::string& name, const std::string& body, const WheelOptions& o) {
-  contact("ball", name, body, contact_options(o, {{"radius", {o.radius}}}));
+  ContactOptions options = contact_options(o, {{"radius", {o.radius}}});
+  options.on = o.on;
+  options.inside = o.inside;
+  contact("ball", name, body, options);
 }
 void Mechanism::point(const std::string& name, const std::string& body, const PointOptions& o) {
   contact("point", name, body, contact_options(o, {}));

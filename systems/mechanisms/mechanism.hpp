@@ -186,6 +186,9 @@ class HAMEL_API Mechanism {
   };
   struct LoopPart : Part, LoopOptions {
     std::string a, b;
+    std::string kind = "loop";  // "ball": one of b that rolls on or inside a, with this radius
+    double radius = 0;
+    bool inside = false, both = false, slips = false;  // both: on and inside; slips: with friction
   };
   struct CouplingPart : Part, CouplingOptions {};
   struct WallPart : Part, WallOptions {};

@@ -36,6 +36,11 @@ std::vector<RowInfo> ConstraintRows::info() const {
       out[out.size() - static_cast<size_t>(i)].slips = contact.slips;
   }
   for (const Loop& loop : loops) {
+    if (loop.surface) {
+      for (const int i : {1, 2}) add(loop.name, i, "rolls without slipping", false);
+      add(loop.name, 3, "touches the other body", true, true);
+      continue;
+    }
     for (int i = 1; i <= 3; ++i) add(loop.name, i, "the points of the joint coincide", true);
     for (int i = 4; i <= 5 && loop.is_hinge(); ++i)
       add(loop.name, i, "the axes of the joint coincide", true);

@@ -140,6 +140,43 @@ TEST(MechanismRates, AreThoseOfDifferences) {
   check_rates(contacts(true, true, false).model());
 }
 
+// Balls on and inside spheres and cylinders of bodies that move, of one root and of two.
+TEST(MechanismRates, OfRollingPairsAreThoseOfDifferences) {
+  for (const bool one_root : {true, false}) {
+    for (const bool cylinder : {true, false}) {
+      for (const bool inside : {true, false}) {
+        SCOPED_TRACE(testing::Message() << one_root << cylinder << inside);
+        Mechanism m("pair");
+        BodyOptions shell{.mass = 2, .at = {0, 0, 1}, .inertia = {0.3, 0.4, 0.5}};
+        if (cylinder) {
+          shell.cylinder = {0.5, 1};
+          shell.axis = {0.6, 0.8, 0};
+        } else {
+          shell.sphere = 0.5;
+        }
+        const double apart = inside ? 0.4 : 0.6;
+        const Point at = {-0.48 * apart, 0.36 * apart, 1 + 0.8 * apart};  // across the axis
+        m.body("shell", shell);
+        m.body("it", {.mass = 1, .at = at, .inertia = {0.1, 0.02, 0, 0.2, 0.01, 0.15}});
+        m.free("root", "shell", {.at = {0.1, 0, 1}});
+        if (one_root) {
+          m.body("arm", {.mass = 0.5, .at = {0.2, 0.1, 1.2}, .inertia = {0.1, 0.1, 0.1}});
+          m.slider("s", "shell", "arm", {.at = {0, 0, 1}, .axis = {0.6, 0, 0.8}});
+          m.ball_joint("j", "arm", "it", {.at = {0.2, 0.1, 1.2}});
+        } else {
+          m.free("other", "it", {.at = {0.2, 0.1, 1.2}});
+        }
+        m.ball("pair", "it",
+               {.at = at,
+                .radius = 0.1,
+                .on = inside ? "" : "shell",
+                .inside = inside ? "shell" : ""});
+        check_rates(m.model());
+      }
+    }
+  }
+}
+
 // Couplings of every kind, beside all joints and contacts.
 TEST(MechanismRates, OfCouplingsAreThoseOfDifferences) {
   const std::vector<CouplingOptions> kinds = {

@@ -246,6 +246,12 @@ Json mechanism(std::istream& from) {
     number("friction", "coefficient; left out: the contact is ideal");
     number("restitution", "coefficient, of impacts");
     number("load", "normal force, N, where its height cannot change; left out: of statics");
+    if (kind.name == "ball") {
+      for (const auto& [key, meaning] :
+           {std::pair{"on", "the body on whose sphere or cylinder it rolls; left out: the ground"},
+            std::pair{"inside", "the body in whose sphere or cylinder it rolls"}})
+        keys[key] = {{"type", "string"}, {"description", meaning}};
+    }
     add_fields(kind.fields, keys);
     out["properties"][kind.name] = list_of({{"type", "object"},
                                             {"required", {"body"}},

@@ -76,6 +76,7 @@ class RowRecorder {
   }
   // The formulas of closed_loop.hpp, seen from the one root of both links, else from the world.
   void add_loop(const Loop& loop) {
+    if (loop.surface) return add_pair(loop);
     const bool one_root = loop.a != kGround && loop.b != kGround && root(loop.a) == root(loop.b);
     const auto seen = [&](int link, const NumberVec3& u) {
       return one_root || link == kGround ? u : bodies_.root_in_world(link).turn(u);
@@ -115,6 +116,30 @@ class RowRecorder {
       add_turning(loop.b, back(loop.b, moment), 1, row);
       add_turning(loop.a, back(loop.a, moment), -1, row);
       row.phi = dot(e[i], axis);
+    }
+  }
+
+  // The formulas of rolling_pair.hpp, seen from the world.
+  void add_pair(const Loop& loop) {
+    const auto turned = [&](int link, const NumberVec3& u) {
+      return link == kGround ? u : bodies_.root_in_world(link).turn(u);
+    };
+    const auto moved = [&](int link, const NumberVec3& x) {
+      return link == kGround ? x : bodies_.root_in_world(link).apply(x);
+    };
+    const PairPoint<Number> touch = find_pair_point<Number>(
+        *loop.surface, loop.at, moved(loop.b, bodies_.point(loop.b, loop.at)),
+        [&](const Vec3& x) { return moved(loop.a, bodies_.point(loop.a, x)); },
+        [&](const Vec3& u) { return turned(loop.a, bodies_.direction(loop.a, u)); });
+    for (size_t i = 0; i < 3; ++i) {
+      RecordedRow& row = add();
+      for (const auto& [link, side] : {std::pair{loop.b, 1.0}, std::pair{loop.a, -1.0}}) {
+        if (link == kGround) continue;
+        const Pose& root = bodies_.root_in_world(link);
+        add_velocity(link, root.turn_back(touch.point - root.position),
+                     root.turn_back(touch.directions[i]), side, row);
+      }
+      if (i == 2) row.phi = touch.gap;
     }
   }
 

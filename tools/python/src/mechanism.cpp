@@ -111,17 +111,20 @@ void bind_contacts(nb::class_<ByParts>& mechanism) {
         name,
         [member](ByParts& self, const std::string& contact, const std::string& body,
                  const Point& at, const Point& axle, double radius, double angle, Maybe friction,
-                 Maybe restitution, Maybe load, std::optional<bool> unilateral) {
-          (self.*member)(contact, body,
-                         {at, axle, radius, angle, friction, restitution, load, unilateral});
+                 Maybe restitution, Maybe load, std::optional<bool> unilateral,
+                 const std::string& on, const std::string& inside) {
+          (self.*member)(
+              contact, body,
+              {at, axle, radius, angle, friction, restitution, load, unilateral, on, inside});
         },
         "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "axle"_a = kLeft, "radius"_a = 0.0,
         "angle"_a = 0.0, "friction"_a = nb::none(), "restitution"_a = nb::none(),
-        "load"_a = nb::none(), "unilateral"_a = nb::none(), help);
+        "load"_a = nb::none(), "unilateral"_a = nb::none(), "on"_a = "", "inside"_a = "", help);
   };
   rolls("wheel", &Mechanism::wheel, "at: its centre [m]; axle to the left; radius [m].");
   rolls("roller", &Mechanism::roller, "A wheel with rollers at an angle [rad] to its plane.");
-  rolls("ball", &Mechanism::ball, "A ball that rolls on the ground.");
+  rolls("ball", &Mechanism::ball,
+        "A ball that rolls on the ground, or on or inside the sphere or cylinder of a body.");
   mechanism
       .def(
           "blade",
