@@ -54,8 +54,8 @@ void add_solvers(Registry& registry) {
 
 // Files with parts are mechanisms; those of the library go by name.
 void add_mechanisms(Registry& registry) {
-  registry.add(
-      FileKind{{"body", "joint", "wheel", "roller", "ball", "blade", "loop"}, mechanism_from});
+  registry.add(FileKind{
+      {"body", "joint", "wheel", "roller", "ball", "blade", "loop"}, {"hold"}, mechanism_from});
   for (const FileFormat& format : urdf_formats()) registry.add(format);
   for (const auto& [name, text] : mechanisms::library()) {
     registry.add_deferred(

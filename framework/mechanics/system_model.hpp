@@ -125,6 +125,9 @@ struct SystemModel {
       start_mistakes;
 };
 
+/// Options behind the name of a system by name, each a list: robot.urdf?wheel=left,right&root=free.
+using NameOptions = std::map<std::string, std::vector<std::string>>;
+
 /// A registered system: its descriptions, its parameters, and how to make it.
 struct SystemInfo {
   std::string name, summary, formula, known, source;
@@ -133,6 +136,8 @@ struct SystemInfo {
   std::vector<InputField> inputs;
   /// Throws ConfigError naming every parameter that does not fit.
   std::function<SystemModel(const Parameters&)> make;
+  /// With options behind the name, bicycle?hold=steer; empty: it takes none.
+  std::function<SystemModel(const Parameters&, const NameOptions&)> make_with = {};
 };
 
 /// "no constraint", "1 constraint row", "3 constraint rows, 1 holonomic".

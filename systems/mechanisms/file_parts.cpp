@@ -1,5 +1,9 @@
 #include <hamel/systems/mechanisms/file_parts.hpp>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
 #include <hamel/framework/run/data/toml_parameters.hpp>
 #include <hamel/systems/mechanisms/contact.hpp>
 
@@ -84,7 +88,9 @@ void FileParts::contacts() {
                                {"friction", read_.read(o.friction)},
                                {"restitution", read_.read(o.restitution)},
                                {"load", read_.read(o.load)},
-                               {"unilateral", read_.read(o.unilateral)}};
+                               {"unilateral", read_.read(o.unilateral)},
+                               {"on", read_.read(o.on)},
+                               {"inside", read_.read(o.inside)}};
       add_fields(kind.fields, o.values, keys);
       read_.entries(table, keys);
       m_.contact(kind.name, name.empty() ? body : name, body, o);
@@ -106,6 +112,33 @@ void FileParts::chains() {
   tables("wall", [&](const toml::table& table) { wall(table); });
   tables("prescribed", [&](const toml::table& table) {
     if (!is_input(table, {"rate", "angle"})) prescribed(table);
+  });
+}
+void FileParts::hold() {
+  m_.place("hold: ");
+  for (const std::string& held : held_) {
+    const size_t equal = held.rfind('=');
+    if (equal == std::string::npos) {
+      m_.hold(held);
+      continue;
+    }
+    const std::string text = held.substr(equal + 1);
+    double at = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), at);
+    if (error == std::errc() && end == text.data() + text.size() && std::isfinite(at))
+      m_.hold(held.substr(0, equal), at);
+    else
+      read_.toml.mistakes.push_back(
+          fmt::format("hold: '{}': expected JOINT or JOINT=value, rad or m", held));
+  }
+}
+// Is a number of the start the rate of a joint that is held, or its place, where one is given?
+bool FileParts::is_held(const std::string& number) const {
+  const size_t point = number.rfind('.');
+  return std::ranges::any_of(held_, [&](const std::string& held) {
+    const size_t equal = held.rfind('=');
+    return number.substr(0, point) == held.substr(0, equal) &&
+           (equal != std::string::npos || number.substr(point + 1) == "rate");
   });
 }
 void FileParts::wall(const toml::table& table) {
@@ -318,12 +351,16 @@ void FileParts::surroundings() {
   stated("start", [&](const Node& node) {
     const toml::table* table = node.as_table();
     if (table == nullptr) return read_.toml.wrong(node, "start", "a table");
-    numbers(*table, [&](const std::string& name, double value) { m_.start(name, value); });
+    numbers(*table, [&](const std::string& name, double value) {
+      if (!is_held(name)) m_.start(name, value);
+    });
   });
   stated("push", [&](const Node& node) {
     const toml::table* table = node.as_table();
     if (table == nullptr) return read_.toml.wrong(node, "push", "a table");
-    numbers(*table, [&](const std::string& name, double value) { m_.push(name, value); });
+    numbers(*table, [&](const std::string& name, double value) {
+      if (!is_held(name)) m_.push(name, value);
+    });
   });
 }
 

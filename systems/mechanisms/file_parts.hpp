@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 #include <hamel/systems/mechanisms/file_values.hpp>
 
@@ -10,8 +11,10 @@ namespace hamel::mechanisms {
 
 class FileParts {
  public:
-  FileParts(FileValues& read, const toml::table& file, Mechanism& to)
-      : read_(read), table_(file), m_(to) {}
+  /// held: joints that are locked beside those of the file, "arm" or "arm=0.3".
+  FileParts(FileValues& read, const toml::table& file, Mechanism& to,
+            const std::vector<std::string>& held)
+      : read_(read), table_(file), m_(to), held_(held) {}
   void bodies();
   void joints();
   void inputs();
@@ -21,6 +24,7 @@ class FileParts {
   void forces();
   void sensors();
   void states();
+  void hold();
   void surroundings();
 
  private:
@@ -60,7 +64,9 @@ class FileParts {
 
   FileValues& read_;
   const toml::table& table_;
+  bool is_held(const std::string& number) const;
   Mechanism& m_;
+  const std::vector<std::string>& held_;
 };
 
 }  // namespace hamel::mechanisms

@@ -21,8 +21,11 @@ using Node = toml::node;
 
 class File {
  public:
-  File(std::shared_ptr<const toml::table> table, const std::string& origin)
-      : origin_(origin), read_(origin), kept_(std::move(table)), table_(*kept_) {}
+  File(std::shared_ptr<const toml::table> table, const std::string& origin,
+       const NameOptions& options = {})
+      : origin_(origin), read_(origin), kept_(std::move(table)), table_(*kept_) {
+    if (const auto it = options.find("hold"); it != options.end()) held_ = it->second;
+  }
 
   SystemModel model(const Parameters& given) {
     parameters(given);
@@ -62,7 +65,7 @@ class File {
     if (const Node* node = table_.get("name")) read_.toml.value(*node, "name", name);
     Mechanism m(name);
     check_keys();
-    FileParts parts(read_, table_, m);
+    FileParts parts(read_, table_, m, held_);
     parts.bodies();
     parts.joints();
     parts.inputs();
@@ -76,6 +79,7 @@ class File {
     read_.formulas.read_by([names](const std::string& text) { return names.in_formula(text); });
     parts.contacts();
     parts.chains();
+    parts.hold();
     parts.forces();
     parts.sensors();
     parts.surroundings();
@@ -122,6 +126,7 @@ class File {
   std::shared_ptr<const toml::table> kept_;
   const toml::table& table_;
   std::vector<Field> fields_;
+  std::vector<std::string> held_;
 };
 
 std::shared_ptr<const toml::table> parse(const std::string& text, const std::string& origin) {
@@ -131,8 +136,8 @@ std::shared_ptr<const toml::table> parse(const std::string& text, const std::str
 }  // namespace
 
 SystemModel mechanism_from(const std::string& text, const std::string& origin,
-                           const Parameters& given) {
-  return File(parse(text, origin), origin).model(given);
+                           const Parameters& given, const NameOptions& options) {
+  return File(parse(text, origin), origin, options).model(given);
 }
 
 SystemInfo mechanism_info(const std::string& text, const std::string& origin) {
@@ -149,6 +154,9 @@ SystemInfo mechanism_info(const std::string& text, const std::string& origin) {
   out.known = file.word("known");
   out.source = file.word("source");
   out.make = [table, origin](const Parameters& given) { return File(table, origin).model(given); };
+  out.make_with = [table, origin](const Parameters& given, const NameOptions& options) {
+    return File(table, origin, options).model(given);
+  };
   return out;
 }
 

@@ -17,7 +17,8 @@
 //   [[wall]]                 # name; distance = "1 - way.position", not negative; restitution
 //   [[wheel]] [[roller]] [[blade]] [[ball]] [[point]] [[tube]] [[ellipsoid]]
 //                            # name (left out: the body's), body, at; axle, radius, angle, crown;
-//                            # along; semi_axes; friction, restitution, load [N], unilateral
+//                            # along; semi_axes; friction, restitution, load [N], unilateral;
+//                            # of a ball: on or inside = "body", whose sphere or cylinder it rolls
 //   [[loop]]                 # name, a, b, at, axis
 //   [[coupling]]             # name (left out: the joint's); joint, to, ratio, offset: joint =
 //   joint = "left knuckle"   # ratio * to + offset; or formula = "...", of joint coordinates, or
@@ -62,9 +63,10 @@
 
 namespace hamel {
 
-/// The system of a TOML text. Throws ConfigError with every mistake, file, line and column.
+/// The system of a TOML text. options: hold, joints that are locked, "arm" where a run starts or
+/// "arm=0.3" there. Throws ConfigError with every mistake, file, line and column.
 SystemModel mechanism_from(const std::string& text, const std::string& origin,
-                           const Parameters& given = {});
+                           const Parameters& given = {}, const NameOptions& options = {});
 
 /// The registry entry of such a text: its texts, its parameters.
 SystemInfo mechanism_info(const std::string& text, const std::string& origin);

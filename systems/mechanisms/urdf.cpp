@@ -15,7 +15,7 @@ std::vector<FileFormat> urdf_formats() {
         extension, {"motor", "root", "weld", "weld-all-but", "wheel"}, "liburdfdom-dev"};
 #ifdef HAMEL_HAS_URDFDOM
     format.convert = [](const std::string& text, const std::string& path,
-                        const FileOptions& options) {
+                        const NameOptions& options) {
       return mechanisms::mechanism_of(mechanisms::read_robot(text, path), path, options);
     };
 #endif

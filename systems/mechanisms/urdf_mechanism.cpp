@@ -19,7 +19,7 @@ namespace {
 
 class Writer {
  public:
-  Writer(Robot robot, std::string path, const FileOptions& options)
+  Writer(Robot robot, std::string path, const NameOptions& options)
       : robot_(std::move(robot)), path_(std::move(path)), options_(options) {}
 
   FileFormat::Converted convert() {
@@ -260,7 +260,7 @@ class Writer {
 
   Robot robot_;
   std::string path_;
-  const FileOptions& options_;
+  const NameOptions& options_;
   std::string root_ = "planar";  // "world": the root link is the ground
   Vec3 root_at_ = Vec3::Zero();
   std::vector<RobotWheel> wheels_;
@@ -272,7 +272,7 @@ class Writer {
 }  // namespace
 
 FileFormat::Converted mechanism_of(Robot robot, const std::string& path,
-                                   const FileOptions& options) {
+                                   const NameOptions& options) {
   return Writer(std::move(robot), path, options).convert();
 }
 

@@ -11,6 +11,6 @@ namespace hamel::mechanisms {
 
 /// Throws ConfigError with every mistake in the options, and of the robot with them.
 FileFormat::Converted mechanism_of(Robot robot, const std::string& path,
-                                   const FileOptions& options);
+                                   const NameOptions& options);
 
 }  // namespace hamel::mechanisms

@@ -27,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const FileFormat urdf = urdf_formats().front();
   fuzz::accept_or_refuse([&] {
     std::string text = fuzz::text_of(data, size);
-    FileOptions options;
+    NameOptions options;
     if (text.starts_with('?')) {
       const size_t end = std::min(text.find('\n'), text.size());
       options = options_of_system("fuzz.urdf" + text.substr(0, end));

@@ -266,6 +266,8 @@ Json description_of(const std::string& name, const Parameters& given) {
 
 // A mechanism as its file, which the program reads.
 std::string toml_of(const std::string& name) {
+  if (options_of_system(name).contains("hold"))
+    throw ConfigError({"--toml: leave --hold out, and set held = true at the joint in the file"});
   if (names_file(name)) {
     (void)data_system_maker(registry(), name)({});
     return converted(registry(), name, read_system_file(name)).toml;

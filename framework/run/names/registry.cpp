@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <set>
@@ -9,7 +10,9 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/loop/scaled_equation.hpp>
+#include <hamel/framework/run/names/system_file.hpp>
 #include <hamel/framework/schemes/problem.hpp>
 
 namespace hamel {
@@ -56,6 +59,13 @@ struct Registry::Deferred {
   SystemInfo info;
 };
 
+struct Registry::WithOptions {
+  std::mutex one_at_a_time;
+  std::map<std::string, SystemInfo> systems;
+};
+
+Registry::Registry() : with_options_(std::make_shared<WithOptions>()) {}
+
 ClaimedOrder SchemeInfo::claim(double s, TauTraits tau, const Mechanics& system,
                                const std::string& force_at) const {
   const bool constant =
@@ -87,7 +97,10 @@ void Registry::add_absent(SolverInfo info) { absent_solvers_[info.name] = std::m
 void Registry::add_scheme_alias(const std::string& alias, const std::string& scheme) {
   scheme_aliases_[alias] = scheme;
 }
-void Registry::add(SystemInfo info) { systems_[info.name] = std::move(info); }
+void Registry::add(SystemInfo info) {
+  with_options_ = std::make_shared<WithOptions>();
+  systems_[info.name] = std::move(info);
+}
 void Registry::add(FileKind kind) { file_kinds_.push_back(std::move(kind)); }
 void Registry::add(FileFormat format) { file_formats_.push_back(std::move(format)); }
 void Registry::add_deferred(const std::string& name, std::function<SystemInfo()> make) {
@@ -122,10 +135,29 @@ const SolverInfo* Registry::absent_solver(const std::string& name) const {
 const SystemInfo* Registry::system(const std::string& name) const {
   if (const SystemInfo* info = find(systems_, name)) return info;
   const auto it = deferred_.find(name);
-  if (it == deferred_.end()) return nullptr;
+  if (it == deferred_.end()) return system_with_options(name);
   Deferred& entry = *it->second;
   std::call_once(entry.made, [&] { entry.info = entry.make(); });
   return &entry.info;
+}
+
+const SystemInfo* Registry::system_with_options(const std::string& name) const {
+  const std::string own = path_of_system(name);
+  const SystemInfo* info = own == name || names_file(name) ? nullptr : system(own);
+  if (info == nullptr) return nullptr;
+  const NameOptions options = options_of_system(name);
+  for (const auto& [option, values] : options)
+    if (!info->make_with || option != "hold")
+      throw ConfigError({info->make_with
+                             ? unknown_name("option of " + own, option, {"hold"})
+                             : fmt::format("system: '{}' takes no options, got '{}'", own, name)});
+  const std::lock_guard lock(with_options_->one_at_a_time);
+  const auto [at, is_new] = with_options_->systems.try_emplace(name, *info);
+  if (is_new)
+    at->second.make = [make = info->make_with, options](const Parameters& given) {
+      return make(given, options);
+    };
+  return &at->second;
 }
 namespace {
 std::string problem_of(const std::string& group, const Mechanics& mechanics) {

@@ -77,11 +77,12 @@ using SolveFunction =
 
 /// A further TOML format for systems, recognised by its top-level keys.
 struct FileKind {
-  std::vector<std::string> keys;  // any of them; a file of this kind must have the first
+  std::vector<std::string> keys;          // any of them; a file of this kind must have the first
+  std::vector<std::string> options = {};  // accepted behind the name: my_robot.toml?hold=arm
   /// Throws ConfigError with every mistake, file, line and column.
   std::function<SystemModel(const std::string& text, const std::string& origin,
-                            const Parameters& given)>
-      read;
+                            const Parameters& given, const NameOptions& options)>
+      read = {};
 };
 
 /// A format of other programs, recognised by its extension: a text in it becomes one of our TOML
@@ -96,7 +97,7 @@ struct FileFormat {
   };
   /// Null in a build without the package. Throws ConfigError with every mistake.
   std::function<Converted(const std::string& text, const std::string& path,
-                          const FileOptions& options)>
+                          const NameOptions& options)>
       convert = {};
 };
 
@@ -110,6 +111,7 @@ constexpr int kMaxDimension = 1000;
 
 class Registry {
  public:
+  Registry();
   // Adding a name again replaces the earlier entry.
   void add(GroupInfo info);
   void add(RetractionInfo info);
@@ -142,6 +144,8 @@ class Registry {
   const SchemeInfo* scheme(const std::string& name) const;  // by its name or an alias
   const SolverInfo* solver(const std::string& name) const;
   const SolverInfo* absent_solver(const std::string& name) const;
+  /// With options behind it where that system takes them: bicycle?hold=steer. ConfigError where
+  /// they are no options.
   const SystemInfo* system(const std::string& name) const;
   /// The kernel compiled for this problem if there is one, else null: the scheme's erased one
   /// serves.
@@ -194,6 +198,9 @@ class Registry {
   std::map<std::string, SystemInfo> systems_;
   struct Deferred;
   std::map<std::string, std::shared_ptr<Deferred>> deferred_;
+  const SystemInfo* system_with_options(const std::string& name) const;
+  struct WithOptions;
+  std::shared_ptr<WithOptions> with_options_;  // systems whose names have options
   std::vector<FileKind> file_kinds_;
   std::vector<FileFormat> file_formats_;
   std::map<std::string, KernelFactory> kernels_;

@@ -16,10 +16,13 @@ namespace {
 
 // Where the options begin, the end of the name where there are none.
 size_t end_of_path(const std::string& system) {
-  for (const std::string& extension : robot_extensions())
+  std::vector<std::string> extensions = robot_extensions();
+  extensions.emplace_back(".toml");
+  for (const std::string& extension : extensions)
     if (const size_t at = system.find(extension + "?"); at != std::string::npos)
       return at + extension.size();
-  return system.size();
+  const size_t at = system.find('?');  // of a registered name
+  return at == std::string::npos || system.find('/') != std::string::npos ? system.size() : at;
 }
 
 std::vector<std::string> split(const std::string& text, char at) {
@@ -43,15 +46,15 @@ std::string extension_of_system(const std::string& system) {
   return std::filesystem::path(path_of_system(system)).extension().string();
 }
 bool names_file(const std::string& system) {
-  return system.ends_with(".toml") || names_robot(system);
+  return extension_of_system(system) == ".toml" || names_robot(system);
 }
 bool names_robot(const std::string& system) {
   const auto& all = robot_extensions();
   return std::ranges::find(all, extension_of_system(system)) != all.end();
 }
 
-FileOptions options_of_system(const std::string& system) {
-  FileOptions out;
+NameOptions options_of_system(const std::string& system) {
+  NameOptions out;
   const size_t end = end_of_path(system);
   if (end >= system.size()) return out;
   for (const std::string& part : split(system.substr(end + 1), '&')) {
@@ -66,7 +69,7 @@ FileOptions options_of_system(const std::string& system) {
   return out;
 }
 
-std::string with_file_option(const std::string& system, const std::string& option,
+std::string with_name_option(const std::string& system, const std::string& option,
                              const std::vector<std::string>& values) {
   const char before = end_of_path(system) == system.size() ? '?' : '&';
   return fmt::format("{}{}{}={}", system, before, option, fmt::join(values, ","));

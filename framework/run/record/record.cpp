@@ -92,7 +92,8 @@ Json record_of(const Result& r) {
   });
   diagnostics["invariants"] = invariants;
   const std::string& system = r.config.system;
-  Json out = {{"system", r.system->name},
+  const bool has_options = !names_file(system) && path_of_system(system) != system;
+  Json out = {{"system", has_options ? system : r.system->name},
               {"system_file", names_file(system) ? Json(system) : Json(nullptr)},
               {"group", r.system->group.name}};
   Config::fields([&](const Option& option, auto member) {

@@ -57,7 +57,7 @@ TEST(Registry, ReadsFormatsOfOtherPrograms) {
   }
   Registry having = registry();
   FileFormat format{".own", {"size"}};
-  format.convert = [](const std::string& text, const std::string& path, const FileOptions&) {
+  format.convert = [](const std::string& text, const std::string& path, const NameOptions&) {
     return FileFormat::Converted{text + "name = \"own\"\n", {path + " has more"}};
   };
   having.add(format);
@@ -71,13 +71,13 @@ TEST(Registry, ReadsFormatsOfOtherPrograms) {
 TEST(Registry, RecognisesFilesByName) {
   EXPECT_TRUE(names_file("a/b.toml"));
   EXPECT_TRUE(names_file("robot.urdf"));
-  const std::string name = with_file_option(
-      with_file_option("a?/robot.urdf", "wheel", {"left", "right"}), "root", {"free"});
+  const std::string name = with_name_option(
+      with_name_option("a?/robot.urdf", "wheel", {"left", "right"}), "root", {"free"});
   EXPECT_EQ(name, "a?/robot.urdf?wheel=left,right&root=free");
   EXPECT_TRUE(names_file(name));
   EXPECT_EQ(path_of_system(name), "a?/robot.urdf");
   EXPECT_EQ(options_of_system(name),
-            (FileOptions{{"wheel", {"left", "right"}}, {"root", {"free"}}}));
+            (NameOptions{{"wheel", {"left", "right"}}, {"root", {"free"}}}));
   for (const char* other : {"suslov", "robot.urdf.gz", "urdf"}) EXPECT_FALSE(names_file(other));
 }
 

@@ -11,7 +11,8 @@
 namespace hamel::tools {
 
 const std::vector<std::string>& RobotLine::keys() {
-  static const std::vector<std::string> all = {"wheel", "motor", "weld", "weld_all_but", "root"};
+  static const std::vector<std::string> all = {"wheel",        "motor", "weld",
+                                               "weld_all_but", "root",  "hold"};
   return all;
 }
 
@@ -33,7 +34,11 @@ void RobotLine::define(CLI::App& app) {
   app.add_option(
       "--root", root,
       "how the root link of robot.urdf hangs on the ground: planar, free or fixed [planar]");
-  group_options(app, "Robot", {"--wheel", "--motor", "--weld", "--weld-all-but", "--root"});
+  list("--hold", held, "JOINT[=value]",
+       "a hinge or slider of a mechanism that is locked, where the run starts or at this angle "
+       "(rad) or position (m) (repeatable)");
+  group_options(app, "Robot",
+                {"--wheel", "--motor", "--weld", "--weld-all-but", "--root", "--hold"});
 }
 
 std::string RobotLine::resolve(const std::string& system) const {
@@ -42,12 +47,12 @@ std::string RobotLine::resolve(const std::string& system) const {
       root.empty() ? std::vector<std::string>{} : std::vector<std::string>{root};
   for (const auto& [option, values] :
        {std::pair{"wheel", &wheels}, std::pair{"motor", &motors}, std::pair{"weld", &welds},
-        std::pair{"weld-all-but", &movable}, std::pair{"root", &roots}}) {
+        std::pair{"weld-all-but", &movable}, std::pair{"root", &roots}, std::pair{"hold", &held}}) {
     if (values->empty()) continue;
-    if (!names_robot(system))
+    if (option != std::string_view("hold") && !names_robot(system))
       throw ConfigError(
           {fmt::format("--{}: for a robot, FILE.urdf; got the system '{}'", option, system)});
-    out = with_file_option(out, option, *values);
+    out = with_name_option(out, option, *values);
   }
   return out;
 }
