@@ -12,6 +12,8 @@ namespace {
 using namespace hamel::test;
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
+using Words = std::vector<std::string>;
 
 using DataSystem = CommandLine;
 
@@ -325,6 +327,75 @@ potential = "0.5*x1^2"
     EXPECT_EQ(o.status, 2);
     EXPECT_THAT(o.err, HasSubstr("with massless links lift, balance and the explicit schemes"));
   }
+}
+
+/// Scalar states beside the coordinates of a group: a lag behind a place that moves at w, z = w (t
+/// - T) + w T exp(-t/T); one with an input and the time, y = u t + t^2/2; a force that lags, m x''
+/// = f, f' = (1 - f)/T.
+TEST_F(DataSystem, MayHaveStates) {
+  const std::string system = write(R"(group = "r2"
+coordinates = ["x", "s"]
+rates = ["v", "w"]
+inertia = [2, 1]
+force = ["pull", 0]
+velocity = [0, 1.3]
+[[state]]
+name = "z"
+rate = "(s - z)/T"
+[[state]]
+name = "y"
+rate = "u + t"
+[[state]]
+name = "pull"
+rate = "(1 - pull)/T"
+[[state]]
+name = "way"
+rate = "(1 + z)*w"
+[inputs]
+u = { unit = "1", meaning = "a rate" }
+[parameters]
+T = { value = 0.4, unit = "s", meaning = "lag", least = 0.01 }
+)");
+  const double t = 2, T = 0.4, w = 1.3, left = std::exp(-t / T);
+  const double z = w * (t - T) + w * T * left;
+  const double sum = w * (t * t / 2 - T * t) + w * T * T * (1 - left);  // of z over the time
+  const std::vector<double> expected = {(t * t / 2 - T * t + T * T * (1 - left)) / 2,
+                                        w * t,
+                                        z,
+                                        0.7 * t + t * t / 2,
+                                        1 - left,
+                                        w * (t + sum)};
+  for (const Words& method :
+       {Words{"--rtol", "1e-11"}, Words{"--scheme", "rkmk4", "--step", "1e-3"},
+        Words{"--scheme", "lift", "--step", "1e-4"}}) {
+    SCOPED_TRACE(method[1]);
+    Words line = {system, "--until", "2", "--input", "u=0.7"};
+    line.insert(line.end(), method.begin(), method.end());
+    const json end = record(line);
+    const double near = method[1] == "lift" ? 1e-7 : 1e-9;
+    EXPECT_EQ(end["group"], "r2*r4");
+    EXPECT_NEAR(end["final"]["element"][0][0][2].get<double>(), expected[0], near);
+    EXPECT_NEAR(end["final"]["element"][0][1][2].get<double>(), expected[1], near);
+    for (const int i : {0, 1, 2, 3})
+      EXPECT_NEAR(end["final"]["element"][1][i][4].get<double>(), expected[2 + i], near) << i;
+    EXPECT_THAT(end["notes"].dump(), Not(HasSubstr("projected")));
+  }
+  EXPECT_EQ(record({system, "--until", "1", "--set", "T=0.1"})["status"], "ok");
+  const auto said = [&](const std::string& state) {
+    return run({"run", write("group = \"r1\"\ninertia = [1]\nvelocity = [1]\n" + state)}).err;
+  };
+  EXPECT_THAT(said("[[state]]\nname = \"z\"\n"),
+              HasSubstr("state.rate: expected a formula linear in the velocities"));
+  EXPECT_THAT(said("[[state]]\nname = \"z\"\nrate = \"xi1^2\"\n"),
+              HasSubstr("system.toml:6:8: state.rate: expected a formula that is linear in the "
+                        "velocities"));
+  EXPECT_THAT(said("[[state]]\nname = \"2z\"\nrate = \"1\"\n"),
+              HasSubstr("state.name: expected a name allowed in a formula, got '2z'"));
+  EXPECT_THAT(said("[[state]]\nname = \"z\"\nrat = \"1\"\n"), HasSubstr("did you mean 'rate'?"));
+  EXPECT_THAT(said("[[state]]\nname = \"x1\"\nrate = \"1\"\n"),
+              HasSubstr("two things are called 'x1'"));
+  EXPECT_THAT(said("potential = \"z\"\n[[state]]\nname = \"z\"\nrate = \"1\"\n"),
+              HasSubstr("potential: unknown name 'z'"));
 }
 
 /// The page calls coordinates and rates as the file does, and finds which of them are places all

@@ -9,6 +9,7 @@ namespace hamel {
 
 DataFormulas DataFormulasReader::read(const Names& inputs) {
   const Names of_time = names_.coordinates + Names{"t"};
+  places_ = names_.places();
 
   DataFormulas out;
   out.inputs = inputs.size();
@@ -19,12 +20,61 @@ DataFormulas DataFormulasReader::read(const Names& inputs) {
   if (const Node* node = table_.get("constraints")) rows(*node, "constraints", of_time, out.rows);
   const Eigen::Index k = out.rows.constant.rows();
   out.drift = vector("drift", k, of_time + inputs);
-  out.holonomic = vector("holonomic", -1, names_.coordinates);
+  out.holonomic = vector("holonomic", -1, places_);
   out.force = vector("force", dim(), of_time + inputs + names_.rates);
   out.potential.constant = Eigen::MatrixXd::Zero(1, 1);
   if (const Node* node = table_.get("potential"))
-    entry(*node, "potential", names_.coordinates, out.potential, 0, 0);
+    entry(*node, "potential", places_, out.potential, 0, 0);
+  states(of_time + inputs + names_.rates, out.states);
   return out;
+}
+
+// Rates of [[state]]: formulas linear in the velocities.
+void DataFormulasReader::states(const Names& variables, FormulaMatrix& out) {
+  out.constant = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(names_.states), 1);
+  if (names_.states == 0) return;
+  const toml::array& tables = *table_.get_as<toml::array>("state");
+  for (size_t i = 0; i < names_.states; ++i) {
+    const Node* rate = tables[i].as_table()->get("rate");
+    if (rate == nullptr) {
+      read_.wrong(tables[i], "state.rate", "a formula linear in the velocities");
+      continue;
+    }
+    entry(*rate, "state.rate", variables, out, static_cast<Eigen::Index>(i), 0);
+    if (out.entries.empty() || out.entries.back().row != static_cast<Eigen::Index>(i)) continue;
+    if (const std::string how =
+            not_linear(out.entries.back().value, variables.size() - names_.rates.size());
+        !how.empty())
+      read_.wrong(*rate, "state.rate", "a formula that " + how);
+  }
+}
+
+// "" of a formula that is linear in the velocities, behind so many variables, but for terms without
+// one; tried at scattered values.
+std::string DataFormulasReader::not_linear(const Expression& formula, size_t before) const {
+  if (formula.may_jump()) return "cannot jump";
+  const size_t count = before, all = count + names_.rates.size();
+  for (int seed = 1; seed <= 3; ++seed) {
+    std::vector<double> at(all), slopes(all, 0.0);
+    for (size_t i = 0; i < all; ++i)
+      at[i] = std::sin(12.9898 * (static_cast<double>(i) + 1) + 78.233 * seed);
+    const auto along = [&](double factor) {
+      std::vector<double> values = at;
+      for (size_t i = count; i < all; ++i) values[i] *= factor;
+      return formula(values);
+    };
+    const double none = along(0), one = along(1) - none, three = along(3) - none;
+    if (!std::isfinite(none + one + three)) continue;
+    formula.differentiate(at, 1, slopes);
+    double linear = 0, size = std::abs(one) + std::abs(none);
+    for (size_t i = count; i < all; ++i) {
+      linear += slopes[i] * at[i];
+      size += std::abs(slopes[i] * at[i]);
+    }
+    if (std::abs(one - linear) > 1e-12 * size || std::abs(three - 3 * one) > 1e-12 * size)
+      return "is linear in the velocities";
+  }
+  return "";
 }
 
 // Entry of a matrix that has the size already.
@@ -93,10 +143,10 @@ void DataFormulasReader::inertia(const Node& node, FormulaMatrix& out) {
   if (array == nullptr || static_cast<Eigen::Index>(array->size()) != dim()) {
     read_.wrong(node, "inertia", fmt::format("{} numbers or formulas, or {} rows", dim(), dim()));
   } else if (array->front().is_array()) {
-    rows(node, "inertia", names_.coordinates, out);
+    rows(node, "inertia", places_, out);
   } else {
     for (Eigen::Index i = 0; i < dim(); ++i)
-      entry((*array)[static_cast<size_t>(i)], "inertia", names_.coordinates, out, i, i);
+      entry((*array)[static_cast<size_t>(i)], "inertia", places_, out, i, i);
   }
 }
 

@@ -12,7 +12,13 @@ namespace hamel {
 
 /// Names allowed in the formulas of a system, beside t and its parameters.
 struct DataNames {
-  std::vector<std::string> coordinates, rates, inputs;
+  std::vector<std::string> coordinates, rates, inputs;  // those of states are the last
+  size_t states = 0;
+
+  /// Coordinates without states.
+  std::vector<std::string> places() const {
+    return {coordinates.begin(), coordinates.end() - static_cast<std::ptrdiff_t>(states)};
+  }
 };
 
 inline std::vector<std::string> operator+(std::vector<std::string> a,
@@ -34,17 +40,22 @@ class DataFormulasReader {
  private:
   using Node = toml::node;
   using Names = std::vector<std::string>;
-  Eigen::Index dim() const { return static_cast<Eigen::Index>(names_.rates.size()); }
+  Eigen::Index dim() const {
+    return static_cast<Eigen::Index>(names_.rates.size() - names_.states);
+  }
   void entry(const Node& node, const std::string& key, const Names& variables, FormulaMatrix& out,
              Eigen::Index i, Eigen::Index j);
   FormulaMatrix vector(const std::string& key, Eigen::Index size, const Names& variables);
   void rows(const Node& node, const std::string& key, const Names& variables, FormulaMatrix& out);
   void inertia(const Node& node, FormulaMatrix& out);
+  void states(const Names& variables, FormulaMatrix& out);
+  std::string not_linear(const Expression& formula, size_t before) const;
 
   TomlReader& read_;
   TomlFormulas& formulas_;
   const toml::table& table_;
   const DataNames& names_;
+  Names places_;
   std::vector<std::pair<std::string, std::string>> texts_;
 };
 

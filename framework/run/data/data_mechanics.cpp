@@ -16,7 +16,8 @@ bool FormulaMatrix::uses(size_t first, size_t last) const {
 
 bool DataFormulas::left_invariant() const {
   return inertia.is_constant() && rows.is_constant() && drift.is_zero() &&
-         holonomic.constant.rows() == 0 && potential.is_constant() && force.is_zero();
+         holonomic.constant.rows() == 0 && potential.is_constant() && force.is_zero() &&
+         states.constant.rows() == 0;
 }
 
 DataMechanics::DataMechanics(std::shared_ptr<const FormulaPrograms> programs,
@@ -28,16 +29,19 @@ DataMechanics::DataMechanics(std::shared_ptr<const FormulaPrograms> programs,
       rates_(group, geometry_),
       given_(std::move(given)),
       n_(group.dim),
-      own_(static_cast<int>(f_.rows.constant.rows())),
+      states_(static_cast<int>(f_.states.constant.rows())),
+      own_(static_cast<int>(f_.own_rows())),
       held_(static_cast<int>(f_.holonomic.constant.rows())),
       values_(2 * programs_->variables(), 0.0),
       now_(n_) {
   const size_t t = time(), first_rate = t + 1 + f_.inputs, end = programs_->variables();
   autonomous_ = !f_.rows.uses(t, first_rate) && !f_.drift.uses(t, first_rate) &&
-                !f_.force.uses(t, first_rate);
+                !f_.force.uses(t, first_rate) && !f_.states.uses(t, first_rate);
   velocity_force_ = f_.force.uses(first_rate, end);
   // Not the second derivatives of phi, nor the rates of inputs.
-  exact_rates_ = held_ == 0 && !f_.drift.uses(t + 1, first_rate);
+  exact_rates_ =
+      held_ == 0 && !f_.drift.uses(t + 1, first_rate) && !f_.states.uses(t + 1, first_rate);
+  now_.setZero();
 }
 
 const double* DataMechanics::outputs(Evaluation e) const {
@@ -50,7 +54,7 @@ const double* DataMechanics::outputs(Evaluation e) const {
 }
 
 bool DataMechanics::constant_constraints() const {
-  return held_ == 0 && f_.rows.is_constant() && f_.drift.is_constant();
+  return held_ == 0 && states_ == 0 && f_.rows.is_constant() && f_.drift.is_constant();
 }
 
 void DataMechanics::take(const double* g) const { geometry_->coordinates(g, values_.data()); }
@@ -65,6 +69,7 @@ void DataMechanics::take(ConstVector xi) const {
 }
 
 void DataMechanics::inertia(const double* g, Matrix out) const {
+  if (states_ > 0) out.setZero();
   if (f_.inertia.is_constant()) return f_.inertia.fill(nullptr, out);
   take(g);
   f_.inertia.fill(outputs(Evaluation::inertia), out);
@@ -77,10 +82,18 @@ void DataMechanics::constraints(double t, const double* g, Matrix a, Vector b) c
     take(t);
     y = outputs(Evaluation::constraints);
   }
-  f_.rows.fill(y, a.topRows(own_));
-  f_.drift.fill(y + f_.rows.entries.size(), b.head(own_));
+  const int stated = own_ - states_;
+  if (states_ > 0) a.topRows(stated).rightCols(states_).setZero();
+  f_.rows.fill(y, a.topRows(stated));
+  f_.drift.fill(y + f_.rows.entries.size(), b.head(stated));
   b.tail(held_).setZero();
   const double* slopes = y + f_.rows.entries.size() + f_.drift.entries.size();
+  for (int i = 0; i < states_; ++i) {
+    a.row(stated + i) = -Eigen::Map<const Eigen::RowVectorXd>(slopes, n_);
+    a(stated + i, n_ - states_ + i) += 1;
+    b[stated + i] = slopes[n_];
+    slopes += n_ + 1;
+  }
   for (int i = 0; i < held_; ++i, slopes += time()) {
     now_.setZero();
     rates_.add_pulled_back(g, values_.data(), slopes, now_);
@@ -122,6 +135,7 @@ void DataMechanics::force(double t, const double* g, ConstVector xi, Vector out)
   take(xi);
   const double* y = outputs(Evaluation::force);
   f_.force.fill(y, out);
+  out.tail(states_).setZero();
   if (f_.potential.is_constant() && f_.inertia.is_constant()) return;
   rates_.add_pulled_back(g, values_.data(), y + f_.force.entries.size(), out);
 }
@@ -139,6 +153,7 @@ double DataMechanics::power(double t, const double* g, ConstVector xi) const {
   take(g);
   take(t);
   take(xi);
+  now_.tail(states_).setZero();
   f_.force.fill(outputs(Evaluation::applied_force), now_);
   return now_.dot(xi);
 }
@@ -169,6 +184,7 @@ std::vector<std::string> DataMechanics::start_mistakes(double t, const double* g
   check(f_.holonomic, true);
   check(f_.potential, true);
   check(f_.force, false);
+  check(f_.states, false);
   return out;
 }
 

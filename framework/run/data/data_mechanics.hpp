@@ -25,7 +25,7 @@ class DataMechanics final : public Mechanics {
   bool constant_constraints() const override;
   bool autonomous() const override { return autonomous_; }
   bool has_force() const override { return !f_.force.is_zero(); }
-  bool has_drift() const override { return !f_.drift.is_zero(); }
+  bool has_drift() const override { return !f_.drift.is_zero() || states_ > 0; }
   bool force_depends_on_velocity() const override { return velocity_force_; }
   void inertia(const double* g, Matrix out) const override;
   void constraints(double t, const double* g, Matrix a, Vector b) const override;
@@ -53,7 +53,7 @@ class DataMechanics final : public Mechanics {
   std::shared_ptr<const Geometry> geometry_;
   CoordinateRates rates_;
   std::shared_ptr<const Inputs> given_;
-  int n_, own_, held_;
+  int n_, states_, own_, held_;  // own_: rows that are no differentials, those of states the last
   bool autonomous_, velocity_force_, exact_rates_;
   mutable std::vector<double> values_;          // of the variables, then their rates
   mutable std::vector<double> outputs_, work_;  // of the program evaluated last; its work space

@@ -32,6 +32,7 @@ class File {
     model_.name = origin_;
     if (const Node* node = table_.get("name")) read_.value(*node, "name", model_.name);
     model_.group = group_of();
+    states();
     model_.inputs = read_input_fields(read_, table_);
     model_.fields = read_parameters(read_, formulas_, table_, model_.name, given);
     name_all();
@@ -107,10 +108,44 @@ class File {
     return *info;
   }
 
-  // The names of coordinates, rates and inputs, each its own.
-  void name_all() {
+  // Scalars behind the coordinates of the group: those of one more factor.
+  void states() {
+    const Node* node = table_.get("state");
     names("coordinates", model_.group.columns.size(), model_.coordinates);
     names("rates", static_cast<size_t>(model_.group.dim), model_.rates);
+    if (node == nullptr) return;
+    const toml::array* tables = node->as_array();
+    if (tables == nullptr || !tables->is_array_of_tables())
+      read_.wrong(*node, "state", "tables, [[state]]");
+    stop_at_mistakes();
+    Names of_states;
+    for (const Node& entry : *tables) {
+      std::string name;
+      const toml::table& state = *entry.as_table();
+      for (const auto& [key, value] : state) {
+        if (key == "name") read_.value(value, "state.name", name);
+        else if (key != "rate") read_.unknown_key(value, std::string(key.str()), {"name", "rate"});
+      }
+      if (!Expression::allows(name))
+        read_.wrong(entry, "state.name",
+                    fmt::format("a name allowed in a formula, got '{}'", name));
+      of_states.push_back(name);
+    }
+    stop_at_mistakes();
+    SystemModel own = model_;
+    name_quantities(own);
+    model_.coordinates = own.group.columns + of_states;
+    for (std::string& name : of_states) name += ".rate";
+    model_.rates = own.rates + of_states;
+    names_.states = of_states.size();
+    const std::string product = fmt::format("{}*r{}", model_.group.name, names_.states);
+    const auto info = registry_.group_or_product(product);
+    if (!info) throw ConfigError({registry_.missing_group(product)});
+    model_.group = *info;
+  }
+
+  // The names of coordinates, rates and inputs, each its own.
+  void name_all() {
     const Names coordinates = model_.coordinates, rates = model_.rates;
     name_quantities(model_);
     QuantityNames names(model_);
@@ -159,25 +194,30 @@ class File {
 
   void check_keys() {
     static const Names known = {
-        "configuration", "constraints", "contacts",   "coordinates", "draw",  "drift",
-        "events",        "floor",       "force",      "from_above",  "group", "holonomic",
-        "inertia",       "inputs",      "invariants", "momentum",    "name",  "outputs",
-        "parameters",    "potential",   "rates",      "velocity"};
+        "configuration", "constraints", "contacts",   "coordinates", "draw",    "drift",
+        "events",        "floor",       "force",      "from_above",  "group",   "holonomic",
+        "inertia",       "inputs",      "invariants", "momentum",    "name",    "outputs",
+        "parameters",    "potential",   "rates",      "state",       "velocity"};
     for (const auto& [name, node] : table_) {
       const std::string key(name.str());
       if (std::find(known.begin(), known.end(), key) == known.end())
         read_.unknown_key(node, key, known);
     }
     if (!table_.contains("inertia"))
-      read_.mistakes.push_back(
-          fmt::format("{}: inertia: missing, expected {} entries", origin_, model_.group.dim));
+      read_.mistakes.push_back(fmt::format("{}: inertia: missing, expected {} entries", origin_,
+                                           model_.group.dim - static_cast<int>(names_.states)));
   }
 
   // Start, events, invariants, contacts and drawing.
   void rest() {
+    // Those of states may be left out: they are 0, and their rates follow from the rows.
     const auto start = [&](const std::string& key, size_t count, std::vector<double>& out) {
-      if (const Node* node = table_.get(key))
-        out = formulas_.numbers(*node, key, static_cast<long>(count));
+      const Node* node = table_.get(key);
+      if (node == nullptr) return;
+      const toml::array* list = node->as_array();
+      const bool without = list != nullptr && list->size() + names_.states == count;
+      out = formulas_.numbers(*node, key, static_cast<long>(without ? list->size() : count));
+      out.resize(count, 0.0);
     };
     start("configuration", names_.coordinates.size(), model_.start.configuration);
     start("velocity", names_.rates.size(), model_.start.velocity);
@@ -230,8 +270,10 @@ class File {
     };
     const double most = count("constraints") + count("holonomic");
     for (const double row : rows) {
+      const bool holds = row > count("constraints");  // behind the rows of states
       if (row >= 1 && row <= most && row == std::floor(row))
-        model_.contacts.push_back(static_cast<int>(row) - 1);
+        model_.contacts.push_back(static_cast<int>(row) - 1 +
+                                  (holds ? static_cast<int>(names_.states) : 0));
       else
         read_.wrong(node, "contacts", fmt::format("numbers of rows, 1 to {}, got {}", most, row));
     }
@@ -251,94 +293,6 @@ class File {
 SystemModel data_system(const Registry& registry, const std::string& text,
                         const std::string& origin, const Parameters& given) {
   return File(registry, origin).read(text, given);
-}
-
-std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
-                                                                const std::string& path) {
-  return [&registry, path](const Parameters& given) {
-    return data_system_maker(registry, path, read_system_file(path))(given);
-  };
-}
-
-namespace {
-
-// Refuses options that are not among those known.
-void check_options(const std::string& path, const NameOptions& options,
-                   const std::vector<std::string>& known) {
-  for (const auto& [name, values] : options) {
-    if (std::ranges::find(known, name) != known.end()) continue;
-    if (known.empty())
-      throw ConfigError({fmt::format(
-          "{}: {} is an option of mechanisms, and this file is a system by data", path, name)});
-    throw ConfigError({unknown_name("option of " + path, name, known)});
-  }
-}
-
-SystemModel read_toml(const Registry& registry, const std::string& path, const std::string& text,
-                      const Parameters& given, const NameOptions& options) {
-  const toml::table table = TomlReader(path).parse(text);
-  for (const FileKind& kind : registry.file_kinds()) {
-    const bool its_own =
-        std::ranges::any_of(kind.keys, [&](const auto& key) { return table.contains(key); });
-    if (!its_own) continue;
-    check_options(path, options, kind.options);
-    return kind.read(text, path, given, options);
-  }
-  check_options(path, options, {});
-  return data_system(registry, text, path, given);
-}
-
-// The options that are those of TOML files, not of the format that becomes one.
-NameOptions options_of_toml(const Registry& registry, const NameOptions& all) {
-  NameOptions out;
-  for (const FileKind& kind : registry.file_kinds())
-    for (const std::string& option : kind.options)
-      if (const auto it = all.find(option); it != all.end()) out.insert(*it);
-  return out;
-}
-
-const FileFormat* format_of(const Registry& registry, const std::string& system) {
-  const std::string extension = extension_of_system(system);
-  for (const FileFormat& format : registry.file_formats())
-    if (format.extension == extension) return &format;
-  return nullptr;
-}
-
-}  // namespace
-
-FileFormat::Converted converted(const Registry& registry, const std::string& system,
-                                const std::string& text) {
-  const FileFormat* format = format_of(registry, system);
-  if (format == nullptr) return {text};
-  const std::string path = path_of_system(system);
-  if (!format->convert)
-    throw ConfigError(
-        {fmt::format("{}: this build reads no {} files: install {} and build it "
-                     "again",
-                     path, format->extension, format->package)});
-  NameOptions options = options_of_system(system);
-  const NameOptions of_toml = options_of_toml(registry, options);
-  std::vector<std::string> known = format->options;
-  for (const FileKind& kind : registry.file_kinds())
-    known.insert(known.end(), kind.options.begin(), kind.options.end());
-  check_options(path, options, known);
-  for (const auto& [name, values] : of_toml) options.erase(name);
-  return format->convert(text, path, options);
-}
-
-std::function<SystemModel(const Parameters&)> data_system_maker(const Registry& registry,
-                                                                const std::string& path,
-                                                                const std::string& text) {
-  return [&registry, path, text](const Parameters& given) {
-    const NameOptions options = options_of_system(path);
-    const std::string own = path_of_system(path);
-    if (format_of(registry, path) == nullptr) return read_toml(registry, own, text, given, options);
-    const auto [toml, notes] = converted(registry, path, text);
-    SystemModel out =
-        read_toml(registry, converted_origin(own), toml, given, options_of_toml(registry, options));
-    out.notes.insert(out.notes.end(), notes.begin(), notes.end());
-    return out;
-  };
 }
 
 }  // namespace hamel

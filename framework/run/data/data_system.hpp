@@ -14,6 +14,8 @@
 //   potential = "m*g*sin(slope)*x"     # V(g)
 //   force = ["-c*omega", 0, 0, "torque"]
 //                                      # f(t, g, xi) in the dual, n entries
+//   state = [{ name = "lag", rate = "(steer - lag)/0.2" }]
+//                                      # scalars behind the coordinates; rates linear in velocities
 //   configuration = [0, 0, 0, "alpha"] # the start: also velocity, momentum
 //   contacts = [1]                     # the rows, from 1, whose multiplier is a normal reaction
 //   from_above = true                  # how it is drawn: also floor; bodies: data_drawing.hpp

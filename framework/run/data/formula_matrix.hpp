@@ -36,8 +36,13 @@ struct FormulaMatrix {
 /// The formulas of a system. Their variables, in this order: coordinates, t, inputs, rates.
 struct DataFormulas {
   FormulaMatrix inertia, rows, drift, holonomic, potential, force;
+  /// Rates of scalar states, linear in velocities: z' - f(g, z, t, u, xi) = 0 are rows behind
+  /// `rows`, and the last coordinates and velocities are z and z'. They have no inertia and no
+  /// force, so that the multipliers of these rows are 0.
+  FormulaMatrix states;
   size_t inputs = 0;
 
+  Eigen::Index own_rows() const { return rows.constant.rows() + states.constant.rows(); }
   bool left_invariant() const;
 };
 

@@ -67,11 +67,31 @@ class RecordedFormulas {
   Numbers constraints() const {
     Numbers out = entries(f_.rows);
     append(out, entries(f_.drift));
+    append(out, state_rows());
     size_t entry = 0;
     const Numbers values = entries(f_.holonomic);
     for (Eigen::Index i = 0; i < f_.holonomic.constant.rows(); ++i) {
       const bool is_formula = entry < values.size() && f_.holonomic.entries[entry].row == i;
       append(out, slopes(is_formula ? values[entry++] : graph::Number(0)));
+    }
+    return out;
+  }
+  Numbers state_rows() const {
+    const auto first = variables_.end() - static_cast<std::ptrdiff_t>(dim_);
+    const Numbers velocities(first, variables_.end());
+    Numbers at_rest(variables_.begin(), first), out;
+    at_rest.resize(variables_.size(), graph::Number(0));
+    size_t entry = 0;
+    for (Eigen::Index i = 0; i < f_.states.constant.rows(); ++i) {
+      const bool is_formula = entry < f_.states.entries.size() && f_.states.entries[entry].row == i;
+      if (!is_formula) {
+        out.resize(out.size() + dim_, graph::Number(0));
+        out.emplace_back(f_.states.constant(i, 0));
+        continue;
+      }
+      const Expression& rate = f_.states.entries[entry++].value;
+      append(out, graph::gradient({rate.record(variables_)}, {1}, velocities));
+      out.push_back(rate.record(at_rest));
     }
     return out;
   }
@@ -87,7 +107,7 @@ class RecordedFormulas {
     Numbers rates;
     for (size_t i = 0; i < variables_.size(); ++i)
       rates.push_back(recording_.input("rate" + std::to_string(i)));
-    Numbers out(static_cast<size_t>(f_.rows.constant.rows()) + dim_);
+    Numbers out(static_cast<size_t>(f_.own_rows()) + dim_);
     const auto add = [&](const FormulaMatrix& matrix, Eigen::Index first, double sign,
                          bool times_velocity) {
       const Numbers changes = graph::along(entries(matrix), variables_, rates);
@@ -99,7 +119,8 @@ class RecordedFormulas {
     };
     add(f_.rows, 0, -1, true);
     add(f_.drift, 0, 1, false);
-    add(f_.inertia, f_.rows.constant.rows(), 1, true);
+    add(f_.states, f_.rows.constant.rows(), 1, false);
+    add(f_.inertia, f_.own_rows(), 1, true);
     return out;
   }
   static void append(Numbers& to, const Numbers& from) {

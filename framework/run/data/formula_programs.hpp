@@ -15,7 +15,8 @@ namespace hamel {
 /// Outputs of a program, in this order. Slopes are derivatives by the coordinates.
 enum class Evaluation {
   inertia,         ///< its entries
-  constraints,     ///< entries of the rows, of the drift; slopes of each holonomic row
+  constraints,     ///< entries of the rows, of the drift; of each state's rate its slopes by the
+                   ///< velocities, then its value without one; slopes of each holonomic row
   holonomic,       ///< its entries
   potential,       ///< its value, where it is a formula
   applied_force,   ///< entries of the force

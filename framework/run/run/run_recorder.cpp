@@ -235,7 +235,8 @@ void RunRecorder::look_at_reaction_work() {
   if (!drifts_) return;
   if (odd_) add_second(power_, power_time_);
   const double error = std::abs(all_.reaction_work - second_work_) / 3;
-  if (!(error > 0.01 * std::abs(all_.reaction_work))) return;
+  if (!(error > std::max(0.01 * std::abs(all_.reaction_work), 1e-12 * std::abs(energy_start_))))
+    return;
   notes_.push_back(
       fmt::format("the work of reactions is summed over the rows, and known to about {:.1g} J: "
                   "record more rows, or take shorter steps",

@@ -10,6 +10,7 @@
 #include <hamel/framework/mechanics/frame.hpp>
 #include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/run/run/start_contacts.hpp>
 #include <hamel/framework/run/run/start_names.hpp>
 #include <hamel/framework/schemes/dynamic_problem.hpp>
 
@@ -234,80 +235,6 @@ void satisfy(const Mechanics& mechanics, const Geometry& geometry, double t, Eig
   }
 }
 
-// Gaps up to this are closed, m (contact_kernel.cpp).
-constexpr double kClosedStart = 1e-9;
-
-// The gap of a contact at the values of the holonomic rows; 0 without a height.
-double gap_of(const SystemModel& system, const ContactLaw& law, const Eigen::VectorXd& phi) {
-  if (!law.normal) return 0;
-  return phi[*law.normal - (system.mechanics->constraint_count() - phi.size())];
-}
-
-// Is a contact open? One that is below its ground is a mistake.
-bool look_at_gaps(const SystemModel& system, const Eigen::VectorXd& phi, Mistakes& mistakes) {
-  bool open = false;
-  for (const ContactLaw& law : system.contact_laws) {
-    const double gap = gap_of(system, law, phi);
-    open = open || gap > kClosedStart;
-    if (gap >= -kClosedStart) continue;
-    const char* const text =
-        law.of_joint
-            ? "configuration: '{}' of {} is passed by {:.6g}, expected at it or before"
-            : "configuration: contact '{}' of {} is {:.6g} m below its ground, expected on "
-              "it or above";
-    mistakes.add(fmt::format(fmt::runtime(text), law.name, system.name, -gap));
-  }
-  return open;
-}
-
-// Is a row a combination of those before it?
-class IndependentRows {
- public:
-  bool add(Eigen::VectorXd row) {
-    const double length = row.norm();
-    for (int pass = 1; pass <= 2; ++pass)
-      for (const Eigen::VectorXd& e : basis_) row -= e.dot(row) * e;
-    if (!(row.norm() > 1e-9 * length)) return false;
-    basis_.push_back(row.normalized());
-    return true;
-  }
-
- private:
-  std::vector<Eigen::VectorXd> basis_;
-};
-
-// Leaves out the rows of the start that a contact does not have there, and those of contacts that
-// follow from others.
-void release_rows(const SystemModel& system, const Eigen::VectorXd& phi, bool slip,
-                  PlannedStart& planned) {
-  std::vector<bool> on(static_cast<size_t>(planned.constraints.rows()), true);
-  for (const ContactLaw& law : system.contact_laws) {
-    if (!slip && !law.of_joint && !(gap_of(system, law, phi) > kClosedStart)) continue;
-    if (law.normal) on[static_cast<size_t>(*law.normal)] = false;
-    for (const int row : law.tangential) on[static_cast<size_t>(row)] = false;
-  }
-  std::vector<bool> of_contact(on.size(), false);
-  for (const ContactLaw& law : system.contact_laws) {
-    if (law.normal) of_contact[static_cast<size_t>(*law.normal)] = true;
-    for (const int row : law.tangential) of_contact[static_cast<size_t>(row)] = true;
-  }
-  IndependentRows rows;
-  for (const bool slips : {false, true})
-    for (size_t row = 0; row < on.size(); ++row) {
-      if (!on[row] || of_contact[row] != slips) continue;
-      const bool adds = rows.add(planned.constraints.row(static_cast<Eigen::Index>(row)));
-      on[row] = adds || !slips;
-    }
-  Eigen::Index kept = 0;
-  for (size_t row = 0; row < on.size(); ++row) {
-    if (!on[row]) continue;
-    planned.constraints.row(kept) = planned.constraints.row(static_cast<Eigen::Index>(row)).eval();
-    planned.drift[kept++] = planned.drift[static_cast<Eigen::Index>(row)];
-  }
-  planned.constraints.conservativeResize(kept, Eigen::NoChange);
-  planned.drift.conservativeResize(kept);
-}
-
 }  // namespace
 
 // I, A and b where the run starts, checked.
@@ -378,8 +305,9 @@ void project_start(const SystemModel& system, PlannedStart& planned) {
         dense::solve_symmetric(constraints * constraints.transpose(), drift);
     velocity += some - frame * (frame.transpose() * (inertia * some));
   }
-  const Eigen::VectorXd dropped =
-      datum - (by_velocity ? velocity : Eigen::VectorXd(inertia * velocity));
+  Eigen::VectorXd dropped = datum - (by_velocity ? velocity : Eigen::VectorXd(inertia * velocity));
+  for (Eigen::Index i = 0; i < n; ++i)  // a velocity without inertia is no datum, but follows
+    if (inertia.row(i).isZero(0)) dropped[i] = 0;
   if (dropped.norm() > 1e-10 * datum.norm()) {  // not round-off, which is 4e-12 with 60 trailers
     planned.notes.push_back(fmt::format("the start's {} was projected onto {}: dropped {}",
                                         by_velocity ? "velocity" : "momentum",
