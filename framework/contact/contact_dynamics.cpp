@@ -33,6 +33,7 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
       always_(rows_of_none(*mechanics_, laws_)),
       metric_(mechanics_->dim(), static_cast<int>(always_.size())),
       problem_(3 * count(), count()) {
+  for (const ContactLaw& law : laws_) constant_loads_.push_back(law.load);
   const int n = mechanics_->dim(), k = mechanics_->constraint_count(), most = 3 * count();
   const auto contacts = static_cast<size_t>(count());
   a_.setZero(k, n);
@@ -62,9 +63,17 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
   block_contacts_.reserve(contacts);
 }
 
+void ContactDynamics::find_loads(double t) {
+  for (size_t i = 0; i < laws_.size(); ++i)
+    if (laws_[i].load_input)
+      laws_[i].load =
+          constant_loads_[i] + (inputs_ == nullptr ? 0 : inputs_->at(t)[*laws_[i].load_input]);
+}
+
 void ContactDynamics::evaluate(double t, const double* g, const ConstVector& xi) {
   time_ = t;
   xi_ = xi;
+  find_loads(t);
   const bool first = !metric_.known();
   if (first && mechanics_->constant_constraints()) mechanics_->constraints(t, g, a_, b_);
   if (first && mechanics_->constant_inertia()) mechanics_->inertia(g, metric_.inertia);

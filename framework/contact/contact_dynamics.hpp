@@ -26,6 +26,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -33,6 +34,7 @@
 #include <hamel/framework/contact/contact_problem.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/contact_law.hpp>
+#include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 #include <hamel/framework/metric/metric.hpp>
 
@@ -54,6 +56,9 @@ class ContactDynamics {
   /// mechanics: with the rows of all contacts.
   ContactDynamics(std::shared_ptr<const Geometry> geometry,
                   std::shared_ptr<const Mechanics> mechanics, std::vector<ContactLaw> laws);
+
+  /// The inputs that loads follow; null: those are 0.
+  void drive(std::shared_ptr<const Inputs> inputs) { inputs_ = std::move(inputs); }
 
   int count() const { return static_cast<int>(laws_.size()); }
   const ContactLaw& law(int i) const { return laws_[static_cast<size_t>(i)]; }
@@ -108,6 +113,7 @@ class ContactDynamics {
   };
   // The direction of the slip that friction opposes, as accelerate() finds it for all.
   const Eigen::Vector2d& direction(int i) const { return directions_[static_cast<size_t>(i)]; }
+  void find_loads(double t);
   void find_direction(const ContactStates& states, int i);
   // That of (5), nearest to the one that it has.
   void find_first_direction(const ContactStates& states, int i);
@@ -142,6 +148,8 @@ class ContactDynamics {
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
   std::vector<ContactLaw> laws_;
+  std::shared_ptr<const Inputs> inputs_;
+  std::vector<double> constant_loads_;
   std::vector<int> always_;  // rows of no contact
   Metric<> metric_;          // with the rows that are always on
   Eigen::MatrixXd a_;        // all rows, and b, and the rates b' - A' xi

@@ -14,12 +14,13 @@ namespace hamel {
 
 struct ContactLaw {
   std::string name = "contact";
-  std::vector<int> tangential = {};  // rows of A, counted from 0: one (a blade) or two
-  std::optional<int> normal = {};    // row of A, one of the holonomic rows
-  double load = 0;                   // N, in place of a normal row
-  double friction = 0;               // mu, of Coulomb's law
-  double restitution = 0;            // e, of Newton's law
-  bool of_joint = false;             // dry friction of a joint, which slips and sticks
+  std::vector<int> tangential = {};    // rows of A, counted from 0: one (a blade) or two
+  std::optional<int> normal = {};      // row of A, one of the holonomic rows
+  double load = 0;                     // N, in place of a normal row
+  std::optional<int> load_input = {};  // an input of the run, counted from 0, which adds to it
+  double friction = 0;                 // mu, of Coulomb's law
+  double restitution = 0;              // e, of Newton's law
+  bool of_joint = false;               // dry friction of a joint, which slips and sticks
 
   bool has_normal() const { return normal.has_value(); }
   /// Names of the events in which it begins and ceases to slide.

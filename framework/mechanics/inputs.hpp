@@ -24,7 +24,7 @@
 
 namespace hamel {
 
-constexpr int kMostInputs = 8;
+constexpr int kMostInputs = 32;
 /// One value for each input, in the order of inputs(u), without heap.
 using InputValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostInputs, 1>;
 

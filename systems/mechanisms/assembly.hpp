@@ -90,7 +90,8 @@ class Assembly {
   // Contacts that slide and open (assembly_contacts.cpp).
   void check_friction(const Mechanism::ContactPart& part);
   void check_joint_friction(const Mechanism::JointPart& part);
-  /// Dry friction and stops of joints, and walls, as couplings that do not always hold.
+  void check_brakes();
+  /// Dry friction, brakes and stops of joints, and walls, as couplings that do not always hold.
   std::vector<mechanisms::Coupling> slipping_couplings();
   std::optional<mechanisms::Coupling> wall(const Mechanism::WallPart& part);
   /// Is this the name of a row of the friction or of a stop of a joint?

@@ -52,6 +52,14 @@ void Assembly::check_friction(const Mechanism::ContactPart& part) {
   if (part.unilateral && *part.unilateral) alone("unilateral");
 }
 
+void Assembly::check_brakes() {
+  for (const auto& part : parts_.brakes_) {
+    joint_of(part, "brake");
+    if (!(part.range.least >= 0))
+      wrong(part, "brake", fmt::format("least: got {}, expected at least 0", part.range.least));
+  }
+}
+
 void Assembly::check_joint_friction(const Mechanism::JointPart& part) {
   if (!part.friction && part.stop.empty() && !part.restitution) return;
   if (!find_joint_kind(part.kind)->has_coordinate) {
@@ -80,6 +88,7 @@ bool Assembly::is_of_joint(const std::string& row, const Mechanism::JointPart& p
 // In this order: friction and stops of a joint, one after the other; walls.
 std::vector<Coupling> Assembly::slipping_couplings() {
   std::vector<Coupling> out;
+  check_brakes();
   const auto add = [&](const std::string& name, const std::string& formula, double limit, int link,
                        std::vector<int> velocities) {
     out.push_back({name,
@@ -98,7 +107,9 @@ std::vector<Coupling> Assembly::slipping_couplings() {
     if (links_[j].is_state) continue;
     check_joint_friction(part);
     if (links_[j].joint->dim() != 1 || !find_joint_kind(part.kind)->has_coordinate) continue;
-    if (part.friction) add(part.name, "rate", 0, link, {dof});
+    const bool braked = std::ranges::any_of(
+        parts_.brakes_, [&](const auto& brake) { return brake.name == part.name; });
+    if (part.friction || braked) add(part.name, "rate", 0, link, {dof});
     if (part.stop.size() != 2) continue;
     add(part.name + ".low", "q - limit", part.stop[0], link, {});
     add(part.name + ".high", "limit - q", part.stop[1], link, {});
@@ -254,7 +265,10 @@ void Assembly::add_law(const Coupling& coupling, int place) {
   for (const auto& part : parts_.joints_) {
     if (!is_of_joint(coupling.name, part)) continue;
     law.restitution = part.restitution.value_or(0);
-    if (coupling.of_rates()) law.load = *part.friction;
+    if (!coupling.of_rates()) continue;
+    law.load = part.friction.value_or(0);
+    for (size_t i = 0; i < model_.inputs.size(); ++i)
+      if (model_.inputs[i].name == part.name + ".brake") law.load_input = static_cast<int>(i);
   }
   for (const auto& part : parts_.walls_)
     if (part.name == coupling.name) law.restitution = part.restitution;

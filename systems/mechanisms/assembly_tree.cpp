@@ -225,13 +225,15 @@ void Assembly::name_columns() {
   name_quantities(model_);
 }
 
-// Motors and prescribed joints without a signal, then inputs by name.
+// Motors and prescribed joints without a signal, brakes, then inputs by name.
 void Assembly::state_inputs() {
   const auto add = [&](const Part& part, const std::string& kind, InputField field) {
     for (const InputField& other : model_.inputs) {
       if (other.name != field.name) continue;
       wrong(part, kind,
-            kind == "input" ? "this name is taken" : "this joint is driven by an input already");
+            kind == "input"   ? "this name is taken"
+            : kind == "brake" ? "this joint has a brake already"
+                              : "this joint is driven by an input already");
     }
     model_.inputs.push_back(std::move(field));
     if (model_.inputs.size() == kMostInputs + 1)
@@ -242,7 +244,11 @@ void Assembly::state_inputs() {
     if (at == link_names_.end()) return;  // reported with the others
     const bool slider = links_[static_cast<size_t>(at - link_names_.begin())].joint->only_slides();
     const std::string of = slider ? "force" : "torque";
-    if (rate)
+    if (kind == "brake")
+      add(part, kind,
+          {part.name + ".brake", slider ? "N" : "N m", "bound of the " + of + " of the brake",
+           part.range});
+    else if (rate)
       add(part, kind,
           {part.name + ".rate", slider ? "m/s" : "rad/s", "rate of this joint", part.range});
     else
@@ -254,6 +260,7 @@ void Assembly::state_inputs() {
     if (!part.effort) of_joint(part, "motor", false);
   for (const auto& part : parts_.rates_)
     if (!part.rate) of_joint(part, "prescribed", true);
+  for (const auto& part : parts_.brakes_) of_joint(part, "brake", false);
   for (const auto& part : parts_.inputs_) add(part, "input", part.field);
 }
 

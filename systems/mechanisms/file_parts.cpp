@@ -206,6 +206,14 @@ void FileParts::motor(const toml::table& table) {
   if (effort) m_.motor(joint, effort, time_dependent);
   else m_.motor(joint, range);
 }
+void FileParts::brake(const toml::table& table) {
+  std::string joint;
+  Range range{.least = 0};
+  read_.entries(table, {{"joint", read_.read(joint)},
+                        {"least", read_.read(range.least)},
+                        {"most", read_.read(range.most)}});
+  m_.brake(joint, range);
+}
 // A formula is not kept between limits.
 void FileParts::no_range(const toml::table& table) {
   for (const char* key : {"least", "most"})
@@ -225,6 +233,7 @@ void FileParts::inputs() {
   tables("prescribed", [&](const toml::table& table) {
     if (is_input(table, {"rate", "angle"})) prescribed(table);
   });
+  tables("brake", [&](const toml::table& table) { brake(table); });
   for (const InputField& field : read_input_fields(read_.toml, table_)) {
     m_.place(read_.toml.place(*table_["inputs"][field.name].node()) + ": ");
     m_.input(field);

@@ -56,6 +56,7 @@ class FileParts {
   void wall(const toml::table& table);
   void prescribed(const toml::table& table);
   void motor(const toml::table& table);
+  void brake(const toml::table& table);
   void no_range(const toml::table& table);
   static bool is_input(const toml::table& table, std::initializer_list<const char*> keys);
   /// take(name, value) for each number of a table that may hold tables, steer.angle = 0.1.

@@ -112,6 +112,9 @@ void Mechanism::spring(const std::string& name, const std::string& a, const std:
 void Mechanism::motor(const std::string& joint, Signal effort, bool time_dependent) {
   motors_.push_back({part(joint), std::move(effort), time_dependent});
 }
+void Mechanism::brake(const std::string& joint, const Range& range) {
+  brakes_.push_back({part(joint), range});
+}
 void Mechanism::motor(const std::string& joint, const Range& range) {
   motors_.push_back({part(joint), {}, false, range});
 }

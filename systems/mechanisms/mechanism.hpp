@@ -129,6 +129,9 @@ class HAMEL_API Mechanism {
   /// motions.
   void motor(const std::string& joint, Signal effort, bool time_dependent = true);
   void motor(const std::string& joint, const Range& range = {});
+  /// Dry friction in a hinge or slider whose bound, N m or N, is an input of the run, "rear.brake",
+  /// at least 0.
+  void brake(const std::string& joint, const Range& range = {.least = 0});
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
   /// A couple.
   void torque(const std::string& name, const std::string& body, const TorqueOptions& options);
@@ -222,6 +225,9 @@ class HAMEL_API Mechanism {
     bool time_dependent = false;
     Range range = {};
   };
+  struct BrakePart : Part {
+    Range range;
+  };
   struct InputPart : Part {
     InputField field;
   };
@@ -248,6 +254,7 @@ class HAMEL_API Mechanism {
   std::vector<OutputPart> outputs_;
   std::vector<RatePart> rates_;
   std::vector<MotorPart> motors_;
+  std::vector<BrakePart> brakes_;
   std::vector<InputPart> inputs_;
   std::vector<Event> events_;
   Point gravity_ = {0, 0, -9.81}, ground_velocity_ = {0, 0, 0};

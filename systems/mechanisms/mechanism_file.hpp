@@ -29,6 +29,8 @@
 //   [[motor]]                # joint; effort = "-2*steer.angle - 0.1*steer.rate"; left out: an
 //   joint = "steer"          # input, steer.torque, or lift.force of a slider, between `least`
 //                            # and `most`
+//   [[brake]]                # joint: dry friction up to an input, rear.brake, from `least` to
+//   joint = "rear"           # `most`, N m or N
 //   [[force]]                # name, body, at; along = ["1", 0, 0]; of_body = true
 //   [[torque]]               # name (left out: the body's), body; along, of_body as of a force
 //   [[sensor]]               # name (left out: the body's), body, at: columns tip.x .y .z .vx .vy

@@ -26,6 +26,7 @@ KernelFactory contact_kernels(KernelFactory smooth, std::shared_ptr<const Geomet
   return [smooth = std::move(smooth), geometry = std::move(geometry), model = std::move(model),
           contacts = std::move(contacts)](const KernelSetup& setup) -> std::unique_ptr<Kernel> {
     auto own = contacts != nullptr ? contacts : std::make_shared<RunContacts>(geometry, *model);
+    own->drive(setup.inputs);
     return std::make_unique<ContactKernel>(smooth, setup, std::move(own));
   };
 }

@@ -35,6 +35,12 @@ class RunContacts {
  public:
   RunContacts(std::shared_ptr<const Geometry> geometry, const SystemModel& system);
 
+  /// The inputs that loads follow.
+  void drive(const std::shared_ptr<const Inputs>& inputs) {
+    dynamics_->drive(inputs);
+    measured_->drive(inputs);
+  }
+
   const SystemModel& system() const { return *system_; }
   const std::shared_ptr<ContactDynamics>& dynamics() const { return dynamics_; }
   ContactStates& states() { return *states_; }

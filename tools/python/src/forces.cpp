@@ -166,6 +166,13 @@ void bind_forces(nb::class_<ByParts>& mechanism) {
           "A torque [N m] or force [N] in a joint: a function f(t, coordinates, velocity, inputs) "
           "of Python or of numba.cfunc, or (without one) an input of the run, 'steer.torque'.")
       .def(
+          "brake",
+          [](ByParts& self, const std::string& joint, double least, std::optional<double> most) {
+            self.brake(joint, range(least, most));
+          },
+          "joint"_a, nb::kw_only(), "least"_a = 0.0, "most"_a = nb::none(),
+          "Dry friction in a hinge or slider up to an input of the run, 'rear.brake' [N m or N].")
+      .def(
           "force",
           [](ByParts& self, const std::string& name, const std::string& body, nb::sequence along,
              const Point& at, bool of_body, bool time_dependent) {
