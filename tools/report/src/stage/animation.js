@@ -4,7 +4,7 @@ import { Color, Group, Matrix4, Mesh, MeshBasicMaterial, Scene, SphereGeometry, 
 import { h } from '../dom.js';
 import { figure, remark } from '../figure.js';
 import { formatNumber, formatShort } from '../format.js';
-import { arrowOf, contactAt, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion } from './motion.js';
+import { arrowOf, contactAt, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, roomOf } from './motion.js';
 import { columnsToCsv } from '../save.js';
 import { addLight, lines, pairs, solids, stand, styled } from './shapes.js';
 import { ABOVE, HOME, Stage } from './stage.js';
@@ -123,9 +123,11 @@ export function animation(block, { height = heightFor } = {}) {
   /** Shows the motion at t, with the bodies at the earlier times `before` beside it: all of them are then in sight. */
   const hold = (t, before = []) => {
     ghosts = before.map(posesAt);
-    follow(long && ghosts.length === 0);
+    const many = ghosts.length > 0;
+    follow(long && !many);
     seek(t);
-    stage.rebuild();
+    if (many) stage.see(roomOf(bodies, bodies.map((_, b) => [...ghosts, posesAt(t)].map((at) => at[b])), block.floor));
+    else stage.rebuild();
   };
   /** Frames, to be drawn one after the other: (t, before) -> canvas. */
   const film = (sharper, transparent) => {
@@ -158,7 +160,9 @@ function speedFor(duration) {
 /** The colours of a body, so far on their way to the paper. */
 function faded(group, far) {
   const paper = styled('--paper');
-  group.traverse(({ material }) => material?.color.lerp(paper, far));
+  const materials = new Set();  // parts share them
+  group.traverse(({ material }) => material && materials.add(material));
+  materials.forEach(({ color }) => color.lerp(paper, far));
   return group;
 }
 
@@ -226,7 +230,7 @@ function build(motion, grid, solid, poses, now, pushing, seen, ghosts) {
     }
   };
   const top = (pose, { hull }) => [pose.at[0], pose.at[1], Math.max(...hull.map(({ point, air }) => placed(pose, point)[2] + air))];
-  const labels = motion.bodies.length < 2 ? [] : motion.bodies.map((body, b) =>
+  const labels = motion.bodies.length < 2 || ghosts.length ? [] : motion.bodies.map((body, b) =>
     ({ text: body.name, up: 9, at: () => { const pose = poses()[b]; return pose ? top(pose, body) : [NaN, NaN, NaN]; } }));
   return { scene, update, labels, scale: grid ? `grid ${formatShort(grid.step, 3)}` : '' };
 }

@@ -108,6 +108,21 @@ function markShells(bodies) {
   }
 }
 
+/** The box around bodies in these poses, a list for each of them, and around further points. */
+export function roomOf(bodies, poses, floor, points = []) {
+  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  const take = (point, air) => point.forEach((v, i) => {
+    box[0][i] = Math.min(box[0][i], v - air);
+    box[1][i] = Math.max(box[1][i], v + air);
+  });
+  bodies.forEach(({ hull }, b) => {
+    for (const pose of poses[b]) if (pose) hull.forEach(({ point, air }) => take(placed(pose, point), air));
+  });
+  points.forEach((point) => point && take(point, 0));
+  if (floor) [box[0][2], box[1][2]] = [Math.min(0, box[0][2]), Math.max(0, box[1][2])];
+  return box[0][0] < Infinity ? box : [[-1, -1, -1], [1, 1, 1]];
+}
+
 /** The block -> {times, bodies, forces, strongest, box, reach, missing}; a body: {name, poses, shapes, hull, middle, way: points or null, reach}. */
 export function readMotion(block) {
   const { times } = block;
@@ -131,17 +146,7 @@ export function readMotion(block) {
       reach: Math.max(0, ...hull.map((p) => Math.hypot(...p.point.map((v, k) => v - middle[k])) + p.air)) };
   });
   markShells(bodies);
-  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  const take = (point, air) => point.forEach((v, i) => {
-    box[0][i] = Math.min(box[0][i], v - air);
-    box[1][i] = Math.max(box[1][i], v + air);
-  });
-  for (const { poses, hull, way } of bodies) {
-    for (const pose of poses) if (pose) hull.forEach(({ point, air }) => take(placed(pose, point), air));
-    way?.forEach((point) => point && take(point, 0));
-  }
-  if (block.floor) [box[0][2], box[1][2]] = [Math.min(0, box[0][2]), Math.max(0, box[1][2])];
-  if (!(box[0][0] < Infinity)) [box[0], box[1]] = [[-1, -1, -1], [1, 1, 1]];
+  const box = roomOf(bodies, bodies.map(({ poses }) => poses), block.floor, bodies.flatMap(({ way }) => way ?? []));
   const forces = (block.forces ?? []).map((force, f) => readForce(force, f, times));
   const strongest = Math.max(0, ...forces.flatMap(({ values }) => values.map((v) => (v ? Math.hypot(...v.force) : 0))));
   const apart = times.map((_, i) => {

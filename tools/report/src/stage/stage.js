@@ -18,7 +18,7 @@ const TURN = 0.12;     // radians by an arrow key
 const SCREEN = Math.max(2, devicePixelRatio);  // pixels per CSS pixel: print is sharp too
 const MOST_SOLID = 8;  // browsers allow some 16 WebGL contexts on a page
 const TALL = 13;       // pixels of a name; one that would cover another moves up, and is left out where it would move far
-const MOST_MOVES = 3;
+const MOST_MOVES = 1.5;
 const ROW = 18;        // pixels of a name below a saved picture
 // (In the elements, not in the style sheet: they go with a saved picture.)
 const AXES = 'stroke: var(--soft); stroke-width: 1.4; font: 12px/1 system-ui, sans-serif';
