@@ -10,7 +10,7 @@ import { formatNumber, formatShort, power } from '../format.js';
 import { readByKeys } from './keys.js';
 import { swatch } from './legend.js';
 import { choose } from '../blocks/members.js';
-import { styleOf } from './palette.js';
+import { colourOfMode, styleOf } from './palette.js';
 import { columnsToCsv } from '../save.js';
 import { extent } from './series.js';
 import { widest, widthOf } from '../width.js';
@@ -94,7 +94,7 @@ function readMap(block) {
   const numbers = block.y_values.every((v) => typeof v === 'number');
   if (numbers && block.y_values[ny - 1] > block.y_values[0]) order.reverse();  // numbers grow upwards, names are read downwards
   const [min, max] = extent(block.values.flat().map(at));
-  const classes = block.classes?.map((name, c) => ({ name: String(name), colour: styleOf({ name }).colour, count: block.values.flat().filter((v) => v === c).length })) ?? null;
+  const classes = block.classes?.map((name, c) => ({ name: String(name), colour: colourOfMode(name) ? `var(${colourOfMode(name)})` : styleOf({ name }).colour, count: block.values.flat().filter((v) => v === c).length })) ?? null;
   return { label: String(block.y ?? ''), unit: block.unit ? `  ${block.unit}` : '', columns, rows: order.map((i) => names[i]), values: order.map((i) => block.values[i]), marks: order.map((i) => block.marks?.[i] ?? []), at, classes,
     members: block.members ? order.map((i) => block.members[i]) : null,
     range: min < max ? [min, max] : min === max ? [min - 0.5, max + 0.5] : [0, 1], scaled: min < max && !classes, only: min === max ? min : null, numbers,
@@ -122,7 +122,7 @@ function option(map, block, { left, cell, row, turned, under, bar }) {
   const colourOf = (value) => (map.classes ? { color: map.classes[value]?.colour ?? HATCH } : {});
   const list = cells.map(({ value, mark, place }) => {
     const known = map.at(value) !== null;
-    return { value: [...place, known ? map.at(value) : map.range[0]], visualMap: known && !map.classes, itemStyle: { borderColor: 'var(--paper)', borderWidth: row > 12 ? 1 : 0,
+    return { value: [...place, known ? map.at(value) : map.range[0]], visualMap: known && !map.classes, itemStyle: { borderColor: 'var(--paper)', borderWidth: row > 12 && cell > 5 ? 1 : 0,
       ...(known ? colourOf(value) : { color: typeof value === 'number' ? 'var(--paper)' : HATCH }) }, ...(known && map.classes ? { emphasis: { itemStyle: colourOf(value) } } : {}),
       label: { show: mark !== '' && (known || widthOf(mark, 11) + 6 <= cell), formatter: mark, color: known && !map.classes ? inkOn(sequential(part(value))) : 'var(--ink)', fontSize: 11, width: cell - 4, overflow: 'truncate',
         backgroundColor: known && !map.classes ? 'transparent' : 'var(--paper)', padding: [1, 3] } };

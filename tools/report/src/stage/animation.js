@@ -1,6 +1,7 @@
 // The figure `animation`: bodies that move, with play, a bar to scrub, speed, and a view turned by dragging or keys.
 
 import { Color, Group, Matrix4, Mesh, MeshBasicMaterial, Scene, SphereGeometry, Vector3 } from 'three';
+import { colourOfMode, MODES } from '../charts/palette.js';
 import { h } from '../dom.js';
 import { figure, remark } from '../figure.js';
 import { formatNumber, formatShort } from '../format.js';
@@ -14,7 +15,6 @@ const TICKS = 1000;       // of the bar
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 const PLEASANT = [4, 25]; // seconds that a motion may take as it is; others are brought near 10
 const TRAILS = ['--c2', '--c1', '--c3', '--c4', '--c6', '--c8'];
-const MODES = ['--line', '--c3', '--c2'];  // open, rolling, sliding
 const DOT = 0.035;        // of the reach of all bodies: the radius of a contact
 const ARROW = 0.15;       // of what is seen, and the reach of all bodies at least: the length of the strongest force
 // So many times this reach is the room before they are followed at first, and is seen around them then.
@@ -217,7 +217,7 @@ function build(motion, grid, solid, poses, now, pushing, seen, ghosts) {
       dot.visible = Boolean(contact);
       if (!contact) continue;
       dot.position.set(...contact.at);
-      dot.material.color.copy(styled(MODES[contact.mode] ?? MODES[0]));
+      dot.material.color.copy(styled(colourOfMode(MODES[contact.mode] ?? MODES[0])));
     }
     groups.forEach((body, b) => {
       body.visible = Boolean(at[b]);
