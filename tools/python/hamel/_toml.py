@@ -6,9 +6,11 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from hamel._hamel import ConfigError
+
 
 def dumps(table: Mapping[str, Any]) -> str:
-    """Keys in their order, one a line; TypeError names the key of a value that TOML has not."""
+    """Keys in their order, one a line; ConfigError names the key of a value that TOML has not."""
     return "".join(f"{_text(str(key))} = {_value(value, str(key))}\n" for key, value in table.items())
 
 
@@ -33,6 +35,6 @@ def _value(value: Any, key: str) -> str:
         return "{ " + ", ".join(entries) + " }"
     if isinstance(value, (list, tuple, range)):
         return "[" + ", ".join(_value(entry, key) for entry in value) + "]"
-    raise TypeError(
+    raise ConfigError(
         f"{key}: got a {type(value).__name__}, expected a number, a text, a list or a dict"
     )

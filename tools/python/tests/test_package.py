@@ -294,7 +294,7 @@ def test_systems_as_texts_in_studies_and_ensembles(system):
         "system": system,
         "until": 1,
         "output_step": 0.5,
-        "vary": {"d": np.array([0.0, 0.1])},
+        "vary": {"d": {"values": np.array([0.0, 0.1])}},
         "keep": ["end.pivot.rate"],
     }
     many = hamel.ensemble(table, threads=1)
@@ -308,7 +308,7 @@ def test_systems_as_texts_in_studies_and_ensembles(system):
         hamel.ensemble({**table, "vry": {}})
     with pytest.raises(hamel.ConfigError, match="got a Mechanism"):
         hamel.ensemble({**table, "system": hamel.Mechanism("m")})
-    with pytest.raises(TypeError, match="keep: got a set"):
+    with pytest.raises(hamel.ConfigError, match="keep: got a set"):
         hamel.ensemble({**table, "keep": {"x"}})
 
 
