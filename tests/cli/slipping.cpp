@@ -112,7 +112,7 @@ TEST_F(Slipping, ASkidSteeredRobotTurns) {
   const Outcome described = run({"describe", copy + "?wheel=auto,friction=0.6"});
   EXPECT_THAT(described.out, HasSubstr("turns only by slipping"));
   // A note that recommends --slip is none where it is given.
-  const Words starts = {"--start", "v1=1,omega=1", "--until", "0.1"};
+  const Words starts = {"--start", "v1=1,omega=1", "--until", "0.05"};
   Words slips = starts;
   slips.push_back("--slip");
   const std::string given = copy + "?wheel=auto,friction=0.6";

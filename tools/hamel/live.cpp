@@ -67,7 +67,7 @@ std::string playground() {
   return page;
 }
 
-// What the page starts with: the name of a system, or the text of a file.
+// Content of the page: the name of a system, or the text of a file.
 nlohmann::json content_of(const std::string& system) {
   if (registry().system(system) != nullptr) return {{"system", system}};
   if (!names_file(system))
