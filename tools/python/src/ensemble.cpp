@@ -134,13 +134,14 @@ void bind_ensemble(nb::module_& m) {
       "ensemble", &ensemble, "file"_a, nb::kw_only(), "threads"_a = 0, "folder"_a = nb::none(),
       "shard"_a = nb::none(), "merge"_a = false, "fresh"_a = false, "progress"_a = nb::none(),
       "vary_by"_a = nb::dict(), "keep_by"_a = nb::dict(),
-      nb::sig("def ensemble(file: str | os.PathLike[str] | dict[str, typing.Any], *, threads: int = 0, "
-              "folder: str | "
-              "os.PathLike[str] | None = None, shard: tuple[int, int] | None = None, merge: bool "
-              "= False, fresh: bool = False, progress: collections.abc.Callable[[float], object] "
-              "| bool | None = None, vary_by: dict[str, collections.abc.Callable[[int], float]] = "
-              "{}, keep_by: dict[str, collections.abc.Callable[[State], float]] = {}) -> "
-              "EnsembleResult"),
+      nb::sig(
+          "def ensemble(file: str | os.PathLike[str] | dict[str, typing.Any], *, threads: int = 0, "
+          "folder: str | "
+          "os.PathLike[str] | None = None, shard: tuple[int, int] | None = None, merge: bool "
+          "= False, fresh: bool = False, progress: collections.abc.Callable[[float], object] "
+          "| bool | None = None, vary_by: dict[str, collections.abc.Callable[[int], float]] = "
+          "{}, keep_by: dict[str, collections.abc.Callable[[State], float]] = {}) -> "
+          "EnsembleResult"),
       "The members of an ensemble's file (or of its text), as `hamel ensemble` runs them. threads: "
       "0 is all cores. folder: keeps a journal there and resumes from it. shard=(i, n): the part "
       "i of n, from 1; merge=True joins the parts in the folder. vary_by: names to vary, each by a "
