@@ -145,7 +145,7 @@ int serve(const std::string& page, long port, bool open) {
       listen(socket.number, 8) != 0 || getsockname(socket.number, address, &size) != 0)
     throw Unfinished(fmt::format("live: port {}: {}", port, std::strerror(errno)));
   const std::string link = fmt::format("http://localhost:{}/", ntohs(at.sin_port));
-  say("{}   (Ctrl-C ends it)", link);
+  say("{}   (Ctrl-C ends it)\n", link);
   std::fflush(stdout);
   if (open) open_in_browser(link);
   const std::atomic<bool>& stopped = stop_when_asked();
@@ -199,7 +199,7 @@ int live(const LiveOptions& options) {
   std::error_code error;
   const std::string link = "file://" + fs::absolute(path, error).string();
   const bool opened = options.open && open_in_browser(link);
-  say("{}{}", link, opened ? "" : "   (open it in a browser)");
+  say("{}{}\n", link, opened ? "" : "   (open it in a browser)");
   return 0;
 }
 
