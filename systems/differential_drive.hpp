@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
+#include <hamel/framework/mechanics/wheel_shape.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
@@ -110,7 +111,7 @@ struct DifferentialDrive {
                    p.rotation = p.rotation * Mat<3, 3>{{s, c, 0}, {0, 0, 1}, {c, -s, 0}};
                    return p;
                  },
-                 {shapes::cylinder(wheel_radius, 0.03, {.color = "dark"})});
+                 {shapes::wheel(wheel_radius, 0.03, {.color = "dark"})});
     };
     wheel("right wheel", -half_track, [](const auto& g) { return g.template part<1>().angle(); });
     wheel("left wheel", half_track, [](const auto& g) { return g.template part<2>().angle(); });

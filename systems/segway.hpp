@@ -22,6 +22,7 @@
 #include <vector>
 
 #include <hamel/framework/mechanics/general_system.hpp>
+#include <hamel/framework/mechanics/wheel_shape.hpp>
 #include <hamel/groups/product.hpp>
 #include <hamel/groups/se2.hpp>
 #include <hamel/groups/so2.hpp>
@@ -137,8 +138,7 @@ struct Segway {
         .body("body", [at](const auto& g) { return at(g, 0, g.template part<3>()); },
               {shapes::box({0.1, 1.6 * half_track, 2 * height}, {.at = {0, 0, height}})})
         .trail();
-    const BodyShape wheel =
-        shapes::cylinder(wheel_radius, 0.05, {.axis = {0, 1, 0}, .color = "dark"});
+    const BodyShape wheel = shapes::wheel(wheel_radius, 0.05, {.axis = {0, 1, 0}, .color = "dark"});
     scene.body("right wheel",
                [at, c = half_track](const auto& g) { return at(g, -c, g.template part<1>()); },
                {wheel});

@@ -18,14 +18,16 @@ struct LawResult {
   std::string law;
   double measured = 0;
   double bound = 0;
+  std::string seen = {};  // where the violation is no value of its own: "order 1.98, expected ..."
   /// NaN does not pass.
   bool passed() const { return measured <= bound; }
 };
 using LawReport = std::vector<LawResult>;
 
 inline std::ostream& operator<<(std::ostream& out, const LawResult& law) {
-  return out << (law.passed() ? "holds  " : "FAILS  ") << law.law << ": " << law.measured
-             << " (bound " << law.bound << ")";
+  out << (law.passed() ? "holds  " : "FAILS  ") << law.law << ": ";
+  if (!law.seen.empty()) return out << law.seen;
+  return out << law.measured << " (bound " << law.bound << ")";
 }
 
 namespace check {

@@ -1,6 +1,8 @@
 // The claims of a scheme, measured on every registered system.
 #include <hamel/framework/check/scheme_laws.hpp>
 
+#include <array>
+#include <cstdio>
 #include <map>
 #include <set>
 
@@ -90,6 +92,12 @@ class SchemeSuite {
     return s == 0 ? ", s = 0" : s == 1 ? ", s = 1" : ", s = 1/2";
   }
 
+  static std::string order_seen(double order, bool shown, int claimed) {
+    std::array<char, 64> text{};
+    if (!shown) return "no error above round-off to measure an order of";
+    std::snprintf(text.data(), text.size(), "order %.3g, expected at least %d", order, claimed);
+    return text.data();
+  }
   void add(const std::string& law, double measured, double bound) {
     report_.push_back({law + where_, measured, bound});
   }
@@ -115,6 +123,7 @@ class SchemeSuite {
     add("the run ends", result.status.ok ? 0 : 1, 0);
     if (!result.status.ok) return;
     add("order at least " + std::to_string(claim.order), std::max(0.0, claim.order - order), bound);
+    report_.back().seen = order_seen(order, shown, claim.order);
     if (shown) {
       const auto [at, first] = least_order_.try_emplace(claim.order, order);
       if (!first) at->second = std::min(at->second, order);

@@ -111,8 +111,9 @@ struct HAMEL_API EnsembleConfig {
 };
 
 /// Throws ConfigError with all mistakes of the file, each with line and column.
+/// data: the text of the system's file; empty: it is read.
 HAMEL_API EnsembleConfig parse_ensemble(const std::string& text, const std::string& origin,
-                                        const Registry& registry);
+                                        const Registry& registry, const std::string& data = "");
 HAMEL_API EnsembleConfig read_ensemble(const std::string& path, const Registry& registry);
 
 /// A member that has no kept values, and why.

@@ -266,9 +266,10 @@ class EnsembleReader {
 }  // namespace
 
 EnsembleConfig parse_ensemble(const std::string& text, const std::string& origin,
-                              const Registry& registry) {
+                              const Registry& registry, const std::string& data) {
   EnsembleReader reader(origin);
   EnsembleConfig config = reader.file(text);
+  config.data = data;
   if (!reader.mistakes().empty()) throw ConfigError(reader.mistakes());
   ensemble::read_data(config);
   ensemble::Plan(registry, config);

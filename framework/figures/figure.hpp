@@ -136,6 +136,7 @@ struct MovingBody {
 struct MovingForce {
   std::string name;
   std::vector<std::array<double, 6>> values;  // one for each time: where it acts, the force
+  std::vector<double> modes = {};             // none, or as many: 0 open, 1 rolling, 2 sliding
 };
 
 /// Bodies that move, interpolated between the times: two poses that follow each other should differ

@@ -61,8 +61,9 @@ Json shape_of(const BodyShape& s) {
   if (s.look.axis != Look{}.axis) out["axis"] = numbers(s.look.axis);
   if (s.kind == "box") out["size"] = numbers(s.sizes);
   if (s.kind == "ellipsoid") out["radii"] = numbers(s.sizes);
-  if (s.kind == "cylinder" || s.kind == "sphere") out["radius"] = number(s.sizes.at(0));
-  if (s.kind == "cylinder") out["length"] = number(s.sizes.at(1));
+  const bool round = s.kind == "cylinder" || s.kind == "wheel";
+  if (round || s.kind == "sphere") out["radius"] = number(s.sizes.at(0));
+  if (round) out["length"] = number(s.sizes.at(1));
   if (s.kind == "arrow") out["to"] = numbers(s.points.at(0));
   if (s.kind == "line") {
     for (const Point& point : s.points) out["points"].push_back(numbers(point));
@@ -168,7 +169,8 @@ struct Block {
     for (const MovingForce& force : animation.forces) {
       Json values = Json::array();
       for (const auto& value : force.values) values.push_back(numbers(value));
-      out["forces"].push_back({{"name", force.name}, {"values", values}});
+      Json& drawn = out["forces"].emplace_back(Json{{"name", force.name}, {"values", values}});
+      if (!force.modes.empty()) drawn["modes"] = numbers(force.modes);
     }
     return out;
   }

@@ -122,6 +122,43 @@ void add_axes_on_sphere(std::vector<Figure>& out, const Registry& registry, cons
                  .name = "axes"});
 }
 
+constexpr const char* kMode = ".mode";
+
+// The column of this name; -1 where there is none.
+int column_of(const Result& result, const std::string& name) {
+  const std::vector<std::string>& columns = result.trajectory.columns();
+  const auto at = std::ranges::find(columns, name);
+  return at == columns.end() ? -1 : static_cast<int>(at - columns.begin());
+}
+
+// Contacts over the time, each cell the mode at its middle.
+void add_modes(std::vector<Figure>& out, const Result& result) {
+  constexpr size_t cells = 200;
+  HeatMap map{.x = {"t", "s"}, .y = {"contact"}, .classes = {"open", "rolls", "slides"}};
+  const double start = result.trajectory.at(0, 0),
+               end = result.trajectory.at(result.trajectory.rows() - 1, 0),
+               width = (end - start) / cells;
+  const std::string suffix = kMode;
+  for (const std::string& column : result.trajectory.columns()) {
+    if (!column.ends_with(suffix)) continue;
+    map.y_values.emplace_back(column.substr(0, column.size() - suffix.size()));
+    const auto j = static_cast<size_t>(column_of(result, column));
+    std::vector<double>& row = map.values.emplace_back();
+    size_t i = 0;
+    for (size_t cell = 0; cell < cells; ++cell) {
+      const double t = start + (static_cast<double>(cell) + 0.5) * width;
+      while (i + 1 < result.trajectory.rows() &&
+             std::abs(result.trajectory.at(i + 1, 0) - start) <= std::abs(t - start))
+        ++i;
+      row.push_back(result.trajectory.at(i, j));
+    }
+  }
+  if (map.values.empty() || start == end) return;
+  for (size_t cell = 0; cell < cells; ++cell)
+    map.x_values.emplace_back(start + (static_cast<double>(cell) + 0.5) * width);
+  out.push_back({.title = "Modes of the contacts", .drawing = std::move(map), .name = "modes"});
+}
+
 std::optional<Animation> animation_of(const Result& result) {
   const Drawing& drawing = result.system->drawing;
   if (drawing.bodies.empty()) return {};
@@ -149,10 +186,12 @@ std::optional<Animation> animation_of(const Result& result) {
   std::vector<double> reactions(at.size());
   for (const DrawnForce& drawn : system.forces) {
     MovingForce force{drawn.name, {}};
+    const int mode = column_of(result, drawn.name + kMode);
     for (size_t i : rows) {
       for (size_t j = 0; j < at.size(); ++j) reactions[j] = result.trajectory.at(i, at[j]);
       const auto [x, f] = drawn.value(element(result, i), reactions);
       force.values.push_back({x[0], x[1], x[2], f[0], f[1], f[2]});
+      if (mode >= 0) force.modes.push_back(result.trajectory.at(i, static_cast<size_t>(mode)));
     }
     out.forces.push_back(std::move(force));
   }
@@ -188,6 +227,7 @@ std::vector<Figure> motion_of_run(const Registry& registry, const Result& r) {
            .name = "path"});
   }
   add_axes_on_sphere(out, registry, r);
+  add_modes(out, r);
   for (Figure& figure : out) figure.section = "Motion";
   return out;
 }

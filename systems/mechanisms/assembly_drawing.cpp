@@ -31,6 +31,9 @@ std::vector<BodyShape> Assembly::shapes_of(const Mechanism::BodyPart& body,
     size = std::max(size, radius);
     if (radius > 0 && drawn == radius) {
       out.front().look.color = "dark";
+      const std::vector<BodyShape> own = model.shapes(from_centre(contact.at));
+      if (out.front().kind == "cylinder" && !own.empty() && own.front().kind == "wheel")
+        out.front().kind = own.front().kind;
       continue;
     }
     std::ranges::move(model.shapes(from_centre(contact.at)), std::back_inserter(out));

@@ -111,6 +111,22 @@ TEST_F(Slipping, ASkidSteeredRobotTurns) {
   EXPECT_THAT(out["notes"].dump(), HasSubstr("turns only by slipping"));
   const Outcome described = run({"describe", copy + "?wheel=auto,friction=0.6"});
   EXPECT_THAT(described.out, HasSubstr("turns only by slipping"));
+  // A note that recommends --slip is none where it is given.
+  const Words starts = {"--start", "v1=1,omega=1", "--until", "0.05"};
+  Words slips = starts;
+  slips.push_back("--slip");
+  const std::string given = copy + "?wheel=auto,friction=0.6";
+  EXPECT_THAT(run_of(given, starts)["notes"].dump(), HasSubstr("--slip starts so"));
+  EXPECT_THAT(run_of(given, slips)["notes"].dump(), Not(HasSubstr("--slip starts so")));
+  // Modes over the time, and beside where the contacts are.
+  if (const json page = page_of({given, "--start", "v1=1,omega=1", "--until", "0.05", "--slip"});
+      !page.is_null()) {
+    const json modes = figure_of(page, "Modes of the contacts");
+    EXPECT_EQ(modes["y_values"].size(), 4U);
+    EXPECT_EQ(modes["classes"], json({"open", "rolls", "slides"}));
+    EXPECT_EQ(modes["values"][0][0], 2);  // slides at first
+    EXPECT_EQ(figure_of(page, "Motion")["forces"][0]["modes"][0], 2);
+  }
   const Outcome wrong = run({"run", copy, "--wheel", "auto,friction=-1", "--until", "1"});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_THAT(wrong.err, HasSubstr("friction: got '-1', expected a number of at least 0"));

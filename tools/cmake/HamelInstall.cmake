@@ -25,6 +25,8 @@ if(TARGET hamel_program)
   install(TARGETS hamel_program COMPONENT program)
   get_target_property(schemas hamel_schemas hamel_files)
   install(FILES ${schemas} DESTINATION ${CMAKE_INSTALL_DATADIR}/hamel/schema COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/playground/site/playground.html DESTINATION ${CMAKE_INSTALL_DATADIR}/hamel
+          COMPONENT program OPTIONAL)  # of `hamel live`
   install(DIRECTORY ${PROJECT_BINARY_DIR}/tools/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
           COMPONENT program OPTIONAL FILES_MATCHING PATTERN *.1.gz)
   set(completion ${PROJECT_SOURCE_DIR}/tools/packages/completion)

@@ -48,8 +48,21 @@ struct ReportOptions {
   std::vector<std::string> files;
   std::string output;         // empty: report.html, or the figure's name with .pdf
   std::string figure, width;  // --figure, --width
+  bool motion = false;        // --motion and what it needs
+  std::optional<double> at, speed;
+  std::optional<long> strobe;
+  std::string size;
+  bool transparent = false;
 };
 int report(const ReportOptions& options);
+
+struct LiveOptions {
+  std::string system;  // a name or a file
+  std::string output;  // -o; empty: NAME-live.html in the folder of temporary files
+  std::optional<long> port;
+  bool open = true;  // --no-open
+};
+int live(const LiveOptions& options);
 
 struct ReproduceOptions {
   std::string directory = "reproduce-output";

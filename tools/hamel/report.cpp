@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "pages/figure_file.hpp"
+#include "pages/motion_file.hpp"
 #include "pages/run_page.hpp"
 #include "words/run_names.hpp"
 #include "words/run_verdict.hpp"
@@ -111,10 +112,13 @@ Page compared(const std::vector<ReadRun>& runs) {
 int report(const ReportOptions& options) {
   const bool alone = !options.figure.empty();
   const std::string width = options.width.empty() ? "12cm" : options.width,
-                    usual = alone ? options.figure + ".pdf" : "report.html",
+                    usual = options.motion ? "motion.html"
+                            : alone        ? options.figure + ".pdf"
+                                           : "report.html",
                     output = options.output.empty() ? usual : options.output;
-  std::vector<std::string> mistakes =
-      alone ? figure_mistakes(output, width) : page_mistakes(output);
+  std::vector<std::string> mistakes = options.motion ? motion_mistakes(options, output)
+                                      : alone        ? figure_mistakes(output, width)
+                                                     : page_mistakes(output);
   std::vector<ReadRun> runs;
   for (const std::string& path : options.files) {
     try {
@@ -124,6 +128,10 @@ int report(const ReportOptions& options) {
     }
   }
   if (!mistakes.empty()) throw ConfigError(mistakes);
+  if (options.motion) {
+    write_motion(runs.front().result, options, output);
+    return 0;
+  }
   if (runs.size() > 1) name_apart(runs);
   else if (!runs.front().lack.empty()) runs.front().result.notes.push_back(runs.front().lack);
   const Page page =

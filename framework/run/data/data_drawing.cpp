@@ -84,7 +84,7 @@ BodyShape DataDrawing::shape(const toml::node& node) {
       continue;
     }
     if (word == "box" || word == "ellipsoid") out.sizes = formulas_.numbers(value, key, 3);
-    else if (word == "cylinder") out.sizes = formulas_.numbers(value, key, 2);
+    else if (word == "cylinder" || word == "wheel") out.sizes = formulas_.numbers(value, key, 2);
     else if (word == "sphere") out.sizes = {formulas_.number(value, key)};
     else if (word == "arrow") out.points = {point(value, key)};
     else if (word == "line") {
@@ -92,9 +92,9 @@ BodyShape DataDrawing::shape(const toml::node& node) {
         for (const toml::node& corner : *corners) out.points.push_back(point(corner, key));
       else read_.wrong(value, key, "a list of points");
     } else {
-      read_.unknown_key(
-          value, word,
-          {"box", "ellipsoid", "cylinder", "sphere", "arrow", "line", "at", "axis", "color"});
+      read_.unknown_key(value, word,
+                        {"box", "ellipsoid", "cylinder", "wheel", "sphere", "arrow", "line", "at",
+                         "axis", "color"});
       continue;
     }
     if (!out.kind.empty()) read_.wrong(value, key, "one shape in each table");

@@ -165,6 +165,10 @@ PlannedStart plan_start(const SystemModel& system, const Config& config, Mistake
           fmt::format("start: {} has no default start; give velocity or momentum", system.name));
     }
   }
+  if (config.slip)  // what such a note recommends is done
+    std::erase_if(out.notes, [](const std::string& note) {
+      return note.find(": --slip ") != std::string::npos;
+    });
   if (start.configuration.empty()) start.configuration = own.configuration;
   if (start.configuration.empty()) start.configuration = system.group.identity;
   try {

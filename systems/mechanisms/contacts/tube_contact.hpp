@@ -35,8 +35,8 @@ struct TubeContact : WheelContact {
     return {view.at + rim - T(crown) * view.vertical, wheel.directions};
   }
   std::vector<BodyShape> shapes(const Point& at) const {
-    return {shapes::cylinder(radius, 2 * crown,
-                             {.at = at, .axis = {axle[0], axle[1], axle[2]}, .color = "dark"})};
+    return {shapes::wheel(radius, 2 * crown,
+                          {.at = at, .axis = {axle[0], axle[1], axle[2]}, .color = "dark"})};
   }
 };
 

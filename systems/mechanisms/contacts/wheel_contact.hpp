@@ -2,6 +2,7 @@
 //   q = c - r (gamma - (gamma.n) n)/|...|,   u = n x gamma/|...| (rolling), gamma x u (sideways).
 #pragma once
 
+#include <hamel/framework/mechanics/wheel_shape.hpp>
 #include <hamel/systems/mechanisms/contact.hpp>
 
 namespace hamel::mechanisms {
@@ -29,8 +30,8 @@ struct WheelContact {
     return {view.at - (radius * inverse) * up, {rolling, view.vertical.cross(rolling)}};
   }
   std::vector<BodyShape> shapes(const Point& at) const {
-    return {shapes::cylinder(radius, 0.1 * radius,
-                             {.at = at, .axis = {axle[0], axle[1], axle[2]}, .color = "dark"})};
+    return {shapes::wheel(radius, 0.1 * radius,
+                          {.at = at, .axis = {axle[0], axle[1], axle[2]}, .color = "dark"})};
   }
 };
 

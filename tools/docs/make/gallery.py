@@ -53,10 +53,11 @@ def number(value):
     return ", ".join(f"{x:.6g}" for x in value) if isinstance(value, list) else f"{value:.6g}"
 
 
-def facts(program, name, summary):
+def facts(program, name, summary, playground):
     told = json.loads(hamel(program, "describe", name, "--json").stdout)
     lines = [f"## {name}\n", f"{summary[0].upper()}{summary[1:]}.\n", f"![{summary}](/images/gallery/{name}.png)\n",
-             "```", f"hamel run {name} {OPTIONS.get(name, '--until 10')} --report {name}.html", "```\n"]
+             "```", f"hamel run {name} {OPTIONS.get(name, '--until 10')} --report {name}.html", "```\n",
+             *([f"```{{raw}} html\n<p><a href=\"playground/index.html#{name}\">Open it in the playground</a></p>\n```\n"] if playground else [])]
     rows = [("Group", told["group"]), ("Equations", told["formula"]), ("Exactly known", told["known"]), ("Source", told["source"])]
     lines += ["| | |", "|---|---|"] + [f"| {k} | {escape(v)} |" for k, v in rows if v]
     if told.get("inputs"):
@@ -88,6 +89,7 @@ def motion(root, program, folder):
 
 def texts(root, build, site):
     program = str(build / "tools/hamel")
+    playground = (build / "playground/site/index.html").exists()
     systems = json.loads(hamel(program, "list", "systems", "--json").stdout)
     names = [system["name"] for system in systems]
     version = hashlib.sha256((build / "tools/hamel").read_bytes() + json.dumps(OPTIONS).encode()).hexdigest()[:16]
@@ -98,7 +100,7 @@ def texts(root, build, site):
     folder.mkdir(parents=True, exist_ok=True)
     with ThreadPoolExecutor(2) as pool:
         drawn = list(pool.map(lambda name: picture(program, folder, name), names))
-        told = list(pool.map(lambda system: facts(program, system["name"], system["summary"]), systems))
+        told = list(pool.map(lambda system: facts(program, system["name"], system["summary"], playground), systems))
     for file in drawn:
         site.image(file, "images/gallery")
     tiles = "".join(f'<a href="#{name.replace("_", "-")}"><img loading="lazy" alt="" src="_images/{name}.png">'

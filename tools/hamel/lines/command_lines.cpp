@@ -6,14 +6,13 @@
 
 #include "commands.hpp"
 #include "lines/number_option.hpp"
+#include "lines/page_lines.hpp"
 #include "lines/run_line.hpp"
 #include "section.hpp"
 #include "steady.hpp"
 
 namespace hamel::tools {
 namespace {
-
-using Action = std::function<int()>;
 
 // Options of a command whose work, pieces of a file, is cut into parts that share a folder.
 void add_parts(CLI::App& app, PartOptions& options, const std::string& file,
@@ -76,25 +75,6 @@ Action define_run(CLI::App& app) {
   const auto line = std::make_shared<RunLine>();
   line->define(app);
   return [line, &app] { return run(line->resolve(app)); };
-}
-
-Action define_report(CLI::App& app) {
-  const auto options = std::make_shared<ReportOptions>();
-  app.add_option("FILE", options->files, "recorded runs, .h5 (hamel run -o x.h5)")->required();
-  app.add_option("-o,--output", options->output,
-                 "the page [report.html]; of a figure .pdf, .svg or .png");
-  CLI::Option* figure =
-      app.add_option("--figure", options->figure,
-                     "write this figure alone, drawn by chromium: error, energy, motion, ... (an "
-                     "unknown name lists those there are)");
-  app.add_option("--width", options->width, "of the figure: 8cm, 80mm, 3in, 230pt [12cm]")
-      ->needs(figure);
-  app.footer(
-      "Examples:\n"
-      "  hamel report disk.h5 -o disk.html\n"
-      "  hamel report lift.h5 balance.h5 rkmk4.h5 -o compared.html\n"
-      "  hamel report disk.h5 --figure energy-error -o energy.pdf --width 8cm");
-  return [options] { return report(*options); };
 }
 
 Action define_study(CLI::App& app) {
@@ -228,6 +208,8 @@ const std::vector<Command>& commands() {
        define_ensemble},
       {"steady", "A steady motion near a guess, its eigenvalues; along a parameter", define_steady},
       {"section", "A Poincare section: the states in which motions cross an event", define_section},
+      {"live", "The playground in a browser, with a system in it: edited, moved, watched",
+       define_live},
       {"new", "A project of your own that compiles: a system, a group, a scheme, a mechanism",
        define_new},
       {"reproduce", "The paper's two figures, all variants side by side", define_reproduce},

@@ -47,41 +47,56 @@ std::string percent_decoded(const std::string& text) {
   return out;
 }
 
-struct Drawn {
-  std::string svg;
-  double width, height;  // pixels
-};
-
-// The SVG as the page draws it; its size is in centimetres.
-Drawn draw(const Page& page, const std::string& figure, double width) {
+// The text of the element `picture` that the page leaves.
+std::string left_by(const std::string& page, const std::vector<std::string>& options) {
   const Scratch folder;
-  write_file(folder.file("page.html"), page.picture(figure, width));
-  std::string svg =
-      percent_decoded(between(browse(folder, {"--dump-dom"}), "<pre id=\"picture\">", "</pre>"));
-  const size_t head = svg.find('>');
-  const std::string tag = svg.substr(0, head);
+  write_file(folder.file("page.html"), page);
+  return between(browse(folder, options), "<pre id=\"picture\">", "</pre>");
+}
+
+// Sizes of its element in place of pixels.
+void in_centimetres(DrawnSvg& drawn) {
+  const size_t head = drawn.svg.find('>');
+  const std::string tag = drawn.svg.substr(0, head);
+  std::string sized = tag;
+  for (const auto& [name, size] : {std::pair("width", drawn.width), {"height", drawn.height}}) {
+    const std::string word =
+        fmt::format(" {}=\"{}\"", name, between(tag, fmt::format(" {}=\"", name), "\""));
+    sized.replace(sized.find(word), word.size(),
+                  fmt::format(" {}=\"{:.6g}cm\"", name, size / kInch * 2.54));
+  }
+  drawn.svg = sized + drawn.svg.substr(head);
+}
+
+}  // namespace
+
+DrawnSvg drawn_svg(const std::string& page) {
+  DrawnSvg out{percent_decoded(left_by(page, {"--dump-dom"}))};
+  const std::string tag = out.svg.substr(0, out.svg.find('>'));
   const auto pixels = [&](const std::string& name) {
     const std::string text = between(tag, " " + name + "=\"", "\"");
     double value = std::numeric_limits<double>::quiet_NaN();
     std::from_chars(text.data(), text.data() + text.size(), value);
     return value;
   };
-  Drawn out{"", pixels("width"), pixels("height")};
-  if (!tag.starts_with("<svg") || !(out.width > 0) || !(out.height > 0))
-    throw ConfigError({fmt::format("report: the figure '{}' has nothing to draw", figure)});
-  std::string sized = tag;
-  for (const auto& [name, size] : {std::pair("width", out.width), {"height", out.height}}) {
-    const std::string word =
-        fmt::format(" {}=\"{}\"", name, between(tag, fmt::format(" {}=\"", name), "\""));
-    sized.replace(sized.find(word), word.size(),
-                  fmt::format(" {}=\"{:.6g}cm\"", name, size / kInch * 2.54));
-  }
-  out.svg = sized + svg.substr(head);
-  return out;
+  out.width = pixels("width");
+  out.height = pixels("height");
+  return tag.starts_with("<svg") && out.width > 0 && out.height > 0 ? out : DrawnSvg{};
 }
 
-// By the browser again, from the SVG alone: a page as large as the figure.
-std::string converted(const Drawn& figure, const std::string& extension) {
+std::string drawn_frames(const std::string& page) {
+  return left_by(page, {"--dump-dom", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"});
+}
+
+std::string lack_of_browser(const std::string& option, const std::string& without) {
+  if (!browser().empty()) return "";
+  return fmt::format(
+      "{} is drawn by the program chromium, which is not installed: apt-get install chromium, or "
+      "set CHROMIUM to the path of Chromium or Chrome; {}",
+      option, without);
+}
+
+std::string converted(const DrawnSvg& figure, const std::string& extension) {
   const Scratch folder;
   const std::string file = folder.file("figure" + extension);
   write_file(folder.file("page.html"),
@@ -100,8 +115,6 @@ std::string converted(const Drawn& figure, const std::string& extension) {
   if (out.empty()) throw Unfinished(fmt::format("{} wrote no {}", browser(), extension));
   return out;
 }
-
-}  // namespace
 
 double width_in_pixels(const std::string& text) {
   constexpr std::array<std::pair<std::string_view, double>, 5> units = {
@@ -124,12 +137,9 @@ std::vector<std::string> figure_mistakes(const std::string& path, const std::str
         "--width: got '{}', expected a number with its unit from {}cm to {}cm, as 8cm, 80mm, "
         "3in, 230pt or 300px",
         width, kLeast, kMost));
-  if (browser().empty())
-    mistakes.emplace_back(
-        "--figure is drawn by the program chromium, which is not installed: apt-get install "
-        "chromium, or set CHROMIUM to the path of Chromium or Chrome; the page (-o page.html) "
-        "needs "
-        "none, and its buttons save each figure");
+  const std::string lack = lack_of_browser(
+      "--figure", "the page (-o page.html) needs none, and its buttons save each figure");
+  if (!lack.empty()) mistakes.push_back(lack);
   return mistakes;
 }
 
@@ -138,7 +148,10 @@ void write_figure(const Page& page, const std::string& figure, const std::string
   const std::vector<std::string> known = page.figures();
   if (std::find(known.begin(), known.end(), figure) == known.end())
     throw ConfigError({unknown_name("figure", figure, known)});
-  const Drawn drawn = draw(page, figure, width_in_pixels(width));
+  DrawnSvg drawn = drawn_svg(page.picture(figure, {.width = width_in_pixels(width)}));
+  if (drawn.svg.empty())
+    throw ConfigError({fmt::format("report: the figure '{}' has nothing to draw", figure)});
+  in_centimetres(drawn);
   const std::string extension = std::filesystem::path(path).extension();
   write_file(path, extension == ".svg" ? drawn.svg + "\n" : converted(drawn, extension));
 }

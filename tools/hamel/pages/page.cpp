@@ -138,11 +138,20 @@ std::vector<std::string> Page::figures() const {
   return out;
 }
 
-std::string Page::picture(const std::string& figure, double width) const {
+std::string Page::picture(const std::string& figure, const PictureOptions& options) const {
   const auto at = std::find_if(data_->figures.begin(), data_->figures.end(),
                                [&](const auto& known) { return known.first == figure; });
   Json data = data_->page;
-  data["picture"] = {{"block", at->second}, {"width", width}};
+  Json& picture = data["picture"];
+  picture = {{"block", at->second}, {"width", options.width}};
+  if (options.height > 0) picture["height"] = options.height;
+  if (options.sharper > 0) picture["sharper"] = options.sharper;
+  if (!options.at.empty()) picture["at"] = options.at;
+  if (!options.strobe.empty()) picture["strobe"] = options.strobe;
+  for (const auto& [name, set] : {std::pair("frames", options.frames),
+                                  {"transparent", options.transparent},
+                                  {"player", options.player}})
+    if (set) picture[name] = true;
   return filled(data);
 }
 

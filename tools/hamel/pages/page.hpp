@@ -19,6 +19,18 @@ using figures::Figure;
 
 class Page;
 
+/// How one figure is drawn alone; all but the width are of a motion.
+struct PictureOptions {
+  double width = 0;                 // CSS pixels; 0, of a player: as wide as its window
+  double height = 0;                // 0: that of the page
+  double sharper = 0;               // pixels of the file per CSS pixel
+  std::vector<double> at = {};      // times that are shown
+  std::vector<double> strobe = {};  // times before them, at which bodies are shown too
+  bool frames = false;              // a PNG for each time, else SVG
+  bool transparent = false;
+  bool player = false;  // the page itself: the motion with its buttons
+};
+
 /// The members of an ensemble: what a click on one of them shows.
 struct Members {
   struct Column {
@@ -67,8 +79,8 @@ class Page {
 
   /// The names of its figures, each once.
   std::vector<std::string> figures() const;
-  /// A page that holds the SVG of this figure alone, so many pixels wide.
-  std::string picture(const std::string& figure, double width) const;
+  /// A page that holds this figure alone: its SVG, its frames, or its player.
+  std::string picture(const std::string& figure, const PictureOptions& options) const;
 
  private:
   struct Data;

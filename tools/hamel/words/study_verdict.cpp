@@ -15,9 +15,9 @@ constexpr double kLost = 0.3;  // of the motion's extent: an error that is no ap
 constexpr double kGoodEnergy = 1e-3;
 constexpr double kSolversAgree = 1e-10;
 
-class Judge {
+class StudyJudge {
  public:
-  explicit Judge(const StudyResult& result) : view_(result) {}
+  explicit StudyJudge(const StudyResult& result) : view_(result) {}
 
   std::vector<Verdict> all() {
     counts();
@@ -191,6 +191,6 @@ std::string plural(size_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::vector<Verdict> study_verdicts(const StudyResult& result) { return Judge(result).all(); }
+std::vector<Verdict> study_verdicts(const StudyResult& result) { return StudyJudge(result).all(); }
 
 }  // namespace hamel::tools

@@ -74,6 +74,9 @@ void bind_figures(Class& bound, const char* html, const char* help, Of of) {
 struct SystemText {
   std::string toml, name;
 };
+/// The text of a system that is given as one, or as a SystemText; empty for a name or a file, which
+/// are then its name. ConfigError for a Mechanism, whose functions no file has.
+SystemText system_text(const std::string& key, nb::handle system);
 /// Description of the system of a run that could start.
 ModelDescription described(const Simulation& simulation);
 

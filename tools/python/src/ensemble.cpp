@@ -47,13 +47,28 @@ std::function<double(Run&)> kept_by(const Function& function) {
   };
 }
 
+// A file, its text, or a dict of the same keys; its system may be a text or a SystemText.
+EnsembleConfig config_of(nb::handle file) {
+  if (!nb::isinstance<nb::dict>(file)) {
+    const std::string given = text("file", file);
+    return given.find('\n') == std::string::npos
+               ? read_ensemble(given, registry())
+               : parse_ensemble(given, "ensemble.toml", registry());
+  }
+  nb::dict table = nb::steal<nb::dict>(PyDict_Copy(file.ptr()));
+  SystemText system;
+  if (table.contains("system")) {
+    system = system_text("system", table["system"]);
+    if (!system.toml.empty()) table["system"] = system.name;
+  }
+  return parse_ensemble(nb::cast<std::string>(helper("_toml", "dumps")(table)), "ensemble",
+                        registry(), system.toml);
+}
+
 EnsembleResult ensemble(nb::handle file, int threads, nb::handle folder, nb::handle shard,
                         bool merge, bool fresh, nb::object progress, const nb::dict& vary_by,
                         const nb::dict& keep_by) {
-  const std::string given = text("file", file);
-  EnsembleConfig config = given.find('\n') == std::string::npos
-                              ? read_ensemble(given, registry())
-                              : parse_ensemble(given, "ensemble.toml", registry());
+  EnsembleConfig config = config_of(file);
   Functions functions;
   for (const auto& [name, function] : vary_by)
     config.vary_by(nb::cast<std::string>(name), varied_by(functions.add(function)));
@@ -119,12 +134,14 @@ void bind_ensemble(nb::module_& m) {
       "ensemble", &ensemble, "file"_a, nb::kw_only(), "threads"_a = 0, "folder"_a = nb::none(),
       "shard"_a = nb::none(), "merge"_a = false, "fresh"_a = false, "progress"_a = nb::none(),
       "vary_by"_a = nb::dict(), "keep_by"_a = nb::dict(),
-      nb::sig("def ensemble(file: str | os.PathLike[str], *, threads: int = 0, folder: str | "
-              "os.PathLike[str] | None = None, shard: tuple[int, int] | None = None, merge: bool "
-              "= False, fresh: bool = False, progress: collections.abc.Callable[[float], object] "
-              "| bool | None = None, vary_by: dict[str, collections.abc.Callable[[int], float]] = "
-              "{}, keep_by: dict[str, collections.abc.Callable[[State], float]] = {}) -> "
-              "EnsembleResult"),
+      nb::sig(
+          "def ensemble(file: str | os.PathLike[str] | dict[str, typing.Any], *, threads: int = 0, "
+          "folder: str | "
+          "os.PathLike[str] | None = None, shard: tuple[int, int] | None = None, merge: bool "
+          "= False, fresh: bool = False, progress: collections.abc.Callable[[float], object] "
+          "| bool | None = None, vary_by: dict[str, collections.abc.Callable[[int], float]] = "
+          "{}, keep_by: dict[str, collections.abc.Callable[[State], float]] = {}) -> "
+          "EnsembleResult"),
       "The members of an ensemble's file (or of its text), as `hamel ensemble` runs them. threads: "
       "0 is all cores. folder: keeps a journal there and resumes from it. shard=(i, n): the part "
       "i of n, from 1; merge=True joins the parts in the folder. vary_by: names to vary, each by a "

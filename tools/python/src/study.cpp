@@ -10,15 +10,21 @@ std::string word_of(nb::handle value) {
 }
 
 StudySystem system_of(nb::handle given) {
-  if (nb::isinstance<nb::str>(given)) {
-    const auto name = utf8("system", given);
-    return {.label = name, .name = name};
-  }
   StudySystem out;
+  const auto take = [&out](nb::handle system) {
+    SystemText read = system_text("system", system);
+    out.name = std::move(read.name);
+    out.data = std::move(read.toml);
+  };
+  if (!nb::isinstance<nb::dict>(given)) {
+    take(given);
+    out.label = out.name;
+    return out;
+  }
   for (const auto& [key, value] : dict("system", given)) {
     const auto name = key_of(key);
     if (name == "label") out.label = text(name, value);
-    else if (name == "system" || name == "name") out.name = text(name, value);
+    else if (name == "system" || name == "name") take(value);
     else if (name == "configuration") out.start.configuration = numbers(name, value);
     else if (name == "velocity") out.start.velocity = numbers(name, value);
     else if (name == "momentum") out.start.momentum = numbers(name, value);
@@ -38,10 +44,18 @@ StudySystem system_of(nb::handle given) {
   return out;
 }
 
-// A file, a text of one, or none: then keywords alone.
-StudyConfig config_of(nb::handle file, const nb::kwargs& options) {
+// A list of systems or of values, and not one of them.
+bool is_list(nb::handle value) {
+  return !nb::isinstance<nb::str>(value) && !nb::isinstance<nb::dict>(value) &&
+         nb::hasattr(value, "__iter__");
+}
+
+// A file, a text of one, or none: then keywords alone, or a dict of them.
+StudyConfig study_of(nb::handle file, const nb::dict& options) {
   StudyConfig config;
-  if (!file.is_none()) {
+  if (nb::isinstance<nb::dict>(file)) {
+    config = study_of(nb::none(), nb::borrow<nb::dict>(file));
+  } else if (!file.is_none()) {
     const std::string given = text("file", file);
     config = given.find('\n') == std::string::npos ? read_study(given, registry())
                                                    : parse_study(given, "study.toml", registry());
@@ -55,15 +69,13 @@ StudyConfig config_of(nb::handle file, const nb::kwargs& options) {
     else if (name == "reference") config.reference = nb::cast<bool>(value);
     else if (name == "system") {
       config.systems.clear();
-      const bool one = nb::isinstance<nb::str>(value) || nb::isinstance<nb::dict>(value);
-      if (one) config.systems.push_back(system_of(value));
+      if (!is_list(value)) config.systems.push_back(system_of(value));
       else
         for (const nb::handle each : value) config.systems.push_back(system_of(each));
     } else {
       StudyValues& values = config.axes[name];
       values.clear();
-      const bool one = nb::isinstance<nb::str>(value) || !nb::hasattr(value, "__iter__");
-      if (one) values.push_back(word_of(value));
+      if (!is_list(value)) values.push_back(word_of(value));
       else
         for (const nb::handle each : value) values.push_back(word_of(each));
     }
@@ -73,7 +85,7 @@ StudyConfig config_of(nb::handle file, const nb::kwargs& options) {
 
 StudyResult study(nb::handle file, int threads, nb::handle folder, bool fresh, nb::object progress,
                   const nb::kwargs& options) {
-  Study out(registry(), config_of(file, options));
+  Study out(registry(), study_of(file, options));
   out.threads(threads).fresh(fresh);
   if (!folder.is_none()) out.folder(text("folder", folder));
   return long_call(progress_of(progress),
@@ -126,18 +138,21 @@ void bind_study(nb::module_& m) {
   bind_figures(result, "html_of_study",
                "Work-precision diagrams, the error over the step and the tolerance, heat maps.",
                [](const StudyResult& r) { return figures::of_study(r); });
-  m.def(
-      "study", &study, "file"_a = nb::none(), nb::kw_only(), "threads"_a = 0,
-      "folder"_a = nb::none(), "fresh"_a = false, "progress"_a = nb::none(), "options"_a,
-      nb::sig("def study(file: str | os.PathLike[str] | None = None, *, threads: int = 0, folder: "
-              "str | os.PathLike[str] | None = None, fresh: bool = False, progress: "
-              "collections.abc.Callable[[float], object] | bool | None = None, **options: "
-              "typing.Any) -> StudyResult"),
-      "Every combination of the lists in a file (or its text), measured alike. Without a file, "
-      "or beside it: system (names, or dicts of system, label, parameters, inputs, velocity, "
-      "…), until [s], repeats, title, zipped, reference, and any option that a study may vary "
-      "with its values: scheme=['lift', 'balance'], step=[0.1, 0.05]. threads: 0 is all cores. "
-      "folder: keeps a journal there and resumes from it. Ctrl-C stops it.");
+  m.def("study", &study, "file"_a = nb::none(), nb::kw_only(), "threads"_a = 0,
+        "folder"_a = nb::none(), "fresh"_a = false, "progress"_a = nb::none(), "options"_a,
+        nb::sig("def study(file: str | os.PathLike[str] | dict[str, typing.Any] | None = None, *, "
+                "threads: int = 0, folder: "
+                "str | os.PathLike[str] | None = None, fresh: bool = False, progress: "
+                "collections.abc.Callable[[float], object] | bool | None = None, **options: "
+                "typing.Any) -> StudyResult"),
+        "Every combination of the lists in a file (or its text), measured alike. Without a file, "
+        "as a "
+        "dict, "
+        "or beside it: system (names, texts, or dicts of system, label, parameters, inputs, "
+        "velocity, "
+        "…), until [s], repeats, title, zipped, reference, and any option that a study may vary "
+        "with its values: scheme=['lift', 'balance'], step=[0.1, 0.05]. threads: 0 is all cores. "
+        "folder: keeps a journal there and resumes from it. Ctrl-C stops it.");
 }
 
 }  // namespace hamel::python

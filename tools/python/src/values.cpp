@@ -53,6 +53,16 @@ std::vector<double> numbers(const std::string& name, nb::handle value) {
   return out;
 }
 
+SystemText system_text(const std::string& key, nb::handle system) {
+  if (nb::isinstance<SystemText>(system)) return nb::cast<const SystemText&>(system);
+  if (nb::isinstance<ByParts>(system))
+    throw ConfigError({key + ": got a Mechanism, whose functions a journal cannot have: expected a "
+                             "name, a file, the text of one, or Mechanism.from_toml(text)"});
+  const std::string given = text(key, system);
+  return given.find('\n') == std::string::npos ? SystemText{"", given}
+                                               : SystemText{given, "system.toml"};
+}
+
 Start start_of(const std::string& name, nb::handle value) {
   Start out;
   for (const auto& [key, entry] : dict(name, value)) {

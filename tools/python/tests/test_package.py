@@ -240,7 +240,7 @@ def test_an_ensemble_by_functions():
         hamel.ensemble(text, vary_by={"inertia1": wrong_index})
 
 
-def test_a_result_moves(tmp_path):
+def test_a_result_moves(tmp_path, monkeypatch):
     result = hamel.run("rattleback", until=1, output_step=0.1)
     animation = result.animation()
     assert "<iframe" in animation._repr_html_() and "http" not in animation.page()
@@ -255,8 +255,61 @@ def test_a_result_moves(tmp_path):
     assert pickle.loads(pickle.dumps(result)).animation().page() == animation.page()
     animation.write(tmp_path / "motion.html")
     assert (tmp_path / "motion.html").read_text() == animation.page()
+    with pytest.raises(hamel.ConfigError, match="program hamel, which is not on the PATH"):
+        monkeypatch.setenv("HAMEL_PROGRAM", "/nowhere/hamel")
+        animation.write(tmp_path / "motion.png")
     with pytest.raises(ValueError, match="fewer than two rows"):
         hamel.run("rattleback", until=1, record_to=str(tmp_path / "x.csv")).animation()
+
+
+def test_a_film_is_drawn_by_the_program(tmp_path, monkeypatch):
+    program = tmp_path / "hamel"
+    program.write_text(f"#!/bin/sh\necho \"$@\" > {tmp_path}/said\ntest -s $2 && touch $5\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("HAMEL_PROGRAM", str(program))
+    animation = hamel.run("rattleback", until=1, output_step=0.1).animation()
+    animation.write(tmp_path / "m.svg", at=0.5, strobe=4, size=(640, 360), transparent=True)
+    assert (tmp_path / "m.svg").exists()
+    said = (tmp_path / "said").read_text().split()
+    assert said[0] == "report" and said[2:4] == ["--motion", "-o"]
+    assert said[5:] == "--at 0.5 --strobe 4 --size 640x360 --transparent".split()
+    program.write_text("#!/bin/sh\necho 'hamel: --at: got 9' >&2\nexit 2\n")
+    with pytest.raises(hamel.ConfigError, match="^--at: got 9$"):
+        animation.write(tmp_path / "m.svg", at=9)
+
+
+LINK = """name = "link"
+body = [{ name = "rod", mass = 1, at = [0, 0, 0.5], box = [0.1, 0.1, 1] }]
+joint = [{ name = "pivot", kind = "hinge", child = "rod", at = [0, 0, 1], axis = [0, 1, 0], damping = "d" }]
+[parameters]
+d = { value = 0, unit = "N m s" }
+[start]
+pivot.rate = 1
+"""
+
+
+@pytest.mark.parametrize("system", [LINK, hamel.Mechanism.from_toml(LINK, "link.toml")])
+def test_systems_as_texts_in_studies_and_ensembles(system):
+    table = {
+        "system": system,
+        "until": 1,
+        "output_step": 0.5,
+        "vary": {"d": {"values": np.array([0.0, 0.1])}},
+        "keep": ["end.pivot.rate"],
+    }
+    many = hamel.ensemble(table, threads=1)
+    assert many["d"].tolist() == [0, 0.1]
+    for d, rate in zip(many["d"], many["end.pivot.rate"]):
+        one = hamel.run(system, until=1, d=d)
+        assert rate == pytest.approx(one["pivot.rate"][-1], rel=1e-12)
+    cells = hamel.study({"system": system, "until": 1, "scheme": ["lift"], "step": [0.1, 0.05]})
+    assert len(cells) == 2 and bool(cells)
+    with pytest.raises(hamel.ConfigError, match="expected one of"):
+        hamel.ensemble({**table, "vry": {}})
+    with pytest.raises(hamel.ConfigError, match="got a Mechanism"):
+        hamel.ensemble({**table, "system": hamel.Mechanism("m")})
+    with pytest.raises(hamel.ConfigError, match="keep: got a set"):
+        hamel.ensemble({**table, "keep": {"x"}})
 
 
 @pytest.mark.parametrize("name", ["first_steps", "segway"])

@@ -58,7 +58,7 @@ async function showPage() {
   document.title = String(data.title || 'Report').replace(/[`*]/g, '');
   assignStyles(data.sections);
   document.body.append(h('span', { id: 'light', class: 'light', hidden: true }));
-  if (data.picture) return showPicture(data, (block) => KINDS[block.kind](block));
+  if (data.picture) return showPicture(data, (block, options) => KINDS[block.kind](block, options));
   const [later, counter] = [[], { blocks: 0 }];
   const nav = contents(data.sections);
   if (nav) document.body.classList.add('with-contents');

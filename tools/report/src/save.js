@@ -8,11 +8,11 @@ function save(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-/** The SVG on white paper, the variables of the style sheet replaced by the values that they have in print. */
-export function plainSvg(svg) {
+/** The SVG on white paper or on none, the variables of the style sheet replaced by the values that they have in print. */
+export function plainSvg(svg, transparent = false) {
   const print = getComputedStyle(document.getElementById('light'));
-  return svg.replace(/var\((--[\w-]+)\)/g, (_, name) => print.getPropertyValue(name).trim())
-    .replace(/(<svg[^>]*>)/, '$1<rect width="100%" height="100%" fill="#fff"/>');
+  const drawn = svg.replace(/var\((--[\w-]+)\)/g, (_, name) => print.getPropertyValue(name).trim());
+  return transparent ? drawn : drawn.replace(/(<svg[^>]*>)/, '$1<rect width="100%" height="100%" fill="#fff"/>');
 }
 
 export const saveSvg = (name, svg) => save(`${name}.svg`, new Blob([plainSvg(svg)], { type: 'image/svg+xml' }));

@@ -140,9 +140,15 @@ async function choose(name) {
   changed();
 }
 
+/** What `hamel live` put into the page: {system} or {text}; null in other pages. */
+function liveState() {
+  const given = document.getElementById('live')?.textContent;
+  return given ? { system: '', options: {}, parameters: {}, inputs: {}, ...JSON.parse(given) } : null;
+}
+
 /** The state that the address has; that of the first system where it has none. */
 async function read() {
-  const state = await stateOfFragment(location.hash).catch((error) => {
+  const state = (location.hash ? null : liveState()) ?? await stateOfFragment(location.hash).catch((error) => {
     $('mistakes').replaceChildren(h('li', {}, error.message));
     return null;
   }) ?? { system: FIRST, options: {}, parameters: {}, inputs: {} };

@@ -10,7 +10,7 @@ import { formatNumber, formatShort, power } from '../format.js';
 import { readByKeys } from './keys.js';
 import { swatch } from './legend.js';
 import { choose } from '../blocks/members.js';
-import { styleOf } from './palette.js';
+import { colourOfMode, styleOf } from './palette.js';
 import { columnsToCsv } from '../save.js';
 import { extent } from './series.js';
 import { widest, widthOf } from '../width.js';
@@ -94,7 +94,7 @@ function readMap(block) {
   const numbers = block.y_values.every((v) => typeof v === 'number');
   if (numbers && block.y_values[ny - 1] > block.y_values[0]) order.reverse();  // numbers grow upwards, names are read downwards
   const [min, max] = extent(block.values.flat().map(at));
-  const classes = block.classes?.map((name, c) => ({ name: String(name), colour: styleOf({ name }).colour, count: block.values.flat().filter((v) => v === c).length })) ?? null;
+  const classes = block.classes?.map((name, c) => ({ name: String(name), colour: colourOfMode(name) ? `var(${colourOfMode(name)})` : styleOf({ name }).colour, count: block.values.flat().filter((v) => v === c).length })) ?? null;
   return { label: String(block.y ?? ''), unit: block.unit ? `  ${block.unit}` : '', columns, rows: order.map((i) => names[i]), values: order.map((i) => block.values[i]), marks: order.map((i) => block.marks?.[i] ?? []), at, classes,
     members: block.members ? order.map((i) => block.members[i]) : null,
     range: min < max ? [min, max] : min === max ? [min - 0.5, max + 0.5] : [0, 1], scaled: min < max && !classes, only: min === max ? min : null, numbers,
@@ -105,24 +105,27 @@ function readMap(block) {
 
 function layout(map, width) {
   const left = (map.label ? 34 : 14) + Math.ceil(Math.min(widest(map.rows), width * 0.42));
-  const cell = (width - left - 12) / map.columns.length;
-  const turned = widest(map.columns) + 6 > cell && map.columns.length > 1 && !(cell < 20);
-  const under = turned ? Math.min(90, widest(map.columns)) + 30 : 42;
+  // A name that is wider than its cell is centred on it, at the edge too.
+  const names = widest(map.columns);
+  const right = Math.max(12, (width - left - 12) / map.columns.length < 20 ? Math.ceil(names / 2) + 4 : 0);
+  const cell = (width - left - right) / map.columns.length;
+  const turned = names + 6 > cell && map.columns.length > 1 && !(cell < 20);
+  const under = turned ? Math.min(90, names) + 30 : 42;
   const row = map.numbers ? Math.max(LEAST, Math.min(ROW, 430 / map.rows.length)) : ROW;
   // The scale and its words fit into the figure: first it moves left, then it gets shorter.
   const words = map.scaled ? widest([scaleText(map, map.range[0])]) + widest([scaleText(map, map.range[1]) + map.unit]) + 2 * GAP + 10 : 0;
   const long = Math.max(0, Math.min(LONGEST, width - 2 * GAP - words));
   const bar = { left: Math.max(GAP, Math.min(left, width - GAP - words - long)), itemHeight: long };
-  return { left, cell, row, turned, under, bar, height: Math.round(TOP + Math.max(row * map.rows.length, widthOf(map.label, 13) + 4) + under + (map.scaled ? BAR : 0)) };
+  return { left, right, cell, row, turned, under, bar, height: Math.round(TOP + Math.max(row * map.rows.length, widthOf(map.label, 13) + 4) + under + (map.scaled ? BAR : 0)) };
 }
 
-function option(map, block, { left, cell, row, turned, under, bar }) {
+function option(map, block, { left, right, cell, row, turned, under, bar }) {
   const part = (value) => (map.at(value) - map.range[0]) / (map.range[1] - map.range[0]);
   const cells = map.values.flatMap((line, r) => line.map((value, c) => ({ value, mark: map.marks[r][c] || '', place: [c, r] })));
   const colourOf = (value) => (map.classes ? { color: map.classes[value]?.colour ?? HATCH } : {});
   const list = cells.map(({ value, mark, place }) => {
     const known = map.at(value) !== null;
-    return { value: [...place, known ? map.at(value) : map.range[0]], visualMap: known && !map.classes, itemStyle: { borderColor: 'var(--paper)', borderWidth: row > 12 ? 1 : 0,
+    return { value: [...place, known ? map.at(value) : map.range[0]], visualMap: known && !map.classes, itemStyle: { borderColor: 'var(--paper)', borderWidth: row > 12 && cell > 5 ? 1 : 0,
       ...(known ? colourOf(value) : { color: typeof value === 'number' ? 'var(--paper)' : HATCH }) }, ...(known && map.classes ? { emphasis: { itemStyle: colourOf(value) } } : {}),
       label: { show: mark !== '' && (known || widthOf(mark, 11) + 6 <= cell), formatter: mark, color: known && !map.classes ? inkOn(sequential(part(value))) : 'var(--ink)', fontSize: 11, width: cell - 4, overflow: 'truncate',
         backgroundColor: known && !map.classes ? 'transparent' : 'var(--paper)', padding: [1, 3] } };
@@ -131,7 +134,7 @@ function option(map, block, { left, cell, row, turned, under, bar }) {
   const names = { type: 'category', splitLine: { show: false } };
   const apart = (room, size) => ({ interval: Math.max(1, Math.ceil(room / size)) - 1 });  // so many cells without a name
   return {
-    grid: { left, right: 12, top: TOP, bottom: under + (map.scaled ? BAR : 0), outerBoundsMode: 'none' },
+    grid: { left, right, top: TOP, bottom: under + (map.scaled ? BAR : 0), outerBoundsMode: 'none' },
     xAxis: axisOptions(block.x || '', under - 16, { ...names, data: map.columns, axisLabel: { ...apart(turned ? LINE : Math.min(widest(map.columns) + GAP, Math.max(cell, 90)), cell), rotate: turned ? 90 : 0, width: turned ? 88 : undefined, overflow: 'truncate' }, axisTick: { show: false } }),
     yAxis: axisOptions(block.y || '', left - 14, { ...names, data: map.rows, inverse: true, axisLabel: { ...apart(LINE, row), width: left - (map.label ? 32 : 12), overflow: 'truncate' }, axisTick: { show: false } }),
     series: [{ type: 'heatmap', data: list, emphasis: { itemStyle: { borderColor: 'var(--ink)', borderWidth: 2 } } },

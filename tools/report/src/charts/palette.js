@@ -2,6 +2,12 @@
 // (after Okabe and Ito, and Tol). Beyond ten names a colour serves again where the two never meet in a figure (or, if
 // need be, are kept apart by its filters); then come dashes. Series with a `key` share the look of that key.
 
+/** Modes of a contact, beside a motion and over the time. */
+export const MODES = ['open', 'rolls', 'slides'];
+const OF_MODES = { open: '--mesh', rolls: '--c3', slides: '--c2' };
+/** The variable of the style sheet with the colour of a mode; undefined of other names. */
+export const colourOfMode = (name) => (Object.hasOwn(OF_MODES, name) ? OF_MODES[name] : undefined);
+
 const COLOURS = Array.from({ length: 10 }, (_, i) => `var(--c${i + 1})`);
 const DASHES = [[], [8, 3], [2, 3], [9, 3, 2, 3]];
 const DASHED = [7, 4];
@@ -12,7 +18,7 @@ const nameOf = (series) => String(series?.key ?? series?.name);
 
 /** What of a block has a look: its series, or its classes. */
 const seriesOf = (block) => (Array.isArray(block?.series) ? block.series : block?.kind === 'scatter' && !block.classes ? [{ name: 'members' }] :
-  Array.isArray(block?.classes) ? block.classes.map((name) => ({ name })) : null);
+  Array.isArray(block?.classes) && !block.classes.every(colourOfMode) ? block.classes.map((name) => ({ name })) : null);
 
 /** The names of a block that are seen at one time: all, or those whose tags a filter shows together. */
 function seenTogether(block) {

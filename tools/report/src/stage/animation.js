@@ -1,10 +1,11 @@
 // The figure `animation`: bodies that move, with play, a bar to scrub, speed, and a view turned by dragging or keys.
 
-import { Color, Group, Matrix4, Mesh, MeshBasicMaterial, Scene, Vector3 } from 'three';
+import { Color, Group, Matrix4, Mesh, MeshBasicMaterial, Scene, SphereGeometry, Vector3 } from 'three';
+import { colourOfMode, MODES } from '../charts/palette.js';
 import { h } from '../dom.js';
 import { figure, remark } from '../figure.js';
 import { formatNumber, formatShort } from '../format.js';
-import { arrowOf, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion } from './motion.js';
+import { arrowOf, contactAt, floorGrid, middleOf, placed, placeInTime, poseAt, readMotion, roomOf } from './motion.js';
 import { columnsToCsv } from '../save.js';
 import { addLight, lines, pairs, solids, stand, styled } from './shapes.js';
 import { ABOVE, HOME, Stage } from './stage.js';
@@ -14,21 +15,22 @@ const TICKS = 1000;       // of the bar
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 const PLEASANT = [4, 25]; // seconds that a motion may take as it is; others are brought near 10
 const TRAILS = ['--c2', '--c1', '--c3', '--c4', '--c6', '--c8'];
+const DOT = 0.035;        // of the reach of all bodies: the radius of a contact
 const ARROW = 0.15;       // of what is seen, and the reach of all bodies at least: the length of the strongest force
 // So many times this reach is the room before they are followed at first, and is seen around them then.
 const FAR = (bodies) => (bodies.length > 1 ? 7 : 40);
 const AROUND = (bodies) => (bodies.length > 1 ? 1.2 : 3.2);
 
-export function animation(block) {
+export function animation(block, { height = heightFor } = {}) {
   let { motion, times, bodies, start, end, room, long, grid } = spread(block);
-  let [now, playing, pushing, live] = [start, false, false, null];
+  let [now, playing, pushing, live, ghosts] = [start, false, false, null, []];
   const poses = () => live ?? bodies.map((body) => poseAt(body, placeInTime(times, now)));
 
   const holder = h('div', { class: 'stage3d drawing', role: 'img', tabindex: 0, 'aria-label':
     `Animation: ${block.title ?? 'untitled'}; ${bodies.map((body) => body.name).join(', ')}; t from ${formatShort(start)} to ` +
     `${formatShort(end)}. Space plays, arrow keys turn the view, plus and minus zoom, 0 resets.` });
-  const stage = new Stage(holder, { height: heightFor, box: motion.box, from: block.view === 'top' ? ABOVE : HOME, floor: Boolean(block.floor),
-    build: (solid) => build(motion, grid, solid, poses, () => placeInTime(times, now), () => pushing, long ? AROUND(bodies) * motion.reach : room) });
+  const stage = new Stage(holder, { height, box: motion.box, from: block.view === 'top' ? ABOVE : HOME, floor: Boolean(block.floor),
+    build: (solid) => build(motion, grid, solid, poses, () => placeInTime(times, now), () => pushing, long ? AROUND(bodies) * motion.reach : room, ghosts) });
   const bar = h('input', { type: 'range', class: 'bar', min: 0, max: TICKS, value: 0, 'aria-label': 'time',
     oninput: () => { pause(); seek(start + (bar.value / TICKS) * (end - start)); } });
   const clock = h('output', { class: 'clock' });
@@ -117,7 +119,25 @@ export function animation(block) {
     pause();
     stage.dispose();
   };
-  return { element, draw, picture: () => stage.picture(false), show, feed, follow, play: run, dispose };
+  const posesAt = (t) => bodies.map((body) => poseAt(body, placeInTime(times, t)));
+  /** Shows the motion at t, with the bodies at the earlier times `before` beside it: all of them are then in sight. */
+  const hold = (t, before = []) => {
+    ghosts = before.map(posesAt);
+    const many = ghosts.length > 0;
+    follow(long && !many);
+    seek(t);
+    if (many) stage.see(roomOf(bodies, bodies.map((_, b) => [...ghosts, posesAt(t)].map((at) => at[b])), block.floor));
+    else stage.rebuild();
+  };
+  /** Frames, to be drawn one after the other: (t, before) -> canvas. */
+  const film = (sharper, transparent) => {
+    const take = stage.film(sharper, transparent);
+    return (t, before) => {
+      hold(t, before);
+      return take();
+    };
+  };
+  return { element, draw, picture: () => stage.picture(false), show, feed, follow, hold, film, play: run, dispose };
 }
 
 /** A motion, its times and bodies, its room, whether that is long against the bodies, the grid on the floor. */
@@ -137,12 +157,21 @@ function speedFor(duration) {
   return SPEEDS.reduce((best, s) => (off(s) < off(best) ? s : best));
 }
 
+/** The colours of a body, so far on their way to the paper. */
+function faded(group, far) {
+  const paper = styled('--paper');
+  const materials = new Set();  // parts share them
+  group.traverse(({ material }) => material && materials.add(material));
+  materials.forEach(({ color }) => color.lerp(paper, far));
+  return group;
+}
+
 /** The scene at the time `now`: grid, shadows straight down on it, bodies, and the ways of points: all thin, the past strong. */
-function build(motion, grid, solid, poses, now, pushing, seen) {
+function build(motion, grid, solid, poses, now, pushing, seen, ghosts) {
   const scene = new Scene();
   const light = addLight(scene, solid);
   if (grid) scene.add(lines(solid, grid.lines.flat(2), styled('--mesh'), 0.9, { renderOrder: -3 }));
-  const groups = motion.bodies.map(({ shapes }) => {
+  const made = ({ shapes }) => {
     const group = new Group();
     for (const shape of shapes) {
       const part = stand(new Group(), shape.pose);
@@ -150,12 +179,16 @@ function build(motion, grid, solid, poses, now, pushing, seen) {
       group.add(part);
     }
     return group;
-  });
+  };
+  const groups = motion.bodies.map(made);
   scene.add(...groups);
+  const past = ghosts.flatMap((at, i) => motion.bodies.flatMap((body, b) => (at[b] ? [faded(stand(made(body), at[b]), 0.65 * (1 - i / ghosts.length))] : [])));
+  if (past.length) scene.add(...past);
+  past.forEach((body) => body.updateMatrixWorld(true));
   const flatten = new Matrix4().makeScale(1, 1, 0);
   const shadows = [];
   const dark = new MeshBasicMaterial({ color: styled('--shadow'), depthWrite: false });
-  if (grid) groups.forEach((body) => body.traverse((part) => {
+  if (grid) [...groups, ...past].forEach((body) => body.traverse((part) => {
     if (!part.isMesh || part.isLineSegments2) return;  // lines cast none
     shadows.push({ part, body, shadow: Object.assign(new Mesh(part.geometry, dark), { matrixAutoUpdate: false, renderOrder: -2, frustumCulled: false }) });
   }));
@@ -163,17 +196,29 @@ function build(motion, grid, solid, poses, now, pushing, seen) {
   const trails = motion.bodies.map(({ way, point }, b) => {
     if (!way) return null;
     const colour = styled(TRAILS[b % TRAILS.length]);
-    const past = lines(solid, [], colour, 2.2);
-    scene.add(lines(solid, pairs(way), new Color(colour).lerp(styled('--paper'), 0.5), 1.3, { renderOrder: -1, depthWrite: false }), past);
-    return (pose, { i }) => past.place(pairs([...way.slice(0, i + 1), pose ? placed(pose, point) : null]));
+    const behind = lines(solid, [], colour, 2.2);
+    scene.add(lines(solid, pairs(way), new Color(colour).lerp(styled('--paper'), 0.5), 1.3, { renderOrder: -1, depthWrite: false }), behind);
+    return (pose, { i }) => behind.place(pairs([...way.slice(0, i + 1), pose ? placed(pose, point) : null]));
   });
   const scale = Math.max(motion.reach, ARROW * seen) / motion.strongest;
   const arrows = motion.forces.map(() => lines(solid, [], styled('--ink'), 3, { depthTest: false, renderOrder: 1 }));
   if (arrows.length) scene.add(...arrows);
+  const dots = motion.forces.filter(({ modes }) => modes.length).map((force) => {
+    const dot = new Mesh(new SphereGeometry(DOT * motion.reach, solid ? 20 : 8, solid ? 12 : 6), new MeshBasicMaterial());
+    return { force, dot };
+  });
+  dots.forEach(({ dot }) => scene.add(dot));
   const update = (camera) => {
     light(camera);
     arrows.forEach((arrow, f) => arrow.place(pushing() ? arrowOf(motion.forces[f], now(), scale) : []));
     const at = poses();
+    for (const { force, dot } of dots) {
+      const contact = contactAt(force, now());
+      dot.visible = Boolean(contact);
+      if (!contact) continue;
+      dot.position.set(...contact.at);
+      dot.material.color.copy(styled(colourOfMode(MODES[contact.mode] ?? MODES[0])));
+    }
     groups.forEach((body, b) => {
       body.visible = Boolean(at[b]);
       if (at[b]) stand(body, at[b]).updateMatrixWorld(true);
@@ -185,7 +230,7 @@ function build(motion, grid, solid, poses, now, pushing, seen) {
     }
   };
   const top = (pose, { hull }) => [pose.at[0], pose.at[1], Math.max(...hull.map(({ point, air }) => placed(pose, point)[2] + air))];
-  const labels = motion.bodies.length < 2 ? [] : motion.bodies.map((body, b) =>
+  const labels = motion.bodies.length < 2 || ghosts.length ? [] : motion.bodies.map((body, b) =>
     ({ text: body.name, up: 9, at: () => { const pose = poses()[b]; return pose ? top(pose, body) : [NaN, NaN, NaN]; } }));
   return { scene, update, labels, scale: grid ? `grid ${formatShort(grid.step, 3)}` : '' };
 }

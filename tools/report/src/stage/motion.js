@@ -2,7 +2,7 @@
 // A pose is {at: [x, y, z], turn: [w, x, y, z]}; null where a pose is missing.
 
 const COLOURS = { body: '#4d86bd', accent: '#d55e00', dark: '#2f3a46', light: '#dfe5ec' };
-const NEEDS = { box: 'size', cylinder: 'radius', sphere: 'radius', ellipsoid: 'radii', line: 'points', arrow: 'to' };
+const NEEDS = { box: 'size', cylinder: 'radius', wheel: 'radius', sphere: 'radius', ellipsoid: 'radii', line: 'points', arrow: 'to' };
 
 const TOUCHING = 0.02;  // of the radius: what rolls inside a shell
 
@@ -51,7 +51,7 @@ function readShape(shape, where) {
   const value = shape[need];
   const good = need === 'radius' ? Number.isFinite(value) : need === 'points' ? Array.isArray(value) && value.every(isPoint) : isPoint(value);
   if (!good) throw new Error(`${where}: a ${shape.shape} needs “${need}”`);
-  if (shape.shape === 'cylinder' && !Number.isFinite(shape.length)) throw new Error(`${where}: a cylinder needs “length”`);
+  if ((shape.shape === 'cylinder' || shape.shape === 'wheel') && !Number.isFinite(shape.length)) throw new Error(`${where}: a ${shape.shape} needs “length”`);
   const name = shape.color ?? 'body';
   const colour = Object.hasOwn(COLOURS, name) ? COLOURS[name] : name;
   if (!/^#[0-9a-f]{6}$/i.test(colour)) {
@@ -66,7 +66,7 @@ function hullOf(shape) {
   const corners = (sizes) => [0, 1, 2, 3, 4, 5, 6, 7].map((k) => sizes.map((v, i) => ((k >> i) & 1 ? v : -v)));
   switch (shape.shape) {
     case 'box': return { points: corners(shape.size.map((v) => v / 2)), air: 0 };
-    case 'cylinder': return { points: [0, 1, 2, 3, 4, 5, 6, 7].flatMap((k) => [-0.5, 0.5].map((z) =>
+    case 'cylinder': case 'wheel': return { points: [0, 1, 2, 3, 4, 5, 6, 7].flatMap((k) => [-0.5, 0.5].map((z) =>
       [shape.radius * Math.cos((k * Math.PI) / 4), shape.radius * Math.sin((k * Math.PI) / 4), z * shape.length])), air: 0 };
     case 'sphere': return { points: [[0, 0, 0]], air: shape.radius };
     case 'ellipsoid': return { points: corners(shape.radii.map((v) => v * Math.SQRT1_2)), air: 0 };
@@ -85,7 +85,9 @@ function readForce(force, f, times) {
   const { values } = force ?? {};
   const where = `force ${f + 1} (${force?.name})`;
   if (!Array.isArray(values) || values.length !== times.length) throw new Error(`${where} needs a list of ${times.length} values`);
-  return { name: String(force.name ?? ''), values: values.map((v) =>
+  const modes = force.modes ?? [];
+  if (modes.length && modes.length !== times.length) throw new Error(`${where} needs a mode for each of ${times.length} times`);
+  return { name: String(force.name ?? ''), modes, values: values.map((v) =>
     (Array.isArray(v) && v.length === 6 && v.every(Number.isFinite) ? { at: v.slice(0, 3), force: v.slice(3) } : null)) };
 }
 
@@ -104,6 +106,21 @@ function markShells(bodies) {
         others !== shapes && hull.length > 0 && other && hull.every(({ point, air }) => within(shape, pose, { point: placed(other, point), air })));
     }
   }
+}
+
+/** The box around bodies in these poses, a list for each of them, and around further points. */
+export function roomOf(bodies, poses, floor, points = []) {
+  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  const take = (point, air) => point.forEach((v, i) => {
+    box[0][i] = Math.min(box[0][i], v - air);
+    box[1][i] = Math.max(box[1][i], v + air);
+  });
+  bodies.forEach(({ hull }, b) => {
+    for (const pose of poses[b]) if (pose) hull.forEach(({ point, air }) => take(placed(pose, point), air));
+  });
+  points.forEach((point) => point && take(point, 0));
+  if (floor) [box[0][2], box[1][2]] = [Math.min(0, box[0][2]), Math.max(0, box[1][2])];
+  return box[0][0] < Infinity ? box : [[-1, -1, -1], [1, 1, 1]];
 }
 
 /** The block -> {times, bodies, forces, strongest, box, reach, missing}; a body: {name, poses, shapes, hull, middle, way: points or null, reach}. */
@@ -129,17 +146,7 @@ export function readMotion(block) {
       reach: Math.max(0, ...hull.map((p) => Math.hypot(...p.point.map((v, k) => v - middle[k])) + p.air)) };
   });
   markShells(bodies);
-  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  const take = (point, air) => point.forEach((v, i) => {
-    box[0][i] = Math.min(box[0][i], v - air);
-    box[1][i] = Math.max(box[1][i], v + air);
-  });
-  for (const { poses, hull, way } of bodies) {
-    for (const pose of poses) if (pose) hull.forEach(({ point, air }) => take(placed(pose, point), air));
-    way?.forEach((point) => point && take(point, 0));
-  }
-  if (block.floor) [box[0][2], box[1][2]] = [Math.min(0, box[0][2]), Math.max(0, box[1][2])];
-  if (!(box[0][0] < Infinity)) [box[0], box[1]] = [[-1, -1, -1], [1, 1, 1]];
+  const box = roomOf(bodies, bodies.map(({ poses }) => poses), block.floor, bodies.flatMap(({ way }) => way ?? []));
   const forces = (block.forces ?? []).map((force, f) => readForce(force, f, times));
   const strongest = Math.max(0, ...forces.flatMap(({ values }) => values.map((v) => (v ? Math.hypot(...v.force) : 0))));
   const apart = times.map((_, i) => {
@@ -169,9 +176,17 @@ export function poseAt({ poses }, { i, u }) {
   return { at: a.at.map((v, k) => v + u * (b.at[k] - v)), turn: slerp(a.turn, b.turn, u) };
 }
 
+const nearest = (list, { i, u }) => list[u > 0.5 && i + 1 < list.length ? i + 1 : i];
+
+/** Where a contact is at a time, and its mode: {at, mode}, or null. */
+export function contactAt({ values, modes }, place) {
+  const [now, mode] = [nearest(values, place), modes[place.i]];
+  return now && Number.isFinite(mode) ? { at: now.at, mode } : null;
+}
+
 /** A force at a time, as the segments of an arrow; `scale` metres a newton. */
-export function arrowOf({ values }, { i, u }, scale) {
-  const now = values[u > 0.5 && i + 1 < values.length ? i + 1 : i];
+export function arrowOf({ values }, place, scale) {
+  const now = nearest(values, place);
   if (!now) return [];
   const along = now.force.map((v) => v * scale);
   const length = Math.hypot(...along);

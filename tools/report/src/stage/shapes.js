@@ -1,7 +1,7 @@
 // Shapes and lines as three.js draws them: finely for WebGL, of fewer faces and with lines of its own for SVG.
 
 import { AmbientLight, BoxGeometry, CircleGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, EdgesGeometry, Float32BufferAttribute, Group,
-  LineBasicMaterial, LineSegments, BufferGeometry, Mesh, MeshLambertMaterial, RingGeometry, SphereGeometry } from 'three';
+  LineBasicMaterial, LineSegments, BufferGeometry, Mesh, MeshLambertMaterial, RingGeometry, SphereGeometry, TorusGeometry } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
@@ -11,6 +11,11 @@ import { turnFromZ } from './motion.js';
 const MARK = 0.7;   // radians
 const STRIP = 0.2;  // the same, along a cylinder
 const RIM = 0.82;   // of the radius: so far a mark reaches
+const METAL = '#a3adb8';
+const TYRE = 0.11;  // of the radius, half its thickness
+const SPOKES = 9;
+const TUBE = 0.016; // of the largest extent of a line, its radius
+const BENDS = 8;    // points of a line that is drawn as tubes; longer ones are curves
 const SHEER = 0.3;  // opacity of what has something inside
 
 /** A colour of the style sheet, as it is now. */
@@ -81,6 +86,38 @@ function cylinder({ radius: r, length, colour, shell }, round) {
   return [...wall, ...ends];
 }
 
+/** A rod between two points. */
+function rod(from, to, radius, sides, material) {
+  const along = to.map((v, i) => v - from[i]);
+  const length = Math.hypot(...along);
+  if (!(length > 0)) return [];
+  const geometry = upright(new CylinderGeometry(radius, radius, length, sides)).translate(0, 0, length / 2);
+  return [stand(new Mesh(geometry, material), { at: from, turn: turnFromZ(along) })];
+}
+
+/** A tyre on a rim, a hub and spokes, one of them marked, by which one sees it turn. */
+function wheel({ radius: r, length, colour }, solid) {
+  const [thick, metal, sides] = [TYRE * r, lit(METAL), solid ? 10 : 5];
+  const ring = (far, part, ...count) => new Mesh(new TorusGeometry(far, part, ...count), metal);
+  const tyre = Object.assign(ring(r - thick, thick, ...(solid ? [16, 72] : [6, 30])), { material: lit(colour) });
+  tyre.scale.z = length / 2 / thick;
+  const rim = r - 2 * thick;
+  const spokes = Array.from({ length: SPOKES }, (_, i) => {
+    const angle = (2 * Math.PI * i) / SPOKES;
+    const thin = (i ? 0.014 : 0.04) * r;
+    return rod([0, 0, 0], [rim * Math.cos(angle), rim * Math.sin(angle), 0], thin, sides, i ? metal : lit(markOf(colour)));
+  });
+  return [tyre, ring(rim, 0.035 * r, ...(solid ? [10, 72] : [4, 30])), ...spokes.flat(), ...rod([0, 0, -0.7 * length], [0, 0, 0.7 * length], 0.09 * r, 2 * sides, metal)];
+}
+
+/** Tubes along a line, with round joints. */
+function tubes(points, colour, solid) {
+  const extent = Math.max(...[0, 1, 2].map((k) => Math.max(...points.map((p) => p[k])) - Math.min(...points.map((p) => p[k]))));
+  const [radius, material, sides] = [TUBE * extent, lit(colour), solid ? 20 : 6];
+  const joints = points.map((point) => new Mesh(new SphereGeometry(radius, sides, sides / 2), material).translateX(point[0]).translateY(point[1]).translateZ(point[2]));
+  return [...points.slice(1).flatMap((point, i) => rod(points[i], point, radius, sides, material)), ...joints];
+}
+
 /** The parts of a shape, in its own frame. */
 export function solids(shape, solid) {
   const { colour } = shape;
@@ -100,7 +137,8 @@ export function solids(shape, solid) {
       parts.forEach((part) => part.scale.set(...(shape.radii ?? Array(3).fill(shape.radius))));
       return parts;
     }
-    case 'line': return [lines(solid, pairs(shape.points), colour, 2.6)];
+    case 'wheel': return wheel(shape, solid);
+    case 'line': return shape.points.length <= BENDS ? tubes(shape.points, colour, solid) : [lines(solid, pairs(shape.points), colour, 2.6)];
     default: {
       const length = Math.hypot(...shape.to);
       if (!(length > 0)) return [];

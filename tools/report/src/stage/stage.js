@@ -8,7 +8,7 @@ import { h } from '../dom.js';
 import { remark } from '../figure.js';
 import { onPaper, onPaperFor } from '../print.js';
 import { SHARPER } from '../save.js';
-import { followWidth, widthOf } from '../width.js';
+import { FONT, followWidth, widthOf } from '../width.js';
 
 export const HOME = [0.76, -0.52, 0.42];  // from where the eye looks, at first
 export const ABOVE = [0, -1e-5, 1];       // x to the right, y up
@@ -17,7 +17,8 @@ const LOWEST = 0.03;   // radians over a floor
 const TURN = 0.12;     // radians by an arrow key
 const SCREEN = Math.max(2, devicePixelRatio);  // pixels per CSS pixel: print is sharp too
 const MOST_SOLID = 8;  // browsers allow some 16 WebGL contexts on a page
-const TALL = 13;       // pixels of a name; one that would cover another is left out
+const TALL = 13;       // pixels of a name; one that would cover another moves up, and is left out where it would move far
+const MOST_MOVES = 1.5;
 const ROW = 18;        // pixels of a name below a saved picture
 // (In the elements, not in the style sheet: they go with a saved picture.)
 const AXES = 'stroke: var(--soft); stroke-width: 1.4; font: 12px/1 system-ui, sans-serif';
@@ -40,6 +41,25 @@ function makeWebgl() {
 async function afterFirstPicture() {
   if (document.readyState !== 'complete') await new Promise((resolve) => { addEventListener('load', resolve); });
   await new Promise((resolve) => { setTimeout(resolve); });
+}
+
+/** The lines and words of the overlay, as its style has them. */
+function paintOverlay(pen, overlay) {
+  const number = (element, name) => Number(element.getAttribute(name));
+  for (const element of overlay.children) {
+    const style = getComputedStyle(element);
+    Object.assign(pen, { strokeStyle: style.stroke, fillStyle: style.fill, lineWidth: Number.parseFloat(style.strokeWidth), lineJoin: 'round', font: `12px ${FONT}`,
+      textAlign: style.textAnchor === 'middle' ? 'center' : 'left', textBaseline: 'middle' });
+    if (element.tagName === 'line') {
+      pen.beginPath();
+      pen.moveTo(number(element, 'x1'), number(element, 'y1'));
+      pen.lineTo(number(element, 'x2'), number(element, 'y2'));
+      pen.stroke();
+    } else {
+      pen.strokeText(element.textContent, number(element, 'x'), number(element, 'y'));
+      pen.fillText(element.textContent, number(element, 'x'), number(element, 'y'));
+    }
+  }
 }
 
 export class Stage {
@@ -74,14 +94,37 @@ export class Stage {
       onPaper(() => isDark.matches && this.rebuild(), () => isDark.matches && this.rebuild()));  // in the colours of paper
     await afterFirstPicture();
     if (this.disposed) return;
+    if (!this.#useWebgl()) this.holder.closest('figure').append(remark('Drawn without WebGL, which this browser does not offer here.'));
+  }
+
+  #useWebgl() {
     const renderer = makeWebgl();
-    if (renderer) {
-      this.renderer.domElement.replaceWith(renderer.domElement);
-      this.renderer = renderer;
-      this.rebuild();
-    } else {
-      this.holder.closest('figure').append(remark('Drawn without WebGL, which this browser does not offer here.'));
-    }
+    if (!renderer) return false;
+    this.renderer.domElement.replaceWith(renderer.domElement);
+    this.renderer = renderer;
+    this.rebuild();
+    return true;
+  }
+
+  /** What draws the picture as it stands on a canvas of its own, at once, `sharper` pixels per CSS pixel -> () => canvas. */
+  film(sharper, transparent) {
+    this.rebuild();
+    this.goTo(this.from);
+    if (!this.#useWebgl()) throw new Error('this browser offers no WebGL');
+    this.renderer.setPixelRatio(sharper);
+    const canvas = document.createElement('canvas');
+    const pen = canvas.getContext('2d');
+    return () => {
+      this.paint();
+      const { domElement } = this.renderer;
+      [canvas.width, canvas.height] = [this.holder.clientWidth, this.height(this.holder.clientWidth)].map((size) => Math.round(size * sharper));
+      pen.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--paper');
+      if (!transparent) pen.fillRect(0, 0, canvas.width, canvas.height);
+      pen.drawImage(domElement, 0, 0, canvas.width, canvas.height);
+      pen.scale(sharper, sharper);
+      paintOverlay(pen, this.overlay);
+      return canvas;
+    };
   }
 
   /** Ends what it holds beside its elements: a browser has few WebGL contexts. */
@@ -201,8 +244,11 @@ export class Stage {
     const taken = [];
     const labels = this.shown.labels.flatMap(({ text: words, at, up = 0 }) => {
       const place = new Vector3(...at()).project(this.camera);
-      const [across, down, half] = [(1 + place.x) * width / 2, (1 - place.y) * height / 2 - up, widthOf(words) / 2];
-      if (taken.some((other) => Math.abs(other.across - across) < other.half + half && Math.abs(other.down - down) < TALL)) return [];
+      const [across, first, half] = [(1 + place.x) * width / 2, (1 - place.y) * height / 2 - up, widthOf(words) / 2];
+      let down = first;
+      const covered = () => taken.find((other) => Math.abs(other.across - across) < other.half + half + 3 && Math.abs(other.down - down) < TALL);
+      for (let other = covered(); other; other = covered()) down = other.down - TALL;
+      if (first - down > MOST_MOVES * TALL) return [];
       taken.push({ across, down, half });
       return [text(words, across, down)];
     });
