@@ -37,7 +37,8 @@ struct StageValues {
 struct StageDerivatives {
   Eigen::MatrixXd F, B;           // of S, as increments at z_{k+1}: by z_k, by u_k
   Eigen::VectorXd cost_gradient;  // n + m
-  /// Of l + lambda . S - y . c, symmetric, (n + m) x (n + m); Gauss-Newton: J^T J of the cost alone.
+  /// Of l + lambda . S - y . c, symmetric, (n + m) x (n + m); Gauss-Newton: J^T J of the cost
+  /// alone.
   Eigen::MatrixXd hessian;
   Eigen::MatrixXd path_jacobian;  // rows x (n + m)
 };
