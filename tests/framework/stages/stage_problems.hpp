@@ -148,6 +148,15 @@ struct Cart {
   }
 };
 
+/// With a least step: else the cost of time has no bound.
+struct TimedCart : Cart {
+  static constexpr int paths = 1;
+  template <class T>
+  void path(const T* z, const T*, T* out) const {
+    out[0] = z[2] - num<T>(0.01);
+  }
+};
+
 /// The Heisenberg group by exp, speeds as inputs: z+ = z + h/2 (x u_2 - y u_1), exact.
 struct Heisenberg {
   static constexpr int n = 3, m = 2, paths = 0;
