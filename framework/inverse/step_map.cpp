@@ -19,7 +19,7 @@ StepMap::StepMap(RunPlan plan, std::vector<std::size_t> inputs)
       rows_(k_, n_),
       drift_(k_) {
   const auto size = static_cast<std::size_t>(plan_.geometry->size());
-  for (std::vector<double>* x : {&element_, &other_, &tau_}) x->resize(size);
+  for (std::vector<double>* x : {&base_.element, &target_.element, &other_, &tau_}) x->resize(size);
 }
 
 Eigen::VectorXd StepMap::start() const {
@@ -60,29 +60,29 @@ void StepMap::project(double t, Eigen::VectorXd& state) {
   xi -= weighted_ * (rows_ * weighted_).ldlt().solve(rows_ * xi - drift_);
 }
 
-void StepMap::frame_at(double t, const Eigen::VectorXd& state) {
-  if (frame_time_ == t && frame_state_.size() == state.size() && frame_state_ == state) return;
-  frame_state_ = state;
-  frame_time_ = t;
+void StepMap::set(Frame& frame, double t, const Eigen::VectorXd& state) {
+  if (frame.t == t && frame.state.size() == state.size() && frame.state == state) return;
+  frame.state = state;
+  frame.t = t;
   plan_.geometry->from_coordinates({state.data(), static_cast<std::size_t>(columns_)},
-                                   element_.data());
-  matrices(t, element_.data());
+                                   frame.element.data());
+  matrices(t, frame.element.data());
   Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n_, n_);
   if (k_ > 0) all = Eigen::HouseholderQR<Eigen::MatrixXd>(rows_.transpose()).householderQ();
-  frame_.basis = all.rightCols(m_);
-  const Eigen::MatrixXd reduced = frame_.basis.transpose() * inertia_;
-  frame_.inverse = (reduced * frame_.basis).ldlt().solve(reduced);
+  frame.basis = all.rightCols(m_);
+  const Eigen::MatrixXd reduced = frame.basis.transpose() * inertia_;
+  frame.inverse = (reduced * frame.basis).ldlt().solve(reduced);
 }
 
 void StepMap::retract(double t, const Eigen::VectorXd& state, const Eigen::VectorXd& increment,
                       Eigen::VectorXd& out) {
-  frame_at(t, state);
+  set(base_, t, state);
   out = state;
-  out.tail(n_) += frame_.basis * increment.segment(n_, m_);
+  out.tail(n_) += base_.basis * increment.segment(n_, m_);
   eta_ = increment.head(n_);
   if ((eta_.array() == 0).all()) return;
   plan_.geometry->tau(eta_.data(), tau_.data());
-  plan_.geometry->compose(element_.data(), tau_.data(), other_.data());
+  plan_.geometry->compose(base_.element.data(), tau_.data(), other_.data());
   plan_.geometry->normalise(other_.data());
   plan_.geometry->coordinates(other_.data(), out.data());
   project(t, out);
@@ -90,13 +90,13 @@ void StepMap::retract(double t, const Eigen::VectorXd& state, const Eigen::Vecto
 
 bool StepMap::difference(double t, const Eigen::VectorXd& from, const Eigen::VectorXd& to,
                          Eigen::VectorXd& out) {
-  frame_at(t, from);
+  set(target_, t, from);
   plan_.geometry->from_coordinates({to.data(), static_cast<std::size_t>(columns_)}, other_.data());
-  plan_.geometry->inverse(element_.data(), tau_.data());
+  plan_.geometry->inverse(target_.element.data(), tau_.data());
   plan_.geometry->compose(tau_.data(), other_.data(), other_.data());
   out.resize(n_ + m_);
   if (!plan_.geometry->tau_inverse(other_.data(), out.data())) return false;
-  out.tail(m_) = frame_.inverse * (to.tail(n_) - from.tail(n_));
+  out.tail(m_) = target_.inverse * (to.tail(n_) - from.tail(n_));
   return true;
 }
 

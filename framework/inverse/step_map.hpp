@@ -1,8 +1,8 @@
 // The step of a run as a map from state to state, with inputs: z+ = S(t, z, u, h). Not installed.
 //
-// The map is the kernel of the run itself, begun anew at each state: whatever has a step has it, and
-// a run repeats a chain of such steps to round-off. A state is the numbers (coordinates of g, xi).
-// Increments are left-trivialised: (eta, dy), n + m numbers,
+// The map is the kernel of the run itself, begun anew at each state: whatever has a step has it,
+// and a run repeats a chain of such steps to round-off. A state is the numbers (coordinates of g,
+// xi). Increments are left-trivialised: (eta, dy), n + m numbers,
 //   g (+) eta = g tau(eta),   xi (+) dy = projection onto A(g') xi = b of xi + E dy,
 // E an orthonormal basis of ker A at the state itself, the projection orthogonal in the metric I.
 #pragma once
@@ -43,24 +43,25 @@ class StepMap {
   void project(double t, Eigen::VectorXd& state);
 
  private:
-  struct Frame {  // at one state: E, its left inverse (E^T I E)^-1 E^T I
+  struct Frame {  // at one state: E, its left inverse (E^T I E)^-1 E^T I, the element
+    Eigen::VectorXd state;
+    double t = 0;
     Eigen::MatrixXd basis, inverse;
+    std::vector<double> element;
   };
   void matrices(double t, const double* element);
-  void frame_at(double t, const Eigen::VectorXd& state);
+  void set(Frame& frame, double t, const Eigen::VectorXd& state);
 
   RunPlan plan_;
   std::vector<std::size_t> inputs_;
   std::unique_ptr<Kernel> kernel_;
   Snapshot node_;
   int n_, k_, m_, columns_;
-  // Work. frame_ is that at frame_state_.
-  Frame frame_;
-  Eigen::VectorXd frame_state_;
-  double frame_time_ = 0;
+  // Work. The frames where retract() and difference() were last.
+  Frame base_, target_;
   Eigen::MatrixXd inertia_, rows_, weighted_;
-  Eigen::VectorXd drift_, xi_, eta_;
-  std::vector<double> element_, other_, tau_;
+  Eigen::VectorXd drift_, eta_;
+  std::vector<double> other_, tau_;
 };
 
 }  // namespace hamel
