@@ -1,4 +1,5 @@
 // Plan files: TOML with the options of `hamel run`, a start, an end, costs and bounds.
+#include <algorithm>
 #include <cmath>
 
 #include <hamel/framework/inverse/plan.hpp>

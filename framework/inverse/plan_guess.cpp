@@ -4,8 +4,10 @@
 #include <random>
 
 #include <Eigen/Core>
+#include <fmt/format.h>
 
 #include <hamel/framework/inverse/plan_builder.hpp>
+#include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/text_file.hpp>
 
 namespace hamel {

@@ -30,10 +30,9 @@ StageSizes PlanStages::sizes(int k) const {
 
 void PlanStages::retract(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& increment,
                          Eigen::VectorXd& out) const {
-  auto& steps_map = const_cast<StepMap&>(map);
   const double t = time_of(k, state);
-  if (!free_time) return steps_map.retract(t, state, increment, out);
-  steps_map.retract(t, state.head(map.state_size()), increment.head(map.increments()), moved_);
+  if (!free_time) return map.retract(t, state, increment, out);
+  map.retract(t, state.head(map.state_size()), increment.head(map.increments()), moved_);
   out.resize(state.size());
   out.head(moved_.size()) = moved_;
   out[state.size() - 1] = state[state.size() - 1] + increment[increment.size() - 1];

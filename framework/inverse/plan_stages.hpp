@@ -31,9 +31,9 @@ struct PlanGoal {
 
 class PlanStages final : public StageProblem {
  public:
-  explicit PlanStages(StepMap map) : map(std::move(map)) {}
+  explicit PlanStages(StepMap of_run) : map(std::move(of_run)) {}
 
-  StepMap map;
+  mutable StepMap map;  // retract() uses its work space
   int steps = 0;
   double from = 0, step = 0;  // of a fixed end time
   bool free_time = false;
