@@ -1,6 +1,7 @@
 // hamel plan: inputs that take a system to a goal at the least cost, as a table that a run repeats.
 #include "plan.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -51,10 +52,31 @@ PlanJson json_of(const Plan& plan) {
   return out;
 }
 
+std::string numbers(const std::vector<double>& values) {
+  std::string out;
+  for (const double x : values) out += fmt::format("{}{:.17g}", out.empty() ? "" : ",", x);
+  return out;
+}
+
 // The run that repeats the plan, as a command.
 std::string command_of(const Plan& plan, const std::string& file) {
-  std::string out = fmt::format("hamel run {} --scheme {} --step {:.17g} --until {:.17g}",
-                                plan.run.system, plan.run.scheme, plan.step, plan.until);
+  const Config& run = plan.run;
+  const Config usual;
+  std::string out = fmt::format("hamel run {}", run.system);
+  for (const char* option :
+       {"scheme", "retraction", "s", "force_at", "solver", "tolerance", "compose", "from"}) {
+    std::string flag = option;
+    std::ranges::replace(flag, '_', '-');
+    if (run.text(option) != usual.text(option))
+      out += fmt::format(" --{} {}", flag, run.text(option));
+  }
+  out += fmt::format(" --step {:.17g} --until {:.17g}", plan.step, plan.until);
+  for (const auto& [name, value] : run.parameters)
+    out += fmt::format(" --set {}={}", name, numbers(value));
+  if (!run.start.configuration.empty())
+    out += fmt::format(" --configuration {}", numbers(run.start.configuration));
+  if (!run.start.velocity.empty())
+    out += fmt::format(" --velocity {}", numbers(run.start.velocity));
   for (const auto& [name, values] : plan.inputs)
     out += fmt::format(" --input {}={}:hold", name, file);
   return out;
