@@ -96,7 +96,7 @@ Plan make_plan(const Registry& registry, const PlanRequest& request,
   fill_motion(out, *stages, builder, request, solution);
   if (out.status == PlanStatus::out_of_reach) out.missed = by_goal(*stages, solution.missed);
   if (out.status == PlanStatus::out_of_reach && solution.path_missed > 0)
-    out.missed[fmt::format("constraint {} at t = {:.6g}", solution.path_missed_row + 1,
+    out.missed[fmt::format("{} at t = {:.6g}", stages->row_name(solution.path_missed_row),
                            out.t[static_cast<std::size_t>(solution.path_missed_at)])] =
         solution.path_missed;
   out.goal_multipliers = by_goal(*stages, solution.goal_multipliers);

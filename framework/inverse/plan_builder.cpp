@@ -174,8 +174,8 @@ void PlanBuilder::add_constraint(PlanStages& stages, const std::string& text) {
   const std::string left = text.substr(0, at), right = text.substr(behind);
   const std::string both = text[at] == '>' ? fmt::format("({}) - ({})", left, right)
                                            : fmt::format("({}) - ({})", right, left);
-  if (StateNumber value = formula(stages.map.system(), "constraints", both))
-    stages.path.push_back(std::move(value));
+  stages.path_names.push_back(text);
+  stages.path.push_back(formula(stages.map.system(), "constraints", both));
 }
 
 void PlanBuilder::add_goals(PlanStages& stages, const std::vector<std::optional<double>>& given,

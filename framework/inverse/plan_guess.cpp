@@ -3,8 +3,8 @@
 #include <numbers>
 #include <random>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
+#include <Eigen/Core>
 
 #include <hamel/framework/inverse/plan_builder.hpp>
 #include <hamel/framework/io/errors.hpp>

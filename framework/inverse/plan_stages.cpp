@@ -16,6 +16,11 @@ double PlanStages::step_of(const Eigen::VectorXd& state) const {
   return free_time ? state[state.size() - 1] : step;
 }
 
+std::string PlanStages::row_name(int row) const {
+  const auto at = static_cast<std::size_t>(row);
+  return at < path_names.size() ? path_names[at] : "until";
+}
+
 // Bounds of the step are rows of the second stage: those of the first are not varied.
 int PlanStages::path_rows(int k) const {
   if (k == 0) return 0;

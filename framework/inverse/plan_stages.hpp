@@ -39,9 +39,10 @@ class PlanStages final : public StageProblem {
   bool free_time = false;
   double least_step = 0, most_step = 0;
   double time_weight = 0;
-  Eigen::VectorXd weights, low, high;  // of inputs
-  StateNumber running, terminal;       // may be empty
-  std::vector<StateNumber> path;       // >= 0 at all states but the first
+  Eigen::VectorXd weights, low, high;   // of inputs
+  StateNumber running, terminal;        // may be empty
+  std::vector<StateNumber> path;        // >= 0 at all states but the first
+  std::vector<std::string> path_names;  // "v1 <= 0.6"
   std::vector<PlanGoal> goal_rows;
   /// The group's columns are more than its dimension, and all are given: goal by tau^-1.
   Eigen::VectorXd goal_element;
@@ -62,6 +63,7 @@ class PlanStages final : public StageProblem {
                         Eigen::MatrixXd& jacobian, Eigen::MatrixXd& hessian) override;
   Eigen::MatrixXd start_directions() const override;
 
+  std::string row_name(int row) const;
   double step_of(const Eigen::VectorXd& state) const;
   double time_of(int k, const Eigen::VectorXd& state) const { return from + k * step_of(state); }
   int state_increments() const { return map.increments() + (free_time ? 1 : 0); }

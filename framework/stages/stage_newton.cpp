@@ -415,6 +415,21 @@ double StageNewton::missed() const {
   return out;
 }
 
+bool StageNewton::is_least() {
+  if (!differentiate()) return false;
+  residuals();
+  assemble();
+  return linear_.sweep(0);
+}
+
+void StageNewton::restart(const StagePoint& guess) {
+  now_.point = guess;
+  for (size_t k = 0; k <= last_; ++k) {
+    lambda_[k].setZero();
+    set_bounds(static_cast<int>(k));
+  }
+}
+
 void StageNewton::fill(StageSolution& out) {
   out.point = now_.point;
   out.objective = now_.cost;
@@ -447,13 +462,9 @@ void StageNewton::fill(StageSolution& out) {
     }
   }
   // The last assembly precedes the last step: the gains and P_0 of the solution itself.
-  if (differentiate()) {
-    residuals();
-    assemble();
-    if (linear_.sweep(0) || linear_.sweep(delta_)) {
-      out.start_information = linear_.start_information();
-      for (size_t k = 0; k <= last_; ++k) out.gains[k] = linear_.stages[k].K;
-    }
+  if (is_least() || linear_.sweep(delta_)) {
+    out.start_information = linear_.start_information();
+    for (size_t k = 0; k <= last_; ++k) out.gains[k] = linear_.stages[k].K;
   }
 }
 

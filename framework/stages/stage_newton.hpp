@@ -41,6 +41,10 @@ class StageNewton {
   int iterations() const { return iterations_; }
   /// Largest of goals and violations of path rows.
   double missed() const;
+  /// Is the point, which is solved, a minimum, not a saddle?
+  bool is_least();
+  /// Begins anew at another point.
+  void restart(const StagePoint& guess);
   void fill(StageSolution& out);
 
  private:

@@ -19,11 +19,16 @@ bool has_path(const StageProblem& problem) {
 
 // Goals and path rows as costs of growing weight. A miss that shrinks with the weight is one that
 // a plan can avoid, and hard goals are tried from there; one that stays is the least.
-StageStatus soften(StageNewton& newton, const StageOptions& options) {
+StageStatus soften(StageNewton& newton, const StagePoint& guess, const StageOptions& options) {
   double before = newton.missed();
   const double first = before;
   for (const double weight : kWeights) {
-    const StageNewton::End end = newton.iterate(weight);
+    StageNewton::End end = newton.iterate(weight);
+    if (end == StageNewton::End::solved && !newton.is_least()) {
+      // The minimum of a smaller weight, as no input at all, is a saddle of this one.
+      newton.restart(guess);
+      end = newton.iterate(weight);
+    }
     if (end == StageNewton::End::stopped) return StageStatus::failed;
     const double miss = newton.missed();
     const bool converged = end == StageNewton::End::solved;
@@ -51,7 +56,7 @@ StageSolution solve_stages(StageProblem& problem, const StagePoint& guess,
   } else if (end == StageNewton::End::stuck && (problem.goals() > 0 || has_path(problem))) {
     const std::string reason = newton.reason();
     StageNewton soft(problem, options, guess);
-    out.status = soften(soft, options);
+    out.status = soften(soft, guess, options);
     if (out.status == StageStatus::out_of_reach) out.reason = "the goal is out of reach";
     else if (out.status == StageStatus::failed) out.reason = reason;
     soft.fill(out);
