@@ -26,7 +26,7 @@ class PlansOfTheProgram : public CommandLine {
           "[inputs]\nforce = { unit = \"N\" }\n");
     write("plan.toml", "system = \"" + file("cart.toml") +
                            "\"\nsteps = 20\ninputs = [\"force\"]\n" + rest +
-                           "[to]\nconfiguration = [1]\nvelocity = [0]\n");
+                           "[from]\nvelocity = [0]\n[to]\nconfiguration = [1]\nvelocity = [0]\n");
   }
 };
 
@@ -64,10 +64,8 @@ TEST_F(PlansOfTheProgram, AGoalOutOfReachIsSaid) {
 }
 
 TEST_F(PlansOfTheProgram, ASleighIsParkedAsideAndARunRepeatsIt) {
-  const std::string system = source_file("tests/examples/pushed_sleigh.toml");
-  std::string text = contents(source_file("tests/examples/parking.toml"));
-  text.replace(text.find("pushed_sleigh.toml\"\n"), 18, system);
-  write("parking.toml", text);
+  for (const char* name : {"pushed_sleigh.toml", "parking.toml"})
+    write(name, source_file(std::string("tests/examples/") + name));
   const Json out = plan("parking.toml");
   EXPECT_EQ(out["status"], "ok");
   EXPECT_NEAR(out["objective"].get<double>(), 4.36573, 5e-6);
@@ -75,9 +73,9 @@ TEST_F(PlansOfTheProgram, ASleighIsParkedAsideAndARunRepeatsIt) {
               out["multipliers"]["goal"]["y"].get<double>(), 1e-6);
   ASSERT_EQ(run({"plan", file("parking.toml"), "-o", file("plan.csv"), "--quiet"}).status, 0);
   const std::string table = file("plan.csv") + ":hold";
-  const Outcome repeated =
-      run({"run", system, "--scheme", "lift", "--retraction", "exp", "--s", "0", "--step", "0.04",
-           "--until", "4", "--input", "torque=" + table, "--input", "force=" + table, "--json"});
+  const Outcome repeated = run({"run", "pushed_sleigh.toml", "--scheme", "lift", "--retraction",
+                                "exp", "--s", "0", "--step", "0.04", "--until", "4", "--input",
+                                "torque=" + table, "--input", "force=" + table, "--json"});
   ASSERT_EQ(repeated.status, 0) << repeated.err;
   const Json end = Json::parse(repeated.out)["final"];
   for (const Json& v : end["velocity"]) EXPECT_NEAR(v.get<double>(), 0, 1e-9);

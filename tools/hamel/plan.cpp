@@ -15,6 +15,7 @@
 
 #include "commands.hpp"
 #include "pages/page.hpp"
+#include "pages/run_page.hpp"
 #include "words/interrupt.hpp"
 #include "words/screen.hpp"
 
