@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/inverse/plan.hpp>
+#include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/inverse/plan_stages.hpp>
 
 namespace hamel {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <hamel/framework/inverse/plan.hpp>
+#include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/text_file.hpp>
 #include <hamel/framework/io/toml_reader.hpp>

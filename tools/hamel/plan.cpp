@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hamel/framework/inverse/plan.hpp>
+#include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/io/output_file.hpp>
 #include <hamel/framework/io/version.hpp>

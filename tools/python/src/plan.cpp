@@ -1,5 +1,5 @@
 // Plans: hamel.plan.
-#include <hamel/framework/inverse/plan.hpp>
+#include <hamel/framework/inverse/motion_plan.hpp>
 
 #include "long_call.hpp"
 

@@ -1,4 +1,4 @@
-#include <hamel/framework/inverse/plan.hpp>
+#include <hamel/framework/inverse/motion_plan.hpp>
 
 #include <chrono>
 #include <cmath>
