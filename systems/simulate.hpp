@@ -12,6 +12,7 @@
 #include <hamel/framework/analysis/equations.hpp>
 #include <hamel/framework/analysis/linearisation.hpp>
 #include <hamel/framework/analysis/section.hpp>
+#include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/framework/run/run/simulation.hpp>

@@ -48,7 +48,7 @@ void read_data(EnsembleConfig& config) {
   placing("inputs", [&] {
     for (auto& [name, signal] : config.run.inputs)
       if (const InputFile* file = std::get_if<InputFile>(&signal))
-        signal = read_input_table("input " + name, *file);
+        signal = read_input_table("input " + name, name, *file);
   });
   placing("system", [&] {
     if (names_file(config.run.system) && config.data.empty())

@@ -22,7 +22,7 @@ void read_data(StudyConfig& config) {
     for (auto& [name, signal] : system.inputs) {
       try {
         if (const InputFile* file = std::get_if<InputFile>(&signal))
-          signal = read_input_table("input", *file);
+          signal = read_input_table("input", name, *file);
       } catch (const ConfigError&) {  // the checks report it
       }
     }

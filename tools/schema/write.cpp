@@ -1,9 +1,9 @@
-// Writes the JSON schemas of configurations, of studies and of ensembles: their options are
+// Writes the JSON schemas of configurations, studies, ensembles and plans: their options are
 // Config::fields, their names the registry's; and completes that of mechanisms by the kinds of
 // joints and contacts.
 //
 //   write_schemas DIR mechanism.json       DIR/run.json, DIR/study.json, DIR/ensemble.json,
-//   DIR/mechanism.json
+//   DIR/plan.json, DIR/mechanism.json
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -216,6 +216,37 @@ Json ensemble() {
   return object("An ensemble of hamel", properties, {"system", "keep"});
 }
 
+// The method of a run, a start, an end, costs and bounds.
+Json plan() {
+  const Json number = type_of(0.0), text = type_of(std::string());
+  const auto table = [](const Json& properties) -> Json {
+    return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
+  };
+  const auto by_name = [](const Json& value) -> Json {
+    return {{"type", "object"}, {"additionalProperties", value}};
+  };
+  const Json entry = {{"anyOf", {number, {{"const", "free"}}}}};
+  const Json of_run = run()["properties"];
+  Json properties = {{"system", system_name()}};
+  for (const char* name : {"scheme", "s", "retraction", "solver", "tolerance", "force_at",
+                           "compose", "start", "no_exact", "slip", "force", "on_failure"})
+    if (of_run.contains(name)) properties[name] = of_run[name];
+  properties["parameters"] = of_run["set"];
+  properties["until"] = {
+      {"anyOf", {number, table({{"free", type_of(true)}, {"least", number}, {"most", number}})}},
+      {"description", "end time, s, or { free = true, least, most }"}};
+  properties["steps"] = {{"type", "integer"}, {"minimum", 2}};
+  properties["inputs"] = type_of(std::vector<std::string>());
+  properties["from"] = table({{"configuration", list_of(number)}, {"velocity", list_of(number)}});
+  properties["to"] = table({{"configuration", list_of(entry)}, {"velocity", list_of(entry)}});
+  properties["cost"] =
+      table({{"inputs", by_name(number)}, {"running", text}, {"terminal", text}, {"time", number}});
+  properties["bounds"] = {{"type", "object"}, {"description", "name = [low, high]"}};
+  properties["constraints"] = type_of(std::vector<std::string>());
+  properties["guess"] = table({{"file", text}, {"seed", type_of(1L)}});
+  return object("A plan of hamel", properties, {"system", "until", "steps", "inputs"});
+}
+
 Json described(const char* definition, const Field& field) {
   std::string text = field.meaning;
   if (!field.unit.empty()) text += (text.empty() ? "" : ", ") + field.unit;
@@ -273,6 +304,7 @@ int main(int argc, char** argv) {
   std::ofstream(folder + "/run.json") << run().dump(2) << "\n";
   std::ofstream(folder + "/study.json") << study().dump(2) << "\n";
   std::ofstream(folder + "/ensemble.json") << ensemble().dump(2) << "\n";
+  std::ofstream(folder + "/plan.json") << plan().dump(2) << "\n";
   std::ifstream from(argv[2]);
   std::ofstream out(folder + "/mechanism.json");
   out << mechanism(from).dump(2) << "\n";

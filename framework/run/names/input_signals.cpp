@@ -29,6 +29,24 @@ bool number(std::string_view text, double& out) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+std::vector<std::string_view> input_cells(std::string_view line) {
+  std::vector<std::string_view> out;
+  for (size_t comma = line.find(','); comma != std::string_view::npos; comma = line.find(',')) {
+    out.push_back(line.substr(0, comma));
+    line.remove_prefix(comma + 1);
+  }
+  out.push_back(line);
+  return out;
+}
+
+// The column of the values of an input: of t,value the second, else that with its name; 0: none.
+size_t input_column(const std::vector<std::string_view>& names, const std::string& input) {
+  if (names[0] != "t") return 0;
+  if (names.size() == 2 && names[1] == "value") return 1;
+  const auto found = std::find(names.begin() + 1, names.end(), input);
+  return found == names.end() ? 0 : static_cast<size_t>(found - names.begin());
+}
+
 std::string label(const std::string& system, const std::string& name) {
   return fmt::format("input '{}' of {}", name, system);
 }
@@ -90,15 +108,16 @@ std::string text_of(const InputSignal& signal) {
   return fmt::format("a table of {} rows{}", table.times.size(), table.hold ? ", held" : "");
 }
 
-InputTable read_input_table(const std::string& what, const InputFile& file) {
-  return read_input_table(what, file, read_text_file(what, file.path));
+InputTable read_input_table(const std::string& what, const std::string& input,
+                            const InputFile& file) {
+  return read_input_table(what, input, file, read_text_file(what, file.path));
 }
 
-InputTable read_input_table(const std::string& what, const InputFile& file,
-                            const std::string& text) {
+InputTable read_input_table(const std::string& what, const std::string& input,
+                            const InputFile& file, const std::string& text) {
   std::istringstream lines(text);
   InputTable table{{}, {}, file.hold};
-  bool named = false;
+  size_t column = 0, count = 0;  // of the values, and of all columns
   long at = 0;
   for (std::string line; std::getline(lines, line);) {
     ++at;
@@ -108,17 +127,16 @@ InputTable read_input_table(const std::string& what, const InputFile& file,
     };
     if (line.ends_with('\r')) line.pop_back();
     if (line.starts_with('#')) continue;
-    if (!named) {
-      if (line != "t,value") refuse("the columns t,value");
-      named = true;
+    const std::vector<std::string_view> cells = input_cells(line);
+    if (count == 0) {
+      column = input_column(cells, input);
+      count = cells.size();
+      if (column == 0) refuse(fmt::format("the columns t,value or t and {}", input));
       continue;
     }
-    const size_t comma = line.find(',');
     double t = 0, value = 0;
-    if (comma == std::string::npos || !number(std::string_view(line).substr(0, comma), t) ||
-        !number(std::string_view(line).substr(comma + 1), value)) {
-      refuse("two numbers, t,value");
-    }
+    if (cells.size() != count || !number(cells[0], t) || !number(cells[column], value))
+      refuse(count == 2 ? "two numbers, t,value" : fmt::format("{} numbers", count));
     table.times.push_back(t);
     table.values.push_back(value);
   }
@@ -163,7 +181,8 @@ std::shared_ptr<Inputs> make_inputs(const SystemModel& system, const InputSignal
         continue;
       }
       const InputFile* file = std::get_if<InputFile>(&signal);
-      tables[i] = file != nullptr ? read_input_table(what, *file) : std::get<InputTable>(signal);
+      tables[i] = file != nullptr ? read_input_table(what, field.name, *file)
+                                  : std::get<InputTable>(signal);
       const std::string where = file != nullptr ? what + ": " + file->path : what;
       if (const std::string mistake = refusal(where, field, tables[i], span); !mistake.empty())
         mistakes.push_back(mistake);

@@ -4,7 +4,8 @@
 //   2.5                a constant
 //   gait.csv           a table, columns t,value, linear between its rows
 //   gait.csv:hold      held from row to row
-// Lines of a table that begin with # are left out. Its times increase, and cover the run.
+// A table with other columns, t,force,torque as a plan has them, gives the one with the name of the
+// input. Lines of a table that begin with # are left out. Its times increase, and cover the run.
 #pragma once
 
 #include <map>
@@ -34,11 +35,12 @@ using InputSignals = std::map<std::string, InputSignal>;
 HAMEL_API InputSignal input_signal(const std::string& text);
 HAMEL_API std::string text_of(const InputSignal& signal);
 
-/// The table of a file. ConfigError "what: path:line: ...".
-HAMEL_API InputTable read_input_table(const std::string& what, const InputFile& file);
+/// The table of a file for an input. ConfigError "what: path:line: ...".
+HAMEL_API InputTable read_input_table(const std::string& what, const std::string& input,
+                                      const InputFile& file);
 /// Reads a file whose text is at hand in the same way.
-HAMEL_API InputTable read_input_table(const std::string& what, const InputFile& file,
-                                      const std::string& text);
+HAMEL_API InputTable read_input_table(const std::string& what, const std::string& input,
+                                      const InputFile& file, const std::string& text);
 
 /// The span of a run, either way.
 struct RunSpan {

@@ -20,7 +20,7 @@ namespace {
 Config with_tables(Config config, const RunFile& run) {
   for (auto& [name, signal] : config.inputs) {
     if (const auto* table = std::get_if<InputFile>(&signal))
-      signal = read_input_table(name, *table, run.file(table->path));
+      signal = read_input_table(name, name, *table, run.file(table->path));
   }
   return config;
 }

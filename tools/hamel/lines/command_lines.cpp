@@ -8,6 +8,7 @@
 #include "lines/number_option.hpp"
 #include "lines/page_lines.hpp"
 #include "lines/run_line.hpp"
+#include "plan.hpp"
 #include "section.hpp"
 #include "steady.hpp"
 
@@ -168,6 +169,27 @@ Action define_section(CLI::App& app) {
   return [line, &app] { return section(line->resolve(app)); };
 }
 
+Action define_plan(CLI::App& app) {
+  const auto options = std::make_shared<PlanOptions>();
+  app.add_option("FILE", options->file, "a plan file, TOML: system, inputs, [from], [to], [cost]")
+      ->required();
+  app.add_option("-o,--output", options->output,
+                 "write the inputs as a table, .csv, that --input of hamel run takes");
+  app.add_option("--report", options->report,
+                 "write the page of the run that repeats the plan, self-contained HTML");
+  app.add_flag("--json", options->json, "print everything as JSON");
+  app.add_flag("--quiet", options->quiet, "print nothing but errors (and --json)");
+  app.footer(
+      "Exit status: 0 done, 1 out of reach (the plan that misses the goal least is written) or "
+      "failed, 2 bad input.\n"
+      "Examples:\n"
+      "  hamel plan parking.toml -o parking.csv\n"
+      "  hamel run sleigh.toml --scheme lift --step 0.04 --until 4 --input "
+      "force=parking.csv:hold\n"
+      "  hamel plan parking.toml --report parking.html --json");
+  return [options] { return plan(*options); };
+}
+
 Action define_new(CLI::App& app) {
   const auto options = std::make_shared<NewOptions>();
   app.add_option("KIND", options->kind, "system, group, scheme or project (a mechanism by parts)")
@@ -210,6 +232,7 @@ const std::vector<Command>& commands() {
       {"section", "A Poincare section: the states in which motions cross an event", define_section},
       {"live", "The playground in a browser, with a system in it: edited, moved, watched",
        define_live},
+      {"plan", "Inputs that take a system to a goal at the least cost, from a file", define_plan},
       {"new", "A project of your own that compiles: a system, a group, a scheme, a mechanism",
        define_new},
       {"reproduce", "The paper's two figures, all variants side by side", define_reproduce},

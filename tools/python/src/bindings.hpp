@@ -166,6 +166,7 @@ void bind_equations(nb::module_& m);
 void bind_forces(nb::class_<ByParts>& mechanism);
 void bind_mechanism(nb::module_& m);
 void bind_names(nb::module_& m);
+void bind_plan(nb::module_& m);
 void bind_result(nb::module_& m);
 void bind_run(nb::module_& m);
 void bind_section(nb::module_& m);

@@ -1,0 +1,201 @@
+#include <hamel/framework/inverse/plan_stages.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hamel {
+namespace {
+
+// Differences of order 6: truncation delta^6 f7/140, round-off eps/delta. Of increments in rad, m
+// and their rates, of inputs in a part of their size, of the step in a part of it.
+constexpr double kDelta = 3e-3, kInputDelta = 1e-2, kStepDelta = 2e-2;
+
+}  // namespace
+
+double PlanStages::step_of(const Eigen::VectorXd& state) const {
+  return free_time ? state[state.size() - 1] : step;
+}
+
+std::string PlanStages::row_name(int row) const {
+  const auto at = static_cast<std::size_t>(row);
+  return at < path_names.size() ? path_names[at] : "until";
+}
+
+// Bounds of the step are rows of the second stage: those of the first are not varied.
+int PlanStages::path_rows(int k) const {
+  if (k == 0) return 0;
+  return static_cast<int>(path.size()) + (free_time && k == 1 ? 2 : 0);
+}
+
+StageSizes PlanStages::sizes(int k) const {
+  return {.state = state_increments(),
+          .inputs = k < steps ? static_cast<int>(weights.size()) : 0,
+          .path = path_rows(k)};
+}
+
+void PlanStages::retract(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& increment,
+                         Eigen::VectorXd& out) const {
+  const double t = time_of(k, state);
+  if (!free_time) return map.retract(t, state, increment, out);
+  map.retract(t, state.head(map.state_size()), increment.head(map.increments()), moved_);
+  out.resize(state.size());
+  out.head(moved_.size()) = moved_;
+  out[state.size() - 1] = state[state.size() - 1] + increment[increment.size() - 1];
+}
+
+void PlanStages::bounds(int k, Eigen::VectorXd& low_inputs, Eigen::VectorXd& high_inputs) const {
+  if (k == steps) return;
+  low_inputs = low;
+  high_inputs = high;
+}
+
+bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                            const Eigen::VectorXd* next, Eigen::VectorXd& out) {
+  const int width = next != nullptr ? state_increments() : 0, rows = path_rows(k);
+  out.resize(width + rows + 1);
+  const double h = step_of(state), t = time_of(k, state);
+  const auto columns = static_cast<std::size_t>(map.coordinates());
+  const std::span<const double> all(state.data(), static_cast<std::size_t>(map.state_size()));
+  const auto number = [&](const StateNumber& f) {
+    return f(t, all.first(columns), all.subspan(columns));
+  };
+  if (next != nullptr) {
+    if (!(h > 0) || !map.step(t, state.head(map.state_size()), inputs, h, next_)) return false;
+    if (!map.difference(time_of(k + 1, *next), next->head(map.state_size()), next_, difference_))
+      return false;
+    out.head(map.increments()) = difference_;
+    if (free_time) out[width - 1] = h - step_of(*next);
+  }
+  for (int i = 0; i < rows; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (at < path.size()) out[width + i] = number(path[at]);
+    else out[width + i] = steps * (at == path.size() ? h - least_step : most_step - h);
+  }
+  double cost = 0;
+  if (next != nullptr) {
+    cost = time_weight + 0.5 * weights.dot(inputs.cwiseAbs2());
+    if (running) cost += number(running);
+    cost *= h;
+  } else if (terminal) {
+    cost = number(terminal);
+  }
+  out[width + rows] = cost;
+  return out.allFinite();
+}
+
+bool PlanStages::values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                        const Eigen::VectorXd* next, StageValues& out) {
+  if (!all_values(k, state, inputs, next, all_)) return false;
+  out.defect = all_.head(out.defect.size());
+  out.path = all_.segment(out.defect.size(), out.path.size());
+  out.cost = all_[all_.size() - 1];
+  return true;
+}
+
+Eigen::VectorXd PlanStages::deltas(const Eigen::VectorXd& state,
+                                   const Eigen::VectorXd& inputs) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(state_increments() + inputs.size(), kDelta);
+  if (free_time) out[state_increments() - 1] = kStepDelta * step_of(state);
+  out.tail(inputs.size()) = kInputDelta * (1 + inputs.array().abs());
+  return out;
+}
+
+bool PlanStages::differentiate(const Values& values, const Eigen::VectorXd& delta,
+                               const Eigen::VectorXd& weights, Eigen::MatrixXd& jacobian,
+                               Eigen::MatrixXd& hessian) {
+  const Eigen::Index count = delta.size();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(count), f;
+  if (!values(x, f)) return false;
+  const double middle = weights.dot(f);
+  jacobian.setZero(f.size(), count);
+  hessian.setZero(count, count);
+  constexpr double kFactors[] = {45, -9, 1};
+  Eigen::VectorXd outer = Eigen::VectorXd::Zero(count);  // sums of both values at 3 delta
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (int j = 1; j <= 3; ++j) {
+      for (const int sign : {1, -1}) {
+        x[i] = sign * j * delta[i];
+        if (!values(x, f)) return false;
+        jacobian.col(i) += sign * kFactors[j - 1] / (60 * delta[i]) * f;
+        if (j == 3) outer[i] += weights.dot(f);
+      }
+    }
+    x[i] = 0;
+    hessian(i, i) = (outer[i] - 2 * middle) / (9 * delta[i] * delta[i]);
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      double both = 0;
+      for (const int sign : {1, -1}) {
+        x[i] = sign * 3 * delta[i];
+        x[j] = sign * 3 * delta[j];
+        if (!values(x, f)) return false;
+        both += weights.dot(f);
+      }
+      x[i] = x[j] = 0;
+      hessian(i, j) = hessian(j, i) =
+          (both - outer[i] - outer[j] + 2 * middle) / (18 * delta[i] * delta[j]);
+    }
+  }
+  return true;
+}
+
+bool PlanStages::derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                             const Eigen::VectorXd* next, const Eigen::VectorXd& lambda,
+                             const Eigen::VectorXd& y, StageDerivatives& out) {
+  const Eigen::Index n = state_increments(), width = lambda.size(), rows = y.size();
+  Eigen::VectorXd factors(width + rows + 1), moved, u;
+  factors << lambda, -y, 1;
+  const Values at = [&](const Eigen::VectorXd& increment, Eigen::VectorXd& f) {
+    retract(k, state, increment.head(n), moved);
+    u = inputs + increment.tail(inputs.size());
+    return all_values(k, moved, u, next, f);
+  };
+  Eigen::MatrixXd jacobian;
+  if (!differentiate(at, deltas(state, inputs), factors, jacobian, out.hessian)) return false;
+  out.F = jacobian.topLeftCorner(width, n);
+  out.B = jacobian.topRightCorner(width, inputs.size());
+  out.path_jacobian = jacobian.middleRows(width, rows);
+  out.cost_gradient = jacobian.bottomRows(1).transpose();
+  return true;
+}
+
+int PlanStages::goals() const {
+  return static_cast<int>(goal_rows.size()) + (goal_element.size() > 0 ? map.velocities() : 0);
+}
+
+bool PlanStages::goal_values(const Eigen::VectorXd& last, Eigen::VectorXd& out) {
+  out.resize(goals());
+  Eigen::Index row = 0;
+  for (const PlanGoal& goal : goal_rows) out[row++] = last[goal.place] - goal.value;
+  if (goal_element.size() == 0) return true;
+  part_ = goal_element;
+  part_.tail(map.velocities()).setZero();
+  if (!map.difference(time_of(steps, last), part_, last.head(map.state_size()), difference_))
+    return false;
+  out.tail(map.velocities()) = difference_.head(map.velocities());
+  return true;
+}
+
+void PlanStages::goal(const Eigen::VectorXd& last, Eigen::VectorXd& value) {
+  if (!goal_values(last, value))
+    value.setConstant(goals(), std::numeric_limits<double>::quiet_NaN());
+}
+
+void PlanStages::goal_derivatives(const Eigen::VectorXd& last, const Eigen::VectorXd& nu,
+                                  Eigen::MatrixXd& jacobian, Eigen::MatrixXd& hessian) {
+  Eigen::VectorXd moved;
+  const Values at = [&](const Eigen::VectorXd& increment, Eigen::VectorXd& f) {
+    retract(steps, last, increment, moved);
+    return goal_values(moved, f);
+  };
+  differentiate(at, deltas(last, Eigen::VectorXd()), nu, jacobian, hessian);
+}
+
+Eigen::MatrixXd PlanStages::start_directions() const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(state_increments(), free_time ? 1 : 0);
+  if (free_time) out(state_increments() - 1, 0) = 1;
+  return out;
+}
+
+}  // namespace hamel

@@ -1,0 +1,88 @@
+// A plan as a problem over stages. Not installed.
+//
+// State of a stage: (coordinates, xi), and the step h where the end time is free; its increments
+// (eta, dy, dh). All derivatives are differences of the step's own map over increments of one
+// stage, never of a chain of steps: central, of order 6, at distance delta,
+//   f' = (45 (f1 - f-1) - 9 (f2 - f-2) + (f3 - f-3))/(60 delta),
+// and for Hessians, which only steer Newton's method, of order 2 at 3 delta.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hamel/framework/inverse/step_map.hpp>
+#include <hamel/framework/stages/stage_problem.hpp>
+
+namespace hamel {
+
+/// A number of a state at a time.
+using StateNumber = std::function<double(double t, std::span<const double> coordinates,
+                                         std::span<const double> velocity)>;
+
+struct PlanGoal {
+  std::string name;
+  int place = 0;  // in the state
+  double value = 0;
+};
+
+class PlanStages final : public StageProblem {
+ public:
+  explicit PlanStages(StepMap of_run) : map(std::move(of_run)) {}
+
+  mutable StepMap map;  // retract() uses its work space
+  int steps = 0;
+  double from = 0, step = 0;  // of a fixed end time
+  bool free_time = false;
+  double least_step = 0, most_step = 0;
+  double time_weight = 0;
+  Eigen::VectorXd weights, low, high;   // of inputs
+  StateNumber running, terminal;        // may be empty
+  std::vector<StateNumber> path;        // >= 0 at all states but the first
+  std::vector<std::string> path_names;  // "v1 <= 0.6"
+  std::vector<PlanGoal> goal_rows;
+  /// The group's columns are more than its dimension, and all are given: goal by tau^-1.
+  Eigen::VectorXd goal_element;
+
+  int stages() const override { return steps; }
+  StageSizes sizes(int k) const override;
+  void retract(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& increment,
+               Eigen::VectorXd& out) const override;
+  void bounds(int k, Eigen::VectorXd& low_inputs, Eigen::VectorXd& high_inputs) const override;
+  bool values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+              const Eigen::VectorXd* next, StageValues& out) override;
+  bool derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                   const Eigen::VectorXd* next, const Eigen::VectorXd& lambda,
+                   const Eigen::VectorXd& y, StageDerivatives& out) override;
+  int goals() const override;
+  void goal(const Eigen::VectorXd& last, Eigen::VectorXd& value) override;
+  void goal_derivatives(const Eigen::VectorXd& last, const Eigen::VectorXd& nu,
+                        Eigen::MatrixXd& jacobian, Eigen::MatrixXd& hessian) override;
+  Eigen::MatrixXd start_directions() const override;
+
+  std::string row_name(int row) const;
+  double step_of(const Eigen::VectorXd& state) const;
+  double time_of(int k, const Eigen::VectorXd& state) const { return from + k * step_of(state); }
+  int state_increments() const { return map.increments() + (free_time ? 1 : 0); }
+
+ private:
+  int path_rows(int k) const;
+  // All numbers of a stage: defect, path, cost.
+  bool all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                  const Eigen::VectorXd* next, Eigen::VectorXd& out);
+  bool goal_values(const Eigen::VectorXd& last, Eigen::VectorXd& out);
+  // Jacobian and contracted Hessian of values(increment) by differences.
+  using Values = std::function<bool(const Eigen::VectorXd& increment, Eigen::VectorXd& out)>;
+  static bool differentiate(const Values& values, const Eigen::VectorXd& delta,
+                            const Eigen::VectorXd& weights, Eigen::MatrixXd& jacobian,
+                            Eigen::MatrixXd& hessian);
+  Eigen::VectorXd deltas(const Eigen::VectorXd& state, const Eigen::VectorXd& inputs) const;
+
+  mutable Eigen::VectorXd moved_;
+  Eigen::VectorXd all_, difference_, next_, part_;
+};
+
+}  // namespace hamel

@@ -1,0 +1,15 @@
+// hamel plan; command_lines.cpp reads the command line into its options.
+#pragma once
+
+#include <string>
+
+namespace hamel::tools {
+
+struct PlanOptions {
+  std::string file;
+  std::string output, report;  // -o, --report
+  bool json = false, quiet = false;
+};
+int plan(const PlanOptions& options);
+
+}  // namespace hamel::tools
