@@ -16,4 +16,5 @@
 #include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/study/study.hpp>
+#include <hamel/framework/tangent/sensitivities.hpp>
 #include <hamel/systems/by_name.hpp>
