@@ -111,6 +111,8 @@ MotionVariables::MotionVariables(const std::string& what, const Simulation& simu
     else if (twice) mistakes.push_back(fmt::format("{}: {} is given twice", what, name));
     else all_.push_back(one);
     moves_start_ = moves_start_ || !one.of_system();
+    for (const Field& field : run.system().fields)
+      if (field.name == one.field) entries_[field.name] = field.value;
   }
   if (!mistakes.empty()) throw ConfigError(mistakes);
 }
@@ -130,9 +132,7 @@ Simulation MotionVariables::with(const Eigen::VectorXd& values) const {
     if (one.kind == Kind::input) out.input(one.field, value);
     if (one.kind != Kind::parameter) continue;
     std::vector<double>& entries = fields[one.field];
-    if (entries.empty())
-      for (const Field& field : simulation_.system()->fields)
-        if (field.name == one.field) entries = field.value;
+    if (entries.empty()) entries = entries_.at(one.field);
     entries[one.index] = value;
   }
   for (const auto& [name, entries] : fields) out.set(name, entries);

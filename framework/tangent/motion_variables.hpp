@@ -5,6 +5,7 @@
 // that which is nearest to the usual start's in the metric I.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ class MotionVariables {
  private:
   Simulation simulation_;
   std::vector<MotionVariable> all_;
+  std::map<std::string, std::vector<double>> entries_;  // of the parameters
   bool moves_start_ = false;
 };
 

@@ -34,6 +34,7 @@ MovedMotion::MovedMotion(const std::string& what, const MotionVariables& variabl
     : run_(variables.with(values).build()) {
   refuse_uncovered(what, plan());
   setup_ = plan().setup;
+  there_ = plan().config;
   KernelSetup fixed = setup_;
   fixed.errors = {};
   fixed.first_chosen = false;
@@ -70,6 +71,21 @@ std::vector<double> MovedMotion::coordinates(const MotionState& state) const {
   std::vector<double> out(static_cast<size_t>(geometry().columns()));
   geometry().coordinates(state.g.data(), out.data());
   return out;
+}
+
+bool MovedMotion::project(MotionState& state) {
+  const RunPlan& of = plan();
+  there_.from = state.time;
+  there_.start = {coordinates(state), {state.xi.data(), state.xi.data() + state.xi.size()}, {}};
+  Mistakes mistakes;
+  PlannedStart planned = plan_start(*of.system, there_, mistakes);
+  if (mistakes.none())
+    evaluate_start(*of.system, of.setup.inputs, &geometry(), there_, planned, mistakes);
+  if (!mistakes.none()) return false;
+  project_start(*of.system, planned);
+  geometry().from_coordinates(planned.start.configuration, state.g.data());
+  state.xi = Eigen::Map<const Eigen::VectorXd>(planned.start.velocity.data(), state.xi.size());
+  return true;
 }
 
 Status MovedMotion::step(const MotionState& from, double t, MotionState& to) {

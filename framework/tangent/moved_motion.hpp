@@ -33,6 +33,8 @@ class MovedMotion {
   MotionState start_at(const MotionVariables& variables, const Eigen::VectorXd& values);
   /// A step from there to time t. Not ok: it has no solution.
   Status step(const MotionState& from, double t, MotionState& to);
+  /// The admissible state next to one, as a start there; false where there is none.
+  bool project(MotionState& state);
   /// The kernel of the run itself, which chooses the steps.
   std::unique_ptr<Kernel> kernel() const { return plan().run_kernel()(setup_); }
   MotionState state_of(const Snapshot& node) const;
@@ -41,6 +43,7 @@ class MovedMotion {
  private:
   Run run_;
   KernelSetup setup_;
+  Config there_;  // that starts at a state
   MotionState start_;
   std::unique_ptr<Kernel> steps_;
   Snapshot node_;

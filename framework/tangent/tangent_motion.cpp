@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,7 +13,7 @@
 namespace hamel {
 namespace {
 
-constexpr double kDisplacement = 0x1p-5;  // the largest of a difference, in natural units
+constexpr double kDisplacement = 0x1p-6;  // the largest of a difference, in natural units
 constexpr double kRepeats = 1e-8;         // a repeated step, in natural units
 
 
@@ -120,18 +121,32 @@ double TangentMotion::size_of(const MotionState& at, const Eigen::VectorXd& colu
   return size > 0 ? kDisplacement / size : 0;
 }
 
+bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from,
+                                const MotionState& to, Eigen::VectorXd& by) {
+  MotionState begin = from, end;
+  if (projects_ && !motion.project(begin)) {
+    failure_ = "the constraints do not hold at its beginning";
+    return false;
+  }
+  const Status status = motion.step(begin, to.time, end);
+  if (!status.ok) failure_ = status.reason;
+  else if (!displacement(motion.geometry(), to, end, by)) failure_ = "it leads too far";
+  else return true;
+  return false;
+}
+
 bool TangentMotion::push(const TangentState& from, const MotionState& to,
                          const std::array<double, 3>& weights, const Eigen::MatrixXd& columns, Eigen::MatrixXd& out) {
   const Geometry& geometry = motion_.geometry();
   const double h = to.time - from.state.time;
   out.setZero(columns.rows(), columns.cols());
-  MotionState begin, end;
+  MotionState begin;
   Eigen::VectorXd column;
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
     const double e = size_of(from.state, columns.col(j), h);
     const auto moved_state = [&](double x, Eigen::VectorXd& by) {
       displace(geometry, from.state, columns.col(j), x, begin);
-      return motion_.step(begin, to.time, end).ok && displacement(geometry, to, end, by);
+      return step_beside(motion_, begin, to, by);
     };
     if (e > 0) {
       if (!ThreeDifferences::derivative(weights, e, moved_state, column)) return false;
@@ -143,7 +158,7 @@ bool TangentMotion::push(const TangentState& from, const MotionState& to,
       for (size_t level = 0; level < moved.pairs.size(); ++level) {
         if (std::abs(x) != moved.size * ThreeDifferences::parts[level]) continue;
         MovedMotion& other = x > 0 ? *moved.pairs[level].plus : *moved.pairs[level].minus;
-        return other.step(from.state, to.time, end).ok && displacement(geometry, to, end, by);
+        return step_beside(other, from.state, to, by);
       }
       return false;
     };
@@ -168,9 +183,12 @@ Status TangentMotion::step(const TangentState& from, double t, TangentState& to,
     end = *known;
   }
   Eigen::MatrixXd columns, coarse;
-  if (!push(from, end, ThreeDifferences::fine, from.columns, columns) ||
-      (measure_ && !push(from, end, ThreeDifferences::coarse, from.coarse, coarse)))
-    return no_tangent(from.state.time, "a step from a state beside it fails");
+  const auto pushed = [&] {
+    return push(from, end, ThreeDifferences::fine, from.columns, columns) &&
+           (!measure_ || push(from, end, ThreeDifferences::coarse, from.coarse, coarse));
+  };
+  if (!pushed() && (std::exchange(projects_, true) || !pushed()))
+    return no_tangent(from.state.time, "a step beside it fails: " + failure_);
   to = {std::move(end), std::move(columns), std::move(coarse)};
   ++steps_;
   return {};

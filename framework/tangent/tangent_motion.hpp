@@ -3,10 +3,10 @@
 //
 //   (eta, dxi)_{k+1} = D_z Psi (eta, dxi)_k + D_p Psi,     z_{k+1} = Psi(z_k; p, h_k)
 // dg = g eta^, left-trivialised; Psi is the map of an accepted step, h_k frozen. Its derivatives are
-// differences of this map (step_differences.hpp), never of the run: the tangent itself does not
-// grow with what the motion makes of a finite displacement. The map is defined beside the constraints too,
-// where a kernel begins with the admissible part of a velocity; variations of admissible states are
-// in the linearised constraints.
+// differences of this map (step_differences.hpp), never of the run: a finite displacement does not
+// grow along the motion. Psi is defined beside the constraints of p too, where a kernel begins with
+// the admissible part of a velocity; a kernel that does not is given the state projected onto them,
+// Psi_p(Pi_p z), by z and by p alike.
 //   The error is measured: a second set of columns is carried with coarser differences.
 #pragma once
 
@@ -66,6 +66,9 @@ class TangentMotion {
                      const Eigen::VectorXd& values, size_t i);
   void begin(const MotionVariables& variables, const Eigen::VectorXd& values);
   Status step(const TangentState& from, double t, TangentState& to, const MotionState* known);
+  // A step of a motion as a displacement from `to`.
+  bool step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
+                   Eigen::VectorXd& by);
   bool push(const TangentState& from, const MotionState& to,
             const std::array<double, 3>& weights, const Eigen::MatrixXd& columns, Eigen::MatrixXd& out);
 
@@ -75,7 +78,8 @@ class TangentMotion {
   Eigen::VectorXd units_;           // of displacements
   TangentState node_, shown_;
   Snapshot at_;
-  bool side_ = false, measure_;
+  std::string failure_;  // of a step beside the motion
+  bool side_ = false, measure_, projects_ = false;
   int steps_ = 0;
 };
 
