@@ -204,10 +204,9 @@ class FitSolver {
     for (Eigen::Index i = 0; i < q; ++i) {
       const FitUnknown& one = problem_.unknowns()[static_cast<size_t>(i)];
       const double near = 1e-6 * (one.high - one.low);
-      out.parameters.push_back({one.name, problem_.variables().all()[one.variable].unit, x[i],
-                                one.guess, HUGE_VAL,
-                                std::isfinite(near) && (x[i] < one.low + near ||
-                                                        x[i] > one.high - near)});
+      out.parameters.push_back(
+          {one.name, problem_.variables().all()[one.variable].unit, x[i], one.guess, HUGE_VAL,
+           std::isfinite(near) && (x[i] < one.low + near || x[i] > one.high - near)});
     }
     out.covariance = NumberMatrix(static_cast<int>(q), static_cast<int>(q));
     out.covariance.values.assign(static_cast<size_t>(q * q),
@@ -288,9 +287,8 @@ Config fitted_run(const FitProblem& problem, const Eigen::VectorXd& x) {
   const Eigen::VectorXd values = problem.values_of(x, 0);
   const Simulation fitted = problem.variables().with(values);
   Config out = fitted.config();
-  const bool starts = std::ranges::any_of(problem.variables().all(), [](const MotionVariable& v) {
-    return !v.of_system();
-  });
+  const bool starts = std::ranges::any_of(problem.variables().all(),
+                                          [](const MotionVariable& v) { return !v.of_system(); });
   if (!starts) return out;
   Run run = fitted.build();
   out.start = problem.variables().start_of(run, values);
@@ -345,8 +343,8 @@ Fit fit(const Simulation& simulation, const FitRequest& request,
   Fit out = solver.solve();
   out.runs = problem.runs();
   if (!problem.left_out().empty())
-    out.notes.push_back(fmt::format("no quantities of the motion, left out: {}",
-                                    join(problem.left_out())));
+    out.notes.push_back(
+        fmt::format("no quantities of the motion, left out: {}", join(problem.left_out())));
   Eigen::VectorXd x(static_cast<Eigen::Index>(out.parameters.size()));
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = out.parameters[static_cast<size_t>(i)].value;
   if (out.converged) out.run = fitted_run(problem, x);
@@ -354,9 +352,10 @@ Fit fit(const Simulation& simulation, const FitRequest& request,
     out.reason = "the data do not determine all numbers";
   for (const FittedNumber& one : out.parameters)
     if (one.at_bound)
-      out.notes.push_back(fmt::format("{} is at its bound: its sigma is that of the fit without "
-                                      "bounds",
-                                      one.name));
+      out.notes.push_back(
+          fmt::format("{} is at its bound: its sigma is that of the fit without "
+                      "bounds",
+                      one.name));
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

@@ -15,9 +15,8 @@ namespace {
 
 // Columns of every run's file that say how good the run was, and not how it moved.
 bool is_diagnostic(const std::string& name) {
-  return name != kEnergy.name && std::ranges::any_of(kMeasuredColumns, [&](const Quantity& q) {
-           return name == q.name;
-         });
+  return name != kEnergy.name &&
+         std::ranges::any_of(kMeasuredColumns, [&](const Quantity& q) { return name == q.name; });
 }
 
 std::string place_of(const Recording& recording, size_t row) {
@@ -66,11 +65,11 @@ FitProblem::FitProblem(const Simulation& simulation, const FitRequest& request)
       mistakes.push_back(fmt::format("sigma: {}: got {}, expected a number above 0", name, sigma));
   }
   if (request.huber && !(*request.huber > 0))
-    mistakes.push_back(fmt::format("loss: huber: got {}, expected a number above 0",
-                                   *request.huber));
+    mistakes.push_back(
+        fmt::format("loss: huber: got {}, expected a number above 0", *request.huber));
   if (mistakes.empty() && data() < static_cast<Eigen::Index>(unknowns_.size()))
-    mistakes.push_back(fmt::format("fit: {} data cannot determine {} numbers", data(),
-                                   unknowns_.size()));
+    mistakes.push_back(
+        fmt::format("fit: {} data cannot determine {} numbers", data(), unknowns_.size()));
   if (!mistakes.empty()) throw ConfigError(mistakes);
 }
 
@@ -91,9 +90,10 @@ void FitProblem::make_unknowns(std::vector<std::string>& mistakes) {
       if (r == 0 && !std::isfinite(one.guess))
         mistakes.push_back(fmt::format("fit: {}: expected a finite guess", one.name));
       if (r == 0 && !(one.low < one.guess && one.guess < one.high))
-        mistakes.push_back(fmt::format("fit: {}: got {}:{}:{}, expected guess:low:high with the "
-                                       "guess between the bounds",
-                                       one.name, one.guess, one.low, one.high));
+        mistakes.push_back(
+            fmt::format("fit: {}: got {}:{}:{}, expected guess:low:high with the "
+                        "guess between the bounds",
+                        one.name, one.guess, one.low, one.high));
       unknowns_.push_back(one);
     }
   }
@@ -235,9 +235,8 @@ bool FitProblem::jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& out) {
       if (!std::isfinite(series.recording->values[series.columns[c]][k])) continue;
       for (size_t i = 0; i < unknowns_.size(); ++i)
         if (unknowns_[i].recording < 0 || unknowns_[i].recording == static_cast<int>(r))
-          out(next, static_cast<Eigen::Index>(i)) =
-              slopes(static_cast<Eigen::Index>(c),
-                     static_cast<Eigen::Index>(unknowns_[i].variable));
+          out(next, static_cast<Eigen::Index>(i)) = slopes(
+              static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(unknowns_[i].variable));
       ++next;
     }
     return true;
@@ -256,12 +255,12 @@ std::vector<Table> FitProblem::tables(const Eigen::VectorXd& residuals,
       const std::string& unit = series.observed.unit(c);
       const std::vector<double>& data = series.recording->values[series.columns[c]];
       table.columns.push_back({name, unit, "datum", data});
-      table.columns.push_back({name + ".fit", unit, "of the fitted motion",
-                               std::vector<double>(data.size(),
-                                                   std::numeric_limits<double>::quiet_NaN())});
-      table.columns.push_back({name + ".residual", "1", "(fit - datum) / sigma",
-                               std::vector<double>(data.size(),
-                                                   std::numeric_limits<double>::quiet_NaN())});
+      table.columns.push_back(
+          {name + ".fit", unit, "of the fitted motion",
+           std::vector<double>(data.size(), std::numeric_limits<double>::quiet_NaN())});
+      table.columns.push_back(
+          {name + ".residual", "1", "(fit - datum) / sigma",
+           std::vector<double>(data.size(), std::numeric_limits<double>::quiet_NaN())});
     }
     for (size_t k = 0; k < series.recording->t.size(); ++k) {
       for (size_t c = 0; c < series.columns.size(); ++c) {

@@ -14,11 +14,11 @@
 namespace hamel {
 
 struct Recording {
-  std::string name;                          // of messages: its file
-  std::vector<std::string> columns;          // without t
-  std::vector<double> t;                     // growing, s
-  std::vector<std::vector<double>> values;   // of each column; NaN where there is none
-  std::vector<long> lines;                   // of the rows in the file; may be empty
+  std::string name;                         // of messages: its file
+  std::vector<std::string> columns;         // without t
+  std::vector<double> t;                    // growing, s
+  std::vector<std::vector<double>> values;  // of each column; NaN where there is none
+  std::vector<long> lines;                  // of the rows in the file; may be empty
 };
 
 /// Reads a CSV file. ConfigError with file, line and column.

@@ -165,8 +165,7 @@ void give_velocity(const RunPlan& plan, const std::vector<std::pair<size_t, doub
   Eigen::Map<Eigen::VectorXd> xi(start.velocity.data(), n);
   right -= all * xi;
   const Eigen::MatrixXd reach = inertia.llt().solve(all.transpose());
-  const Eigen::VectorXd move =
-      reach * (all * reach).completeOrthogonalDecomposition().solve(right);
+  const Eigen::VectorXd move = reach * (all * reach).completeOrthogonalDecomposition().solve(right);
   if (!((all * move - right).lpNorm<Eigen::Infinity>() <=
         1e-9 * (1 + right.lpNorm<Eigen::Infinity>())))
     throw ConfigError({fmt::format(

@@ -2,8 +2,8 @@
 // installed.
 //
 //   O(e) = (f(e) - f(-e)) / 2e = f' + e^2 f'''/6 + ...,   T = (64 O(e/4) - 20 O(e/2) + O(e)) / 45
-// with an error of order e^6; coarse, (4 O(e/4) - O(e/2)) / 3, of order e^4. Their difference bounds
-// the error. Source: Ridders, Adv. Eng. Softw. 4 (1982).
+// with an error of order e^6; coarse, (4 O(e/4) - O(e/2)) / 3, of order e^4. Their difference
+// bounds the error. Source: Ridders, Adv. Eng. Softw. 4 (1982).
 #pragma once
 
 #include <array>

@@ -16,7 +16,6 @@ namespace {
 constexpr double kDisplacement = 0x1p-6;  // the largest of a difference, in natural units
 constexpr double kRepeats = 1e-8;         // a repeated step, in natural units
 
-
 Status no_tangent(double t, const std::string& why) {
   return {false, 0, t, 0, fmt::format("no tangent of the step from t = {:.10g}: {}", t, why)};
 }
@@ -29,8 +28,7 @@ TangentMotion::TangentMotion(const std::string& what, const MotionVariables& var
   const RunPlan& plan = motion_.plan();
   const std::vector<double> units =
       natural_units(components_of(*plan.system), *plan.setup.mechanics, motion_.start().g.data());
-  units_ = Eigen::Map<const Eigen::VectorXd>(units.data(),
-                                             static_cast<Eigen::Index>(units.size()));
+  units_ = Eigen::Map<const Eigen::VectorXd>(units.data(), static_cast<Eigen::Index>(units.size()));
   kernel_ = motion_.kernel();
   node_.state = motion_.start();
   if (carries == Carries::values) {
@@ -116,13 +114,14 @@ double TangentMotion::size_of(const MotionState& at, const Eigen::VectorXd& colu
   const Eigen::Index n = at.xi.size();
   const double still = 1e-3 / std::abs(h);
   const double rate = std::max(at.xi.cwiseQuotient(units_).lpNorm<Eigen::Infinity>(), still);
-  const double size = std::max(column.head(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>(),
-                               column.tail(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>() / rate);
+  const double size =
+      std::max(column.head(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>(),
+               column.tail(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>() / rate);
   return size > 0 ? kDisplacement / size : 0;
 }
 
-bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from,
-                                const MotionState& to, Eigen::VectorXd& by) {
+bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
+                                Eigen::VectorXd& by) {
   MotionState begin = from, end;
   if (projects_ && !motion.project(begin)) {
     failure_ = "the constraints do not hold at its beginning";
@@ -136,7 +135,8 @@ bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from,
 }
 
 bool TangentMotion::push(const TangentState& from, const MotionState& to,
-                         const std::array<double, 3>& weights, const Eigen::MatrixXd& columns, Eigen::MatrixXd& out) {
+                         const std::array<double, 3>& weights, const Eigen::MatrixXd& columns,
+                         Eigen::MatrixXd& out) {
   const Geometry& geometry = motion_.geometry();
   const double h = to.time - from.state.time;
   out.setZero(columns.rows(), columns.cols());
@@ -229,7 +229,8 @@ bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen:
       return true;
     };
     if (e > 0) {
-      if (!ThreeDifferences::derivative(ThreeDifferences::fine, e, moved_state, column)) return false;
+      if (!ThreeDifferences::derivative(ThreeDifferences::fine, e, moved_state, column))
+        return false;
       out.col(j) = column;
     }
     MovedVariable& moved = moved_[static_cast<size_t>(j)];
@@ -242,7 +243,8 @@ bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen:
       }
       return false;
     };
-    if (!ThreeDifferences::derivative(ThreeDifferences::fine, moved.size, moved_parameter, column)) return false;
+    if (!ThreeDifferences::derivative(ThreeDifferences::fine, moved.size, moved_parameter, column))
+      return false;
     out.col(j) += column;
   }
   return true;

@@ -2,11 +2,11 @@
 // installed.
 //
 //   (eta, dxi)_{k+1} = D_z Psi (eta, dxi)_k + D_p Psi,     z_{k+1} = Psi(z_k; p, h_k)
-// dg = g eta^, left-trivialised; Psi is the map of an accepted step, h_k frozen. Its derivatives are
-// differences of this map (step_differences.hpp), never of the run: a finite displacement does not
-// grow along the motion. Psi is defined beside the constraints of p too, where a kernel begins with
-// the admissible part of a velocity; a kernel that does not is given the state projected onto them,
-// Psi_p(Pi_p z), by z and by p alike.
+// dg = g eta^, left-trivialised; Psi is the map of an accepted step, h_k frozen. Its derivatives
+// are differences of this map (step_differences.hpp), never of the run: a finite displacement does
+// not grow along the motion. Psi is defined beside the constraints of p too, where a kernel begins
+// with the admissible part of a velocity; a kernel that does not is given the state projected onto
+// them, Psi_p(Pi_p z), by z and by p alike.
 //   The error is measured: a second set of columns is carried with coarser differences.
 #pragma once
 
@@ -69,8 +69,8 @@ class TangentMotion {
   // A step of a motion as a displacement from `to`.
   bool step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
                    Eigen::VectorXd& by);
-  bool push(const TangentState& from, const MotionState& to,
-            const std::array<double, 3>& weights, const Eigen::MatrixXd& columns, Eigen::MatrixXd& out);
+  bool push(const TangentState& from, const MotionState& to, const std::array<double, 3>& weights,
+            const Eigen::MatrixXd& columns, Eigen::MatrixXd& out);
 
   MovedMotion motion_;
   std::vector<MovedVariable> moved_;

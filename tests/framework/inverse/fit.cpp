@@ -28,9 +28,7 @@ Recording recorded(const hamel::Simulation& simulation, const std::vector<std::s
   Recording out;
   out.name = "recorded";
   out.columns = columns;
-  const auto column = [&](const std::string& name) {
-    return result.trajectory.column(name);
-  };
+  const auto column = [&](const std::string& name) { return result.trajectory.column(name); };
   out.t = column("t");
   for (const std::string& name : columns) out.values.push_back(column(name));
   return out;
@@ -74,12 +72,21 @@ TEST(Fit, FindsTheNumbersOfAMotion) {
   using hamel::simulate;
   const std::vector<BackCase> cases = {
       {sleigh(), {{"offset"}, {"start.v1"}, {"start.omega"}}, {0.2, 1, 1}, {"omega", "v1"}, 4},
-      {simulate("snakeboard"), {{"rotor_inertia"}, {"half_length"}}, {0.12, 0.2},
-       {"x", "y", "theta"}, 2},
-      {simulate("falling_disk"), {{"radius"}, {"start.omega3"}}, {0.5, 5},
-       {"omega1", "omega2", "omega3"}, 1},
-      {simulate("bicycle").speed(3), {{"rider_mass"}, {"trail"}}, {85, 0.08},
-       {"w1", "w3", "steer.angle"}, 1.5}};
+      {simulate("snakeboard"),
+       {{"rotor_inertia"}, {"half_length"}},
+       {0.12, 0.2},
+       {"x", "y", "theta"},
+       2},
+      {simulate("falling_disk"),
+       {{"radius"}, {"start.omega3"}},
+       {0.5, 5},
+       {"omega1", "omega2", "omega3"},
+       1},
+      {simulate("bicycle").speed(3),
+       {{"rider_mass"}, {"trail"}},
+       {85, 0.08},
+       {"w1", "w3", "steer.angle"},
+       1.5}};
   for (const BackCase& one : cases) {
     SCOPED_TRACE(one.simulation.config().system);
     hamel::Simulation simulation = one.simulation;
@@ -99,9 +106,7 @@ TEST(Fit, FindsTheNumbersOfAMotion) {
 struct FreeBody {
   using Group = hamel::SO3;
   double i1 = 1, i2 = 2, i3 = 2.5;  // kg m^2
-  auto inertia() const {
-    return hamel::Mat<3, 3>(hamel::Vec<3>(i1, i2, i3).asDiagonal());
-  }
+  auto inertia() const { return hamel::Mat<3, 3>(hamel::Vec<3>(i1, i2, i3).asDiagonal()); }
   auto constraints() const { return hamel::Mat<0, 3>(); }
   void fields(auto& f) {
     f("i1", i1, "kg m^2");
@@ -112,9 +117,8 @@ struct FreeBody {
 
 /// omega' is a ratio of moments: their common scale is not in the data.
 TEST(Fit, NamesTheScaleOfTheMomentsOfAFreeBody) {
-  const hamel::Simulation simulation = hamel::simulate(FreeBody{})
-                                           .start({.velocity = {0.3, 1, 0.2}})
-                                           .tolerance({.relative = 1e-11});
+  const hamel::Simulation simulation =
+      hamel::simulate(FreeBody{}).start({.velocity = {0.3, 1, 0.2}}).tolerance({.relative = 1e-11});
   FitRequest request;
   request.recordings.push_back(recorded(simulation, {"omega1", "omega2", "omega3"}, 0.1, 6));
   request.names = {{"i1"}, {"i2"}, {"i3"}};
@@ -148,12 +152,12 @@ TEST(Fit, TakesGapsMarkersAndSeveralRecordings) {
     }
     request.recordings.push_back(data);
   }
-  request.names = {{"offset", 0.3, 0.05, 1}, {"start.v1", 1.2}, {"start.omega", 0.7},
-                   {"start.theta", 0.1}};
+  request.names = {
+      {"offset", 0.3, 0.05, 1}, {"start.v1", 1.2}, {"start.omega", 0.7}, {"start.theta", 0.1}};
   const Fit fit = hamel::fit(sleigh(), request);
   ASSERT_TRUE(fit) << fit.reason;
   const std::map<std::string, double> truth = {
-      {"offset", 0.2},       {"start.v1", 1},       {"start.omega", 1},      {"start.theta", 0},
+      {"offset", 0.2},     {"start.v1", 1},         {"start.omega", 1},    {"start.theta", 0},
       {"start.v1@2", 1.5}, {"start.omega@2", -0.6}, {"start.theta@2", 0.4}};
   ASSERT_EQ(fit.parameters.size(), truth.size());
   for (const hamel::FittedNumber& one : fit.parameters)
@@ -238,7 +242,8 @@ TEST(Fit, RefusesMistakes) {
   EXPECT_THAT(text("omega\n1\n"), HasSubstr("d.csv:1: expected a column t"));
   EXPECT_THAT(text("t,omega\n0,1\n0.1,x1\n"),
               HasSubstr("d.csv:3: column 2 (omega): got 'x1', expected a finite number"));
-  EXPECT_THAT(text("t,omega\n0,1\n0,2\n"), HasSubstr("d.csv:3: column 1 (t): got 0, expected more"));
+  EXPECT_THAT(text("t,omega\n0,1\n0,2\n"),
+              HasSubstr("d.csv:3: column 1 (t): got 0, expected more"));
   EXPECT_THAT(text("t,omega\n0\n"), HasSubstr("d.csv:2: got 1 cells, expected 2"));
   EXPECT_THAT(text("t,omega\n"), HasSubstr("there is no row"));
   EXPECT_EQ(text("# of a tracker\nt, omega\n0,\n1,2\n"), "");

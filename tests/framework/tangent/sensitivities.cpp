@@ -19,8 +19,8 @@ const std::vector<double>& column(const Sensitivities& s, const std::string& nam
   return std::get<std::vector<double>>(s.rows.column(name).values);
 }
 
-/// v' = a omega^2, (I + m a^2) omega' = -m a v omega: v = U tanh k(t - t0), omega = W sech k(t - t0)
-/// (tools: systems/chaplygin_sleigh.hpp); derivatives by complex steps of this.
+/// v' = a omega^2, (I + m a^2) omega' = -m a v omega: v = U tanh k(t - t0), omega = W sech k(t -
+/// t0) (tools: systems/chaplygin_sleigh.hpp); derivatives by complex steps of this.
 template <class T>
 std::pair<T, T> exact_sleigh(T a, T v0, T w0, double t) {
   using std::atanh, std::cosh, std::sqrt, std::tanh;
@@ -90,8 +90,7 @@ TEST(Sensitivities, ByEveryParameterAreThoseOfWholeRuns) {
         const double coarse = (a[i] - b[i]) / (2 * e), finer = (c[i] - d[i]) / e,
                      finest = (f[i] - g[i]) / (e / 2),
                      expected = (64 * finest - 20 * finer + coarse) / 45;
-        const double found =
-            column(s, "d(" + model->rates[i] + ")/d(" + field.name + ")").back();
+        const double found = column(s, "d(" + model->rates[i] + ")/d(" + field.name + ")").back();
         EXPECT_NEAR(found, expected, 1e-8 * (std::abs(expected) + 1)) << model->rates[i];
       }
       ++parameters;
@@ -122,8 +121,7 @@ TEST(Sensitivities, RefuseWhatTheyDoNotCover) {
 /// A gradient over a horizon over which it has lost its digits.
 TEST(Sensitivities, AreRefusedWhereTheyHaveGrown) {
   const Sensitivities s = hamel::sensitivities(
-      hamel::simulate("segway").scheme("dop853").step(0.05).until(60).every(10),
-      {"start.pitch'"});
+      hamel::simulate("segway").scheme("dop853").step(0.05).until(60).every(10), {"start.pitch'"});
   EXPECT_FALSE(s.status.ok);
   EXPECT_THAT(s.status.reason, HasSubstr("more than 1e+08"));
   EXPECT_GT(s.rows.rows(), 3u);

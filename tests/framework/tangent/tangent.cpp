@@ -143,7 +143,8 @@ TEST(Tangent, ThereAndBackIsTheIdentity) {
     back.from(0.1).until(0).step(-0.01);
     const Eigen::MatrixXd a = matrix_of(hamel::tangent(there).matrix),
                           b = matrix_of(hamel::tangent(back).matrix),
-                          still = matrix_of(hamel::tangent(hamel::Simulation(there).until(0)).matrix);
+                          still =
+                              matrix_of(hamel::tangent(hamel::Simulation(there).until(0)).matrix);
     // still: the projection onto the linearised constraints.
     EXPECT_LT((b * a - still).lpNorm<Eigen::Infinity>(), 1e-9 * a.lpNorm<Eigen::Infinity>());
   }
@@ -175,8 +176,8 @@ TEST(Tangent, OfDiagonalSuslovIsClosed) {
   hat /= w;
   const Eigen::Matrix3d back =
       Eigen::Matrix3d::Identity() - std::sin(a) * hat + (1 - std::cos(a)) * hat * hat;
-  const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - (1 - std::cos(a)) / a * hat +
-                               (1 - std::sin(a) / a) * hat * hat;
+  const Eigen::Matrix3d left =
+      Eigen::Matrix3d::Identity() - (1 - std::cos(a)) / a * hat + (1 - std::sin(a) / a) * hat * hat;
   const Eigen::Matrix3d admissible = Eigen::Vector3d(1, 1, 0).asDiagonal();
   EXPECT_LT((j.topLeftCorner(3, 3) - back).norm(), 1e-10);
   EXPECT_LT((j.topRightCorner(3, 3) - t * left * admissible).norm(), 1e-9);

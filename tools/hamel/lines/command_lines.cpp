@@ -5,6 +5,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "fit.hpp"
 #include "lines/number_option.hpp"
 #include "lines/run_line.hpp"
 #include "section.hpp"
@@ -188,6 +189,12 @@ Action define_section(CLI::App& app) {
   return [line, &app] { return section(line->resolve(app)); };
 }
 
+Action define_fit(CLI::App& app) {
+  const auto line = std::make_shared<FitLine>();
+  line->define(app);
+  return [line, &app] { return fit(line->resolve(app)); };
+}
+
 Action define_new(CLI::App& app) {
   const auto options = std::make_shared<NewOptions>();
   app.add_option("KIND", options->kind, "system, group, scheme or project (a mechanism by parts)")
@@ -228,6 +235,7 @@ const std::vector<Command>& commands() {
        define_ensemble},
       {"steady", "A steady motion near a guess, its eigenvalues; along a parameter", define_steady},
       {"section", "A Poincare section: the states in which motions cross an event", define_section},
+      {"fit", "Parameters, starts and inputs from recordings", define_fit},
       {"new", "A project of your own that compiles: a system, a group, a scheme, a mechanism",
        define_new},
       {"reproduce", "The paper's two figures, all variants side by side", define_reproduce},
