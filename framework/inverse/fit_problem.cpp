@@ -9,14 +9,29 @@
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/quantities.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
+#include <hamel/framework/run/record/state_columns.hpp>
 
 namespace hamel {
 namespace {
 
-// Columns of every run's file that say how good the run was, and not how it moved.
-bool is_diagnostic(const std::string& name) {
-  return name != kEnergy.name &&
-         std::ranges::any_of(kMeasuredColumns, [&](const Quantity& q) { return name == q.name; });
+// Columns of the file of a run that are no function of a state, or say how good the run was.
+bool is_of_runs_only(const SystemModel& system, const std::string& name) {
+  if (std::ranges::any_of(kMeasuredColumns, [&](const Quantity& q) { return name == q.name; }))
+    return name != kEnergy.name;
+  const QuantityNames names(system);
+  const StateVariables variables(system, names.variables());
+  if (names.find(name) || std::ranges::count(variables.names(), name) > 0) return false;
+  const StateColumns all(system, {.holonomic = true,
+                                  .work = true,
+                                  .reactions = true,
+                                  .reaction_power = true,
+                                  .exact = true,
+                                  .acceleration = true,
+                                  .modes = true,
+                                  .paths = true});
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all.name(i) == name) return true;
+  return false;
 }
 
 std::string place_of(const Recording& recording, size_t row) {
@@ -108,7 +123,7 @@ void FitProblem::resolve_columns(std::vector<std::string>& mistakes) {
     for (size_t c = 0; c < recording.columns.size(); ++c) {
       const std::string& name = recording.columns[c];
       const auto formula = request_.observe.find(name);
-      if (formula == request_.observe.end() && is_diagnostic(name)) {
+      if (formula == request_.observe.end() && is_of_runs_only(*system_, name)) {
         left_out_.push_back(name);
         continue;
       }

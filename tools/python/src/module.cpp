@@ -52,6 +52,7 @@ NB_MODULE(_hamel, m) {
   hamel::python::bind_study(m);
   hamel::python::bind_ensemble(m);
   hamel::python::bind_equations(m);
+  hamel::python::bind_fit(m);
   hamel::python::bind_section(m);
   m.attr("__version__") = std::string(hamel::version());
 }
