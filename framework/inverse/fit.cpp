@@ -242,18 +242,7 @@ class FitSolver {
         inverse += direction * direction.transpose() / (s[k] * s[k]);
         continue;
       }
-      Eigen::VectorXd relative = direction;
-      for (Eigen::Index j = 0; j < q; ++j)
-        if (x[j] != 0) relative[j] /= std::abs(x[j]);
-      Eigen::Index largest = 0;
-      relative.cwiseAbs().maxCoeff(&largest);
-      relative /= std::copysign(relative.norm(), relative[largest]);
-      std::map<std::string, double>& named = out.undetermined.emplace_back();
-      for (Eigen::Index j = 0; j < q; ++j) {
-        if (std::abs(relative[j]) < 1e-4) continue;
-        named[out.parameters[static_cast<size_t>(j)].name] = relative[j];
-        blind[static_cast<size_t>(j)] = true;
-      }
+      name_direction(direction, x, out, blind);
     }
     for (Eigen::Index i = 0; i < q; ++i) {
       const auto row = static_cast<size_t>(i);
@@ -261,6 +250,23 @@ class FitSolver {
       for (Eigen::Index j = 0; j < q; ++j)
         if (!blind[row] && !blind[static_cast<size_t>(j)])
           out.covariance(static_cast<int>(i), static_cast<int>(j)) = inverse(i, j);
+    }
+  }
+  // A direction that the data do not see, as relative changes of length 1.
+  static void name_direction(const Eigen::VectorXd& direction, const Eigen::VectorXd& x, Fit& out,
+                             std::vector<bool>& blind) {
+    constexpr double part = 1e-4;  // smaller ones are round-off
+    Eigen::VectorXd relative = direction;
+    for (Eigen::Index j = 0; j < x.size(); ++j)
+      if (x[j] != 0) relative[j] /= std::abs(x[j]);
+    Eigen::Index largest = 0;
+    relative.cwiseAbs().maxCoeff(&largest);
+    relative /= std::copysign(relative.norm(), relative[largest]);
+    std::map<std::string, double>& named = out.undetermined.emplace_back();
+    for (Eigen::Index j = 0; j < x.size(); ++j) {
+      if (std::abs(relative[j]) < part) continue;
+      named[out.parameters[static_cast<size_t>(j)].name] = relative[j];
+      blind[static_cast<size_t>(j)] = true;
     }
   }
   // The largest change of the residuals by a relative change of one number.

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/inverse/recording.hpp>
+#include <hamel/framework/inverse/recordings.hpp>
 #include <hamel/framework/io/export.hpp>
 #include <hamel/framework/io/number_matrix.hpp>
 #include <hamel/framework/io/table.hpp>

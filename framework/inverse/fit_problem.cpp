@@ -114,46 +114,47 @@ void FitProblem::make_unknowns(std::vector<std::string>& mistakes) {
   }
 }
 
-void FitProblem::resolve_columns(std::vector<std::string>& mistakes) {
+// A column of a recording as a quantity of the motion; a mistake, or "".
+std::string FitProblem::resolve_column(Series& series, size_t c) {
+  const std::string& name = series.recording->columns[c];
+  const auto formula = request_.observe.find(name);
+  const bool defined = formula != request_.observe.end();
+  if (!defined && is_of_runs_only(*system_, name)) {
+    left_out_.push_back(name);
+    return "";
+  }
   const QuantityNames quantities(*system_);
-  const StateVariables variables(*system_, quantities.variables());
+  const std::vector<std::string> more = StateVariables(*system_, quantities.variables()).names();
+  if (!defined && name != kEnergy.name && !quantities.find(name) &&
+      std::ranges::find(more, name) == more.end()) {
+    std::vector<std::string> all = quantities.all();
+    all.insert(all.end(), more.begin() + 1 + static_cast<std::ptrdiff_t>(all.size()), more.end());
+    for (const auto& [column, unused] : request_.observe) all.push_back(column);
+    return fmt::format("{}: column {}: {}", series.recording->name, c + 2,
+                       unknown_name("quantity", name, all));
+  }
+  try {
+    series.observed.add(*system_,
+                        defined ? fmt::format("observe: {}", name)
+                                : fmt::format("{}: {}", series.recording->name, name),
+                        defined ? formula->second : name);
+  } catch (const ConfigError& error) {
+    return error.mistakes().front();
+  }
+  series.columns.push_back(c);
+  const auto at = std::ranges::find(columns_, name);
+  series.names.push_back(static_cast<size_t>(at - columns_.begin()));
+  if (at == columns_.end()) columns_.push_back(name);
+  return "";
+}
+
+void FitProblem::resolve_columns(std::vector<std::string>& mistakes) {
   for (const Recording& recording : request_.recordings) {
     Series& series = series_.emplace_back();
     series.recording = &recording;
-    for (size_t c = 0; c < recording.columns.size(); ++c) {
-      const std::string& name = recording.columns[c];
-      const auto formula = request_.observe.find(name);
-      if (formula == request_.observe.end() && is_of_runs_only(*system_, name)) {
-        left_out_.push_back(name);
-        continue;
-      }
-      const std::vector<std::string>& more = variables.names();
-      const bool known = formula != request_.observe.end() || name == kEnergy.name ||
-                         quantities.find(name) || std::ranges::find(more, name) != more.end();
-      if (!known) {
-        std::vector<std::string> all = quantities.all();
-        all.insert(all.end(), more.begin() + 1 + static_cast<std::ptrdiff_t>(all.size()),
-                   more.end());
-        for (const auto& [column, unused] : request_.observe) all.push_back(column);
-        mistakes.push_back(fmt::format("{}: column {}: {}", recording.name, c + 2,
-                                       unknown_name("quantity", name, all)));
-        continue;
-      }
-      try {
-        series.observed.add(*system_,
-                            formula == request_.observe.end()
-                                ? fmt::format("{}: {}", recording.name, name)
-                                : fmt::format("observe: {}", name),
-                            formula == request_.observe.end() ? name : formula->second);
-      } catch (const ConfigError& error) {
-        mistakes.push_back(error.mistakes().front());
-        continue;
-      }
-      series.columns.push_back(c);
-      const auto at = std::ranges::find(columns_, name);
-      series.names.push_back(static_cast<size_t>(at - columns_.begin()));
-      if (at == columns_.end()) columns_.push_back(name);
-    }
+    for (size_t c = 0; c < recording.columns.size(); ++c)
+      if (const std::string wrong = resolve_column(series, c); !wrong.empty())
+        mistakes.push_back(wrong);
     if (series.columns.empty() && mistakes.empty())
       mistakes.push_back(fmt::format("{}: no column is a quantity of the motion", recording.name));
     for (size_t row = 0; row < recording.t.size(); ++row)

@@ -53,6 +53,7 @@ class FitProblem {
     std::vector<std::size_t> columns;  // of recording, those observed
     std::vector<std::size_t> names;    // of them, in columns_
   };
+  std::string resolve_column(Series& series, std::size_t c);
   void resolve_columns(std::vector<std::string>& mistakes);
   void check_times(std::vector<std::string>& mistakes) const;
   void make_unknowns(std::vector<std::string>& mistakes);

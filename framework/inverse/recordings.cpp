@@ -1,10 +1,11 @@
-#include <hamel/framework/inverse/recording.hpp>
+#include <hamel/framework/inverse/recordings.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
