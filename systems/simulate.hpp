@@ -15,6 +15,8 @@
 #include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/ensemble/ensemble.hpp>
+#include <hamel/framework/inverse/fit.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/study/study.hpp>
+#include <hamel/framework/tangent/sensitivities.hpp>
 #include <hamel/systems/by_name.hpp>

@@ -9,7 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include <hamel/framework/analysis/central_differences.hpp>
-#include <hamel/framework/analysis/natural_units.hpp>
+#include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>

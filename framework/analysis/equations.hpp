@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/analysis/number_matrix.hpp>
+#include <hamel/framework/io/number_matrix.hpp>
 #include <hamel/framework/io/export.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 

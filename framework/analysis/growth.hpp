@@ -21,7 +21,7 @@
 
 #include <vector>
 
-#include <hamel/framework/analysis/natural_units.hpp>
+#include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/analysis/number_matrix.hpp>
+#include <hamel/framework/io/number_matrix.hpp>
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/io/export.hpp>
 

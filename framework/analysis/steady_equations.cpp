@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/analysis/natural_units.hpp>
+#include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/analysis/state_units.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/names/registry.hpp>

@@ -13,6 +13,7 @@ namespace hamel {
 struct EnsembleResult;
 class Registry;
 struct Result;
+struct Fit;
 struct Section;
 struct SteadySweep;
 struct StudyResult;
@@ -48,6 +49,7 @@ HAMEL_API std::vector<Figure> of_sweep(const SteadySweep& sweep);
 
 /// Points of a section in the plane of two columns "A,B"; "": of the first two that vary most.
 /// ConfigError for columns that it does not have; none where no two columns vary.
+HAMEL_API std::vector<Figure> of_fit(const hamel::Fit& fit);
 HAMEL_API std::vector<Figure> of_section(const Section& section, const std::string& axes = "");
 
 /// A JSON object: the names of the figures, and each as the block of a report page

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "fit.hpp"
 #include "lines/number_option.hpp"
 #include "lines/page_lines.hpp"
 #include "lines/run_line.hpp"
@@ -190,6 +191,12 @@ Action define_plan(CLI::App& app) {
   return [options] { return plan(*options); };
 }
 
+Action define_fit(CLI::App& app) {
+  const auto line = std::make_shared<FitLine>();
+  line->define(app);
+  return [line, &app] { return fit(line->resolve(app)); };
+}
+
 Action define_new(CLI::App& app) {
   const auto options = std::make_shared<NewOptions>();
   app.add_option("KIND", options->kind, "system, group, scheme or project (a mechanism by parts)")
@@ -233,6 +240,7 @@ const std::vector<Command>& commands() {
       {"live", "The playground in a browser, with a system in it: edited, moved, watched",
        define_live},
       {"plan", "Inputs that take a system to a goal at the least cost, from a file", define_plan},
+      {"fit", "Parameters, starts and inputs from recordings", define_fit},
       {"new", "A project of your own that compiles: a system, a group, a scheme, a mechanism",
        define_new},
       {"reproduce", "The paper's two figures, all variants side by side", define_reproduce},

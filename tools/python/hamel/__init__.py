@@ -22,6 +22,8 @@ from hamel._hamel import (
     EventState as EventState,
     Input as Input,
     InputTable as InputTable,
+    Fit as Fit,
+    FittedNumber as FittedNumber,
     Jacobian as Jacobian,
     Linearisation as Linearisation,
     Mechanism as Mechanism,
@@ -33,6 +35,7 @@ from hamel._hamel import (
     Run as Run,
     Section as Section,
     SectionOrbit as SectionOrbit,
+    Sensitivities as Sensitivities,
     Simulation as Simulation,
     SolverStats as SolverStats,
     State as State,
@@ -49,6 +52,7 @@ from hamel._hamel import (
     describe as describe,
     ensemble as ensemble,
     equations as equations,
+    fit as fit,
     linearisation as linearisation,
     names as _names,
     plan as plan,
@@ -56,9 +60,11 @@ from hamel._hamel import (
     retractions as retractions,
     run as run,
     section as section,
+    sensitivities as sensitivities,
     simulate as simulate,
     steady as steady,
     study as study,
+    tangent as tangent,
 )
 
 list = _names

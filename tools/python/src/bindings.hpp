@@ -163,6 +163,7 @@ void bind_builder(nb::module_& m, nb::class_<Builder>& builder);
 void bind_config(nb::module_& m);
 void bind_ensemble(nb::module_& m);
 void bind_equations(nb::module_& m);
+void bind_fit(nb::module_& m);
 void bind_forces(nb::class_<ByParts>& mechanism);
 void bind_mechanism(nb::module_& m);
 void bind_names(nb::module_& m);

@@ -53,6 +53,7 @@ NB_MODULE(_hamel, m) {
   hamel::python::bind_ensemble(m);
   hamel::python::bind_equations(m);
   hamel::python::bind_plan(m);
+  hamel::python::bind_fit(m);
   hamel::python::bind_section(m);
   m.attr("__version__") = std::string(hamel::version());
 }

@@ -1,4 +1,4 @@
-#include <hamel/framework/analysis/natural_units.hpp>
+#include <hamel/framework/mechanics/natural_units.hpp>
 
 #include <algorithm>
 #include <cmath>

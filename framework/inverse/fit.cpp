@@ -1,0 +1,369 @@
+#include <hamel/framework/inverse/fit.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+#include <unsupported/Eigen/NonLinearOptimization>
+
+#include <hamel/framework/inverse/fit_problem.hpp>
+#include <hamel/framework/io/errors.hpp>
+
+namespace hamel {
+namespace {
+
+constexpr double kUndetermined = 1e-7;  // singular values, of the largest
+constexpr double kRoundOff = 1e-9;      // a sigma beside the size of its column
+
+// The unbounded variable u of a number x between bounds: x = middle + half sin u, or of one bound
+// low - 1 + sqrt(u^2 + 1) (James, MINUIT).
+struct BoundedNumber {
+  double low, high;
+  double x(double u) const {
+    if (std::isfinite(low) && std::isfinite(high))
+      return 0.5 * (low + high) + 0.5 * (high - low) * std::sin(u);
+    if (std::isfinite(low)) return low - 1 + std::sqrt(u * u + 1);
+    if (std::isfinite(high)) return high + 1 - std::sqrt(u * u + 1);
+    return u;
+  }
+  double slope(double u) const {
+    if (std::isfinite(low) && std::isfinite(high)) return 0.5 * (high - low) * std::cos(u);
+    if (std::isfinite(low)) return u / std::sqrt(u * u + 1);
+    if (std::isfinite(high)) return -u / std::sqrt(u * u + 1);
+    return 1;
+  }
+  double u(double at) const {
+    if (std::isfinite(low) && std::isfinite(high))
+      return std::asin(std::clamp((2 * at - low - high) / (high - low), -1.0, 1.0));
+    if (std::isfinite(low)) return std::sqrt((at - low + 1) * (at - low + 1) - 1);
+    if (std::isfinite(high)) return std::sqrt((high - at + 1) * (high - at + 1) - 1);
+    return at;
+  }
+};
+
+class FitSolver {
+ public:
+  FitSolver(FitProblem& problem, const FitRequest& request,
+            const std::function<void(long, double)>& progress, const std::atomic<bool>* stop)
+      : problem_(problem), request_(request), progress_(progress), stop_(stop) {
+    for (const FitUnknown& one : problem.unknowns()) numbers_.push_back({one.low, one.high});
+    u_.resize(static_cast<Eigen::Index>(numbers_.size()));
+    for (Eigen::Index i = 0; i < u_.size(); ++i) {
+      const auto k = static_cast<size_t>(i);
+      u_[i] = numbers_[k].u(problem.unknowns()[k].guess);
+    }
+    begin_sigma();
+  }
+
+  // The members that Eigen's LevenbergMarquardt requires.
+  int values() const { return static_cast<int>(problem_.data()); }
+  int operator()(const Eigen::VectorXd& u, Eigen::VectorXd& out) {
+    if (stop_ != nullptr && stop_->load()) return -1;
+    if (!problem_.residuals(x_of(u), residuals_)) {
+      out.setConstant(problem_.data(), 1e50);  // refused: the next try is nearer
+      return 0;
+    }
+    out = residuals_;
+    for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = loss(out[i] / sigma_at(i));
+    return 0;
+  }
+  int df(const Eigen::VectorXd& u, Eigen::MatrixXd& out) {
+    if (!problem_.jacobian(x_of(u), out) || !problem_.residuals(x_of(u), residuals_)) return -1;
+    ++iterations_;
+    weigh(out);
+    double chi2 = 0;
+    for (Eigen::Index i = 0; i < residuals_.size(); ++i)
+      chi2 += std::pow(loss(residuals_[i] / sigma_at(i)), 2);
+    if (progress_) progress_(iterations_, chi2);
+    for (Eigen::Index j = 0; j < out.cols(); ++j)
+      out.col(j) *= numbers_[static_cast<size_t>(j)].slope(u[j]);
+    return 0;
+  }
+
+  Fit solve() {
+    Fit out;
+    constexpr int rounds = 20;
+    for (int n = 0; n < rounds; ++n) {
+      out.converged = minimise(out.reason);
+      if (!out.converged || !estimate_sigma()) break;
+    }
+    describe(out);
+    return out;
+  }
+
+ private:
+  Eigen::VectorXd x_of(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd out(u.size());
+    for (Eigen::Index i = 0; i < u.size(); ++i) out[i] = numbers_[static_cast<size_t>(i)].x(u[i]);
+    return out;
+  }
+  double sigma_at(Eigen::Index i) const {
+    return sigma_[problem_.column_of()[static_cast<size_t>(i)]];
+  }
+  // sign(r) sqrt(2 rho(r)), and its derivative.
+  double loss(double r) const {
+    const double k = request_.huber.value_or(HUGE_VAL);
+    return std::abs(r) <= k ? r : std::copysign(std::sqrt(2 * k * std::abs(r) - k * k), r);
+  }
+  double loss_slope(double r) const {
+    const double k = request_.huber.value_or(HUGE_VAL);
+    return std::abs(r) <= k ? 1 : k / std::abs(loss(r));
+  }
+  void weigh(Eigen::MatrixXd& jacobian) const {
+    for (Eigen::Index i = 0; i < jacobian.rows(); ++i)
+      jacobian.row(i) *= loss_slope(residuals_[i] / sigma_at(i)) / sigma_at(i);
+  }
+
+  // Where none is given: at first the root of the mean square of the column.
+  void begin_sigma() {
+    const size_t columns = problem_.columns().size();
+    sigma_.assign(columns, 1);
+    scale_.assign(columns, 0);
+    std::vector<double> count(columns, 0);
+    for (const Recording& recording : request_.recordings) {
+      for (size_t c = 0; c < recording.columns.size(); ++c) {
+        const auto at = std::ranges::find(problem_.columns(), recording.columns[c]);
+        if (at == problem_.columns().end()) continue;
+        const auto k = static_cast<size_t>(at - problem_.columns().begin());
+        for (const double x : recording.values[c]) {
+          if (!std::isfinite(x)) continue;
+          scale_[k] += x * x;
+          ++count[k];
+        }
+      }
+    }
+    for (size_t k = 0; k < columns; ++k) {
+      scale_[k] = scale_[k] > 0 ? std::sqrt(scale_[k] / count[k]) : 1;
+      const auto given = request_.sigma.find(problem_.columns()[k]);
+      given_.push_back(given != request_.sigma.end());
+      sigma_[k] = given_[k] ? given->second : scale_[k];
+    }
+  }
+  // False where they have settled. Huber: from the median of |r|.
+  bool estimate_sigma() {
+    bool moved = false;
+    const double n = static_cast<double>(problem_.data()),
+                 free = std::max(1.0, n - static_cast<double>(u_.size()));
+    for (size_t k = 0; k < sigma_.size(); ++k) {
+      if (given_[k]) continue;
+      std::vector<double> off;
+      for (Eigen::Index i = 0; i < residuals_.size(); ++i)
+        if (problem_.column_of()[static_cast<size_t>(i)] == k)
+          off.push_back(std::abs(residuals_[i]));
+      double next = 0;
+      if (request_.huber) {
+        constexpr double normal = 1.4826;  // of a normal distribution
+        const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+        std::nth_element(off.begin(), middle, off.end());
+        next = normal * *middle;
+      } else {
+        for (const double x : off) next += x * x;
+        next = std::sqrt(next / static_cast<double>(off.size()) * n / free);
+      }
+      next = std::max(next, kRoundOff * scale_[k]);
+      moved = moved || std::abs(next - sigma_[k]) > 1e-5 * sigma_[k];
+      sigma_[k] = next;
+    }
+    return moved;
+  }
+
+  bool minimise(std::string& reason) {
+    Eigen::LevenbergMarquardt<FitSolver> method(*this);
+    constexpr int tries = 10;  // for each iteration
+    method.parameters.maxfev = tries * request_.iterations;
+    method.parameters.ftol = 1e-15;
+    method.parameters.xtol = 1e-13;
+    const int status = static_cast<int>(method.minimize(u_));
+    const Eigen::VectorXd x = x_of(u_);
+    if (!problem_.residuals(x, residuals_)) {
+      reason = "no motion from the guess: " + problem_.failure();
+      return false;
+    }
+    if (stop_ != nullptr && stop_->load()) reason = "interrupted";
+    else if (status == Eigen::LevenbergMarquardtSpace::UserAsked)
+      reason = "no derivative there: " + problem_.failure();
+    else if (status <= Eigen::LevenbergMarquardtSpace::ImproperInputParameters)
+      reason = "improper problem";
+    else if (status == Eigen::LevenbergMarquardtSpace::TooManyFunctionEvaluation)
+      reason = fmt::format("not converged in {} iterations", iterations_);
+    else return true;
+    return false;
+  }
+
+  void describe(Fit& out) {
+    const Eigen::VectorXd x = x_of(u_);
+    const Eigen::Index q = x.size();
+    out.iterations = iterations_;
+    out.dof = static_cast<long>(problem_.data() - q);
+    for (Eigen::Index i = 0; i < residuals_.size(); ++i)
+      out.chi2 += std::pow(loss(residuals_[i] / sigma_at(i)), 2);
+    for (size_t k = 0; k < sigma_.size(); ++k) out.sigma[problem_.columns()[k]] = sigma_[k];
+    for (Eigen::Index i = 0; i < q; ++i) {
+      const FitUnknown& one = problem_.unknowns()[static_cast<size_t>(i)];
+      const double near = 1e-6 * (one.high - one.low);
+      out.parameters.push_back(
+          {one.name, problem_.variables().all()[one.variable].unit, x[i], one.guess, HUGE_VAL,
+           std::isfinite(near) && (x[i] < one.low + near || x[i] > one.high - near)});
+    }
+    out.covariance = NumberMatrix(static_cast<int>(q), static_cast<int>(q));
+    out.covariance.values.assign(static_cast<size_t>(q * q),
+                                 std::numeric_limits<double>::quiet_NaN());
+    if (residuals_.size() == problem_.data()) out.residuals = problem_.tables(residuals_, sigma_);
+    if (Eigen::MatrixXd jacobian; out.converged && problem_.jacobian(x, jacobian)) {
+      weigh(jacobian);
+      covariance(jacobian, x, out);
+    }
+  }
+
+  // J = U S V^T D with columns scaled to length 1 by D: covariance D^-1 V S^-2 V^T D^-1 of the
+  // directions that the data see.
+  void covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& x, Fit& out) const {
+    const Eigen::Index q = x.size();
+    Eigen::VectorXd lengths = jacobian.colwise().norm();
+    const double longest = lengths.maxCoeff();
+    Eigen::MatrixXd scaled = jacobian;
+    std::vector<bool> blind(static_cast<size_t>(q), false);
+    for (Eigen::Index j = 0; j < q; ++j) {
+      // A column that is nothing but the errors of differences stays as it is.
+      const double size = x[j] == 0 ? 1 : std::abs(x[j]);
+      const bool seen = lengths[j] * size > 1e-9 * std::max(1e-300, longest_change(lengths, x));
+      if (!seen || lengths[j] == 0) lengths[j] = longest > 0 ? longest : 1;
+      scaled.col(j) /= lengths[j];
+    }
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Eigen::VectorXd& s = svd.singularValues();
+    Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(q, q);
+    for (Eigen::Index k = 0; k < q; ++k) {
+      const Eigen::VectorXd direction = svd.matrixV().col(k).cwiseQuotient(lengths);
+      if (s[k] > kUndetermined * s[0]) {
+        inverse += direction * direction.transpose() / (s[k] * s[k]);
+        continue;
+      }
+      name_direction(direction, x, out, blind);
+    }
+    for (Eigen::Index i = 0; i < q; ++i) {
+      const auto row = static_cast<size_t>(i);
+      if (!blind[row]) out.parameters[row].sigma = std::sqrt(inverse(i, i));
+      for (Eigen::Index j = 0; j < q; ++j)
+        if (!blind[row] && !blind[static_cast<size_t>(j)])
+          out.covariance(static_cast<int>(i), static_cast<int>(j)) = inverse(i, j);
+    }
+  }
+  // A direction that the data do not see, as relative changes of length 1.
+  static void name_direction(const Eigen::VectorXd& direction, const Eigen::VectorXd& x, Fit& out,
+                             std::vector<bool>& blind) {
+    constexpr double part = 1e-4;  // smaller ones are round-off
+    Eigen::VectorXd relative = direction;
+    for (Eigen::Index j = 0; j < x.size(); ++j)
+      if (x[j] != 0) relative[j] /= std::abs(x[j]);
+    Eigen::Index largest = 0;
+    relative.cwiseAbs().maxCoeff(&largest);
+    relative /= std::copysign(relative.norm(), relative[largest]);
+    std::map<std::string, double>& named = out.undetermined.emplace_back();
+    for (Eigen::Index j = 0; j < x.size(); ++j) {
+      if (std::abs(relative[j]) < part) continue;
+      named[out.parameters[static_cast<size_t>(j)].name] = relative[j];
+      blind[static_cast<size_t>(j)] = true;
+    }
+  }
+  // The largest change of the residuals by a relative change of one number.
+  static double longest_change(const Eigen::VectorXd& lengths, const Eigen::VectorXd& x) {
+    double out = 0;
+    for (Eigen::Index j = 0; j < x.size(); ++j)
+      out = std::max(out, lengths[j] * (x[j] == 0 ? 1 : std::abs(x[j])));
+    return out;
+  }
+
+  FitProblem& problem_;
+  const FitRequest& request_;
+  const std::function<void(long, double)>& progress_;
+  const std::atomic<bool>* stop_;
+  std::vector<BoundedNumber> numbers_;
+  Eigen::VectorXd u_, residuals_;
+  std::vector<double> sigma_, scale_;
+  std::vector<bool> given_;
+  long iterations_ = 0;
+};
+
+// The run with the fitted numbers, its start in full.
+Config fitted_run(const FitProblem& problem, const Eigen::VectorXd& x) {
+  const Eigen::VectorXd values = problem.values_of(x, 0);
+  const Simulation fitted = problem.variables().with(values);
+  Config out = fitted.config();
+  const bool starts = std::ranges::any_of(problem.variables().all(),
+                                          [](const MotionVariable& v) { return !v.of_system(); });
+  if (!starts) return out;
+  Run run = fitted.build();
+  out.start = problem.variables().start_of(run, values);
+  out.start.momentum.clear();
+  out.speed.reset();
+  out.start_values.clear();
+  return out;
+}
+
+}  // namespace
+
+FitName parse_fit_name(const std::string& text) {
+  const size_t equal = text.find('=');
+  FitName out{text.substr(0, equal)};
+  const auto refuse = [&] {
+    throw ConfigError({fmt::format(
+        "fit: got '{}', expected NAME, NAME=guess or NAME=guess:low:high", shortened(text))});
+  };
+  if (out.name.empty()) refuse();
+  if (equal == std::string::npos) return out;
+  std::vector<double> numbers;
+  std::string rest = text.substr(equal + 1);
+  for (size_t at = 0; at != std::string::npos;) {
+    at = rest.find(':');
+    double number = 0;
+    read_text("fit: " + out.name, rest.substr(0, at), number);
+    numbers.push_back(number);
+    if (at != std::string::npos) rest = rest.substr(at + 1);
+  }
+  if (numbers.size() != 1 && numbers.size() != 3) refuse();
+  out.guess = numbers[0];
+  if (numbers.size() == 3) {
+    out.low = numbers[1];
+    out.high = numbers[2];
+  }
+  return out;
+}
+
+Fit fit(const Simulation& simulation, const FitRequest& request,
+        const std::function<void(long, double)>& progress, const std::atomic<bool>* stop) {
+  const auto begin = std::chrono::steady_clock::now();
+  FitProblem problem(simulation, request);
+  {  // what no fit can begin with is a mistake
+    Eigen::VectorXd guess(static_cast<Eigen::Index>(problem.unknowns().size()));
+    for (Eigen::Index i = 0; i < guess.size(); ++i)
+      guess[i] = problem.unknowns()[static_cast<size_t>(i)].guess;
+    for (size_t r = 0; r < request.recordings.size(); ++r)
+      TangentMotion("fit", problem.variables(), problem.values_of(guess, static_cast<int>(r)),
+                    TangentMotion::Carries::values);
+  }
+  FitSolver solver(problem, request, progress, stop);
+  Fit out = solver.solve();
+  out.runs = problem.runs();
+  if (!problem.left_out().empty())
+    out.notes.push_back(
+        fmt::format("no quantities of the motion, left out: {}", join(problem.left_out())));
+  Eigen::VectorXd x(static_cast<Eigen::Index>(out.parameters.size()));
+  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = out.parameters[static_cast<size_t>(i)].value;
+  if (out.converged) out.run = fitted_run(problem, x);
+  if (out.converged && !out.undetermined.empty())
+    out.reason = "the data do not determine all numbers";
+  for (const FittedNumber& one : out.parameters)
+    if (one.at_bound)
+      out.notes.push_back(
+          fmt::format("{} is at its bound: its sigma is that of the fit without "
+                      "bounds",
+                      one.name));
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+}  // namespace hamel

@@ -1,0 +1,50 @@
+// Derivatives of a run by numbers that it depends on, along the run.
+//
+//   hamel::Sensitivities along = hamel::sensitivities(
+//       hamel::simulate("chaplygin_sleigh").step(0.01).until(4), {"offset", "start.omega"});
+//   along.rows.column("d(omega)/d(offset)");
+//
+// Names are those of parameters ("mass", "inertia2"), of inputs that are constant, and "start."
+// with a coordinate or a component of the velocity: the other components follow the rows, nearest
+// to the usual ones in the metric I. The run keeps its accepted steps: the choice of h has no
+// derivative. Derivatives are products of the tangents of the steps, each by extrapolated
+// differences of the map of this step alone. Standard-library types only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <hamel/framework/io/export.hpp>
+#include <hamel/framework/io/number_matrix.hpp>
+#include <hamel/framework/io/table.hpp>
+#include <hamel/framework/run/run/simulation.hpp>
+
+namespace hamel {
+
+struct Sensitivities {
+  /// Rows at the times of the run's: t, coordinates, velocities, then d(x)/d(name) of each of them,
+  /// by each name.
+  Table rows;
+  std::vector<std::string> names;
+  /// Of each column d(x)/d(name), in their order: the largest measured error along the run.
+  std::vector<double> errors;
+  double growth = 0;  // the largest derivative by a start, in its own units
+  Status status;      // of the run and its tangent; rows before a failure are kept
+  int steps = 0;
+};
+
+/// ConfigError before anything runs: names, and what has no tangent yet (contacts that slide or
+/// open, events, stops).
+HAMEL_API Sensitivities sensitivities(const Simulation& simulation,
+                                      const std::vector<std::string>& names);
+
+/// The tangent of a run from its start to its end.
+struct RunTangent {
+  /// 2n x 2n: (eta, dxi) at the end, by (eta, dxi) at the start, dg = g eta^. Variations of the
+  /// start are first projected onto the linearised constraints.
+  NumberMatrix matrix, errors;
+  Status status;
+};
+HAMEL_API RunTangent tangent(const Simulation& simulation);
+
+}  // namespace hamel

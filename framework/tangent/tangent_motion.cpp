@@ -1,0 +1,253 @@
+#include <hamel/framework/tangent/tangent_motion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/natural_units.hpp>
+#include <hamel/framework/tangent/step_differences.hpp>
+
+namespace hamel {
+namespace {
+
+constexpr double kDisplacement = 0x1p-6;  // the largest of a difference, in natural units
+constexpr double kRepeats = 1e-8;         // a repeated step, in natural units
+
+Status no_tangent(double t, const std::string& why) {
+  return {false, 0, t, 0, fmt::format("no tangent of the step from t = {:.10g}: {}", t, why)};
+}
+
+}  // namespace
+
+TangentMotion::TangentMotion(const std::string& what, const MotionVariables& variables,
+                             const Eigen::VectorXd& values, Carries carries)
+    : motion_(what, variables, values), measure_(carries == Carries::errors) {
+  const RunPlan& plan = motion_.plan();
+  const std::vector<double> units =
+      natural_units(components_of(*plan.system), *plan.setup.mechanics, motion_.start().g.data());
+  units_ = Eigen::Map<const Eigen::VectorXd>(units.data(), static_cast<Eigen::Index>(units.size()));
+  kernel_ = motion_.kernel();
+  node_.state = motion_.start();
+  if (carries == Carries::values) {
+    begin_with(Eigen::MatrixXd(2 * units_.size(), 0));
+    return;
+  }
+  moved_.resize(variables.size());
+  for (size_t i = 0; i < variables.size(); ++i) move_variable(what, variables, values, i);
+  begin(variables, values);
+}
+
+// Motions beside it, as near as the range of a parameter requires.
+void TangentMotion::move_variable(const std::string& what, const MotionVariables& variables,
+                                  const Eigen::VectorXd& values, size_t i) {
+  const MotionVariable& one = variables.all()[i];
+  MovedVariable& moved = moved_[i];
+  const auto at = static_cast<Eigen::Index>(i);
+  const double now = values[at];
+  moved.size = kDisplacement * (now == 0 ? 1 : std::abs(now));
+  if (!one.of_system()) {
+    const bool angle = one.unit.starts_with("rad");
+    moved.size = kDisplacement * (now == 0 || angle ? 1 : std::max(1e-3, std::abs(now)));
+    return;
+  }
+  constexpr int tries = 12;
+  for (int n = 0; n < tries; ++n) {
+    try {
+      for (size_t level = 0; level < moved.pairs.size(); ++level) {
+        const double x = moved.size * ThreeDifferences::parts[level];
+        Eigen::VectorXd there = values;
+        there[at] = now + x;
+        moved.pairs[level].plus = std::make_unique<MovedMotion>(what, variables, there);
+        there[at] = now - x;
+        moved.pairs[level].minus = std::make_unique<MovedMotion>(what, variables, there);
+      }
+      return;
+    } catch (const ConfigError&) {  // out of the range of the parameter
+      moved.size /= 4;
+    }
+  }
+  throw ConfigError({fmt::format(
+      "{}: {} = {}: at the edge of what it may be: there is no derivative", what, one.name, now)});
+}
+
+void TangentMotion::begin(const MotionVariables& variables, const Eigen::VectorXd& values) {
+  const Eigen::Index q = values.size(), n = node_.state.xi.size();
+  node_.columns.setZero(2 * n, q);
+  for (Eigen::Index j = 0; j < q; ++j) {
+    MovedVariable& moved = moved_[static_cast<size_t>(j)];
+    const bool of_system = variables.all()[static_cast<size_t>(j)].of_system();
+    Eigen::VectorXd column;
+    const auto start_of = [&](double x, Eigen::VectorXd& out) {
+      MotionState there;
+      if (of_system) {
+        for (size_t level = 0; level < moved.pairs.size(); ++level)
+          if (std::abs(x) == moved.size * ThreeDifferences::parts[level])
+            there = (x > 0 ? moved.pairs[level].plus : moved.pairs[level].minus)->start();
+      } else {
+        Eigen::VectorXd other = values;
+        other[j] += x;
+        there = motion_.start_at(variables, other);
+      }
+      return displacement(motion_.geometry(), node_.state, there, out);
+    };
+    if (!ThreeDifferences::derivative(ThreeDifferences::fine, moved.size, start_of, column))
+      throw ConfigError({fmt::format("start: no derivative by {}",
+                                     variables.all()[static_cast<size_t>(j)].name)});
+    node_.columns.col(j) = column;
+  }
+  if (measure_) node_.coarse = node_.columns;
+}
+
+void TangentMotion::begin_with(const Eigen::MatrixXd& columns) {
+  moved_.clear();
+  moved_.resize(static_cast<size_t>(columns.cols()));
+  node_.columns = columns;
+  if (measure_) node_.coarse = columns;
+}
+
+// The factor of a column that makes it a displacement of kDisplacement.
+double TangentMotion::size_of(const MotionState& at, const Eigen::VectorXd& column,
+                              double h) const {
+  const Eigen::Index n = at.xi.size();
+  const double still = 1e-3 / std::abs(h);
+  const double rate = std::max(at.xi.cwiseQuotient(units_).lpNorm<Eigen::Infinity>(), still);
+  const double size =
+      std::max(column.head(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>(),
+               column.tail(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>() / rate);
+  return size > 0 ? kDisplacement / size : 0;
+}
+
+bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
+                                Eigen::VectorXd& by) {
+  MotionState begin = from, end;
+  if (projects_ && !motion.project(begin)) {
+    failure_ = "the constraints do not hold at its beginning";
+    return false;
+  }
+  const Status status = motion.step(begin, to.time, end);
+  if (!status.ok) failure_ = status.reason;
+  else if (!displacement(motion.geometry(), to, end, by)) failure_ = "it leads too far";
+  else return true;
+  return false;
+}
+
+bool TangentMotion::push(const TangentState& from, const MotionState& to,
+                         const std::array<double, 3>& weights, const Eigen::MatrixXd& columns,
+                         Eigen::MatrixXd& out) {
+  const Geometry& geometry = motion_.geometry();
+  const double h = to.time - from.state.time;
+  out.setZero(columns.rows(), columns.cols());
+  MotionState begin;
+  Eigen::VectorXd column;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const double e = size_of(from.state, columns.col(j), h);
+    const auto moved_state = [&](double x, Eigen::VectorXd& by) {
+      displace(geometry, from.state, columns.col(j), x, begin);
+      return step_beside(motion_, begin, to, by);
+    };
+    if (e > 0) {
+      if (!ThreeDifferences::derivative(weights, e, moved_state, column)) return false;
+      out.col(j) = column;
+    }
+    MovedVariable& moved = moved_[static_cast<size_t>(j)];
+    if (moved.pairs.front().plus == nullptr) continue;
+    const auto moved_parameter = [&](double x, Eigen::VectorXd& by) {
+      for (size_t level = 0; level < moved.pairs.size(); ++level) {
+        if (std::abs(x) != moved.size * ThreeDifferences::parts[level]) continue;
+        MovedMotion& other = x > 0 ? *moved.pairs[level].plus : *moved.pairs[level].minus;
+        return step_beside(other, from.state, to, by);
+      }
+      return false;
+    };
+    if (!ThreeDifferences::derivative(weights, moved.size, moved_parameter, column)) return false;
+    out.col(j) += column;
+  }
+  return true;
+}
+
+// known: the end of the step as the run has it.
+Status TangentMotion::step(const TangentState& from, double t, TangentState& to,
+                           const MotionState* known) {
+  MotionState end;
+  if (Status status = motion_.step(from.state, t, end); !status.ok) return status;
+  if (known != nullptr) {
+    Eigen::VectorXd off;
+    const double h = t - from.state.time;
+    const bool near = displacement(motion_.geometry(), end, *known, off);
+    const double factor = near ? size_of(end, off, h) : 0;
+    if (!near || (factor > 0 && factor < kDisplacement / kRepeats))
+      return no_tangent(from.state.time, "the step of the run is not repeated from its state");
+    end = *known;
+  }
+  Eigen::MatrixXd columns, coarse;
+  const auto pushed = [&] {
+    return push(from, end, ThreeDifferences::fine, from.columns, columns) &&
+           (!measure_ || push(from, end, ThreeDifferences::coarse, from.coarse, coarse));
+  };
+  if (!pushed() && (std::exchange(projects_, true) || !pushed()))
+    return no_tangent(from.state.time, "a step beside it fails: " + failure_);
+  to = {std::move(end), std::move(columns), std::move(coarse)};
+  ++steps_;
+  return {};
+}
+
+Status TangentMotion::advance_to(double t) {
+  side_ = false;
+  const bool chosen = motion_.plan().config.chooses_steps();
+  if (chosen) kernel_->set_end_time(t);
+  TangentState next;
+  for (;;) {
+    const double h = kernel_->next_step(), left = t - node_.state.time;
+    const double tiny = 1e-10 * std::abs(chosen ? left == 0 ? 1 : left : h);
+    if (std::abs(left) <= (chosen ? 0 : tiny) || left * h < 0) return {};
+    if (!chosen && std::abs(left) < std::abs(h) - tiny) break;
+    if (Status status = kernel_->advance(1); !status.ok) return status;
+    kernel_->node(at_);
+    const MotionState end = motion_.state_of(at_);
+    if (end.time == node_.state.time) return {};
+    if (Status status = step(node_, end.time, next, &end); !status.ok) return status;
+    node_ = std::move(next);
+  }
+  if (Status status = step(node_, t, shown_, nullptr); !status.ok) return status;
+  side_ = true;
+  return {};
+}
+
+bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen::MatrixXd& out) {
+  Eigen::VectorXd here, column;
+  f(motion_, at.state, here);
+  out.setZero(here.size(), at.columns.cols());
+  MotionState there;
+  for (Eigen::Index j = 0; j < at.columns.cols(); ++j) {
+    const double e = size_of(at.state, at.columns.col(j), kernel_->next_step());
+    const auto moved_state = [&](double x, Eigen::VectorXd& values) {
+      displace(motion_.geometry(), at.state, at.columns.col(j), x, there);
+      f(motion_, there, values);
+      return true;
+    };
+    if (e > 0) {
+      if (!ThreeDifferences::derivative(ThreeDifferences::fine, e, moved_state, column))
+        return false;
+      out.col(j) = column;
+    }
+    MovedVariable& moved = moved_[static_cast<size_t>(j)];
+    if (moved.pairs.front().plus == nullptr) continue;
+    const auto moved_parameter = [&](double x, Eigen::VectorXd& values) {
+      for (size_t level = 0; level < moved.pairs.size(); ++level) {
+        if (std::abs(x) != moved.size * ThreeDifferences::parts[level]) continue;
+        f(x > 0 ? *moved.pairs[level].plus : *moved.pairs[level].minus, at.state, values);
+        return true;
+      }
+      return false;
+    };
+    if (!ThreeDifferences::derivative(ThreeDifferences::fine, moved.size, moved_parameter, column))
+      return false;
+    out.col(j) += column;
+  }
+  return true;
+}
+
+}  // namespace hamel

@@ -1,0 +1,86 @@
+// A motion with its derivatives by variables: a product of the tangents of its steps. Not
+// installed.
+//
+//   (eta, dxi)_{k+1} = D_z Psi (eta, dxi)_k + D_p Psi,     z_{k+1} = Psi(z_k; p, h_k)
+// dg = g eta^, left-trivialised; Psi is the map of an accepted step, h_k frozen. Its derivatives
+// are differences of this map (step_differences.hpp), never of the run: a finite displacement does
+// not grow along the motion. Psi is defined beside the constraints of p too, where a kernel begins
+// with the admissible part of a velocity; a kernel that does not is given the state projected onto
+// them, Psi_p(Pi_p z), by z and by p alike.
+//   The error is measured: a second set of columns is carried with coarser differences.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <hamel/framework/tangent/moved_motion.hpp>
+
+namespace hamel {
+
+/// The motion at other values of one variable: at value + size parts[i], and -.
+struct MovedPair {
+  std::unique_ptr<MovedMotion> plus, minus;
+};
+struct MovedVariable {
+  double size = 0;
+  std::array<MovedPair, 3> pairs;  // of ThreeDifferences::parts; empty: the start alone moves
+};
+
+/// A state and the columns (eta; dxi) by each variable.
+struct TangentState {
+  MotionState state;
+  Eigen::MatrixXd columns;  // 2n x q
+  Eigen::MatrixXd coarse;   // the second set; empty where no errors are measured
+};
+
+class TangentMotion {
+ public:
+  /// The motion alone, with its columns, or with both sets of them.
+  enum class Carries { values, columns, errors };
+  /// ConfigError where a motion of these values cannot be made.
+  TangentMotion(const std::string& what, const MotionVariables& variables,
+                const Eigen::VectorXd& values, Carries carries);
+
+  /// Steps to t, beyond the last one: chosen steps end there, of others a shorter one, from which
+  /// the next do not go on.
+  Status advance_to(double t);
+  /// At the last t.
+  const TangentState& now() const { return side_ ? shown_ : node_; }
+  /// The derivative of values of a state along each variable, rows x q. f(motion, state, out): a
+  /// function of the state, and of the parameters of the motion.
+  using Function = std::function<void(MovedMotion&, const MotionState&, Eigen::VectorXd&)>;
+  bool derivative(const TangentState& at, const Function& f, Eigen::MatrixXd& out);
+
+  MovedMotion& motion() { return motion_; }
+  int steps() const { return steps_; }
+
+  /// Columns that are not those of the variables: of a state, one for each.
+  void begin_with(const Eigen::MatrixXd& columns);
+
+ private:
+  double size_of(const MotionState& at, const Eigen::VectorXd& column, double h) const;
+  void move_variable(const std::string& what, const MotionVariables& variables,
+                     const Eigen::VectorXd& values, size_t i);
+  void begin(const MotionVariables& variables, const Eigen::VectorXd& values);
+  Status step(const TangentState& from, double t, TangentState& to, const MotionState* known);
+  // A step of a motion as a displacement from `to`.
+  bool step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
+                   Eigen::VectorXd& by);
+  bool push(const TangentState& from, const MotionState& to, const std::array<double, 3>& weights,
+            const Eigen::MatrixXd& columns, Eigen::MatrixXd& out);
+
+  MovedMotion motion_;
+  std::vector<MovedVariable> moved_;
+  std::unique_ptr<Kernel> kernel_;  // of the run itself
+  Eigen::VectorXd units_;           // of displacements
+  TangentState node_, shown_;
+  Snapshot at_;
+  std::string failure_;  // of a step beside the motion
+  bool side_ = false, measure_, projects_ = false;
+  int steps_ = 0;
+};
+
+}  // namespace hamel
