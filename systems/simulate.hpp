@@ -12,10 +12,10 @@
 #include <hamel/framework/analysis/equations.hpp>
 #include <hamel/framework/analysis/linearisation.hpp>
 #include <hamel/framework/analysis/section.hpp>
-#include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/ensemble/ensemble.hpp>
 #include <hamel/framework/inverse/fit.hpp>
+#include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 #include <hamel/framework/study/study.hpp>
 #include <hamel/framework/tangent/sensitivities.hpp>

@@ -9,8 +9,8 @@
 #include <Eigen/Cholesky>
 
 #include <hamel/framework/analysis/central_differences.hpp>
-#include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/io/errors.hpp>
+#include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/run/driver.hpp>

@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/io/number_matrix.hpp>
 #include <hamel/framework/io/export.hpp>
+#include <hamel/framework/io/number_matrix.hpp>
 #include <hamel/framework/run/run/simulation.hpp>
 
 namespace hamel {

@@ -21,9 +21,9 @@
 
 #include <vector>
 
-#include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
+#include <hamel/framework/mechanics/natural_units.hpp>
 
 namespace hamel {
 

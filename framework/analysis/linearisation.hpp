@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include <hamel/framework/io/number_matrix.hpp>
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/io/export.hpp>
+#include <hamel/framework/io/number_matrix.hpp>
 
 namespace hamel {
 

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/analysis/state_units.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
+#include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/framework/run/run/start_names.hpp>
 

@@ -49,7 +49,7 @@ struct ContactOptions {
   std::optional<double> friction = {}, restitution = {};
   std::optional<double> load = {};      // N, where its height cannot change; left out: of statics
   std::optional<bool> unilateral = {};  // may it open? As its friction and height have it
-  // Of a ball: the body on whose sphere or cylinder, or inside it, it rolls; neither: the ground.
+  // For a ball: the body on whose sphere or cylinder, or inside it, it rolls; neither: the ground.
   std::string on = {}, inside = {};
 };
 struct WheelOptions {
@@ -60,7 +60,7 @@ struct WheelOptions {
   // As in ContactOptions.
   std::optional<double> friction = {}, restitution = {}, load = {};
   std::optional<bool> unilateral = {};
-  std::string on = {}, inside = {};  // of a ball
+  std::string on = {}, inside = {};  // as there, of a ball
 };
 struct BladeOptions {
   Point at = {0, 0, 0};     // m

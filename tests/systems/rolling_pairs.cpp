@@ -105,8 +105,7 @@ TEST(RollingPairs, BallInABowlIsThatOnSuchGround) {
   const Result one = exactly(pair, 2), other = exactly(ground, 2);
   ASSERT_TRUE(one.status.ok) << one.status.reason;
   ASSERT_TRUE(other.status.ok) << other.status.reason;
-  for (const char* name :
-       {"x", "y", "z", "v1", "v2", "v3", "w1", "w2", "w3", "contact.reaction3"})
+  for (const char* name : {"x", "y", "z", "v1", "v2", "v3", "w1", "w2", "w3", "contact.reaction3"})
     EXPECT_NEAR(column(one, name).back(), column(other, name).back(), 1e-7) << name;
 }
 

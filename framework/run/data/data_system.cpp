@@ -210,7 +210,7 @@ class File {
 
   // Start, events, invariants, contacts and drawing.
   void rest() {
-    // Those of states may be left out: they are 0, and their rates follow from the rows.
+    // Numbers of states may be left out: they are 0, and their rates follow from the rows.
     const auto start = [&](const std::string& key, size_t count, std::vector<double>& out) {
       const Node* node = table_.get(key);
       if (node == nullptr) return;
