@@ -63,7 +63,7 @@ TEST(PageData, PlotWithFitsMarkersAndFilters) {
                       .x = {0.1, 0.2},
                       .y = {1, 2},
                       .markers = true,
-                      .fit = Fit{2.0004, "order 2.00"},
+                      .fit = figures::Fit{2.0004, "order 2.00"},
                       .tags = {{"system", "suslov"}}};
     page.add({.title = "Order",
               .drawing = Plot{.x = {"h", "", true},

@@ -45,7 +45,7 @@ StudySystem system_of(nb::handle given) {
 }
 
 // A list of systems or of values, and not one of them.
-bool is_list(nb::handle value) {
+bool has_several(nb::handle value) {
   return !nb::isinstance<nb::str>(value) && !nb::isinstance<nb::dict>(value) &&
          nb::hasattr(value, "__iter__");
 }
@@ -69,13 +69,13 @@ StudyConfig study_of(nb::handle file, const nb::dict& options) {
     else if (name == "reference") config.reference = nb::cast<bool>(value);
     else if (name == "system") {
       config.systems.clear();
-      if (!is_list(value)) config.systems.push_back(system_of(value));
+      if (!has_several(value)) config.systems.push_back(system_of(value));
       else
         for (const nb::handle each : value) config.systems.push_back(system_of(each));
     } else {
       StudyValues& values = config.axes[name];
       values.clear();
-      if (!is_list(value)) values.push_back(word_of(value));
+      if (!has_several(value)) values.push_back(word_of(value));
       else
         for (const nb::handle each : value) values.push_back(word_of(each));
     }
