@@ -88,9 +88,11 @@ void FileParts::contacts() {
                                {"friction", read_.read(o.friction)},
                                {"restitution", read_.read(o.restitution)},
                                {"load", read_.read(o.load)},
-                               {"unilateral", read_.read(o.unilateral)},
-                               {"on", read_.read(o.on)},
-                               {"inside", read_.read(o.inside)}};
+                               {"unilateral", read_.read(o.unilateral)}};
+      if (kind.name == "ball") {
+        keys.emplace_back("on", read_.read(o.on));
+        keys.emplace_back("inside", read_.read(o.inside));
+      }
       add_fields(kind.fields, o.values, keys);
       read_.entries(table, keys);
       m_.contact(kind.name, name.empty() ? body : name, body, o);

@@ -1,4 +1,4 @@
-// The JSON schemas of the five kinds of TOML files: every file of the repository fits its own, and
+// The JSON schemas of the six kinds of TOML files: every file of the repository fits its own, and
 // each schema has the keys that the reader of its files accepts, no more and no fewer.
 #include <filesystem>
 #include <regex>
@@ -16,6 +16,7 @@
 #include "program.hpp"
 
 #include <hamel/framework/ensemble/ensemble.hpp>
+#include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/study/study.hpp>
 #include <hamel/systems/mechanisms/contact.hpp>
@@ -26,7 +27,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::vector<std::string> kKinds = {"run", "system", "study", "ensemble", "mechanism"};
+const std::vector<std::string> kKinds = {"run", "system", "study", "ensemble", "mechanism", "plan"};
 
 std::filesystem::path root() {
   const char* source = std::getenv("HAMEL_SOURCE");
@@ -66,6 +67,7 @@ std::string misfit(const std::string& kind, const json& data) {
 
 std::string kind_of(const json& data) {
   if (data.contains("keep")) return "ensemble";
+  if (data.contains("to")) return "plan";
   if (data.contains("system")) return data["system"].is_array() ? "study" : "run";
   return data.contains("body") ? "mechanism" : "system";
 }
@@ -105,6 +107,7 @@ auto reader(const std::string& kind, const std::string& text) {
     using namespace hamel;
     if (kind == "run") Config::from_toml(text);
     else if (kind == "ensemble") parse_ensemble(text, "ensemble", registry());
+    else if (kind == "plan") parse_plan(text, "plan");
     else if (kind == "study") parse_study(text, "study", registry());
     else data_system_maker(registry(), "file.toml", text)({});
   };
@@ -185,7 +188,9 @@ TEST(Schemas, HaveTheKeysOfTheReaders) {
       {"ensemble", "system = 'suslov'\nkeep = ['end.t']\nclass = { zzz = 1 }", "/properties/class"},
       {"ensemble", "system = 'suslov'\nkeep = ['end.t']\nhistograms = { a = { zzz = 1 } }",
        "/properties/histograms/additionalProperties/anyOf/1"},
+      {"plan", "zzz = 1\nsystem = 'suslov'", ""},
       {"system", "zzz = 1\n" + system, ""},
+      {"system", system + "[[state]]\nzzz = 1", "/properties/state/items"},
       {"system", system + "[parameters]\nm = { value = 1, zzz = 1 }",
        "/properties/parameters/additionalProperties/anyOf/1"},
       {"system", system + "[inputs]\nu = { zzz = 1 }", "/properties/inputs/additionalProperties"},
@@ -207,8 +212,8 @@ TEST(Schemas, HaveTheKeysOfTheReaders) {
        "/properties/outputs/additionalProperties/anyOf/1"},
       {"mechanism", body + joint + "[ground]\nzzz = 1", "/properties/ground"}};
   std::vector<std::string> parts = hamel::mechanisms::names_of(hamel::mechanisms::contact_kinds());
-  for (const char* part :
-       {"loop", "prescribed", "spring", "motor", "force", "torque", "coupling", "sensor", "state"})
+  for (const char* part : {"loop", "prescribed", "spring", "motor", "brake", "force", "torque",
+                           "coupling", "sensor", "state"})
     parts.emplace_back(part);
   for (const std::string& part : parts)
     cases.emplace_back("mechanism", body + joint + "[[" + part + "]]\nzzz = 1",

@@ -1,4 +1,4 @@
-// The stage solver against closed facts (derivatives.md, section 3).
+// The stage solver against closed facts.
 #include <numbers>
 
 #include <gtest/gtest.h>
