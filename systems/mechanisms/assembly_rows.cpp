@@ -27,10 +27,12 @@ std::vector<RowLabel> Assembly::rows_in_words(const std::vector<RowInfo>& rows) 
       for (const auto& part : parts)
         if (part.name == row.part) say(part, kind);
     };
-    for (const auto& part : parts_.contacts_)
-      if (part.name == row.part) say(part, part.kind);
-    for (const auto& part : parts_.loops_)
-      if (part.name == row.part) say(part, part.kind);
+    const auto find_of_kind = [&](const auto& parts) {
+      for (const auto& part : parts)
+        if (part.name == row.part) say(part, part.kind);
+    };
+    find_of_kind(parts_.contacts_);
+    find_of_kind(parts_.loops_);
     if (row.slips && !row.length) {
       find(parts_.walls_, "wall");
       for (const auto& part : parts_.joints_)

@@ -225,42 +225,49 @@ void Assembly::name_columns() {
   name_quantities(model_);
 }
 
+namespace {
+
+const char* taken_by(const std::string& kind) {
+  if (kind == "input") return "this name is taken";
+  return kind == "brake" ? "this joint has a brake already"
+                         : "this joint is driven by an input already";
+}
+
+// The input of a motor, of a prescribed joint, of a brake.
+InputField input_of_joint(const std::string& joint, const std::string& kind, bool slider,
+                          const Range& range) {
+  const std::string effort = slider ? "force" : "torque", unit = slider ? "N" : "N m";
+  if (kind == "prescribed")
+    return {joint + ".rate", slider ? "m/s" : "rad/s", "rate of this joint", range};
+  if (kind == "brake")
+    return {joint + ".brake", unit, "bound of the " + effort + " of the brake", range};
+  return {joint + "." + effort, unit, effort + " of the motor in this joint", range};
+}
+
+}  // namespace
+
 // Motors and prescribed joints without a signal, brakes, then inputs by name.
 void Assembly::state_inputs() {
   const auto add = [&](const Part& part, const std::string& kind, InputField field) {
     for (const InputField& other : model_.inputs) {
       if (other.name != field.name) continue;
-      wrong(part, kind,
-            kind == "input"   ? "this name is taken"
-            : kind == "brake" ? "this joint has a brake already"
-                              : "this joint is driven by an input already");
+      wrong(part, kind, taken_by(kind));
     }
     model_.inputs.push_back(std::move(field));
     if (model_.inputs.size() == kMostInputs + 1)
       wrong(part, kind, fmt::format("expected at most {} inputs", kMostInputs));
   };
-  const auto of_joint = [&](const auto& part, const std::string& kind, bool rate) {
+  const auto of_joint = [&](const auto& part, const std::string& kind) {
     const auto at = std::find(link_names_.begin(), link_names_.end(), part.name);
     if (at == link_names_.end()) return;  // reported with the others
     const bool slider = links_[static_cast<size_t>(at - link_names_.begin())].joint->only_slides();
-    const std::string of = slider ? "force" : "torque";
-    if (kind == "brake")
-      add(part, kind,
-          {part.name + ".brake", slider ? "N" : "N m", "bound of the " + of + " of the brake",
-           part.range});
-    else if (rate)
-      add(part, kind,
-          {part.name + ".rate", slider ? "m/s" : "rad/s", "rate of this joint", part.range});
-    else
-      add(part, kind,
-          {part.name + "." + of, slider ? "N" : "N m", of + " of the motor in this joint",
-           part.range});
+    add(part, kind, input_of_joint(part.name, kind, slider, part.range));
   };
   for (const auto& part : parts_.motors_)
-    if (!part.effort) of_joint(part, "motor", false);
+    if (!part.effort) of_joint(part, "motor");
   for (const auto& part : parts_.rates_)
-    if (!part.rate) of_joint(part, "prescribed", true);
-  for (const auto& part : parts_.brakes_) of_joint(part, "brake", false);
+    if (!part.rate) of_joint(part, "prescribed");
+  for (const auto& part : parts_.brakes_) of_joint(part, "brake");
   for (const auto& part : parts_.inputs_) add(part, "input", part.field);
 }
 
