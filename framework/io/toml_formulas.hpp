@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/io/expression.hpp>
+#include <hamel/framework/io/let_names.hpp>
 #include <hamel/framework/io/toml_reader.hpp>
 
 namespace hamel {
@@ -29,6 +30,31 @@ class TomlFormulas {
   /// Names allowed in every formula from now on.
   void set(const std::string& name, double value) { constants_[name] = value; }
   const Constants& constants() const { return constants_; }
+  const LetNames& lets() const { return lets_; }
+
+  /// Names for parts of formulas, in every formula from now on: the table [let] of a file.
+  void read_lets(const toml::table& file) {
+    const Node* node = file.get("let");
+    if (node == nullptr) return;
+    const toml::table* table = node->as_table();
+    if (table == nullptr) return toml_.wrong(*node, "let", "a table, name = \"formula\"");
+    for (const auto& [key, entry] : *table) {
+      const std::string name(key.str());
+      if (!Expression::allows(name))
+        toml_.wrong(entry, "let", fmt::format("a name allowed in a formula, got '{}'", name));
+      else if (constants_.contains(name))
+        toml_.wrong(entry, "let." + name, "a name that nothing else has");
+      else if (entry.is_string() || entry.is_number()) lets_.set(name, written(entry));
+      else toml_.wrong(entry, "let." + name, "a number or a formula");
+    }
+    for (const auto& [name, text] : lets_.texts()) {  // names are known where it stands
+      const Node& entry = *table->get(name);
+      parse(entry, "let." + name, [&] {
+        const std::string whole = lets_.expand(text).text;
+        return Expression(whole, LetNames::words(whole));
+      });
+    }
+  }
 
   /// Texts of formulas are read as this function returns them.
   void read_by(std::function<std::string(const std::string&)> reader) {
@@ -66,27 +92,49 @@ class TomlFormulas {
     if (++count_ > kMostFormulas)
       throw ConfigError(
           {fmt::format("{}: more than {} formulas", toml_.place(node), kMostFormulas)});
-    try {
-      return Expression(text(node), variables, constants_);
-    } catch (const ExpressionError& error) {
-      toml::source_position at = node.source().begin;
-      if (node.source().end.line == at.line)  // behind the quote
-        at.column += static_cast<toml::source_index>(1 + error.position());
-      toml_.mistakes.push_back(fmt::format("{}: {}: {}", toml_.place(at), key, error.what()));
-      return {};
-    }
+    return parse(node, key, [&] { return Expression(text(node), variables, constants_); });
   }
 
-  /// The formula of a node that is a number or a text.
+  /// The formula of a node that is a number or a text, without names of [let].
   std::string text(const Node& node) const {
-    const std::string out =
-        node.is_number() ? fmt::format("{}", *node.value<double>()) : node.value_or(std::string());
+    const std::string out = lets_.empty() ? written(node) : lets_.expand(written(node)).text;
     return reader_ ? reader_(out) : out;
   }
 
  private:
+  static std::string written(const Node& node) {
+    return node.is_number() ? fmt::format("{}", *node.value<double>())
+                            : node.value_or(std::string());
+  }
+  // Calls make(); its error becomes a mistake at its character.
+  template <class Make>
+  std::optional<Expression> parse(const Node& node, const std::string& key, const Make& make) {
+    try {
+      return make();
+    } catch (const ExpressionError& error) {
+      size_t position = error.position();
+      std::string within;
+      try {
+        const LetNames::Expanded whole = lets_.expand(written(node));
+        if (position < whole.origin.size()) {
+          if (const std::string* let = whole.let[position])
+            within = fmt::format(" (in let.{})", *let);
+          position = whole.origin[position];
+        }
+      } catch (const ExpressionError&) {  // that is the error
+      }
+      toml::source_position at = node.source().begin;
+      if (node.source().end.line == at.line)  // behind the quote
+        at.column += static_cast<toml::source_index>(1 + position);
+      toml_.mistakes.push_back(
+          fmt::format("{}: {}: {}{}", toml_.place(at), key, error.what(), within));
+      return {};
+    }
+  }
+
   TomlReader& toml_;
   Constants constants_;
+  LetNames lets_;
   std::function<std::string(const std::string&)> reader_;
   int count_ = 0;
 };

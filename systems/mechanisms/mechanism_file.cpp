@@ -58,6 +58,8 @@ class File {
     std::string name = word("name");
     if (name.empty()) name = origin_;
     fields_ = read_parameters(read_.toml, read_.formulas, table_, name, given);
+    read_.formulas.read_lets(table_);
+    stop_at_mistakes();
   }
 
   Mechanism parts() {
@@ -91,21 +93,13 @@ class File {
 
   void check_keys() {
     std::vector<std::string> known = mechanisms::names_of(mechanisms::contact_kinds());
-    for (const char* key : {"asks",       "body",
-                            "brake",      "coupling",
-                            "events",     "force",
-                            "formula",    "gravity",
-                            "ground",     "inputs",
-                            "joint",      "known",
-                            "loop",       "motor",
-                            "name",       "outputs",
-                            "parameters", "prescribed",
-                            "push",       "redundant",
-                            "sensor",     "slope",
-                            "source",     "spring",
-                            "start",      "start_arguments",
-                            "state",      "summary",
-                            "torque",     "wall"})
+    for (const char* key :
+         {"asks",       "body",    "brake",           "coupling", "events",  "force",
+          "formula",    "gravity", "ground",          "inputs",   "joint",   "known",
+          "let",        "loop",    "motor",           "name",     "outputs", "parameters",
+          "prescribed", "push",    "redundant",       "sensor",   "slope",   "source",
+          "spring",     "start",   "start_arguments", "state",    "summary", "torque",
+          "wall"})
       known.emplace_back(key);
     std::ranges::sort(known);
     for (const auto& [name, node] : table_) {
@@ -126,6 +120,7 @@ class File {
       }
     };
     each("parameters", [&](const std::string& key) { return read_.names(key); });
+    each("let", [&](const std::string& key) { return read_.names(key); });
     each("inputs", [&](const std::string& key) { return !read_.names_input(key); });
     stop_at_mistakes();
   }

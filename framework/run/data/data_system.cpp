@@ -35,6 +35,7 @@ class File {
     states();
     model_.inputs = read_input_fields(read_, table_);
     model_.fields = read_parameters(read_, formulas_, table_, model_.name, given);
+    formulas_.read_lets(table_);
     name_all();
     check_keys();
     DataFormulasReader matrices(read_, formulas_, table_, names_);
@@ -163,6 +164,7 @@ class File {
             std::find(coordinates.begin(), coordinates.end(), component.name) != coordinates.end())
           all.push_back(component.name);
     }
+    for (const auto& [name, text] : formulas_.lets().texts()) all.push_back(name);
     for (const auto& [name, value] : formulas_.constants()) {
       all.push_back(name);
       if (names.find(name) && !name.starts_with("xi")) all.push_back(name);
@@ -194,10 +196,10 @@ class File {
 
   void check_keys() {
     static const Names known = {
-        "configuration", "constraints", "contacts",   "coordinates", "draw",    "drift",
-        "events",        "floor",       "force",      "from_above",  "group",   "holonomic",
-        "inertia",       "inputs",      "invariants", "momentum",    "name",    "outputs",
-        "parameters",    "potential",   "rates",      "state",       "velocity"};
+        "configuration", "constraints", "contacts",   "coordinates", "draw",     "drift",
+        "events",        "floor",       "force",      "from_above",  "group",    "holonomic",
+        "inertia",       "inputs",      "invariants", "let",         "momentum", "name",
+        "outputs",       "parameters",  "potential",  "rates",       "state",    "velocity"};
     for (const auto& [name, node] : table_) {
       const std::string key(name.str());
       if (std::find(known.begin(), known.end(), key) == known.end())
