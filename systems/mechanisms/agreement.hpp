@@ -8,15 +8,10 @@
 // d'Andrea-Novel, IEEE Trans. Robotics and Automation 12 (1996), 2.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
-
-namespace hamel::graph {
-class Number;
-}
 
 namespace hamel::mechanisms {
 
@@ -27,13 +22,12 @@ inline constexpr std::string_view kAgreement = "agreement";
 
 /// Counted among the rows but agreements, in the order of ConstraintRows::each().
 struct Agreement {
-  std::vector<std::pair<int, int>> pivots;  // rows and velocities, in the order of elimination
+  std::vector<std::pair<int, int>> pivots;  // rows and velocities
   int row = 0, velocity = 0;                // the entry
 
-  /// The first of the pivots that psi contains; those before divide.
-  std::size_t expanded() const;
-  /// psi.
-  graph::Number formula(std::span<const RecordedRow> rows) const;
+  struct Formula;
+  /// psi, over the pivots that are constant.
+  Formula formula(std::span<const RecordedRow> rows) const;
 };
 
 }  // namespace hamel::mechanisms

@@ -25,6 +25,7 @@ class Writer {
   FileFormat::Converted convert() {
     find_root();
     weld_joints(robot_, values_of("weld"), values_of("weld-all-but"), path_, mistakes_, notes_);
+    hang_massless_root();
     check_masses();
     check_mimics();
     weld_all();
@@ -75,6 +76,21 @@ class Writer {
       wrong(unknown_name("root", given.back(), known));
     root_ = given.back();
     robot_.root_free = root_ == "free";
+  }
+
+  // A root without mass cannot move on its own: a rail, a stand, the flange of an arm.
+  void hang_massless_root() {
+    if (root_ != "planar" || !values_of("root").empty() || !values_of("wheel").empty()) return;
+    std::vector<bool> of_root(robot_.links.size(), true);
+    for (int i = 0; i < robot_.count(); ++i) {
+      const RobotLink& l = robot_.link(i);
+      const auto at = static_cast<size_t>(i);
+      of_root[at] = i == 0 || (of_root[static_cast<size_t>(l.parent)] && !l.joint.moves());
+      if (of_root[at] && l.mass > 0) return;
+    }
+    root_ = "fixed";
+    note("the root has no mass and is fixed to the ground (--root planar or free)",
+         {robot_.links.front().name});
   }
 
   // Refuses joints that move no mass, and hinges that turn no moment of inertia.

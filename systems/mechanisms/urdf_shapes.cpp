@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kLevel = 0.3;       // the most of the third component of a level axle
 constexpr double kSameLevel = 0.02;  // m, of axles
-constexpr double kLowest = 0.25;     // of the radius: heights of wheels that stand on one ground
 
 double lowest_of(const RobotShape& shape) {
   using Kind = RobotShape::Kind;
@@ -59,7 +58,7 @@ std::vector<RobotWheel> wheels_by_shape(const Robot& robot) {
       std::ranges::min_element(all, {}, [](const RobotWheel& w) { return w.lowest(); })->lowest();
   const double all_lowest = lowest_of(robot);
   std::erase_if(all, [&](const RobotWheel& w) {
-    return w.lowest() > lowest + kLowest * w.radius || lowest > all_lowest + w.radius;
+    return w.lowest() > lowest + kNearHeight * w.radius || lowest > all_lowest + w.radius;
   });
   return all;
 }

@@ -10,6 +10,9 @@ namespace hamel::mechanisms {
 /// Has its name "wheel" in it?
 bool is_called_wheel(const RobotLink& link);
 
+/// Difference in height of wheels on one ground, of the radius.
+inline constexpr double kNearHeight = 0.1;
+
 /// Cylinders about the axis of a hinge and spheres on a hinge, both about a level axle, at the
 /// lowest point of the robot. A fixed sphere is a support without friction.
 std::vector<RobotWheel> wheels_by_shape(const Robot& robot);

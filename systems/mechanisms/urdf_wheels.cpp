@@ -15,7 +15,6 @@ namespace hamel::mechanisms {
 namespace {
 
 constexpr double kSameHeight = 1e-7;  // m
-constexpr double kNearHeight = 0.1;   // of the radius
 
 const std::vector<std::string>& wheel_kinds() {
   static const std::vector<std::string> all = {"wheel", "ball", "omni", "mecanum"};

@@ -179,11 +179,28 @@ TEST_F(UrdfWheels, NamesWhatLooksLikeWheels) {
   EXPECT_THAT(automatic, HasSubstr("# --wheel auto takes \"left\", \"right\"\n"));
   same_end({path, "--wheel", "auto"}, {path + "?wheel=left,right"},
            {"--input", "left_axle.torque=0.1"});
+  // Round parts of another height are none of the wheels.
+  const std::string legs = robot(two_wheels() + wheel("motor", "0.5 0 0.12"));
+  EXPECT_THAT(toml({legs, "--wheel", "auto"}), HasSubstr("takes \"left\", \"right\"\n"));
+  EXPECT_THAT(mistake({legs, "--wheel", "left,motor"}), HasSubstr("does not touch the ground"));
   EXPECT_THAT(toml({robot(two_wheels(kMesh))}),
               HasSubstr("these may be wheels: --wheel left:radius=0.1 --wheel right:radius=0.1"));
   EXPECT_THAT(mistake({robot(two_wheels(kMesh)), "--wheel", "auto"}),
               HasSubstr("without a cylinder or sphere: --wheel left:radius=0.1 --wheel "
                         "right:radius=0.1"));
+}
+
+/// A rail, a stand: its root has no mass, and does not slide.
+TEST_F(UrdfWheels, ARootWithoutMassIsFixed) {
+  const std::string path =
+      robot(link("rail", "") + link("plate", "") +
+            joint("fixed", "bolt", "rail", "plate", "0 0 0.1") + link("cart") +
+            joint("prismatic", "slide", "plate", "cart", "0 0 0", "1 0 0",
+                  "<limit effort=\"1\" velocity=\"1\" lower=\"-9\" upper=\"9\"/>"));
+  EXPECT_EQ(answer({"describe", path})["group"], "r1");
+  EXPECT_THAT(toml({path}), HasSubstr("the root has no mass and is fixed to the ground (--root "
+                                      "planar or free): \"rail\""));
+  EXPECT_THAT(mistake({path, "--root", "planar"}), HasSubstr("nothing that has inertia moves"));
 }
 
 }  // namespace

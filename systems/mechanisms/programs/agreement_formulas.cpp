@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include <hamel/framework/graph/derivatives.hpp>
@@ -15,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double kNoEntry = 1e-9;      // of a row of length 1
 constexpr double kPivot = 0.3;         // of the largest entry of its row
-constexpr size_t kExpanded = 2;        // pivots: the velocities of a base but one
+constexpr size_t kMostFactors = 5;     // of a term: with more, the earliest divide
 constexpr double kIndependent = 1e-6;  // of a direction of length 1
 
 struct Entry {
@@ -65,35 +66,49 @@ VectorXd beyond(const std::vector<VectorXd>& rows, VectorXd v) {
 
 }  // namespace
 
-size_t Agreement::expanded() const { return pivots.size() - std::min(pivots.size(), kExpanded); }
-
-// Pivots but the last ones divide: what is left is a determinant, in which none may vanish.
-Number Agreement::formula(std::span<const RecordedRow> rows) const {
+Agreement::Formula Agreement::formula(std::span<const RecordedRow> rows) const {
   std::vector<std::vector<Number>> a;
   for (const auto& [i, j] : pivots) a.push_back(rows[static_cast<size_t>(i)].coefficients);
   a.push_back(rows[static_cast<size_t>(row)].coefficients);
-  const size_t divided = expanded();
-  for (size_t k = 0; k < divided; ++k) {
+  std::vector<size_t> left(pivots.size());
+  std::iota(left.begin(), left.end(), 0);
+  const auto entry = [&](size_t k) { return a[k][static_cast<size_t>(pivots[k].second)]; };
+  while (!left.empty()) {
+    auto next = std::ranges::find_if(
+        left, [&](size_t k) { return entry(k).constant() && !entry(k).is(0); });
+    if (next == left.end() && left.size() > kMostFactors) next = left.begin();
+    if (next == left.end()) break;
+    const size_t k = *next;
+    left.erase(next);
     const auto column = static_cast<size_t>(pivots[k].second);
-    for (size_t below = k + 1; below < a.size(); ++below) {
-      if (a[below][column].is(0)) continue;
-      const Number factor = a[below][column] / a[k][column];
-      for (size_t j = 0; j < a[k].size(); ++j) a[below][j] -= factor * a[k][j];
-      a[below][column] = 0;
+    std::vector<size_t> others = left;
+    others.push_back(pivots.size());
+    for (const size_t other : others) {
+      if (a[other][column].is(0)) continue;
+      const Number factor = a[other][column] / a[k][column];
+      for (size_t j = 0; j < a[k].size(); ++j) a[other][j] -= factor * a[k][j];
+      a[other][column] = 0;
     }
   }
+  Formula out;
+  std::vector<std::vector<Number>> factors;
   std::vector<size_t> columns;
-  for (size_t k = divided; k < pivots.size(); ++k)
+  for (const size_t k : left) {
+    factors.push_back(a[k]);
     columns.push_back(static_cast<size_t>(pivots[k].second));
+    out.factors.push_back(pivots[k]);
+  }
+  factors.push_back(a.back());
   columns.push_back(static_cast<size_t>(velocity));
-  return determinant(std::span(a).subspan(divided), columns);
+  out.psi = determinant(factors, columns);
+  return out;
 }
 
 RecordedRow agreement_row(const Agreement& agreement, std::span<const RecordedRow> rows,
                           const BodyFormulas& bodies, const ConstraintRows& kinds,
                           const RowInputs& inputs) {
   RecordedRow out;
-  out.phi = agreement.formula(rows);
+  out.phi = agreement.formula(rows).psi;
   std::vector<Number> places(inputs.g.begin(), inputs.g.end());
   places.insert(places.end(), inputs.coupled.begin(), inputs.coupled.end());
   const std::vector<Number> slopes = graph::gradient({out.phi}, {1}, places);
@@ -177,9 +192,9 @@ class AgreementSearch {
   bool vanishes(const Number& psi, Sample& sample) const {
     double size = at(sample, row(base_.row)).lpNorm<1>();
     double unit = units_[base_.velocity];
-    for (size_t k = base_.expanded(); k < base_.pivots.size(); ++k) {
-      size *= at(sample, row(base_.pivots[k].first)).lpNorm<1>();
-      unit *= units_[base_.pivots[k].second];
+    for (const auto& [i, column] : base_.formula(rows_).factors) {
+      size *= at(sample, row(i)).lpNorm<1>();
+      unit *= units_[column];
     }
     return std::abs(unit * sample.value(psi)) <= kNoEntry * size;
   }

@@ -9,6 +9,13 @@
 
 namespace hamel::mechanisms {
 
+/// An equation, and the pivots that are factors of its terms: it is their determinant, as none of
+/// them may divide where it could vanish along a motion.
+struct Agreement::Formula {
+  Number psi;
+  std::vector<std::pair<int, int>> factors;
+};
+
 /// psi of a row and its differential along the velocities.
 RecordedRow agreement_row(const Agreement& agreement, std::span<const RecordedRow> rows,
                           const BodyFormulas& bodies, const ConstraintRows& kinds,
