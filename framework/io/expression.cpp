@@ -1,6 +1,7 @@
 #include <hamel/framework/io/expression.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include <hamel/framework/io/expression_rules.hpp>
 
@@ -106,6 +107,32 @@ bool Expression::may_jump() const {
   return std::ranges::any_of(instructions_, [](const Instruction& i) {
     return i.op == Op::choose || (i.rule->by_first == kNone && i.rule->by_second == kNone);
   });
+}
+
+Expression::Dependence Expression::dependence(size_t first, size_t count) const {
+  Dependence out = Dependence::linear;
+  for (int seed = 1; seed <= 3; ++seed) {
+    std::vector<double> at(count), slopes(count, 0.0);
+    for (size_t i = 0; i < count; ++i)
+      at[i] = std::sin(12.9898 * (static_cast<double>(i) + 1) + 78.233 * seed);
+    const auto along = [&](double factor) {
+      std::vector<double> values = at;
+      for (size_t i = first; i < count; ++i) values[i] *= factor;
+      return (*this)(values);
+    };
+    const double none = along(0), one = along(1) - none, three = along(3) - none;
+    if (!std::isfinite(none + one + three)) continue;
+    if (none != 0) out = Dependence::affine;
+    differentiate(at, 1, slopes);
+    double linear = 0, size = std::abs(one) + std::abs(none);
+    for (size_t i = first; i < count; ++i) {
+      linear += slopes[i] * at[i];
+      size += std::abs(slopes[i] * at[i]);
+    }
+    if (std::abs(one - linear) > 1e-12 * size || std::abs(three - 3 * one) > 1e-12 * size)
+      return Dependence::nonlinear;
+  }
+  return out;
 }
 
 }  // namespace hamel

@@ -51,6 +51,10 @@ class Expression {
   /// The variables that occur in it, by index.
   std::vector<size_t> used() const;
   bool constant() const { return inputs_.empty(); }
+  /// How it depends on its variables from `first` on, of so many: linearly, linearly but for a term
+  /// without them, or neither; tried at scattered values of all.
+  enum class Dependence { linear, affine, nonlinear };
+  Dependence dependence(size_t first, size_t count) const;
   /// Are its derivatives constant, as its form shows?
   bool linear() const;
   /// Does a comparison, a ? b : c, sign or rint of variables occur in it?

@@ -18,6 +18,8 @@ struct Start {
 /// expect.
 struct SystemStart : Start {
   std::vector<std::string> notes = {};
+  std::vector<std::string> notes_of_projection =
+      {};  // beside these where it is projected onto rows
 
   SystemStart() = default;
   SystemStart(Start start) : Start(std::move(start)) {}

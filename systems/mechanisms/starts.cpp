@@ -274,7 +274,7 @@ SystemStart Starts::solve(const Values& values, double t, const Places& places) 
   const VectorXd velocity = found(equations.a, equations.solution());
   start.velocity.assign(velocity.begin(), velocity.end());
   if (!slipping.empty())
-    start.notes.push_back(
+    start.notes_of_projection.push_back(
         fmt::format("the start requires that {} slip{}: --slip starts so, without it they roll",
                     join(slipping), slipping.size() > 1 ? "" : "s"));
   if (const std::string joints = unasked(found.of_joints(), values, found, velocity);

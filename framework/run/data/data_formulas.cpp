@@ -42,39 +42,12 @@ void DataFormulasReader::states(const Names& variables, FormulaMatrix& out) {
     }
     entry(*rate, "state.rate", variables, out, static_cast<Eigen::Index>(i), 0);
     if (out.entries.empty() || out.entries.back().row != static_cast<Eigen::Index>(i)) continue;
-    if (const std::string how =
-            not_linear(out.entries.back().value, variables.size() - names_.rates.size());
-        !how.empty())
-      read_.wrong(*rate, "state.rate", "a formula that " + how);
+    const Expression& formula = out.entries.back().value;
+    if (formula.may_jump()) read_.wrong(*rate, "state.rate", "a formula that cannot jump");
+    else if (formula.dependence(variables.size() - names_.rates.size(), variables.size()) ==
+             Expression::Dependence::nonlinear)
+      read_.wrong(*rate, "state.rate", "a formula that is linear in the velocities");
   }
-}
-
-// "" of a formula that is linear in the velocities, behind so many variables, but for terms without
-// one; tried at scattered values.
-std::string DataFormulasReader::not_linear(const Expression& formula, size_t before) const {
-  if (formula.may_jump()) return "cannot jump";
-  const size_t count = before, all = count + names_.rates.size();
-  for (int seed = 1; seed <= 3; ++seed) {
-    std::vector<double> at(all), slopes(all, 0.0);
-    for (size_t i = 0; i < all; ++i)
-      at[i] = std::sin(12.9898 * (static_cast<double>(i) + 1) + 78.233 * seed);
-    const auto along = [&](double factor) {
-      std::vector<double> values = at;
-      for (size_t i = count; i < all; ++i) values[i] *= factor;
-      return formula(values);
-    };
-    const double none = along(0), one = along(1) - none, three = along(3) - none;
-    if (!std::isfinite(none + one + three)) continue;
-    formula.differentiate(at, 1, slopes);
-    double linear = 0, size = std::abs(one) + std::abs(none);
-    for (size_t i = count; i < all; ++i) {
-      linear += slopes[i] * at[i];
-      size += std::abs(slopes[i] * at[i]);
-    }
-    if (std::abs(one - linear) > 1e-12 * size || std::abs(three - 3 * one) > 1e-12 * size)
-      return "is linear in the velocities";
-  }
-  return "";
 }
 
 // Entry of a matrix that has the size already.

@@ -49,7 +49,6 @@ class DataFormulasReader {
   void rows(const Node& node, const std::string& key, const Names& variables, FormulaMatrix& out);
   void inertia(const Node& node, FormulaMatrix& out);
   void states(const Names& variables, FormulaMatrix& out);
-  std::string not_linear(const Expression& formula, size_t before) const;
 
   TomlReader& read_;
   TomlFormulas& formulas_;
