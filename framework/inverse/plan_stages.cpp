@@ -35,12 +35,23 @@ StageSizes PlanStages::sizes(int k) const {
 
 void PlanStages::retract(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& increment,
                          Eigen::VectorXd& out) const {
-  const double t = time_of(k, state);
-  if (!free_time) return map.retract(t, state, increment, out);
-  map.retract(t, state.head(map.state_size()), increment.head(map.increments()), moved_);
+  map.retract(motion_state(time_of(k, state), state), increment.head(map.increments()), moved_);
   out.resize(state.size());
-  out.head(moved_.size()) = moved_;
-  out[state.size() - 1] = state[state.size() - 1] + increment[increment.size() - 1];
+  out.head(numbers_of_motion()) = numbers(moved_);
+  if (free_time) out[state.size() - 1] = step_of(state) + increment[increment.size() - 1];
+}
+
+Eigen::VectorXd PlanStages::numbers(const MotionState& state) const {
+  const std::vector<double> g = map.coordinates(state);
+  Eigen::VectorXd out(numbers_of_motion());
+  out << Eigen::Map<const Eigen::VectorXd>(g.data(), map.coordinate_count()), state.xi;
+  return out;
+}
+
+MotionState PlanStages::motion_state(double t, const Eigen::VectorXd& state) const {
+  const auto columns = static_cast<std::size_t>(map.coordinate_count());
+  const std::span<const double> all(state.data(), static_cast<std::size_t>(numbers_of_motion()));
+  return map.state_of(t, all.first(columns), all.subspan(columns));
 }
 
 void PlanStages::bounds(int k, Eigen::VectorXd& low_inputs, Eigen::VectorXd& high_inputs) const {
@@ -54,14 +65,16 @@ bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::Ve
   const int width = next != nullptr ? state_increments() : 0, rows = path_rows(k);
   out.resize(width + rows + 1);
   const double h = step_of(state), t = time_of(k, state);
-  const auto columns = static_cast<std::size_t>(map.coordinates());
-  const std::span<const double> all(state.data(), static_cast<std::size_t>(map.state_size()));
+  const auto columns = static_cast<std::size_t>(map.coordinate_count());
+  const std::span<const double> all(state.data(), static_cast<std::size_t>(numbers_of_motion()));
   const auto number = [&](const StateNumber& f) {
     return f(t, all.first(columns), all.subspan(columns));
   };
   if (next != nullptr) {
-    if (!(h > 0) || !map.step(t, state.head(map.state_size()), inputs, h, next_)) return false;
-    if (!map.difference(time_of(k + 1, *next), next->head(map.state_size()), next_, difference_))
+    if (!(h > 0)) return false;
+    map.set_inputs(inputs);
+    if (!map.step(motion_state(t, state), t + h, next_).ok || !next_.xi.allFinite()) return false;
+    if (!map.difference(motion_state(time_of(k + 1, *next), *next), next_, difference_))
       return false;
     out.head(map.increments()) = difference_;
     if (free_time) out[width - 1] = h - step_of(*next);
@@ -161,17 +174,15 @@ bool PlanStages::derivatives(int k, const Eigen::VectorXd& state, const Eigen::V
 }
 
 int PlanStages::goals() const {
-  return static_cast<int>(goal_rows.size()) + (goal_element.size() > 0 ? map.velocities() : 0);
+  return static_cast<int>(goal_rows.size()) + (goal_place ? map.velocities() : 0);
 }
 
 bool PlanStages::goal_values(const Eigen::VectorXd& last, Eigen::VectorXd& out) {
   out.resize(goals());
   Eigen::Index row = 0;
   for (const PlanGoal& goal : goal_rows) out[row++] = last[goal.place] - goal.value;
-  if (goal_element.size() == 0) return true;
-  part_ = goal_element;
-  part_.tail(map.velocities()).setZero();
-  if (!map.difference(time_of(steps, last), part_, last.head(map.state_size()), difference_))
+  if (!goal_place) return true;
+  if (!map.difference(*goal_place, motion_state(time_of(steps, last), last), difference_))
     return false;
   out.tail(map.velocities()) = difference_.head(map.velocities());
   return true;

@@ -9,13 +9,14 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include <hamel/framework/inverse/step_map.hpp>
 #include <hamel/framework/stages/stage_problem.hpp>
+#include <hamel/framework/tangent/step_map.hpp>
 
 namespace hamel {
 
@@ -45,7 +46,7 @@ class PlanStages final : public StageProblem {
   std::vector<std::string> path_names;  // "v1 <= 0.6"
   std::vector<PlanGoal> goal_rows;
   /// The group's columns are more than its dimension, and all are given: goal by tau^-1.
-  Eigen::VectorXd goal_element;
+  std::optional<MotionState> goal_place;
 
   int stages() const override { return steps; }
   StageSizes sizes(int k) const override;
@@ -66,9 +67,14 @@ class PlanStages final : public StageProblem {
   std::string row_name(int row) const;
   double step_of(const Eigen::VectorXd& state) const;
   double time_of(int k, const Eigen::VectorXd& state) const { return from + k * step_of(state); }
+  const SystemModel& system() const { return *map.plan().system; }
+  /// The numbers of a motion within a stage's state, and back.
+  Eigen::VectorXd numbers(const MotionState& state) const;
+  MotionState motion_state(double t, const Eigen::VectorXd& state) const;
   int state_increments() const { return map.increments() + (free_time ? 1 : 0); }
 
  private:
+  int numbers_of_motion() const { return map.coordinate_count() + map.velocities(); }
   int path_rows(int k) const;
   // All numbers of a stage: defect, path, cost.
   bool all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
@@ -81,8 +87,9 @@ class PlanStages final : public StageProblem {
                             Eigen::MatrixXd& hessian);
   Eigen::VectorXd deltas(const Eigen::VectorXd& state, const Eigen::VectorXd& inputs) const;
 
-  mutable Eigen::VectorXd moved_;
-  Eigen::VectorXd all_, difference_, next_, part_;
+  mutable MotionState moved_;
+  MotionState next_;
+  Eigen::VectorXd all_, difference_;
 };
 
 }  // namespace hamel
