@@ -60,16 +60,38 @@ void PlanStages::bounds(int k, Eigen::VectorXd& low_inputs, Eigen::VectorXd& hig
   high_inputs = high;
 }
 
-bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
-                            const Eigen::VectorXd* next, Eigen::VectorXd& out) {
-  const int width = next != nullptr ? state_increments() : 0, rows = path_rows(k);
-  out.resize(width + rows + 1);
+void PlanStages::state_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                              bool last, Eigen::VectorXd& out) const {
+  const int rows = path_rows(k);
+  out.resize(rows + 1);
   const double h = step_of(state), t = time_of(k, state);
   const auto columns = static_cast<std::size_t>(map.coordinate_count());
   const std::span<const double> all(state.data(), static_cast<std::size_t>(numbers_of_motion()));
   const auto number = [&](const StateNumber& f) {
     return f(t, all.first(columns), all.subspan(columns));
   };
+  for (int i = 0; i < rows; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (at < path.size()) out[i] = number(path[at]);
+    else out[i] = steps * (at == path.size() ? h - least_step : most_step - h);
+  }
+  double& cost = out[rows] = 0;
+  if (!last) {
+    cost = time_weight + 0.5 * weights.dot(inputs.cwiseAbs2());
+    if (running) cost += number(running);
+    cost *= h;
+  } else if (terminal) {
+    cost = number(terminal);
+  }
+}
+
+bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                            const Eigen::VectorXd* next, Eigen::VectorXd& out) {
+  const int width = next != nullptr ? state_increments() : 0;
+  state_values(k, state, inputs, next == nullptr, beside_);
+  out.resize(width + beside_.size());
+  out.tail(beside_.size()) = beside_;
+  const double h = step_of(state), t = time_of(k, state);
   if (next != nullptr) {
     if (!(h > 0)) return false;
     map.set_inputs(inputs);
@@ -79,20 +101,6 @@ bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::Ve
     out.head(map.increments()) = difference_;
     if (free_time) out[width - 1] = h - step_of(*next);
   }
-  for (int i = 0; i < rows; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (at < path.size()) out[width + i] = number(path[at]);
-    else out[width + i] = steps * (at == path.size() ? h - least_step : most_step - h);
-  }
-  double cost = 0;
-  if (next != nullptr) {
-    cost = time_weight + 0.5 * weights.dot(inputs.cwiseAbs2());
-    if (running) cost += number(running);
-    cost *= h;
-  } else if (terminal) {
-    cost = number(terminal);
-  }
-  out[width + rows] = cost;
   return out.allFinite();
 }
 
@@ -153,9 +161,88 @@ bool PlanStages::differentiate(const Values& values, const Eigen::VectorXd& delt
   return true;
 }
 
+bool PlanStages::has_formulas(int k) const {
+  return path_rows(k) > 0 || (k < steps ? running : terminal) != nullptr;
+}
+
+// q = (eta, w, u, h, t) of the equation by the increments (eta, dy, dh) and u: w = xi + E dy, t =
+// from + k h.
+bool PlanStages::step_derivatives(int k, const Eigen::VectorXd& state,
+                                  const Eigen::VectorXd& inputs, const Eigen::VectorXd& next,
+                                  const Eigen::VectorXd& lambda, StageDerivatives& out) {
+  const double h = step_of(state), t = time_of(k, state);
+  const MotionState begin = motion_state(t, state);
+  map.set_inputs(inputs);
+  unknowns_.resize(static_cast<std::size_t>(steps));
+  if (!equation_->solve(begin, map.plan().setup.inputs->at(t), h,
+                        unknowns_[static_cast<std::size_t>(k)]) ||
+      !equation_->linearise({next.data(), static_cast<std::size_t>(map.coordinate_count())}))
+    return false;
+  const Eigen::Index n = map.velocities(), m = map.increments() - n, width = state_increments(),
+                     count = width + inputs.size(), last = equation_->parameters() - 1;
+  by_increments_.setZero(equation_->parameters(), count);
+  by_increments_.topLeftCorner(n, n).setIdentity();
+  by_increments_.block(n, n, n, m) = map.basis(begin);
+  for (std::size_t i = 0; i < map.inputs().size(); ++i)
+    by_increments_(2 * n + static_cast<Eigen::Index>(map.inputs()[i]),
+                   width + static_cast<Eigen::Index>(i)) = 1;
+  if (free_time) {
+    by_increments_(last - 1, width - 1) = 1;
+    by_increments_(last, width - 1) = k;
+  }
+  const Eigen::MatrixXd& inverse = map.left_inverse(motion_state(time_of(k + 1, next), next));
+  slopes_.noalias() = equation_->jacobian() * by_increments_;
+  out.F.topRows(n) = slopes_.topLeftCorner(n, width);
+  out.B.topRows(n) = slopes_.topRightCorner(n, inputs.size());
+  out.F.middleRows(n, m).noalias() = inverse * slopes_.bottomLeftCorner(n, width);
+  out.B.middleRows(n, m).noalias() = inverse * slopes_.bottomRightCorner(n, inputs.size());
+  if (free_time) out.F(width - 1, width - 1) = 1;
+  pulled_.resize(2 * n);
+  pulled_.head(n) = lambda.head(n);
+  pulled_.tail(n).noalias() = inverse.transpose() * lambda.segment(n, m);
+  slopes_.noalias() = equation_->hessian(pulled_) * by_increments_;
+  out.hessian.noalias() = by_increments_.transpose() * slopes_;
+  return true;
+}
+
+// h (w_t + 1/2 sum w_i u_i^2) in closed form where no formulas are beside it.
+bool PlanStages::state_derivatives(int k, const Eigen::VectorXd& state,
+                                   const Eigen::VectorXd& inputs, bool last,
+                                   const Eigen::VectorXd& y, StageDerivatives& out) {
+  const Eigen::Index n = state_increments(), rows = y.size(), count = inputs.size();
+  if (!has_formulas(k)) {
+    if (last) return true;
+    const Eigen::VectorXd weighted = weights.cwiseProduct(inputs);
+    out.cost_gradient.tail(count) = step_of(state) * weighted;
+    out.hessian.diagonal().tail(count) += step_of(state) * weights;
+    if (!free_time) return true;
+    out.cost_gradient[n - 1] = time_weight + 0.5 * weighted.dot(inputs);
+    out.hessian.block(n - 1, n, 1, count) += weighted.transpose();
+    out.hessian.block(n, n - 1, count, 1) += weighted;
+    return true;
+  }
+  Eigen::VectorXd factors(rows + 1), moved, u;
+  factors << -y, 1;
+  const Values at = [&](const Eigen::VectorXd& increment, Eigen::VectorXd& f) {
+    retract(k, state, increment.head(n), moved);
+    u = inputs + increment.tail(count);
+    state_values(k, moved, u, last, f);
+    return f.allFinite();
+  };
+  Eigen::MatrixXd jacobian, hessian;
+  if (!differentiate(at, deltas(state, inputs), factors, jacobian, hessian)) return false;
+  out.hessian += hessian;
+  out.path_jacobian = jacobian.topRows(rows);
+  out.cost_gradient = jacobian.bottomRows(1).transpose();
+  return true;
+}
+
 bool PlanStages::derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
                              const Eigen::VectorXd* next, const Eigen::VectorXd& lambda,
                              const Eigen::VectorXd& y, StageDerivatives& out) {
+  if (next == nullptr) return state_derivatives(k, state, inputs, true, y, out);
+  if (equation_ != nullptr && step_derivatives(k, state, inputs, *next, lambda, out))
+    return state_derivatives(k, state, inputs, false, y, out);
   const Eigen::Index n = state_increments(), width = lambda.size(), rows = y.size();
   Eigen::VectorXd factors(width + rows + 1), moved, u;
   factors << lambda, -y, 1;

@@ -2,13 +2,15 @@
 //
 // State of a stage: (coordinates, xi), and the step h where the end time is free; its increments
 // (eta, dy, dh). All derivatives are differences of the step's own map over increments of one
-// stage, never of a chain of steps: central, of order 6, at distance delta,
+// stage, never of a chain of steps. Where the equation of the step is recorded (recorded_lift.hpp)
+// its derivatives are exact. Others are central, of order 6, at distance delta,
 //   f' = (45 (f1 - f-1) - 9 (f2 - f-2) + (f3 - f-3))/(60 delta),
 // and for Hessians, which only steer Newton's method, of order 2 at 3 delta.
 #pragma once
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +18,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/stages/stage_problem.hpp>
+#include <hamel/framework/tangent/recorded_lift.hpp>
 #include <hamel/framework/tangent/step_map.hpp>
 
 namespace hamel {
@@ -32,7 +35,8 @@ struct PlanGoal {
 
 class PlanStages final : public StageProblem {
  public:
-  explicit PlanStages(StepMap of_run) : map(std::move(of_run)) {}
+  explicit PlanStages(StepMap of_run)
+      : map(std::move(of_run)), equation_(RecordedLift::of(map.plan())) {}
 
   mutable StepMap map;  // retract() uses its work space
   int steps = 0;
@@ -76,6 +80,16 @@ class PlanStages final : public StageProblem {
  private:
   int numbers_of_motion() const { return map.coordinate_count() + map.velocities(); }
   int path_rows(int k) const;
+  // Path and cost of a stage, without its step.
+  void state_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs, bool last,
+                    Eigen::VectorXd& out) const;
+  bool has_formulas(int k) const;
+  // Of the step, by its equation; false where that has none. Path and cost alone.
+  bool step_derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                        const Eigen::VectorXd& next, const Eigen::VectorXd& lambda,
+                        StageDerivatives& out);
+  bool state_derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                         bool last, const Eigen::VectorXd& y, StageDerivatives& out);
   // All numbers of a stage: defect, path, cost.
   bool all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
                   const Eigen::VectorXd* next, Eigen::VectorXd& out);
@@ -87,9 +101,12 @@ class PlanStages final : public StageProblem {
                             Eigen::MatrixXd& hessian);
   Eigen::VectorXd deltas(const Eigen::VectorXd& state, const Eigen::VectorXd& inputs) const;
 
+  std::unique_ptr<RecordedLift> equation_;        // null where it is not recorded
+  std::vector<RecordedLift::Unknowns> unknowns_;  // of each stage
   mutable MotionState moved_;
   MotionState next_;
-  Eigen::VectorXd all_, difference_;
+  Eigen::VectorXd all_, beside_, difference_, pulled_;
+  Eigen::MatrixXd by_increments_, slopes_;
 };
 
 }  // namespace hamel

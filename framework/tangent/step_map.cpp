@@ -119,6 +119,16 @@ void StepMap::set(Frame& frame, const MotionState& state) {
   frame.inverse = (reduced * frame.basis).ldlt().solve(reduced);
 }
 
+const Eigen::MatrixXd& StepMap::basis(const MotionState& state) {
+  set(base_, state);
+  return base_.basis;
+}
+
+const Eigen::MatrixXd& StepMap::left_inverse(const MotionState& state) {
+  set(target_, state);
+  return target_.inverse;
+}
+
 void StepMap::retract(const MotionState& state, const Eigen::VectorXd& increment,
                       MotionState& out) {
   set(base_, state);

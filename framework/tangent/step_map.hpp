@@ -46,6 +46,12 @@ class StepMap {
   /// The increment from one state to another, to first order in dy; false where there is none.
   bool difference(const MotionState& from, const MotionState& to, Eigen::VectorXd& out);
 
+  /// E at a state, n x m, and its left inverse (E^T I E)^-1 E^T I.
+  const Eigen::MatrixXd& basis(const MotionState& state);
+  const Eigen::MatrixXd& left_inverse(const MotionState& state);
+  /// Indices of the inputs that set_inputs() sets.
+  const std::vector<std::size_t>& inputs() const { return inputs_; }
+
   /// The start of the run.
   MotionState start() const;
   /// Throws std::invalid_argument where the coordinates are no element.
