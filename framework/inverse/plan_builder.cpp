@@ -47,13 +47,26 @@ void PlanBuilder::complete_config() {
   for (const std::string& name : request_.inputs) config_.inputs[name] = 0.0;
 }
 
+// A mistake of the run with the place of the key that it is about, else with the file alone.
+std::string PlanBuilder::placed(const std::string& mistake) const {
+  static constexpr std::pair<const char*, const char*> kKeys[] = {
+      {"unknown input", "inputs"},         {"unknown system", "system"},
+      {"unknown parameter", "parameters"}, {"unknown retraction", "retraction"},
+      {"unknown scheme", "scheme"},        {"unknown solver", "solver"},
+      {"velocity", "from.velocity"},       {"configuration", "from.configuration"}};
+  for (const auto& [words, key] : kKeys)
+    if (const auto at = request_.where.find(key);
+        mistake.starts_with(words) && at != request_.where.end())
+      return fmt::format("{}: {}", at->second, mistake);
+  return request_.origin.empty() ? mistake : fmt::format("{}: {}", request_.origin, mistake);
+}
+
 RunPlan PlanBuilder::plan() {
   RunRequest run;
   run.config = config_;
   Mistakes found;
   RunPlan out = plan_run(registry_, run, nullptr, Rows::always, found);
-  for (const std::string& one : found.all())
-    mistakes_.add(request_.origin.empty() ? one : fmt::format("{}: {}", request_.origin, one));
+  for (const std::string& one : found.all()) mistakes_.add(placed(one));
   mistakes_.refuse();
   config_ = out.config;
   return out;

@@ -85,6 +85,36 @@ void PlanStages::state_values(int k, const Eigen::VectorXd& state, const Eigen::
   }
 }
 
+// By the equation from its last solution; the first one, and where that fails, by the run's kernel.
+bool PlanStages::take_step(int k, const MotionState& begin, double h, MotionState& to) {
+  if (equation_ == nullptr) return map.step(begin, begin.time + h, to).ok;
+  unknowns_.resize(static_cast<std::size_t>(steps));
+  RecordedLift::Unknowns& x = unknowns_[static_cast<std::size_t>(k)];
+  if (equation_->solve(begin, map.plan().setup.inputs->at(begin.time), h, x) && equation_->end(to))
+    return true;
+  x.resize(0);
+  return map.step(begin, begin.time + h, to).ok;
+}
+
+bool PlanStages::repeats(const StagePoint& point) {
+  if (equation_ == nullptr) return true;
+  constexpr double kSame = 1e-9;
+  MotionState by_equation, by_run;
+  Eigen::VectorXd off;
+  for (int k = 0; k < steps; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const MotionState begin = motion_state(time_of(k, point.states[at]), point.states[at]);
+    const double h = step_of(point.states[at]);
+    map.set_inputs(point.inputs[at]);
+    if (!take_step(k, begin, h, by_equation) || !map.step(begin, begin.time + h, by_run).ok ||
+        !displacement(map.geometry(), by_run, by_equation, off))
+      return false;
+    if (!(off.lpNorm<Eigen::Infinity>() <= kSame * (1 + by_run.xi.lpNorm<Eigen::Infinity>())))
+      return false;
+  }
+  return true;
+}
+
 bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
                             const Eigen::VectorXd* next, Eigen::VectorXd& out) {
   const int width = next != nullptr ? state_increments() : 0;
@@ -95,7 +125,7 @@ bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::Ve
   if (next != nullptr) {
     if (!(h > 0)) return false;
     map.set_inputs(inputs);
-    if (!map.step(motion_state(t, state), t + h, next_).ok || !next_.xi.allFinite()) return false;
+    if (!take_step(k, motion_state(t, state), h, next_) || !next_.xi.allFinite()) return false;
     if (!map.difference(motion_state(time_of(k + 1, *next), *next), next_, difference_))
       return false;
     out.head(map.increments()) = difference_;

@@ -71,6 +71,10 @@ class PlanStages final : public StageProblem {
   std::string row_name(int row) const;
   double step_of(const Eigen::VectorXd& state) const;
   double time_of(int k, const Eigen::VectorXd& state) const { return from + k * step_of(state); }
+  /// Are the steps of this point those of the run itself?
+  bool repeats(const StagePoint& point);
+  /// From now on no step is solved by its recorded equation.
+  void take_steps_of_run_alone() { equation_.reset(); }
   const SystemModel& system() const { return *map.plan().system; }
   /// The numbers of a motion within a stage's state, and back.
   Eigen::VectorXd numbers(const MotionState& state) const;
@@ -80,6 +84,7 @@ class PlanStages final : public StageProblem {
  private:
   int numbers_of_motion() const { return map.coordinate_count() + map.velocities(); }
   int path_rows(int k) const;
+  bool take_step(int k, const MotionState& from, double h, MotionState& to);
   // Path and cost of a stage, without its step.
   void state_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs, bool last,
                     Eigen::VectorXd& out) const;

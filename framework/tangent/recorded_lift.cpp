@@ -409,6 +409,7 @@ bool RecordedLift::evaluate(const graph::Code& code, std::size_t guards_at) {
 
 bool RecordedLift::solve(const MotionState& from, const Eigen::VectorXd& inputs, double h,
                          Unknowns& x) {
+  g_ = from.g;
   plan_->geometry->coordinates(from.g.data(), input(at_.from));
   std::copy_n(input(at_.from), columns_, input(at_.reference));
   std::copy_n(from.xi.data(), n_, input(at_.w));
@@ -433,7 +434,7 @@ bool RecordedLift::solve(const MotionState& from, const Eigen::VectorXd& inputs,
     step_ = factors_.solve(Eigen::Map<const Eigen::VectorXd>(out_.data(), count));
     if (!step_.allFinite()) return false;
     now -= step_;
-    if (step_.lpNorm<Eigen::Infinity>() <= 1e-7 * (1 + now.lpNorm<Eigen::Infinity>()) &&
+    if (step_.lpNorm<Eigen::Infinity>() <= 1e-8 * (1 + now.lpNorm<Eigen::Infinity>()) &&
         (i > 0 || step_.lpNorm<Eigen::Infinity>() <= kSolved)) {
       // Newton's next correction is of the square of this one.
       x = now;
@@ -443,9 +444,27 @@ bool RecordedLift::solve(const MotionState& from, const Eigen::VectorXd& inputs,
   return false;
 }
 
-Eigen::Ref<const Eigen::VectorXd> RecordedLift::end_velocity() const {
-  const std::size_t first = at_.x + unknowns_ - n_ - k_;
-  return Eigen::Map<const Eigen::VectorXd>(in_.data() + first, static_cast<Eigen::Index>(n_));
+bool RecordedLift::end(MotionState& to) const {
+  const Geometry& geometry = *plan_->geometry;
+  const auto n = static_cast<Eigen::Index>(n_);
+  const double s = plan_->setup.s, h = in_[at_.h];
+  const double* last = in_.data() + at_.x + unknowns_;
+  z_ = h * Eigen::Map<const Eigen::VectorXd>(last - 2 * (n_ + k_), n);
+  if (!geometry.in_domain(z_.data())) return false;
+  part_.resize(geometry.size());
+  to.time = in_[at_.t] + h;
+  to.g = g_;
+  if (s != 0) {
+    to.xi = -s * z_;
+    geometry.tau(to.xi.data(), part_.data());
+    geometry.inverse(part_.data(), part_.data());
+    geometry.compose(to.g.data(), part_.data(), to.g.data());
+  }
+  z_ *= 1 - s;
+  geometry.tau(z_.data(), part_.data());
+  geometry.compose(to.g.data(), part_.data(), to.g.data());
+  to.xi = Eigen::Map<const Eigen::VectorXd>(last - (n_ + k_), n);
+  return true;
 }
 
 bool RecordedLift::linearise(std::span<const double> reference) {

@@ -39,8 +39,8 @@ class RecordedLift {
   /// A step from there with constant inputs; its solution is kept for derivatives. False where it
   /// is not found.
   bool solve(const MotionState& from, const Eigen::VectorXd& inputs, double h, Unknowns& x);
-  /// Element's coordinates and velocity at the end of the step solved last.
-  Eigen::Ref<const Eigen::VectorXd> end_velocity() const;
+  /// The end of the step solved last; false outside the domain of tau.
+  bool end(MotionState& to) const;
 
   /// Derivatives of the step solved last, as (eta, dxi) at g_ref, by q: 2n x (2n + inputs + 2).
   /// g_ref: coordinates, near the end. False where there are none.
@@ -81,6 +81,7 @@ class RecordedLift {
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
   Eigen::MatrixXd r_x_, r_q_, s_x_, jacobian_, way_, half_, hessian_;
   Eigen::VectorXd step_, rho_;
+  mutable Eigen::VectorXd z_, g_, part_;
 };
 
 }  // namespace hamel

@@ -36,7 +36,11 @@ StepMap::StepMap(std::shared_ptr<const RunPlan> plan, std::vector<std::size_t> i
       inertia_(n_, n_),
       rows_(k_, n_),
       drift_(k_),
-      way_(plan_->geometry->size()) {}
+      way_(plan_->geometry->size()) {
+  const Mechanics& mechanics = *plan_->system->mechanics;
+  constant_ =
+      mechanics.constant_inertia() && mechanics.constant_constraints() && !mechanics.has_drift();
+}
 
 MotionState StepMap::start() const {
   return state_of(plan_->config.from, plan_->setup.configuration, plan_->setup.velocity);
@@ -107,6 +111,7 @@ void StepMap::project(MotionState& state) {
 }
 
 void StepMap::set(Frame& frame, const MotionState& state) {
+  if (constant_ && frame.basis.size() > 0) return;
   if (frame.state.time == state.time && frame.state.g.size() == state.g.size() &&
       frame.state.g == state.g)
     return;
@@ -139,7 +144,7 @@ void StepMap::retract(const MotionState& state, const Eigen::VectorXd& increment
   geometry().tau(eta_.data(), way_.data());
   geometry().compose(state.g.data(), way_.data(), out.g.data());
   geometry().normalise(out.g.data());
-  project(out);
+  if (!constant_) project(out);
 }
 
 bool StepMap::difference(const MotionState& from, const MotionState& to, Eigen::VectorXd& out) {

@@ -66,6 +66,7 @@ class StepMap {
   };
   void evaluate_matrices(double t, const double* element);
   void set(Frame& frame, const MotionState& state);
+  bool constant_ = false;  // I and A, b = 0: one frame, and no projection is needed
 
   std::shared_ptr<const RunPlan> plan_;
   std::vector<std::size_t> inputs_;
