@@ -13,6 +13,7 @@
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/mechanisms/urdf.hpp>
 #include <hamel/systems/n_trailer.hpp>
+#include <hamel/systems/recorded_groups.hpp>
 
 namespace hamel {
 namespace {
@@ -66,6 +67,7 @@ void add_mechanisms(Registry& registry) {
 Registry make_registry() {
   Registry registry;
   add_groups(registry);
+  add_recorded_groups();
   add_erased_schemes(registry);
   registry.add_scheme_alias("dla", Lift::name());  // discrete Lagrange-d'Alembert
   add_solvers(registry);

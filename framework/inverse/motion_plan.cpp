@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/inverse/plan_builder.hpp>
+#include <hamel/framework/inverse/plan_feedback.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/stages/stage_solver.hpp>
 
@@ -80,7 +81,7 @@ Plan make_plan(const Registry& registry, const PlanRequest& request,
                const std::atomic<bool>* stop) {
   const auto begin = std::chrono::steady_clock::now();
   PlanBuilder builder(registry, request);
-  const std::unique_ptr<PlanStages> stages = builder.stages();
+  std::unique_ptr<PlanStages> stages = builder.stages();
   StageOptions options;
   options.stop = stop;
   if (progress)
@@ -88,7 +89,11 @@ Plan make_plan(const Registry& registry, const PlanRequest& request,
       progress(p.iteration, p.objective, p.defect);
     };
   Plan out;
-  const StageSolution solution = solve(*stages, builder, request, options, out);
+  StageSolution solution = solve(*stages, builder, request, options, out);
+  if (!stages->repeats(solution.point)) {  // another root of an equation than that of the run
+    stages->take_steps_of_run_alone();
+    solution = solve(*stages, builder, request, options, out);
+  }
   out.status = status_of(solution.status);
   out.reason = solution.reason;
   out.objective = solution.objective;
@@ -106,6 +111,7 @@ Plan make_plan(const Registry& registry, const PlanRequest& request,
   out.run.step = out.step;
   out.run.until = out.until;
   for (const auto& [name, values] : out.inputs) out.run.inputs[name] = out.table(name);
+  out.tracking = std::make_shared<PlanFeedback>(std::move(stages), solution, request.inputs);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
@@ -121,6 +127,13 @@ InputTable Plan::table(const std::string& input) const {
   }
   throw ConfigError({unknown_name("input of this plan", input, names)});
 }
+
+std::vector<double> Plan::feedback(long step_number, std::span<const double> configuration,
+                                   std::span<const double> velocity) const {
+  return tracking->inputs(step_number, configuration, velocity);
+}
+
+std::string Plan::gains() const { return tracking->csv(); }
 
 std::string Plan::csv() const {
   std::string out = "t";

@@ -12,7 +12,9 @@
 #include <atomic>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +25,7 @@
 
 namespace hamel {
 
+class PlanFeedback;
 class Registry;
 
 /// A free end time, between least and most.
@@ -70,9 +73,20 @@ struct Plan {
   HAMEL_API InputTable table(const std::string& input) const;
   /// t and all inputs, as `--input name=plan.csv:hold` reads them.
   HAMEL_API std::string csv() const;
+
+  /// The inputs of a step, from 0, in the order of `inputs`, corrected for a state beside the
+  /// plan's by the gains of the plan: u_k + K_k e. Copies of a plan share work space: one thread at
+  /// a time. Throws std::invalid_argument where the numbers are no state near the plan.
+  HAMEL_API std::vector<double> feedback(long step, std::span<const double> configuration,
+                                         std::span<const double> velocity) const;
+  /// The gains K_k as a table: derivatives of each input by the displacement eta of the body, g =
+  /// g_k tau(eta), and by its velocity.
+  HAMEL_API std::string gains() const;
+  std::shared_ptr<PlanFeedback> tracking;  // what both are computed with
 };
 
-/// Reads the file of a plan. ConfigError with all mistakes, each with its line.
+/// Reads the file of a plan. Files that it names, of the system and of the guess, are beside it.
+/// ConfigError with all mistakes, each with its line.
 HAMEL_API PlanRequest read_plan(const std::string& path);
 HAMEL_API PlanRequest parse_plan(const std::string& text, const std::string& origin);
 

@@ -53,7 +53,7 @@ void ObservedQuantities::operator()(const MovedMotion& motion, const MotionState
     for (const std::string& formula : formulas_)
       values.push_back(value_of(*motion.plan().system, formula));
   out.resize(static_cast<Eigen::Index>(formulas_.size()));
-  const std::vector<double> g = motion.coordinates(state);
+  const std::vector<double> g = motion.map().coordinates(state);
   const std::span<const double> xi(state.xi.data(), static_cast<size_t>(state.xi.size()));
   for (size_t i = 0; i < values.size(); ++i) {
     double& number = out[static_cast<Eigen::Index>(i)];

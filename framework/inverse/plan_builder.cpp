@@ -47,13 +47,26 @@ void PlanBuilder::complete_config() {
   for (const std::string& name : request_.inputs) config_.inputs[name] = 0.0;
 }
 
+// A mistake of the run with the place of the key that it is about, else with the file alone.
+std::string PlanBuilder::placed(const std::string& mistake) const {
+  static constexpr std::pair<const char*, const char*> kKeys[] = {
+      {"unknown input", "inputs"},         {"unknown system", "system"},
+      {"unknown parameter", "parameters"}, {"unknown retraction", "retraction"},
+      {"unknown scheme", "scheme"},        {"unknown solver", "solver"},
+      {"velocity", "from.velocity"},       {"configuration", "from.configuration"}};
+  for (const auto& [words, key] : kKeys)
+    if (const auto at = request_.where.find(key);
+        mistake.starts_with(words) && at != request_.where.end())
+      return fmt::format("{}: {}", at->second, mistake);
+  return request_.origin.empty() ? mistake : fmt::format("{}: {}", request_.origin, mistake);
+}
+
 RunPlan PlanBuilder::plan() {
   RunRequest run;
   run.config = config_;
   Mistakes found;
   RunPlan out = plan_run(registry_, run, nullptr, Rows::always, found);
-  for (const std::string& one : found.all())
-    mistakes_.add(request_.origin.empty() ? one : fmt::format("{}: {}", request_.origin, one));
+  for (const std::string& one : found.all()) mistakes_.add(placed(one));
   mistakes_.refuse();
   config_ = out.config;
   return out;
@@ -130,7 +143,7 @@ void PlanBuilder::set_costs(PlanStages& stages) {
   if (!std::isfinite(request_.time_weight))
     mistake("cost.time", fmt::format("got {}, expected a number", request_.time_weight));
   stages.time_weight = request_.time_weight;
-  const SystemModel& system = stages.map.system();
+  const SystemModel& system = stages.system();
   if (!request_.running.empty()) stages.running = formula(system, "cost.running", request_.running);
   if (!request_.terminal.empty())
     stages.terminal = formula(system, "cost.terminal", request_.terminal);
@@ -153,7 +166,7 @@ void PlanBuilder::set_bounds(PlanStages& stages) {
       stages.high[at - request_.inputs.begin()] = high;
       continue;
     }
-    const StateNumber value = formula(stages.map.system(), key, name);
+    const StateNumber value = formula(stages.system(), key, name);
     const auto add = [&](double sign, double limit) {
       stages.path.push_back(
           [value, sign, limit](double t, std::span<const double> g, std::span<const double> xi) {
@@ -175,7 +188,7 @@ void PlanBuilder::add_constraint(PlanStages& stages, const std::string& text) {
   const std::string both = text[at] == '>' ? fmt::format("({}) - ({})", left, right)
                                            : fmt::format("({}) - ({})", right, left);
   stages.path_names.push_back(text);
-  stages.path.push_back(formula(stages.map.system(), "constraints", both));
+  stages.path.push_back(formula(stages.system(), "constraints", both));
 }
 
 void PlanBuilder::add_goals(PlanStages& stages, const std::vector<std::optional<double>>& given,
@@ -192,18 +205,16 @@ void PlanBuilder::add_goals(PlanStages& stages, const std::vector<std::optional<
 }
 
 void PlanBuilder::set_goals(PlanStages& stages) {
-  const auto columns = static_cast<std::size_t>(stages.map.coordinates());
+  const auto columns = static_cast<std::size_t>(stages.map.coordinate_count());
   const auto n = static_cast<std::size_t>(stages.map.velocities());
   const auto& to = request_.to_configuration;
   const bool all =
       to.size() == columns && std::ranges::all_of(to, [](const auto& x) { return x.has_value(); });
   if (all && columns > n) {  // a matrix: its entries depend on each other
-    stages.goal_element.setZero(stages.map.state_size());
-    for (std::size_t i = 0; i < columns; ++i)
-      stages.goal_element[static_cast<Eigen::Index>(i)] = *to[i];
-    std::vector<double> element(static_cast<std::size_t>(stages.map.geometry().size()));
+    std::vector<double> coordinates;
+    for (const std::optional<double>& x : to) coordinates.push_back(*x);
     try {
-      stages.map.geometry().from_coordinates({stages.goal_element.data(), columns}, element.data());
+      stages.goal_place = stages.map.state_of(stages.from, coordinates, std::vector<double>(n, 0));
     } catch (const std::invalid_argument& error) {
       mistake("to.configuration", error.what());
     }
@@ -220,7 +231,8 @@ std::unique_ptr<PlanStages> PlanBuilder::stages() {
   const std::vector<std::size_t> inputs = find_inputs(*planned.system);
   check_rates(planned, inputs);
   quantities_ = QuantityNames(*planned.system).all();
-  auto out = std::make_unique<PlanStages>(StepMap(std::move(planned), inputs));
+  auto out = std::make_unique<PlanStages>(
+      StepMap(std::make_shared<const RunPlan>(std::move(planned)), inputs));
   out->steps = static_cast<int>(request_.steps);
   out->from = config_.from;
   out->step = *config_.step;

@@ -40,6 +40,7 @@ class PlanBuilder {
   StateNumber formula(const SystemModel& system, const std::string& key, const std::string& text);
   void add_constraint(PlanStages& stages, const std::string& text);
   void mistake(const std::string& key, const std::string& what);
+  std::string placed(const std::string& mistake) const;
   StagePoint rolled_out(PlanStages& stages) const;
 
   const Registry& registry_;

@@ -1,6 +1,7 @@
 // Plan files: TOML with the options of `hamel run`, a start, an end, costs and bounds.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <hamel/framework/inverse/motion_plan.hpp>
 #include <hamel/framework/io/errors.hpp>
@@ -186,7 +187,14 @@ PlanRequest parse_plan(const std::string& text, const std::string& origin) {
 }
 
 PlanRequest read_plan(const std::string& path) {
-  return parse_plan(read_text_file("plan", path), path);
+  PlanRequest out = parse_plan(read_text_file("plan", path), path);
+  const auto beside = [&](std::string& file) {
+    file = (std::filesystem::path(path).parent_path() / file).string();
+  };
+  // Registered names have no dots.
+  if (out.run.system.find('.') != std::string::npos) beside(out.run.system);
+  if (!out.guess_file.empty()) beside(out.guess_file);
+  return out;
 }
 
 }  // namespace hamel

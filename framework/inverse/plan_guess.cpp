@@ -44,15 +44,16 @@ StagePoint PlanBuilder::rolled_out(PlanStages& stages) const {
   for (const std::string& name : request_.inputs)
     tables.push_back(read_input_table("guess.file", name, {request_.guess_file, true}, text));
   const double h = stages.step;
-  Eigen::VectorXd state = stages.map.start(), next;
+  MotionState state = stages.map.start(), next;
   for (int k = 0; k <= stages.steps; ++k) {
-    out.states.push_back(state);
+    out.states.push_back(stages.numbers(state));
     Eigen::VectorXd u(k < stages.steps ? static_cast<Eigen::Index>(tables.size()) : 0);
     for (Eigen::Index i = 0; i < u.size(); ++i)
       u[i] = tables[static_cast<std::size_t>(i)].at(stages.from + (k + 0.5) * h);
     out.inputs.push_back(u);
     if (k == stages.steps) break;
-    if (!stages.map.step(stages.from + k * h, state, u, h, next))
+    stages.map.set_inputs(u);
+    if (!stages.map.step(state, stages.from + (k + 1) * h, next).ok)
       throw ConfigError(
           {fmt::format("guess.file: step {} of these inputs has no solution", k + 1)});
     state = next;
@@ -67,13 +68,13 @@ StagePoint PlanBuilder::guess(PlanStages& stages, unsigned seed) const {
   } else {
     std::mt19937 random(seed);
     StepMap& map = stages.map;
-    const Eigen::VectorXd first = map.start();
-    Eigen::VectorXd last = first, way, state;
-    for (const PlanGoal& goal : stages.goal_rows) last[goal.place] = goal.value;
-    if (stages.goal_element.size() > 0)
-      last.head(map.coordinates()) = stages.goal_element.head(map.coordinates());
-    map.project(stages.from, last);
-    if (!map.difference(stages.from, first, last, way)) way.setZero(map.increments());
+    const MotionState first = map.start();
+    Eigen::VectorXd end = stages.numbers(first), way;
+    for (const PlanGoal& goal : stages.goal_rows) end[goal.place] = goal.value;
+    MotionState last = stages.motion_state(first.time, end), state;
+    if (stages.goal_place) last.g = stages.goal_place->g;
+    map.project(last);
+    if (!map.difference(first, last, way)) way.setZero(map.increments());
     const Eigen::Index n = map.velocities();
     const double size = std::max(way.head(n).lpNorm<Eigen::Infinity>(), 0.1);
     const Eigen::MatrixXd aside = waves(stages.steps, n, kSway * size, random);
@@ -83,8 +84,8 @@ StagePoint PlanBuilder::guess(PlanStages& stages, unsigned seed) const {
     for (int k = 0; k <= stages.steps; ++k) {
       increment = static_cast<double>(k) / stages.steps * way;
       increment.head(n) += aside.row(k).transpose();
-      map.retract(stages.from + k * stages.step, first, increment, state);
-      out.states.push_back(k == 0 ? first : state);
+      map.retract(first, increment, state);
+      out.states.push_back(stages.numbers(k == 0 ? first : state));
       out.inputs.emplace_back(Eigen::VectorXd(inputs.row(k).head(k < stages.steps ? count : 0)));
     }
   }

@@ -4,13 +4,6 @@
 #include <cmath>
 
 namespace hamel {
-namespace {
-
-// Differences of order 6: truncation delta^6 f7/140, round-off eps/delta. Of increments in rad, m
-// and their rates, of inputs in a part of their size, of the step in a part of it.
-constexpr double kDelta = 3e-3, kInputDelta = 1e-2, kStepDelta = 2e-2;
-
-}  // namespace
 
 double PlanStages::step_of(const Eigen::VectorXd& state) const {
   return free_time ? state[state.size() - 1] : step;
@@ -35,12 +28,23 @@ StageSizes PlanStages::sizes(int k) const {
 
 void PlanStages::retract(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& increment,
                          Eigen::VectorXd& out) const {
-  const double t = time_of(k, state);
-  if (!free_time) return map.retract(t, state, increment, out);
-  map.retract(t, state.head(map.state_size()), increment.head(map.increments()), moved_);
+  map.retract(motion_state(time_of(k, state), state), increment.head(map.increments()), moved_);
   out.resize(state.size());
-  out.head(moved_.size()) = moved_;
-  out[state.size() - 1] = state[state.size() - 1] + increment[increment.size() - 1];
+  out.head(numbers_of_motion()) = numbers(moved_);
+  if (free_time) out[state.size() - 1] = step_of(state) + increment[increment.size() - 1];
+}
+
+Eigen::VectorXd PlanStages::numbers(const MotionState& state) const {
+  const std::vector<double> g = map.coordinates(state);
+  Eigen::VectorXd out(numbers_of_motion());
+  out << Eigen::Map<const Eigen::VectorXd>(g.data(), map.coordinate_count()), state.xi;
+  return out;
+}
+
+MotionState PlanStages::motion_state(double t, const Eigen::VectorXd& state) const {
+  const auto columns = static_cast<std::size_t>(map.coordinate_count());
+  const std::span<const double> all(state.data(), static_cast<std::size_t>(numbers_of_motion()));
+  return map.state_of(t, all.first(columns), all.subspan(columns));
 }
 
 void PlanStages::bounds(int k, Eigen::VectorXd& low_inputs, Eigen::VectorXd& high_inputs) const {
@@ -49,37 +53,77 @@ void PlanStages::bounds(int k, Eigen::VectorXd& low_inputs, Eigen::VectorXd& hig
   high_inputs = high;
 }
 
-bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
-                            const Eigen::VectorXd* next, Eigen::VectorXd& out) {
-  const int width = next != nullptr ? state_increments() : 0, rows = path_rows(k);
-  out.resize(width + rows + 1);
+void PlanStages::state_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                              bool last, Eigen::VectorXd& out) const {
+  const int rows = path_rows(k);
+  out.resize(rows + 1);
   const double h = step_of(state), t = time_of(k, state);
-  const auto columns = static_cast<std::size_t>(map.coordinates());
-  const std::span<const double> all(state.data(), static_cast<std::size_t>(map.state_size()));
+  const auto columns = static_cast<std::size_t>(map.coordinate_count());
+  const std::span<const double> all(state.data(), static_cast<std::size_t>(numbers_of_motion()));
   const auto number = [&](const StateNumber& f) {
     return f(t, all.first(columns), all.subspan(columns));
   };
-  if (next != nullptr) {
-    if (!(h > 0) || !map.step(t, state.head(map.state_size()), inputs, h, next_)) return false;
-    if (!map.difference(time_of(k + 1, *next), next->head(map.state_size()), next_, difference_))
-      return false;
-    out.head(map.increments()) = difference_;
-    if (free_time) out[width - 1] = h - step_of(*next);
-  }
   for (int i = 0; i < rows; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (at < path.size()) out[width + i] = number(path[at]);
-    else out[width + i] = steps * (at == path.size() ? h - least_step : most_step - h);
+    if (at < path.size()) out[i] = number(path[at]);
+    else out[i] = steps * (at == path.size() ? h - least_step : most_step - h);
   }
-  double cost = 0;
-  if (next != nullptr) {
+  double& cost = out[rows] = 0;
+  if (!last) {
     cost = time_weight + 0.5 * weights.dot(inputs.cwiseAbs2());
     if (running) cost += number(running);
     cost *= h;
   } else if (terminal) {
     cost = number(terminal);
   }
-  out[width + rows] = cost;
+}
+
+// By the equation from its last solution; the first one, and where that fails, by the run's kernel.
+bool PlanStages::take_step(int k, const MotionState& begin, double h, MotionState& to) {
+  if (equation_ == nullptr) return map.step(begin, begin.time + h, to).ok;
+  unknowns_.resize(static_cast<std::size_t>(steps));
+  RecordedLift::Unknowns& x = unknowns_[static_cast<std::size_t>(k)];
+  if (equation_->solve(begin, map.plan().setup.inputs->at(begin.time), h, x) && equation_->end(to))
+    return true;
+  x.resize(0);
+  return map.step(begin, begin.time + h, to).ok;
+}
+
+bool PlanStages::repeats(const StagePoint& point) {
+  if (equation_ == nullptr) return true;
+  constexpr double kSame = 1e-9;
+  MotionState by_equation, by_run;
+  Eigen::VectorXd off;
+  for (int k = 0; k < steps; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const MotionState begin = motion_state(time_of(k, point.states[at]), point.states[at]);
+    const double h = step_of(point.states[at]);
+    map.set_inputs(point.inputs[at]);
+    if (!take_step(k, begin, h, by_equation) || !map.step(begin, begin.time + h, by_run).ok ||
+        !displacement(map.geometry(), by_run, by_equation, off))
+      return false;
+    if (!(off.lpNorm<Eigen::Infinity>() <= kSame * (1 + by_run.xi.lpNorm<Eigen::Infinity>())))
+      return false;
+  }
+  return true;
+}
+
+bool PlanStages::all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                            const Eigen::VectorXd* next, Eigen::VectorXd& out) {
+  const int width = next != nullptr ? state_increments() : 0;
+  state_values(k, state, inputs, next == nullptr, beside_);
+  out.resize(width + beside_.size());
+  out.tail(beside_.size()) = beside_;
+  const double h = step_of(state), t = time_of(k, state);
+  if (next != nullptr) {
+    if (!(h > 0)) return false;
+    map.set_inputs(inputs);
+    if (!take_step(k, motion_state(t, state), h, next_) || !next_.xi.allFinite()) return false;
+    if (!map.difference(motion_state(time_of(k + 1, *next), *next), next_, difference_))
+      return false;
+    out.head(map.increments()) = difference_;
+    if (free_time) out[width - 1] = h - step_of(*next);
+  }
   return out.allFinite();
 }
 
@@ -92,86 +136,16 @@ bool PlanStages::values(int k, const Eigen::VectorXd& state, const Eigen::Vector
   return true;
 }
 
-Eigen::VectorXd PlanStages::deltas(const Eigen::VectorXd& state,
-                                   const Eigen::VectorXd& inputs) const {
-  Eigen::VectorXd out = Eigen::VectorXd::Constant(state_increments() + inputs.size(), kDelta);
-  if (free_time) out[state_increments() - 1] = kStepDelta * step_of(state);
-  out.tail(inputs.size()) = kInputDelta * (1 + inputs.array().abs());
-  return out;
-}
-
-bool PlanStages::differentiate(const Values& values, const Eigen::VectorXd& delta,
-                               const Eigen::VectorXd& weights, Eigen::MatrixXd& jacobian,
-                               Eigen::MatrixXd& hessian) {
-  const Eigen::Index count = delta.size();
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(count), f;
-  if (!values(x, f)) return false;
-  const double middle = weights.dot(f);
-  jacobian.setZero(f.size(), count);
-  hessian.setZero(count, count);
-  constexpr double kFactors[] = {45, -9, 1};
-  Eigen::VectorXd outer = Eigen::VectorXd::Zero(count);  // sums of both values at 3 delta
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (int j = 1; j <= 3; ++j) {
-      for (const int sign : {1, -1}) {
-        x[i] = sign * j * delta[i];
-        if (!values(x, f)) return false;
-        jacobian.col(i) += sign * kFactors[j - 1] / (60 * delta[i]) * f;
-        if (j == 3) outer[i] += weights.dot(f);
-      }
-    }
-    x[i] = 0;
-    hessian(i, i) = (outer[i] - 2 * middle) / (9 * delta[i] * delta[i]);
-  }
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = 0; j < i; ++j) {
-      double both = 0;
-      for (const int sign : {1, -1}) {
-        x[i] = sign * 3 * delta[i];
-        x[j] = sign * 3 * delta[j];
-        if (!values(x, f)) return false;
-        both += weights.dot(f);
-      }
-      x[i] = x[j] = 0;
-      hessian(i, j) = hessian(j, i) =
-          (both - outer[i] - outer[j] + 2 * middle) / (18 * delta[i] * delta[j]);
-    }
-  }
-  return true;
-}
-
-bool PlanStages::derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
-                             const Eigen::VectorXd* next, const Eigen::VectorXd& lambda,
-                             const Eigen::VectorXd& y, StageDerivatives& out) {
-  const Eigen::Index n = state_increments(), width = lambda.size(), rows = y.size();
-  Eigen::VectorXd factors(width + rows + 1), moved, u;
-  factors << lambda, -y, 1;
-  const Values at = [&](const Eigen::VectorXd& increment, Eigen::VectorXd& f) {
-    retract(k, state, increment.head(n), moved);
-    u = inputs + increment.tail(inputs.size());
-    return all_values(k, moved, u, next, f);
-  };
-  Eigen::MatrixXd jacobian;
-  if (!differentiate(at, deltas(state, inputs), factors, jacobian, out.hessian)) return false;
-  out.F = jacobian.topLeftCorner(width, n);
-  out.B = jacobian.topRightCorner(width, inputs.size());
-  out.path_jacobian = jacobian.middleRows(width, rows);
-  out.cost_gradient = jacobian.bottomRows(1).transpose();
-  return true;
-}
-
 int PlanStages::goals() const {
-  return static_cast<int>(goal_rows.size()) + (goal_element.size() > 0 ? map.velocities() : 0);
+  return static_cast<int>(goal_rows.size()) + (goal_place ? map.velocities() : 0);
 }
 
 bool PlanStages::goal_values(const Eigen::VectorXd& last, Eigen::VectorXd& out) {
   out.resize(goals());
   Eigen::Index row = 0;
   for (const PlanGoal& goal : goal_rows) out[row++] = last[goal.place] - goal.value;
-  if (goal_element.size() == 0) return true;
-  part_ = goal_element;
-  part_.tail(map.velocities()).setZero();
-  if (!map.difference(time_of(steps, last), part_, last.head(map.state_size()), difference_))
+  if (!goal_place) return true;
+  if (!map.difference(*goal_place, motion_state(time_of(steps, last), last), difference_))
     return false;
   out.tail(map.velocities()) = difference_.head(map.velocities());
   return true;

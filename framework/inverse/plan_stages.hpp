@@ -2,20 +2,24 @@
 //
 // State of a stage: (coordinates, xi), and the step h where the end time is free; its increments
 // (eta, dy, dh). All derivatives are differences of the step's own map over increments of one
-// stage, never of a chain of steps: central, of order 6, at distance delta,
+// stage, never of a chain of steps. Where the equation of the step is recorded (recorded_lift.hpp)
+// its derivatives are exact. Others are central, of order 6, at distance delta,
 //   f' = (45 (f1 - f-1) - 9 (f2 - f-2) + (f3 - f-3))/(60 delta),
 // and for Hessians, which only steer Newton's method, of order 2 at 3 delta.
 #pragma once
 
 #include <functional>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include <hamel/framework/inverse/step_map.hpp>
 #include <hamel/framework/stages/stage_problem.hpp>
+#include <hamel/framework/tangent/recorded_lift.hpp>
+#include <hamel/framework/tangent/step_map.hpp>
 
 namespace hamel {
 
@@ -31,7 +35,8 @@ struct PlanGoal {
 
 class PlanStages final : public StageProblem {
  public:
-  explicit PlanStages(StepMap of_run) : map(std::move(of_run)) {}
+  explicit PlanStages(StepMap of_run)
+      : map(std::move(of_run)), equation_(RecordedLift::of(map.plan())) {}
 
   mutable StepMap map;  // retract() uses its work space
   int steps = 0;
@@ -45,7 +50,7 @@ class PlanStages final : public StageProblem {
   std::vector<std::string> path_names;  // "v1 <= 0.6"
   std::vector<PlanGoal> goal_rows;
   /// The group's columns are more than its dimension, and all are given: goal by tau^-1.
-  Eigen::VectorXd goal_element;
+  std::optional<MotionState> goal_place;
 
   int stages() const override { return steps; }
   StageSizes sizes(int k) const override;
@@ -66,10 +71,30 @@ class PlanStages final : public StageProblem {
   std::string row_name(int row) const;
   double step_of(const Eigen::VectorXd& state) const;
   double time_of(int k, const Eigen::VectorXd& state) const { return from + k * step_of(state); }
+  /// Are the steps of this point those of the run itself?
+  bool repeats(const StagePoint& point);
+  /// From now on no step is solved by its recorded equation.
+  void take_steps_of_run_alone() { equation_.reset(); }
+  const SystemModel& system() const { return *map.plan().system; }
+  /// The numbers of a motion within a stage's state, and back.
+  Eigen::VectorXd numbers(const MotionState& state) const;
+  MotionState motion_state(double t, const Eigen::VectorXd& state) const;
   int state_increments() const { return map.increments() + (free_time ? 1 : 0); }
 
  private:
+  int numbers_of_motion() const { return map.coordinate_count() + map.velocities(); }
   int path_rows(int k) const;
+  bool take_step(int k, const MotionState& from, double h, MotionState& to);
+  // Path and cost of a stage, without its step.
+  void state_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs, bool last,
+                    Eigen::VectorXd& out) const;
+  bool has_formulas(int k) const;
+  // Of the step, by its equation; false where that has none. Path and cost alone.
+  bool step_derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                        const Eigen::VectorXd& next, const Eigen::VectorXd& lambda,
+                        StageDerivatives& out);
+  bool state_derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                         bool last, const Eigen::VectorXd& y, StageDerivatives& out);
   // All numbers of a stage: defect, path, cost.
   bool all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
                   const Eigen::VectorXd* next, Eigen::VectorXd& out);
@@ -81,8 +106,12 @@ class PlanStages final : public StageProblem {
                             Eigen::MatrixXd& hessian);
   Eigen::VectorXd deltas(const Eigen::VectorXd& state, const Eigen::VectorXd& inputs) const;
 
-  mutable Eigen::VectorXd moved_;
-  Eigen::VectorXd all_, difference_, next_, part_;
+  std::unique_ptr<RecordedLift> equation_;        // null where it is not recorded
+  std::vector<RecordedLift::Unknowns> unknowns_;  // of each stage
+  mutable MotionState moved_;
+  MotionState next_;
+  Eigen::VectorXd all_, beside_, difference_, pulled_;
+  Eigen::MatrixXd by_increments_, slopes_;
 };
 
 }  // namespace hamel

@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace hamel {
 namespace {
 
-constexpr double kProximal = 1e-8;             // rho
-constexpr double kLeastSlack = 1e-2;           // of path rows at the start
-constexpr double kInside = 1e-2;               // part of a range of inputs that a guess is moved in
-constexpr double kArmijo = 1e-4, kHalf = 0.5;  // of the search
-constexpr int kMostHalvings = 25, kMemory = 4;  // of the search
+constexpr double kProximal = 1e-8;  // rho
 constexpr double kDeltaGrowth = 8, kMostDelta = 1e12;
 constexpr int kPatience = 60;  // iterations in which the defect does not halve
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -20,95 +15,6 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 double largest(const Eigen::VectorXd& x) { return x.size() == 0 ? 0 : x.lpNorm<Eigen::Infinity>(); }
 
 }  // namespace
-
-StageNewton::StageNewton(StageProblem& problem, const StageOptions& options,
-                         const StagePoint& guess)
-    : problem_(problem), options_(options), last_(static_cast<size_t>(problem.stages())) {
-  if (guess.states.size() != last_ + 1 || guess.inputs.size() != last_ + 1)
-    throw std::invalid_argument("solve_stages: the guess has another number of stages");
-  resize(guess);
-}
-
-void StageNewton::resize(const StagePoint& guess) {
-  const size_t count = last_ + 1;
-  sizes_.resize(count);
-  rows_.resize(count);
-  derivatives_.resize(count);
-  lambda_.resize(count);
-  linear_.stages.resize(count);
-  now_.point = guess;
-  now_.stages.resize(count);
-  for (size_t k = 0; k < count; ++k) sizes_[k] = problem_.sizes(static_cast<int>(k));
-  for (size_t k = 0; k < count; ++k) {
-    const StageSizes s = sizes_[k];
-    const int next = k < last_ ? sizes_[k + 1].state : 0, all = s.state + s.inputs;
-    if (guess.inputs[k].size() != s.inputs || (k == last_ && s.inputs != 0))
-      throw std::invalid_argument("solve_stages: the guess has another number of inputs");
-    now_.stages[k].defect.setZero(next);
-    now_.stages[k].path.setZero(s.path);
-    StageDerivatives& d = derivatives_[k];
-    d.F.setZero(next, s.state);
-    d.B.setZero(next, s.inputs);
-    d.cost_gradient.setZero(all);
-    d.hessian.setZero(all, all);
-    d.path_jacobian.setZero(s.path, all);
-    linear_.stages[k].resize(s.state, s.inputs, next);
-    lambda_[k].setZero(s.state);
-    rows_[k].path.resize(s.path);
-    set_bounds(static_cast<int>(k));
-    has_rows_ = has_rows_ || s.path > 0 || rows_[k].bound_jacobian.rows() > 0;
-  }
-  now_.goal.setZero(problem_.goals());
-  nu_.setZero(problem_.goals());
-  goal_jacobian_.setZero(problem_.goals(), sizes_[last_].state);
-  goal_hessian_.setZero(sizes_[last_].state, sizes_[last_].state);
-  linear_.start = problem_.start_directions();
-  trial_ = now_;
-}
-
-// Rows u - low >= 0, then high - u >= 0; a guess outside is moved inside.
-void StageNewton::set_bounds(int k) {
-  StageRows& rows = rows_[static_cast<size_t>(k)];
-  const StageSizes s = sizes_[static_cast<size_t>(k)];
-  Eigen::VectorXd low = Eigen::VectorXd::Constant(s.inputs, -kInfinite), high = -low;
-  problem_.bounds(k, low, high);
-  Eigen::VectorXd& u = now_.point.inputs[static_cast<size_t>(k)];
-  std::vector<std::pair<int, double>> found;  // (+-(input + 1), offset)
-  for (int i = 0; i < s.inputs; ++i) {
-    const double inside = std::min(kInside * (high[i] - low[i]), kInside * (1 + std::abs(u[i])));
-    if (std::isfinite(low[i])) u[i] = std::max(u[i], low[i] + inside);
-    if (std::isfinite(high[i])) u[i] = std::min(u[i], high[i] - inside);
-    if (std::isfinite(low[i])) found.emplace_back(i + 1, -low[i]);
-  }
-  rows.lows = static_cast<int>(found.size());
-  for (int i = 0; i < s.inputs; ++i)
-    if (std::isfinite(high[i])) found.emplace_back(-i - 1, high[i]);
-  const auto count = static_cast<Eigen::Index>(found.size());
-  rows.bound_jacobian.setZero(count, s.state + s.inputs);
-  rows.bound_offset.setZero(count);
-  rows.bound_values.setZero(count);
-  rows.bounds.resize(static_cast<int>(count));
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const auto [which, offset] = found[static_cast<size_t>(i)];
-    rows.bound_jacobian(i, s.state + std::abs(which) - 1) = which > 0 ? 1 : -1;
-    rows.bound_offset[i] = offset;
-  }
-}
-
-void StageNewton::bound_values(size_t k, const Eigen::VectorXd& inputs,
-                               Eigen::VectorXd& out) const {
-  out = rows_[k].bound_offset;
-  out.noalias() += rows_[k].bound_jacobian.rightCols(inputs.size()) * inputs;
-}
-
-void StageNewton::start_rows() {
-  mu_ = has_rows_ ? options_.barrier : 0;
-  for (size_t k = 0; k <= last_; ++k) {
-    rows_[k].path.start(now_.stages[k].path, kLeastSlack, mu_);
-    bound_values(k, now_.point.inputs[k], rows_[k].bound_values);
-    rows_[k].bounds.start(rows_[k].bound_values, 0, mu_);
-  }
-}
 
 bool StageNewton::evaluate(Values& at) {
   at.cost = 0;
@@ -241,82 +147,6 @@ bool StageNewton::find_direction(double least_delta) {
     rows.bounds.step(rows.bound_values, rows.bound_jacobian, rows.dx, mu_, 0);
   }
   return linear_.stages[last_].dz.allFinite();
-}
-
-double StageNewton::longest_primal() const {
-  double out = 1;
-  for (const StageRows& rows : rows_)
-    out = std::min({out, rows.path.longest_primal(), rows.bounds.longest_primal()});
-  return out;
-}
-
-// Derivative of the merit's cost along the step.
-double StageNewton::slope() const {
-  double out = 0;
-  for (size_t k = 0; k <= last_; ++k) {
-    const StageRows& rows = rows_[k];
-    out += derivatives_[k].cost_gradient.dot(rows.dx);
-    for (const InteriorRows* r : {&rows.path, &rows.bounds})
-      for (Eigen::Index i = 0; i < r->s.size(); ++i) out -= mu_ * r->ds[i] / r->s[i];
-    if (weight_ > 0 && rows.path.s.size() > 0) {
-      out += weight_ * (now_.stages[k].path - rows.path.s)
-                           .dot(derivatives_[k].path_jacobian * rows.dx - rows.path.ds);
-    }
-  }
-  if (weight_ > 0 && nu_.size() > 0)
-    out += weight_ * now_.goal.dot(goal_jacobian_ * linear_.stages[last_].dz);
-  return out;
-}
-
-StageNewton::Merit StageNewton::merit(const Values& at, double length) const {
-  Merit out{.cost = at.cost, .infeasible = 0};
-  for (size_t k = 0; k <= last_; ++k) {
-    const StageRows& rows = rows_[k];
-    for (const InteriorRows* r : {&rows.path, &rows.bounds})
-      for (Eigen::Index i = 0; i < r->s.size(); ++i)
-        out.cost -= mu_ * std::log(r->s[i] + length * r->ds[i]);
-    out.infeasible += at.stages[k].defect.lpNorm<1>();
-    if (rows.path.s.size() == 0) continue;
-    const Eigen::VectorXd lacks = at.stages[k].path - rows.path.s - length * rows.path.ds;
-    if (weight_ > 0) out.cost += weight_ / 2 * lacks.squaredNorm();
-    else out.infeasible += lacks.lpNorm<1>();
-  }
-  if (weight_ > 0) out.cost += weight_ / 2 * at.goal.squaredNorm();
-  else out.infeasible += at.goal.lpNorm<1>();
-  return out;
-}
-
-// The merit falls along the step: slope - pi infeasible < 0, with a tenth of it to spare.
-void StageNewton::raise_penalty(double slope, double infeasible) {
-  if (!(infeasible > 0)) return;
-  const double needed = slope / (0.9 * infeasible);
-  if (needed > penalty_) penalty_ = 1.5 * needed;
-}
-
-bool StageNewton::search(double& length) {
-  const double along = slope();
-  const Merit here = merit(now_, 0);
-  raise_penalty(along, here.infeasible);
-  if (history_.size() == kMemory) history_.erase(history_.begin());
-  history_.push_back(here);
-  double reference = -kInfinite;
-  for (const Merit& m : history_) reference = std::max(reference, m.cost + penalty_ * m.infeasible);
-  const double fall = along - penalty_ * here.infeasible;
-  const double noise = 1e-13 * (std::abs(reference) + std::abs(here.cost));
-  for (int i = 0; i < kMostHalvings; ++i, length *= kHalf) {
-    for (size_t k = 0; k <= last_; ++k) {
-      const LinearStage& s = linear_.stages[k];
-      problem_.retract(static_cast<int>(k), now_.point.states[k], length * s.dz,
-                       trial_.point.states[k]);
-      trial_.point.inputs[k] = now_.point.inputs[k] + length * s.du;
-    }
-    if (!evaluate(trial_)) continue;
-    const Merit there = merit(trial_, length);
-    if (there.cost + penalty_ * there.infeasible <=
-        reference + std::min(0.0, kArmijo * length * fall) + noise)
-      return true;
-  }
-  return false;
 }
 
 void StageNewton::accept(double length) {

@@ -62,7 +62,7 @@ class SensitivityRows {
 // The coordinates and velocities of a state.
 void coordinates_and_velocities(MovedMotion& motion, const MotionState& state,
                                 Eigen::VectorXd& out) {
-  const std::vector<double> g = motion.coordinates(state);
+  const std::vector<double> g = motion.map().coordinates(state);
   out.resize(static_cast<Eigen::Index>(g.size()) + state.xi.size());
   out << Eigen::Map<const Eigen::VectorXd>(g.data(), static_cast<Eigen::Index>(g.size())), state.xi;
 }
@@ -128,7 +128,7 @@ RunTangent tangent(const Simulation& simulation) {
     const auto moved = [&](double x, Eigen::VectorXd& by) {
       MotionState there;
       displace(motion.motion().geometry(), start, Eigen::VectorXd::Unit(2 * n, j), x, there);
-      run.restart({.configuration = motion.motion().coordinates(there),
+      run.restart({.configuration = motion.motion().map().coordinates(there),
                    .velocity = {there.xi.data(), there.xi.data() + n},
                    .momentum = {}});
       const Start& made = run.config().start;

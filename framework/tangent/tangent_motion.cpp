@@ -123,11 +123,11 @@ double TangentMotion::size_of(const MotionState& at, const Eigen::VectorXd& colu
 bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
                                 Eigen::VectorXd& by) {
   MotionState begin = from, end;
-  if (projects_ && !motion.project(begin)) {
+  if (projects_ && !motion.map().make_admissible(begin)) {
     failure_ = "the constraints do not hold at its beginning";
     return false;
   }
-  const Status status = motion.step(begin, to.time, end);
+  const Status status = motion.map().step(begin, to.time, end);
   if (!status.ok) failure_ = status.reason;
   else if (!displacement(motion.geometry(), to, end, by)) failure_ = "it leads too far";
   else return true;
@@ -172,7 +172,7 @@ bool TangentMotion::push(const TangentState& from, const MotionState& to,
 Status TangentMotion::step(const TangentState& from, double t, TangentState& to,
                            const MotionState* known) {
   MotionState end;
-  if (Status status = motion_.step(from.state, t, end); !status.ok) return status;
+  if (Status status = motion_.map().step(from.state, t, end); !status.ok) return status;
   if (known != nullptr) {
     Eigen::VectorXd off;
     const double h = t - from.state.time;
@@ -206,7 +206,7 @@ Status TangentMotion::advance_to(double t) {
     if (!chosen && std::abs(left) < std::abs(h) - tiny) break;
     if (Status status = kernel_->advance(1); !status.ok) return status;
     kernel_->node(at_);
-    const MotionState end = motion_.state_of(at_);
+    const MotionState end = motion_.map().state_of(at_.time, at_.coordinates, at_.velocity);
     if (end.time == node_.state.time) return {};
     if (Status status = step(node_, end.time, next, &end); !status.ok) return status;
     node_ = std::move(next);

@@ -1,5 +1,8 @@
 // hamel plan: closed facts by files, the run that repeats a plan, mistakes.
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -83,6 +86,27 @@ TEST_F(PlansOfTheProgram, ASleighIsParkedAsideAndARunRepeatsIt) {
   EXPECT_NEAR(end["element"][1][2].get<double>(), 1, 1e-9);  // y
 }
 
+// The system's file is beside the plan's, not where the program runs.
+TEST_F(PlansOfTheProgram, WritesTheGainsOfAFeedback) {
+  std::filesystem::create_directory(file("plans"));
+  write("plans/cart.toml",
+        "name = \"cart\"\ngroup = \"r1\"\ninertia = [1]\nforce = [\"force\"]\n"
+        "[inputs]\nforce = { unit = \"N\" }\n");
+  write("plans/plan.toml",
+        "system = \"cart.toml\"\nsteps = 20\nuntil = 2\ninputs = [\"force\"]\n"
+        "[from]\nvelocity = [0]\n[to]\nconfiguration = [1]\nvelocity = [0]\n");
+  const Outcome out = run({"plan", "plans/plan.toml", "--track", file("gains.csv"), "--quiet"});
+  ASSERT_EQ(out.status, 0) << out.err;
+  std::ifstream in(file("gains.csv"));
+  std::string line;
+  for (int i = 0; i < 3; ++i) std::getline(in, line);
+  EXPECT_EQ(line, "t,d(force)/d(eta.x1'),d(force)/d(x1')");
+  int rows = 0;
+  while (std::getline(in, line)) ++rows;
+  EXPECT_EQ(rows, 20);
+  EXPECT_EQ(run({"plan", "plans/plan.toml", "--track", "gains.txt"}).status, 2);
+}
+
 TEST_F(PlansOfTheProgram, RefusesMistakesWithTheirPlaces) {
   const auto refused = [&](const std::string& text, const std::string& message) {
     write("bad.toml", text);
@@ -95,7 +119,9 @@ TEST_F(PlansOfTheProgram, RefusesMistakesWithTheirPlaces) {
   refused("system = \"segway\"\nuntil = 1\nstps = 5\ninputs = [\"left_torque\"]\n",
           "bad.toml:3:8: unknown key 'stps'");
   refused("system = \"segway\"\nuntil = 1\nsteps = 5\ninputs = [\"left_torqe\"]\n",
-          "did you mean 'left_torque'?");
+          "bad.toml:4:10: unknown input of segway 'left_torqe'");
+  refused("system = \"segwy\"\nuntil = 1\nsteps = 5\ninputs = [\"left_torque\"]\n",
+          "bad.toml:1:10: unknown system 'segwy'");
   refused(good + "[to]\nconfiguration = [1]\n",
           "bad.toml:6:17: to.configuration: got 1 entries, expected 6 (theta, x, y");
   refused(good + "[cost]\nrunning = \"vv1\"\n", "did you mean 'v1'?");

@@ -112,6 +112,23 @@ std::string table_of(const Plan& plan, const std::string& file) {
                      plan.csv());
 }
 
+void check_table(const char* option, const std::string& file) {
+  if (file.empty()) return;
+  if (!file.ends_with(".csv"))
+    throw ConfigError({fmt::format("{}: got '{}', expected .csv", option, file)});
+  if (const std::string why = unwritable(file); !why.empty()) throw ConfigError({why});
+}
+
+// The gains of a plan that reaches its goal.
+void write_gains(const PlanOptions& options, const Plan& plan) {
+  if (options.track.empty() || !plan) return;
+  write_file(
+      options.track,
+      fmt::format("# hamel {}, gains along the plan of {}\n"
+                  "# u = u_k + d(u)/d(eta) eta + d(u)/d(xi) (xi - xi_k), g = g_k tau(eta)\n{}",
+                  version(), plan.run.system, plan.gains()));
+}
+
 // The page is that of the run that repeats the plan.
 void write_page(const PlanOptions& options, const Plan& plan) {
   RunOptions running;
@@ -128,14 +145,12 @@ int plan(const PlanOptions& options) {
     if (const auto mistakes = page_mistakes(options.report); !mistakes.empty())
       throw ConfigError(mistakes);
   }
-  if (!options.output.empty()) {
-    if (!options.output.ends_with(".csv"))
-      throw ConfigError({fmt::format("--output: got '{}', expected .csv", options.output)});
-    if (const std::string why = unwritable(options.output); !why.empty()) throw ConfigError({why});
-  }
+  check_table("--output", options.output);
+  check_table("--track", options.track);
   const PlanRequest request = read_plan(options.file);
   const Plan plan = make_plan(registry(), request, {}, &stop_when_asked());
   if (!options.output.empty()) write_file(options.output, table_of(plan, options.output));
+  write_gains(options, plan);
   if (!options.report.empty()) write_page(options, plan);
   if (options.json) say_json(json_of(plan));
   else if (!options.quiet) print(options, plan);

@@ -7,7 +7,7 @@ namespace hamel::tools {
 
 struct PlanOptions {
   std::string file;
-  std::string output, report;  // -o, --report
+  std::string output, report, track;  // -o, --report, --track
   bool json = false, quiet = false;
 };
 int plan(const PlanOptions& options);

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <hamel/framework/graph/system_formulas.hpp>
 #include <hamel/framework/mechanics/coordinate_rates.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
@@ -13,7 +16,7 @@
 
 namespace hamel {
 
-class DataMechanics final : public Mechanics {
+class DataMechanics final : public Mechanics, public graph::HasSystemFormulas {
  public:
   /// given: null where no input drives it, and its formulas have none.
   DataMechanics(std::shared_ptr<const FormulaPrograms> programs, const GroupInfo& group,
@@ -37,6 +40,10 @@ class DataMechanics final : public Mechanics {
   void inertial_force(const double* g, ConstVector xi, Vector out) const override;
   double power(double t, const double* g, ConstVector xi) const override;
   double potential(const double* g) const override;
+
+  /// None of systems with states: their rows are linear in the velocities by differentiation.
+  std::optional<graph::SystemFormulas> system_formulas(
+      std::span<const graph::Number> variables) const override;
 
   /// Formulas, or derivatives of them, that are not finite there.
   std::vector<std::string> start_mistakes(double t, const double* g, ConstVector xi) const;

@@ -156,13 +156,14 @@ TEST(Stages, AGoalOutOfReachIsMissedLeast) {
   EXPECT_NEAR(out.missed.norm(), std::sqrt(least), 1e-3);
 }
 
-// Two rows at odds with each other cannot be met: the end is in the middle.
-TEST(Stages, RowsThatContradictAreOutOfReach) {
+// A cart whose goal has the row of its place twice, at 1 and at another place.
+StageSolution solve_with_two_places(double other) {
   struct Twice : FormulaProblem<Cart> {
     using FormulaProblem::FormulaProblem;
+    double other = 0;
     int goals() const override { return 3; }
     void goal(const VectorXd& last, VectorXd& value) override {
-      value = vec({last[0] - 1, last[0] - 2, last[1]});
+      value = vec({last[0] - 1, last[0] - other, last[1]});
     }
     void goal_derivatives(const VectorXd&, const VectorXd&, Eigen::MatrixXd& jacobian,
                           Eigen::MatrixXd&) override {
@@ -170,12 +171,18 @@ TEST(Stages, RowsThatContradictAreOutOfReach) {
     }
   };
   Twice problem({}, 10);
+  problem.other = other;
   hamel::StagePoint guess;
   for (int k = 0; k <= 10; ++k) {
     guess.states.push_back(vec({0, 0, 0.2}));
     guess.inputs.push_back(VectorXd::Zero(k < 10 ? 1 : 0));
   }
-  const StageSolution out = solve_stages(problem, guess);
+  return solve_stages(problem, guess);
+}
+
+// Two rows at odds with each other cannot be met: the end is in the middle.
+TEST(Stages, RowsThatContradictAreOutOfReach) {
+  const StageSolution out = solve_with_two_places(2);
   ASSERT_EQ(out.status, StageStatus::out_of_reach) << out.reason;
   EXPECT_NEAR(out.missed[0], 0.5, 1e-4);
   EXPECT_NEAR(out.missed[1], -0.5, 1e-4);
@@ -183,24 +190,7 @@ TEST(Stages, RowsThatContradictAreOutOfReach) {
 
 // Rows twice: multipliers are not unique, the solution is.
 TEST(Stages, GoalRowsMayDependOnEachOther) {
-  struct Twice : FormulaProblem<Cart> {
-    using FormulaProblem::FormulaProblem;
-    int goals() const override { return 3; }
-    void goal(const VectorXd& last, VectorXd& value) override {
-      value = vec({last[0] - 1, last[0] - 1, last[1]});
-    }
-    void goal_derivatives(const VectorXd&, const VectorXd&, Eigen::MatrixXd& jacobian,
-                          Eigen::MatrixXd&) override {
-      jacobian(0, 0) = jacobian(1, 0) = jacobian(2, 1) = 1;
-    }
-  };
-  Twice problem({}, 10);
-  hamel::StagePoint guess;
-  for (int k = 0; k <= 10; ++k) {
-    guess.states.push_back(vec({0, 0, 0.2}));
-    guess.inputs.push_back(VectorXd::Zero(k < 10 ? 1 : 0));
-  }
-  const StageSolution out = solve_stages(problem, guess);
+  const StageSolution out = solve_with_two_places(1);
   ASSERT_EQ(out.status, StageStatus::ok) << out.reason;
   EXPECT_NEAR(out.objective, 6.0 / 8 / (1 - 0.01), 1e-9);
 }

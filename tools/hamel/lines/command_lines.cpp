@@ -178,6 +178,8 @@ Action define_plan(CLI::App& app) {
                  "write the inputs as a table, .csv, that --input of hamel run takes");
   app.add_option("--report", options->report,
                  "write the page of the run that repeats the plan, self-contained HTML");
+  app.add_option("--track", options->track,
+                 "write the gains of a linear feedback along the plan as a table, .csv");
   app.add_flag("--json", options->json, "print everything as JSON");
   app.add_flag("--quiet", options->quiet, "print nothing but errors (and --json)");
   app.footer(

@@ -47,6 +47,18 @@ void bind_plan(nb::module_& m) {
           "states", [](const Plan& p) { return by_name(p.states); }, "a value for each time")
       .def_ro("missed", &Plan::missed, "goals out of reach, by how much")
       .def("csv", &Plan::csv, "The inputs as a table that --input reads, held.")
+      .def(
+          "feedback",
+          [](const Plan& p, long step, const std::vector<double>& configuration,
+             const std::vector<double>& velocity) {
+            const std::vector<double> u = p.feedback(step, configuration, velocity);
+            std::map<std::string, double> out;
+            for (std::size_t i = 0; i < u.size(); ++i) out[p.inputs[i].first] = u[i];
+            return out;
+          },
+          "step"_a, "configuration"_a, "velocity"_a,
+          "The inputs of a step (from 0), corrected for a state beside the plan's by its gains.")
+      .def("gains", &Plan::gains, "The gains along the plan as a table (hamel plan --track).")
       .def("__repr__", [](const Plan& p) {
         return std::string("<hamel.Plan: ") + words(p.status) + ", " + std::to_string(p.steps) +
                " steps>";

@@ -1,0 +1,160 @@
+// Derivatives of the stages of a plan: of the equation of a step, else differences.
+#include <hamel/framework/inverse/plan_stages.hpp>
+
+namespace hamel {
+namespace {
+
+// Differences of order 6: truncation delta^6 f7/140, round-off eps/delta. Of increments in rad, m
+// and their rates, of inputs in a part of their size, of the step in a part of it.
+constexpr double kDelta = 3e-3, kInputDelta = 1e-2, kStepDelta = 2e-2;
+
+}  // namespace
+
+Eigen::VectorXd PlanStages::deltas(const Eigen::VectorXd& state,
+                                   const Eigen::VectorXd& inputs) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(state_increments() + inputs.size(), kDelta);
+  if (free_time) out[state_increments() - 1] = kStepDelta * step_of(state);
+  out.tail(inputs.size()) = kInputDelta * (1 + inputs.array().abs());
+  return out;
+}
+
+bool PlanStages::differentiate(const Values& values, const Eigen::VectorXd& delta,
+                               const Eigen::VectorXd& weights, Eigen::MatrixXd& jacobian,
+                               Eigen::MatrixXd& hessian) {
+  const Eigen::Index count = delta.size();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(count), f;
+  if (!values(x, f)) return false;
+  const double middle = weights.dot(f);
+  jacobian.setZero(f.size(), count);
+  hessian.setZero(count, count);
+  constexpr double kFactors[] = {45, -9, 1};
+  Eigen::VectorXd outer = Eigen::VectorXd::Zero(count);  // sums of both values at 3 delta
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (int j = 1; j <= 3; ++j) {
+      for (const int sign : {1, -1}) {
+        x[i] = sign * j * delta[i];
+        if (!values(x, f)) return false;
+        jacobian.col(i) += sign * kFactors[j - 1] / (60 * delta[i]) * f;
+        if (j == 3) outer[i] += weights.dot(f);
+      }
+    }
+    x[i] = 0;
+    hessian(i, i) = (outer[i] - 2 * middle) / (9 * delta[i] * delta[i]);
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      double both = 0;
+      for (const int sign : {1, -1}) {
+        x[i] = sign * 3 * delta[i];
+        x[j] = sign * 3 * delta[j];
+        if (!values(x, f)) return false;
+        both += weights.dot(f);
+      }
+      x[i] = x[j] = 0;
+      hessian(i, j) = hessian(j, i) =
+          (both - outer[i] - outer[j] + 2 * middle) / (18 * delta[i] * delta[j]);
+    }
+  }
+  return true;
+}
+
+bool PlanStages::has_formulas(int k) const {
+  return path_rows(k) > 0 || (k < steps ? running : terminal) != nullptr;
+}
+
+// q = (eta, w, u, h, t) of the equation by the increments (eta, dy, dh) and u: w = xi + E dy, t =
+// from + k h.
+bool PlanStages::step_derivatives(int k, const Eigen::VectorXd& state,
+                                  const Eigen::VectorXd& inputs, const Eigen::VectorXd& next,
+                                  const Eigen::VectorXd& lambda, StageDerivatives& out) {
+  const double h = step_of(state), t = time_of(k, state);
+  const MotionState begin = motion_state(t, state);
+  map.set_inputs(inputs);
+  unknowns_.resize(static_cast<std::size_t>(steps));
+  if (!equation_->solve(begin, map.plan().setup.inputs->at(t), h,
+                        unknowns_[static_cast<std::size_t>(k)]) ||
+      !equation_->linearise({next.data(), static_cast<std::size_t>(map.coordinate_count())}))
+    return false;
+  const Eigen::Index n = map.velocities(), m = map.increments() - n, width = state_increments(),
+                     count = width + inputs.size(), last = equation_->parameters() - 1;
+  by_increments_.setZero(equation_->parameters(), count);
+  by_increments_.topLeftCorner(n, n).setIdentity();
+  by_increments_.block(n, n, n, m) = map.basis(begin);
+  for (std::size_t i = 0; i < map.inputs().size(); ++i)
+    by_increments_(2 * n + static_cast<Eigen::Index>(map.inputs()[i]),
+                   width + static_cast<Eigen::Index>(i)) = 1;
+  if (free_time) {
+    by_increments_(last - 1, width - 1) = 1;
+    by_increments_(last, width - 1) = k;
+  }
+  const Eigen::MatrixXd& inverse = map.left_inverse(motion_state(time_of(k + 1, next), next));
+  slopes_.noalias() = equation_->jacobian() * by_increments_;
+  out.F.topRows(n) = slopes_.topLeftCorner(n, width);
+  out.B.topRows(n) = slopes_.topRightCorner(n, inputs.size());
+  out.F.middleRows(n, m).noalias() = inverse * slopes_.bottomLeftCorner(n, width);
+  out.B.middleRows(n, m).noalias() = inverse * slopes_.bottomRightCorner(n, inputs.size());
+  if (free_time) out.F(width - 1, width - 1) = 1;
+  pulled_.resize(2 * n);
+  pulled_.head(n) = lambda.head(n);
+  pulled_.tail(n).noalias() = inverse.transpose() * lambda.segment(n, m);
+  slopes_.noalias() = equation_->hessian(pulled_) * by_increments_;
+  out.hessian.noalias() = by_increments_.transpose() * slopes_;
+  return true;
+}
+
+// h (w_t + 1/2 sum w_i u_i^2) in closed form where no formulas are beside it.
+bool PlanStages::state_derivatives(int k, const Eigen::VectorXd& state,
+                                   const Eigen::VectorXd& inputs, bool last,
+                                   const Eigen::VectorXd& y, StageDerivatives& out) {
+  const Eigen::Index n = state_increments(), rows = y.size(), count = inputs.size();
+  if (!has_formulas(k)) {
+    if (last) return true;
+    const Eigen::VectorXd weighted = weights.cwiseProduct(inputs);
+    out.cost_gradient.tail(count) = step_of(state) * weighted;
+    out.hessian.diagonal().tail(count) += step_of(state) * weights;
+    if (!free_time) return true;
+    out.cost_gradient[n - 1] = time_weight + 0.5 * weighted.dot(inputs);
+    out.hessian.block(n - 1, n, 1, count) += weighted.transpose();
+    out.hessian.block(n, n - 1, count, 1) += weighted;
+    return true;
+  }
+  Eigen::VectorXd factors(rows + 1), moved, u;
+  factors << -y, 1;
+  const Values at = [&](const Eigen::VectorXd& increment, Eigen::VectorXd& f) {
+    retract(k, state, increment.head(n), moved);
+    u = inputs + increment.tail(count);
+    state_values(k, moved, u, last, f);
+    return f.allFinite();
+  };
+  Eigen::MatrixXd jacobian, hessian;
+  if (!differentiate(at, deltas(state, inputs), factors, jacobian, hessian)) return false;
+  out.hessian += hessian;
+  out.path_jacobian = jacobian.topRows(rows);
+  out.cost_gradient = jacobian.bottomRows(1).transpose();
+  return true;
+}
+
+bool PlanStages::derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                             const Eigen::VectorXd* next, const Eigen::VectorXd& lambda,
+                             const Eigen::VectorXd& y, StageDerivatives& out) {
+  if (next == nullptr) return state_derivatives(k, state, inputs, true, y, out);
+  if (equation_ != nullptr && step_derivatives(k, state, inputs, *next, lambda, out))
+    return state_derivatives(k, state, inputs, false, y, out);
+  const Eigen::Index n = state_increments(), width = lambda.size(), rows = y.size();
+  Eigen::VectorXd factors(width + rows + 1), moved, u;
+  factors << lambda, -y, 1;
+  const Values at = [&](const Eigen::VectorXd& increment, Eigen::VectorXd& f) {
+    retract(k, state, increment.head(n), moved);
+    u = inputs + increment.tail(inputs.size());
+    return all_values(k, moved, u, next, f);
+  };
+  Eigen::MatrixXd jacobian;
+  if (!differentiate(at, deltas(state, inputs), factors, jacobian, out.hessian)) return false;
+  out.F = jacobian.topLeftCorner(width, n);
+  out.B = jacobian.topRightCorner(width, inputs.size());
+  out.path_jacobian = jacobian.middleRows(width, rows);
+  out.cost_gradient = jacobian.bottomRows(1).transpose();
+  return true;
+}
+
+}  // namespace hamel

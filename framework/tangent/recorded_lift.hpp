@@ -1,0 +1,87 @@
+// The equation of a step of lift as recorded programs: its solution and its derivatives, exact to
+// round-off. Not installed.
+//
+// For systems whose formulas are recorded (graph::HasSystemFormulas) on groups of exp and cayley.
+// With multipliers in place of a frame, all that a step determines is x = (xi_0, alpha; v, lambda;
+// xi_1, kappa) of
+//   I(g0) (xi_0 - w) = A(g0)^T alpha,          A(g0) xi_0 = b(t, g0)
+//   mu0 - I(g0) xi_0 - h/2 F0 = A(g0)^T lambda,   A(g) v = b(t + s h, g),  phi(g1) = 0
+//   I(g1) xi_1 - mu1 - h/2 F1 = A(g1)^T kappa,   A(g1) xi_1 = b(t + h, g1)
+// with mu0, mu1, g, g1 and forces as in schemes/lift.hpp, g0 = g tau(eta). R(x; q) = 0, q = (eta,
+// w, u, h, t); z+ = S(x; q) = (tau^-1(g_ref^-1 g1), xi_1). With L = lambda . S + rho . R:
+//   dx = X dq,  X = -R_x^-1 R_q,   dz+ = (S_q + S_x X) dq
+//   rho = -R_x^-T S_x^T lambda,    d^2 (lambda . z+) = [X; 1]^T L'' [X; 1]
+// The first pair, the velocity's projection onto the rows at g0, is left out where I and A are
+// constant and b = 0.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <hamel/framework/graph/code.hpp>
+#include <hamel/framework/graph/system_formulas.hpp>
+#include <hamel/framework/tangent/recorded_geometry.hpp>
+#include <hamel/framework/tangent/step_map.hpp>
+
+namespace hamel {
+
+class RecordedLift {
+ public:
+  /// Null where the step of this run is not such an equation.
+  static std::unique_ptr<RecordedLift> of(const RunPlan& plan);
+
+  /// Unknowns of a step, kept by whoever takes it: the next solution begins at the last one.
+  using Unknowns = Eigen::VectorXd;
+
+  /// A step from there with constant inputs; its solution is kept for derivatives. False where it
+  /// is not found.
+  bool solve(const MotionState& from, const Eigen::VectorXd& inputs, double h, Unknowns& x);
+  /// The end of the step solved last; false outside the domain of tau.
+  bool end(MotionState& to) const;
+
+  /// Derivatives of the step solved last, as (eta, dxi) at g_ref, by q: 2n x (2n + inputs + 2).
+  /// g_ref: coordinates, near the end. False where there are none.
+  bool linearise(std::span<const double> reference);
+  const Eigen::MatrixXd& jacobian() const { return jacobian_; }
+  /// Second derivatives of lambda . z+ by q, behind linearise().
+  const Eigen::MatrixXd& hessian(const Eigen::VectorXd& lambda);
+  int parameters() const { return static_cast<int>(2 * n_ + inputs_ + 2); }
+
+ private:
+  struct Sparse {  // a matrix of a program's outputs
+    struct Entry {
+      Eigen::Index row, column;
+      std::size_t output;
+    };
+    std::vector<Entry> entries;
+  };
+  friend class LiftRecording;
+  RecordedLift() = default;
+  bool record();
+  bool evaluate(const graph::Code& code, std::size_t guards_at);
+  double* input(std::size_t at) { return in_.data() + at; }
+
+  const RunPlan* plan_ = nullptr;
+  const graph::HasSystemFormulas* system_ = nullptr;
+  std::shared_ptr<const RecordedGeometry> geometry_;
+  std::size_t n_ = 0, k_ = 0, held_ = 0, inputs_ = 0, columns_ = 0, unknowns_ = 0;
+  bool projects_ = false;
+  int records_ = 0;
+  // Where the inputs of the programs begin.
+  struct Places {
+    std::size_t from, reference, w, u, h, t, eta, zero, x, lambda, rho, all;
+  } at_ = {};
+  std::vector<bool> guards_;
+  std::unique_ptr<graph::Code> equation_, first_, second_;
+  Sparse equation_by_x_, by_x_, by_q_, end_by_x_, end_by_q_, curvature_;
+  std::vector<double> in_, out_, work_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  Eigen::MatrixXd r_x_, r_q_, s_x_, jacobian_, way_, half_, hessian_;
+  Eigen::VectorXd step_, rho_;
+  mutable Eigen::VectorXd z_, g_, part_;
+};
+
+}  // namespace hamel
