@@ -13,6 +13,7 @@
 #include <hamel/systems/mechanisms/mechanism_file.hpp>
 #include <hamel/systems/mechanisms/urdf.hpp>
 #include <hamel/systems/n_trailer.hpp>
+#include <hamel/systems/recorded_systems.hpp>
 
 namespace hamel {
 namespace {
@@ -78,6 +79,7 @@ Registry make_registry() {
   add_system<NTrailer>(registry);
   add_mechanisms(registry);
   add_mechanism_kernels(registry);
+  add_recorded_systems();
 #ifdef HAMEL_HAS_XSIMD
   add_library_lanes(registry);
 #endif

@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include <hamel/framework/analysis/central_differences.hpp>
+#include <hamel/framework/analysis/equations_text.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
@@ -155,6 +156,45 @@ double Equations::energy(const Start& state) const {
   Insides& at = *insides_;
   at.put(state, 0);
   return 0.5 * at.xi.dot(at.inertia() * at.xi) + at.mechanics.potential(at.g.data());
+}
+
+const std::vector<std::string>& Equations::notations() {
+  static const std::vector<std::string> names = {"latex", "c", "numpy", "sympy"};
+  return names;
+}
+
+// The formulas near the start of the run, inputs among their variables.
+MotionFormulas Equations::recorded() const {
+  const SystemModel& model = system();
+  Insides& at = *insides_;
+  at.put({}, 0);
+  std::shared_ptr<const Mechanics> mechanics = at.plan.setup.mechanics;
+  if (model.drive && at.plan.setup.inputs == nullptr) {
+    const InputTable zero{{}, {0}};
+    mechanics = model.drive(
+        std::make_shared<Inputs>(model.inputs, std::vector<InputTable>(model.inputs.size(), zero)));
+  }
+  try {
+    return record_motion(model, *mechanics, *at.plan.geometry, numbers_of(at.g), at.state.velocity);
+  } catch (const std::domain_error& error) {
+    throw ConfigError(
+        {fmt::format("equations: {} has no formulas to write: {}", model.name, error.what())});
+  }
+}
+
+std::string Equations::formulas(const std::string& notation) const {
+  const auto known = std::ranges::find(notations(), notation);
+  if (known == notations().end())
+    throw ConfigError({unknown_name("equations", notation, notations())});
+  const SystemModel& model = system();
+  std::vector<std::string> parameters;
+  for (const Field& field : model.fields)
+    if (!field.value.empty())
+      parameters.push_back(fmt::format("{} = {}", field.name, fmt::join(field.value, ", ")));
+  std::string title = fmt::format("{} on {}", model.name, model.group.name);
+  if (!parameters.empty()) title += fmt::format(": {}", fmt::join(parameters, "; "));
+  return equations_text(recorded(), model.name, title,
+                        static_cast<graph::Notation>(known - notations().begin()));
 }
 
 const std::vector<std::string>& Equations::quantities() {

@@ -24,6 +24,7 @@
 
 namespace hamel {
 
+struct MotionFormulas;
 struct SystemModel;
 
 /// Constraint rows at a state: A xi = b, and phi = 0 of the holonomic ones.
@@ -63,6 +64,14 @@ class HAMEL_API Equations {
   /// Kinetic and potential energy.
   double energy(const Start& state = {}) const;
 
+  /// The equations as formulas of t, coordinates q, velocities xi and inputs u, parameters as
+  /// numbers: "latex", "c", "numpy" or "sympy". Code has functions rate(t, q, xi, u), which gives
+  /// xi' of admissible velocities as rate() does where inputs are held, and coordinate_rates(q,
+  /// xi). ConfigError for another notation, and with the reason where the system has no recorded
+  /// formulas.
+  std::string formulas(const std::string& notation) const;
+  static const std::vector<std::string>& notations();
+
   /// The quantities that have a jacobian, and what they have it of.
   static const std::vector<std::string>& quantities();
   std::vector<std::string> arguments() const;
@@ -74,6 +83,7 @@ class HAMEL_API Equations {
 
  private:
   const SystemModel& system() const;
+  MotionFormulas recorded() const;
   std::vector<double> quantity_at(const std::string& quantity, const Start& state, double t) const;
   std::vector<double> round_off_of(const std::string& quantity, const Start& state, double t) const;
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hamel/framework/analysis/equations.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
@@ -11,6 +12,7 @@
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/by_name.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
+#include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"
 #include "words/description_text.hpp"
@@ -285,6 +287,12 @@ std::string toml_of(const std::string& name) {
 int describe(const DescribeOptions& options) {
   if (options.toml) {
     say("{}", toml_of(options.name));
+    return 0;
+  }
+  if (!options.equations.empty()) {
+    Simulation simulation = simulate(options.name);
+    for (const auto& [name, values] : options.parameters) simulation.set(name, values);
+    say("{}", Equations(simulation).formulas(options.equations));
     return 0;
   }
   if (options.analyse) return analyse(options);

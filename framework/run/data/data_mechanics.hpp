@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/graph/motion_terms.hpp>
 #include <hamel/framework/mechanics/coordinate_rates.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
@@ -13,7 +14,7 @@
 
 namespace hamel {
 
-class DataMechanics final : public Mechanics {
+class DataMechanics final : public Mechanics, public graph::HasMotionTerms {
  public:
   /// given: null where no input drives it, and its formulas have none.
   DataMechanics(std::shared_ptr<const FormulaPrograms> programs, const GroupInfo& group,
@@ -37,6 +38,8 @@ class DataMechanics final : public Mechanics {
   void inertial_force(const double* g, ConstVector xi, Vector out) const override;
   double power(double t, const double* g, ConstVector xi) const override;
   double potential(const double* g) const override;
+
+  graph::MotionTerms motion_terms(const graph::MotionVariables& at) const override;
 
   /// Formulas, or derivatives of them, that are not finite there.
   std::vector<std::string> start_mistakes(double t, const double* g, ConstVector xi) const;
