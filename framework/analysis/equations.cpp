@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +12,9 @@
 
 #include <hamel/framework/analysis/central_differences.hpp>
 #include <hamel/framework/analysis/equations_text.hpp>
+#include <hamel/framework/graph/code.hpp>
+#include <hamel/framework/graph/derivatives.hpp>
+#include <hamel/framework/graph/substitute.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
@@ -36,6 +41,55 @@ void check_numbers(const char* name, const std::vector<double>& got, int expecte
   else if (!std::ranges::all_of(got, [](double x) { return std::isfinite(x); }))
     mistakes.push_back(fmt::format("{}: expected finite numbers", name));
 }
+
+// Derivatives of the rates as a program of t, coordinates, velocities and inputs; column by column.
+class RecordedJacobian {
+ public:
+  RecordedJacobian(const MotionFormulas& motion, const std::string& of) {
+    using graph::Number;
+    using Numbers = std::vector<Number>;
+    graph::Recording recording;
+    Numbers inputs;
+    for (const std::string& name : motion.recording->inputs())
+      inputs.push_back(recording.input(name));
+    const auto q = motion.variables.coordinates.size(), n = motion.rates.size();
+    const auto slice = [&inputs](size_t first, size_t count) {
+      const auto from = inputs.begin() + static_cast<std::ptrdiff_t>(first);
+      return Numbers(from, from + static_cast<std::ptrdiff_t>(count));
+    };
+    const Numbers coordinates = slice(1, q), velocities = slice(1 + q, n);
+    const Numbers rates = substituted(*motion.recording, motion.rates, inputs);
+    const Numbers moves = substituted(*motion.recording, motion.variables.coordinate_rates, inputs);
+    graph::Program::Outputs outputs;
+    const auto add = [&](const Numbers& of_inputs, const Numbers& direction) {
+      for (const Number& x : graph::along(rates, of_inputs, direction)) outputs.emplace_back("", x);
+    };
+    const bool by_velocity = of == "velocity", by_configuration = of == "configuration";
+    for (size_t j = 0; j < n && (by_velocity || by_configuration); ++j) {
+      Numbers unit(n);
+      unit[j] = 1;
+      if (by_velocity) add(velocities, unit);
+      else add(coordinates, graph::along(moves, velocities, unit));
+    }
+    if (!by_velocity && !by_configuration) {
+      const auto& names = motion.recording->inputs();
+      const auto input =
+          of == "time"
+              ? names.begin()
+              : std::find(names.begin() + static_cast<std::ptrdiff_t>(1 + q + n), names.end(), of);
+      add(slice(static_cast<size_t>(input - names.begin()), 1), {1});
+    }
+    code_.emplace(std::make_shared<const graph::Program>(recording, outputs));
+  }
+  std::vector<double> operator()(const std::vector<double>& at) const {
+    std::vector<double> out(code_->program().outputs().size()), work(code_->work_size());
+    (*code_)(at.data(), out.data(), work.data());
+    return out;
+  }
+
+ private:
+  std::optional<graph::Code> code_;
+};
 
 constexpr double kEpsilonOfEquations = std::numeric_limits<double>::epsilon();
 
@@ -163,23 +217,17 @@ const std::vector<std::string>& Equations::notations() {
   return names;
 }
 
-// The formulas near the start of the run, inputs among their variables.
+// The formulas near the last state, inputs among their variables. Throws std::domain_error.
 MotionFormulas Equations::recorded() const {
   const SystemModel& model = system();
   Insides& at = *insides_;
-  at.put({}, 0);
   std::shared_ptr<const Mechanics> mechanics = at.plan.setup.mechanics;
   if (model.drive && at.plan.setup.inputs == nullptr) {
     const InputTable zero{{}, {0}};
     mechanics = model.drive(
         std::make_shared<Inputs>(model.inputs, std::vector<InputTable>(model.inputs.size(), zero)));
   }
-  try {
-    return record_motion(model, *mechanics, *at.plan.geometry, numbers_of(at.g), at.state.velocity);
-  } catch (const std::domain_error& error) {
-    throw ConfigError(
-        {fmt::format("equations: {} has no formulas to write: {}", model.name, error.what())});
-  }
+  return record_motion(model, *mechanics, *at.plan.geometry, numbers_of(at.g), at.state.velocity);
 }
 
 std::string Equations::formulas(const std::string& notation) const {
@@ -193,8 +241,56 @@ std::string Equations::formulas(const std::string& notation) const {
       parameters.push_back(fmt::format("{} = {}", field.name, fmt::join(field.value, ", ")));
   std::string title = fmt::format("{} on {}", model.name, model.group.name);
   if (!parameters.empty()) title += fmt::format(": {}", fmt::join(parameters, "; "));
-  return equations_text(recorded(), model.name, title,
-                        static_cast<graph::Notation>(known - notations().begin()));
+  insides_->put({}, 0);
+  try {
+    return equations_text(recorded(), std::filesystem::path(model.name).stem().string(), title,
+                          static_cast<graph::Notation>(known - notations().begin()));
+  } catch (const std::domain_error& error) {
+    throw ConfigError(
+        {fmt::format("equations: {} has no formulas to write: {}", model.name, error.what())});
+  }
+}
+
+// Derivatives of the recorded rates; none where there are no formulas, or inputs that change.
+std::optional<JacobianOfState> Equations::exact_jacobian(const std::string& of, const Start& at,
+                                                         double t) const {
+  insides_->put(at, t);
+  const std::shared_ptr<Inputs>& given = insides_->plan.setup.inputs;
+  std::vector<double> values = {t};
+  values.insert(values.end(), at.configuration.begin(), at.configuration.end());
+  values.insert(values.end(), at.velocity.begin(), at.velocity.end());
+  for (size_t i = 0; i < system().inputs.size(); ++i) {
+    if (given != nullptr && !given->tables()[i].times.empty()) return {};
+    values.push_back(given == nullptr ? 0 : given->at(t)[static_cast<Eigen::Index>(i)]);
+  }
+  std::optional<RecordedJacobian> recorded_jacobian;
+  try {
+    recorded_jacobian.emplace(recorded(), of);
+  } catch (const std::domain_error&) {
+    return {};
+  }
+  const auto rows = static_cast<int>(at.velocity.size());
+  const std::vector<double> found = (*recorded_jacobian)(values);
+  const int columns = static_cast<int>(found.size()) / rows;
+  const Eigen::VectorXd noise = noise_of(
+      [&](double e) -> Eigen::VectorXd {
+        std::vector<double> there = values;
+        for (size_t i = 0; i < there.size(); ++i)
+          there[i] += e * std::max(1.0, std::abs(there[i])) *
+                      std::sin(12.9898 * static_cast<double>(i + 1));
+        const std::vector<double> moved = (*recorded_jacobian)(there);
+        return Eigen::Map<const Eigen::VectorXd>(moved.data(),
+                                                 static_cast<Eigen::Index>(moved.size()));
+      },
+      0x1p-30);
+  JacobianOfState out{NumberMatrix(rows, columns), NumberMatrix(rows, columns)};
+  for (int j = 0; j < columns; ++j) {
+    for (int i = 0; i < rows; ++i) {
+      out.values(i, j) = found[static_cast<size_t>(j * rows + i)];
+      out.errors(i, j) = noise[j * rows + i];
+    }
+  }
+  return out;
 }
 
 const std::vector<std::string>& Equations::quantities() {
@@ -255,6 +351,11 @@ JacobianOfState Equations::jacobian(const std::string& quantity, const std::stri
 
   insides_->put(state, t);
   const Start here{insides_->state.coordinates, insides_->state.velocity, {}};
+  const bool of_parameter = std::ranges::count(system().fields, of, &Field::name) > 0;
+  if (quantity == "rate" && !of_parameter) {
+    if (auto exact = exact_jacobian(of, here, t)) return std::move(*exact);
+    insides_->put(here, t);
+  }
   const Eigen::VectorXd g = insides_->g;
   const int n = insides_->mechanics.dim();
   const RunPlan& plan = insides_->plan;

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,14 +77,18 @@ class HAMEL_API Equations {
   static const std::vector<std::string>& quantities();
   std::vector<std::string> arguments() const;
   /// quantity: "rate", "momentum", "reactions", "energy"; of: "velocity", "configuration" (along
-  /// g tau(e_j x), j = 1 to n), "time", a parameter or an input of the system. By extrapolated
-  /// central differences, with their errors. ConfigError names what there is.
+  /// g tau(e_j x), j = 1 to n), "time", a parameter or an input of the system. Of recorded
+  /// formulas (formulas()) rates by all but parameters are exact derivatives, with their round-off;
+  /// all others are extrapolated central differences, with their errors. ConfigError names what
+  /// there is.
   JacobianOfState jacobian(const std::string& quantity, const std::string& of,
                            const Start& state = {}, double t = 0) const;
 
  private:
   const SystemModel& system() const;
   MotionFormulas recorded() const;
+  std::optional<JacobianOfState> exact_jacobian(const std::string& of, const Start& at,
+                                                double t) const;
   std::vector<double> quantity_at(const std::string& quantity, const Start& state, double t) const;
   std::vector<double> round_off_of(const std::string& quantity, const Start& state, double t) const;
 

@@ -194,8 +194,14 @@ void FormulaText::collect_factors(int i, int power, bool top, Factors& out) cons
   const Node& n = node(i);
   if (n.op == Op::constant) {
     out.coefficient *= std::pow(n.value, power);
-  } else if ((!top && named(i)) || !is_product(i)) {
+  } else if (!top && named(i)) {
     out.add(i, power);
+  } else if (!is_product(i)) {
+    const std::vector<Factors> terms = is_sum(i) ? joined_terms(i) : std::vector<Factors>(2);
+    if (terms.size() > 1) return out.add(i, power);
+    out.coefficient *= terms.empty() ? 0 : std::pow(terms[0].coefficient, power);
+    if (terms.empty()) return;
+    for (const auto& [base, of_base] : terms[0].powers) out.add(base, power * of_base);
   } else if (n.op == Op::negate) {
     if (power % 2 != 0) out.coefficient = -out.coefficient;
     collect_factors(n.a, power, false, out);
@@ -206,7 +212,7 @@ void FormulaText::collect_factors(int i, int power, bool top, Factors& out) cons
 }
 
 // Terms with the same factors are one; constants are the last.
-FormulaText::Written FormulaText::sum(int i) const {
+std::vector<FormulaText::Factors> FormulaText::joined_terms(int i) const {
   std::vector<std::pair<double, int>> terms;
   collect_terms(i, 1, true, terms);
   std::vector<Factors> joined;
@@ -225,6 +231,11 @@ FormulaText::Written FormulaText::sum(int i) const {
   std::erase_if(joined, [](const Factors& f) { return f.coefficient == 0; });
   std::stable_partition(joined.begin(), joined.end(),
                         [](const Factors& f) { return !f.powers.empty(); });
+  return joined;
+}
+
+FormulaText::Written FormulaText::sum(int i) const {
+  std::vector<Factors> joined = joined_terms(i);
   std::string out;
   for (Factors& factors : joined) {
     const bool negative = factors.coefficient < 0;

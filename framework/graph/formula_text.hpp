@@ -50,6 +50,7 @@ class FormulaText {
   Written choice(int i) const;
   std::string within(int i, int level) const;  // in parentheses where it holds less together
   void collect_terms(int i, double sign, bool top, std::vector<std::pair<double, int>>& out) const;
+  std::vector<Factors> joined_terms(int i) const;
   void join_roots(Factors& factors) const;
   void collect_factors(int i, int power, bool top, Factors& out) const;
   std::string power_text(int i, int power) const;

@@ -282,6 +282,20 @@ std::string toml_of(const std::string& name) {
   throw ConfigError({"--toml: " + unknown_name("mechanism", name, known)});
 }
 
+std::string equations_of(const DescribeOptions& options) {
+  const SystemInfo* info = registry().system(options.name);
+  if (info == nullptr && !names_file(options.name))
+    throw ConfigError({unknown_name("system", options.name, registry().systems_and_files())});
+  const SystemModel model = info != nullptr
+                                ? info->make(options.parameters)
+                                : data_system_maker(registry(), options.name)(options.parameters);
+  Simulation simulation = simulate(options.name);
+  for (const auto& [name, values] : options.parameters) simulation.set(name, values);
+  if (!model.start_from && model.start.velocity.empty() && model.start.momentum.empty())
+    simulation.start({.velocity = std::vector<double>(model.rates.size())});
+  return Equations(simulation).formulas(options.equations);
+}
+
 }  // namespace
 
 int describe(const DescribeOptions& options) {
@@ -290,9 +304,7 @@ int describe(const DescribeOptions& options) {
     return 0;
   }
   if (!options.equations.empty()) {
-    Simulation simulation = simulate(options.name);
-    for (const auto& [name, values] : options.parameters) simulation.set(name, values);
-    say("{}", Equations(simulation).formulas(options.equations));
+    say("{}", equations_of(options));
     return 0;
   }
   if (options.analyse) return analyse(options);

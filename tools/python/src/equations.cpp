@@ -104,7 +104,14 @@ void bind_equations(nb::module_& m) {
       .def("formulas", &Equations::formulas, "notation"_a = "latex",
            "The equations as formulas, parameters as numbers: 'latex', 'c', 'numpy' or 'sympy'. "
            "ConfigError where the system has no recorded formulas.")
-      .def("_repr_latex_", [](const Equations& e) { return "$$" + e.formulas("latex") + "$$"; })
+      .def("_repr_latex_",
+           [](const Equations& e) -> std::optional<std::string> {
+             try {
+               return "$$" + e.formulas("latex") + "$$";
+             } catch (const ConfigError&) {  // it has no formulas
+               return {};
+             }
+           })
       .def(
           "numpy", [](const Equations& e) { return defined(e, "numpy"); },
           nb::sig("def numpy(self) -> types.SimpleNamespace"),
