@@ -3,7 +3,7 @@
 
 namespace hamel {
 
-/// Of those whose inertia, rows and potential are templates on the element.
+/// Adds the systems whose inertia, rows and potential are templates on the element.
 void add_recorded_systems();
 
 }  // namespace hamel

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/analysis/equation_names.hpp>
 #include <hamel/framework/graph/substitute.hpp>
 
 namespace hamel {
@@ -19,89 +20,6 @@ using Numbers = std::vector<Number>;
 using Texts = std::vector<std::string>;
 
 constexpr size_t kWidth = 96;  // of a line of code
-
-// ---- names --------------------------------------------------------------------------------------
-
-bool is_greek(const std::string& word) {
-  static const Texts letters = {"alpha", "beta",  "gamma",  "delta", "epsilon", "zeta", "eta",
-                                "theta", "kappa", "lambda", "mu",    "nu",      "xi",   "rho",
-                                "sigma", "tau",   "phi",    "chi",   "psi",     "omega"};
-  return std::ranges::find(letters, word) != letters.end();
-}
-
-// omega1 is \omega_{1}, steer.angle \mathrm{angle}_{\mathrm{steer}}, theta' \dot{\theta}.
-std::string latex_name(const std::string& name) {
-  if (name.ends_with('\'')) return "\\dot{" + latex_name(name.substr(0, name.size() - 1)) + '}';
-  if (const size_t dot = name.find('.'); dot != std::string::npos)
-    return latex_name(name.substr(dot + 1)) + "_{" + latex_name(name.substr(0, dot)) + '}';
-  const size_t digits = name.find_last_not_of("0123456789") + 1;
-  const std::string word = name.substr(0, digits), index = name.substr(digits);
-  std::string out;
-  if (is_greek(word)) out = '\\' + word;
-  else if (word.size() == 1) out = word;
-  else {
-    out = "\\mathrm{";
-    for (const char c : word) out += c == '_' || c == ' ' ? "\\ " : std::string(1, c);
-    out += '}';
-  }
-  return index.empty() ? out : out + "_{" + index + '}';
-}
-
-// The rate of a value with such a name.
-std::string latex_rate(const std::string& name) {
-  if (name.ends_with('\'')) return "\\ddot{" + latex_name(name.substr(0, name.size() - 1)) + '}';
-  if (const size_t dot = name.find('.'); dot != std::string::npos)
-    return "\\dot{" + latex_name(name.substr(dot + 1)) + "}_{" + latex_name(name.substr(0, dot)) +
-           '}';
-  return "\\dot{" + latex_name(name) + '}';
-}
-
-bool is_reserved(const std::string& name) {
-  static const Texts words = {
-      "and",  "as",     "auto",  "break",  "case",  "char",   "class", "const", "def",    "del",
-      "do",   "double", "elif",  "else",   "enum",  "float",  "for",   "from",  "global", "goto",
-      "if",   "import", "in",    "int",    "is",    "lambda", "long",  "not",   "np",     "or",
-      "pass", "q",      "rate",  "return", "short", "sympy",  "t",     "try",   "u",      "while",
-      "with", "xi",     "yield", "sin",    "cos",   "exp",    "log",   "pow",   "sqrt"};
-  return std::ranges::find(words, name) != words.end();
-}
-
-// A name in C and Python: steer_angle, theta_rate.
-std::string identifier(const std::string& name) {
-  std::string out;
-  for (const char c : name) {
-    if (c == '\'') out += "_rate";
-    else out += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  }
-  if (out.empty() || std::isdigit(static_cast<unsigned char>(out[0]))) out = '_' + out;
-  return is_reserved(out) ? out + '_' : out;
-}
-
-// Names of the inputs of a recording, each once; behind t.
-Texts names_of(const Texts& inputs, Notation notation) {
-  Texts out = {"t"};
-  for (size_t i = 1; i < inputs.size(); ++i) {
-    std::string name = notation == Notation::latex ? latex_name(inputs[i]) : identifier(inputs[i]);
-    while (std::ranges::find(out, name) != out.end())
-      name += notation == Notation::latex ? "'" : "_";
-    out.push_back(std::move(name));
-  }
-  return out;
-}
-
-// A letter with which no name begins that has digits behind it.
-std::string free_prefix(const Texts& names) {
-  for (const char* letter : {"k", "c", "p", "z", "w"}) {
-    if (std::ranges::none_of(names, [&](const std::string& name) {
-          return name.starts_with(letter) && name.size() > 1 &&
-                 (std::isdigit(static_cast<unsigned char>(name[1])) != 0 || name[1] == '_');
-        }))
-      return letter;
-  }
-  return "value_";
-}
-
-// ---- formulas -----------------------------------------------------------------------------------
 
 // xi_j is 0 or a constant multiple of one independent velocity.
 bool is_short(const graph::Recording& recording, const Number& x) {
@@ -174,18 +92,6 @@ std::string assignment(const std::string& name, const std::string& formula, Nota
   if (notation == Notation::c) return broken(before + formula + ';', indent) + '\n';
   if (before.size() + formula.size() <= kWidth) return before + formula + '\n';
   return broken(before + '(' + formula + ')', indent) + '\n';
-}
-
-// Does a name occur as a word of its own?
-bool occurs(const std::string& name, const std::string& in) {
-  const auto part = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '\\';
-  };
-  for (size_t at = in.find(name); at != std::string::npos; at = in.find(name, at + 1)) {
-    const size_t end = at + name.size();
-    if ((at == 0 || !part(in[at - 1])) && (end == in.size() || !part(in[end]))) return true;
-  }
-  return false;
 }
 
 // Values as text, with the definitions that they need.

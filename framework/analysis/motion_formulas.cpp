@@ -36,7 +36,7 @@ graph::GroupShape shape_of(const SystemModel& model, const Geometry& geometry) {
   return out;
 }
 
-// Of constant inertia and rows A xi = 0, without forces.
+// Terms of constant inertia and rows A xi = 0, without forces.
 MotionTerms constant_terms(const Mechanics& mechanics, const double* g, const MotionVariables& at) {
   const int n = mechanics.dim(), k = mechanics.constraint_count();
   Eigen::MatrixXd inertia(n, n), a(k, n);

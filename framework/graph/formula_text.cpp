@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace hamel::graph {
 namespace {
@@ -14,77 +12,13 @@ enum Level { kChoice, kEither, kBoth, kNot, kComparison, kSum, kProduct, kPower,
 // Operations from which on a value that is used again has a name; most in one formula.
 constexpr int kShort = 4, kShortInLatex = 8, kLongest = 60, kLongestInLatex = 30;
 
-struct FunctionNames {
-  Op op;
-  const char *latex, *c, *numpy, *sympy;
-};
-constexpr FunctionNames kFunctions[] = {
-    {Op::sin, "\\sin", "sin", "np.sin", "sympy.sin"},
-    {Op::cos, "\\cos", "cos", "np.cos", "sympy.cos"},
-    {Op::sqrt, "\\sqrt", "sqrt", "np.sqrt", "sympy.sqrt"},
-    {Op::exp, "\\exp", "exp", "np.exp", "sympy.exp"},
-    {Op::log, "\\ln", "log", "np.log", "sympy.log"},
-    {Op::asin, "\\arcsin", "asin", "np.arcsin", "sympy.asin"},
-    {Op::acos, "\\arccos", "acos", "np.arccos", "sympy.acos"},
-    {Op::atan, "\\arctan", "atan", "np.arctan", "sympy.atan"},
-    {Op::sinh, "\\sinh", "sinh", "np.sinh", "sympy.sinh"},
-    {Op::cosh, "\\cosh", "cosh", "np.cosh", "sympy.cosh"},
-    {Op::tanh, "\\tanh", "tanh", "np.tanh", "sympy.tanh"},
-    {Op::atan2, "\\operatorname{atan2}", "atan2", "np.arctan2", "sympy.atan2"},
-    {Op::pow, "", "pow", "np.power", "sympy.Pow"},
-    {Op::min, "\\min", "fmin", "np.minimum", "sympy.Min"},
-    {Op::max, "\\max", "fmax", "np.maximum", "sympy.Max"},
-    {Op::abs, "", "fabs", "np.abs", "sympy.Abs"},
-    {Op::round, "\\operatorname{rint}", "rint", "np.rint", "sympy.Function('rint')"},
-};
-
-std::string name_of(Op op, Notation notation) {
-  for (const FunctionNames& f : kFunctions) {
-    if (f.op != op) continue;
-    switch (notation) {
-      case Notation::latex: return f.latex;
-      case Notation::c: return f.c;
-      case Notation::numpy: return f.numpy;
-      case Notation::sympy: return f.sympy;
-    }
-  }
-  return "";
-}
-
 std::string parenthesised(const std::string& text, Notation notation) {
   return notation == Notation::latex ? "\\left(" + text + "\\right)" : '(' + text + ')';
 }
 
 bool is_trigonometric(Op op) { return op == Op::sin || op == Op::cos; }
 
-// 1.5e-07 as a product with a power of ten.
-std::string with_power_of_ten(const std::string& text) {
-  const size_t e = text.find('e');
-  if (e == std::string::npos) return text;
-  return text.substr(0, e) + " \\cdot 10^{" + std::to_string(std::stoi(text.substr(e + 1))) + '}';
-}
-
 }  // namespace
-
-std::string constant_text(double x, Notation notation) {
-  char text[40];
-  if (notation == Notation::latex) {
-    std::snprintf(text, sizeof text, "%.6g", x);
-    return with_power_of_ten(text);
-  }
-  if (std::isnan(x)) return notation == Notation::c ? "NAN" : "float('nan')";
-  if (std::isinf(x)) {
-    const std::string size = notation == Notation::c ? "INFINITY" : "float('inf')";
-    return x > 0 ? size : '-' + size;
-  }
-  for (int digits = 15; digits <= 17; ++digits) {  // the fewest that give x
-    std::snprintf(text, sizeof text, "%.*g", digits, x);
-    if (std::strtod(text, nullptr) == x) break;
-  }
-  std::string out(text);
-  if (notation == Notation::c && out.find_first_of(".e") == std::string::npos) out += ".0";
-  return out;
-}
 
 FormulaText::FormulaText(const Recording& recording, Notation notation,
                          std::vector<std::string> inputs, const std::vector<Number>& values,
@@ -272,7 +206,7 @@ std::string FormulaText::power_text(int i, int power) const {
   const bool latex = notation_ == Notation::latex;
   if (power == 1) return within(i, kPower);
   if (latex && !named(i) && is_trigonometric(node(i).op))
-    return name_of(node(i).op, notation_) + "^{" + std::to_string(power) + "}" +
+    return function_text(node(i).op, notation_) + "^{" + std::to_string(power) + "}" +
            parenthesised(written(node(i).a).text, notation_);
   const std::string base = within(i, kAtom);
   if (latex)
@@ -320,12 +254,13 @@ FormulaText::Written FormulaText::call(int i) const {
   const Node& n = node(i);
   const std::string a = written(n.a).text, b = n.b < 0 ? "" : written(n.b).text;
   if (notation_ != Notation::latex)
-    return {name_of(n.op, notation_) + '(' + a + (b.empty() ? "" : ", " + b) + ')', kAtom};
+    return {function_text(n.op, notation_) + '(' + a + (b.empty() ? "" : ", " + b) + ')', kAtom};
   if (n.op == Op::sqrt) return {"\\sqrt{" + a + '}', kAtom};
   if (n.op == Op::abs) return {"\\left|" + a + "\\right|", kAtom};
   if (n.op == Op::pow) return {within(n.a, kAtom) + "^{" + b + '}', kPower};
-  return {name_of(n.op, notation_) + parenthesised(a + (b.empty() ? "" : ", " + b), notation_),
-          kPower};
+  return {
+      function_text(n.op, notation_) + parenthesised(a + (b.empty() ? "" : ", " + b), notation_),
+      kPower};
 }
 
 FormulaText::Written FormulaText::choice(int i) const {

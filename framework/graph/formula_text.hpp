@@ -10,14 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include <hamel/framework/graph/notation.hpp>
 #include <hamel/framework/graph/number.hpp>
 
 namespace hamel::graph {
-
-enum class Notation { latex, c, numpy, sympy };
-
-/// Number to 6 digits in LaTeX, else with all of its digits.
-std::string constant_text(double x, Notation notation);
 
 class FormulaText {
  public:

@@ -64,7 +64,7 @@ struct MotionTerms {
   Numbers drift, row_rates, change;
 };
 
-/// What a system states: I, A and b by rows, phi (whose differentials are further rows), V, and f.
+/// Formulas that a system states: I, A and b by rows, phi (whose differentials are further rows), V, and f.
 struct StatedFormulas {
   using Numbers = std::vector<Number>;
   std::vector<Numbers> inertia, rows;

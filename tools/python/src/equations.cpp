@@ -18,7 +18,7 @@ Start state_of(nb::handle state) {
   return start_of("state", state);
 }
 
-// What the code of a notation defines, by name.
+// Names that the code of a notation defines.
 nb::object defined(const Equations& equations, const std::string& notation) {
   nb::dict names;
   nb::module_::import_("builtins").attr("exec")(equations.formulas(notation), names);

@@ -392,8 +392,9 @@ def test_equations_as_text():
     assert hamel.equations("snakeboard")._repr_latex_() is None
     part = hamel.Mechanism("sled")
     part.body("sled", mass=1, box=(1, 1, 1))
-    part.planar("sled")
-    assert "rate[0] = 0" in part.equations().formulas("numpy")
+    part.planar("floor", "sled")
+    part.blade("axle", "sled", at=(0, 0, 0))
+    assert "rate[2] = 0" in part.equations().formulas("numpy")
 
 
 def test_equations_as_sympy():
