@@ -64,7 +64,7 @@ struct MotionTerms {
   Numbers drift, row_rates, change;
 };
 
-/// Formulas that a system states: I, A and b by rows, phi (whose differentials are further rows), V, and f.
+/// Stated formulas: I, A and b by rows; phi, whose differentials are further rows; V; f.
 struct StatedFormulas {
   using Numbers = std::vector<Number>;
   std::vector<Numbers> inertia, rows;
