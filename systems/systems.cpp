@@ -14,6 +14,7 @@
 #include <hamel/systems/mechanisms/urdf.hpp>
 #include <hamel/systems/n_trailer.hpp>
 #include <hamel/systems/recorded_groups.hpp>
+#include <hamel/systems/recorded_systems.hpp>
 
 namespace hamel {
 namespace {
@@ -80,6 +81,7 @@ Registry make_registry() {
   add_system<NTrailer>(registry);
   add_mechanisms(registry);
   add_mechanism_kernels(registry);
+  add_recorded_systems();
 #ifdef HAMEL_HAS_XSIMD
   add_library_lanes(registry);
 #endif

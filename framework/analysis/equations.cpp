@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 
 #include <hamel/framework/analysis/central_differences.hpp>
+#include <hamel/framework/analysis/equations_text.hpp>
+#include <hamel/framework/analysis/recorded_jacobian.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/natural_units.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
@@ -157,6 +161,87 @@ double Equations::energy(const Start& state) const {
   return 0.5 * at.xi.dot(at.inertia() * at.xi) + at.mechanics.potential(at.g.data());
 }
 
+const std::vector<std::string>& Equations::notations() {
+  static const std::vector<std::string> names = {"latex", "c", "numpy", "sympy"};
+  return names;
+}
+
+// The formulas near the last state, inputs among their variables. Throws std::domain_error.
+MotionFormulas Equations::recorded() const {
+  const SystemModel& model = system();
+  Insides& at = *insides_;
+  std::shared_ptr<const Mechanics> mechanics = at.plan.setup.mechanics;
+  if (model.drive && at.plan.setup.inputs == nullptr) {
+    const InputTable zero{{}, {0}};
+    mechanics = model.drive(
+        std::make_shared<Inputs>(model.inputs, std::vector<InputTable>(model.inputs.size(), zero)));
+  }
+  return record_motion(model, *mechanics, *at.plan.geometry, numbers_of(at.g), at.state.velocity);
+}
+
+std::string Equations::formulas(const std::string& notation) const {
+  const auto known = std::ranges::find(notations(), notation);
+  if (known == notations().end())
+    throw ConfigError({unknown_name("equations", notation, notations())});
+  const SystemModel& model = system();
+  std::vector<std::string> parameters;
+  for (const Field& field : model.fields)
+    if (!field.value.empty())
+      parameters.push_back(fmt::format("{} = {}", field.name, fmt::join(field.value, ", ")));
+  std::string title = fmt::format("{} on {}", model.name, model.group.name);
+  if (!parameters.empty()) title += fmt::format(": {}", fmt::join(parameters, "; "));
+  insides_->put({}, 0);
+  try {
+    return equations_text(recorded(), std::filesystem::path(model.name).stem().string(), title,
+                          static_cast<graph::Notation>(known - notations().begin()));
+  } catch (const std::domain_error& error) {
+    throw ConfigError(
+        {fmt::format("equations: {} has no formulas to write: {}", model.name, error.what())});
+  }
+}
+
+// Derivatives of the recorded rates; none where there are no formulas, or inputs that change.
+std::optional<JacobianOfState> Equations::exact_jacobian(const std::string& of, const Start& at,
+                                                         double t) const {
+  insides_->put(at, t);
+  const std::shared_ptr<Inputs>& given = insides_->plan.setup.inputs;
+  std::vector<double> values = {t};
+  values.insert(values.end(), at.configuration.begin(), at.configuration.end());
+  values.insert(values.end(), at.velocity.begin(), at.velocity.end());
+  for (size_t i = 0; i < system().inputs.size(); ++i) {
+    if (given != nullptr && !given->tables()[i].times.empty()) return {};
+    values.push_back(given == nullptr ? 0 : given->at(t)[static_cast<Eigen::Index>(i)]);
+  }
+  std::optional<RecordedJacobian> recorded_jacobian;
+  try {
+    recorded_jacobian.emplace(recorded(), of);
+  } catch (const std::domain_error&) {
+    return {};
+  }
+  const auto rows = static_cast<int>(at.velocity.size());
+  const std::vector<double> found = (*recorded_jacobian)(values);
+  const int columns = static_cast<int>(found.size()) / rows;
+  const Eigen::VectorXd noise = noise_of(
+      [&](double e) -> Eigen::VectorXd {
+        std::vector<double> there = values;
+        for (size_t i = 0; i < there.size(); ++i)
+          there[i] += e * std::max(1.0, std::abs(there[i])) *
+                      std::sin(12.9898 * static_cast<double>(i + 1));
+        const std::vector<double> moved = (*recorded_jacobian)(there);
+        return Eigen::Map<const Eigen::VectorXd>(moved.data(),
+                                                 static_cast<Eigen::Index>(moved.size()));
+      },
+      0x1p-30);
+  JacobianOfState out{NumberMatrix(rows, columns), NumberMatrix(rows, columns)};
+  for (int j = 0; j < columns; ++j) {
+    for (int i = 0; i < rows; ++i) {
+      out.values(i, j) = found[static_cast<size_t>(j * rows + i)];
+      out.errors(i, j) = noise[j * rows + i];
+    }
+  }
+  return out;
+}
+
 const std::vector<std::string>& Equations::quantities() {
   static const std::vector<std::string> names = {"rate", "momentum", "reactions", "energy"};
   return names;
@@ -215,6 +300,11 @@ JacobianOfState Equations::jacobian(const std::string& quantity, const std::stri
 
   insides_->put(state, t);
   const Start here{insides_->state.coordinates, insides_->state.velocity, {}};
+  const bool of_parameter = std::ranges::count(system().fields, of, &Field::name) > 0;
+  if (quantity == "rate" && !of_parameter) {
+    if (auto exact = exact_jacobian(of, here, t)) return std::move(*exact);
+    insides_->put(here, t);
+  }
   const Eigen::VectorXd g = insides_->g;
   const int n = insides_->mechanics.dim();
   const RunPlan& plan = insides_->plan;

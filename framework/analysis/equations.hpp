@@ -15,6 +15,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@
 
 namespace hamel {
 
+struct MotionFormulas;
 struct SystemModel;
 
 /// Constraint rows at a state: A xi = b, and phi = 0 of the holonomic ones.
@@ -63,17 +65,30 @@ class HAMEL_API Equations {
   /// Kinetic and potential energy.
   double energy(const Start& state = {}) const;
 
+  /// The equations as formulas of t, coordinates q, velocities xi and inputs u, parameters as
+  /// numbers: "latex", "c", "numpy" or "sympy". Code has functions rate(t, q, xi, u), which gives
+  /// xi' of admissible velocities as rate() does where inputs are held, and coordinate_rates(q,
+  /// xi). ConfigError for another notation, and with the reason where the system has no recorded
+  /// formulas.
+  std::string formulas(const std::string& notation) const;
+  static const std::vector<std::string>& notations();
+
   /// The quantities that have a jacobian, and what they have it of.
   static const std::vector<std::string>& quantities();
   std::vector<std::string> arguments() const;
   /// quantity: "rate", "momentum", "reactions", "energy"; of: "velocity", "configuration" (along
-  /// g tau(e_j x), j = 1 to n), "time", a parameter or an input of the system. By extrapolated
-  /// central differences, with their errors. ConfigError names what there is.
+  /// g tau(e_j x), j = 1 to n), "time", a parameter or an input of the system. Of recorded
+  /// formulas (formulas()) rates by all but parameters are exact derivatives, with their round-off;
+  /// all others are extrapolated central differences, with their errors. ConfigError names what
+  /// there is.
   JacobianOfState jacobian(const std::string& quantity, const std::string& of,
                            const Start& state = {}, double t = 0) const;
 
  private:
   const SystemModel& system() const;
+  MotionFormulas recorded() const;
+  std::optional<JacobianOfState> exact_jacobian(const std::string& of, const Start& at,
+                                                double t) const;
   std::vector<double> quantity_at(const std::string& quantity, const Start& state, double t) const;
   std::vector<double> round_off_of(const std::string& quantity, const Start& state, double t) const;
 

@@ -104,9 +104,7 @@ class LiftRecording {
     variables.push_back(t.number);
     for (const Traced& u : u_) variables.push_back(u.number);
     variables.insert(variables.end(), velocity.begin(), velocity.end());
-    auto found = out_.system_->system_formulas(variables);
-    if (!found) return false;
-    out.formulas = std::move(*found);
+    out.formulas = out_.system_->system_formulas(variables);
     Traces moved(way.size());
     Traces aside(way.size());
     geometry_.tau(zero_.data(), aside.data());
@@ -117,11 +115,7 @@ class LiftRecording {
       rates[j] = 1;
       out.slopes.push_back(graph::along(numbers_of(c), numbers_of(zero_), rates));
     }
-    const std::size_t own = out_.k_ - out_.held_;
-    for (std::size_t i = 0; i < own; ++i)
-      out.rows.emplace_back(
-          out.formulas.rows.begin() + static_cast<std::ptrdiff_t>(i * out_.n_),
-          out.formulas.rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * out_.n_));
+    out.rows = out.formulas.rows;
     for (const Number& phi : out.formulas.holonomic) out.rows.push_back(differential(out, phi));
     out.drift = out.formulas.drift;
     out.drift.resize(out_.k_);
@@ -139,13 +133,13 @@ class LiftRecording {
   Numbers momentum(const Place& place, const Numbers& xi) const {
     Numbers out(out_.n_);
     for (std::size_t i = 0; i < out_.n_; ++i)
-      for (std::size_t j = 0; j < out_.n_; ++j)
-        out[i] += place.formulas.inertia[i * out_.n_ + j] * xi[j];
+      for (std::size_t j = 0; j < out_.n_; ++j) out[i] += place.formulas.inertia[i][j] * xi[j];
     return out;
   }
   // f - dV.
   Numbers applied(const Place& place) const {
     Numbers out = place.formulas.force;
+    out.resize(out_.n_);
     const Numbers slope = differential(place, place.formulas.potential);
     for (std::size_t i = 0; i < out_.n_; ++i) out[i] -= slope[i];
     return out;

@@ -41,6 +41,7 @@ void Multibody::keep(const std::vector<int>& rows) {
 void Multibody::drive(const std::vector<Driver>& drivers,
                       const std::shared_ptr<const Inputs>& inputs) {
   inputs_ = inputs;
+  drivers_ = drivers;
   driven_motors_ = 0;
   for (size_t i = 0; i < drivers.size(); ++i) {
     const auto at = [inputs, i](double t) { return inputs->at(t)[static_cast<Eigen::Index>(i)]; };

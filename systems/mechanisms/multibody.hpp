@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <hamel/framework/graph/motion_terms.hpp>
 #include <hamel/framework/mechanics/implied_rows.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
 #include <hamel/framework/mechanics/mechanics.hpp>
@@ -31,7 +32,10 @@ struct ImpliedRow {
   std::string in_words() const;
 };
 
-class Multibody final : public Mechanics, public graph::HasVectorFields, public HasImpliedRows {
+class Multibody final : public Mechanics,
+                        public graph::HasVectorFields,
+                        public graph::HasMotionTerms,
+                        public HasImpliedRows {
  public:
   /// All rows of `rows`; keep() drops some.
   Multibody(const Tree& tree, ConstraintRows rows, Forces forces,
@@ -76,6 +80,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   void accelerations(double t, const double* g, ConstVector xi, Vector out) const override;
   /// Null where b is not 0, or changes with time, and where couplings are not linear.
   std::shared_ptr<const graph::VectorFields> vector_fields(const double* g) const override;
+  graph::MotionTerms motion_terms(const graph::MotionVariables& at) const override;
   void motion(const Geometry& geometry, double t, const double* g, ConstVector xi, Matrix inertia,
               Matrix a, Vector b, Vector rows, Vector change) const override;
   void holonomic(const double* g, Vector out) const override;
@@ -146,6 +151,7 @@ class Multibody final : public Mechanics, public graph::HasVectorFields, public 
   std::vector<int> kept_;   // their inverse
   std::vector<int> implied_;
   std::shared_ptr<const Inputs> inputs_;
+  std::vector<Driver> drivers_;
   size_t driven_motors_ = 0;
   int holonomic_ = 0;
   bool constant_inertia_ = false, constant_rows_ = false, constant_potential_ = false;

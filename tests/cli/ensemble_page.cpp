@@ -39,6 +39,10 @@ offset = { values = [0.1, 0.2, 0.3] }
 )toml");
   const nlohmann::json grid =
       page_by({"ensemble", "grid.toml", "-o", "out", "--quiet"}, "out/report.html");
+  std::string sections;  // figures before tables, for a phone
+  for (const nlohmann::json& section : grid["sections"])
+    sections += section["title"].get<std::string>() + "; ";
+  EXPECT_THAT(sections, testing::StartsWith("Members; What is kept over what is varied; Values; "));
   const nlohmann::json map = figure_of(grid, "end.theta [rad]");
   EXPECT_EQ(map["kind"], "heatmap");
   EXPECT_EQ(map["x"], "offset [m]");

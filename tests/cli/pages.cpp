@@ -230,6 +230,9 @@ TEST_F(Pages, NoEmptyFiguresOfAStudy) {
   EXPECT_THAT(one, Not(HasSubstr("Heat maps")));
   const std::string many = titles(look("step = [0.1, 0.05, 0.025]\n"));
   EXPECT_THAT(many, HasSubstr("Measured orders"));
+  // Figures before tables: a phone has the first one below the verdict.
+  EXPECT_THAT(many, HasSubstr("Verdict; verdict; "));
+  EXPECT_LT(many.find("Work and precision; "), many.find("What the cells are compared with"));
   EXPECT_THAT(many, HasSubstr("Heat maps; Error: one"));
 }
 

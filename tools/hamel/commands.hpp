@@ -21,6 +21,7 @@ int list(const ListOptions& options);
 struct DescribeOptions {
   std::string name;
   Parameters parameters;
+  std::string equations;  // latex, c, numpy, sympy
   bool analyse = false;
   bool toml = false;
   bool json = false;

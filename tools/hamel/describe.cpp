@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hamel/framework/analysis/equations.hpp>
 #include <hamel/framework/io/errors.hpp>
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
@@ -11,6 +12,7 @@
 #include <hamel/framework/schemes/composition.hpp>
 #include <hamel/systems/by_name.hpp>
 #include <hamel/systems/mechanisms/library.hpp>
+#include <hamel/systems/simulate.hpp>
 
 #include "commands.hpp"
 #include "words/description_text.hpp"
@@ -280,11 +282,29 @@ std::string toml_of(const std::string& name) {
   throw ConfigError({"--toml: " + unknown_name("mechanism", name, known)});
 }
 
+std::string equations_of(const DescribeOptions& options) {
+  const SystemInfo* info = registry().system(options.name);
+  if (info == nullptr && !names_file(options.name))
+    throw ConfigError({unknown_name("system", options.name, registry().systems_and_files())});
+  const SystemModel model = info != nullptr
+                                ? info->make(options.parameters)
+                                : data_system_maker(registry(), options.name)(options.parameters);
+  Simulation simulation = simulate(options.name);
+  for (const auto& [name, values] : options.parameters) simulation.set(name, values);
+  if (!model.start_from && model.start.velocity.empty() && model.start.momentum.empty())
+    simulation.start({.velocity = std::vector<double>(model.rates.size())});
+  return Equations(simulation).formulas(options.equations);
+}
+
 }  // namespace
 
 int describe(const DescribeOptions& options) {
   if (options.toml) {
     say("{}", toml_of(options.name));
+    return 0;
+  }
+  if (!options.equations.empty()) {
+    say("{}", equations_of(options));
     return 0;
   }
   if (options.analyse) return analyse(options);

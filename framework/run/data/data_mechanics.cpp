@@ -158,27 +158,6 @@ double DataMechanics::power(double t, const double* g, ConstVector xi) const {
   return now_.dot(xi);
 }
 
-std::optional<graph::SystemFormulas> DataMechanics::system_formulas(
-    std::span<const graph::Number> variables) const {
-  if (states_ > 0) return {};
-  const auto entries = [&](const FormulaMatrix& matrix) {
-    std::vector<graph::Number> out;
-    for (Eigen::Index i = 0; i < matrix.constant.rows(); ++i)
-      for (Eigen::Index j = 0; j < matrix.constant.cols(); ++j)
-        out.emplace_back(matrix.constant(i, j));
-    for (const FormulaMatrix::Entry& e : matrix.entries)
-      out[static_cast<size_t>(e.row * matrix.constant.cols() + e.column)] =
-          e.value.record(variables);
-    return out;
-  };
-  return graph::SystemFormulas{.inertia = entries(f_.inertia),
-                               .rows = entries(f_.rows),
-                               .drift = entries(f_.drift),
-                               .holonomic = entries(f_.holonomic),
-                               .force = entries(f_.force),
-                               .potential = entries(f_.potential).front()};
-}
-
 std::vector<std::string> DataMechanics::start_mistakes(double t, const double* g,
                                                        ConstVector xi) const {
   take(g);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,9 +40,7 @@ class DataMechanics final : public Mechanics, public graph::HasSystemFormulas {
   double power(double t, const double* g, ConstVector xi) const override;
   double potential(const double* g) const override;
 
-  /// None of systems with states: their rows are linear in the velocities by differentiation.
-  std::optional<graph::SystemFormulas> system_formulas(
-      std::span<const graph::Number> variables) const override;
+  graph::SystemFormulas system_formulas(std::span<const graph::Number> variables) const override;
 
   /// Formulas, or derivatives of them, that are not finite there.
   std::vector<std::string> start_mistakes(double t, const double* g, ConstVector xi) const;

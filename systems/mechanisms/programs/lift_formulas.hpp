@@ -5,11 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include <hamel/systems/mechanisms/programs/elimination.hpp>
+#include <hamel/framework/graph/elimination.hpp>
 #include <hamel/systems/mechanisms/programs/lift_layout.hpp>
 #include <hamel/systems/mechanisms/programs/row_formulas.hpp>
 
 namespace hamel::mechanisms {
+
+using graph::Frame;
 
 /// Elements are in the numbers of the layout.
 class LiftFormulas {

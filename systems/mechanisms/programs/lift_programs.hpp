@@ -24,10 +24,16 @@
 #include <vector>
 
 #include <hamel/framework/graph/code.hpp>
-#include <hamel/systems/mechanisms/programs/elimination.hpp>
+#include <hamel/framework/graph/elimination.hpp>
 #include <hamel/systems/mechanisms/programs/lift_layout.hpp>
 
 namespace hamel::mechanisms {
+
+using graph::Eliminated;
+using graph::Frame;
+using graph::free_frame;
+using graph::Pivot;
+using graph::Sample;
 
 /// Counts of the numbers in the programs' inputs and outputs, in their order.
 struct LiftSizes {

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <hamel/systems/mechanisms/programs/elimination.hpp>
+#include <hamel/framework/graph/elimination.hpp>
 #include <hamel/systems/mechanisms/programs/recorded_mechanism.hpp>
 
 namespace hamel::mechanisms {
@@ -40,7 +40,7 @@ std::vector<std::vector<double>> states_near(const MechanismParts& parts,
 
 Frame find_frame(const MechanismParts& parts, const RecordedMechanism& mechanism,
                  std::span<const double> state, std::vector<Number> c) {
-  if (mechanism.rows.empty()) return free_frame(mechanism.xi.size());
+  if (mechanism.rows.empty()) return graph::free_frame(mechanism.xi.size());
   std::vector<Numbers> a;
   for (const RecordedRow& row : mechanism.rows) a.push_back(row.coefficients);
   std::vector<Sample> samples;

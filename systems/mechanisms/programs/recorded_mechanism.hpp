@@ -5,11 +5,14 @@
 #include <span>
 #include <vector>
 
-#include <hamel/systems/mechanisms/programs/elimination.hpp>
+#include <hamel/framework/graph/elimination.hpp>
 #include <hamel/systems/mechanisms/programs/mechanism_programs.hpp>
 #include <hamel/systems/mechanisms/programs/row_formulas.hpp>
 
 namespace hamel::mechanisms {
+
+using graph::Frame;
+using graph::Sample;
 
 class RecordedMechanism {
  public:

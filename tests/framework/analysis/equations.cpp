@@ -15,6 +15,21 @@ using hamel::Equations;
 using hamel::NumberMatrix;
 using testing::HasSubstr;
 
+// The coordinates of g tau(e_j x).
+std::vector<double> element_moved(const std::string& system, const std::vector<double>& from, int j,
+                                  double x) {
+  const auto geometry =
+      hamel::registry().geometry(hamel::simulate(system).build().system().group.name, "exp");
+  std::vector<double> g(static_cast<size_t>(geometry->size())), moved(g);
+  std::vector<double> eta(static_cast<size_t>(geometry->dim())), out(from);
+  eta[static_cast<size_t>(j)] = x;
+  geometry->from_coordinates(from, g.data());
+  geometry->tau(eta.data(), moved.data());
+  geometry->compose(g.data(), moved.data(), moved.data());
+  geometry->coordinates(moved.data(), out.data());
+  return out;
+}
+
 /// I w' = (I w) x w + lambda e3, w3 = 0: by hand.
 TEST(Equations, OfTheSuslovProblem) {
   const double a = 1, b = 10, c = 100, u = 0.7, v = -1.3;
@@ -116,6 +131,43 @@ TEST(Equations, ByVelocities) {
                   found.errors(row, column) + 1e-11)
           << e.velocities()[i] << " by " << e.velocities()[j];
       EXPECT_LT(found.errors(row, column), 1e-10);
+    }
+  }
+}
+
+/// Exact derivatives of formulas are those of differences.
+TEST(Equations, ExactDerivativesAreThoseOfDifferences) {
+  for (const std::string name : {"bicycle", "falling_disk", "segway", "suslov_in_potential"}) {
+    SCOPED_TRACE(name);
+    const Equations e(hamel::simulate(name));
+    for (const std::string of : {"velocity", "configuration", "time"}) {
+      SCOPED_TRACE(of);
+      const hamel::JacobianOfState found = e.jacobian("rate", of);
+      const hamel::Start here = e.start();
+      constexpr double h = 1e-4;
+      for (int j = 0; j < found.values.columns; ++j) {
+        hamel::Start less = here, more = here;
+        double t = 0;
+        if (of == "velocity") {
+          less.velocity[static_cast<size_t>(j)] -= h;
+          more.velocity[static_cast<size_t>(j)] += h;
+        } else if (of == "configuration") {
+          const auto moved = [&](double x) {
+            return element_moved(name, here.configuration, j, x);
+          };
+          less.configuration = moved(-h);
+          more.configuration = moved(h);
+        } else {
+          t = h;
+        }
+        const std::vector<double> low = e.rate(-t, less), high = e.rate(t, more);
+        for (size_t i = 0; i < low.size(); ++i) {
+          const double difference = (high[i] - low[i]) / (2 * h);
+          EXPECT_NEAR(found.values(static_cast<int>(i), j), difference,
+                      1e-5 * (1 + std::abs(difference)))
+              << i << ", " << j;
+        }
+      }
     }
   }
 }

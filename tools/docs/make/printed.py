@@ -58,7 +58,7 @@ def rows(schema, prefix=""):
 
 def files(build):
     parts = []
-    for name in ("run", "study", "ensemble", "system", "mechanism"):
+    for name in ("run", "study", "ensemble", "plan", "system", "mechanism"):
         schema = json.loads((build / f"tools/schema/{name}.json").read_text())
         parts += [f"## Keys of {name}.json\n", schema.get("title", "") + ".\n", "| key | value | meaning |", "|---|---|---|",
                   *rows(schema), ""]

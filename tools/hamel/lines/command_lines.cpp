@@ -57,14 +57,19 @@ Action define_describe(CLI::App& app) {
       ->allow_extra_args(false);
   app.add_flag("--analyse", line->options.analyse,
                "a system: frame, structure constants, growth of brackets, what is kept");
+  CLI::Option* as_equations =
+      app.add_option("--equations", line->options.equations,
+                     "a system: its equations of motion, as latex, c, numpy or sympy");
   line->robot.define(app);
   CLI::Option* as_toml =
       app.add_flag("--toml", line->options.toml,
                    "print the file of a mechanism, of a robot in URDF too, for further changes");
-  app.add_flag("--json", line->options.json, "as JSON")->excludes(as_toml);
+  as_toml->excludes(as_equations);
+  app.add_flag("--json", line->options.json, "as JSON")->excludes(as_toml)->excludes(as_equations);
   app.footer(
       "Examples:\n  hamel describe suslov\n  hamel describe 'se2*so2'\n  hamel describe cayley "
       "--json\n  hamel describe --analyse chaplygin_sleigh --set offset=0\n"
+      "  hamel describe --equations numpy chaplygin_sleigh\n"
       "  hamel describe robot.urdf --wheel left_wheel --wheel right_wheel --toml");
   return [line] {
     read_sets(line->sets, line->options.parameters);

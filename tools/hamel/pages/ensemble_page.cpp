@@ -101,6 +101,17 @@ void add_kept(Page& page, const EnsembleResult& result) {
   page.table("Classes", {"class", "members", "share"}, rows);
 }
 
+void add_failures(Page& page, const EnsembleResult& result) {
+  if (result.failures.empty()) return;
+  constexpr size_t most = 100;
+  std::vector<std::vector<Cell>> rows;
+  for (size_t i = 0; i < std::min(most, result.failures.size()); ++i)
+    rows.push_back({Cell(static_cast<double>(result.failures[i].member)),
+                    Cell(result.failures[i].time), Cell(result.failures[i].reason)});
+  page.table("Failed members", {"member", "time [s]", "reason"}, rows,
+             result.failures.size() > most ? "The first 100." : "");
+}
+
 }  // namespace
 
 std::vector<long> members_in_motion(const EnsembleResult& result) {
@@ -132,21 +143,20 @@ Page ensemble_page(const EnsembleResult& result, const std::map<long, Page>& mot
       result.failures.empty() ? "ok" : "note",
       fmt::format("{} of {} members have values.",
                   result.members - static_cast<long>(result.failures.size()), result.members));
+  const std::vector<Figure> figures = figures::of_ensemble(result);
+  // The first figures before long tables, which fill a phone.
+  std::vector<std::string> sections = {"What is kept over what is varied",
+                                       "Kept quantities in pairs", "Distributions",
+                                       "Mean and deviation in time"};
+  std::erase_if(sections, [&figures](const std::string& section) {
+    return std::ranges::count(figures, section, &Figure::section) == 0;
+  });
+  if (!sections.empty()) page.add_section(figures, sections.front());
+  page.section("Values");
   add_members(page, result, motions);
   add_kept(page, result);
-  if (!result.failures.empty()) {
-    constexpr size_t most = 100;
-    std::vector<std::vector<Cell>> rows;
-    for (size_t i = 0; i < std::min(most, result.failures.size()); ++i)
-      rows.push_back({Cell(static_cast<double>(result.failures[i].member)),
-                      Cell(result.failures[i].time), Cell(result.failures[i].reason)});
-    page.table("Failed members", {"member", "time [s]", "reason"}, rows,
-               result.failures.size() > most ? "The first 100." : "");
-  }
-  const std::vector<Figure> figures = figures::of_ensemble(result);
-  for (const char* section : {"What is kept over what is varied", "Kept quantities in pairs",
-                              "Distributions", "Mean and deviation in time"})
-    page.add_section(figures, section);
+  add_failures(page, result);
+  for (size_t i = 1; i < sections.size(); ++i) page.add_section(figures, sections[i]);
   return page;
 }
 

@@ -8,6 +8,16 @@
 
 namespace hamel::tools {
 
+namespace {
+
+// The text of a verdict whose table stands elsewhere.
+std::string sentence(std::string text) {
+  if (text.ends_with(':')) text.back() = '.';
+  return text;
+}
+
+}  // namespace
+
 Page study_page(const StudyResult& result) {
   const StudyView view(result);
   Page page(result.config.title,
@@ -15,14 +25,17 @@ Page study_page(const StudyResult& result) {
                         view.run().size(), result.config.until, result.config.repeats,
                         result.threads, result.threads == 1 ? "" : "s"));
   page.section("Verdict");
-  for (const Verdict& verdict : study_verdicts(result)) {
-    page.verdict(verdict.status, verdict.text);
-    if (!verdict.rows.empty())
-      page.table("By " + verdict.columns.front(), verdict.columns, verdict.rows);
-  }
-  add_references(page, result);
+  const std::vector<Verdict> verdicts = study_verdicts(result);
+  for (const Verdict& verdict : verdicts) page.verdict(verdict.status, sentence(verdict.text));
+  // Figures before long tables, which fill a phone.
   const std::vector<Figure> figures = figures::of_study(result);
   page.add_section(figures, "Work and precision");
+  if (result.config.reference) page.section("What is compared");
+  for (const Verdict& verdict : verdicts)
+    if (!verdict.rows.empty())
+      page.table("By " + verdict.columns.front(), verdict.columns, verdict.rows,
+                 sentence(verdict.text));
+  add_references(page, result);
   if (result.config.reference) {  // else no errors, and so no orders
     page.section("Orders");
     page.add(figures, "Orders");

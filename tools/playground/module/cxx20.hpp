@@ -81,6 +81,12 @@ constexpr auto max_element(R&& range, C before = {}, P of = {}) {
     return std::invoke(before, std::invoke(of, a), std::invoke(of, b));
   });
 }
+template <class R, class C = Less, class P = identity>
+constexpr auto min_element(R&& range, C before = {}, P of = {}) {
+  return std::min_element(std::begin(range), std::end(range), [&](auto&& a, auto&& b) -> bool {
+    return std::invoke(before, std::invoke(of, a), std::invoke(of, b));
+  });
+}
 template <class R, class T, class C = Less, class P = identity>
 constexpr auto lower_bound(R&& range, const T& value, C before = {}, P of = {}) {
   return std::lower_bound(
@@ -103,6 +109,10 @@ constexpr auto minmax(R&& range) {
 template <class R, class O>
 constexpr auto move(R&& range, O out) {
   return std::move(std::begin(range), std::end(range), out);
+}
+template <class R, class O>
+constexpr auto copy(R&& range, O out) {
+  return std::copy(std::begin(range), std::end(range), out);
 }
 template <class R, class O, class F>
 constexpr auto copy_if(R&& range, O out, F f) {

@@ -18,6 +18,16 @@ Start state_of(nb::handle state) {
   return start_of("state", state);
 }
 
+// Names that the code of a notation defines.
+nb::object defined(const Equations& equations, const std::string& notation) {
+  nb::dict names;
+  nb::module_::import_("builtins").attr("exec")(equations.formulas(notation), names);
+  nb::object out = nb::module_::import_("types").attr("SimpleNamespace")();
+  for (const char* name : {"t", "q", "xi", "u", "rate", "coordinate_rates"})
+    if (names.contains(name)) nb::setattr(out, name, names[name]);
+  return out;
+}
+
 }  // namespace
 
 void bind_equations(nb::module_& m) {
@@ -91,6 +101,25 @@ void bind_equations(nb::module_& m) {
       .def(
           "energy", [](const Equations& e, nb::handle state) { return e.energy(state_of(state)); },
           "state"_a = nb::none(), "kinetic and potential, J")
+      .def("formulas", &Equations::formulas, "notation"_a = "latex",
+           "The equations as formulas, parameters as numbers: 'latex', 'c', 'numpy' or 'sympy'. "
+           "ConfigError where the system has no recorded formulas.")
+      .def("_repr_latex_",
+           [](const Equations& e) -> std::optional<std::string> {
+             try {
+               return "$$" + e.formulas("latex") + "$$";
+             } catch (const ConfigError&) {  // it has no formulas
+               return {};
+             }
+           })
+      .def(
+          "numpy", [](const Equations& e) { return defined(e, "numpy"); },
+          nb::sig("def numpy(self) -> types.SimpleNamespace"),
+          "Functions rate(t, q, xi, u) and coordinate_rates(q, xi), made of formulas('numpy').")
+      .def(
+          "sympy", [](const Equations& e) { return defined(e, "sympy"); },
+          nb::sig("def sympy(self) -> types.SimpleNamespace"),
+          "Symbols t, q, xi, u and matrices rate, coordinate_rates, made of formulas('sympy').")
       .def_prop_ro("arguments", &Equations::arguments, "what a quantity has a jacobian of")
       .def(
           "jacobian",

@@ -209,6 +209,10 @@ void bind_text(nb::module_& m) {
           "describe",
           [](const SystemText& self) { return described(simulate_text(self.toml, self.name)); },
           "What is stated about the system; ConfigError with line and column.")
+      .def(
+          "equations",
+          [](const SystemText& self) { return Equations(simulate_text(self.toml, self.name)); },
+          "Its equations of motion.")
       .def("__getstate__",
            [](const SystemText& self) { return nb::make_tuple(self.toml, self.name); })
       .def("__setstate__",
@@ -274,6 +278,9 @@ void bind_mechanism(nb::module_& m) {
       .def(
           "describe", [](const ByParts& self) { return described(simulate(self)); },
           nb::sig("def describe(self) -> Description"), "What is stated about the system.")
+      .def(
+          "equations", [](const ByParts& self) { return Equations(simulate(self)); },
+          nb::sig("def equations(self) -> Equations"), "Its equations of motion.")
       .def("__repr__", [](const ByParts& self) { return "<hamel.Mechanism " + self.name() + ">"; });
   m.attr("WORLD") = kWorld;
 }

@@ -362,6 +362,49 @@ def test_equations_at_a_state():
         equations.jacobian("rate", "velocty")
 
 
+@pytest.mark.parametrize(
+    "name", ["chaplygin_sleigh", "bicycle", "falling_disk", "segway", "car", "routh_sphere"]
+)
+def test_equations_as_numpy(name):
+    equations = hamel.equations(name)
+    functions = equations.numpy()
+    run = hamel.simulate(name, rtol=1e-12, until=1).build()
+    for t in (0.0, 0.1, 0.3, 0.6):
+        run.advance_to(t)
+        state = run.state
+        expected = equations.rate(t, state)
+        u = [0.0] * len(hamel.describe(name).inputs)
+        got = functions.rate(t, state.coordinates, state.velocity, u)
+        np.testing.assert_allclose(got, expected, rtol=0, atol=1e-12 * (1 + abs(expected).max()))
+        assert functions.coordinate_rates(state.coordinates, state.velocity).shape == (
+            len(equations.columns),
+        )
+
+
+def test_equations_as_text():
+    text = "group = 'r2'\ninertia = [1, 2]\npotential = 'sin(x1)*x2^3'\nvelocity = [1, 0]"
+    equations = hamel.SystemText(text, "well.toml").equations()
+    assert "\\dot{x_{1}'}" not in equations.formulas()
+    assert "np.cos(x1)" in equations.formulas("numpy")
+    assert "$$" in equations._repr_latex_()
+    with pytest.raises(hamel.ConfigError, match="did you mean 'latex'"):
+        equations.formulas("latx")
+    assert hamel.equations("snakeboard")._repr_latex_() is None
+    part = hamel.Mechanism("sled")
+    part.body("sled", mass=1, box=(1, 1, 1))
+    part.planar("floor", "sled")
+    part.blade("axle", "sled", at=(0, 0, 0))
+    assert "rate[2] = 0" in part.equations().formulas("numpy")
+
+
+def test_equations_as_sympy():
+    sympy = pytest.importorskip("sympy")
+    symbols = hamel.equations("chaplygin_sleigh").sympy()
+    omega, v1, _ = symbols.xi
+    assert sympy.simplify(symbols.rate[1] - 0.2 * omega**2) == 0
+    assert symbols.coordinate_rates[1] == v1 * sympy.cos(symbols.q[0])
+
+
 def test_names_of_earlier_releases():
     result = hamel.run("segway", step=0.01, until=0.1)
     assert result.columns[1:8] == ["theta", "x", "y", "right", "left", "pitch", "omega"]

@@ -30,6 +30,7 @@ const small = (...blocks) => fill(page, JSON.stringify({ title: 'Fault', section
 const text = { kind: 'text', paragraphs: ['A text.'] };
 const series = [{ name: 'a', x: [0, 1, 2], y: [0, 1, 0] }];
 const plot = { kind: 'plot', title: 'A plot', x: 'x', y: 'y', series };
+const tinyPath = { kind: 'path', title: 'A turn in place', x: 'x [m]', y: 'y [m]', series: [{ name: 'a', x: [0, 3e-18, -8.7e-18, 1.5e-17], y: [0, 1.2e-17, -3.6e-17, -1.2e-17] }] };
 const unmarked = { ...errorMap, marks: undefined };
 
 /** A page with one more script at its end. */
@@ -73,6 +74,8 @@ const cases = [
   ['a blank chart', planted(small(plot), `addEventListener('load', () => setTimeout(() => {
     document.querySelector('.chart svg').replaceChildren(); }, 60))`), 1, /is not blank/],
   ['something too wide', planted(small(text), "document.body.append(Object.assign(document.createElement('div'), { style: 'width:1500px;height:9px' }))"), 1, /no horizontal overflow at 1280/],
+  ['a path of tiny numbers', small(tinyPath), 0, /passed, 0 failed/],
+  ['a margin that tiny numbers do not fit', () => bent(tinyPath, 'charts/plot.js', 'if (equal) margin.left =', 'if (!data) margin.left ='), 1, /no words are cut at 390 px/],
   ['a heat map alone', small(errorMap), 0, /passed, 0 failed/],
   ['2000 rows of 20 columns', small(longTable(2000, 20)), 0, /passed, 0 failed/],
   ['a heat map with a short row', small({ ...errorMap, values: [[1], ...errorMap.values.slice(1)] }), 1, /row 1 of "values" has 1 entries, "x_values" has 5/],

@@ -109,9 +109,14 @@ function option(block, data, equal, width, height, seen) {
   const shown = data.curves.map((curve, i) => ({ ...curve, id: String(i) })).filter((curve) => curve.show && curve.points.length > 0);
   const marked = equal ? null : markings(block, shown, data);
   const margin = { ...MARGIN };
-  const ranges = equal ? equalRanges(shown, width, height) : { x: rangeOf(shown, 0, data.x), y: downTo(marked.least, marked.range ?? rangeOf(shown, 1, data.y)) };
-  const y = ticksOf(data.y, seen.y ?? ranges.y, height / 50);
-  const labels = equal ? MARGIN.left - BESIDE : Math.ceil(widest(y.at.map(y.read)));  // (equal scales need the margin beforehand)
+  const yTicks = (range) => ticksOf(data.y, seen.y ?? range, height / 50);
+  const widthOf = (ticks) => Math.ceil(widest(ticks.at.map(ticks.read)));
+  let ranges = equal ? null : { x: rangeOf(shown, 0, data.x), y: downTo(marked.least, marked.range ?? rangeOf(shown, 1, data.y)) };
+  // Equal scales need the margin beforehand: that of their labels where those are wide, as of tiny numbers.
+  if (equal) margin.left = Math.max(MARGIN.left, widthOf(yTicks(equalRanges(shown, width, height, margin).y)) + BESIDE);
+  if (equal) ranges = equalRanges(shown, width, height, margin);
+  const y = yTicks(ranges.y);
+  const labels = equal ? margin.left - BESIDE : widthOf(y);
   margin.left = labels + BESIDE;
   return {
     grid: { ...margin, outerBoundsMode: 'none' },
@@ -151,8 +156,8 @@ function rangeOf(shown, k, axis) {
 const downTo = (least, [min, max]) => [least < min ? Math.floor(least) : min, max];
 
 /** One unit of length is as long on both axes. */
-function equalRanges(shown, width, height) {
-  const size = [width - MARGIN.left - MARGIN.right, height - MARGIN.top - MARGIN.bottom];
+function equalRanges(shown, width, height, margin) {
+  const size = [width - margin.left - margin.right, height - margin.top - margin.bottom];
   const boxes = [0, 1].map((k) => rangeOf(shown, k, { log: false }));
   const unit = 1.06 * Math.max(...boxes.map(([min, max], k) => (max - min) / size[k]));
   const [x, y] = boxes.map(([min, max], k) => [(min + max - unit * size[k]) / 2, (min + max + unit * size[k]) / 2]);

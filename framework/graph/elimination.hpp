@@ -13,9 +13,7 @@
 
 #include <hamel/framework/graph/number.hpp>
 
-namespace hamel::mechanisms {
-
-using graph::Number;
+namespace hamel::graph {
 
 /// Values of the numbers of a recording where its inputs are these.
 class Sample {
@@ -72,4 +70,4 @@ void solve_symmetric(std::vector<std::vector<Number>> m, std::vector<Number>& r)
 /// All velocities are independent.
 Frame free_frame(size_t n);
 
-}  // namespace hamel::mechanisms
+}  // namespace hamel::graph

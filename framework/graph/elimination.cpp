@@ -1,4 +1,4 @@
-#include <hamel/systems/mechanisms/programs/elimination.hpp>
+#include <hamel/framework/graph/elimination.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
-namespace hamel::mechanisms {
+namespace hamel::graph {
 namespace {
-
-using graph::Node;
-using graph::Op;
-using graph::Recording;
 
 constexpr double kLeastPivot = 0.05;  // of the largest entry of its row
 constexpr double kLastingPivot = 0.3;
@@ -171,9 +167,9 @@ double Sample::value(const Number& x) {
     if (node.op == Op::input) values_.push_back(inputs_.at(input));
     else if (node.op == Op::constant) values_.push_back(node.value);
     else if (node.op == Op::select) values_.push_back(at(node.a) != 0 ? at(node.b) : at(node.c));
-    else if (graph::is_condition(node.op))
+    else if (is_condition(node.op))
       values_.push_back(value_of_condition(node.op, at(node.a), at(node.b)));
-    else values_.push_back(graph::evaluate(node.op, at(node.a), at(node.b)));
+    else values_.push_back(evaluate(node.op, at(node.a), at(node.b)));
   }
   return values_[static_cast<size_t>(x.node())];
 }
@@ -255,4 +251,4 @@ void solve_symmetric(std::vector<std::vector<Number>> m, std::vector<Number>& r)
     for (size_t i = j + 1; i < n; ++i) r[j] -= m[i][j] * r[i];
 }
 
-}  // namespace hamel::mechanisms
+}  // namespace hamel::graph

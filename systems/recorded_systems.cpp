@@ -1,0 +1,137 @@
+#include <hamel/systems/recorded_systems.hpp>
+
+#include <stdexcept>
+#include <tuple>
+
+#include <hamel/framework/graph/motion_terms.hpp>
+#include <hamel/framework/mechanics/general_system.hpp>
+#include <hamel/framework/run/names/registry.hpp>
+#include <hamel/groups/heisenberg.hpp>
+#include <hamel/groups/product.hpp>
+#include <hamel/groups/rn.hpp>
+#include <hamel/systems/ball_on_turntable.hpp>
+#include <hamel/systems/chaplygin_ball.hpp>
+#include <hamel/systems/contact_oscillator.hpp>
+#include <hamel/systems/differential_drive.hpp>
+#include <hamel/systems/falling_disk.hpp>
+#include <hamel/systems/knife_edge_on_incline.hpp>
+#include <hamel/systems/nonholonomic_particle.hpp>
+#include <hamel/systems/rattleback.hpp>
+#include <hamel/systems/rolling_ball.hpp>
+#include <hamel/systems/routh_sphere.hpp>
+#include <hamel/systems/segway.hpp>
+#include <hamel/systems/suslov_in_potential.hpp>
+#include <hamel/systems/veselova.hpp>
+
+namespace hamel {
+namespace {
+
+using graph::MotionVariables;
+using graph::Number;
+using Numbers = std::vector<Number>;
+
+// Elements of numbers as their groups lay them out (MotionVariables::element).
+void take(const Number*& from, SO2Element<Number>& out) {
+  out.c = from[0];
+  out.s = from[1];
+  from += 3;  // turns: no formula depends on them
+}
+void take(const Number*& from, SE2Element<Number>& out) {
+  take(from, out.rotation);
+  for (int i = 0; i < 2; ++i) out.translation[i] = *from++;
+}
+template <int rows, int columns>
+void take(const Number*& from, MatT<Number, rows, columns>& out) {
+  for (Eigen::Index j = 0; j < columns; ++j)
+    for (Eigen::Index i = 0; i < rows; ++i) out(i, j) = *from++;
+}
+void take(const Number*& from, SE3Element<Number>& out) {
+  take(from, out.rotation);
+  take(from, out.translation);
+}
+template <class... Gs>
+void take(const Number*& from, ProductElement<Number, Gs...>& out) {
+  std::apply([&from](auto&... parts) { (take(from, parts), ...); }, out.parts);
+}
+
+template <class Matrix>
+std::vector<Numbers> rows_of(const Matrix& m) {
+  std::vector<Numbers> out;
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    out.emplace_back();
+    for (Eigen::Index j = 0; j < m.cols(); ++j) out.back().emplace_back(m(i, j));
+  }
+  return out;
+}
+template <class Vector>
+Numbers entries_of(const Vector& v) {
+  Numbers out;
+  for (Eigen::Index i = 0; i < v.size(); ++i) out.emplace_back(v[i]);
+  return out;
+}
+
+// Forces of inputs that are constant and linear in them, B u: read off at unit inputs.
+template <class S>
+Numbers force_of_inputs(const S& system, const MotionVariables& at) {
+  Numbers out(at.velocities.size());
+  if constexpr (has_input_force<S>()) {
+    using G = typename S::Group;
+    const auto count = static_cast<Eigen::Index>(at.inputs.size());
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const auto unit = InputValues(Eigen::VectorXd::Unit(count, j));
+      const Vec<G::dim> column =
+          system.force(0, G::template identity<double>(), Vec<G::dim>::Zero(), unit);
+      for (size_t i = 0; i < out.size(); ++i)
+        out[i] += column[static_cast<Eigen::Index>(i)] * at.inputs[static_cast<size_t>(j)];
+    }
+  }
+  return out;
+}
+
+template <class S>
+graph::MotionTerms terms_of_type(const Parameters& given, const MotionVariables& at) {
+  S system;
+  detail::FieldWriter writer{given};
+  detail::tell_fields(system, writer);
+  typename S::Group::template Element<Number> g;
+  const Number* from = at.element.data();
+  take(from, g);
+
+  graph::SystemFormulas out;
+  if constexpr (requires { system.inertia(); }) out.inertia = rows_of(system.inertia());
+  else out.inertia = rows_of(system.inertia(g));
+  if constexpr (requires { system.constraints(); }) out.rows = rows_of(system.constraints());
+  else if constexpr (requires { system.constraints(g); }) out.rows = rows_of(system.constraints(g));
+  if constexpr (requires { system.drift(g); }) out.drift = entries_of(system.drift(g));
+  if constexpr (requires { system.holonomic(g); }) out.holonomic = entries_of(system.holonomic(g));
+  if constexpr (requires { system.potential(g); }) out.potential = system.potential(g);
+  out.force = force_of_inputs(system, at);
+  return graph::terms_of(out, at);
+}
+
+template <class S>
+void add_recorded() {
+  graph::add_motion_terms(problem_key(typeid(TypedMechanics<S>)), terms_of_type<S>);
+  if constexpr (has_inputs<S>())
+    graph::add_motion_terms(problem_key(typeid(TypedMechanics<WithInputs<S>>)), terms_of_type<S>);
+}
+
+}  // namespace
+
+void add_recorded_systems() {
+  add_recorded<BallOnTurntable>();
+  add_recorded<ChaplyginBall>();
+  add_recorded<ContactOscillator>();
+  add_recorded<DifferentialDrive>();
+  add_recorded<FallingDisk>();
+  add_recorded<KnifeEdgeOnIncline>();
+  add_recorded<NonholonomicParticle>();
+  add_recorded<Rattleback>();
+  add_recorded<RollingBall>();
+  add_recorded<RouthSphere>();
+  add_recorded<Segway>();
+  add_recorded<SuslovInPotential>();
+  add_recorded<Veselova>();
+}
+
+}  // namespace hamel
