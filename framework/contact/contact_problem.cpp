@@ -180,18 +180,23 @@ bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blo
   return best <= 1e-13;
 }
 
-// Along the path of the convex problem until the equations of what it tells have a solution of (1).
+// Along the path of the convex problem until the equations of what it tells have a solution of (1)
+// next to it; where bounds differ so much that none has, anywhere.
 bool ContactProblem::minimise(const Matrix& g, const Vector& c, const Blocks& blocks) {
-  for (const double least : {1e-7, 1e-9, 1e-11}) {
-    convex_.begin(g, c, blocks, least);
-    while (convex_.follow()) {
-      if (!convex_.tells()) continue;
-      for (const bool wary : {true, false}) {
-        convex_.tell(wary, p_.head(size_), answers_);
-        if (improve(g, c, blocks)) return true;
-      }
+  const auto ends = [&](bool wary, bool anywhere) {
+    convex_.tell(wary, p_.head(size_), answers_);
+    if (!improve(g, c, blocks)) return false;
+    const auto told = residual_.head(size_), now = p_.head(size_);
+    convex_.tell(wary, residual_.head(size_), answers_);
+    const double size = std::max(told.lpNorm<Eigen::Infinity>(), now.lpNorm<Eigen::Infinity>());
+    return anywhere || (told - now).lpNorm<Eigen::Infinity>() <= 1e-3 * size;
+  };
+  for (const bool anywhere : {false, true})
+    for (const double least : {1e-7, 1e-9, 1e-11}) {
+      convex_.begin(g, c, blocks, least);
+      while (convex_.follow())
+        if (convex_.tells() && (ends(true, anywhere) || ends(false, anywhere))) return true;
     }
-  }
   return false;
 }
 
