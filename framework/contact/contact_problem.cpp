@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <hamel/framework/lie/linear_solve.hpp>
+
 namespace hamel {
 namespace {
 
@@ -19,7 +21,10 @@ ContactProblem::ContactProblem(int unknowns, int contacts)
       residual_(unknowns),
       kept_(unknowns),
       jacobian_(unknowns, unknowns),
-      column_(static_cast<size_t>(unknowns)) {
+      null_(unknowns, unknowns),
+      squares_(unknowns * unknowns),
+      column_(static_cast<size_t>(unknowns)),
+      convex_(unknowns) {
   answers_.reserve(static_cast<size_t>(contacts));
 }
 
@@ -67,7 +72,7 @@ void ContactProblem::equations(const Matrix& g, const Vector& c, const Blocks& b
     const ContactBlock& block = blocks[k];
     const int n = block.size(), first = block.first, t = first + (block.normal ? 1 : 0);
     if (answers_[k] == ContactAnswer::sticks) continue;
-    if (answers_[k] == ContactAnswer::opens) {
+    if (answers_[k] == ContactAnswer::opens || (!block.normal && !(block.bound > 0))) {
       r.segment(first, n) = p_.segment(first, n);
       j.middleRows(first, n).setZero();
       j.block(first, first, n, n).setIdentity();
@@ -95,8 +100,8 @@ void ContactProblem::equations(const Matrix& g, const Vector& c, const Blocks& b
   }
 }
 
-// Gauss with complete pivoting, in place, the correction of P into residual_. What the equations
-// leave open stays as it is.
+// Gauss with complete pivoting, in place, the correction of P into before_; of several the
+// shortest.
 bool ContactProblem::eliminate() {
   auto r = residual_.head(size_);
   auto j = jacobian_.topLeftCorner(size_, size_);
@@ -129,7 +134,30 @@ bool ContactProblem::eliminate() {
     for (int k = i + 1; k < rank; ++k) sum -= j(i, k) * before_[column_[static_cast<size_t>(k)]];
     before_[column_[static_cast<size_t>(i)]] = sum / j(i, i);
   }
+  if (rank < size_) shorten(rank);
   return before_.head(size_).allFinite();
+}
+
+// Takes what has no effect out of the correction d: d - Z (Z^T Z)^-1 Z^T d, Z = [-U_1^-1 U_2; 1] in
+// the order of the pivots.
+void ContactProblem::shorten(int rank) {
+  const int open = size_ - rank;
+  const auto place = [this](int i) { return column_[static_cast<size_t>(i)]; };
+  const auto& j = jacobian_;
+  for (int c = 0; c < open; ++c) {
+    for (int i = rank; i < size_; ++i) null_(place(i), c) = i == rank + c ? 1 : 0;
+    for (int i = rank - 1; i >= 0; --i) {
+      double sum = -j(i, rank + c);
+      for (int k = i + 1; k < rank; ++k) sum -= j(i, k) * null_(place(k), c);
+      null_(place(i), c) = sum / j(i, i);
+    }
+  }
+  const auto z = null_.topLeftCorner(size_, open);
+  Eigen::Map<Eigen::MatrixXd> squares(squares_.data(), open, open);
+  squares.noalias() = z.transpose().lazyProduct(z);
+  residual_.head(open).noalias() = z.transpose().lazyProduct(before_.head(size_));
+  solve_linear(squares_.data(), residual_.data(), open, 1);
+  before_.head(size_).noalias() -= z.lazyProduct(residual_.head(open));
 }
 
 // Newton on the equations of the active set; the better of before and after stays.
@@ -152,6 +180,26 @@ bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blo
   return best <= 1e-13;
 }
 
+// Along the path of the convex problem until the equations of what it tells have a solution of (1)
+// next to it; where bounds differ so much that none has, anywhere.
+bool ContactProblem::minimise(const Matrix& g, const Vector& c, const Blocks& blocks) {
+  const auto ends = [&](bool wary, bool anywhere) {
+    convex_.tell(wary, p_.head(size_), answers_);
+    if (!improve(g, c, blocks)) return false;
+    const auto told = residual_.head(size_), now = p_.head(size_);
+    convex_.tell(wary, residual_.head(size_), answers_);
+    const double size = std::max(told.lpNorm<Eigen::Infinity>(), now.lpNorm<Eigen::Infinity>());
+    return anywhere || (told - now).lpNorm<Eigen::Infinity>() <= 1e-3 * size;
+  };
+  for (const bool anywhere : {false, true})
+    for (const double least : {1e-7, 1e-9, 1e-11}) {
+      convex_.begin(g, c, blocks, least);
+      while (convex_.follow())
+        if (convex_.tells() && (ends(true, anywhere) || ends(false, anywhere))) return true;
+    }
+  return false;
+}
+
 ContactProblem::Outcome ContactProblem::solve(const Matrix& g, const Vector& c,
                                               const Blocks& blocks) {
   size_ = static_cast<int>(c.size());
@@ -160,12 +208,16 @@ ContactProblem::Outcome ContactProblem::solve(const Matrix& g, const Vector& c,
   if (blocks.size() == 1) {
     look_at_block(g, c, blocks[0]);
     solve_contact(block_g_, block_c_, blocks[0], solutions_);
+    if (solutions_.count() != 1 && !blocks[0].normal)
+      return minimise(g, c, blocks) ? Outcome::one : Outcome::none;
     if (solutions_.count() == 0) return Outcome::none;
     p_.head(size_) = solutions_[0].p.head(size_);
     answers_[0] = solutions_[0].answer;
     return solutions_.count() == 1 ? Outcome::one : Outcome::several;
   }
   solutions_.clear();
+  if (ConvexContacts::applies(g, blocks))
+    return minimise(g, c, blocks) ? Outcome::one : Outcome::none;
   for (int k = 1; k <= kSweeps; ++k) {
     kept_.head(size_) = p_.head(size_);
     if (!sweep(g, c, blocks)) return Outcome::none;

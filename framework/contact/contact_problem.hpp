@@ -5,8 +5,9 @@
 //
 // G need not be symmetric: in the columns of a contact that slides already its friction belongs to
 // the normal reaction (contact_dynamics.hpp). A contact without P_n has a given bound in place of
-// mu P_n. One contact is solved exactly, with all of its solutions; several by sweeps of
-// Gauss-Seidel over the exact ones of each, and by the equations of the active set at the end.
+// mu P_n. One contact is solved exactly, with all of its solutions; several with given bounds as
+// the convex problem that theirs is (convex_contacts.hpp), which finds a solution always; others by
+// sweeps of Gauss-Seidel over the exact ones of each. The equations of the active set end both.
 // Nothing is to be tuned, and nothing is allocated behind the constructor.
 // Source: Leine, Glocker, A set-valued force law for spatial Coulomb-Contensou friction, Eur. J.
 // Mech. A 22 (2003); Klarbring, Mathematical programming and augmented Lagrangian methods for
@@ -18,19 +19,10 @@
 
 #include <Eigen/Core>
 
+#include <hamel/framework/contact/contact_block.hpp>
+#include <hamel/framework/contact/convex_contacts.hpp>
+
 namespace hamel {
-
-/// The unknowns of a contact: P_n where it has a normal row, then P_t.
-struct ContactBlock {
-  int first = 0;        // of its unknowns in P
-  bool normal = true;   // has it P_n?
-  int tangential = 0;   // directions: 0, 1 or 2
-  double friction = 0;  // mu
-  double bound = 0;     // of |P_t|, without P_n
-  int size() const { return (normal ? 1 : 0) + tangential; }
-};
-
-enum class ContactAnswer { sticks, slides, opens };
 
 struct ContactSolution {
   ContactAnswer answer = ContactAnswer::opens;
@@ -79,14 +71,18 @@ class ContactProblem {
   void equations(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool improve(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool eliminate();
+  void shorten(int rank);
+  bool minimise(const Matrix& g, const Vector& c, const Blocks& blocks);
 
   Eigen::VectorXd p_, before_, residual_, kept_;
-  Eigen::MatrixXd jacobian_;
+  Eigen::MatrixXd jacobian_, null_;
+  Eigen::VectorXd squares_;
   std::vector<ContactAnswer> answers_;
   std::vector<int> column_;
   Eigen::Matrix3d block_g_;
   Eigen::Vector3d block_c_;
   ContactSolutions solutions_;
+  ConvexContacts convex_;
   int size_ = 0;
 };
 

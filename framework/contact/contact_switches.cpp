@@ -13,6 +13,21 @@ namespace {
 
 int direction_count(const ContactLaw& law) { return static_cast<int>(law.tangential.size()); }
 
+// Contacts that were tried with static friction, and slide, into `told`. Are there any?
+bool let_go(const std::vector<ContactLaw>& laws, const std::vector<ContactBlock>& blocks,
+            const std::vector<int>& contacts, const ContactStates& states,
+            std::vector<char>& told) {
+  bool out = false;
+  for (size_t k = 0; k < blocks.size(); ++k) {
+    const auto i = static_cast<size_t>(contacts[k]);
+    const bool tried = laws[i].holding() > laws[i].friction && blocks[k].tangential > 0;
+    if (!tried || states[i].mode != ContactMode::slides) continue;
+    told[i] = 1;
+    out = true;
+  }
+  return out;
+}
+
 }  // namespace
 
 void ContactDynamics::add_block(int i, bool slides, const Eigen::Vector2d& d) {
@@ -20,8 +35,8 @@ void ContactDynamics::add_block(int i, bool slides, const Eigen::Vector2d& d) {
   ContactBlock block;
   block.first = static_cast<int>(on_.size());
   block.normal = law.normal.has_value();
-  block.friction = law.friction;
-  block.bound = law.friction * law.load;
+  block.friction = slides ? law.friction : law.holding();
+  block.bound = block.friction * law.load;
   block.tangential = slides ? 0 : direction_count(law);
   if (block.size() == 0) return;  // a given load that slides is a force
   if (law.normal) {
@@ -115,7 +130,7 @@ void ContactDynamics::take_answer(ContactState& state, size_t block) const {
   if (state.mode != ContactMode::slides || of.tangential == 0) return;
   Eigen::Vector2d d(0, 0);
   d.head(of.tangential) = -problem_.p().segment(of.first + (of.normal ? 1 : 0), of.tangential);
-  state.direction = d / d.norm();
+  if (d.norm() > 0) state.direction = d / d.norm();
   state.begins = of.tangential == 2;
 }
 
@@ -144,7 +159,10 @@ std::string ContactDynamics::decide(ContactStates& states, const std::vector<cha
   if (std::string why = solve_problem("acceleration"); !why.empty()) return why;
   for (size_t k = 0; k < blocks_.size(); ++k)
     take_answer(states[static_cast<size_t>(block_contacts_[k])], k);
-  return "";
+  // Contacts that static friction does not hold slide; the others are decided again beside them.
+  std::vector<char> told = slides;
+  told.resize(states.size(), 0);
+  return let_go(laws_, blocks_, block_contacts_, states, told) ? decide(states, told) : "";
 }
 
 std::string ContactDynamics::strike(const ContactStates& states, const std::vector<char>& strikes,
@@ -158,9 +176,11 @@ std::string ContactDynamics::strike(const ContactStates& states, const std::vect
       add_block(i, false, {0, 0});
   for (size_t k = 0; k < blocks_.size(); ++k) {
     const auto i = static_cast<size_t>(block_contacts_[k]);
+    blocks_[k].friction = laws_[i].friction;
     for (int j = 0; j < blocks_[k].size(); ++j) {
       const int row = on_[static_cast<size_t>(blocks_[k].first + j)].row;
-      const double e = j == 0 && strikes[i] != 0 ? laws_[i].restitution : 0;
+      const double of_strike = j == 0 ? laws_[i].restitution : laws_[i].tangential_restitution;
+      const double e = strikes[i] != 0 ? of_strike : 0;
       c_[blocks_[k].first + j] = (1 + e) * (row_times(row, xi_) - b_[row]);
     }
   }

@@ -19,10 +19,18 @@ struct ContactLaw {
   double load = 0;                     // N, in place of a normal row
   std::optional<int> load_input = {};  // an input of the run, counted from 0, which adds to it
   double friction = 0;                 // mu, of Coulomb's law
+  double static_friction = 0;          // while it rolls, where that is larger
   double restitution = 0;              // e, of Newton's law
+  double tangential_restitution = 0;   // e_t: of the slip, as far as friction allows
   bool of_joint = false;               // dry friction of a joint, which slips and sticks
+  // Where the reactions of several contacts depend on each other: a weight of its own, by which
+  // sum l^2/share is least; or the run ends there.
+  double share = 1;
+  bool refuses = false;
 
   bool has_normal() const { return normal.has_value(); }
+  /// The coefficient up to which it rolls.
+  double holding() const { return friction > static_friction ? friction : static_friction; }
   /// Names of the events in which it begins and ceases to slide.
   const char* slides_name() const { return of_joint ? "slips" : "slides"; }
   const char* rolls_name() const { return of_joint ? "sticks" : "rolls"; }

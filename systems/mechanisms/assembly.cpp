@@ -101,6 +101,7 @@ Vec3 Assembly::direction(const Part& part, const std::string& kind, const std::s
 ConstraintRows Assembly::rows() {
   ConstraintRows out;
   out.ground = ground();
+  check_distribution();
   for (const auto& part : parts_.contacts_) {
     const int link = link_of(part, part.kind, part.body);
     check_moves(part, part.kind, part.body);

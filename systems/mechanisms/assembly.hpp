@@ -90,6 +90,8 @@ class Assembly {
   // Contacts that slide and open (assembly_contacts.cpp).
   void check_friction(const Mechanism::ContactPart& part);
   void check_joint_friction(const Mechanism::JointPart& part);
+  void check_share(const Mechanism::ContactPart& part);
+  void check_distribution();
   void check_brakes();
   /// Dry friction, brakes and stops of joints, and walls, as couplings that do not always hold.
   std::vector<mechanisms::Coupling> slipping_couplings();
@@ -104,6 +106,7 @@ class Assembly {
   /// Normal forces of contacts without a height, N: given, or of statics in the drawn pose.
   std::vector<double> loads(const mechanisms::Multibody& system);
   void find_loads(const mechanisms::Multibody& system, int root, std::vector<double>& loads);
+  Eigen::VectorXd shares_of(const std::vector<size_t>& contacts) const;
   /// The system of these parts, with the rows that are independent and, where wheels have to agree
   /// on a turning centre, those of this agreement.
   std::shared_ptr<mechanisms::Multibody> system_of(mechanisms::ConstraintRows rows,

@@ -38,18 +38,47 @@ void Assembly::check_friction(const Mechanism::ContactPart& part) {
   };
   size("friction", part.friction);
   size("load", part.load);
-  if (part.restitution && !(*part.restitution >= 0 && *part.restitution <= 1))
+  size("static_friction", part.static_friction);
+  size("share", part.share);
+  const auto coefficient = [&](const char* what, const std::optional<double>& value) {
+    if (value && !(*value >= 0 && *value <= 1))
+      wrong(part, part.kind, fmt::format("{}: got {}, expected in [0, 1]", what, *value));
+  };
+  coefficient("restitution", part.restitution);
+  coefficient("tangential_restitution", part.tangential_restitution);
+  if (part.friction && part.static_friction && *part.static_friction < *part.friction)
     wrong(part, part.kind,
-          fmt::format("restitution: got {}, expected in [0, 1]", *part.restitution));
+          fmt::format("static_friction: got {}, expected at least friction, {}",
+                      *part.static_friction, *part.friction));
+  check_share(part);
   if (part.friction) return;
   const auto alone = [&](const char* what) {
     wrong(part, part.kind,
           fmt::format("{}: set friction too, 0 for a smooth ground; without, the contact is ideal",
                       what));
   };
+  if (part.static_friction) alone("static_friction");
   if (part.restitution) alone("restitution");
+  if (part.tangential_restitution) alone("tangential_restitution");
   if (part.load) alone("load");
   if (part.unilateral && *part.unilateral) alone("unilateral");
+}
+
+void Assembly::check_distribution() {
+  const Part& policy = parts_.distribution_;
+  const std::vector<std::string> known = {"equal_compliance", "refuse", "stated"};
+  if (std::ranges::count(known, policy.name) == 0)
+    mistakes_.push_back(policy.where + unknown_name("distribution", policy.name, known));
+}
+
+void Assembly::check_share(const Mechanism::ContactPart& part) {
+  const bool stated = parts_.distribution_.name == "stated";
+  if (part.share && !stated)
+    wrong(part, part.kind, "share: expected distribution = \"stated\" beside it");
+  if (stated && part.friction && !(part.share && *part.share > 0))
+    wrong(part, part.kind,
+          "share: distribution is \"stated\": expected a positive number, its part of the loads "
+          "that are not determined");
 }
 
 void Assembly::check_brakes() {
@@ -172,7 +201,17 @@ void Assembly::find_loads(const Multibody& system, int root, std::vector<double>
     const Vec3 at = system.all_rows().touch(contacts[open[k]], tree);
     a.col(static_cast<Eigen::Index>(k)) = Vec3(1, at[1], at[0]);
   }
-  const Eigen::VectorXd found = least(a, right);
+  if (open.size() > 3 && parts_.distribution_.name == "refuse") {
+    const Mechanism::ContactPart& part = parts_.contacts_[open.front()];
+    wrong(part, part.kind,
+          fmt::format("load: {} contacts share the weight, statics determines three, and "
+                      "distribution is \"refuse\"; give the loads of the others",
+                      open.size()));
+    return;
+  }
+  const Eigen::VectorXd shares = shares_of(open);
+  Eigen::VectorXd found = least(a * shares.cwiseSqrt().asDiagonal(), right);
+  found.array() *= shares.array().sqrt();
   const Mechanism::ContactPart& part = parts_.contacts_[open.front()];
   if (!((a * found - right).norm() <= 1e-9 * (1 + right.norm()))) {
     wrong(part, part.kind,
@@ -193,8 +232,20 @@ void Assembly::find_loads(const Multibody& system, int root, std::vector<double>
     if (contacts[open[k]].slips)
       list += fmt::format("{}{} '{}' {:.6g} N", list.empty() ? "" : ", ", of.kind, of.name, load);
   }
+  const bool stated = parts_.distribution_.name == "stated";
   model_.notes.push_back(fmt::format("loads of statics in the drawn pose{}: {}",
-                                     open.size() > 3 ? ", of least sum of squares" : "", list));
+                                     open.size() <= 3 ? ""
+                                     : stated         ? ", as the shares have it"
+                                                      : ", of least sum of squares",
+                                     list));
+}
+
+// sum N^2/share is least.
+Eigen::VectorXd Assembly::shares_of(const std::vector<size_t>& contacts) const {
+  Eigen::VectorXd out = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(contacts.size()));
+  for (size_t k = 0; k < contacts.size(); ++k)
+    out[static_cast<Eigen::Index>(k)] = parts_.contacts_[contacts[k]].share.value_or(1);
+  return out;
 }
 
 std::vector<double> Assembly::loads(const Multibody& system) {
@@ -221,7 +272,7 @@ std::vector<double> Assembly::loads(const Multibody& system) {
       wrong(part, part.kind,
             "unilateral: no joint changes the height of this contact, so that it cannot open");
     if (changes) continue;
-    if (part.restitution)
+    if (part.restitution || part.tangential_restitution)
       wrong(part, part.kind,
             "restitution: no joint changes the height of this contact, so that it cannot strike");
     const int root = root_of(tree, contact.link);
@@ -247,7 +298,11 @@ void Assembly::add_law(const Multibody& system, size_t contact, size_t row, doub
   ContactLaw law;
   law.name = part.name;
   law.friction = *part.friction;
+  law.static_friction = part.static_friction.value_or(0);
   law.restitution = part.restitution.value_or(0);
+  law.tangential_restitution = part.tangential_restitution.value_or(0);
+  law.share = part.share.value_or(1);
+  law.refuses = parts_.distribution_.name == "refuse";
   for (; row < height; ++row)
     if (const int place = kept_place(system, row); place >= 0) law.tangential.push_back(place);
   if (const int place = kept_place(system, height); place >= 0) law.normal = place;

@@ -21,7 +21,7 @@ RollingSurface Assembly::surface(const Mechanism::LoopPart& part) {
   if (part.slips)
     return refuse(
         "a ball that touches another body rolls without slipping; leave friction, "
-        "restitution, load and unilateral out");
+        "restitution, load, share and unilateral out");
   if (!(part.radius > 0) || !std::isfinite(part.radius)) {
     wrong(part, part.kind, fmt::format("radius: got {}, expected above 0", part.radius));
     return out;

@@ -88,7 +88,10 @@ void FileParts::contacts() {
                                {"friction", read_.read(o.friction)},
                                {"restitution", read_.read(o.restitution)},
                                {"load", read_.read(o.load)},
-                               {"unilateral", read_.read(o.unilateral)}};
+                               {"unilateral", read_.read(o.unilateral)},
+                               {"static_friction", read_.read(o.static_friction)},
+                               {"tangential_restitution", read_.read(o.tangential_restitution)},
+                               {"share", read_.read(o.share)}};
       if (kind.name == "ball") {
         keys.emplace_back("on", read_.read(o.on));
         keys.emplace_back("inside", read_.read(o.inside));
@@ -351,6 +354,11 @@ void FileParts::surroundings() {
     std::string policy;
     read_.toml.value(node, "redundant", policy);
     m_.redundant(policy);
+  });
+  stated("distribution", [&](const Node& node) {
+    std::string policy;
+    read_.toml.value(node, "distribution", policy);
+    m_.distribution(policy);
   });
   for (const char* key : {"start_arguments", "asks"}) {  // asks: its name before version 0.2
     stated(key, [&](const Node& node) {

@@ -15,7 +15,9 @@ std::vector<double> values_of(const Point& p) { return {p.begin(), p.end()}; }
 
 template <class Options>
 ContactOptions contact_options(const Options& o, Parameters values) {
-  return {o.at, std::move(values), o.friction, o.restitution, o.load, o.unilateral};
+  return {o.at,   std::move(values), o.friction,        o.restitution,
+          o.load, o.unilateral,      o.static_friction, o.tangential_restitution,
+          o.share};
 }
 
 }  // namespace
@@ -50,7 +52,8 @@ void Mechanism::contact(const std::string& kind, const std::string& name, const 
   if (radius != options.values.end() && radius->second.size() == 1) pair.radius = radius->second[0];
   pair.inside = !options.inside.empty();
   pair.both = pair.inside && !options.on.empty();
-  pair.slips = options.friction || options.restitution || options.load || options.unilateral;
+  pair.slips = options.friction || options.restitution || options.load || options.unilateral ||
+               options.static_friction || options.tangential_restitution || options.share;
   loops_.push_back(std::move(pair));
 }
 void Mechanism::wheel(const std::string& name, const std::string& body, const WheelOptions& o) {
@@ -144,6 +147,7 @@ void Mechanism::output(const std::string& name, const std::string& formula,
 }
 
 void Mechanism::redundant(const std::string& policy) { redundant_ = part(policy); }
+void Mechanism::distribution(const std::string& policy) { distribution_ = part(policy); }
 void Mechanism::input(const InputField& field) { inputs_.push_back({part(field.name), field}); }
 void Mechanism::event(Event event) { events_.push_back(std::move(event)); }
 

@@ -118,6 +118,9 @@ class HAMEL_API Mechanism {
   void ground_height(const std::string& formula, const Parameters& constants = {});
   /// "refuse", or "drop": policy for rows that are implied by others.
   void redundant(const std::string& policy);
+  /// "equal_compliance", "stated" (by the `share` of each contact) or "refuse": policy for loads of
+  /// contacts that statics and the motion leave open.
+  void distribution(const std::string& policy);
 
   // Forces.
   /// m/s^2; an incline is a direction of gravity that is not -z.
@@ -240,7 +243,7 @@ class HAMEL_API Mechanism {
   Part part(const std::string& name) const;
 
   std::string name_, where_;
-  Part redundant_ = {"refuse", ""};
+  Part redundant_ = {"refuse", ""}, distribution_ = {"equal_compliance", ""};
   std::vector<BodyPart> bodies_;
   std::vector<JointPart> joints_;
   std::vector<ContactPart> contacts_;

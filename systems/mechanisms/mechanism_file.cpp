@@ -94,12 +94,12 @@ class File {
   void check_keys() {
     std::vector<std::string> known = mechanisms::names_of(mechanisms::contact_kinds());
     for (const char* key :
-         {"asks",       "body",    "brake",           "coupling", "events",  "force",
-          "formula",    "gravity", "ground",          "inputs",   "joint",   "known",
-          "let",        "loop",    "motor",           "name",     "outputs", "parameters",
-          "prescribed", "push",    "redundant",       "sensor",   "slope",   "source",
-          "spring",     "start",   "start_arguments", "state",    "summary", "torque",
-          "wall"})
+         {"asks",       "body",       "brake",   "coupling",        "distribution", "events",
+          "force",      "formula",    "gravity", "ground",          "inputs",       "joint",
+          "known",      "let",        "loop",    "motor",           "name",         "outputs",
+          "parameters", "prescribed", "push",    "redundant",       "sensor",       "slope",
+          "source",     "spring",     "start",   "start_arguments", "state",        "summary",
+          "torque",     "wall"})
       known.emplace_back(key);
     std::ranges::sort(known);
     for (const auto& [name, node] : table_) {

@@ -49,6 +49,9 @@ struct ContactOptions {
   std::optional<double> friction = {}, restitution = {};
   std::optional<double> load = {};      // N, where its height cannot change; left out: of statics
   std::optional<bool> unilateral = {};  // may it open? As its friction and height have it
+  // Friction while it rolls, not less than friction; restitution of the slip; the part of the loads
+  // that it has where they are `stated` (Mechanism::distribution).
+  std::optional<double> static_friction = {}, tangential_restitution = {}, share = {};
   // For a ball: the body on whose sphere or cylinder, or inside it, it rolls; neither: the ground.
   std::string on = {}, inside = {};
 };
@@ -60,6 +63,7 @@ struct WheelOptions {
   // As in ContactOptions.
   std::optional<double> friction = {}, restitution = {}, load = {};
   std::optional<bool> unilateral = {};
+  std::optional<double> static_friction = {}, tangential_restitution = {}, share = {};
   std::string on = {}, inside = {};  // as there, of a ball
 };
 struct BladeOptions {
@@ -68,16 +72,18 @@ struct BladeOptions {
   // As in ContactOptions.
   std::optional<double> friction = {}, restitution = {}, load = {};
   std::optional<bool> unilateral = {};
+  std::optional<double> static_friction = {}, tangential_restitution = {}, share = {};
 };
 struct PointOptions {
   Point at = {0, 0, 0};  // m
   // As in ContactOptions.
   std::optional<double> friction = {}, restitution = {}, load = {};
   std::optional<bool> unilateral = {};
+  std::optional<double> static_friction = {}, tangential_restitution = {}, share = {};
 };
 /// A wall that coordinates of hinges and sliders run against.
 struct WallOptions {
-  std::string distance = {};  // a formula of coordinates, not negative
+  std::string distance = {};  // a formula of coordinates and t, not negative
   double restitution = 0;
   Parameters constants = {};  // names that the formula may use
 };

@@ -66,6 +66,45 @@ TEST(SlippingBlock, SlidesAndStops) {
   EXPECT_LT(r.steps, 60);
 }
 
+// Pushed by F = 10 t it holds up to 0.5 m g, and slides with 0.3: m v' = 10 t - 0.3 m g.
+TEST(SlippingBlock, HoldsByStaticFriction) {
+  Mechanism m("block");
+  m.body("block", {.mass = 2, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
+  m.planar("floor", "block");
+  m.point("skid", "block", {.friction = 0.3, .static_friction = 0.5});
+  m.force(
+      "push", "block",
+      {.at = {0, 0, 0.1},
+       .along = {[](const SignalInput& in) { return 10 * in.t; },
+                 [](const SignalInput&) { return 0.0; }, [](const SignalInput&) { return 0.0; }}});
+  const Result r = slipping(m).until(2).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  const double begins = 0.5 * 2 * kGravity / 10;
+  ASSERT_THAT(names(r), ElementsAre("skid.slides"));
+  EXPECT_NEAR(time_of(r, "skid.slides"), begins, 1e-12);
+  EXPECT_NEAR(last(r, "v1"), 2.5 * (4 - begins * begins) - 0.3 * kGravity * (2 - begins), 1e-9);
+}
+
+// Garwin's ball: e = e_t = 1 turns the slip of its contact round, and keeps the energy; with
+// k = 2/5 and the slip s the velocity changes by -2 s k/(1 + k).
+TEST(SlippingBall, BouncesBackBesides) {
+  const double radius = 0.1;
+  Mechanism m("ball");
+  m.body("ball", {.mass = 1, .at = {0, 0, 1 + radius}, .sphere = radius});
+  m.free("space", "ball", {.at = {0, 0, 1 + radius}});
+  m.ball("contact", "ball",
+         {.at = {0, 0, 1 + radius},
+          .radius = radius,
+          .friction = 10,
+          .restitution = 1,
+          .tangential_restitution = 1});
+  const Result r = slipping(m).start({.velocity = {0, 0, 0, 0.5, 0, 0}}).until(0.6).run();
+  ASSERT_TRUE(r.status.ok) << r.status.reason;
+  ASSERT_THAT(names(r), ElementsAre("contact.strikes"));
+  EXPECT_NEAR(r.events[0].velocity_after[3], 0.5 - 2 * 0.5 * 0.4 / 1.4, 1e-12);
+  EXPECT_LT(r.energy_error_max, 1e-9);
+}
+
 // The same ball by parts and by hand.
 TEST(SlippingBall, ByPartsAsByHand) {
   const double radius = 0.03;
@@ -302,6 +341,32 @@ TEST(SkidSteered, RestsBelowTheTorque) {
   ASSERT_TRUE(turns.status.ok) << turns.status.reason;
   EXPECT_GT(last(turns, "omega"), 1e-4);
 }
+// Four feet at the corners and one in the middle bear a fifth each, or, with 4 times the share, the
+// one in the middle a half: the least sum of N^2/share.
+TEST(Distribution, IsStatedOrRefused) {
+  const auto table = [](const std::string& policy) {
+    Mechanism m("table");
+    m.body("table", {.mass = 8, .at = {0, 0, 0.2}, .box = {0.8, 0.5, 0.2}});
+    m.planar("floor", "table");
+    if (!policy.empty()) m.distribution(policy);
+    const auto share = [&](double value) {
+      return policy == "stated" ? std::optional<double>(value) : std::nullopt;
+    };
+    for (const double sx : {-1.0, 1.0})
+      for (const double sy : {-1.0, 1.0})
+        m.point(fmt::format("{}{}", sx, sy), "table",
+                {.at = {0.4 * sx, 0.3 * sy, 0}, .friction = 0.5, .share = share(1)});
+    m.point("middle", "table", {.friction = 0.5, .share = share(4)});
+    return m;
+  };
+  EXPECT_THAT(table("").model().notes, Contains(HasSubstr("'middle' 15.696 N")));
+  EXPECT_THAT(table("stated").model().notes,
+              Contains(AllOf(HasSubstr("as the shares have it"), HasSubstr("'middle' 39.24 N"))));
+  EXPECT_THAT(refusal([&] { (void)table("refuse").model(); }),
+              HasSubstr("5 contacts share the weight, statics determines three"));
+  EXPECT_THAT(refusal([&] { (void)table("statd").model(); }), HasSubstr("did you mean 'stated'?"));
+}
+
 // Straight ahead it rolls: m v' + 4 J v'/r^2 = 4 (torque - damping v/r)/r.
 TEST(SkidSteered, RollsAhead) {
   const SkidSteered s;
@@ -386,6 +451,12 @@ TEST(BadFriction, IsNamed) {
               HasSubstr("point 'skid': friction: got -0.1, expected at least 0"));
   EXPECT_THAT(with({.friction = 0.1, .restitution = 1.5}, true),
               HasSubstr("point 'skid': restitution: got 1.5, expected in [0, 1]"));
+  EXPECT_THAT(with({.friction = 0.3, .static_friction = 0.2}),
+              HasSubstr("static_friction: got 0.2, expected at least friction, 0.3"));
+  EXPECT_THAT(with({.static_friction = 0.2}), HasSubstr("static_friction: set friction too"));
+  EXPECT_THAT(with({.friction = 0.3, .share = 2}), HasSubstr("distribution = \"stated\""));
+  EXPECT_THAT(with({.friction = 0.1, .tangential_restitution = 2}, true),
+              HasSubstr("tangential_restitution: got 2, expected in [0, 1]"));
   EXPECT_THAT(with({.load = 3.0}), HasSubstr("load: set friction too"));
   EXPECT_THAT(with({.restitution = 0.3}), HasSubstr("restitution: set friction too"));
   EXPECT_THAT(with({.friction = 0.1, .load = 3.0}, true), HasSubstr("load is a reaction"));

@@ -276,6 +276,9 @@ Json mechanism(std::istream& from) {
     };
     number("friction", "coefficient; left out: the contact is ideal");
     number("restitution", "coefficient, of impacts");
+    number("static_friction", "while it rolls, at least friction; left out: friction");
+    number("tangential_restitution", "coefficient, of the slip in impacts");
+    number("share", "of loads that are not determined, with distribution = \"stated\"");
     number("load", "normal force, N, where its height cannot change; left out: of statics");
     if (kind.name == "ball") {
       for (const auto& [key, meaning] :

@@ -96,7 +96,7 @@ ContactKernel::Gates ContactKernel::gates(double t, bool near) {
     if (law.tangential.empty()) continue;
     const double held = law.normal ? dynamics().normal_reaction(i) : law.load;
     if (mode == ContactMode::rolls)
-      second = law.friction * held - dynamics().tangential_reaction(i).norm();
+      second = law.holding() * held - dynamics().tangential_reaction(i).norm();
     else if (contact(i).begins) {
       second = kGrown * followed(i).speed - dynamics().slip(i).norm();
       third = dynamics().slip(i).dot(contact(i).direction) + kSigma * followed(i).speed;

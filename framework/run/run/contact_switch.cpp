@@ -105,7 +105,7 @@ std::vector<char> ContactKernel::at_rims(int first) {
     if (contact(i).mode != ContactMode::rolls || dynamics().law(i).tangential.empty()) continue;
     const ContactLaw& law = dynamics().law(i);
     const Eigen::Vector2d l = dynamics().tangential_reaction(i);
-    const double most = law.friction * (law.normal ? dynamics().normal_reaction(i) : law.load);
+    const double most = law.holding() * (law.normal ? dynamics().normal_reaction(i) : law.load);
     if (i != first && !(most - l.norm() <= kOnRim * most)) continue;
     out[static_cast<size_t>(i)] = 1;
     if (!(l.norm() > 0)) continue;

@@ -139,6 +139,11 @@ void bind_forces(nb::class_<ByParts>& mechanism) {
           "redundant", [](ByParts& self, const std::string& policy) { self.redundant(policy); },
           "policy"_a, "'refuse', or 'drop': what becomes of rows that repeat others.")
       .def(
+          "distribution",
+          [](ByParts& self, const std::string& policy) { self.distribution(policy); }, "policy"_a,
+          "'equal_compliance', 'stated' (by the share of each contact) or 'refuse': loads of "
+          "contacts that statics and the motion leave open.")
+      .def(
           "gravity", [](ByParts& self, const Point& acceleration) { self.gravity(acceleration); },
           "acceleration"_a, "[m/s^2], three numbers")
       .def(

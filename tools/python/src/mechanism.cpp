@@ -112,14 +112,17 @@ void bind_contacts(nb::class_<ByParts>& mechanism) {
         [member](ByParts& self, const std::string& contact, const std::string& body,
                  const Point& at, const Point& axle, double radius, double angle, Maybe friction,
                  Maybe restitution, Maybe load, std::optional<bool> unilateral,
+                 Maybe static_friction, Maybe tangential_restitution, Maybe share,
                  const std::string& on, const std::string& inside) {
-          (self.*member)(
-              contact, body,
-              {at, axle, radius, angle, friction, restitution, load, unilateral, on, inside});
+          (self.*member)(contact, body,
+                         {at, axle, radius, angle, friction, restitution, load, unilateral,
+                          static_friction, tangential_restitution, share, on, inside});
         },
         "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "axle"_a = kLeft, "radius"_a = 0.0,
         "angle"_a = 0.0, "friction"_a = nb::none(), "restitution"_a = nb::none(),
-        "load"_a = nb::none(), "unilateral"_a = nb::none(), "on"_a = "", "inside"_a = "", help);
+        "load"_a = nb::none(), "unilateral"_a = nb::none(), "static_friction"_a = nb::none(),
+        "tangential_restitution"_a = nb::none(), "share"_a = nb::none(), "on"_a = "",
+        "inside"_a = "", help);
   };
   rolls("wheel", &Mechanism::wheel, "at: its centre [m]; axle to the left; radius [m].");
   rolls("roller", &Mechanism::roller, "A wheel with rollers at an angle [rad] to its plane.");
@@ -130,21 +133,30 @@ void bind_contacts(nb::class_<ByParts>& mechanism) {
           "blade",
           [](ByParts& self, const std::string& name, const std::string& body, const Point& at,
              const Point& along, Maybe friction, Maybe restitution, Maybe load,
-             std::optional<bool> unilateral) {
-            self.blade(name, body, {at, along, friction, restitution, load, unilateral});
+             std::optional<bool> unilateral, Maybe static_friction, Maybe tangential_restitution,
+             Maybe share) {
+            self.blade(name, body,
+                       {at, along, friction, restitution, load, unilateral, static_friction,
+                        tangential_restitution, share});
           },
           "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "along"_a = kAhead,
           "friction"_a = nb::none(), "restitution"_a = nb::none(), "load"_a = nb::none(),
-          "unilateral"_a = nb::none(),
+          "unilateral"_a = nb::none(), "static_friction"_a = nb::none(),
+          "tangential_restitution"_a = nb::none(), "share"_a = nb::none(),
           "Slides along a direction, not across it; with friction also across.")
       .def(
           "point",
           [](ByParts& self, const std::string& name, const std::string& body, const Point& at,
-             Maybe friction, Maybe restitution, Maybe load, std::optional<bool> unilateral) {
-            self.point(name, body, {at, friction, restitution, load, unilateral});
+             Maybe friction, Maybe restitution, Maybe load, std::optional<bool> unilateral,
+             Maybe static_friction, Maybe tangential_restitution, Maybe share) {
+            self.point(name, body,
+                       {at, friction, restitution, load, unilateral, static_friction,
+                        tangential_restitution, share});
           },
           "name"_a, "body"_a, nb::kw_only(), "at"_a = kOrigin, "friction"_a = nb::none(),
           "restitution"_a = nb::none(), "load"_a = nb::none(), "unilateral"_a = nb::none(),
+          "static_friction"_a = nb::none(), "tangential_restitution"_a = nb::none(),
+          "share"_a = nb::none(),
           "A point of a body on the ground, or above it with friction on a free root.")
       .def(
           "wall",
