@@ -113,12 +113,12 @@ void bind_equations(nb::module_& m) {
              }
            })
       .def(
-          "numpy", [](const Equations& e) { return defined(e, "numpy"); },
-          nb::sig("def numpy(self) -> types.SimpleNamespace"),
+          "as_numpy", [](const Equations& e) { return defined(e, "numpy"); },
+          nb::sig("def as_numpy(self) -> types.SimpleNamespace"),
           "Functions rate(t, q, xi, u) and coordinate_rates(q, xi), made of formulas('numpy').")
       .def(
-          "sympy", [](const Equations& e) { return defined(e, "sympy"); },
-          nb::sig("def sympy(self) -> types.SimpleNamespace"),
+          "as_sympy", [](const Equations& e) { return defined(e, "sympy"); },
+          nb::sig("def as_sympy(self) -> types.SimpleNamespace"),
           "Symbols t, q, xi, u and matrices rate, coordinate_rates, made of formulas('sympy').")
       .def_prop_ro("arguments", &Equations::arguments, "what a quantity has a jacobian of")
       .def(

@@ -367,7 +367,7 @@ def test_equations_at_a_state():
 )
 def test_equations_as_numpy(name):
     equations = hamel.equations(name)
-    functions = equations.numpy()
+    functions = equations.as_numpy()
     run = hamel.simulate(name, rtol=1e-12, until=1).build()
     for t in (0.0, 0.1, 0.3, 0.6):
         run.advance_to(t)
@@ -399,7 +399,7 @@ def test_equations_as_text():
 
 def test_equations_as_sympy():
     sympy = pytest.importorskip("sympy")
-    symbols = hamel.equations("chaplygin_sleigh").sympy()
+    symbols = hamel.equations("chaplygin_sleigh").as_sympy()
     omega, v1, _ = symbols.xi
     assert sympy.simplify(symbols.rate[1] - 0.2 * omega**2) == 0
     assert symbols.coordinate_rates[1] == v1 * sympy.cos(symbols.q[0])
