@@ -35,7 +35,7 @@ bool ConvexContacts::applies(const Matrix& g, const Blocks& blocks) {
 }
 
 // In units: of a bound itself, of a normal reaction what moves as much as the largest of bounds and
-// of what c asks for, in sqrt(G_ii) P_i.
+// of what c requires, in sqrt(G_ii) P_i.
 void ConvexContacts::begin(const Matrix& g, const Vector& c, const Blocks& blocks, double least) {
   least_ = least;
   blocks_ = &blocks;
