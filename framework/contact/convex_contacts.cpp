@@ -34,8 +34,8 @@ bool ConvexContacts::applies(const Matrix& g, const Blocks& blocks) {
   return asymmetry <= 1e-10 * most;
 }
 
-// Units are those of bounds themselves; that of a normal reaction moves as much as the largest of
-// bounds and what c requires, in sqrt(G_ii) P_i.
+// In units: of a bound itself, of a normal reaction what moves as much as the largest of bounds and
+// of what c requires, in sqrt(G_ii) P_i.
 void ConvexContacts::begin(const Matrix& g, const Vector& c, const Blocks& blocks, double least) {
   least_ = least;
   blocks_ = &blocks;

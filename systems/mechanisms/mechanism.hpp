@@ -134,7 +134,7 @@ class HAMEL_API Mechanism {
   void motor(const std::string& joint, const Range& range = {});
   /// Dry friction in a hinge or slider whose bound, N m or N, is an input of the run, "rear.brake",
   /// at least 0.
-  void brake(const std::string& joint, const Range& range = {.least = 0});
+  void brake(const std::string& joint, const Range& range = Range{0});
   void force(const std::string& name, const std::string& body, const ForceOptions& options);
   /// A couple.
   void torque(const std::string& name, const std::string& body, const TorqueOptions& options);

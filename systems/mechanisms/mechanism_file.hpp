@@ -4,6 +4,8 @@
 //   gravity = 9.81           # or three numbers, m/s^2 (left out: 9.81)
 //   slope = 0.1              # rad: x points downhill (left out: level)
 //   redundant = "drop"       # rows implied by others (left out: "refuse")
+//   distribution = "stated"  # of loads that statics leaves open, by `share`; or "refuse" (left
+//                            # out: "equal_compliance")
 //   [parameters]             # to set, study and sweep; allowed in every number
 //   wheelbase = 0.8          # or { value = 0.8, unit = "m", meaning = "...", least = 0 }
 //   [[body]]                 # mass [kg]; at: its mass centre [m]; inertia: 3, 6 (upper triangle)
@@ -18,6 +20,7 @@
 //   [[wheel]] [[roller]] [[blade]] [[ball]] [[point]] [[tube]] [[ellipsoid]]
 //                            # name (left out: the body's), body, at; axle, radius, angle, crown;
 //                            # along; semi_axes; friction, restitution, load [N], unilateral;
+//                            # static_friction, tangential_restitution, share;
 //                            # of a ball: on or inside = "body", whose sphere or cylinder it rolls
 //   [[loop]]                 # name, a, b, at, axis
 //   [[coupling]]             # name (left out: the joint's); joint, to, ratio, offset: joint =

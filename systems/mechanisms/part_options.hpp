@@ -83,7 +83,7 @@ struct PointOptions {
 };
 /// A wall that coordinates of hinges and sliders run against.
 struct WallOptions {
-  std::string distance = {};  // a formula of coordinates and t, not negative
+  std::string distance = {};  // a formula of coordinates, not negative
   double restitution = 0;
   Parameters constants = {};  // names that the formula may use
 };

@@ -85,6 +85,27 @@ TEST(SlippingBlock, HoldsByStaticFriction) {
   EXPECT_NEAR(last(r, "v1"), 2.5 * (4 - begins * begins) - 0.3 * kGravity * (2 - begins), 1e-9);
 }
 
+// A force between both coefficients holds a block at rest, and does not stop one that slides.
+TEST(SlippingBlock, RestsBetweenBothCoefficients) {
+  for (const double speed : {0.0, 1.0}) {
+    Mechanism m("block");
+    m.body("block", {.mass = 2, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
+    m.planar("floor", "block");
+    m.point("skid", "block", {.friction = 0.3, .static_friction = 0.5});
+    m.force(
+        "push", "block",
+        {.at = {0, 0, 0.1},
+         .along = {[](const SignalInput&) { return 0.4 * 2 * kGravity; },
+                   [](const SignalInput&) { return 0.0; }, [](const SignalInput&) { return 0.0; }},
+         .time_dependent = false});
+    m.start("v1", speed);
+    const Result r = slipping(m).until(1).run();
+    ASSERT_TRUE(r.status.ok) << r.status.reason;
+    EXPECT_TRUE(r.events.empty());
+    EXPECT_NEAR(last(r, "v1"), speed > 0 ? speed + 0.1 * kGravity : 0, 1e-9);
+  }
+}
+
 // Garwin's ball: e = e_t = 1 turns the slip of its contact round, and keeps the energy; with
 // k = 2/5 and the slip s the velocity changes by -2 s k/(1 + k).
 TEST(SlippingBall, BouncesBackBesides) {
