@@ -23,10 +23,6 @@ struct ContactLaw {
   double restitution = 0;              // e, of Newton's law
   double tangential_restitution = 0;   // e_t: of the slip, as far as friction allows
   bool of_joint = false;               // dry friction of a joint, which slips and sticks
-  // Where the reactions of several contacts depend on each other: a weight of its own, by which
-  // sum l^2/share is least; or the run ends there.
-  double share = 1;
-  bool refuses = false;
 
   bool has_normal() const { return normal.has_value(); }
   /// The coefficient up to which it rolls.

@@ -458,13 +458,15 @@ TEST(Walls, TwoBlocksOnARail) {
 // ---- mistakes ---------------------------------------------------------------------------------
 
 TEST(BadFriction, IsNamed) {
-  const auto with = [](const PointOptions& options, bool free = false) {
+  const auto with = [](const PointOptions& options, bool free = false,
+                       const std::string& distribution = "") {
     return refusal([&] {
       Mechanism m("block");
       m.body("block", {.mass = 2, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
       if (free) m.free("floor", "block");
       else m.planar("floor", "block");
       m.point("skid", "block", options);
+      if (!distribution.empty()) m.distribution(distribution);
       (void)simulate(m).until(1).run();
     });
   };
@@ -476,6 +478,8 @@ TEST(BadFriction, IsNamed) {
               HasSubstr("static_friction: got 0.2, expected at least friction, 0.3"));
   EXPECT_THAT(with({.static_friction = 0.2}), HasSubstr("static_friction: set friction too"));
   EXPECT_THAT(with({.friction = 0.3, .share = 2}), HasSubstr("distribution = \"stated\""));
+  EXPECT_THAT(with({.friction = 0.3, .share = 2}, true, "stated"),
+              HasSubstr("distribution: \"stated\" shares loads of statics"));
   EXPECT_THAT(with({.friction = 0.1, .tangential_restitution = 2}, true),
               HasSubstr("tangential_restitution: got 2, expected in [0, 1]"));
   EXPECT_THAT(with({.load = 3.0}), HasSubstr("load: set friction too"));

@@ -20,7 +20,6 @@ void check_law(const SystemModel& system, const ContactLaw& law, Mistakes& mista
     wrong("static_friction", law.static_friction, "a number of at least 0");
   if (!(law.tangential_restitution >= 0 && law.tangential_restitution <= 1))
     wrong("tangential_restitution", law.tangential_restitution, "a number in [0, 1]");
-  if (!(law.share > 0 && std::isfinite(law.share))) wrong("share", law.share, "a positive number");
   if (!(law.restitution >= 0 && law.restitution <= 1))
     wrong("restitution", law.restitution, "a number in [0, 1]");
   if (!law.normal && !(law.load >= 0 && std::isfinite(law.load)))
