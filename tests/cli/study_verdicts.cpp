@@ -148,7 +148,10 @@ name = "chaplygin_sleigh"
   EXPECT_THAT(at[2], testing::EndsWith("  2"));
   EXPECT_THAT(at[3], testing::MatchesRegex("    rkmk4   1 .*  0"));
   if (!std::filesystem::exists(file("out/report.html"))) return;
-  const Json blocks = page_data(contents(file("out/report.html")))["sections"][0]["blocks"];
+  Json blocks = Json::array();
+  const Json page = page_data(contents(file("out/report.html")));
+  for (const Json& section : page["sections"])
+    blocks.insert(blocks.end(), section["blocks"].begin(), section["blocks"].end());
   const auto table = std::find_if(blocks.begin(), blocks.end(), [](const Json& block) {
     return block.value("title", "") == "By scheme";
   });

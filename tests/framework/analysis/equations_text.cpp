@@ -33,7 +33,7 @@ const std::map<std::string, std::string> kRefused = {
 };
 
 std::string example(const std::string& name) {
-  const char* const root = std::getenv("HAMEL_SOURCE_DIR");
+  const char* const root = std::getenv("HAMEL_SOURCE");
   return std::string(root == nullptr ? "." : root) + "/tests/examples/" + name + ".toml";
 }
 
