@@ -47,10 +47,10 @@ class TomlFormulas {
       else if (entry.is_string() || entry.is_number()) lets_.set(name, written(entry));
       else toml_.wrong(entry, "let." + name, "a number or a formula");
     }
-    for (const auto& [name, text] : lets_.texts()) {  // names are known where it stands
-      const Node& entry = *table->get(name);
-      parse(entry, "let." + name, [&] {
-        const std::string whole = lets_.expand(text).text;
+    for (const auto& let : lets_.texts()) {  // names are known where it stands
+      const Node& entry = *table->get(let.first);
+      parse(entry, "let." + let.first, [&] {
+        const std::string whole = lets_.expand(let.second).text;
         return Expression(whole, LetNames::words(whole));
       });
     }

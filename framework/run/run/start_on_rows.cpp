@@ -1,12 +1,16 @@
 // Start of a run on its constraints: inertia and rows there, and the projection onto them.
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+
+#include <fmt/format.h>
+
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/mechanics/frame.hpp>
+#include <hamel/framework/metric/equations_of_motion.hpp>
 #include <hamel/framework/run/run/plan.hpp>
 #include <hamel/framework/run/run/start_contacts.hpp>
-#include <tuple>
+#include <hamel/framework/schemes/dynamic_problem.hpp>
 
 namespace hamel {
 namespace {
@@ -155,7 +159,7 @@ void project_start(const SystemModel& system, PlannedStart& planned) {
                                         by_velocity ? "velocity" : "momentum",
                                         by_velocity ? "d" : "d*", by_names(system, dropped)));
   }
-  start.velocity = to_vector(velocity);
+  start.velocity = {velocity.begin(), velocity.end()};
   start.momentum.clear();
 }
 
