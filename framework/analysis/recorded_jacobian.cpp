@@ -2,15 +2,20 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include <hamel/framework/graph/derivatives.hpp>
 #include <hamel/framework/graph/substitute.hpp>
 
 namespace hamel {
+namespace {
+
+using graph::Number;
+using Numbers = std::vector<Number>;
+
+}  // namespace
 
 RecordedJacobian::RecordedJacobian(const MotionFormulas& motion, const std::string& of) {
-  using graph::Number;
-  using Numbers = std::vector<Number>;
   graph::Recording recording;
   Numbers inputs;
   for (const std::string& name : motion.recording->inputs())
