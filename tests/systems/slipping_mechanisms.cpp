@@ -66,17 +66,21 @@ TEST(SlippingBlock, SlidesAndStops) {
   EXPECT_LT(r.steps, 60);
 }
 
-// Pushed by F = 10 t it holds up to 0.5 m g, and slides with 0.3: m v' = 10 t - 0.3 m g.
-TEST(SlippingBlock, HoldsByStaticFriction) {
+// 2 kg on a foot of friction 0.3 and 0.5, pushed along x.
+Mechanism pushed_block(const Signal& push, bool time_dependent) {
+  const Signal none = [](const SignalInput&) { return 0.0; };
   Mechanism m("block");
   m.body("block", {.mass = 2, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
   m.planar("floor", "block");
   m.point("skid", "block", {.friction = 0.3, .static_friction = 0.5});
-  m.force(
-      "push", "block",
-      {.at = {0, 0, 0.1},
-       .along = {[](const SignalInput& in) { return 10 * in.t; },
-                 [](const SignalInput&) { return 0.0; }, [](const SignalInput&) { return 0.0; }}});
+  m.force("push", "block",
+          {.at = {0, 0, 0.1}, .along = {push, none, none}, .time_dependent = time_dependent});
+  return m;
+}
+
+// Pushed by F = 10 t it holds up to 0.5 m g, and slides with 0.3: m v' = 10 t - 0.3 m g.
+TEST(SlippingBlock, HoldsByStaticFriction) {
+  const Mechanism m = pushed_block([](const SignalInput& in) { return 10 * in.t; }, true);
   const Result r = slipping(m).until(2).run();
   ASSERT_TRUE(r.status.ok) << r.status.reason;
   const double begins = 0.5 * 2 * kGravity / 10;
@@ -88,16 +92,7 @@ TEST(SlippingBlock, HoldsByStaticFriction) {
 // A force between both coefficients holds a block at rest, and does not stop one that slides.
 TEST(SlippingBlock, RestsBetweenBothCoefficients) {
   for (const double speed : {0.0, 1.0}) {
-    Mechanism m("block");
-    m.body("block", {.mass = 2, .at = {0, 0, 0.1}, .box = {0.2, 0.2, 0.2}});
-    m.planar("floor", "block");
-    m.point("skid", "block", {.friction = 0.3, .static_friction = 0.5});
-    m.force(
-        "push", "block",
-        {.at = {0, 0, 0.1},
-         .along = {[](const SignalInput&) { return 0.4 * 2 * kGravity; },
-                   [](const SignalInput&) { return 0.0; }, [](const SignalInput&) { return 0.0; }},
-         .time_dependent = false});
+    Mechanism m = pushed_block([](const SignalInput&) { return 0.4 * 2 * kGravity; }, false);
     m.start("v1", speed);
     const Result r = slipping(m).until(1).run();
     ASSERT_TRUE(r.status.ok) << r.status.reason;
