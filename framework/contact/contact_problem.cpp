@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 #include <hamel/framework/lie/linear_solve.hpp>
@@ -10,6 +12,7 @@ namespace hamel {
 namespace {
 
 constexpr int kSweeps = 4000;
+constexpr size_t kTurned = 8;
 
 double cross_of(double a0, double a1, double b0, double b1) { return a0 * b1 - a1 * b0; }
 
@@ -26,6 +29,7 @@ ContactProblem::ContactProblem(int unknowns, int contacts)
       column_(static_cast<size_t>(unknowns)),
       convex_(unknowns) {
   answers_.reserve(static_cast<size_t>(contacts));
+  doubtful_.reserve(static_cast<size_t>(contacts));
 }
 
 // The block as the others leave it.
@@ -197,6 +201,27 @@ bool ContactProblem::minimise(const Matrix& g, const Vector& c, const Blocks& bl
       while (convex_.follow())
         if (convex_.tells() && (ends(true, anywhere) || ends(false, anywhere))) return true;
     }
+  return turn_some(g, c, blocks);
+}
+
+// Where bounds differ by orders of magnitude, what a contact presses on its rim is below the
+// round-off of the whole path: what the path does not tell, of the least certain contacts.
+bool ContactProblem::turn_some(const Matrix& g, const Vector& c, const Blocks& blocks) {
+  const size_t turned = std::min(blocks.size(), kTurned);
+  doubtful_.resize(blocks.size());
+  std::iota(doubtful_.begin(), doubtful_.end(), size_t{0});
+  std::ranges::sort(doubtful_, std::less{}, [this](size_t k) { return convex_.certainty(k); });
+  for (unsigned some = 1; some < 1U << turned; ++some) {
+    convex_.tell(false, p_.head(size_), answers_);
+    for (size_t i = 0; i < turned; ++i) {
+      if ((some >> i & 1U) == 0) continue;
+      ContactAnswer& answer = answers_[doubtful_[i]];
+      const bool normal = blocks[doubtful_[i]].normal;
+      if (answer != ContactAnswer::sticks) answer = ContactAnswer::sticks;
+      else answer = normal ? ContactAnswer::opens : ContactAnswer::slides;
+    }
+    if (improve(g, c, blocks)) return true;
+  }
   return false;
 }
 

@@ -72,12 +72,14 @@ class ContactProblem {
   bool improve(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool eliminate();
   void shorten(int rank);
+  bool turn_some(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool minimise(const Matrix& g, const Vector& c, const Blocks& blocks);
 
   Eigen::VectorXd p_, before_, residual_, kept_;
   Eigen::MatrixXd jacobian_, null_;
   Eigen::VectorXd squares_;
   std::vector<ContactAnswer> answers_;
+  std::vector<size_t> doubtful_;
   std::vector<int> column_;
   Eigen::Matrix3d block_g_;
   Eigen::Vector3d block_c_;

@@ -126,6 +126,18 @@ bool ConvexContacts::follow() {
 
 bool ConvexContacts::tells() const { return m_ <= 1.01 * kTellingWeight; }
 
+double ConvexContacts::pressed(const ContactBlock& block) const {
+  return block.normal ? m_ / x_[block.first] : 2 * m_ / room(block);
+}
+
+double ConvexContacts::left(const ContactBlock& block) const {
+  return block.normal ? x_[block.first] : room(block);
+}
+
+double ConvexContacts::certainty(size_t k) const {
+  return std::abs(std::log(pressed((*blocks_)[k]) / left((*blocks_)[k])));
+}
+
 // By the multiplier 2 m/room of the bound, which is |gamma_t|: against the room, or what the least
 // sum may make of it.
 void ConvexContacts::tell(bool wary, Eigen::Ref<Eigen::VectorXd> p,
@@ -133,9 +145,8 @@ void ConvexContacts::tell(bool wary, Eigen::Ref<Eigen::VectorXd> p,
   p = unit_.head(size_).cwiseProduct(x_.head(size_));
   for (size_t k = 0; k < blocks_->size(); ++k) {
     const ContactBlock& block = (*blocks_)[k];
-    const double left = block.normal ? x_[block.first] : room(block),
-                 pressed = (block.normal ? 1 : 2) * m_ / left;
-    const bool ends = pressed > (wary ? std::min(left, 0.01 * least_) : left);
+    const double room_left = left(block);
+    const bool ends = pressed(block) > (wary ? std::min(room_left, 0.01 * least_) : room_left);
     if (block.normal) answers[k] = ends ? ContactAnswer::opens : ContactAnswer::sticks;
     else answers[k] = ends || !(block.bound > 0) ? ContactAnswer::slides : ContactAnswer::sticks;
   }

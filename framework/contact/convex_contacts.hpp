@@ -12,6 +12,7 @@
 // Programming (1994), section 2.2.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -38,10 +39,14 @@ class ConvexContacts {
   /// rim for the least sum alone slides (with a slip of 0).
   bool tells() const;
   void tell(bool wary, Eigen::Ref<Eigen::VectorXd> p, std::vector<ContactAnswer>& answers) const;
+  /// |log(multiplier/room)| of a block: 0 where tell() could say either.
+  double certainty(std::size_t block) const;
 
  private:
   // 1 - |x|^2 of a contact with a bound.
   double room(const ContactBlock& block) const;
+  double left(const ContactBlock& block) const;     // room, or a normal reaction
+  double pressed(const ContactBlock& block) const;  // multiplier of what is left
   void add_barrier(const ContactBlock& block);
   double centre();  // a step of Newton; the decrement before it
 

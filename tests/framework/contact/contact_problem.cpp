@@ -287,7 +287,8 @@ TEST(GivenLoadsOfSeveralContacts, AlwaysHaveASolution) {
   constexpr int most = 100000;
   for (int k = 0; k < most; ++k) {
     const int contacts = 2 + k % 4, freedoms = 1 + k % 5;
-    const GivenLoads of(random, contacts, freedoms, k % 7 == 0);
+    const bool wide = k % 3 == 0;  // bounds from a thousandth to a thousand times the next
+    const GivenLoads of(random, contacts, freedoms, k % 7 == 0, wide ? -6 : -3, wide ? 3 : 2);
     singular += freedoms < of.c.size();
     if (problem.solve(of.g, of.c, of.blocks) != Outcome::one) {
       ++failed;
