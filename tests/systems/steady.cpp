@@ -9,6 +9,7 @@
 #include <hamel/framework/analysis/steady.hpp>
 #include <hamel/framework/lie/decompositions.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
+#include <hamel/systems/mechanisms/mechanism.hpp>
 #include <hamel/systems/simulate_typed.hpp>
 
 #include "mechanism_systems.hpp"
@@ -21,14 +22,30 @@ SteadyMotion at_speed(const SystemModel& system, double speed) {
   return steady_motion(registry(), system, system.start_at_speed(speed, 0));
 }
 
+// Radii of the crowns of two toroidal wheels, 0 of thin ones.
+struct Crowns {
+  double rear = 0, front = 0;  // m
+};
+
 // Of M q'' + v C1 q' + (g K0 + v^2 K2) q = 0, q = (lean, steer), with the benchmark's matrices of
 // Meijaard and others 2007.
-Eigen::VectorXcd published(double v) {
+//
+// A crown of radius rho, r that of the wheel: its circle of radius r - rho lies rho above the
+// ground, so that its centre at a lean p of its plane is rho + (r - rho) cos p high, by
+// rho p^2/2 higher than a thin wheel's. To first order the velocity of the centre is that of a thin
+// wheel: (theta' n + p' x) x (rho z + (r - rho) e) = r (theta', -p', 0) with z and e = z + O(p),
+// z.(n x e) = O(p^2). So only the static loads N do other work: K0 g gains the second derivative of
+// sum N rho p^2/2, with p = lean behind and lean + steer sin(tilt) in front.
+Eigen::VectorXcd published(double v, const Crowns& crowns = {}) {
   using Pair = Eigen::Matrix2d;
   const Pair m{{80.81722, 2.31941332208709}, {2.31941332208709, 0.29784188199686}};
-  const Pair k0{{-80.95, -2.59951685249872}, {-2.59951685249872, -0.80329488458618}};
+  Pair k0{{-80.95, -2.59951685249872}, {-2.59951685249872, -0.80329488458618}};
   const Pair k2{{0, 76.59734589573222}, {0, 2.65431523794604}};
   const Pair c1{{0, 33.86641391492494}, {-0.85035641456978, 1.68540397397560}};
+  const double front = (85 * 0.3 + 4 * 0.9 + 3 * 1.02) / 1.02, rear = 94 - front;  // N/g
+  const Eigen::Vector2d leans[] = {{1, 0}, {1, std::sin(std::numbers::pi / 10)}};
+  k0 += rear * crowns.rear * leans[0] * leans[0].transpose() +
+        front * crowns.front * leans[1] * leans[1].transpose();
   Eigen::Matrix4d flow = Eigen::Matrix4d::Zero();
   flow.topRightCorner<2, 2>() = Pair::Identity();
   flow.bottomLeftCorner<2, 2>() = -m.inverse() * (9.81 * k0 + v * v * k2);
@@ -52,6 +69,63 @@ TEST(Bicycle, HasTheEigenvaluesOfThePublishedMatrices) {
     const Eigen::VectorXcd values = published(v);
     for (const auto& value : values) EXPECT_LT(nearest(motion.eigenvalues, value), 1e-8) << v;
   }
+}
+
+// The bicycle on toroidal wheels.
+SystemModel on_tubes(const Crowns& crowns) {
+  Mechanism m("bicycle on tubes");
+  const double tilt = std::numbers::pi / 10;
+  const Point rear = {0, 0, 0.3}, front = {1.02, 0, 0.35}, axle = {0, 1, 0};
+  m.body("frame", {.mass = 85, .at = {0.3, 0, 0.9}, .inertia = {9.2, 0, -2.4, 11, 0, 2.8}});
+  m.body("fork",
+         {.mass = 4, .at = {0.9, 0, 0.7}, .inertia = {0.05892, 0, 0.00756, 0.06, 0, 0.00708}});
+  m.body("rear wheel", {.mass = 2, .at = rear, .inertia = {0.0603, 0.12, 0.0603}});
+  m.body("front wheel", {.mass = 3, .at = front, .inertia = {0.1405, 0.28, 0.1405}});
+  m.free("space", "frame", {.at = rear});
+  m.hinge("steer", "frame", "fork",
+          {.at = {1.1, 0, 0}, .axis = {-std::sin(tilt), 0, std::cos(tilt)}});
+  m.hinge("rear", "frame", "rear wheel", {.at = rear, .axis = axle});
+  m.hinge("front", "fork", "front wheel", {.at = front, .axis = axle});
+  m.contact("tube", "rear", "rear wheel",
+            {rear, {{"axle", {0, 1, 0}}, {"radius", {0.3}}, {"crown", {crowns.rear}}}});
+  m.contact("tube", "front", "front wheel",
+            {front, {{"axle", {0, 1, 0}}, {"radius", {0.35}}, {"crown", {crowns.front}}}});
+  return m.model();
+}
+
+TEST(Bicycle, OnToroidalWheelsHasTheLoadsInItsStiffness) {
+  for (const Crowns& crowns : {Crowns{0.05, 0.03}, Crowns{0, 0.04}, Crowns{0.02, 0}}) {
+    const SystemModel bicycle = on_tubes(crowns);
+    for (int v = 0; v <= 10; v += 2) {
+      const SteadyMotion motion = at_speed(bicycle, v);
+      ASSERT_EQ(motion.eigenvalues.size(), 4u) << v;
+      for (const auto& value : published(v, crowns))
+        EXPECT_LT(nearest(motion.eigenvalues, value), 1e-8) << v;
+    }
+  }
+}
+
+// Where the published matrices with the loads of the crowns have a pair on the imaginary axis: the
+// weave speed falls from 4.29 m/s.
+TEST(Bicycle, WeavesAtALowerSpeedOnToroidalWheels) {
+  const Crowns crowns{0.05, 0.03};
+  const auto growth = [](const Eigen::VectorXcd& values) {
+    double out = -1e9;
+    for (const auto& value : values)
+      if (std::abs(value.imag()) > 0.1) out = std::max(out, value.real());
+    return out;
+  };
+  double slow = 3, fast = 4.5;
+  while (fast - slow > 1e-13) {
+    const double middle = (slow + fast) / 2;
+    (growth(published(middle, crowns)) > 0 ? slow : fast) = middle;
+  }
+  EXPECT_LT(slow, 4.2);
+  const SteadyMotion motion = at_speed(on_tubes(crowns), slow);
+  double least = 1e9;
+  for (const auto& value : motion.eigenvalues)
+    if (std::abs(value.imag()) > 0.1) least = std::min(least, std::abs(value.real()));
+  EXPECT_LT(least, 1e-8);
 }
 
 // Table 2: real and imaginary part of weave, then capsize and castering.
