@@ -6,6 +6,8 @@
 #include <mutex>
 #include <numbers>
 #include <set>
+#include <string>
+#include <string_view>
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
@@ -30,6 +32,24 @@ class Messages : public console_bridge::OutputHandler {
   std::vector<std::string> errors;
 };
 
+// Cures of mistakes that public descriptions have, by words of urdfdom's message.
+struct UrdfCure {
+  std::string_view words, cure;
+};
+constexpr UrdfCure kUrdfCures[] = {
+    {"Unable to parse component", "separate numbers by blanks, without commas"},
+    {"without limits", "add <limit effort=\"0\" velocity=\"0\"/> to the joint"},
+    {"inertia element missing", "write all of ixx, ixy, ixz, iyy, iyz, izz"},
+    {"Unknown geometry type", "box, cylinder, sphere and mesh are read: leave the element out"},
+};
+
+std::string with_cure(const std::string& error) {
+  for (const UrdfCure& known : kUrdfCures)
+    if (error.find(known.words) != std::string::npos)
+      return fmt::format("{}; {}", error, known.cure);
+  return error;
+}
+
 urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& path) {
   static std::mutex one_at_a_time;  // the handler is the process's
   const std::lock_guard lock(one_at_a_time);
@@ -45,7 +65,7 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& 
   if (out != nullptr && messages.errors.empty()) return out;
   std::vector<std::string> mistakes;
   for (const std::string& error : messages.errors)
-    mistakes.push_back(fmt::format("{}: not a robot as URDF has it: {}", path, error));
+    mistakes.push_back(fmt::format("{}: not a robot as URDF has it: {}", path, with_cure(error)));
   if (mistakes.empty()) mistakes.push_back(path + ": not a robot as URDF has it");
   throw ConfigError(mistakes);
 }

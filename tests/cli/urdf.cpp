@@ -182,6 +182,12 @@ TEST_F(Urdf, RefusesWithNames) {
           kWheel,
           R"(<joint name="axle" type="screw"><parent link="base"/><child link="left"/></joint>)")},
       "has no known type [screw]");
+  refuses({robot(kWheel, R"(<joint name="axle" type="continuous"><origin xyz="0, 0.1, 0"/>
+                            <parent link="base"/><child link="left"/></joint>)")},
+          "separate numbers by blanks, without commas");
+  refuses({robot(kWheel, R"(<joint name="axle" type="prismatic"><parent link="base"/>
+                            <child link="left"/></joint>)")},
+          "without limits; add <limit effort=\"0\" velocity=\"0\"/> to the joint");
   refuses({write("robot.urdf", "<robot name=\"r\"><link name=\"base\"></robot>")},
           "robot.urdf:1: not a robot as URDF has it: </robot>, expected </link>");
   refuses({write("robot.urdf", "")}, "robot.urdf: not a robot as URDF has it");
