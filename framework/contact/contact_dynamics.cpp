@@ -51,6 +51,7 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
   k_work_ = k_;
   right_.setZero(most, 4);
   null_.setZero(most, most);
+  left_null_ = null_;
   work_m_.setZero(most);
   normal_equations_.setZero(most, most);
   order_.resize(static_cast<size_t>(most));

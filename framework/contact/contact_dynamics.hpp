@@ -12,7 +12,8 @@
 // there. A contact with a given load in place of N has the force -mu load T^T s/|s| when it slides.
 // Where rows of contacts that roll depend on each other (four wheels of a cart) the motion is
 // unique, and their reactions are those of the least sum of (l/(mu load))^2: contacts of equal
-// compliance.
+// compliance. Where normal reactions do (four legs) what slides moves as its loads are, and they
+// are those of contacts that give way by l/share each, small beside all else.
 //   Modes after a switch: the contact problem with G = W M_A C^T and c = W a + W' xi - b_W', of
 // contacts that slip N and C of (2) alone, of the others W.                                     (3)
 //   Impact: the contact problem with G = W M_A W^T, c = ((1 + e)(N xi - b_N), T xi - b_T), e = 0 of
@@ -143,7 +144,9 @@ class ContactDynamics {
   // reactions are those of the least sum of squares, each in units of its bound.
   void solve_rows(int m);
   int eliminate(int m, double* b, int columns);
+  void find_null(int m, int rank, Eigen::MatrixXd& out) const;
   void share(int m, int rank);
+  ContactProblem::Outcome give_way(int m);
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
@@ -164,7 +167,7 @@ class ContactDynamics {
   std::vector<Eigen::Vector2d> tangential_, directions_;
   std::vector<Row> on_;
   std::vector<int> order_;  // of the pivots of solve_rows()
-  Eigen::MatrixXd null_, normal_equations_;
+  Eigen::MatrixXd null_, left_null_, normal_equations_;
   Eigen::VectorXd work_m_;
   std::vector<ContactBlock> blocks_;
   std::vector<int> block_contacts_;

@@ -11,7 +11,7 @@
 namespace hamel {
 namespace {
 
-constexpr int kSweeps = 4000;
+constexpr int kSweeps = 4000, kLook = 20;
 constexpr size_t kTurned = 8;
 
 double cross_of(double a0, double a1, double b0, double b1) { return a0 * b1 - a1 * b0; }
@@ -243,6 +243,19 @@ ContactProblem::Outcome ContactProblem::solve(const Matrix& g, const Vector& c,
   solutions_.clear();
   if (ConvexContacts::applies(g, blocks))
     return minimise(g, c, blocks) ? Outcome::one : Outcome::none;
+  return sweeps(g, c, blocks, kLook);
+}
+
+ContactProblem::Outcome ContactProblem::solve_next(const Matrix& g, const Vector& c,
+                                                   const Blocks& blocks) {
+  if (blocks.size() < 2 || ConvexContacts::applies(g, blocks)) return solve(g, c, blocks);
+  return sweeps(g, c, blocks, 1);
+}
+
+// Sweeps until the equations of what the contacts then do have a solution, after so many for the
+// first time.
+ContactProblem::Outcome ContactProblem::sweeps(const Matrix& g, const Vector& c,
+                                               const Blocks& blocks, int first_look) {
   for (int k = 1; k <= kSweeps; ++k) {
     kept_.head(size_) = p_.head(size_);
     if (!sweep(g, c, blocks)) return Outcome::none;
@@ -251,7 +264,8 @@ ContactProblem::Outcome ContactProblem::solve(const Matrix& g, const Vector& c,
     for (const ContactBlock& block : blocks)
       if (!block.normal) most = std::max(most, block.bound);
     const bool settled = moved <= 1e-15 * most;
-    if ((settled || k % 20 == 0) && improve(g, c, blocks)) return Outcome::one;
+    if ((settled || k == first_look || k % kLook == 0) && improve(g, c, blocks))
+      return Outcome::one;
     if (settled) break;
   }
   return Outcome::none;

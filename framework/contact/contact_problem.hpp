@@ -57,6 +57,8 @@ class ContactProblem {
   /// found.
   enum class Outcome { one, several, none };
   Outcome solve(const Matrix& g, const Vector& c, const std::vector<ContactBlock>& blocks);
+  /// From the P that solve() found for a problem next to this one.
+  Outcome solve_next(const Matrix& g, const Vector& c, const std::vector<ContactBlock>& blocks);
 
   /// Behind solve(): P, and what each contact does.
   auto p() const { return p_.head(size_); }
@@ -72,6 +74,7 @@ class ContactProblem {
   bool improve(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool eliminate();
   void shorten(int rank);
+  Outcome sweeps(const Matrix& g, const Vector& c, const Blocks& blocks, int first_look);
   bool turn_some(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool minimise(const Matrix& g, const Vector& c, const Blocks& blocks);
 

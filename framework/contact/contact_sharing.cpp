@@ -11,6 +11,8 @@ namespace {
 
 // A pivot below this part of the largest one is round-off.
 constexpr double kNoPivot = 1e-11;
+// Compliance of contacts beside the largest diagonal entry, at the end.
+constexpr double kGivesWay = 1e-9;
 // What is left of a row beside others, relative to it, that is round-off.
 constexpr double kDependent = 1e-9;
 
@@ -85,36 +87,68 @@ void ContactDynamics::solve_rows(int m) {
   if (rank < m) share(m, rank);
 }
 
-// l + Z y, Z = [-U_1^-1 U_2; 1] the reactions without effect in the order of the pivots, with the
-// least sum of squares of the entries in units of their bounds: Z^T B^-2 Z y = -Z^T B^-2 l.
-void ContactDynamics::share(int m, int rank) {
-  const Eigen::Map<Eigen::MatrixXd> k(k_work_.data(), m, m);
-  const int open = m - rank;
-  for (int c = 0; c < open; ++c) {
-    for (int i = rank; i < m; ++i) null_(i, c) = i == rank + c ? 1 : 0;
+// Null vectors of the first m rows of k_work_ behind eliminate(): Z = [-U_1^-1 U_2; 1] in the order
+// of the pivots, into the rows of `out` that are in order_.
+void ContactDynamics::find_null(int m, int rank, Eigen::MatrixXd& out) const {
+  const Eigen::Map<const Eigen::MatrixXd> k(k_work_.data(), m, m);
+  const auto place = [this](int i) { return order_[static_cast<size_t>(i)]; };
+  for (int c = 0; c < m - rank; ++c) {
+    for (int i = rank; i < m; ++i) out(place(i), c) = i == rank + c ? 1 : 0;
     for (int i = rank - 1; i >= 0; --i) {
       double sum = -k(i, rank + c);
-      for (int j = i + 1; j < rank; ++j) sum -= k(i, j) * null_(j, c);
-      null_(i, c) = sum / k(i, i);
+      for (int j = i + 1; j < rank; ++j) sum -= k(i, j) * out(place(j), c);
+      out(place(i), c) = sum / k(i, i);
     }
   }
+}
+
+// l + Z y with K Z = 0, so that contacts give way by l/share each and what gives way is a motion of
+// the bodies, in the range of R: z^T D l = 0 for all z with z^T R = 0, D = 1/share, of given loads
+// 1/(mu load)^2: Z_l^T D Z y = -Z_l^T D l. Where K is symmetric that is the least sum of D l^2.
+void ContactDynamics::share(int m, int rank) {
+  const int open = m - rank;
+  find_null(m, rank, null_);
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j)
+      k_work_.data()[i + j * m] =
+          row_times(on_[static_cast<size_t>(j)].row, responses_.col(i));  // K^T
+  right_.col(0).head(m).setZero();
+  if (eliminate(m, right_.data(), 1) == rank) find_null(m, rank, left_null_);
+  else left_null_ = null_;
   Eigen::Map<Eigen::MatrixXd> equations(normal_equations_.data(), open, open);
   equations.setZero();
   work_m_.setZero();
   for (int i = 0; i < m; ++i) {
-    const int row = order_[static_cast<size_t>(i)];
-    const ContactLaw& law = this->law(on_[static_cast<size_t>(row)].contact);
-    const double bound = law.normal ? 1 : law.friction * law.load;
+    const ContactLaw& law = this->law(on_[static_cast<size_t>(i)].contact);
+    const double bound = law.normal ? std::sqrt(law.share) : law.friction * law.load;
     const double weight = bound > 0 ? 1 / (bound * bound) : 1;
     for (int c = 0; c < open; ++c) {
-      work_m_[c] -= weight * null_(i, c) * multipliers_[row];
-      for (int d = 0; d < open; ++d) equations(c, d) += weight * null_(i, c) * null_(i, d);
+      work_m_[c] -= weight * left_null_(i, c) * multipliers_[i];
+      for (int d = 0; d < open; ++d) equations(c, d) += weight * left_null_(i, c) * null_(i, d);
     }
   }
   solve_linear(equations.data(), work_m_.data(), open, 1);
   for (int i = 0; i < m; ++i)
-    for (int c = 0; c < open; ++c)
-      multipliers_[order_[static_cast<size_t>(i)]] += work_m_[c] * null_(i, c);
+    for (int c = 0; c < open; ++c) multipliers_[i] += work_m_[c] * null_(i, c);
+}
+
+// Contacts that give way, where rows depend on each other, ever less: the modes and the impulses of
+// the last are those of rigid ones, with an error of its size.
+ContactProblem::Outcome ContactDynamics::give_way(int m) {
+  const double size = k_.topLeftCorner(m, m).diagonal().maxCoeff();
+  right_.col(0).head(m) = k_.diagonal().head(m);
+  ContactProblem::Outcome out = ContactProblem::Outcome::none;
+  for (double compliance = 1; compliance > kGivesWay; compliance /= 10) {
+    for (int i = 0; i < m; ++i) {
+      const ContactLaw& law = this->law(on_[static_cast<size_t>(i)].contact);
+      if (law.normal) k_(i, i) = right_(i, 0) + compliance * size / law.share;
+    }
+    const auto g = k_.topLeftCorner(m, m);
+    out = compliance < 1 ? problem_.solve_next(g, c_.head(m), blocks_)
+                         : problem_.solve(g, c_.head(m), blocks_);
+    if (out != ContactProblem::Outcome::one) break;
+  }
+  return out;
 }
 
 }  // namespace hamel

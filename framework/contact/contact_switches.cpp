@@ -80,13 +80,15 @@ std::string ContactDynamics::solve_problem(const char* level) {
       k_(i, j) = row_times(on_[static_cast<size_t>(i)].row, responses_.col(j));
   std::vector<std::string> names;
   for (const int i : block_contacts_) names.push_back(law(i).name);
-  if (dependent()) {
+  const bool open = dependent();
+  if (open && std::ranges::any_of(block_contacts_, [this](int i) { return !(law(i).share > 0); }))
     return fmt::format(
         "undetermined_reactions: the reactions of {} are not determined by the motion: their rows "
-        "are dependent; leave out a contact, or its friction",
+        "are dependent; leave out a contact, or let them share (distribution = "
+        "\"equal_compliance\")",
         fmt::join(names, ", "));
-  }
-  const auto outcome = problem_.solve(k_.topLeftCorner(m, m), c_.head(m), blocks_);
+  const auto outcome = open ? give_way(static_cast<int>(m))
+                            : problem_.solve(k_.topLeftCorner(m, m), c_.head(m), blocks_);
   if (outcome == ContactProblem::Outcome::one) return "";
   const ContactLaw& law = this->law(block_contacts_.front());
   if (blocks_.size() > 1) {

@@ -22,6 +22,7 @@ struct ContactLaw {
   double static_friction = 0;          // while it rolls, where that is larger
   double restitution = 0;              // e, of Newton's law
   double tangential_restitution = 0;   // e_t: of the slip, as far as friction allows
+  double share = 1;                    // of reactions that the motion leaves open; 0: none has one
   bool of_joint = false;               // dry friction of a joint, which slips and sticks
 
   bool has_normal() const { return normal.has_value(); }

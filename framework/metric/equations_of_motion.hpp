@@ -128,6 +128,11 @@ class EquationsOfMotion {
     if constexpr (Problem::left_invariant) return v.norm();
     else return std::sqrt(std::fmax(0, metric_.square(v)));
   }
+  /// |I^-1 F| of the forces at a state, in the metric I of the last set().
+  double force_size(double t, const Element& g, const Vector& xi) {
+    problem_.force(t, g, xi, change_);
+    return metric_.size(change_);
+  }
   const Vector& acceleration() const { return acceleration_; }
   /// Behind solve().
   const Multipliers& reaction() { return metric_.multipliers(change_, acceleration_); }

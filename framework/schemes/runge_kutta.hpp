@@ -152,15 +152,18 @@ class RungeKutta {
     }
     const auto [added, size] = motion_.settle(node.t, node.g, x_);
     lost_ = !(std::max(off, added) <= most * most * size) &&
-            !(std::max(off, added) <= square_of_round_off());
+            !(std::max(off, added) <= square_of_round_off(node));
     return !lost_;
   }
-  // A velocity that moves nothing by more than the round-off of a place, squared in the metric: all
-  // that there is of a motion at rest.
-  [[gnu::noinline, gnu::cold]] double square_of_round_off() const {
+  // A velocity that moves nothing by more than the round-off of a place, or that of forces in
+  // balance brings about, squared in the metric: all that there is of a motion at rest.
+  [[gnu::noinline, gnu::cold]] double square_of_round_off(const Node& node) const {
+    constexpr double balance = 1e-13;  // of forces and reactions, relative
     move_.setConstant(kPlaceRoundOff / h_);
-    const double size = motion_.rows().size(move_);
-    return size * size;
+    const double of_place = motion_.rows().size(move_);
+    move_.setZero();
+    const double of_forces = balance * h_ * motion_.rows().force_size(node.t, node.g, move_);
+    return std::max(of_place * of_place, of_forces * of_forces);
   }
   // By Newton's method with the rows of the last stage.
   bool onto_rows(Element& g) const {

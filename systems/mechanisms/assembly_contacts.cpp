@@ -158,10 +158,7 @@ void Assembly::add_law(const Multibody& system, size_t contact, size_t row, doub
     if (const int place = kept_place(system, row); place >= 0) law.tangential.push_back(place);
   if (const int place = kept_place(system, height); place >= 0) law.normal = place;
   else law.load = load;
-  if (law.normal && parts_.distribution_.name == "stated")
-    wrong(part, part.kind,
-          "distribution: \"stated\" shares loads of statics, and the load of this contact is a "
-          "reaction; leave distribution and share out");
+  law.share = parts_.distribution_.name == "refuse" ? 0 : part.share.value_or(1);
   model_.contact_laws.push_back(std::move(law));
 }
 
@@ -193,6 +190,12 @@ void Assembly::state_contacts(const Multibody& system) {
     if (rows.contacts[i].slips) add_law(system, i, row, loads[i]);
     row += rows.contacts[i].row_count();
   }
+  const std::string& policy = parts_.distribution_.name;
+  if (std::ranges::count_if(model_.contact_laws, &ContactLaw::has_normal) > 3 && policy != "refuse")
+    model_.notes.push_back(fmt::format(
+        "more than three contacts: loads that the motion leaves open are those of contacts of {} "
+        "(distribution)",
+        policy == "stated" ? "the stated shares" : "equal compliance"));
   for (const Loop& loop : rows.loops) row += loop.row_count();
   for (const Coupling& coupling : rows.couplings) {
     const int place = kept_place(system, row++);

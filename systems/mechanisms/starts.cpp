@@ -230,9 +230,18 @@ std::vector<std::string> Starts::add_slipping(
     to = std::move(every);
     return out;
   }
-  for (const auto& [name, rows] : parts) {
+  // Contacts that slip stay on the ground, all of them, before one of them rolls.
+  const auto with_rows = [&](const std::vector<int>& rows, const auto& wanted) {
     std::vector<int> more = to.rows;
-    more.insert(more.end(), rows.begin(), rows.end());
+    for (const int row : rows)
+      if (std::ranges::count(more, row) == 0 && wanted(row)) more.push_back(row);
+    return more;
+  };
+  const auto height = [&](int row) { return words[static_cast<size_t>(row)].height; };
+  if (Equations closed = equations(g, t, stated, with_rows(all, height)); closed.solved())
+    to = std::move(closed);
+  for (const auto& [name, rows] : parts) {
+    const std::vector<int> more = with_rows(rows, [](int) { return true; });
     if (Equations with = equations(g, t, stated, more); with.solved()) to = std::move(with);
     else if (words[static_cast<size_t>(rows.front())].length) out.push_back("'" + name + "'");
   }

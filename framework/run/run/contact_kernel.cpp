@@ -13,6 +13,9 @@
 namespace hamel {
 namespace {
 
+// A gap that would open so far against the forces, m, is that of a rate which is round-off.
+constexpr double kNoRise = 1e-18;
+
 constexpr double kNever = std::numeric_limits<double>::infinity();
 // A gap of this size, m, is closed at a start; a slip of this size, relative to what the energy
 // allows, is none.
@@ -55,6 +58,7 @@ void ContactKernel::begin() {
   dynamics().evaluate(time_, g_.data(), xi_);
   events_.clear();
   int strikes = -1;
+  if (!contacts_->known()) dynamics().accelerate(ContactStates(static_cast<size_t>(count())));
   for (int i = 0; i < count() && !contacts_->known(); ++i) {
     FollowedContact& follows = followed(i) = {};
     follows.speed = dynamics().speed_scale(i);
@@ -62,7 +66,9 @@ void ContactKernel::begin() {
     contact(i).no_slip = kNoSlip * follows.speed;
     if (dynamics().gap(i) > kClosedGap) continue;
     const double rate = dynamics().gap_rate(i);
-    if (std::abs(rate) <= 1e-9 * follows.speed) contact(i).mode = ContactMode::rolls;
+    const double rise = rate * rate / (2 * dynamics().acceleration_scale(i));
+    if (std::abs(rate) <= 1e-9 * follows.speed || rise <= kNoRise)
+      contact(i).mode = ContactMode::rolls;
     else if (rate > 0) follows.opened = time_;
     else strikes = i;
   }
