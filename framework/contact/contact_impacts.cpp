@@ -83,7 +83,8 @@ std::string ContactDynamics::strike(const ContactStates& states, const std::vect
   // Without friction and restitution: the velocity nearest to xi, in the metric, that none forbids.
   set_up_impact(states, strikes, true);
   const bool one_velocity = std::ranges::all_of(block_contacts_, [&](int i) {
-    return law(i).friction == 0 && (strikes[static_cast<size_t>(i)] == 0 || law(i).restitution == 0);
+    return law(i).friction == 0 &&
+           (strikes[static_cast<size_t>(i)] == 0 || law(i).restitution == 0);
   });
   return one_velocity ? solve_impact(xi) : why;
 }
