@@ -18,6 +18,8 @@
 // contacts that slip N and C of (2) alone, of the others W.                                     (3)
 //   Impact: the contact problem with G = W M_A W^T, c = ((1 + e)(N xi - b_N), T xi - b_T), e = 0 of
 // contacts that already rest; then xi <- xi + M_A W^T P, and (3).                               (4)
+// Where several are coupled P depends on the order of their impacts, unless those that rest leave
+// without an impulse (the hind spoke of a rimless wheel) or none has friction or restitution.
 //   Where a contact in space begins to slide its slip grows as t^2 and turns with its friction at a
 // rate of about mu g/|s|, without end as t -> 0; it follows the direction d of the contact problem,
 // gamma_t = k d, to order t^2. While |s| < 1e-6 V friction has that direction: an error of order
@@ -139,6 +141,11 @@ class ContactDynamics {
   bool slides_on(ContactState& state, int i, bool told);
   void take_answer(ContactState& state, size_t block) const;
   std::string solve_problem(const char* level);
+  void set_up_impact(const ContactStates& states, const std::vector<char>& strikes, bool beside);
+  std::string why_coupled() const;
+  std::string solve_impact(Eigen::VectorXd& xi);
+  bool others_leave(const ContactStates& states, const std::vector<char>& strikes,
+                    const Eigen::VectorXd& xi);
   bool dependent() const;
   // K l = right side, in k_work_ and multipliers_, of m rows; where they depend on each other the
   // reactions are those of the least sum of squares, each in units of its bound.

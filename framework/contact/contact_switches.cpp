@@ -167,51 +167,6 @@ std::string ContactDynamics::decide(ContactStates& states, const std::vector<cha
   return let_go(laws_, blocks_, block_contacts_, states, told) ? decide(states, told) : "";
 }
 
-std::string ContactDynamics::strike(const ContactStates& states, const std::vector<char>& strikes,
-                                    Eigen::VectorXd& xi) {
-  on_.clear();
-  blocks_.clear();
-  block_contacts_.clear();
-  for (int i = 0; i < count(); ++i)
-    if (law(i).normal && (strikes[static_cast<size_t>(i)] != 0 ||
-                          states[static_cast<size_t>(i)].mode != ContactMode::open))
-      add_block(i, false, {0, 0});
-  for (size_t k = 0; k < blocks_.size(); ++k) {
-    const auto i = static_cast<size_t>(block_contacts_[k]);
-    blocks_[k].friction = laws_[i].friction;
-    for (int j = 0; j < blocks_[k].size(); ++j) {
-      const int row = on_[static_cast<size_t>(blocks_[k].first + j)].row;
-      const double of_strike = j == 0 ? laws_[i].restitution : laws_[i].tangential_restitution;
-      const double e = strikes[i] != 0 ? of_strike : 0;
-      c_[blocks_[k].first + j] = (1 + e) * (row_times(row, xi_) - b_[row]);
-    }
-  }
-  if (blocks_.size() > 1) {
-    double coupling = 0, size = 0;
-    for (size_t i = 0; i < on_.size(); ++i)
-      for (size_t j = 0; j < on_.size(); ++j) {
-        const double entry =
-            std::abs(row_times(on_[i].row, responses_.col(static_cast<Eigen::Index>(j))));
-        double& most = on_[i].contact == on_[j].contact ? size : coupling;
-        most = std::max(most, entry);
-      }
-    std::vector<std::string> names;
-    for (const int i : block_contacts_) names.push_back(law(i).name);
-    if (coupling > 1e-12 * size) {
-      return fmt::format(
-          "simultaneous_impacts: {} are closed at once at t = {:.10g} and coupled ({:.3g} of "
-          "{:.3g} "
-          "1/kg): the impact depends on their order, which rigid bodies do not have",
-          fmt::join(names, ", "), time_, coupling, size);
-    }
-  }
-  if (std::string why = solve_problem("impulse"); !why.empty()) return why;
-  xi = xi_;
-  for (size_t i = 0; i < on_.size(); ++i)
-    xi += problem_.p()[static_cast<Eigen::Index>(i)] * responses_.col(static_cast<Eigen::Index>(i));
-  return "";
-}
-
 // xi <- xi - M_A R^T (R M_A R^T)^-1 (R xi - b).
 bool ContactDynamics::project(const std::vector<int>& rows, Eigen::VectorXd& xi) {
   const auto m = static_cast<int>(rows.size());

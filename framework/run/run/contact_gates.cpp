@@ -38,6 +38,14 @@ void ContactKernel::evaluate_node() {
   if (!knows_node_) at_node_ = gates(now_->time());
   knows_node_ = false;
   follow_speeds();
+  // The gates of slips along the directions that they have now: those of the last node may be
+  // opposite, so that a slip would seem to have ended already.
+  for (int i = 0; i < count(); ++i) {
+    double& slip = at_node_[static_cast<size_t>(i)][1];
+    if (contact(i).mode != ContactMode::slides || contact(i).begins || !std::isfinite(slip))
+      continue;
+    slip = dynamics().slip(i).dot(references_[static_cast<size_t>(i)]) - kSigma * followed(i).speed;
+  }
 }
 
 void ContactKernel::follow_speeds() {
