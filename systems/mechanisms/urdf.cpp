@@ -11,8 +11,9 @@ namespace hamel {
 std::vector<FileFormat> urdf_formats() {
   std::vector<FileFormat> out;
   for (const std::string& extension : robot_extensions()) {
-    FileFormat format{
-        extension, {"motor", "root", "weld", "weld-all-but", "wheel"}, "liburdfdom-dev"};
+    FileFormat format{extension,
+                      {"joint-friction", "motor", "root", "weld", "weld-all-but", "wheel"},
+                      "liburdfdom-dev"};
 #ifdef HAMEL_HAS_URDFDOM
     format.convert = [](const std::string& text, const std::string& path,
                         const NameOptions& options) {

@@ -11,11 +11,13 @@
 //   motor=JOINT                 has a motor, within its effort limit (urdf_joints.hpp)
 //   weld=JOINT, weld-all-but=JOINT
 //                               joints that are rigid in the drawn pose
+//   joint-friction=JOINT|all    keeps the dry friction that the file states for a joint
 //   root=planar|free|fixed      how the root link hangs on the ground; a root link named "world" is
 //                               the ground
 // The drawn pose is that of zero joint angles, along the axes of the root link; its height is such
 // that the lowest wheel touches the ground. Not kept, with a note: limits of position and velocity,
-// friction in joints, meshes. Mimicking joints are coupled. Source: http://wiki.ros.org/urdf/XML.
+// friction in joints (without joint-friction), meshes. Mimicking joints are coupled. Source:
+// http://wiki.ros.org/urdf/XML.
 #pragma once
 
 #include <vector>

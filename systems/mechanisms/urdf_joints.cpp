@@ -80,6 +80,31 @@ class Motors {
 
 }  // namespace
 
+void keep_friction(Robot& robot, const std::vector<std::string>& names, const std::string& path,
+                   std::vector<std::string>& mistakes) {
+  const std::vector<std::string> known = robot.joint_names();
+  for (const std::string& name : names) {
+    const int i = robot.link_of_joint(name);
+    const auto wrong = [&](const std::string& what) {
+      mistakes.push_back(path + ": --joint-friction: " + what);
+    };
+    if (name == "all" && i < 0) {
+      for (RobotLink& link : robot.links)
+        link.joint.rubs = link.joint.turns_or_slides() && link.joint.friction != 0;
+    } else if (i < 0) {
+      wrong(unknown_name("joint", name, known) + "; or all");
+    } else if (RobotJoint& joint = robot.link(i).joint;
+               !joint.turns_or_slides() || joint.friction == 0) {
+      wrong(
+          fmt::format("joint '{}' has {}, expected <dynamics friction=\"...\"> of a revolute, "
+                      "continuous or prismatic joint",
+                      name, joint.friction == 0 ? "none" : "friction that means nothing"));
+    } else {
+      joint.rubs = true;
+    }
+  }
+}
+
 void weld_joints(Robot& robot, const std::vector<std::string>& weld,
                  const std::vector<std::string>& all_but, const std::string& path,
                  std::vector<std::string>& mistakes, std::vector<std::string>& notes) {

@@ -8,6 +8,11 @@
 
 namespace hamel::mechanisms {
 
+/// Keeps the dry friction that the file states for these joints, or all. Joints that are rigid
+/// have none.
+void keep_friction(Robot& robot, const std::vector<std::string>& names, const std::string& path,
+                   std::vector<std::string>& mistakes);
+
 /// Makes joints rigid in the drawn pose: those of `weld`, or all that move but `all_but`, and those
 /// that mimic one of them, with a note. Adds what is wrong to mistakes.
 void weld_joints(Robot& robot, const std::vector<std::string>& weld,

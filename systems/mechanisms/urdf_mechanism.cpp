@@ -25,6 +25,7 @@ class Writer {
   FileFormat::Converted convert() {
     find_root();
     weld_joints(robot_, values_of("weld"), values_of("weld-all-but"), path_, mistakes_, notes_);
+    keep_friction(robot_, values_of("joint-friction"), path_, mistakes_);
     hang_massless_root();
     check_masses();
     check_mimics();
@@ -175,6 +176,7 @@ class Writer {
                       toml_string(joint.name), joint.kind, parent, child, spelled(joint.at));
       if (joint.moves() && joint.kind != "free") line += ", axis = " + spelled(joint.axis);
       if (joint.damping != 0) line += ", damping = " + spelled(joint.damping);
+      if (joint.rubs) line += ", friction = " + spelled(joint.friction);
       out.push_back(line);
     }
     out.insert(out.end(), bodies.welds.begin(), bodies.welds.end());
@@ -261,11 +263,11 @@ class Writer {
     std::vector<std::string> limited, friction, idle;
     for (const RobotLink& l : robot_.links) {
       if (l.joint.limited) limited.push_back(l.joint.name);
-      if (l.joint.friction) friction.push_back(l.joint.name);
+      if (l.joint.friction != 0 && !l.joint.rubs) friction.push_back(l.joint.name);
       if (l.joint.idle) idle.push_back(l.joint.name);
     }
     note("limits of position and velocity are not kept", limited);
-    note("friction is left out, damping is kept", friction);
+    note("friction is left out (--joint-friction keeps it), damping is kept", friction);
     note("damping, friction and limits of fixed joints mean nothing and are left out", idle);
     note("a link 'ground' goes by another name, as the ground has this one", bodies.renamed);
     note("angles within 0.002 rad of a right angle are taken as that", robot_.rounded);

@@ -191,7 +191,7 @@ class Reader {
     }
     if (joint.dynamics != nullptr) {
       out.damping = joint.dynamics->damping;
-      out.friction = joint.dynamics->friction != 0;
+      out.friction = joint.dynamics->friction;
       if (out.damping != 0 && !out.turns_or_slides())
         wrong("joint", joint.name,
               "damping: expected a revolute, continuous or prismatic joint, got " +

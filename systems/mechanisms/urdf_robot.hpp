@@ -32,9 +32,11 @@ struct RobotJoint {
   std::string kind;  // of mechanisms: hinge, slider, planar, free, weld
   Vec3 at = Vec3::Zero(), axis = Vec3::UnitX();
   double damping = 0;
+  double friction = 0;                // N m or N
   std::optional<double> effort = {};  // the most, where it is limited
   std::optional<RobotMimic> mimic = {};
-  bool limited = false, friction = false;
+  bool limited = false;
+  bool rubs = false;     // its friction is kept
   bool endless = false;  // a hinge that turns right round within its limits
   bool driven = false;   // by a transmission
   bool idle = false;     // fixed, with damping, friction or limits

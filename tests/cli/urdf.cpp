@@ -143,9 +143,10 @@ TEST_F(Urdf, NotesWhatItLeavesOut) {
                 <dynamics damping="0.1" friction="0.3"/></joint>)"),
        "--root", "fixed", "--until", "0.1"});
   const std::string notes = record["notes"].dump();
-  for (const char* note : {"limits of position and velocity are not kept: \\\"axle\\\"",
-                           "friction is left out, damping is kept: \\\"axle\\\"",
-                           "meshes are not drawn: \\\"left\\\""})
+  for (const char* note :
+       {"limits of position and velocity are not kept: \\\"axle\\\"",
+        "friction is left out (--joint-friction keeps it), damping is kept: \\\"axle\\\"",
+        "meshes are not drawn: \\\"left\\\""})
     EXPECT_THAT(notes, HasSubstr(note));
   EXPECT_THAT(run({"describe", file("robot.urdf"), "--toml"}).out,
               HasSubstr("cylinder = [0.1, 0.02]"));  // its collision instead

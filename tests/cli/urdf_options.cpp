@@ -93,6 +93,42 @@ TEST_F(UrdfOptions, WeldedJointsAreRigid) {
                         "out of --weld, or add it to --weld-all-but"));
 }
 
+/// A joint about the vertical with the friction f stops after J w/f, and rests.
+TEST_F(UrdfOptions, JointsKeepTheirFriction) {
+  const std::string arm =
+      robot(link("base") + link("arm", inertial(2)) +
+            joint("continuous", "turn", "base", "arm", "0 0 0.5", "0 0 1",
+                  "<dynamics friction=\"0.3\"/>") +
+            link("tool", inertial(1)) + joint("fixed", "mount", "arm", "tool", "0 0 0.1"));
+  const Words start = {"--root", "fixed", "--start", "turn.rate=2",
+                       "--rtol", "1e-10", "--until", "100"};
+  const auto of = [&](const std::string& friction) {
+    Words words = {"run", arm};
+    words.insert(words.end(), start.begin(), start.end());
+    if (!friction.empty()) words.insert(words.end(), {"--slip", "--joint-friction", friction});
+    return answer(words);
+  };
+  const json without = of("");
+  EXPECT_THAT(without["notes"].dump(),
+              HasSubstr("friction is left out (--joint-friction keeps it), damping is kept"));
+  const double rate = without["final"]["velocity"][0].get<double>();
+  EXPECT_NEAR(rate, 2, 1e-12);
+  const double inertia = without["final"]["momentum"][0].get<double>() / rate;
+  for (const char* friction : {"all", "turn"}) {
+    const json out = of(friction);
+    EXPECT_THAT(out["notes"].dump(), testing::Not(HasSubstr("friction is left out")));
+    ASSERT_EQ(out["events"].size(), 1U);
+    EXPECT_EQ(out["events"][0]["name"], "turn.sticks");
+    EXPECT_NEAR(out["events"][0]["time"].get<double>(), 2 * inertia / 0.3, 1e-10);
+    EXPECT_EQ(out["final"]["velocity"][0].get<double>(), 0);
+  }
+  EXPECT_THAT(mistake({arm, "--joint-friction", "tern"}),
+              HasSubstr("--joint-friction: unknown joint 'tern': expected one of mount, turn; did "
+                        "you mean 'turn'?"));
+  EXPECT_THAT(mistake({arm, "--joint-friction", "mount"}),
+              HasSubstr("joint 'mount' has none, expected <dynamics friction="));
+}
+
 /// The same options in a file of --config.
 TEST_F(UrdfOptions, OptionsInAConfiguration) {
   write("a.toml", "system = \"" + robot(two_wheels()) + "\"\nwheel = [\"left\"]\nuntil = 0\n" +

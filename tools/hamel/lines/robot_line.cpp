@@ -11,8 +11,8 @@
 namespace hamel::tools {
 
 const std::vector<std::string>& RobotLine::keys() {
-  static const std::vector<std::string> all = {"wheel",        "motor", "weld",
-                                               "weld_all_but", "root",  "hold"};
+  static const std::vector<std::string> all = {"wheel",          "motor", "weld", "weld_all_but",
+                                               "joint_friction", "root",  "hold"};
   return all;
 }
 
@@ -31,14 +31,18 @@ void RobotLine::define(CLI::App& app) {
       "(repeatable)");
   list("--weld", welds, "JOINT", "a joint that is rigid in the drawn pose (repeatable)");
   list("--weld-all-but", movable, "JOINT", "all other joints are rigid (repeatable)");
+  list("--joint-friction", rubbing, "JOINT",
+       "a joint of robot.urdf that keeps its dry friction, <dynamics friction=...>; all: every one "
+       "that states it (repeatable)");
   app.add_option(
       "--root", root,
       "how the root link of robot.urdf hangs on the ground: planar, free or fixed [planar]");
   list("--hold", held, "JOINT[=value]",
        "a hinge or slider of a mechanism that is locked, where the run starts or at this angle "
        "(rad) or position (m) (repeatable)");
-  group_options(app, "Robot",
-                {"--wheel", "--motor", "--weld", "--weld-all-but", "--root", "--hold"});
+  group_options(
+      app, "Robot",
+      {"--wheel", "--motor", "--weld", "--weld-all-but", "--joint-friction", "--root", "--hold"});
 }
 
 std::string RobotLine::resolve(const std::string& system) const {
@@ -47,7 +51,8 @@ std::string RobotLine::resolve(const std::string& system) const {
       root.empty() ? std::vector<std::string>{} : std::vector<std::string>{root};
   for (const auto& [option, values] :
        {std::pair{"wheel", &wheels}, std::pair{"motor", &motors}, std::pair{"weld", &welds},
-        std::pair{"weld-all-but", &movable}, std::pair{"root", &roots}, std::pair{"hold", &held}}) {
+        std::pair{"weld-all-but", &movable}, std::pair{"joint-friction", &rubbing},
+        std::pair{"root", &roots}, std::pair{"hold", &held}}) {
     if (values->empty()) continue;
     if (option != std::string_view("hold") && !names_robot(system))
       throw ConfigError(

@@ -1,5 +1,5 @@
-// --wheel, --motor, --weld, --weld-all-but and --root, of commands that take a system: what a robot
-// in URDF leaves open; and --hold, joints of any mechanism that are locked.
+// --wheel, --motor, --weld, --weld-all-but, --joint-friction and --root, of commands that take a
+// system: what a robot in URDF leaves open; and --hold, joints of any mechanism that are locked.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace hamel::tools {
 
 struct RobotLine {
-  std::vector<std::string> wheels, motors, welds, movable, held;
+  std::vector<std::string> wheels, motors, welds, movable, rubbing, held;
   std::string root;
 
   /// Keys of these in a file of --config.

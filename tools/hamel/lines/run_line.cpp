@@ -136,6 +136,7 @@ RunOptions RunLine::resolve(const CLI::App& app) {
     take(app, "motor", robot.motors);
     take(app, "weld", robot.welds);
     take(app, "weld_all_but", robot.movable);
+    take(app, "joint_friction", robot.rubbing);
     take(app, "hold", robot.held);
     take(app, "root", robot.root);
   }
