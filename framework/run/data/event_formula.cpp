@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/graph/number.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
 
 namespace hamel {
