@@ -80,6 +80,18 @@ struct RecordedElements<SO3> {
 };
 
 template <>
+struct RecordedElements<Heisenberg> {
+  static constexpr int size = 3, columns = 3;
+  using Element = VecT<Traced, 3>;
+  static Element load(const Traced* x) { return {x[0], x[1], x[2]}; }
+  static void store(const Element& g, Traced* x) { std::copy_n(g.data(), 3, x); }
+  static Element from(const Traced* c) { return load(c); }
+  static void coordinates(const Traced* from, const Element& way, Traced* out) {
+    store(Heisenberg::compose(load(from), way), out);
+  }
+};
+
+template <>
 struct RecordedElements<SE3> {
   static constexpr int size = 12, columns = 12;
   using Element = SE3Element<Traced>;
@@ -157,6 +169,8 @@ void add_recorded_groups() {
   add_recorded<Cayley<SO3>>();
   add_recorded<Exp<SE3>>();
   add_recorded<Cayley<SE3>>();
+  add_recorded<Exp<Heisenberg>>();
+  add_recorded<Cayley<Heisenberg>>();
 }
 
 }  // namespace hamel

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include <hamel/framework/graph/motion_terms.hpp>
+#include <hamel/framework/graph/system_formulas.hpp>
 #include <hamel/framework/mechanics/general_system.hpp>
 #include <hamel/framework/run/names/registry.hpp>
 #include <hamel/groups/heisenberg.hpp>
@@ -26,11 +26,11 @@
 namespace hamel {
 namespace {
 
-using graph::MotionVariables;
+using graph::FormulaPlace;
 using graph::Number;
 using Numbers = std::vector<Number>;
 
-// Elements of numbers as their groups lay them out (MotionVariables::element).
+// Elements of numbers as their groups lay them out (FormulaPlace::element).
 void take(const Number*& from, SO2Element<Number>& out) {
   out.c = from[0];
   out.s = from[1];
@@ -72,10 +72,10 @@ Numbers entries_of(const Vector& v) {
 
 // Forces of inputs that are constant and linear in them, B u: read off at unit inputs.
 template <class S>
-Numbers force_of_inputs(const S& system, const MotionVariables& at) {
-  Numbers out(at.velocities.size());
+Numbers force_of_inputs(const S& system, const FormulaPlace& at) {
+  using G = typename S::Group;
+  Numbers out(G::dim);
   if constexpr (has_input_force<S>()) {
-    using G = typename S::Group;
     const auto count = static_cast<Eigen::Index>(at.inputs.size());
     for (Eigen::Index j = 0; j < count; ++j) {
       const auto unit = InputValues(Eigen::VectorXd::Unit(count, j));
@@ -89,7 +89,7 @@ Numbers force_of_inputs(const S& system, const MotionVariables& at) {
 }
 
 template <class S>
-graph::MotionTerms terms_of_type(const Parameters& given, const MotionVariables& at) {
+graph::SystemFormulas formulas_of_type(const Parameters& given, const FormulaPlace& at) {
   S system;
   detail::FieldWriter writer{given};
   detail::tell_fields(system, writer);
@@ -106,14 +106,15 @@ graph::MotionTerms terms_of_type(const Parameters& given, const MotionVariables&
   if constexpr (requires { system.holonomic(g); }) out.holonomic = entries_of(system.holonomic(g));
   if constexpr (requires { system.potential(g); }) out.potential = system.potential(g);
   out.force = force_of_inputs(system, at);
-  return graph::terms_of(out, at);
+  return out;
 }
 
 template <class S>
 void add_recorded() {
-  graph::add_motion_terms(problem_key(typeid(TypedMechanics<S>)), terms_of_type<S>);
+  graph::add_system_formulas(problem_key(typeid(TypedMechanics<S>)), formulas_of_type<S>);
   if constexpr (has_inputs<S>())
-    graph::add_motion_terms(problem_key(typeid(TypedMechanics<WithInputs<S>>)), terms_of_type<S>);
+    graph::add_system_formulas(problem_key(typeid(TypedMechanics<WithInputs<S>>)),
+                               formulas_of_type<S>);
 }
 
 }  // namespace

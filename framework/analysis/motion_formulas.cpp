@@ -2,13 +2,12 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <typeinfo>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <hamel/framework/graph/elimination.hpp>
-#include <hamel/framework/run/names/registry.hpp>
+#include <hamel/framework/run/data/recorded_formulas.hpp>
 
 namespace hamel {
 namespace {
@@ -21,9 +20,7 @@ using Numbers = std::vector<Number>;
 constexpr size_t kMostSolved = 12;  // independent velocities
 
 graph::GroupShape shape_of(const SystemModel& model, const Geometry& geometry) {
-  graph::GroupShape out;
-  for (const GroupFactor& factor : model.group.factors)
-    out.factors.push_back({factor.name, factor.dim, factor.columns, factor.is_shape});
+  graph::GroupShape out{factor_shapes(model.group), {}};
   const int n = geometry.dim();
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
@@ -36,36 +33,16 @@ graph::GroupShape shape_of(const SystemModel& model, const Geometry& geometry) {
   return out;
 }
 
-// Terms of constant inertia and rows A xi = 0, without forces.
-MotionTerms constant_terms(const Mechanics& mechanics, const double* g, const MotionVariables& at) {
-  const int n = mechanics.dim(), k = mechanics.constraint_count();
-  Eigen::MatrixXd inertia(n, n), a(k, n);
-  Eigen::VectorXd b(k);
-  mechanics.inertia(g, inertia);
-  mechanics.constraints(0, g, a, b);
-  graph::SystemFormulas formulas;
-  for (int i = 0; i < n; ++i)
-    formulas.inertia.emplace_back(inertia.row(i).begin(), inertia.row(i).end());
-  for (int i = 0; i < k; ++i) formulas.rows.emplace_back(a.row(i).begin(), a.row(i).end());
-  return graph::terms_of(formulas, at);
-}
-
 MotionTerms terms_of_system(const SystemModel& model, const Mechanics& mechanics, const double* g,
                             const MotionVariables& at) {
   if (const auto* known = dynamic_cast<const graph::HasMotionTerms*>(&mechanics))
     return known->motion_terms(at);
-  if (const auto* known = dynamic_cast<const graph::HasSystemFormulas*>(&mechanics))
-    return graph::terms_of(known->system_formulas(at.all()), at);
-  if (mechanics.left_invariant()) return constant_terms(mechanics, g, at);
-  const graph::TermsOfParameters* typed = graph::find_motion_terms(problem_key(typeid(mechanics)));
-  if (typed == nullptr)
+  const RecordedFormulas formulas = recorded_formulas(model, mechanics, g);
+  if (!formulas)
     throw std::domain_error(
         "its formulas are a type in C++ that is compiled for numbers; systems in files, "
         "mechanisms and left-invariant systems have recorded ones");
-  Parameters parameters;
-  for (const Field& field : model.fields)
-    if (!field.value.empty()) parameters[field.name] = field.value;
-  return (*typed)(parameters, at);
+  return graph::terms_of(formulas(at.all()), at);
 }
 
 // The state, and places to either side of it: entries that vanish at one of them are no pivots.

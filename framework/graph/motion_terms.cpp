@@ -10,18 +10,47 @@ namespace {
 
 using Numbers = std::vector<Number>;
 
-std::map<std::string, TermsOfParameters>& terms_of_types() {
-  static std::map<std::string, TermsOfParameters> all;
-  return all;
-}
-
 Numbers inputs_named(const std::vector<std::string>& names) {
   Numbers out;
   for (const std::string& name : names) out.push_back(Recording::current().input(name));
   return out;
 }
 
+// so2 and se2 lay out cos, sin and turns, rotations their columns.
+void add_element(const FactorShape& factor, const Number* x, Numbers& element) {
+  const auto circle = [&] { element.insert(element.end(), {cos(x[0]), sin(x[0]), 0}); };
+  const auto rotation = [&] {
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) element.push_back(x[3 * i + j]);
+  };
+  if (factor.name == "so2") {
+    circle();
+  } else if (factor.name == "se2") {
+    circle();
+    element.insert(element.end(), {x[1], x[2]});
+  } else if (factor.name == "so3") {
+    rotation();
+  } else if (factor.name == "se3") {
+    rotation();
+    element.insert(element.end(), {x[9], x[10], x[11]});
+  } else if (factor.name == "heisenberg" || factor.is_shape) {
+    element.insert(element.end(), x, x + factor.columns);
+  } else {
+    throw std::domain_error("the group " + factor.name + " has no formulas of its coordinates");
+  }
+}
+
 }  // namespace
+
+Numbers element_of(const std::vector<FactorShape>& factors, std::span<const Number> coordinates) {
+  Numbers out;
+  size_t column = 0;
+  for (const FactorShape& factor : factors) {
+    add_element(factor, coordinates.data() + column, out);
+    column += static_cast<size_t>(factor.columns);
+  }
+  return out;
+}
 
 MotionVariables::MotionVariables(const GroupShape& group,
                                  const std::vector<std::string>& coordinate_names,
@@ -31,26 +60,20 @@ MotionVariables::MotionVariables(const GroupShape& group,
       coordinates(inputs_named(coordinate_names)),
       velocities(inputs_named(velocity_names)),
       inputs(inputs_named(input_names)),
+      element(element_of(group.factors, coordinates)),
       group_(group) {
   size_t column = 0, velocity = 0;
   for (const FactorShape& factor : group.factors) {
-    add(factor, column, velocity);
+    add_rates(factor, column, velocity);
     column += static_cast<size_t>(factor.columns);
     velocity += static_cast<size_t>(factor.dim);
   }
 }
 
-// Element and rates of one factor: so2 and se2 lay out cos, sin and turns, rotations their columns.
-void MotionVariables::add(const FactorShape& factor, size_t column, size_t velocity) {
+void MotionVariables::add_rates(const FactorShape& factor, size_t column, size_t velocity) {
   const Number* x = coordinates.data() + column;
   const Number* v = velocities.data() + velocity;
-  const auto circle = [&] {
-    element.insert(element.end(), {cos(x[0]), sin(x[0]), 0});
-    coordinate_rates.push_back(v[0]);
-  };
   const auto rotation = [&] {  // R' = R hat(omega)
-    for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 3; ++i) element.push_back(x[3 * i + j]);
     for (int i = 0; i < 3; ++i) {
       const Number* row = x + 3 * i;
       coordinate_rates.push_back(row[1] * v[2] - row[2] * v[1]);
@@ -58,31 +81,21 @@ void MotionVariables::add(const FactorShape& factor, size_t column, size_t veloc
       coordinate_rates.push_back(row[0] * v[1] - row[1] * v[0]);
     }
   };
-  if (factor.name == "so2") {
-    circle();
-  } else if (factor.name == "se2") {
-    circle();
-    element.insert(element.end(), {x[1], x[2]});
+  if (factor.name == "se2") {
+    coordinate_rates.push_back(v[0]);
     coordinate_rates.push_back(cos(x[0]) * v[1] - sin(x[0]) * v[2]);
     coordinate_rates.push_back(sin(x[0]) * v[1] + cos(x[0]) * v[2]);
   } else if (factor.name == "so3") {
     rotation();
   } else if (factor.name == "se3") {
     rotation();
-    element.insert(element.end(), {x[9], x[10], x[11]});
     for (int i = 0; i < 3; ++i)
       coordinate_rates.push_back(x[3 * i] * v[3] + x[3 * i + 1] * v[4] + x[3 * i + 2] * v[5]);
   } else if (factor.name == "heisenberg") {
-    element.insert(element.end(), {x[0], x[1], x[2]});
     coordinate_rates.insert(coordinate_rates.end(),
                             {v[0], v[1], v[2] + 0.5 * (x[0] * v[1] - x[1] * v[0])});
-  } else if (factor.is_shape) {
-    for (int i = 0; i < factor.columns; ++i) {
-      element.push_back(x[i]);
-      coordinate_rates.push_back(v[i]);
-    }
   } else {
-    throw std::domain_error("the group " + factor.name + " has no formulas of its coordinates");
+    coordinate_rates.insert(coordinate_rates.end(), v, v + factor.dim);
   }
 }
 
@@ -158,15 +171,6 @@ MotionTerms terms_of(const SystemFormulas& formulas, const MotionVariables& at) 
     if (!formulas.force.empty()) out.change[i] += formulas.force[i];
   }
   return out;
-}
-
-void add_motion_terms(const std::string& key, TermsOfParameters terms) {
-  terms_of_types()[key] = std::move(terms);
-}
-
-const TermsOfParameters* find_motion_terms(const std::string& key) {
-  const auto found = terms_of_types().find(key);
-  return found == terms_of_types().end() ? nullptr : &found->second;
 }
 
 }  // namespace hamel::graph

@@ -5,8 +5,7 @@
 // A system that has them derives from HasMotionTerms, and records them when asked.
 #pragma once
 
-#include <functional>
-#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +27,11 @@ struct GroupShape {
   std::vector<FactorShape> factors;
   std::vector<double> structure;
 };
+
+/// The element at coordinates as its group lays it out; 0 for turns of a circle. Throws
+/// std::domain_error for a group that is not known as formulas.
+std::vector<Number> element_of(const std::vector<FactorShape>& factors,
+                               std::span<const Number> coordinates);
 
 /// Inputs of the current recording: t, coordinates, velocities, inputs of the run, by name; and
 /// what a group makes of them.
@@ -55,7 +59,7 @@ class MotionVariables {
   Numbers pulled_back(const Numbers& slope) const;
 
  private:
-  void add(const FactorShape& factor, size_t column, size_t velocity);
+  void add_rates(const FactorShape& factor, size_t column, size_t velocity);
 
   GroupShape group_;
 };
@@ -69,7 +73,7 @@ struct MotionTerms {
 /// Terms of the formulas of a system, by their derivatives.
 MotionTerms terms_of(const SystemFormulas& formulas, const MotionVariables& at);
 
-/// A system that has these terms as formulas, and not those of system_formulas.hpp.
+/// A system that has these terms as formulas of its own, shorter than terms_of().
 class HasMotionTerms {
  public:
   virtual ~HasMotionTerms() = default;
@@ -77,13 +81,5 @@ class HasMotionTerms {
   /// has a part that is no formula.
   virtual MotionTerms motion_terms(const MotionVariables& at) const = 0;
 };
-
-/// Terms of a system that is a type in C++, at its parameters.
-using TermsOfParameters = std::function<MotionTerms(
-    const std::map<std::string, std::vector<double>>& parameters, const MotionVariables& at)>;
-/// Adds them under a key of the type. Not thread-safe.
-void add_motion_terms(const std::string& key, TermsOfParameters terms);
-/// Null where there are none.
-const TermsOfParameters* find_motion_terms(const std::string& key);
 
 }  // namespace hamel::graph

@@ -1,7 +1,10 @@
 // Formulas of a mechanical system at a place, recorded: what equations of a step are recorded of.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <hamel/framework/graph/number.hpp>
@@ -26,5 +29,20 @@ class HasSystemFormulas {
   /// Recorded in the current recording.
   virtual SystemFormulas system_formulas(std::span<const Number> variables) const = 0;
 };
+
+/// Place of a system that is a type in C++: the element as its group lays it out, 0 for turns of a
+/// circle.
+struct FormulaPlace {
+  std::vector<Number> element;
+  Number t;
+  std::vector<Number> inputs;
+};
+/// Formulas of a system that is a type in C++, at its parameters.
+using FormulasOfParameters = std::function<SystemFormulas(
+    const std::map<std::string, std::vector<double>>& parameters, const FormulaPlace& at)>;
+/// Adds them under a key of the type. Not thread-safe.
+void add_system_formulas(const std::string& key, FormulasOfParameters formulas);
+/// Null where there are none.
+const FormulasOfParameters* find_system_formulas(const std::string& key);
 
 }  // namespace hamel::graph

@@ -45,7 +45,7 @@ class FitSolver {
     return 0;
   }
   int df(const Eigen::VectorXd& u, Eigen::MatrixXd& out) {
-    if (!problem_.jacobian(x_of(u), out) || !problem_.residuals(x_of(u), residuals_)) return -1;
+    if (!problem_.jacobian(x_of(u), TangentMotion::Carries::ten_digits, residuals_, out)) return -1;
     ++iterations_;
     weigh(out);
     double chi2 = 0;
@@ -186,7 +186,9 @@ class FitSolver {
     out.covariance.values.assign(static_cast<size_t>(q * q),
                                  std::numeric_limits<double>::quiet_NaN());
     if (residuals_.size() == problem_.data()) out.residuals = problem_.tables(residuals_, sigma_);
-    if (Eigen::MatrixXd jacobian; out.converged && problem_.jacobian(x, jacobian)) {
+    if (Eigen::MatrixXd jacobian;
+        out.converged &&
+        problem_.jacobian(x, TangentMotion::Carries::columns, residuals_, jacobian)) {
       weigh(jacobian);
       estimate_covariance(jacobian, x, out);
     }

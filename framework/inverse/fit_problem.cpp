@@ -237,18 +237,23 @@ bool FitProblem::residuals(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
   });
 }
 
-bool FitProblem::jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& out) {
+bool FitProblem::jacobian(const Eigen::VectorXd& x, TangentMotion::Carries digits,
+                          Eigen::VectorXd& residuals, Eigen::MatrixXd& out) {
+  residuals.resize(data());
   out.setZero(data(), x.size());
   Eigen::Index next = 0;
+  Eigen::VectorXd here;
   Eigen::MatrixXd slopes;
-  return follow(x, TangentMotion::Carries::columns, [&](size_t r, size_t k, TangentMotion& motion) {
+  return follow(x, digits, [&](size_t r, size_t k, TangentMotion& motion) {
     Series& series = series_[r];
     const auto observed = [&](MovedMotion& of, const MotionState& state, Eigen::VectorXd& values) {
       series.observed(of, state, values);
     };
-    if (!motion.derivative(motion.now(), observed, slopes)) return false;
+    if (!motion.derivative(motion.now(), observed, here, slopes) || !here.allFinite()) return false;
     for (size_t c = 0; c < series.columns.size(); ++c) {
-      if (!std::isfinite(series.recording->values[series.columns[c]][k])) continue;
+      const double datum = series.recording->values[series.columns[c]][k];
+      if (!std::isfinite(datum)) continue;
+      residuals[next] = here[static_cast<Eigen::Index>(c)] - datum;
       for (size_t i = 0; i < unknowns_.size(); ++i)
         if (unknowns_[i].recording < 0 || unknowns_[i].recording == static_cast<int>(r))
           out(next, static_cast<Eigen::Index>(i)) = slopes(

@@ -37,7 +37,9 @@ class FitProblem {
 
   /// q(z(t)) - datum in units of the data; false where a motion fails or cannot be.
   bool residuals(const Eigen::VectorXd& x, Eigen::VectorXd& out);
-  bool jacobian(const Eigen::VectorXd& x, Eigen::MatrixXd& out);
+  /// Both; for the covariance with all digits.
+  bool jacobian(const Eigen::VectorXd& x, TangentMotion::Carries digits, Eigen::VectorXd& residuals,
+                Eigen::MatrixXd& out);
   /// Why the last motion failed.
   const std::string& failure() const { return failure_; }
   long runs() const { return runs_; }

@@ -116,13 +116,14 @@ void PlanBuilder::check_rates(const RunPlan& plan, const std::vector<std::size_t
   }
 }
 
-StateNumber PlanBuilder::formula(const SystemModel& system, const std::string& key,
-                                 const std::string& text) {
+StateFormula PlanBuilder::formula(const SystemModel& system, const std::string& key,
+                                  const std::string& text) {
   const QuantityNames names(system);
   const StateVariables variables(system, names.variables());
   try {
-    return variables.value(Expression(names.in_formula(text), variables.names(),
-                                      constants_in_formulas(system, variables.names())));
+    const Expression read(names.in_formula(text), variables.names(),
+                          constants_in_formulas(system, variables.names()));
+    return {variables.value(read), variables.recorded(read)};
   } catch (const ExpressionError& error) {
     mistake(key, fmt::format("'{}': {}", text, names.in_words(variables.explain(error.what()))));
     return {};
@@ -166,12 +167,19 @@ void PlanBuilder::set_bounds(PlanStages& stages) {
       stages.high[at - request_.inputs.begin()] = high;
       continue;
     }
-    const StateNumber value = formula(stages.system(), key, name);
+    const StateFormula one = formula(stages.system(), key, name);
     const auto add = [&](double sign, double limit) {
-      stages.path.push_back(
-          [value, sign, limit](double t, std::span<const double> g, std::span<const double> xi) {
-            return sign * (value(t, g, xi) - limit);
-          });
+      stages.path.push_back({[value = one.value, sign, limit](double t, std::span<const double> g,
+                                                              std::span<const double> xi) {
+                               return sign * (value(t, g, xi) - limit);
+                             },
+                             nullptr});
+      if (one.record)
+        stages.path.back().record = [record = one.record, sign, limit](
+                                        const graph::Number& t, std::span<const graph::Number> g,
+                                        std::span<const graph::Number> xi) {
+          return sign * (record(t, g, xi) - limit);
+        };
     };
     if (std::isfinite(low)) add(1, low);
     if (std::isfinite(high)) add(-1, high);

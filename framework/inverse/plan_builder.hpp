@@ -37,7 +37,7 @@ class PlanBuilder {
   void set_goals(PlanStages& stages);
   void add_goals(PlanStages& stages, const std::vector<std::optional<double>>& given,
                  const std::string& key, std::size_t first, std::size_t count);
-  StateNumber formula(const SystemModel& system, const std::string& key, const std::string& text);
+  StateFormula formula(const SystemModel& system, const std::string& key, const std::string& text);
   void add_constraint(PlanStages& stages, const std::string& text);
   void mistake(const std::string& key, const std::string& what);
   std::string placed(const std::string& mistake) const;

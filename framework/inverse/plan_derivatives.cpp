@@ -1,6 +1,9 @@
 // Derivatives of the stages of a plan: of the equation of a step, else differences.
 #include <hamel/framework/inverse/plan_stages.hpp>
 
+#include <algorithm>
+#include <utility>
+
 namespace hamel {
 namespace {
 
@@ -59,7 +62,7 @@ bool PlanStages::differentiate(const Values& values, const Eigen::VectorXd& delt
 }
 
 bool PlanStages::has_formulas(int k) const {
-  return path_rows(k) > 0 || (k < steps ? running : terminal) != nullptr;
+  return path_rows(k) > 0 || (k < steps ? running : terminal).value != nullptr;
 }
 
 // q = (eta, w, u, h, t) of the equation by the increments (eta, dy, dh) and u: w = xi + E dy, t =
@@ -102,6 +105,63 @@ bool PlanStages::step_derivatives(int k, const Eigen::VectorXd& state,
   return true;
 }
 
+// cost = h (w_t + 1/2 sum w_i u_i^2 + f(q)), or f(q) at the end; q = (eta, xi, t) by the increments
+// (eta, dy, dh): xi + E dy, t = from + k h.
+bool PlanStages::formula_derivatives(int k, const Eigen::VectorXd& state,
+                                     const Eigen::VectorXd& inputs, bool last,
+                                     const Eigen::VectorXd& y, StageDerivatives& out) {
+  const StateFormula& cost = last ? terminal : running;
+  Recorded& recorded = last ? at_last_ : at_stages_;
+  if (!std::exchange(recorded.tried, true)) {
+    std::vector<RecordedNumber> formulas;
+    for (const StateFormula& one : path) formulas.push_back(one.record);
+    if (cost) formulas.push_back(cost.record);
+    recorded.formulas = RecordedPath::of(map.plan(), formulas);
+  }
+  if (recorded.formulas == nullptr) return false;
+  RecordedPath& f = *recorded.formulas;
+  const MotionState here = motion_state(time_of(k, state), state);
+  const auto columns = static_cast<std::size_t>(map.coordinate_count());
+  const std::span<const double> all(state.data(), static_cast<std::size_t>(numbers_of_motion()));
+  if (!f.evaluate(here.time, all.first(columns), all.subspan(columns))) return false;
+
+  const Eigen::Index n = map.velocities(), m = map.increments() - n, width = state_increments(),
+                     count = width + inputs.size(), rows = y.size(),
+                     paths = static_cast<Eigen::Index>(path.size()), held = std::min(rows, paths);
+  const double h = step_of(state), scale = last ? 1 : h;
+  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(2 * n + 1, count);
+  by.topLeftCorner(n, n).setIdentity();
+  by.block(n, n, n, m) = map.basis(here);
+  if (free_time) by(2 * n, width - 1) = k;
+  const Eigen::MatrixXd slopes = f.slopes() * by;
+  const Eigen::VectorXd values = f.values();
+
+  out.path_jacobian.setZero(rows, count);
+  out.path_jacobian.topRows(held) = slopes.topRows(held);
+  for (Eigen::Index i = paths; i < rows; ++i)  // bounds of the step
+    out.path_jacobian(i, width - 1) = i == paths ? steps : -steps;
+  out.cost_gradient.setZero(count);
+  Eigen::VectorXd factors = Eigen::VectorXd::Zero(values.size());
+  factors.head(held) = -y.head(held);
+  if (cost) {
+    factors[paths] = scale;
+    out.cost_gradient = scale * slopes.row(paths).transpose();
+  }
+  out.hessian += by.transpose() * f.hessian(factors) * by;
+  if (last) return true;
+  Eigen::VectorXd by_step = Eigen::VectorXd::Zero(count);  // slopes of the cost over h
+  by_step.tail(inputs.size()) = weights.cwiseProduct(inputs);
+  out.cost_gradient += h * by_step;
+  out.hessian.diagonal().tail(inputs.size()) += h * weights;
+  if (!free_time) return true;
+  if (cost) by_step += slopes.row(paths).transpose();
+  out.cost_gradient[width - 1] +=
+      time_weight + 0.5 * inputs.dot(weights.cwiseProduct(inputs)) + (cost ? values[paths] : 0);
+  out.hessian.row(width - 1) += by_step.transpose();
+  out.hessian.col(width - 1) += by_step;
+  return true;
+}
+
 // h (w_t + 1/2 sum w_i u_i^2) in closed form where no formulas are beside it.
 bool PlanStages::state_derivatives(int k, const Eigen::VectorXd& state,
                                    const Eigen::VectorXd& inputs, bool last,
@@ -118,6 +178,7 @@ bool PlanStages::state_derivatives(int k, const Eigen::VectorXd& state,
     out.hessian.block(n, n - 1, count, 1) += weighted;
     return true;
   }
+  if (formula_derivatives(k, state, inputs, last, y, out)) return true;
   Eigen::VectorXd factors(rows + 1), moved, u;
   factors << -y, 1;
   const Values at = [&](const Eigen::VectorXd& increment, Eigen::VectorXd& f) {

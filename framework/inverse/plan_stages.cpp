@@ -60,8 +60,8 @@ void PlanStages::state_values(int k, const Eigen::VectorXd& state, const Eigen::
   const double h = step_of(state), t = time_of(k, state);
   const auto columns = static_cast<std::size_t>(map.coordinate_count());
   const std::span<const double> all(state.data(), static_cast<std::size_t>(numbers_of_motion()));
-  const auto number = [&](const StateNumber& f) {
-    return f(t, all.first(columns), all.subspan(columns));
+  const auto number = [&](const StateFormula& f) {
+    return f.value(t, all.first(columns), all.subspan(columns));
   };
   for (int i = 0; i < rows; ++i) {
     const auto at = static_cast<std::size_t>(i);

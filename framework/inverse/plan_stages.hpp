@@ -17,6 +17,7 @@
 
 #include <Eigen/Core>
 
+#include <hamel/framework/inverse/recorded_path.hpp>
 #include <hamel/framework/stages/stage_problem.hpp>
 #include <hamel/framework/tangent/recorded_lift.hpp>
 #include <hamel/framework/tangent/step_map.hpp>
@@ -26,6 +27,13 @@ namespace hamel {
 /// A number of a state at a time.
 using StateNumber = std::function<double(double t, std::span<const double> coordinates,
                                          std::span<const double> velocity)>;
+
+/// The same, and as a formula of recorded numbers where it is one.
+struct StateFormula {
+  StateNumber value;  // may be empty
+  RecordedNumber record;
+  explicit operator bool() const { return value != nullptr; }
+};
 
 struct PlanGoal {
   std::string name;
@@ -45,8 +53,8 @@ class PlanStages final : public StageProblem {
   double least_step = 0, most_step = 0;
   double time_weight = 0;
   Eigen::VectorXd weights, low, high;   // of inputs
-  StateNumber running, terminal;        // may be empty
-  std::vector<StateNumber> path;        // >= 0 at all states but the first
+  StateFormula running, terminal;       // may be empty
+  std::vector<StateFormula> path;       // >= 0 at all states but the first
   std::vector<std::string> path_names;  // "v1 <= 0.6"
   std::vector<PlanGoal> goal_rows;
   /// The group's columns are more than its dimension, and all are given: goal by tau^-1.
@@ -95,6 +103,9 @@ class PlanStages final : public StageProblem {
                         StageDerivatives& out);
   bool state_derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
                          bool last, const Eigen::VectorXd& y, StageDerivatives& out);
+  // Of path and cost, by their recorded formulas; false where they have none.
+  bool formula_derivatives(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
+                           bool last, const Eigen::VectorXd& y, StageDerivatives& out);
   // All numbers of a stage: defect, path, cost.
   bool all_values(int k, const Eigen::VectorXd& state, const Eigen::VectorXd& inputs,
                   const Eigen::VectorXd* next, Eigen::VectorXd& out);
@@ -108,6 +119,11 @@ class PlanStages final : public StageProblem {
 
   std::unique_ptr<RecordedLift> equation_;        // null where it is not recorded
   std::vector<RecordedLift::Unknowns> unknowns_;  // of each stage
+  struct Recorded {                               // path, then the cost's formula
+    bool tried = false;
+    std::unique_ptr<RecordedPath> formulas;
+  };
+  Recorded at_stages_, at_last_;
   mutable MotionState moved_;
   MotionState next_;
   Eigen::VectorXd all_, beside_, difference_, pulled_;

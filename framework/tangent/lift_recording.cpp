@@ -2,6 +2,7 @@
 #include <hamel/framework/tangent/recorded_lift.hpp>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -72,7 +73,7 @@ class LiftRecording {
       columns.push_back(graph::along(all, by, rates));
     }
     record_values(columns, unknowns);
-    record_curvature(by, all);
+    if (out_.curved_) record_curvature(by, all);
     return true;
   }
 
@@ -104,7 +105,7 @@ class LiftRecording {
     variables.push_back(t.number);
     for (const Traced& u : u_) variables.push_back(u.number);
     variables.insert(variables.end(), velocity.begin(), velocity.end());
-    out.formulas = out_.system_->system_formulas(variables);
+    out.formulas = out_.formulas_(variables);
     Traces moved(way.size());
     Traces aside(way.size());
     geometry_.tau(zero_.data(), aside.data());
@@ -337,9 +338,13 @@ bool RecordedLift::record() {
     }
   } catch (const DomainError&) {
     return false;
+  } catch (const std::domain_error&) {  // a part of the system is no formula
+    records_ = kMostRecords;
+    return false;
   }
   std::size_t outputs = 0, work = 0;
   for (const graph::Code* code : {equation_.get(), first_.get(), second_.get()}) {
+    if (code == nullptr) continue;
     outputs = std::max(outputs, code->program().results().size());
     work = std::max(work, code->work_size());
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace hamel {
@@ -15,14 +16,17 @@ constexpr double kSolved = 1e-14;
 std::unique_ptr<RecordedLift> RecordedLift::of(const RunPlan& plan) {
   const KernelSetup& setup = plan.setup;
   const Mechanics& mechanics = *plan.system->mechanics;
-  const auto* system = dynamic_cast<const graph::HasSystemFormulas*>(&mechanics);
   auto geometry = recorded_geometry(plan.system->group, plan.config.retraction);
-  if (system == nullptr || geometry == nullptr || plan.config.scheme != "lift" ||
-      setup.composition.size() != 1 || plan.contacts != nullptr)
+  if (geometry == nullptr || plan.config.scheme != "lift" || setup.composition.size() != 1 ||
+      plan.contacts != nullptr)
     return nullptr;
+  std::vector<double> element(static_cast<std::size_t>(plan.geometry->size()));
+  plan.geometry->from_coordinates(setup.configuration, element.data());
+  RecordedFormulas formulas = recorded_formulas(*plan.system, mechanics, element.data());
+  if (!formulas) return nullptr;
   std::unique_ptr<RecordedLift> out(new RecordedLift);
   out->plan_ = &plan;
-  out->system_ = system;
+  out->formulas_ = std::move(formulas);
   out->geometry_ = std::move(geometry);
   out->n_ = static_cast<std::size_t>(mechanics.dim());
   out->k_ = static_cast<std::size_t>(mechanics.constraint_count());
@@ -121,6 +125,10 @@ bool RecordedLift::end(MotionState& to) const {
 
 bool RecordedLift::linearise(std::span<const double> reference) {
   std::ranges::copy(reference, input(at_.reference));
+  return linearise();
+}
+
+bool RecordedLift::linearise() {
   if (!evaluate(*first_, unknowns_) && (!record() || !evaluate(*first_, unknowns_))) return false;
   for (const Sparse::Entry& e : by_x_.entries) r_x_(e.row, e.column) = out_[e.output];
   for (const Sparse::Entry& e : by_q_.entries) r_q_(e.row, e.column) = out_[e.output];
@@ -136,6 +144,13 @@ bool RecordedLift::linearise(std::span<const double> reference) {
 }
 
 const Eigen::MatrixXd& RecordedLift::hessian(const Eigen::VectorXd& lambda) {
+  if (!curved_) {  // recorded where it is asked for: fits and tangents never do
+    curved_ = true;
+    if (!record() || !linearise()) {
+      hessian_.setConstant(parameters(), parameters(), std::numeric_limits<double>::quiet_NaN());
+      return hessian_;
+    }
+  }
   step_.noalias() = s_x_.transpose() * lambda;
   rho_ = factors_.transpose().solve(step_);
   rho_ = -rho_;

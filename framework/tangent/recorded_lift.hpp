@@ -1,7 +1,8 @@
 // The equation of a step of lift as recorded programs: its solution and its derivatives, exact to
 // round-off. Not installed.
 //
-// For systems whose formulas are recorded (graph::HasSystemFormulas) on groups of exp and cayley.
+// For systems whose formulas are recorded (run/data/recorded_formulas.hpp) on groups of exp and
+// cayley.
 // With multipliers in place of a frame, all that a step determines is x = (xi_0, alpha; v, lambda;
 // xi_1, kappa) of
 //   I(g0) (xi_0 - w) = A(g0)^T alpha,          A(g0) xi_0 = b(t, g0)
@@ -22,7 +23,7 @@
 #include <Eigen/LU>
 
 #include <hamel/framework/graph/code.hpp>
-#include <hamel/framework/graph/system_formulas.hpp>
+#include <hamel/framework/run/data/recorded_formulas.hpp>
 #include <hamel/framework/tangent/recorded_geometry.hpp>
 #include <hamel/framework/tangent/step_map.hpp>
 
@@ -61,14 +62,15 @@ class RecordedLift {
   friend class LiftRecording;
   RecordedLift() = default;
   bool record();
+  bool linearise();
   bool evaluate(const graph::Code& code, std::size_t guards_at);
   double* input(std::size_t at) { return in_.data() + at; }
 
   const RunPlan* plan_ = nullptr;
-  const graph::HasSystemFormulas* system_ = nullptr;
+  RecordedFormulas formulas_;
   std::shared_ptr<const RecordedGeometry> geometry_;
   std::size_t n_ = 0, k_ = 0, held_ = 0, inputs_ = 0, columns_ = 0, unknowns_ = 0;
-  bool projects_ = false;
+  bool projects_ = false, curved_ = false;
   int records_ = 0;
   // Where the inputs of the programs begin.
   struct Places {

@@ -84,10 +84,9 @@ Sensitivities sensitivities(const Simulation& simulation, const std::vector<std:
     out.status = motion.advance_to(t);
     if (!out.status.ok) break;
     const TangentState& now = motion.now();
-    coordinates_and_velocities(motion.motion(), now.state, values);
     const TangentState other{now.state, now.coarse, {}};
-    if (!motion.derivative(now, coordinates_and_velocities, fine) ||
-        !motion.derivative(other, coordinates_and_velocities, coarse)) {
+    if (!motion.derivative(now, coordinates_and_velocities, values, fine) ||
+        !motion.derivative(other, coordinates_and_velocities, values, coarse)) {
       out.status = {false, 0, t, 0, "the coordinates have no derivative here"};
       break;
     }

@@ -7,7 +7,7 @@
 // Names are those of parameters ("mass", "inertia2"), of inputs that are constant, and "start."
 // with a coordinate or a component of the velocity: the other components follow the rows, nearest
 // to the usual ones in the metric I. The run keeps its accepted steps: the choice of h has no
-// derivative. Derivatives are products of the tangents of the steps, each by extrapolated
+// derivative. Derivatives are products of the tangents of the steps, exact or by extrapolated
 // differences of the map of this step alone. Standard-library types only.
 #pragma once
 

@@ -3,7 +3,8 @@
 //
 //   O(e) = (f(e) - f(-e)) / 2e = f' + e^2 f'''/6 + ...,   T = (64 O(e/4) - 20 O(e/2) + O(e)) / 45
 // with an error of order e^6; coarse, (4 O(e/4) - O(e/2)) / 3, of order e^4. Their difference
-// bounds the error. Source: Ridders, Adv. Eng. Softw. 4 (1982).
+// bounds the error. plain, O(e/4) alone, of a small e: half the digits of a value or more, for
+// Gauss-Newton steps. Source: Ridders, Adv. Eng. Softw. 4 (1982).
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@ namespace hamel {
 struct ThreeDifferences {
   static constexpr std::array<double, 3> parts = {1, 0.5, 0.25};  // of e
   static constexpr std::array<double, 3> fine = {1 / 45.0, -20 / 45.0, 64 / 45.0},
-                                         coarse = {0, -1 / 3.0, 4 / 3.0};
+                                         coarse = {0, -1 / 3.0, 4 / 3.0}, plain = {0, 0, 1};
 
   /// f(x, out) -> bool; false, and so is this, where f has no value.
   template <class F>

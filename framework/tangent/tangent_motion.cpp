@@ -13,24 +13,36 @@
 namespace hamel {
 namespace {
 
-constexpr double kDisplacement = 0x1p-6;  // the largest of a difference, in natural units
-constexpr double kRepeats = 1e-8;         // a repeated step, in natural units
+constexpr double kDisplacement = 0x1p-6;        // the largest of a difference, in natural units
+constexpr double kPlainDisplacement = 0x1p-13;  // and of a plain one, which is a quarter of it
+constexpr double kRepeats = 1e-8;               // a repeated step, in natural units
 
 Status no_tangent(double t, const std::string& why) {
   return {false, 0, t, 0, fmt::format("no tangent of the step from t = {:.10g}: {}", t, why)};
+}
+
+// Are the inputs of a step the same along it?
+bool has_held_inputs(const RunPlan& plan) {
+  const auto& inputs = plan.setup.inputs;
+  return inputs == nullptr || std::ranges::all_of(inputs->tables(), [](const auto& table) {
+           return table.times.size() <= 1;
+         });
 }
 
 }  // namespace
 
 TangentMotion::TangentMotion(const std::string& what, const MotionVariables& variables,
                              const Eigen::VectorXd& values, Carries carries)
-    : motion_(what, variables, values), measure_(carries == Carries::errors) {
+    : motion_(what, variables, values),
+      measure_(carries == Carries::errors),
+      plain_(carries == Carries::ten_digits) {
   const RunPlan& plan = motion_.plan();
   const std::vector<double> units =
       natural_units(components_of(*plan.system), *plan.setup.mechanics, motion_.start().g.data());
   units_ = Eigen::Map<const Eigen::VectorXd>(units.data(), static_cast<Eigen::Index>(units.size()));
   kernel_ = motion_.kernel();
   node_.state = motion_.start();
+  if (carries != Carries::values && has_held_inputs(plan)) equation_ = RecordedLift::of(plan);
   if (carries == Carries::values) {
     begin_with(Eigen::MatrixXd(2 * units_.size(), 0));
     return;
@@ -47,16 +59,17 @@ void TangentMotion::move_variable(const std::string& what, const MotionVariables
   MovedVariable& moved = moved_[i];
   const auto at = static_cast<Eigen::Index>(i);
   const double now = values[at];
-  moved.size = kDisplacement * (now == 0 ? 1 : std::abs(now));
+  moved.size = largest() * (now == 0 ? 1 : std::abs(now));
   if (!one.of_system()) {
     const bool angle = one.unit.starts_with("rad");
-    moved.size = kDisplacement * (now == 0 || angle ? 1 : std::max(1e-3, std::abs(now)));
+    moved.size = largest() * (now == 0 || angle ? 1 : std::max(1e-3, std::abs(now)));
     return;
   }
   constexpr int tries = 12;
   for (int n = 0; n < tries; ++n) {
     try {
       for (size_t level = 0; level < moved.pairs.size(); ++level) {
+        if (weights()[level] == 0) continue;
         const double x = moved.size * ThreeDifferences::parts[level];
         Eigen::VectorXd there = values;
         there[at] = now + x;
@@ -93,7 +106,7 @@ void TangentMotion::begin(const MotionVariables& variables, const Eigen::VectorX
       }
       return displacement(motion_.geometry(), node_.state, there, out);
     };
-    if (!ThreeDifferences::derivative(ThreeDifferences::fine, moved.size, start_of, column))
+    if (!ThreeDifferences::derivative(weights(), moved.size, start_of, column))
       throw ConfigError({fmt::format("start: no derivative by {}",
                                      variables.all()[static_cast<size_t>(j)].name)});
     node_.columns.col(j) = column;
@@ -108,7 +121,12 @@ void TangentMotion::begin_with(const Eigen::MatrixXd& columns) {
   if (measure_) node_.coarse = columns;
 }
 
-// The factor of a column that makes it a displacement of kDisplacement.
+double TangentMotion::largest() const { return plain_ ? kPlainDisplacement : kDisplacement; }
+const std::array<double, 3>& TangentMotion::weights() const {
+  return plain_ ? ThreeDifferences::plain : ThreeDifferences::fine;
+}
+
+// The factor of a column that makes it a displacement of largest().
 double TangentMotion::size_of(const MotionState& at, const Eigen::VectorXd& column,
                               double h) const {
   const Eigen::Index n = at.xi.size();
@@ -117,7 +135,7 @@ double TangentMotion::size_of(const MotionState& at, const Eigen::VectorXd& colu
   const double size =
       std::max(column.head(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>(),
                column.tail(n).cwiseQuotient(units_).lpNorm<Eigen::Infinity>() / rate);
-  return size > 0 ? kDisplacement / size : 0;
+  return size > 0 ? largest() / size : 0;
 }
 
 bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
@@ -134,12 +152,28 @@ bool TangentMotion::step_beside(MovedMotion& motion, const MotionState& from, co
   return false;
 }
 
+bool TangentMotion::solve_equation(const MotionState& from, const MotionState& to) {
+  if (equation_ == nullptr) return false;
+  const auto& inputs = motion_.plan().setup.inputs;
+  const Eigen::VectorXd u = inputs == nullptr ? InputValues() : inputs->at(from.time);
+  const std::vector<double> there = motion_.map().coordinates(to);
+  MotionState end;
+  Eigen::VectorXd off;
+  if (!equation_->solve(from, u, to.time - from.time, unknowns_) || !equation_->end(end) ||
+      !displacement(motion_.geometry(), to, end, off) || !equation_->linearise(there))
+    return false;
+  const double factor = size_of(to, off, to.time - from.time);
+  return factor == 0 || factor >= largest() / kRepeats;
+}
+
 bool TangentMotion::push(const TangentState& from, const MotionState& to,
                          const std::array<double, 3>& weights, const Eigen::MatrixXd& columns,
                          Eigen::MatrixXd& out) {
   const Geometry& geometry = motion_.geometry();
   const double h = to.time - from.state.time;
   out.setZero(columns.rows(), columns.cols());
+  if (exact_ && columns.cols() > 0)
+    out.noalias() = equation_->jacobian().leftCols(columns.rows()) * columns;
   MotionState begin;
   Eigen::VectorXd column;
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
@@ -148,12 +182,12 @@ bool TangentMotion::push(const TangentState& from, const MotionState& to,
       displace(geometry, from.state, columns.col(j), x, begin);
       return step_beside(motion_, begin, to, by);
     };
-    if (e > 0) {
+    if (e > 0 && !exact_) {
       if (!ThreeDifferences::derivative(weights, e, moved_state, column)) return false;
       out.col(j) = column;
     }
     MovedVariable& moved = moved_[static_cast<size_t>(j)];
-    if (moved.pairs.front().plus == nullptr) continue;
+    if (!moved.moves_system()) continue;
     const auto moved_parameter = [&](double x, Eigen::VectorXd& by) {
       for (size_t level = 0; level < moved.pairs.size(); ++level) {
         if (std::abs(x) != moved.size * ThreeDifferences::parts[level]) continue;
@@ -178,13 +212,14 @@ Status TangentMotion::step(const TangentState& from, double t, TangentState& to,
     const double h = t - from.state.time;
     const bool near = displacement(motion_.geometry(), end, *known, off);
     const double factor = near ? size_of(end, off, h) : 0;
-    if (!near || (factor > 0 && factor < kDisplacement / kRepeats))
+    if (!near || (factor > 0 && factor < largest() / kRepeats))
       return no_tangent(from.state.time, "the step of the run is not repeated from its state");
     end = *known;
   }
+  exact_ = from.columns.cols() > 0 && solve_equation(from.state, end);
   Eigen::MatrixXd columns, coarse;
   const auto pushed = [&] {
-    return push(from, end, ThreeDifferences::fine, from.columns, columns) &&
+    return push(from, end, weights(), from.columns, columns) &&
            (!measure_ || push(from, end, ThreeDifferences::coarse, from.coarse, coarse));
   };
   if (!pushed() && (std::exchange(projects_, true) || !pushed()))
@@ -216,8 +251,9 @@ Status TangentMotion::advance_to(double t) {
   return {};
 }
 
-bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen::MatrixXd& out) {
-  Eigen::VectorXd here, column;
+bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen::VectorXd& here,
+                               Eigen::MatrixXd& out) {
+  Eigen::VectorXd column;
   f(motion_, at.state, here);
   out.setZero(here.size(), at.columns.cols());
   MotionState there;
@@ -229,12 +265,11 @@ bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen:
       return true;
     };
     if (e > 0) {
-      if (!ThreeDifferences::derivative(ThreeDifferences::fine, e, moved_state, column))
-        return false;
+      if (!ThreeDifferences::derivative(weights(), e, moved_state, column)) return false;
       out.col(j) = column;
     }
     MovedVariable& moved = moved_[static_cast<size_t>(j)];
-    if (moved.pairs.front().plus == nullptr) continue;
+    if (!moved.moves_system()) continue;
     const auto moved_parameter = [&](double x, Eigen::VectorXd& values) {
       for (size_t level = 0; level < moved.pairs.size(); ++level) {
         if (std::abs(x) != moved.size * ThreeDifferences::parts[level]) continue;
@@ -243,8 +278,7 @@ bool TangentMotion::derivative(const TangentState& at, const Function& f, Eigen:
       }
       return false;
     };
-    if (!ThreeDifferences::derivative(ThreeDifferences::fine, moved.size, moved_parameter, column))
-      return false;
+    if (!ThreeDifferences::derivative(weights(), moved.size, moved_parameter, column)) return false;
     out.col(j) += column;
   }
   return true;

@@ -2,12 +2,14 @@
 // installed.
 //
 //   (eta, dxi)_{k+1} = D_z Psi (eta, dxi)_k + D_p Psi,     z_{k+1} = Psi(z_k; p, h_k)
-// dg = g eta^, left-trivialised; Psi is the map of an accepted step, h_k frozen. Its derivatives
-// are differences of this map (step_differences.hpp), never of the run: a finite displacement does
-// not grow along the motion. Psi is defined beside the constraints of p too, where a kernel begins
+// dg = g eta^, left-trivialised; Psi is the map of an accepted step, h_k frozen. D_z Psi is exact
+// where the equation of the step is recorded (recorded_lift.hpp). Other derivatives are differences
+// of this map (step_differences.hpp), never of the run: a finite displacement does not grow along
+// the motion. Psi is defined beside the constraints of p too, where a kernel begins
 // with the admissible part of a velocity; a kernel that does not is given the state projected onto
 // them, Psi_p(Pi_p z), by z and by p alike.
-//   The error is measured: a second set of columns is carried with coarser differences.
+//   The error is measured: a second set of columns is carried with coarser differences. Where ten
+// digits will do, differences are plain.
 #pragma once
 
 #include <array>
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include <hamel/framework/tangent/moved_motion.hpp>
+#include <hamel/framework/tangent/recorded_lift.hpp>
 
 namespace hamel {
 
@@ -26,7 +29,9 @@ struct MovedPair {
 };
 struct MovedVariable {
   double size = 0;
-  std::array<MovedPair, 3> pairs;  // of ThreeDifferences::parts; empty: the start alone moves
+  std::array<MovedPair, 3> pairs;  // of ThreeDifferences::parts; empty: the start alone moves, or
+                                   // this part is not needed
+  bool moves_system() const { return pairs.back().plus != nullptr; }
 };
 
 /// A state and the columns (eta; dxi) by each variable.
@@ -38,8 +43,8 @@ struct TangentState {
 
 class TangentMotion {
  public:
-  /// The motion alone, with its columns, or with both sets of them.
-  enum class Carries { values, columns, errors };
+  /// The motion alone, with its columns, about ten digits of them or all, or with both sets.
+  enum class Carries { values, ten_digits, columns, errors };
   /// ConfigError where a motion of these values cannot be made.
   TangentMotion(const std::string& what, const MotionVariables& variables,
                 const Eigen::VectorXd& values, Carries carries);
@@ -49,10 +54,11 @@ class TangentMotion {
   Status advance_to(double t);
   /// At the last t.
   const TangentState& now() const { return side_ ? shown_ : node_; }
-  /// The derivative of values of a state along each variable, rows x q. f(motion, state, out): a
-  /// function of the state, and of the parameters of the motion.
+  /// Values of a state, and their derivative along each variable, rows x q. f(motion, state, out):
+  /// a function of the state, and of the parameters of the motion.
   using Function = std::function<void(MovedMotion&, const MotionState&, Eigen::VectorXd&)>;
-  bool derivative(const TangentState& at, const Function& f, Eigen::MatrixXd& out);
+  bool derivative(const TangentState& at, const Function& f, Eigen::VectorXd& here,
+                  Eigen::MatrixXd& out);
 
   MovedMotion& motion() { return motion_; }
   int steps() const { return steps_; }
@@ -61,6 +67,9 @@ class TangentMotion {
   void begin_with(const Eigen::MatrixXd& columns);
 
  private:
+  // The largest displacement of a difference, in natural units, and the weights of its parts.
+  double largest() const;
+  const std::array<double, 3>& weights() const;
   double size_of(const MotionState& at, const Eigen::VectorXd& column, double h) const;
   void move_variable(const std::string& what, const MotionVariables& variables,
                      const Eigen::VectorXd& values, size_t i);
@@ -69,17 +78,22 @@ class TangentMotion {
   // A step of a motion as a displacement from `to`.
   bool step_beside(MovedMotion& motion, const MotionState& from, const MotionState& to,
                    Eigen::VectorXd& by);
+  // Finds D_z Psi of a step by its equation; false where it has none, or another root.
+  bool solve_equation(const MotionState& from, const MotionState& to);
   bool push(const TangentState& from, const MotionState& to, const std::array<double, 3>& weights,
             const Eigen::MatrixXd& columns, Eigen::MatrixXd& out);
 
   MovedMotion motion_;
   std::vector<MovedVariable> moved_;
   std::unique_ptr<Kernel> kernel_;  // of the run itself
-  Eigen::VectorXd units_;           // of displacements
+  std::unique_ptr<RecordedLift> equation_;
+  RecordedLift::Unknowns unknowns_;
+  Eigen::VectorXd units_;  // of displacements
   TangentState node_, shown_;
   Snapshot at_;
   std::string failure_;  // of a step beside the motion
-  bool side_ = false, measure_, projects_ = false;
+  bool side_ = false, measure_, plain_, projects_ = false;
+  bool exact_ = false;  // is D_z Psi of the step known?
   int steps_ = 0;
 };
 

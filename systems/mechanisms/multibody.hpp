@@ -35,6 +35,7 @@ struct ImpliedRow {
 class Multibody final : public Mechanics,
                         public graph::HasVectorFields,
                         public graph::HasMotionTerms,
+                        public graph::HasSystemFormulas,
                         public HasImpliedRows {
  public:
   /// All rows of `rows`; keep() drops some.
@@ -81,6 +82,8 @@ class Multibody final : public Mechanics,
   /// Null where b is not 0, or changes with time, and where couplings are not linear.
   std::shared_ptr<const graph::VectorFields> vector_fields(const double* g) const override;
   graph::MotionTerms motion_terms(const graph::MotionVariables& at) const override;
+  /// Throws std::domain_error as motion_terms().
+  graph::SystemFormulas system_formulas(std::span<const graph::Number> variables) const override;
   void motion(const Geometry& geometry, double t, const double* g, ConstVector xi, Matrix inertia,
               Matrix a, Vector b, Vector rows, Vector change) const override;
   void holonomic(const double* g, Vector out) const override;
@@ -131,6 +134,11 @@ class Multibody final : public Mechanics,
   MechanismParts parts() const { return {tree_, rows_, forces_, kept_, holonomic_, *geometry_}; }
   MechanismPrograms& programs() const;
   std::optional<MotionProgram> record(std::span<const double> state) const;
+  struct RecordedPlace {
+    std::vector<graph::Number> element, velocities, inputs;
+    std::function<graph::Number(int link)> coordinate;  // of a hinge or slider
+  };
+  std::vector<graph::Number> recorded_state(const RecordedPlace& at) const;
   void forget_programs();
   bool rates_may_contradict() const;
   // The state of programs: what of it depends on g; on xi too; on t and all.

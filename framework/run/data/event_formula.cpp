@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <hamel/framework/graph/number.hpp>
 #include <hamel/framework/mechanics/quantity_names.hpp>
 
 namespace hamel {
@@ -45,8 +46,8 @@ StateVariables::StateVariables(const SystemModel& system, std::vector<std::strin
   });
 }
 
-StateVariables::Value StateVariables::value(Expression formula) const {
-  // Dependences of the formula, in order.
+std::pair<std::vector<bool>, std::vector<ReadyOutput>> StateVariables::needs(
+    const Expression& formula) const {
   std::vector<bool> wanted(names_.size());
   const auto want = [&](const Expression& of) {
     for (const std::size_t i : of.used()) wanted[i] = true;
@@ -58,6 +59,28 @@ StateVariables::Value StateVariables::value(Expression formula) const {
     want(outputs_[i].formula);
     outputs.insert(outputs.begin(), outputs_[i]);
   }
+  return {std::move(wanted), std::move(outputs)};
+}
+
+StateVariables::Recorded StateVariables::recorded(Expression formula) const {
+  auto [wanted, outputs] = needs(formula);
+  for (const Measured& measured : sensors_)
+    for (std::size_t i = 0; i < measured.count; ++i)
+      if (wanted[measured.first + i]) return {};
+  return [formula = std::move(formula), outputs = std::move(outputs), count = names_.size()](
+             const graph::Number& t, std::span<const graph::Number> g,
+             std::span<const graph::Number> xi) {
+    std::vector<graph::Number> values(count);
+    values[0] = t;
+    std::ranges::copy(g, values.begin() + 1);
+    std::ranges::copy(xi, values.begin() + 1 + static_cast<std::ptrdiff_t>(g.size()));
+    for (const ReadyOutput& output : outputs) values[output.place] = output.formula.record(values);
+    return formula.record(values);
+  };
+}
+
+StateVariables::Value StateVariables::value(Expression formula) const {
+  auto [wanted, outputs] = needs(formula);
   std::vector<Measured> sensors;
   for (const Measured& measured : sensors_)
     for (std::size_t i = 0; i < measured.count; ++i)

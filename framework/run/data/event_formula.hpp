@@ -28,10 +28,17 @@ class StateVariables {
   const std::vector<std::string>& names() const { return names_; }
   /// The value of a formula over names().
   Value value(Expression formula) const;
+  using Recorded = std::function<graph::Number(const graph::Number& t,
+                                               std::span<const graph::Number> coordinates,
+                                               std::span<const graph::Number> velocity)>;
+  /// The formula in the current recording; empty where it takes what a sensor measures.
+  Recorded recorded(Expression formula) const;
   /// The message of a mistake in a formula: of an output which is no function of a state, why.
   std::string explain(const std::string& message) const;
 
  private:
+  // Which of the names a formula needs, and the outputs among them, in order.
+  std::pair<std::vector<bool>, std::vector<ReadyOutput>> needs(const Expression& formula) const;
   struct Measured {  // by a sensor
     Sensor sensor;
     std::size_t first, count;  // among the names

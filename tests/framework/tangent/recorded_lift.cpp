@@ -1,5 +1,6 @@
 // The recorded equation of a lift step: its derivatives against differences of the step's map, for
 // every formula that a system by data may state, on all groups that are recorded.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -206,6 +207,76 @@ INSTANTIATE_TEST_SUITE_P(Steps, RecordedLiftOf,
                                   "_" +
                                   std::to_string(static_cast<int>(10 * std::get<2>(test.param)));
                          });
+
+/// First derivatives by (eta, w) and by h of a step of a registered system, against differences of
+/// the map of the step.
+void expect_derivatives_of(const Simulation& simulation, const std::string& name) {
+  SCOPED_TRACE(name);
+  hamel::Run run = simulation.build();
+  StepMap map(std::shared_ptr<const RunPlan>(std::shared_ptr<void>(), &run.driver().plan()));
+  const auto equation = RecordedLift::of(map.plan());
+  ASSERT_NE(equation, nullptr);
+  const auto& inputs = map.plan().setup.inputs;
+  const Eigen::VectorXd u = inputs == nullptr ? InputValues() : inputs->at(0);
+  const double h = run.config().step.value();
+  const MotionState from = map.start();
+  const Eigen::Index n = map.velocities(), m = map.increments() - n;
+  Eigen::VectorXd d(map.increments() + 1);
+  for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = std::sin(12.9898 * static_cast<double>(i + 1));
+  d[d.size() - 1] *= h;
+  if (map.plan().system->mechanics->holonomic_rows() > 0)  // along phi = 0
+    d.head(n) = map.basis(from) * d.segment(n, m);
+  MotionState end, found_end;
+  ASSERT_TRUE(map.step(from, from.time + h, end).ok);
+  RecordedLift::Unknowns x;
+  ASSERT_TRUE(equation->solve(from, u, h, x));
+  ASSERT_TRUE(equation->end(found_end));
+  Eigen::VectorXd apart, expected;
+  ASSERT_TRUE(displacement(map.geometry(), end, found_end, apart));
+  EXPECT_LT(apart.lpNorm<Eigen::Infinity>(), 1e-11);
+  ASSERT_TRUE(equation->linearise(map.coordinates(end)));
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(equation->parameters());
+  q.head(n) = d.head(n);
+  q.segment(n, n) = map.basis(from) * d.segment(n, m);
+  q[q.size() - 2] = d[d.size() - 1];
+  const Eigen::VectorXd found = equation->jacobian() * q;
+  const auto moved = [&](double e, Eigen::VectorXd& by) {
+    MotionState begin, there;
+    map.retract(from, e * d.head(d.size() - 1), begin);
+    map.project(begin);
+    return map.step(begin, begin.time + h + e * d[d.size() - 1], there).ok &&
+           displacement(map.geometry(), end, there, by);
+  };
+  ASSERT_TRUE(ThreeDifferences::derivative(ThreeDifferences::fine, 0x1p-8, moved, expected));
+  EXPECT_LT((found - expected).lpNorm<Eigen::Infinity>(),
+            4e-9 * (1 + expected.lpNorm<Eigen::Infinity>()));
+}
+
+Simulation step_of(const std::string& name) {
+  return simulate(name)
+      .scheme("lift")
+      .s(0.5)
+      .solver("newton", {.tolerance = 1e-15})
+      .step(0.01)
+      .until(0.02);
+}
+
+/// Those without formulas of recorded numbers, and why, are known.
+TEST(RecordedLift, IsExactOfEveryRegisteredSystemThatHasFormulas) {
+  std::vector<std::string> without;
+  for (const std::string& name : registry().systems()) {
+    const hamel::Run run = step_of(name).build();
+    if (RecordedLift::of(run.driver().plan()) == nullptr) without.push_back(name);
+    else expect_derivatives_of(step_of(name), name);
+  }
+  EXPECT_THAT(without, testing::UnorderedElementsAre("n_trailer", "roller_racer", "snakeboard"));
+}
+
+/// Mechanisms: a free root on wheels with heights, a planar one with motors, a ball.
+TEST(RecordedLift, IsExactOfMechanisms) {
+  for (const char* name : {"bicycle", "car", "ballbot", "kick_scooter", "tricycle"})
+    expect_derivatives_of(step_of(name), name);
+}
 
 }  // namespace
 }  // namespace hamel
