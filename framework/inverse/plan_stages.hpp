@@ -28,7 +28,7 @@ namespace hamel {
 using StateNumber = std::function<double(double t, std::span<const double> coordinates,
                                          std::span<const double> velocity)>;
 
-/// The same, and as a formula of recorded numbers where it is one.
+/// StateNumber, and as a formula of recorded numbers where it is one.
 struct StateFormula {
   StateNumber value;  // may be empty
   RecordedNumber record;
