@@ -108,17 +108,21 @@ void ContactDynamics::find_null(int m, int rank, Eigen::MatrixXd& out) const {
 void ContactDynamics::share(int m, int rank) {
   const int open = m - rank;
   find_null(m, rank, null_);
-  for (int i = 0; i < m; ++i)
-    for (int j = 0; j < m; ++j)
-      k_work_.data()[i + j * m] =
-          row_times(on_[static_cast<size_t>(j)].row, responses_.col(i));  // K^T
-  right_.col(0).head(m).setZero();
-  if (eliminate(m, right_.data(), 1) == rank) find_null(m, rank, left_null_);
-  else left_null_ = null_;
+  left_null_ = null_;
+  const auto has_normal = [this](const Row& row) { return law(row.contact).has_normal(); };
+  if (std::ranges::any_of(on_, has_normal)) {  // else K is symmetric
+    for (int i = 0; i < m; ++i)
+      for (int j = 0; j < m; ++j)
+        k_work_.data()[i + j * m] =
+            row_times(on_[static_cast<size_t>(j)].row, responses_.col(i));  // K^T
+    right_.col(0).head(m).setZero();
+    if (eliminate(m, right_.data(), 1) == rank) find_null(m, rank, left_null_);
+  }
   Eigen::Map<Eigen::MatrixXd> equations(normal_equations_.data(), open, open);
   equations.setZero();
   work_m_.setZero();
-  for (int i = 0; i < m; ++i) {
+  for (int pivot = 0; pivot < m; ++pivot) {
+    const int i = order_[static_cast<size_t>(pivot)];
     const ContactLaw& law = this->law(on_[static_cast<size_t>(i)].contact);
     const double bound = law.normal ? std::sqrt(law.share) : law.friction * law.load;
     const double weight = bound > 0 ? 1 / (bound * bound) : 1;

@@ -82,7 +82,8 @@ class Motors {
 
 void keep_friction(Robot& robot, const std::vector<std::string>& names, const std::string& path,
                    std::vector<std::string>& mistakes) {
-  const std::vector<std::string> known = robot.joint_names();
+  std::vector<std::string> known = robot.joint_names();
+  known.emplace_back("all");
   for (const std::string& name : names) {
     const int i = robot.link_of_joint(name);
     const auto wrong = [&](const std::string& what) {
@@ -92,7 +93,7 @@ void keep_friction(Robot& robot, const std::vector<std::string>& names, const st
       for (RobotLink& link : robot.links)
         link.joint.rubs = link.joint.turns_or_slides() && link.joint.friction != 0;
     } else if (i < 0) {
-      wrong(unknown_name("joint", name, known) + "; or all");
+      wrong(unknown_name("joint", name, known));
     } else if (RobotJoint& joint = robot.link(i).joint;
                !joint.turns_or_slides() || joint.friction == 0) {
       wrong(

@@ -123,7 +123,7 @@ TEST_F(UrdfOptions, JointsKeepTheirFriction) {
     EXPECT_EQ(out["final"]["velocity"][0].get<double>(), 0);
   }
   EXPECT_THAT(mistake({arm, "--joint-friction", "tern"}),
-              HasSubstr("--joint-friction: unknown joint 'tern': expected one of mount, turn; did "
+              HasSubstr("--joint-friction: unknown joint 'tern': expected one of turn, all; did "
                         "you mean 'turn'?"));
   EXPECT_THAT(mistake({arm, "--joint-friction", "mount"}),
               HasSubstr("joint 'mount' has none, expected <dynamics friction="));

@@ -473,8 +473,8 @@ TEST(BadFriction, IsNamed) {
               HasSubstr("static_friction: got 0.2, expected at least friction, 0.3"));
   EXPECT_THAT(with({.static_friction = 0.2}), HasSubstr("static_friction: set friction too"));
   EXPECT_THAT(with({.friction = 0.3, .share = 2}), HasSubstr("distribution = \"stated\""));
-  EXPECT_THAT(with({.friction = 0.3, .share = 2}, true, "stated"),
-              HasSubstr("distribution: \"stated\" shares loads of statics"));
+  EXPECT_THAT(with({.friction = 0.3}, true, "stated"),
+              HasSubstr("share: distribution is \"stated\": expected a positive number"));
   EXPECT_THAT(with({.friction = 0.1, .tangential_restitution = 2}, true),
               HasSubstr("tangential_restitution: got 2, expected in [0, 1]"));
   EXPECT_THAT(with({.load = 3.0}), HasSubstr("load: set friction too"));
