@@ -4,7 +4,6 @@
 //   f(q), q = (eta, xi, t): at the coordinates of g tau(eta), eta = 0
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,14 +11,13 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/graph/code.hpp>
+#include <hamel/framework/run/data/event_formula.hpp>
 #include <hamel/framework/run/run/plan.hpp>
 
 namespace hamel {
 
 /// A formula of a state in the current recording. Throws std::domain_error where it is none.
-using RecordedNumber =
-    std::function<graph::Number(const graph::Number& t, std::span<const graph::Number> coordinates,
-                                std::span<const graph::Number> velocity)>;
+using RecordedNumber = StateVariables::Recorded;
 
 class RecordedPath {
  public:

@@ -167,12 +167,12 @@ bool TangentMotion::solve_equation(const MotionState& from, const MotionState& t
 }
 
 bool TangentMotion::push(const TangentState& from, const MotionState& to,
-                         const std::array<double, 3>& weights, const Eigen::MatrixXd& columns,
-                         Eigen::MatrixXd& out) {
+                         const std::array<double, 3>& weights, bool exact,
+                         const Eigen::MatrixXd& columns, Eigen::MatrixXd& out) {
   const Geometry& geometry = motion_.geometry();
   const double h = to.time - from.state.time;
   out.setZero(columns.rows(), columns.cols());
-  if (exact_ && columns.cols() > 0)
+  if (exact && columns.cols() > 0)
     out.noalias() = equation_->jacobian().leftCols(columns.rows()) * columns;
   MotionState begin;
   Eigen::VectorXd column;
@@ -182,7 +182,7 @@ bool TangentMotion::push(const TangentState& from, const MotionState& to,
       displace(geometry, from.state, columns.col(j), x, begin);
       return step_beside(motion_, begin, to, by);
     };
-    if (e > 0 && !exact_) {
+    if (e > 0 && !exact) {
       if (!ThreeDifferences::derivative(weights, e, moved_state, column)) return false;
       out.col(j) = column;
     }
@@ -216,11 +216,11 @@ Status TangentMotion::step(const TangentState& from, double t, TangentState& to,
       return no_tangent(from.state.time, "the step of the run is not repeated from its state");
     end = *known;
   }
-  exact_ = from.columns.cols() > 0 && solve_equation(from.state, end);
+  const bool exact = from.columns.cols() > 0 && solve_equation(from.state, end);
   Eigen::MatrixXd columns, coarse;
   const auto pushed = [&] {
-    return push(from, end, weights(), from.columns, columns) &&
-           (!measure_ || push(from, end, ThreeDifferences::coarse, from.coarse, coarse));
+    return push(from, end, weights(), exact, from.columns, columns) &&
+           (!measure_ || push(from, end, ThreeDifferences::coarse, false, from.coarse, coarse));
   };
   if (!pushed() && (std::exchange(projects_, true) || !pushed()))
     return no_tangent(from.state.time, "a step beside it fails: " + failure_);

@@ -8,8 +8,8 @@
 // the motion. Psi is defined beside the constraints of p too, where a kernel begins
 // with the admissible part of a velocity; a kernel that does not is given the state projected onto
 // them, Psi_p(Pi_p z), by z and by p alike.
-//   The error is measured: a second set of columns is carried with coarser differences. Where ten
-// digits will do, differences are plain.
+//   The error is measured: a second set of columns is carried with coarser differences, also where
+// the first is exact. Where ten digits will do, differences are plain.
 #pragma once
 
 #include <array>
@@ -81,7 +81,7 @@ class TangentMotion {
   // Finds D_z Psi of a step by its equation; false where it has none, or another root.
   bool solve_equation(const MotionState& from, const MotionState& to);
   bool push(const TangentState& from, const MotionState& to, const std::array<double, 3>& weights,
-            const Eigen::MatrixXd& columns, Eigen::MatrixXd& out);
+            bool exact, const Eigen::MatrixXd& columns, Eigen::MatrixXd& out);
 
   MovedMotion motion_;
   std::vector<MovedVariable> moved_;
@@ -93,7 +93,6 @@ class TangentMotion {
   Snapshot at_;
   std::string failure_;  // of a step beside the motion
   bool side_ = false, measure_, plain_, projects_ = false;
-  bool exact_ = false;  // is D_z Psi of the step known?
   int steps_ = 0;
 };
 
