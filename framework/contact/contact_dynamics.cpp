@@ -32,6 +32,7 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
       laws_(std::move(laws)),
       always_(rows_of_none(*mechanics_, laws_)),
       metric_(mechanics_->dim(), static_cast<int>(always_.size())),
+      pivots_(3 * count()),
       problem_(3 * count(), count()) {
   for (const ContactLaw& law : laws_) constant_loads_.push_back(law.load);
   const int n = mechanics_->dim(), k = mechanics_->constraint_count(), most = 3 * count();
@@ -54,7 +55,6 @@ ContactDynamics::ContactDynamics(std::shared_ptr<const Geometry> geometry,
   left_null_ = null_;
   work_m_.setZero(most);
   normal_equations_.setZero(most, most);
-  order_.resize(static_cast<size_t>(most));
   directions_.resize(contacts, {1, 0});
   normal_.resize(contacts);
   coefficient_.resize(contacts);
@@ -203,7 +203,7 @@ void ContactDynamics::find_first_direction(const ContactStates& states, int i) {
       right_.data()[k + l * m] = row_times(row_of(k), responses_.col(m + l));
     right_.data()[k + n * m] = row_times(row_of(k), free_) - rates_[row_of(k)];
   }
-  if (m > 0) eliminate(m, right_.data(), n + 1);
+  if (m > 0) pivots_.eliminate(k_map(m), Eigen::Map<Eigen::MatrixXd>(right_.data(), m, n + 1));
   Eigen::Matrix3d g = Eigen::Matrix3d::Zero();
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   for (int k = 0; k < n; ++k) {

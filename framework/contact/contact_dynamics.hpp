@@ -35,6 +35,7 @@
 #include <Eigen/Core>
 
 #include <hamel/framework/contact/contact_problem.hpp>
+#include <hamel/framework/contact/pivots.hpp>
 #include <hamel/framework/lie/geometry.hpp>
 #include <hamel/framework/mechanics/contact_law.hpp>
 #include <hamel/framework/mechanics/inputs.hpp>
@@ -150,8 +151,7 @@ class ContactDynamics {
   // K l = right side, in k_work_ and multipliers_, of m rows; where they depend on each other the
   // reactions are those of the least sum of squares, each in units of its bound.
   void solve_rows(int m);
-  int eliminate(int m, double* b, int columns);
-  void find_null(int m, int rank, Eigen::MatrixXd& out) const;
+  Eigen::Map<Eigen::MatrixXd> k_map(int m) { return {k_work_.data(), m, m}; }
   void share(int m, int rank);
   ContactProblem::Outcome give_way(int m);
 
@@ -173,7 +173,7 @@ class ContactDynamics {
   std::vector<double> normal_, coefficient_;
   std::vector<Eigen::Vector2d> tangential_, directions_;
   std::vector<Row> on_;
-  std::vector<int> order_;  // of the pivots of solve_rows()
+  Pivots pivots_;
   Eigen::MatrixXd null_, left_null_, normal_equations_;
   Eigen::VectorXd work_m_;
   std::vector<ContactBlock> blocks_;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <utility>
 
 #include <hamel/framework/lie/linear_solve.hpp>
 
@@ -26,7 +25,7 @@ ContactProblem::ContactProblem(int unknowns, int contacts)
       jacobian_(unknowns, unknowns),
       null_(unknowns, unknowns),
       squares_(unknowns * unknowns),
-      column_(static_cast<size_t>(unknowns)),
+      pivots_(unknowns),
       convex_(unknowns) {
   answers_.reserve(static_cast<size_t>(contacts));
   doubtful_.reserve(static_cast<size_t>(contacts));
@@ -104,9 +103,8 @@ void ContactProblem::equations(const Matrix& g, const Vector& c, const Blocks& b
   }
 }
 
-// Gauss with complete pivoting, in place, the correction of P into before_; of several the
-// shortest.
-bool ContactProblem::eliminate() {
+// The correction of P, into before_; of several the shortest. False where it is not finite.
+bool ContactProblem::find_correction() {
   auto r = residual_.head(size_);
   auto j = jacobian_.topLeftCorner(size_, size_);
   for (int i = 0; i < size_; ++i) {
@@ -114,48 +112,17 @@ bool ContactProblem::eliminate() {
     if (!(row > 0)) continue;
     j.row(i) /= row;
     r[i] /= row;
-    column_[static_cast<size_t>(i)] = i;
   }
-  for (int i = 0; i < size_; ++i) column_[static_cast<size_t>(i)] = i;
-  int rank = 0;
-  for (; rank < size_; ++rank) {
-    int row = 0, column = 0;
-    const int left = size_ - rank;
-    if (!(j.bottomRightCorner(left, left).cwiseAbs().maxCoeff(&row, &column) > 1e-11)) break;
-    j.row(rank).swap(j.row(rank + row));
-    std::swap(r[rank], r[rank + row]);
-    j.col(rank).swap(j.col(rank + column));
-    std::swap(column_[static_cast<size_t>(rank)], column_[static_cast<size_t>(rank + column)]);
-    for (int i = rank + 1; i < size_; ++i) {
-      const double factor = j(i, rank) / j(rank, rank);
-      j.row(i).tail(left) -= factor * j.row(rank).tail(left);
-      r[i] -= factor * r[rank];
-    }
-  }
-  before_.head(size_).setZero();
-  for (int i = rank - 1; i >= 0; --i) {
-    double sum = r[i];
-    for (int k = i + 1; k < rank; ++k) sum -= j(i, k) * before_[column_[static_cast<size_t>(k)]];
-    before_[column_[static_cast<size_t>(i)]] = sum / j(i, i);
-  }
+  const int rank = pivots_.eliminate(j, r);
+  before_.head(size_) = r;
   if (rank < size_) shorten(rank);
   return before_.head(size_).allFinite();
 }
 
-// Takes what has no effect out of the correction d: d - Z (Z^T Z)^-1 Z^T d, Z = [-U_1^-1 U_2; 1] in
-// the order of the pivots.
+// Takes what has no effect out of the correction d: d - Z (Z^T Z)^-1 Z^T d.
 void ContactProblem::shorten(int rank) {
   const int open = size_ - rank;
-  const auto place = [this](int i) { return column_[static_cast<size_t>(i)]; };
-  const auto& j = jacobian_;
-  for (int c = 0; c < open; ++c) {
-    for (int i = rank; i < size_; ++i) null_(place(i), c) = i == rank + c ? 1 : 0;
-    for (int i = rank - 1; i >= 0; --i) {
-      double sum = -j(i, rank + c);
-      for (int k = i + 1; k < rank; ++k) sum -= j(i, k) * null_(place(k), c);
-      null_(place(i), c) = sum / j(i, i);
-    }
-  }
+  pivots_.find_null(jacobian_.topLeftCorner(size_, size_), rank, null_);
   const auto z = null_.topLeftCorner(size_, open);
   Eigen::Map<Eigen::MatrixXd> squares(squares_.data(), open, open);
   squares.noalias() = z.transpose().lazyProduct(z);
@@ -170,7 +137,7 @@ bool ContactProblem::improve(const Matrix& g, const Vector& c, const Blocks& blo
   double best = contact_residual(g, c, blocks, p_.head(size_));
   for (int k = 0; k < 20 && best > 1e-15; ++k) {
     equations(g, c, blocks);
-    if (!eliminate()) break;
+    if (!find_correction()) break;
     p_.head(size_) -= before_.head(size_);
     const double now = contact_residual(g, c, blocks, p_.head(size_));
     if (!(now < best)) {

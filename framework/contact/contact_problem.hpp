@@ -21,6 +21,7 @@
 
 #include <hamel/framework/contact/contact_block.hpp>
 #include <hamel/framework/contact/convex_contacts.hpp>
+#include <hamel/framework/contact/pivots.hpp>
 
 namespace hamel {
 
@@ -72,7 +73,7 @@ class ContactProblem {
   void look_at_block(const Matrix& g, const Vector& c, const ContactBlock& block);
   void equations(const Matrix& g, const Vector& c, const Blocks& blocks);
   bool improve(const Matrix& g, const Vector& c, const Blocks& blocks);
-  bool eliminate();
+  bool find_correction();
   void shorten(int rank);
   Outcome sweeps(const Matrix& g, const Vector& c, const Blocks& blocks, int first_look);
   bool turn_some(const Matrix& g, const Vector& c, const Blocks& blocks);
@@ -83,7 +84,7 @@ class ContactProblem {
   Eigen::VectorXd squares_;
   std::vector<ContactAnswer> answers_;
   std::vector<size_t> doubtful_;
-  std::vector<int> column_;
+  Pivots pivots_;
   Eigen::Matrix3d block_g_;
   Eigen::Vector3d block_c_;
   ContactSolutions solutions_;

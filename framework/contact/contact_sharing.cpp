@@ -1,7 +1,6 @@
 // The rows that are on and their reactions, where rows may depend on each other.
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <hamel/framework/contact/contact_dynamics.hpp>
 #include <hamel/framework/lie/linear_solve.hpp>
@@ -9,8 +8,6 @@
 namespace hamel {
 namespace {
 
-// A pivot below this part of the largest one is round-off.
-constexpr double kNoPivot = 1e-11;
 // Compliance of contacts beside the largest diagonal entry, at the end.
 constexpr double kGivesWay = 1e-9;
 // What is left of a row beside others, relative to it, that is round-off.
@@ -47,59 +44,9 @@ std::vector<int> ContactDynamics::rows(const ContactStates& states) const {
   return kept;
 }
 
-// Gauss with complete pivoting of the first m rows of k_work_, which stay as U in the order of
-// order_; b, m x columns, becomes the solution whose unknowns without a pivot are 0.
-int ContactDynamics::eliminate(int m, double* b, int columns) {
-  Eigen::Map<Eigen::MatrixXd> k(k_work_.data(), m, m), x(b, m, columns);
-  for (int i = 0; i < m; ++i) order_[static_cast<size_t>(i)] = i;
-  int rank = 0;
-  double first = 0;
-  for (; rank < m; ++rank) {
-    int row = 0, column = 0;
-    const int left = m - rank;
-    const double pivot = k.bottomRightCorner(left, left).cwiseAbs().maxCoeff(&row, &column);
-    if (rank == 0) first = pivot;
-    if (!(pivot > kNoPivot * first)) break;
-    k.row(rank).swap(k.row(rank + row));
-    x.row(rank).swap(x.row(rank + row));
-    k.col(rank).swap(k.col(rank + column));
-    std::swap(order_[static_cast<size_t>(rank)], order_[static_cast<size_t>(rank + column)]);
-    for (int i = rank + 1; i < m; ++i) {
-      const double factor = k(i, rank) / k(rank, rank);
-      for (int j = rank; j < m; ++j) k(i, j) -= factor * k(rank, j);
-      x.row(i) -= factor * x.row(rank);
-    }
-  }
-  for (int c = 0; c < columns; ++c) {
-    work_m_.setZero();
-    for (int i = rank - 1; i >= 0; --i) {
-      double sum = x(i, c);
-      for (int j = i + 1; j < rank; ++j) sum -= k(i, j) * work_m_[order_[static_cast<size_t>(j)]];
-      work_m_[order_[static_cast<size_t>(i)]] = sum / k(i, i);
-    }
-    for (int i = 0; i < m; ++i) x(i, c) = work_m_[i];
-  }
-  return rank;
-}
-
 void ContactDynamics::solve_rows(int m) {
-  const int rank = eliminate(m, multipliers_.data(), 1);
+  const int rank = pivots_.eliminate(k_map(m), multipliers_.head(m));
   if (rank < m) share(m, rank);
-}
-
-// Null vectors of the first m rows of k_work_ behind eliminate(): Z = [-U_1^-1 U_2; 1] in the order
-// of the pivots, into the rows of `out` that are in order_.
-void ContactDynamics::find_null(int m, int rank, Eigen::MatrixXd& out) const {
-  const Eigen::Map<const Eigen::MatrixXd> k(k_work_.data(), m, m);
-  const auto place = [this](int i) { return order_[static_cast<size_t>(i)]; };
-  for (int c = 0; c < m - rank; ++c) {
-    for (int i = rank; i < m; ++i) out(place(i), c) = i == rank + c ? 1 : 0;
-    for (int i = rank - 1; i >= 0; --i) {
-      double sum = -k(i, rank + c);
-      for (int j = i + 1; j < rank; ++j) sum -= k(i, j) * out(place(j), c);
-      out(place(i), c) = sum / k(i, i);
-    }
-  }
 }
 
 // l + Z y with K Z = 0, so that contacts give way by l/share each and what gives way is a motion of
@@ -107,7 +54,7 @@ void ContactDynamics::find_null(int m, int rank, Eigen::MatrixXd& out) const {
 // 1/(mu load)^2: Z_l^T D Z y = -Z_l^T D l. Where K is symmetric that is the least sum of D l^2.
 void ContactDynamics::share(int m, int rank) {
   const int open = m - rank;
-  find_null(m, rank, null_);
+  pivots_.find_null(k_map(m), rank, null_);
   left_null_ = null_;
   const auto has_normal = [this](const Row& row) { return law(row.contact).has_normal(); };
   if (std::ranges::any_of(on_, has_normal)) {  // else K is symmetric
@@ -116,13 +63,14 @@ void ContactDynamics::share(int m, int rank) {
         k_work_.data()[i + j * m] =
             row_times(on_[static_cast<size_t>(j)].row, responses_.col(i));  // K^T
     right_.col(0).head(m).setZero();
-    if (eliminate(m, right_.data(), 1) == rank) find_null(m, rank, left_null_);
+    if (pivots_.eliminate(k_map(m), right_.col(0).head(m)) == rank)
+      pivots_.find_null(k_map(m), rank, left_null_);
   }
   Eigen::Map<Eigen::MatrixXd> equations(normal_equations_.data(), open, open);
   equations.setZero();
   work_m_.setZero();
   for (int pivot = 0; pivot < m; ++pivot) {
-    const int i = order_[static_cast<size_t>(pivot)];
+    const int i = pivots_.of(pivot);
     const ContactLaw& law = this->law(on_[static_cast<size_t>(i)].contact);
     const double bound = law.normal ? std::sqrt(law.share) : law.friction * law.load;
     const double weight = bound > 0 ? 1 / (bound * bound) : 1;

@@ -176,7 +176,7 @@ bool ContactDynamics::project(const std::vector<int>& rows, Eigen::VectorXd& xi)
     multipliers_[i] = row_times(row, xi) - b_[row];
     for (int j = 0; j < m; ++j) k_work_.data()[i + j * m] = row_times(row, responses_.col(j));
   }
-  if (m > 0) eliminate(m, multipliers_.data(), 1);
+  if (m > 0) pivots_.eliminate(k_map(m), multipliers_.head(m));
   if (!multipliers_.head(m).allFinite()) return false;
   for (int j = 0; j < m; ++j) xi -= multipliers_[j] * responses_.col(j);
   return true;

@@ -102,7 +102,7 @@ TEST_F(Motion, Pictures) {
 // 0.4 s at a tenth of the speed, 20 frames a second.
 TEST_F(Motion, AFilm) {
   const std::string gif = written("m.gif", {"--size", "128x96", "--speed", "0.5"});
-  if (gif.empty()) HAMEL_SKIP_WITHOUT("browser");
+  if (gif.empty()) HAMEL_SKIP_WITHOUT("browser or no ffmpeg");
   EXPECT_THAT(gif, StartsWith("GIF89a"));
   size_t frames = 0;
   for (size_t at = 0; (at = gif.find(std::string("\x21\xf9\x04", 3), at)) != std::string::npos;
