@@ -53,6 +53,9 @@ struct ContactState {
 };
 using ContactStates = std::vector<ContactState>;
 
+/// A contact's impulses in the problem of a step: none, that of N alone, all.
+enum class ImpulseOf : char { none, normal, all };
+
 class ContactDynamics {
  public:
   using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
@@ -104,6 +107,26 @@ class ContactDynamics {
   /// are closed already. Returns why there is none.
   std::string strike(const ContactStates& states, const std::vector<char>& strikes,
                      Eigen::VectorXd& xi);
+  /// The impulses at one end of a step (nonsmooth_kernel.hpp), of the contacts that are `on`: those
+  /// that slip have N and C of (2) where their direction is known, all others W; given loads press
+  /// for a time, and what slips under them has that impulse.
+  void set_up_impulses(const ContactStates& states, const std::vector<ImpulseOf>& on, double time,
+                       bool along_slip);
+  /// Behind it: how many, their rows, what one does to the velocity, and what given loads do.
+  int impulse_count() const { return static_cast<int>(on_.size()); }
+  int impulse_row(int i) const { return on_[static_cast<size_t>(i)].row; }
+  int impulse_contact(int i) const { return on_[static_cast<size_t>(i)].contact; }
+  auto impulse_response(int i) const { return responses_.col(i); }
+  const Eigen::VectorXd& given_change() const { return free_; }
+  /// The impulses P with gamma = G P + c, into impulses(), and what the contacts then do. near:
+  /// from those of a problem next to this one. Returns why there are none.
+  std::string solve_impulses(const Eigen::MatrixXd& g, const Eigen::VectorXd& c, bool near,
+                             ContactStates& states);
+  auto impulses() const { return problem_.p(); }
+  /// Behind it: are their rows dependent? A G that is not theirs hides it.
+  bool shared() const { return shared_; }
+  /// G = W M_A C^T of these.
+  void impulse_metric(Eigen::MatrixXd& out) const;
   /// Takes the slip of contact i, and what other rows that are on have gained, out of xi.
   bool stop(const ContactStates& states, int i, Eigen::VectorXd& xi);
   /// Takes the rate of its gap out of xi, along C of (2).
@@ -141,7 +164,9 @@ class ContactDynamics {
   // Does a contact that is closed slide already? Its direction is known then, and its friction.
   bool slides_on(ContactState& state, int i, bool told);
   void take_answer(ContactState& state, size_t block) const;
-  std::string solve_problem(const char* level);
+  // G of responses_ into k_; the solution with k_ and c_.
+  void find_metric();
+  std::string solve_problem(const char* level, bool near = false);
   void set_up_impact(const ContactStates& states, const std::vector<char>& strikes, bool beside);
   std::string why_coupled() const;
   std::string solve_impact(Eigen::VectorXd& xi);
@@ -153,7 +178,9 @@ class ContactDynamics {
   void solve_rows(int m);
   Eigen::Map<Eigen::MatrixXd> k_map(int m) { return {k_work_.data(), m, m}; }
   void share(int m, int rank);
-  ContactProblem::Outcome give_way(int m);
+  // near: P is that of a problem next to this one.
+  ContactProblem::Outcome give_way(int m, bool near);
+  void give_way_by(double compliance, int m);
 
   std::shared_ptr<const Geometry> geometry_;
   std::shared_ptr<const Mechanics> mechanics_;
@@ -179,6 +206,7 @@ class ContactDynamics {
   std::vector<ContactBlock> blocks_;
   std::vector<int> block_contacts_;
   ContactProblem problem_;
+  bool shared_ = false;  // the last problem had dependent rows
   double time_ = 0;
 };
 

@@ -52,6 +52,7 @@ std::string ContactDynamics::why_coupled() const {
 }
 
 std::string ContactDynamics::solve_impact(Eigen::VectorXd& xi) {
+  find_metric();
   if (std::string why = solve_problem("impulse"); !why.empty()) return why;
   xi = xi_;
   for (size_t i = 0; i < on_.size(); ++i)

@@ -219,6 +219,10 @@ ContactProblem::Outcome ContactProblem::solve_next(const Matrix& g, const Vector
   return sweeps(g, c, blocks, 1);
 }
 
+bool ContactProblem::refine(const Matrix& g, const Vector& c, const Blocks& blocks) {
+  return size_ == c.size() && answers_.size() == blocks.size() && improve(g, c, blocks);
+}
+
 // Sweeps until the equations of what the contacts then do have a solution, after so many for the
 // first time.
 ContactProblem::Outcome ContactProblem::sweeps(const Matrix& g, const Vector& c,

@@ -61,6 +61,9 @@ class ContactProblem {
   /// From the P that solve() found for a problem next to this one.
   Outcome solve_next(const Matrix& g, const Vector& c, const std::vector<ContactBlock>& blocks);
 
+  /// From there too, without a search: false where what the contacts do is another.
+  bool refine(const Matrix& g, const Vector& c, const std::vector<ContactBlock>& blocks);
+
   /// Behind solve(): P, and what each contact does.
   auto p() const { return p_.head(size_); }
   const std::vector<ContactAnswer>& answers() const { return answers_; }

@@ -84,22 +84,31 @@ void ContactDynamics::share(int m, int rank) {
     for (int c = 0; c < open; ++c) multipliers_[i] += work_m_[c] * null_(i, c);
 }
 
-// Contacts that give way, where rows depend on each other, ever less: the modes and the impulses of
-// the last are those of rigid ones, with an error of its size.
-ContactProblem::Outcome ContactDynamics::give_way(int m) {
-  const double size = k_.topLeftCorner(m, m).diagonal().maxCoeff();
-  right_.col(0).head(m) = k_.diagonal().head(m);
-  ContactProblem::Outcome out = ContactProblem::Outcome::none;
-  for (double compliance = 1; compliance > kGivesWay; compliance /= 10) {
-    for (int i = 0; i < m; ++i) {
-      const ContactLaw& law = this->law(on_[static_cast<size_t>(i)].contact);
-      if (law.normal) k_(i, i) = right_(i, 0) + compliance * size / law.share;
-    }
-    const auto g = k_.topLeftCorner(m, m);
-    out = compliance < 1 ? problem_.solve_next(g, c_.head(m), blocks_)
-                         : problem_.solve(g, c_.head(m), blocks_);
-    if (out != ContactProblem::Outcome::one) break;
+void ContactDynamics::give_way_by(double compliance, int m) {
+  const double size = right_.col(0).head(m).maxCoeff();
+  for (int i = 0; i < m; ++i) {
+    const ContactLaw& law = this->law(on_[static_cast<size_t>(i)].contact);
+    if (law.normal) k_(i, i) = right_(i, 0) + compliance * size / law.share;
   }
+}
+
+// Contacts that give way, where rows depend on each other, ever less; what the last do rigid ones
+// do, whose impulses are the nearest to theirs.
+ContactProblem::Outcome ContactDynamics::give_way(int m, bool near) {
+  const auto g = k_.topLeftCorner(m, m);
+  const auto c = c_.head(m);
+  right_.col(0).head(m) = k_.diagonal().head(m);
+  give_way_by(kGivesWay, m);
+  ContactProblem::Outcome out = ContactProblem::Outcome::one;
+  if (!near || !problem_.refine(g, c, blocks_)) {
+    for (double compliance = 1; compliance > kGivesWay; compliance /= 10) {
+      give_way_by(compliance, m);
+      out = compliance < 1 ? problem_.solve_next(g, c, blocks_) : problem_.solve(g, c, blocks_);
+      if (out != ContactProblem::Outcome::one) return out;
+    }
+  }
+  k_.diagonal().head(m) = right_.col(0).head(m);
+  problem_.refine(g, c, blocks_);
   return out;
 }
 

@@ -72,23 +72,27 @@ bool ContactDynamics::dependent() const {
   return missing(all) > missing(loads);
 }
 
-// G of responses_ into k_, and the solution with c_.
-std::string ContactDynamics::solve_problem(const char* level) {
+void ContactDynamics::find_metric() {
   const auto m = static_cast<Eigen::Index>(on_.size());
   for (Eigen::Index i = 0; i < m; ++i)
     for (Eigen::Index j = 0; j < m; ++j)
       k_(i, j) = row_times(on_[static_cast<size_t>(i)].row, responses_.col(j));
+}
+
+std::string ContactDynamics::solve_problem(const char* level, bool near) {
+  const auto m = static_cast<Eigen::Index>(on_.size());
   std::vector<std::string> names;
   for (const int i : block_contacts_) names.push_back(law(i).name);
-  const bool open = dependent();
-  if (open && std::ranges::any_of(block_contacts_, [this](int i) { return !(law(i).share > 0); }))
+  shared_ = dependent();
+  if (shared_ &&
+      std::ranges::any_of(block_contacts_, [this](int i) { return !(law(i).share > 0); }))
     return fmt::format(
         "undetermined_reactions: the reactions of {} are not determined by the motion: their rows "
         "are dependent; leave out a contact, or let them share (distribution = "
         "\"equal_compliance\")",
         fmt::join(names, ", "));
-  const auto outcome = open ? give_way(static_cast<int>(m))
-                            : problem_.solve(k_.topLeftCorner(m, m), c_.head(m), blocks_);
+  const auto outcome = shared_ ? give_way(static_cast<int>(m), near)
+                               : problem_.solve(k_.topLeftCorner(m, m), c_.head(m), blocks_);
   if (outcome == ContactProblem::Outcome::one) return "";
   const ContactLaw& law = this->law(block_contacts_.front());
   if (blocks_.size() > 1) {
@@ -158,6 +162,7 @@ std::string ContactDynamics::decide(ContactStates& states, const std::vector<cha
   if (blocks_.empty()) return "";
   for (size_t i = 0; i < on_.size(); ++i)
     c_[static_cast<Eigen::Index>(i)] = row_times(on_[i].row, free_) - rates_[on_[i].row];
+  find_metric();
   if (std::string why = solve_problem("acceleration"); !why.empty()) return why;
   for (size_t k = 0; k < blocks_.size(); ++k)
     take_answer(states[static_cast<size_t>(block_contacts_[k])], k);

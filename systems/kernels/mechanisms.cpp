@@ -1,4 +1,5 @@
 // Kernels of mechanisms: lift on recorded programs, else the scheme's own kernel.
+#include <hamel/framework/schemes/nonsmooth.hpp>
 #include <hamel/systems/kernels/lift_newton.hpp>
 #include <hamel/systems/kernels/mechanisms.hpp>
 #include <hamel/systems/kernels/units.hpp>
@@ -59,6 +60,9 @@ void add_mechanism_kernels(Registry& registry) {
   lift.erased = [general = lift.erased](const KernelSetup& setup) {
     return make_mechanism_lift(setup, general);
   };
+  SchemeInfo nonsmooth = scheme_info<Nonsmooth>();
+  nonsmooth.erased = lift.erased;
+  registry.add(std::move(nonsmooth));
   registry.add(std::move(lift));
 }
 

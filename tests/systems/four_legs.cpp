@@ -149,37 +149,59 @@ TEST(FourLegs, RestInAnyOrder) {
   EXPECT_LT(std::abs(one.trajectory.column("w3").back()), 1e-12);
 }
 
-// From any velocity along the ground, with a low mass centre, four to six legs, each with a
-// friction of its own: to rest, but for the few of 60 that end with a reason where slips of several
-// end at once.
-TEST(FourLegs, ComeToRest) {
-  std::mt19937 engine(5);
-  std::uniform_real_distribution<double> random(-1, 1);
-  int rested = 0;
-  for (int k = 0; k < 60; ++k) {
+// Sleds with a low mass centre, four to six legs, each with a friction of its own, at any velocity
+// along the ground.
+class Sleds {
+ public:
+  Simulation next() {
+    const int k = made_++;
     Mechanism m("sled");
-    const double x = 0.1 * random(engine), y = 0.1 * random(engine);
+    const double x = 0.1 * random(), y = 0.1 * random();
     m.body("sled", {.mass = 2, .at = {x, y, 0.1}, .inertia = {0.1, 0.12, 0.2}});
     m.free("root", "sled", {.at = {0, 0, 0.1}});
     for (int i = 0; i < 4 + k % 3; ++i) {
-      const double angle = 2 * M_PI * (i + 0.3 * random(engine)) / (4 + k % 3);
+      const double angle = 2 * M_PI * (i + 0.3 * random()) / (4 + k % 3);
       m.point(leg(i), "sled",
               {.at = {0.4 * std::cos(angle), 0.4 * std::sin(angle), 0},
-               .friction = 0.35 + 0.3 * random(engine)});
+               .friction = 0.35 + 0.3 * random()});
     }
-    const Result run =
-        simulate(m)
-            .slip()
-            .start({.velocity = {0, 0, 5 * random(engine), random(engine), random(engine), 0}})
-            .until(20)
-            .every(1000)
-            .run();
+    const double w = 5 * random(), v = random();
+    return simulate(m).slip().start({.velocity = {0, 0, w, v, random(), 0}}).every(1000);
+  }
+
+ private:
+  double random() { return uniform_(engine_); }
+  std::mt19937 engine_{5};
+  std::uniform_real_distribution<double> uniform_{-1, 1};
+  int made_ = 0;
+};
+
+// To rest, but for the few of 60 that end with a reason where slips of several legs end at once.
+TEST(FourLegs, ComeToRest) {
+  Sleds sleds;
+  int rested = 0;
+  for (int k = 0; k < 60; ++k) {
+    const Result run = sleds.next().until(20).run();
     if (!run.status.ok) continue;
     ++rested;
     EXPECT_LT(Eigen::Map<const Eigen::VectorXd>(run.last.velocity.data(), 6).norm(), 1e-11) << k;
     EXPECT_LT(run.steps, 400) << k;
   }
   EXPECT_GE(rested, 58);
+}
+
+// Each of them, in steps of one size, and as far.
+TEST(FourLegs, ComeToRestBySteps) {
+  Sleds sleds, again;
+  for (int k = 0; k < 4; ++k) {
+    const Result run = sleds.next().scheme("nonsmooth").step(0.02).until(2).run();
+    ASSERT_TRUE(run.status.ok) << k << run.status.reason;
+    EXPECT_LT(Eigen::Map<const Eigen::VectorXd>(run.last.velocity.data(), 6).norm(), 1e-11) << k;
+    const Result exact = again.next().until(2).run();
+    if (!exact.status.ok) continue;
+    for (size_t i = 0; i < exact.last.coordinates.size(); ++i)
+      EXPECT_NEAR(run.last.coordinates[i], exact.last.coordinates[i], 2e-3) << k << " " << i;
+  }
 }
 
 TEST(FourLegs, EndWhereTheyMayNotShare) {

@@ -115,7 +115,6 @@ class ContactKernel final : public Kernel {
   std::string decide(const std::vector<char>& slides);
   std::vector<char> at_rims(int first);
   void grow(int first);
-  void name_changes(const ContactStates& before);
   void take_up(double step);
   std::shared_ptr<const Mechanics> mechanics_of(
       const std::shared_ptr<const ContactStates>& states) const;

@@ -21,15 +21,6 @@ constexpr double kOnRim = 1e-9;
 // A slip that is this part of one that has grown has grown too.
 constexpr double kGrownToo = 0.5;
 
-const char* verb(const ContactLaw& law, ContactMode mode) {
-  switch (mode) {
-    case ContactMode::open: return "opens";
-    case ContactMode::rolls: return law.rolls_name();
-    case ContactMode::slides: return law.slides_name();
-  }
-  return "";
-}
-
 }  // namespace
 
 // At the switch: the modes behind it, and the events. Where there are none the state before it is
@@ -63,11 +54,11 @@ std::string ContactKernel::apply(const Found& found) {
     case Switch::grows: grow(i); break;
     case Switch::stops: why = stop_slip(i); break;
   }
-  if (why.empty()) name_changes(before);
+  if (why.empty()) contacts_->name_changes(before, std::max(time_, ends_), events_);
   if (why.empty() && too_many(time_)) {
     why = fmt::format(
         "sticks_and_slips: contact '{}' has switched {} times within a millionth of the run at t = "
-        "{:.10g}",
+        "{:.10g}: the scheme nonsmooth takes it in steps of one size",
         dynamics().law(i).name, kMostSwitches, time_);
   }
   if (!why.empty()) {
@@ -126,16 +117,6 @@ std::string ContactKernel::decide(const std::vector<char>& slides) {
         before[static_cast<size_t>(i)].mode != ContactMode::open)
       followed(i).opened = time_;
   return why;
-}
-
-void ContactKernel::name_changes(const ContactStates& before) {
-  if (ends_ < time_) ends_ = time_;
-  for (int i = 0; i < count(); ++i) {
-    if (contact(i).mode == before[static_cast<size_t>(i)].mode) continue;
-    if (contact(i).mode != ContactMode::open && dynamics().law(i).tangential.empty()) continue;
-    events_.emplace_back(dynamics().law(i).name + "." + verb(dynamics().law(i), contact(i).mode),
-                         ends_);
-  }
 }
 
 // The impact of contact `first`, and of others whose gaps close with it.

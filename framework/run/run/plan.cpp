@@ -9,7 +9,9 @@
 #include <hamel/framework/mechanics/system_model.hpp>
 #include <hamel/framework/run/data/data_system.hpp>
 #include <hamel/framework/run/run/contact_kernel.hpp>
+#include <hamel/framework/run/run/nonsmooth_kernel.hpp>
 #include <hamel/framework/schemes/composition.hpp>
+#include <hamel/framework/schemes/nonsmooth.hpp>
 
 namespace hamel {
 namespace {
@@ -266,7 +268,7 @@ Config resolved(Config config, const Method& method, const SystemModel& system,
 }  // namespace
 
 KernelFactory RunPlan::run_kernel() const {
-  return contacts == nullptr ? kernel : contact_kernels(smooth, geometry, *system, contacts);
+  return contacts == nullptr ? kernel : with_contacts(smooth, geometry, *system, contacts);
 }
 
 RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnSystem* own,
@@ -305,7 +307,9 @@ RunPlan plan_run(const Registry& registry, const RunRequest& request, const OwnS
   if (!system.contact_laws.empty()) {
     plan.contacts = std::make_shared<RunContacts>(plan.geometry, system);
     plan.smooth = plan.kernel;
-    plan.kernel = contact_kernels(plan.smooth, plan.geometry, system, nullptr);
+    plan.with_contacts =
+        method.scheme->name == Nonsmooth::name() ? &nonsmooth_kernels : &contact_kernels;
+    plan.kernel = plan.with_contacts(plan.smooth, plan.geometry, system, nullptr);
     system.exact = nullptr;
   }
   plan.reactions = reactions_of(plan.geometry, system.mechanics, planned->inputs, plan.contacts);

@@ -131,6 +131,10 @@ struct RunPlan {
   std::shared_ptr<RunContacts> contacts;  // null where none may slide or open
   std::unique_ptr<Events> events;
   KernelSetup setup;
+  /// contact_kernels(), or those of the scheme nonsmooth.
+  KernelFactory (*with_contacts)(KernelFactory smooth, std::shared_ptr<const Geometry> geometry,
+                                 const SystemModel& system,
+                                 std::shared_ptr<RunContacts> contacts) = nullptr;
   KernelFactory kernel, smooth;  // smooth: of a piece between switches of contacts
   /// The kernel that takes the steps of the run.
   KernelFactory run_kernel() const;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <hamel/framework/run/run/plan.hpp>
+#include <hamel/framework/schemes/nonsmooth.hpp>
 
 namespace hamel {
 namespace {
@@ -55,10 +56,20 @@ void check_contacts(const SystemModel& system, const Config& config, const Schem
   }
   if (mistakes.none())  // else its parameters are refused already
     for (const ContactLaw& law : laws) check_law(system, law, mistakes);
-  if (scheme != nullptr && !scheme->estimates_error) {
+  const bool nonsmooth = scheme != nullptr && scheme->name == Nonsmooth::name();
+  if (nonsmooth) {
+    if (config.compose != "none")
+      mistakes.add(fmt::format(
+          "compose: {}: with impulses of contacts nonsmooth has no compositions", config.compose));
+    if (config.on_failure != "stop")
+      mistakes.add(
+          fmt::format("on_failure: got '{}', expected stop: nonsmooth takes its steps as "
+                      "they are",
+                      config.on_failure));
+  } else if (scheme != nullptr && !scheme->estimates_error) {
     mistakes.add(
         fmt::format("scheme: {} has no dense output, on which contacts switch; with friction "
-                    "dop853, dopri5 and tsit5 are offered",
+                    "dop853, dopri5 and tsit5 are offered, and nonsmooth, of steps of one size",
                     scheme->name));
   } else if (!config.chooses_steps()) {
     mistakes.add(

@@ -30,6 +30,15 @@ class WithFriction final : public Mechanics {
   std::shared_ptr<RunContacts> contacts_;
 };
 
+const char* verb(const ContactLaw& law, ContactMode mode) {
+  switch (mode) {
+    case ContactMode::open: return "opens";
+    case ContactMode::rolls: return law.rolls_name();
+    case ContactMode::slides: return law.slides_name();
+  }
+  return "";
+}
+
 }  // namespace
 
 RunContacts::RunContacts(std::shared_ptr<const Geometry> geometry, const SystemModel& system)
@@ -46,6 +55,17 @@ void RunContacts::begin_anew() {
   notes.clear();
   window = 0;
   met = 0;
+}
+
+void RunContacts::name_changes(const ContactStates& before, double t,
+                               std::vector<std::pair<std::string, double>>& events) const {
+  for (size_t i = 0; i < before.size(); ++i) {
+    const ContactLaw& law = dynamics_->law(static_cast<int>(i));
+    const ContactMode mode = (*states_)[i].mode;
+    if (mode == before[i].mode) continue;
+    if (mode != ContactMode::open && law.tangential.empty()) continue;
+    events.emplace_back(law.name + "." + verb(law, mode), t);
+  }
 }
 
 std::vector<double> RunContacts::mode_numbers() const {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -51,6 +52,9 @@ class RunContacts {
   void set_known(bool known) { known_ = known; }
   /// Another run: at another start.
   void begin_anew();
+  /// The changes of mode as events.
+  void name_changes(const ContactStates& before, double t,
+                    std::vector<std::pair<std::string, double>>& events) const;
 
   /// Switches of the last step; the driver takes them.
   std::vector<ContactSwitch> switches;

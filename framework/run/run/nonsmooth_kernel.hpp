@@ -1,0 +1,101 @@
+// The scheme `nonsmooth`: a run with contacts in steps of one size, without a search for switches.
+//
+// From a node (g0, xi0), with W = [N; T] and C of contact_dynamics.hpp (2), a step of lift between
+// impulses P at its beginning and Q at its end:
+//   xi0' = xi0 + M_A C(g0)^T P,   (g1, xi1') = lift(g0, xi0'),   xi1 = xi1' + M_A W(g1)^T Q.
+// P: the contact problem of gamma = (gap(g1)/h, T(gm) xm), gm = g0 tau(h xm/2), g1 = g0 tau(h xm);
+//    a contact that slips at g0 has N and C alone, its friction against that slip; one that strikes
+//    in the step has N alone.
+// Q: that of gamma = W(g1) xi1 - b; of a contact that strikes in the step gamma_n has
+//    + e min(0, N xi0 - b), unless that bounce ends within a step, and the cone holds P + Q.
+// Given loads press h/2 at either end. So no gap is ever below 0, what slides or rolls is of order
+// 2, through the end of a slip too, and an impact of order 1. The problem of P is solved by secants
+// of gamma from G = W M_A C^T on. Source: Breuling, Capobianco, Eugster, Leine, A nonsmooth RATTLE
+// algorithm for mechanical systems with frictional unilateral constraints (2024), whose cone holds
+// P + Q of all contacts, which is of order 1. Not installed.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <hamel/framework/run/run/run_contacts.hpp>
+
+namespace hamel {
+
+/// As contact_kernels() of contact_kernel.hpp; smooth: of lift.
+KernelFactory nonsmooth_kernels(KernelFactory smooth, std::shared_ptr<const Geometry> geometry,
+                                const SystemModel& system, std::shared_ptr<RunContacts> contacts);
+
+class NonsmoothKernel final : public Kernel {
+ public:
+  NonsmoothKernel(KernelFactory smooth, KernelSetup setup, std::shared_ptr<RunContacts> contacts);
+
+  Status advance(long count) override;
+  long whole_steps() const override { return whole_; }
+  bool off_grid() const override { return left_ != setup_.step; }
+  using Kernel::state;
+  void state(Snapshot& out, const StateParts& parts) const override;
+  const SolverStats& stats() const override { return lift_->stats(); }
+  void node(Snapshot& out) const override { lift_->node(out); }
+  void beginning(Snapshot& out) const override { out = before_; }
+  double time() const override { return time_; }
+  double beginning_time() const override { return before_.time; }
+  void set_end_time(double t) override;
+  double next_step() const override { return left_; }
+  void turn_back() override;
+  void restart(double t, std::span<const double> coordinates, std::span<const double> velocity,
+               double step) override;
+  std::unique_ptr<Kernel> another(const KernelSetup& setup) const override;
+  void clear_history() override { lift_->clear_history(); }
+  bool interpolate(double t, Snapshot& out) override;
+  bool motion_within(double t, Snapshot& out) override { return interpolate(t, out); }
+
+ private:
+  static constexpr double kNoSpeed = 1e-10;  // of what the energy allows
+
+  ContactDynamics& dynamics() const { return *contacts_->dynamics(); }
+  int count() const { return dynamics().count(); }
+
+  void begin();
+  void go_to(double t, const double* g, std::span<const double> velocity);
+  // A step with these impulses at its beginning: into end_, g1_, gaps_.
+  Status take_step(const Eigen::VectorXd& p);
+  // gamma of P behind it.
+  void find_gamma(Eigen::VectorXd& out);
+  Status press();
+  bool others_strike();
+  std::string end_step();
+  std::string solve_end(const std::vector<ImpulseOf>& on, double h);
+  bool bounces(const ContactLaw& law, int row) const;
+  void find_no_speeds();
+  void take_modes(const ContactStates& before);
+  Status take_one();
+  Status fail(const std::string& reason, double residual = 0) const;
+
+  KernelFactory smooth_;
+  KernelSetup setup_;
+  std::shared_ptr<RunContacts> contacts_;
+  std::unique_ptr<Kernel> lift_;
+  double limit_, left_ = 0;  // of the step that an input has ended
+  long steps_ = 0, whole_ = 0;
+  // The node, the one before, and the end of a step without Q.
+  double time_ = 0;
+  Eigen::VectorXd g_, xi_, g1_, xi1_;
+  std::vector<double> coordinates_, velocity_;
+  Snapshot before_, end_, unstruck_;
+  ContactStates states_;
+  std::vector<ImpulseOf> on_;
+  std::vector<char> strikes_;
+  std::vector<double> no_speeds_;
+  Eigen::VectorXd rates_;  // W xi0 - b
+  std::vector<int> rows_of_p_, contacts_of_p_;
+  Eigen::VectorXd p_, gamma_, gaps_, b_, given_, pushed_;
+  Eigen::MatrixXd responses_, metric_, a_;
+  int iterations_ = 0;
+};
+
+}  // namespace hamel
