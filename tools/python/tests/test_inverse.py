@@ -50,9 +50,9 @@ def test_a_fit_returns_the_numbers_of_its_recording():
 
 
 def test_derivatives_of_a_run_are_those_of_its_neighbours():
-    def sleigh(offset=0.2, omega=1.0):
-        return hamel.simulate("chaplygin_sleigh").offset(offset).velocity([omega, 1, 0]) \
-            .rtol(1e-11).until(2)
+    def sleigh():
+        builder = hamel.simulate("chaplygin_sleigh").offset(0.2).start(velocity=[1, 1, 0])
+        return builder.tolerance(relative=1e-11).until(2)
 
     along = sleigh().sensitivities(["offset", "start.omega"])
     assert along and along.names == ["offset", "start.omega"]
