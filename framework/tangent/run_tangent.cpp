@@ -71,7 +71,9 @@ RunTangent Run::tangent() {
   }
   motion.begin_with(columns);
   RunTangent out;
-  out.status = motion.advance_to(now.time);
+  // An event that ended the run is met again on the way to the end.
+  const bool met_end = over() && !simulation.config().stop_at.empty();
+  out.status = motion.advance_to(met_end ? simulation.config().completed().until : now.time);
   if (!out.status.ok) return out;
   const TangentState& end = motion.now();
   if (!leads_to(motion, now)) {

@@ -23,7 +23,9 @@ std::vector<double> times_of_rows(const Simulation& simulation) {
     out.push_back(row.time);
     return true;
   });
-  plain.run();
+  const Result result = plain.run();
+  // The event that ended it is met again on the way to the end.
+  if (result.stopped_by_event) out.back() = config.until;
   return out;
 }
 
@@ -80,17 +82,22 @@ Sensitivities Simulation::sensitivities(const std::vector<std::string>& names) c
   SensitivityRows rows(*motion.motion().plan().system, out.names);
   Eigen::VectorXd values;
   Eigen::MatrixXd fine, coarse;
+  const bool given_times = !config().completed().recorded_times().empty();
   for (const double t : times_of_rows(*this)) {
     out.status = motion.advance_to(t);
     if (!out.status.ok) break;
     const TangentState& now = motion.now();
-    const TangentState other{now.state, now.coarse, {}};
+    if (motion.over()) {
+      out.end_time.assign(now.time.begin(), now.time.end());
+      if (given_times) break;
+    }
+    const TangentState other{now.state, now.coarse, {}, now.time};
     if (!motion.derivative(now, coordinates_and_velocities, values, fine) ||
         !motion.derivative(other, coordinates_and_velocities, values, coarse)) {
       out.status = {false, 0, t, 0, "the coordinates have no derivative here"};
       break;
     }
-    rows.add(t, values, fine);
+    rows.add(now.state.time, values, fine);
     const Eigen::MatrixXd off = (fine - coarse).cwiseAbs();
     out.errors.resize(static_cast<size_t>(off.size()));
     for (Eigen::Index i = 0; i < off.rows(); ++i)
@@ -129,7 +136,7 @@ Gradient Simulation::gradient(const std::string& objective,
   out.status = motion.advance_to(simulation.config().completed().until);
   if (!out.status.ok) return out;
   const TangentState& end = motion.now();
-  const TangentState other{end.state, end.coarse, {}};
+  const TangentState other{end.state, end.coarse, {}, end.time};
   Eigen::VectorXd value;
   Eigen::MatrixXd fine, coarse;
   if (!motion.derivative(end, of_state, value, fine) ||

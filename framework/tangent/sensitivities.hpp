@@ -12,7 +12,9 @@
 // with a coordinate or a component of the velocity: the other components follow the rows, nearest
 // to the usual ones in the metric I. The run keeps its accepted steps: the choice of h has no
 // derivative. Derivatives are products of the tangents of the steps, exact or by extrapolated
-// differences of the map of this step alone. Standard-library types only.
+// differences of the map of this step alone. Events that end the run or change its state
+// (on_event) happen at other times beside it, and impacts are differentiated: their functions are
+// called again at states nearby. Standard-library types only.
 #pragma once
 
 #include <string>
@@ -32,6 +34,9 @@ struct Sensitivities {
   std::vector<std::string> names;
   /// Of each column d(x)/d(name), in their order: the largest measured error along the run.
   std::vector<double> errors;
+  /// Where an event ended the run: derivatives of its time, by each name. The last row, where rows
+  /// are nodes, is the state there, whenever that is.
+  std::vector<double> end_time;
   double growth = 0;  // the largest derivative by a start, in its own units
   Status status;      // of the run and its tangent; rows before a failure are kept
   int steps = 0;
