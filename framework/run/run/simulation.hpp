@@ -187,7 +187,7 @@ class HAMEL_API Simulation {
   /// Derivative of a quantity at the end, a column of the run or a formula of columns and
   /// parameters ("x^2 + y^2"), by these.
   Gradient gradient(const std::string& objective, const std::vector<std::string>& names) const;
-  /// The same motion without rows, files, and functions that watch it.
+  /// Its motion without rows, files, and functions that watch it.
   Simulation unobserved() const;
 
  private:

@@ -164,6 +164,8 @@ void bind_fit(nb::module_& m) {
       .def_prop_ro("columns", [](const Sensitivities& s) { return columns_of(s.rows); })
       .def_ro("names", &Sensitivities::names)
       .def_ro("errors", &Sensitivities::errors, "the largest, of each derivative")
+      .def_ro("end_time", &Sensitivities::end_time,
+              "derivatives of the time at which an event ended the run, by each name")
       .def_ro("growth", &Sensitivities::growth)
       .def_ro("status", &Sensitivities::status)
       .def("csv", [](const Sensitivities& s) { return s.rows.csv(); });
